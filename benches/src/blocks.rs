@@ -1,0 +1,58 @@
+//! Interleaved timing of two ways to do the same: blocks in the order A B B A, so that a slow drift of the machine
+//! falls on both alike. Takes what makes a fresh block of work; gives medians and the spread of the ratio.
+
+use std::time::Instant;
+
+/// Groups of four blocks; a median of 202 blocks each.
+pub const QUADRUPLES: usize = 101;
+
+/// Steps of one block: about a millisecond, far above the resolution of the clock and below a time slice.
+pub const STEPS: u32 = 32_000;
+
+/// Times per step in nanoseconds.
+pub struct Comparison {
+    /// Median over the blocks of the generated stepper.
+    pub generated: f64,
+    /// Median over the blocks of the hand-written one.
+    pub hand: f64,
+    /// Lower and upper quartile of the ratio within groups of four.
+    pub quartiles: [f64; 2],
+}
+
+/// Times both; `generated` and `hand` make work that is ready to run, outside the clock.
+pub fn compare<A: FnOnce(), B: FnOnce()>(
+    generated: impl Fn() -> A,
+    hand: impl Fn() -> B,
+) -> Comparison {
+    let (mut first, mut second, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
+    // The first groups warm caches, predictors and clock frequency.
+    for group in 0..QUADRUPLES + 5 {
+        let a1 = time(generated());
+        let b1 = time(hand());
+        let b2 = time(hand());
+        let a2 = time(generated());
+        if group >= 5 {
+            first.extend([a1, a2]);
+            second.extend([b1, b2]);
+            ratios.push((a1 + a2) / (b1 + b2));
+        }
+    }
+    Comparison {
+        generated: quantile(&mut first, 0.5),
+        hand: quantile(&mut second, 0.5),
+        quartiles: [quantile(&mut ratios, 0.25), quantile(&mut ratios, 0.75)],
+    }
+}
+
+fn time(work: impl FnOnce()) -> f64 {
+    let begin = Instant::now();
+    work();
+    begin.elapsed().as_secs_f64() * 1e9 / f64::from(STEPS)
+}
+
+fn quantile(times: &mut [f64], share: f64) -> f64 {
+    times.sort_by(f64::total_cmp);
+    let place = share * (times.len() - 1) as f64;
+    let (below, above) = (times[place.floor() as usize], times[place.ceil() as usize]);
+    below + (above - below) * place.fract()
+}

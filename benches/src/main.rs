@@ -1,0 +1,70 @@
+//! Time per step of generated steppers beside hand-written ones, called as a user calls them: one step at a time.
+//! Takes no arguments; prints a table. `cargo run --release --manifest-path benches/Cargo.toml`, some ten seconds.
+
+// The fields of the models are Greek letters, as in the papers.
+#![allow(mixed_script_confusables)]
+
+mod blocks;
+mod steppers;
+
+use blocks::{Comparison, compare};
+use clebsch_tests::physics::cases::{
+    Start, asymmetric_body, generic_top, lagrange_top, symmetric_body,
+};
+use steppers::{generated_body, generated_top, written_body, written_top};
+
+fn main() {
+    println!("{}; {}", machine(), env!("RUSTC_VERSION"));
+    println!(
+        "{} blocks of {} steps each way, in the order generated, hand, hand, generated; ns per step",
+        2 * blocks::QUADRUPLES,
+        blocks::STEPS
+    );
+    println!();
+    println!(
+        "{:<34} {:>9} {:>9} {:>7}   quartiles of the ratio",
+        "case", "generated", "hand", "ratio"
+    );
+    let bodies: [(&str, Start); 3] = [
+        ("free body, I = (2, 2, 1)", symmetric_body()),
+        ("free body, I = (3.5, 2.5, 2)", asymmetric_body()),
+        ("free body, J full", generic_top()),
+    ];
+    for (name, start) in bodies {
+        print(
+            name,
+            &compare(|| generated_body(&start), || written_body(&start)),
+        );
+    }
+    let tops: [(&str, Start); 2] = [
+        ("heavy top, Lagrange", lagrange_top()),
+        ("heavy top, J full", generic_top()),
+    ];
+    for (name, start) in tops {
+        print(
+            name,
+            &compare(|| generated_top(&start), || written_top(&start)),
+        );
+    }
+}
+
+fn print(name: &str, times: &Comparison) {
+    let [low, high] = times.quartiles;
+    println!(
+        "{name:<34} {:>9.2} {:>9.2} {:>7.3}   {low:.3} to {high:.3}",
+        times.generated,
+        times.hand,
+        times.generated / times.hand
+    );
+}
+
+/// Name of the processor, where the system tells it.
+fn machine() -> String {
+    std::fs::read_to_string("/proc/cpuinfo")
+        .ok()
+        .and_then(|text| {
+            let line = text.lines().find(|line| line.starts_with("model name"))?;
+            Some(line.split_once(':')?.1.trim().to_owned())
+        })
+        .unwrap_or_else(|| std::env::consts::ARCH.to_owned())
+}

@@ -1,0 +1,40 @@
+//! Where in a case file a key stands, so that every message can name file, line and field.
+//! Takes the file's name and text; gives lines and placed messages.
+
+use crate::failure::Failure;
+use crate::gallery::Case;
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// A case and the lines its values came from.
+#[derive(Clone, Debug)]
+pub struct Located {
+    /// The case.
+    pub case: Case,
+    /// File name as the user gave it.
+    pub file: String,
+    /// Line, from 1, of each key such as `parameters.J`.
+    pub lines: BTreeMap<String, usize>,
+}
+
+/// A file being read.
+pub(super) struct File<'a> {
+    pub name: &'a str,
+    pub text: &'a str,
+}
+
+impl File<'_> {
+    /// Line, from 1, where `span` begins.
+    pub fn line(&self, span: &Range<usize>) -> usize {
+        let before = self.text.as_bytes().iter().take(span.start);
+        1 + before.filter(|&&byte| byte == b'\n').count()
+    }
+
+    /// A usage failure at `span` (or for the file as a whole).
+    pub fn wrong(&self, span: Option<&Range<usize>>, message: &str) -> Failure {
+        Failure::Usage(match span {
+            Some(span) => format!("{}:{}: {message}", self.name, self.line(span)),
+            None => format!("{}: {message}", self.name),
+        })
+    }
+}

@@ -1,0 +1,146 @@
+//! Prints a case as a complete TOML file that reads back to the same numbers, bit by bit.
+//! Takes a card and a case; gives the text, with comments on shape, frame and units.
+
+use crate::gallery::Case;
+use crate::verdict::DEFAULT_BOUND;
+use clebsch::card::{Card, Conserved, Field, Kind};
+use std::fmt::Write as _;
+
+/// The TOML text of `case`.
+#[must_use]
+pub fn write(card: &Card, case: &Case) -> String {
+    let mut text = String::new();
+    comment(
+        &mut text,
+        &format!("A case of the model {}; run it with", card.kebab),
+    );
+    comment(
+        &mut text,
+        &format!("  clebsch run {} --case THIS-FILE.toml", card.kebab),
+    );
+    comment(
+        &mut text,
+        "Units: any consistent system. The model fixes none; time is in the unit of h.",
+    );
+    let mut line = |key: &str, value: String| {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{key} = {value}");
+    };
+    line("model", quoted(card.kebab));
+    line("name", quoted(&case.name));
+    line("doc", quoted(&case.doc));
+    line("h", format!("{:?}     # time step, positive", case.h));
+    line(
+        "steps",
+        format!("{}     # number of steps, at least 1", case.steps),
+    );
+    table(&mut text, "parameters", card.parameters, &case.parameters);
+    table(&mut text, "initial", card.initial, &case.initial);
+    bounds(&mut text, card, case);
+    text
+}
+
+fn table(text: &mut String, name: &str, fields: &[Field], values: &[Vec<f64>]) {
+    let _ = writeln!(text, "\n[{name}]");
+    for (field, numbers) in fields.iter().zip(values) {
+        comment(text, &about(field));
+        let _ = writeln!(text, "{} = {}", field.ascii, value(field, numbers));
+    }
+}
+
+fn bounds(text: &mut String, card: &Card, case: &Case) {
+    let _ = writeln!(text, "\n[bounds]");
+    comment(
+        text,
+        "Largest drift |I(t) - I(0)| / scale at any node; beyond it the exit code is 3.",
+    );
+    for invariant in card.invariants {
+        comment(text, &format!("{}: {}", invariant.name, invariant.formula));
+        let stated = case.bounds.iter().find(|(name, _)| name == invariant.name);
+        let _ = match (stated, invariant.conserved) {
+            (Some((_, bound)), _) => writeln!(text, "{} = {bound:?}", invariant.name),
+            (None, Conserved::Exactly) => writeln!(
+                text,
+                "# {} = {DEFAULT_BOUND:?}     # kept to rounding: this is the default",
+                invariant.name
+            ),
+            (None, Conserved::Boundedly) => writeln!(
+                text,
+                "# {} = 1e-3     # oscillates within O(h^2): no default, it is only reported",
+                invariant.name
+            ),
+        };
+    }
+}
+
+/// Shape and frame of a field, then the model's own words.
+fn about(field: &Field) -> String {
+    let Field { rows, cols, .. } = *field;
+    let shape = match field.kind {
+        Kind::Scalar => "a number".to_owned(),
+        Kind::Vector => format!("vector of {rows}"),
+        Kind::Symmetric => format!("symmetric {rows}x{cols} matrix, written in full"),
+        Kind::Skew => format!("skew {rows}x{cols} matrix, written in full"),
+        Kind::Diagonal => format!("diagonal {rows}x{cols} matrix, or its {rows} entries"),
+        Kind::Matrix => format!("{rows}x{cols} matrix, row by row"),
+        Kind::Rotation => {
+            "rotation body -> space: 3x3 matrix, or unit quaternion [w, x, y, z]".to_owned()
+        }
+        Kind::BodyMomentum => "momentum at the first node, body frame".to_owned(),
+        Kind::SpatialMomentum => "momentum at the first node, space frame".to_owned(),
+    };
+    let written = if field.name == field.ascii {
+        String::new()
+    } else {
+        format!("{}, ", field.name)
+    };
+    let doc = field.doc.split_whitespace().collect::<Vec<_>>().join(" ");
+    if doc.is_empty() {
+        format!("{written}{shape}")
+    } else {
+        format!("{written}{shape}: {doc}")
+    }
+}
+
+fn value(field: &Field, numbers: &[f64]) -> String {
+    if field.kind == Kind::Scalar {
+        return numbers
+            .first()
+            .map_or_else(String::new, |x| format!("{x:?}"));
+    }
+    if field.cols == 1 {
+        return list(numbers);
+    }
+    let rows: Vec<String> = numbers.chunks(field.cols).map(list).collect();
+    format!("[\n    {},\n]", rows.join(",\n    "))
+}
+
+fn list(numbers: &[f64]) -> String {
+    // `{:?}` is the shortest text that reads back to the same f64.
+    let numbers: Vec<String> = numbers.iter().map(|x| format!("{x:?}")).collect();
+    format!("[{}]", numbers.join(", "))
+}
+
+fn comment(text: &mut String, words: &str) {
+    let words: Vec<&str> = words.lines().collect();
+    let _ = writeln!(text, "# {}", words.join(" "));
+}
+
+/// A basic string of TOML.
+fn quoted(words: &str) -> String {
+    let mut text = String::from("\"");
+    for letter in words.chars() {
+        match letter {
+            '"' => text.push_str("\\\""),
+            '\\' => text.push_str("\\\\"),
+            '\n' => text.push_str("\\n"),
+            '\t' => text.push_str("\\t"),
+            control if control.is_control() => {
+                let _ = write!(text, "\\u{:04X}", u32::from(control));
+            }
+            plain => text.push(plain),
+        }
+    }
+    text.push('"');
+    text
+}

@@ -1,0 +1,123 @@
+//! The commands of `clebsch`: list the gallery, print a case, run it, derive its equations.
+//!
+//! The binary only calls [`run_process`]; everything else takes its arguments, its gallery and its
+//! output streams from outside, so that tests run the very same code on models of their own.
+//! Results go to standard output, progress and messages to standard error. Exit codes: [`failure`].
+
+pub mod arguments;
+pub mod case_file;
+mod columns;
+pub mod derive;
+pub mod failure;
+pub mod gallery;
+mod list;
+mod output;
+mod plan;
+mod plots;
+mod record;
+mod run;
+mod suggestion;
+mod verdict;
+
+use clap::ArgMatches;
+use failure::{DONE, FAILED, Failure, USAGE};
+use gallery::Gallery;
+use std::ffi::OsString;
+use std::io::{self, IsTerminal, Write};
+use std::process::ExitCode;
+
+/// Where a command writes.
+pub struct Streams<'a> {
+    /// Results.
+    pub out: &'a mut dyn Write,
+    /// Messages.
+    pub err: &'a mut dyn Write,
+    /// Whether to draw progress on the process's standard error.
+    pub progress: bool,
+}
+
+/// Runs the process's own arguments on the shipped models.
+#[must_use]
+pub fn run_process() -> ExitCode {
+    let mut streams = Streams {
+        out: &mut io::stdout(),
+        err: &mut io::stderr(),
+        progress: io::stderr().is_terminal(),
+    };
+    ExitCode::from(execute(
+        std::env::args_os(),
+        &Gallery::shipped(),
+        &mut streams,
+    ))
+}
+
+/// Runs `arguments` (the first is the program's name) and gives the exit code.
+pub fn execute(
+    arguments: impl IntoIterator<Item = OsString>,
+    gallery: &Gallery,
+    streams: &mut Streams<'_>,
+) -> u8 {
+    let matches = match arguments::command().try_get_matches_from(arguments) {
+        Ok(matches) => matches,
+        Err(error) => return answer_clap(&error, streams),
+    };
+    let as_json = matches
+        .subcommand()
+        .is_some_and(|(name, matches)| name == "run" && matches.get_flag("json"));
+    let done = dispatch(&matches, gallery, streams);
+    let done = done.and_then(|code| {
+        streams.out.flush()?;
+        Ok(code)
+    });
+    done.unwrap_or_else(|failure| {
+        if failure != Failure::ReaderGone {
+            // When even this cannot be written, the exit code is all there is left.
+            let _ = writeln!(streams.err, "clebsch: {failure}");
+            if as_json {
+                let _ = writeln!(streams.out, "{}", run::failure_json(&failure));
+            }
+        }
+        failure.code()
+    })
+}
+
+fn dispatch(
+    matches: &ArgMatches,
+    gallery: &Gallery,
+    streams: &mut Streams<'_>,
+) -> Result<u8, Failure> {
+    match matches.subcommand() {
+        Some(("list", matches)) => {
+            list::list(gallery, matches.get_flag("json"), streams.out)?;
+            Ok(DONE)
+        }
+        Some(("case", matches)) => {
+            let text = |key: &str| matches.get_one::<String>(key).map(String::as_str);
+            let entry = gallery.find(text("model").unwrap_or_default())?;
+            let case = gallery::case(entry, text("case"))?;
+            let toml = case_file::write(&entry.card, case);
+            streams.out.write_all(toml.as_bytes())?;
+            Ok(DONE)
+        }
+        Some(("run", matches)) => run::run(gallery, matches, streams),
+        Some(("derive", matches)) => {
+            derive::derive(gallery, matches, streams.out)?;
+            Ok(DONE)
+        }
+        // clap demands a subcommand and knows no other.
+        _ => Err(Failure::Usage("no such command".to_owned())),
+    }
+}
+
+/// Help and version are results; everything else that clap says is a usage message.
+fn answer_clap(error: &clap::Error, streams: &mut Streams<'_>) -> u8 {
+    let message = error.render();
+    if error.use_stderr() {
+        let _ = write!(streams.err, "{message}");
+        return USAGE;
+    }
+    match write!(streams.out, "{message}").and_then(|()| streams.out.flush()) {
+        Ok(()) => DONE,
+        Err(_) => FAILED,
+    }
+}

@@ -1,0 +1,71 @@
+//! What a run leaves behind: trajectory.csv, trajectory.npz, run.json and plots in one new folder.
+//! Takes a finished run; gives the names of the files. Nothing in them depends on the time of day.
+
+mod csv;
+mod names;
+mod npz;
+mod run_json;
+mod staging;
+
+pub use run_json::run_json;
+pub use staging::Staging;
+
+use crate::failure::Failure;
+use crate::plan::Plan;
+use crate::plots;
+use crate::record::Samples;
+use crate::verdict::Outcome;
+use clebsch::card::Card;
+
+/// A run that has come to its end.
+pub struct Finished<'a> {
+    /// The model.
+    pub card: &'a Card,
+    /// What was asked for.
+    pub plan: &'a Plan,
+    /// What was conserved.
+    pub outcomes: &'a [Outcome],
+    /// Number of samples taken.
+    pub samples: u64,
+}
+
+/// Every file name a run can write, so that a folder with anything else is never replaced.
+pub const FILES: [&str; 6] = [
+    "trajectory.csv",
+    "trajectory.npz",
+    "run.json",
+    "momentum.svg",
+    "invariants.svg",
+    "advected.svg",
+];
+
+/// Writes all files into `staging`; gives their names.
+///
+/// # Errors
+/// Failed: the file system refuses.
+pub fn write(
+    staging: &Staging,
+    run: &Finished<'_>,
+    samples: &Samples,
+) -> Result<Vec<&'static str>, Failure> {
+    let record = &samples.record;
+    let [csv, npz, json, momentum, invariants, advected] = FILES;
+    staging.write(csv, |file| csv::write(file, run.card, record))?;
+    staging.write(npz, |file| npz::write(file, &npz::arrays(run.card, record)))?;
+    let mut files = vec![csv, npz, json];
+    let drawn = [
+        (momentum, plots::momentum(run, samples)),
+        (invariants, plots::invariants(run, record)),
+        (advected, plots::advected(run, samples)),
+    ];
+    for (name, plot) in drawn {
+        let plot = plot.map_err(|error| Failure::Failed(format!("cannot draw {name}: {error}")))?;
+        if let Some(svg) = plot {
+            staging.write(name, |file| file.write_all(svg.as_bytes()))?;
+            files.push(name);
+        }
+    }
+    let text = format!("{:#}\n", run_json(run, &files));
+    staging.write(json, |file| file.write_all(text.as_bytes()))?;
+    Ok(files)
+}

@@ -1,0 +1,60 @@
+//! run.json: everything needed to repeat a run, and what came out.
+//! Takes a finished run; gives a JSON object with sorted keys and no trace of when or where it ran.
+
+use super::Finished;
+use crate::verdict::{Outcome, Verdict};
+use clebsch::card::{Field, Kind};
+use serde_json::{Map, Value, json};
+
+/// The object written as run.json and printed by `--json`; `files` are the names beside it.
+#[must_use]
+pub fn run_json(run: &Finished<'_>, files: &[&str]) -> Value {
+    let Finished {
+        card,
+        plan,
+        outcomes,
+        samples,
+    } = run;
+    let case = &plan.case;
+    let bounds = case.bounds.iter();
+    json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "model": card.kebab,
+        "fingerprint": format!("{:016x}", card.fingerprint),
+        "case": case.name,
+        "doc": case.doc,
+        "parameters": values(card.parameters, &case.parameters),
+        "initial": values(card.initial, &case.initial),
+        "bounds": bounds.map(|(name, bound)| (name.clone(), json!(bound))).collect::<Map<_, _>>(),
+        "h": case.h,
+        "steps": case.steps,
+        "every": plan.every,
+        "arguments": plan.arguments,
+        "derived": {
+            "summary": card.summary,
+            "solver": card.solver,
+            "order": card.order,
+            "reversible": card.reversible,
+        },
+        "results": {
+            "samples": samples,
+            "invariants": outcomes.iter().map(Outcome::json).collect::<Vec<_>>(),
+            "kept": outcomes.iter().all(|outcome| outcome.verdict != Verdict::Left),
+            "files": files,
+        },
+    })
+}
+
+/// Values by ASCII name: numbers, arrays, arrays of rows.
+fn values(fields: &[Field], values: &[Vec<f64>]) -> Value {
+    let pairs = fields.iter().zip(values);
+    let value = |field: &Field, numbers: &[f64]| match field.kind {
+        Kind::Scalar => json!(numbers.first()),
+        _ if field.cols == 1 => json!(numbers),
+        _ => json!(numbers.chunks(field.cols.max(1)).collect::<Vec<_>>()),
+    };
+    pairs
+        .map(|(field, numbers)| (field.ascii.to_owned(), value(field, numbers)))
+        .collect::<Map<_, _>>()
+        .into()
+}

@@ -1,0 +1,116 @@
+//! What is to be run: a case of the gallery or of a file, with the options that override it.
+//! Takes the matches of `clebsch run`; gives the plan, and places error messages in its file.
+
+use crate::case_file::{self, Located};
+use crate::failure::Failure;
+use crate::gallery::{self, Case, Entry};
+use clap::ArgMatches;
+use clebsch::card::{Card, Field, OpenError, Trajectory};
+use clebsch::{ParameterError, StartError};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+
+/// Most nodes written by default: a plot shows no more, and the files stay at a few megabytes.
+const SAMPLES: u64 = 10_000;
+
+/// A run before it starts.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The case, options applied.
+    pub case: Case,
+    /// Every how many nodes the trajectory is written.
+    pub every: u64,
+    /// The options that determine the results, as given; `null` where not given.
+    pub arguments: Value,
+    /// For a case read from a file: its name, and the line of each key.
+    origin: Option<(String, BTreeMap<String, usize>)>,
+}
+
+impl Plan {
+    /// Reads the case and applies the options.
+    ///
+    /// # Errors
+    /// Usage: an unknown case, an unreadable or wrong file.
+    pub fn new(entry: &Entry, matches: &ArgMatches) -> Result<Self, Failure> {
+        let asked = matches.get_one::<String>("case").map(String::as_str);
+        let steps = matches.get_one::<u64>("steps").copied();
+        let h = matches.get_one::<f64>("h").copied();
+        let every = matches.get_one::<u64>("every").copied();
+        let (mut case, origin) = match asked.filter(|name| is_file(name)) {
+            Some(file) => {
+                let Located { case, file, lines } = read(file, &entry.card)?;
+                (case, Some((file, lines)))
+            }
+            None => (gallery::case(entry, asked)?.clone(), None),
+        };
+        case.steps = steps.unwrap_or(case.steps);
+        case.h = h.unwrap_or(case.h);
+        Ok(Self {
+            every: every.unwrap_or_else(|| case.steps.div_ceil(SAMPLES).max(1)),
+            case,
+            arguments: json!({
+                "model": entry.card.kebab,
+                "case": asked,
+                "steps": steps,
+                "h": h,
+                "every": every,
+            }),
+            origin,
+        })
+    }
+
+    /// Starts the trajectory.
+    ///
+    /// # Errors
+    /// Usage for data that the model cannot work with, with file and line where they come from one;
+    /// failed when the data are fine and the solver refuses the first step.
+    pub fn open(&self, card: &Card) -> Result<Box<dyn Trajectory>, Failure> {
+        let Case {
+            parameters,
+            initial,
+            h,
+            ..
+        } = &self.case;
+        (card.open)(parameters, initial, *h).map_err(|error| match error {
+            OpenError::Parameter(wrong) | OpenError::Start(StartError::Initial(wrong)) => {
+                let place = self.place(card, &wrong);
+                Failure::Usage(format!("{place}: {}; {}", wrong.problem, wrong.remedy))
+            }
+            OpenError::Start(StartError::Refused(cause)) => {
+                Failure::Failed(format!("cannot take the first step: {cause}"))
+            }
+            OpenError::Count { .. } => Failure::Usage(error.to_string()),
+        })
+    }
+
+    /// Where the value that is wrong was given: `top.toml:7: parameters.J`.
+    fn place(&self, card: &Card, wrong: &ParameterError) -> String {
+        let of = |table: &str, fields: &[Field]| {
+            let named = |field: &&Field| field.name == wrong.field || field.ascii == wrong.field;
+            let field = fields.iter().find(named)?;
+            Some(format!("{table}.{}", field.ascii))
+        };
+        let key = of("parameters", card.parameters)
+            .or_else(|| of("initial", card.initial))
+            .unwrap_or_else(|| wrong.field.to_owned());
+        match &self.origin {
+            None => format!("case `{}`: {key}", self.case.name),
+            Some((file, lines)) => match lines.get(&key) {
+                Some(line) => format!("{file}:{line}: {key}"),
+                None => format!("{file}: {key}"),
+            },
+        }
+    }
+}
+
+/// A case file ends in .toml; anything else is the name of a case.
+fn is_file(name: &str) -> bool {
+    let extension = std::path::Path::new(name).extension();
+    extension.is_some_and(|extension| extension == "toml")
+}
+
+fn read(file: &str, card: &Card) -> Result<Located, Failure> {
+    let text = std::fs::read_to_string(file)
+        .map_err(|error| Failure::Usage(format!("cannot read the case file {file}: {error}")))?;
+    case_file::read(file, &text, card)
+}

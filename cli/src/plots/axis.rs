@@ -1,0 +1,211 @@
+//! An axis: its range, its ticks and their labels.
+//! Takes a range of numbers or of decades; gives what the chart needs, ticks at round numbers.
+
+use super::curve::Curve;
+use super::power_of_ten;
+use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
+use std::ops::Range;
+
+/// Drifts below are drawn here: a tenth of the unit roundoff, so that rounding stays visible above.
+pub(super) const FLOOR: f64 = 1e-17;
+
+/// A linear axis, or one of decimal logarithms.
+#[derive(Clone, Debug)]
+pub(super) struct Axis {
+    low: f64,
+    high: f64,
+    ticks: Vec<(f64, String)>,
+    /// Power of ten taken out of the labels, to be said beside the axis.
+    pub factor: Option<String>,
+}
+
+impl Axis {
+    /// From `low` to `high` as they are, with about `count` ticks.
+    pub fn linear(low: f64, high: f64, count: u32) -> Self {
+        let (low, high) = if high > low {
+            (low, high)
+        } else {
+            (low, low + 1.0)
+        };
+        let step = round_step((high - low) / f64::from(count.max(1)));
+        let magnitude = low.abs().max(high.abs()).log10().floor();
+        let exponent = if (-3.0..6.0).contains(&magnitude) {
+            0.0
+        } else {
+            magnitude
+        };
+        let unit = 10_f64.powf(exponent);
+        // Digits that tell neighbouring ticks apart, and no more.
+        let digits = (exponent - step.log10().floor()).clamp(0.0, 17.0) as usize;
+        let mut ticks = Vec::new();
+        let mut index = (low / step).ceil();
+        while index * step <= high + step * 1e-9 {
+            // Adding zero turns -0 into 0.
+            let label = format!("{:.digits$}", index * step / unit + 0.0);
+            ticks.push((index * step, label.replace('-', "−")));
+            index += 1.0;
+        }
+        Self {
+            low,
+            high,
+            ticks,
+            factor: (exponent != 0.0).then(|| power_of_ten(exponent as i32)),
+        }
+    }
+
+    /// Around the values of `curves`, with a margin. Values that agree to six digits are drawn as a
+    /// flat line, not as rounding noise.
+    pub fn around(curves: &[Curve]) -> Self {
+        let values = curves
+            .iter()
+            .flat_map(|curve| curve.points.iter().map(|point| point.1));
+        let values = values.filter(|value| value.is_finite());
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+            (low.min(value), high.max(value))
+        });
+        if low > high {
+            return Self::linear(-1.0, 1.0, 5);
+        }
+        let largest = low.abs().max(high.abs());
+        let margin = if high - low > 1e-6 * largest {
+            0.06 * (high - low)
+        } else if largest > 0.0 {
+            0.2 * largest
+        } else {
+            1.0
+        };
+        Self::linear(low - margin, high + margin, 5)
+    }
+
+    /// Whole decades around the logarithms in `curves`, not below the floor.
+    pub fn decades(curves: &[Curve]) -> Self {
+        let values = curves
+            .iter()
+            .flat_map(|curve| curve.points.iter().map(|point| point.1));
+        let values = values.filter(|value| value.is_finite());
+        let floor = FLOOR.log10().round();
+        let (low, high) = values.fold((f64::INFINITY, floor), |(low, high), value| {
+            (low.min(value), high.max(value))
+        });
+        let low = low.min(high).floor();
+        let clamped = low <= floor;
+        let high = (high + 0.2).ceil().max(low + 2.0);
+        let stride = ((high - low) / 9.0).ceil().max(1.0);
+        let mut ticks = Vec::new();
+        let mut exponent = low;
+        while exponent <= high {
+            let power = power_of_ten(exponent as i32);
+            let at_floor = clamped && exponent == low;
+            ticks.push((
+                exponent,
+                if at_floor {
+                    format!("≤ {power}")
+                } else {
+                    power
+                },
+            ));
+            exponent += stride;
+        }
+        Self {
+            // Room below, so that a curve on the floor is not hidden by the axis.
+            low: low - 0.02 * (high - low),
+            high,
+            ticks,
+            factor: None,
+        }
+    }
+}
+
+/// The number nearest to `step`, in ratio, among 1, 2 and 5 times a power of ten.
+fn round_step(step: f64) -> f64 {
+    let power = 10_f64.powf(step.log10().floor());
+    let multiples = [1.0, 2.0, 5.0].map(|multiple| multiple * power);
+    let near = multiples.into_iter().find(|round| *round >= step / 1.45);
+    near.unwrap_or(10.0 * power)
+}
+
+/// `⁻¹²`.
+pub(super) fn superscript(number: i32) -> String {
+    let raised = |letter: char| match letter {
+        '-' => '⁻',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        digit => digit
+            .to_digit(10)
+            .and_then(|digit| char::from_u32(0x2070 + digit))
+            .unwrap_or(digit),
+    };
+    number.to_string().chars().map(raised).collect()
+}
+
+/// A number for a caption, without the noise of its last digits.
+pub(super) fn plain(number: f64) -> String {
+    let rounded: f64 = format!("{number:.11e}").parse().unwrap_or(number);
+    rounded.to_string()
+}
+
+impl Ranged for Axis {
+    type FormatOption = NoDefaultFormatting;
+    type ValueType = f64;
+
+    #[allow(clippy::cast_possible_truncation)]
+    fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
+        let fraction = (value - self.low) / (self.high - self.low);
+        limit.0 + (fraction * f64::from(limit.1 - limit.0)).round() as i32
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
+        if hint.weight().allow_light_points() {
+            return Vec::new();
+        }
+        self.ticks.iter().map(|tick| tick.0).collect()
+    }
+
+    fn range(&self) -> Range<f64> {
+        self.low..self.high
+    }
+}
+
+impl ValueFormatter<f64> for Axis {
+    fn format_ext(&self, value: &f64) -> String {
+        let tick = self.ticks.iter().find(|tick| tick.0 == *value);
+        tick.map_or_else(String::new, |tick| tick.1.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(axis: &Axis) -> Vec<&str> {
+        axis.ticks.iter().map(|tick| tick.1.as_str()).collect()
+    }
+
+    #[test]
+    fn ticks_are_round_and_labels_are_short() {
+        assert_eq!(
+            labels(&Axis::linear(0.0, 1.0, 5)),
+            ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]
+        );
+        assert_eq!(labels(&Axis::linear(-0.31, 0.3, 3)), ["−0.2", "0.0", "0.2"]);
+        let small = Axis::linear(0.0, 4e-7, 4);
+        assert_eq!(labels(&small), ["0", "1", "2", "3", "4"]);
+        assert_eq!(small.factor.as_deref(), Some("10⁻⁷"));
+        let large = Axis::linear(0.0, 1e6, 4);
+        assert_eq!(labels(&large), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
+        assert_eq!(large.factor.as_deref(), Some("10⁶"));
+    }
+
+    #[test]
+    fn values_that_agree_are_a_flat_line() {
+        let curve = Curve {
+            label: String::new(),
+            note: None,
+            points: vec![(0.0, 1.0), (1.0, 1.0 + 1e-15)],
+            stroke: super::super::Stroke::number(0),
+        };
+        let axis = Axis::around(&[curve]);
+        assert!(axis.low < 0.9 && axis.high > 1.1);
+    }
+}

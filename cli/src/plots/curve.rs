@@ -1,0 +1,66 @@
+//! A curve of a plot and how it is stroked.
+//! Takes an index; gives a colour that readers with any colour vision tell from its neighbours.
+
+use plotters::style::RGBColor;
+
+/// Okabe and Ito's palette without its yellow, which is too faint on white, in an order that keeps
+/// neighbours apart. Source: Okabe and Ito, Color Universal Design (2008).
+const PALETTE: [RGBColor; 7] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(0, 0, 0),
+    RGBColor(230, 159, 0),
+    RGBColor(86, 180, 233),
+];
+
+/// Points to be joined, with an entry in the legend unless the label is empty.
+#[derive(Clone, Debug)]
+pub(super) struct Curve {
+    pub label: String,
+    /// A second, fainter line under the label.
+    pub note: Option<String>,
+    /// Time and value; for a logarithmic axis the decimal logarithm.
+    pub points: Vec<(f64, f64)>,
+    pub stroke: Stroke,
+}
+
+/// Colour and dashes of a curve.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stroke {
+    pub color: RGBColor,
+    /// Lengths of dash and gap in pixels; `None` for a full line.
+    pub dash: Option<(u32, u32)>,
+}
+
+impl Stroke {
+    /// The stroke of curve `index`: colours first, then the same colours with longer and longer dashes.
+    pub fn number(index: usize) -> Self {
+        let color = PALETTE.get(index % PALETTE.len()).copied();
+        Self {
+            color: color.unwrap_or(RGBColor(0, 0, 0)),
+            dash: match index / PALETTE.len() {
+                0 => None,
+                1 => Some((8, 4)),
+                _ => Some((14, 4)),
+            },
+        }
+    }
+
+    /// The same colour, for the bound of the curve.
+    pub fn dashed(self) -> Self {
+        Self {
+            dash: Some((4, 4)),
+            ..self
+        }
+    }
+
+    /// A bound that several curves have in common.
+    pub fn shared_bound() -> Self {
+        Self {
+            color: RGBColor(110, 110, 110),
+            dash: Some((4, 4)),
+        }
+    }
+}

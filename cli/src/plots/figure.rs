@@ -1,0 +1,231 @@
+//! Draws panels one above the other, each with its legend beside it, where it hides no data.
+//! Takes curves and axes; gives an SVG.
+
+use super::axis::Axis;
+use super::curve::{Curve, Stroke};
+use plotters::coord::Shift;
+use plotters::prelude::{
+    ChartBuilder, Color, DashedLineSeries, DrawingArea, IntoDrawingArea, LineSeries, PathElement,
+    RGBColor, SVGBackend, ShapeStyle, Text, WHITE,
+};
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::{IntoFont, TextStyle};
+
+/// The backend rounds to whole pixels; drawn this much larger, the rounding is not seen.
+const FINE: u32 = 4;
+const WIDTH: u32 = 860;
+const INK: RGBColor = RGBColor(30, 30, 30);
+const FAINT: RGBColor = RGBColor(110, 110, 110);
+const GRID: RGBColor = RGBColor(232, 232, 232);
+const HEAD: u32 = 52;
+const FOOT: u32 = 50;
+const EDGE: u32 = 4;
+
+/// Panels that share the axis of time.
+#[derive(Clone, Debug)]
+pub(super) struct Figure {
+    pub title: String,
+    pub subtitle: String,
+    pub x: Axis,
+    pub x_label: String,
+    pub panels: Vec<Panel>,
+}
+
+/// One chart.
+#[derive(Clone, Debug)]
+pub(super) struct Panel {
+    pub caption: String,
+    pub y_label: String,
+    pub y: Axis,
+    pub curves: Vec<Curve>,
+    /// Height in pixels, caption included.
+    pub height: u32,
+}
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+impl Figure {
+    /// The figure as SVG.
+    pub fn svg(&self) -> Result<String, String> {
+        let height = HEAD + self.panels.iter().map(|panel| panel.height).sum::<u32>() + FOOT + EDGE;
+        let mut svg = String::new();
+        {
+            let backend = SVGBackend::with_string(&mut svg, (WIDTH * FINE, height * FINE));
+            let root = backend.into_drawing_area();
+            self.draw(&root).map_err(|error| error.to_string())?;
+        }
+        // The view box keeps the fine coordinates; the size on the page is the plain one.
+        let fine = format!("width=\"{}\" height=\"{}\"", WIDTH * FINE, height * FINE);
+        let plain = format!("width=\"{WIDTH}\" height=\"{height}\"");
+        Ok(svg.replacen(&fine, &plain, 1))
+    }
+
+    fn draw(&self, root: &Area<'_>) -> Result<(), Box<dyn std::error::Error>> {
+        root.fill(&WHITE)?;
+        text(root, &self.title, 16, INK, (16, 10))?;
+        text(root, &self.subtitle, 12, FAINT, (16, 31))?;
+        let (_, mut rest) = root.split_vertically(fine(HEAD));
+        let legend = self
+            .panels
+            .iter()
+            .map(Panel::legend_width)
+            .max()
+            .unwrap_or(0);
+        let last = self.panels.len().saturating_sub(1);
+        for (index, panel) in self.panels.iter().enumerate() {
+            let foot = if index == last { FOOT } else { 0 };
+            let (area, below) = rest.split_vertically(fine(panel.height + foot));
+            rest = below;
+            let (chart, beside) = area.split_horizontally(fine(WIDTH - legend));
+            let x_label = (index == last).then_some(self.x_label.as_str());
+            panel.draw(&chart, &self.x, x_label)?;
+            panel.legend(&beside)?;
+        }
+        root.present()?;
+        Ok(())
+    }
+}
+
+impl Panel {
+    fn draw(
+        &self,
+        area: &Area<'_>,
+        x: &Axis,
+        x_label: Option<&str>,
+    ) -> Result<(), Box<dyn std::error::Error>> {
+        text(area, &self.caption, 13, INK, (84, 2))?;
+        let y_label = match &self.y.factor {
+            Some(factor) => format!("{}   × {factor}", self.y_label),
+            None => self.y_label.clone(),
+        };
+        let mut chart = ChartBuilder::on(area)
+            .margin_top(fine(24))
+            .margin_right(fine(14))
+            .margin_left(fine(8))
+            .x_label_area_size(fine(if x_label.is_some() { FOOT } else { 10 }))
+            .y_label_area_size(fine(76))
+            .build_cartesian_2d(x.clone(), self.y.clone())?;
+        let x_words = |value: &f64| match x_label {
+            Some(_) => plotters::coord::ranged1d::ValueFormatter::format_ext(x, value),
+            None => String::new(),
+        };
+        let y_words =
+            |value: &f64| plotters::coord::ranged1d::ValueFormatter::format_ext(&self.y, value);
+        let x_described = match (x_label, &x.factor) {
+            (Some(label), Some(factor)) => format!("{label}   × {factor}"),
+            (Some(label), None) => label.to_owned(),
+            (None, _) => String::new(),
+        };
+        chart
+            .configure_mesh()
+            .bold_line_style(line(GRID, 3))
+            .light_line_style(line(WHITE, 0))
+            .axis_style(line(INK, 4))
+            .set_all_tick_mark_size(fine(4))
+            .label_style(style(12, INK))
+            .axis_desc_style(style(13, INK))
+            .x_label_formatter(&x_words)
+            .y_label_formatter(&y_words)
+            .x_desc(x_described)
+            .y_desc(y_label)
+            .draw()?;
+        for curve in &self.curves {
+            let points = curve
+                .points
+                .iter()
+                .copied()
+                .filter(|point| point.1.is_finite());
+            let stroke = line(curve.stroke.color, 5);
+            match curve.stroke.dash {
+                None => chart.draw_series(LineSeries::new(points, stroke))?,
+                Some((dash, gap)) => chart.draw_series(DashedLineSeries::new(
+                    points,
+                    fine(dash),
+                    fine(gap),
+                    stroke,
+                ))?,
+            };
+        }
+        Ok(())
+    }
+
+    /// Room for the longest text of the legend, at 6.6 pixels a letter.
+    fn legend_width(&self) -> u32 {
+        let notes = self.curves.iter().filter_map(|curve| curve.note.as_ref());
+        let texts = self.curves.iter().map(|curve| &curve.label).chain(notes);
+        let letters = texts.map(|text| text.chars().count()).max().unwrap_or(0);
+        let letters = u32::try_from(letters).unwrap_or(u32::MAX).min(34);
+        (40 + letters * 66 / 10).max(70)
+    }
+
+    fn legend(&self, area: &Area<'_>) -> Result<(), Box<dyn std::error::Error>> {
+        let mut y = 28;
+        for curve in self.curves.iter().filter(|curve| !curve.label.is_empty()) {
+            sample(area, curve.stroke, y)?;
+            text(area, &curve.label, 12, INK, (32, y))?;
+            y += 17;
+            if let Some(note) = &curve.note {
+                text(area, note, 11, FAINT, (32, y))?;
+                y += 20;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A short piece of the curve, beside its label.
+fn sample(area: &Area<'_>, stroke: Stroke, y: i32) -> Result<(), Box<dyn std::error::Error>> {
+    let level = (y + 7) * fine(1).cast_signed();
+    let ends = [
+        (4 * fine(1).cast_signed(), level),
+        (26 * fine(1).cast_signed(), level),
+    ];
+    let pen = line(stroke.color, 7);
+    match stroke.dash {
+        None => area.draw(&PathElement::new(ends.to_vec(), pen))?,
+        Some(_) => {
+            let [(left, _), (right, _)] = ends;
+            let third = (right - left) / 3;
+            area.draw(&PathElement::new(
+                vec![(left, level), (left + third, level)],
+                pen,
+            ))?;
+            area.draw(&PathElement::new(
+                vec![(right - third, level), (right, level)],
+                pen,
+            ))?;
+        }
+    }
+    Ok(())
+}
+
+fn text(
+    area: &Area<'_>,
+    words: &str,
+    size: u32,
+    color: RGBColor,
+    (x, y): (i32, i32),
+) -> Result<(), Box<dyn std::error::Error>> {
+    let place = (x * fine(1).cast_signed(), y * fine(1).cast_signed());
+    area.draw(&Text::new(words.to_owned(), place, style(size, color)))?;
+    Ok(())
+}
+
+/// The backend divides font sizes by 1.24; undone here, so that sizes are pixels.
+fn style(size: u32, color: RGBColor) -> TextStyle<'static> {
+    let size = f64::from(size * FINE) * 1.24;
+    TextStyle {
+        font: ("sans-serif", size).into_font(),
+        color: color.to_backend_color(),
+        pos: Pos::new(HPos::Left, VPos::Top),
+    }
+}
+
+/// A pen of `quarters` quarter pixels.
+fn line(color: RGBColor, quarters: u32) -> ShapeStyle {
+    color.stroke_width(quarters * FINE / 4)
+}
+
+const fn fine(pixels: u32) -> u32 {
+    pixels * FINE
+}

@@ -1,0 +1,215 @@
+//! Plots of a run as SVG: momenta, drift of the invariants, advected vectors.
+//! Takes a finished run and its samples; gives SVG text, or nothing when there is nothing to show.
+
+mod axis;
+mod curve;
+mod figure;
+mod reduce;
+mod window;
+
+use crate::output::Finished;
+use crate::record::{Record, Samples};
+use crate::run::end;
+use axis::{Axis, FLOOR, superscript};
+use clebsch::card::{Field, Kind};
+use curve::{Curve, Stroke};
+use figure::{Figure, Panel};
+use std::ops::Range;
+use window::{Window, window};
+
+/// A drawn plot; `None` when the model has nothing of the kind.
+pub(crate) type Plot = Result<Option<String>, String>;
+
+/// Momentum components against time, one panel per momentum.
+pub(crate) fn momentum(run: &Finished<'_>, samples: &Samples) -> Plot {
+    observables(run, samples, "momentum", |field| {
+        matches!(field.kind, Kind::BodyMomentum | Kind::SpatialMomentum)
+    })
+}
+
+/// Components of the advected vectors against time, one panel per vector.
+pub(crate) fn advected(run: &Finished<'_>, samples: &Samples) -> Plot {
+    observables(run, samples, "advected vectors", |field| {
+        field.kind == Kind::Vector
+    })
+}
+
+/// Drift of every invariant on a logarithmic axis, with the bounds of the case.
+pub(crate) fn invariants(run: &Finished<'_>, record: &Record) -> Plot {
+    if run.outcomes.is_empty() {
+        return Ok(None);
+    }
+    let mut curves = Vec::new();
+    let mut bounds: Vec<(f64, Vec<usize>)> = Vec::new();
+    let mut from = 0;
+    for (index, outcome) in run.outcomes.iter().enumerate() {
+        let drift = reduce::drift(record, from, &outcome.components);
+        from += outcome.components.len();
+        let points = reduce::envelope(&drift);
+        let logarithm = |(time, drift): (f64, f64)| (time, drift.max(FLOOR).log10());
+        curves.push(Curve {
+            label: outcome.invariant.name.to_owned(),
+            note: match outcome.bound {
+                Some(bound) => Some(format!("bound {bound:e} (dashed)")),
+                None => Some("no bound".to_owned()),
+            },
+            points: points.into_iter().map(logarithm).collect(),
+            stroke: Stroke::number(index),
+        });
+        if let Some(bound) = outcome.bound.filter(|bound| *bound > 0.0) {
+            match bounds.iter_mut().find(|(known, _)| *known == bound) {
+                Some((_, of)) => of.push(index),
+                None => bounds.push((bound, vec![index])),
+            }
+        }
+    }
+    let span = (first(&record.times), last(&record.times));
+    for (bound, of) in bounds {
+        let level = bound.max(FLOOR).log10();
+        curves.push(Curve {
+            label: String::new(),
+            note: None,
+            points: vec![(span.0, level), (span.1, level)],
+            stroke: match *of {
+                [index] => Stroke::number(index).dashed(),
+                _ => Stroke::shared_bound(),
+            },
+        });
+    }
+    let group = reduce::group(record.times.len().saturating_sub(1));
+    let caption = match group {
+        1 => "relative drift at each sample".to_owned(),
+        group => format!("relative drift, each point the largest of about {group} samples"),
+    };
+    let panel = Panel {
+        caption,
+        y_label: "|I(t) − I(0)| / scale   (dimensionless)".to_owned(),
+        y: Axis::decades(&curves),
+        curves,
+        // Room for the legend, two lines an entry.
+        height: 380.max(50 + 37 * u32::try_from(run.outcomes.len()).unwrap_or(0)),
+    };
+    let shown = Window {
+        record,
+        count: record.times.len(),
+        cut: false,
+    };
+    figure(run, shown, "drift of the invariants", vec![panel])
+}
+
+fn figure(run: &Finished<'_>, shown: Window<'_>, what: &str, panels: Vec<Panel>) -> Plot {
+    let case = &run.plan.case;
+    let times = shown.record.times.get(..shown.count).unwrap_or_default();
+    let to = axis::plain(last(times));
+    let part = if shown.cut {
+        format!("; shown: time 0 to {to}")
+    } else {
+        String::new()
+    };
+    let figure = Figure {
+        title: format!("{}, case {}: {what}", run.card.kebab, case.name),
+        subtitle: format!(
+            "h = {}, {} steps, to time {}; order {}{part}",
+            case.h,
+            case.steps,
+            axis::plain(end(case.h, case.steps)),
+            run.card.order
+        ),
+        x: Axis::linear(first(times), last(times), 8),
+        x_label: "time t   (unit of h)".to_owned(),
+        panels,
+    };
+    figure.svg().map(Some)
+}
+
+/// A figure with one panel for each observable that `wanted` accepts.
+fn observables(
+    run: &Finished<'_>,
+    samples: &Samples,
+    what: &str,
+    wanted: impl Fn(&Field) -> bool,
+) -> Plot {
+    let mut from = 0;
+    let placed = run.card.observables.iter().map(|field| {
+        let columns = from..from + field.count();
+        from = columns.end;
+        (field, columns)
+    });
+    let (fields, columns): (Vec<&Field>, Vec<Range<usize>>) =
+        placed.filter(|(field, _)| wanted(field)).unzip();
+    if fields.is_empty() {
+        return Ok(None);
+    }
+    let shown = window(samples, &columns);
+    let panels = fields.into_iter().zip(columns);
+    let panels = panels
+        .map(|(field, columns)| panel(field, columns, shown))
+        .collect();
+    figure(run, shown, what, panels)
+}
+
+/// The components of one observable, which are the given columns of the record.
+fn panel(field: &Field, columns: Range<usize>, shown: Window<'_>) -> Panel {
+    let letter = letter(field);
+    let times = shown.record.times.get(..shown.count).unwrap_or_default();
+    let curves: Vec<Curve> = columns
+        .enumerate()
+        .map(|(component, column)| Curve {
+            label: format!("{letter}{}", subscript(component + 1)),
+            note: None,
+            points: reduce::extremes(times, shown.record.observables.column(column)),
+            stroke: Stroke::number(component),
+        })
+        .collect();
+    Panel {
+        caption: caption(field),
+        y_label: format!("{letter}   (units of the case)"),
+        y: Axis::around(&curves),
+        curves,
+        height: 230,
+    }
+}
+
+/// Body momenta are written μ and spatial ones m, as in the equations.
+fn letter(field: &Field) -> &str {
+    match field.kind {
+        Kind::BodyMomentum => "μ",
+        Kind::SpatialMomentum => "m",
+        _ => field.name,
+    }
+}
+
+fn caption(field: &Field) -> String {
+    let name = field.name.replace('_', " ");
+    match field.kind {
+        Kind::BodyMomentum => format!("{name}, body frame"),
+        Kind::SpatialMomentum => format!("{name}, space frame"),
+        _ if field.doc.is_empty() => name,
+        _ => format!("{name}: {}", crate::list::first_line(field.doc)),
+    }
+}
+
+fn subscript(number: usize) -> String {
+    let digits = number.to_string();
+    digits
+        .chars()
+        .filter_map(|digit| {
+            digit
+                .to_digit(10)
+                .and_then(|digit| char::from_u32(0x2080 + digit))
+        })
+        .collect()
+}
+
+fn first(times: &[f64]) -> f64 {
+    times.first().copied().unwrap_or(0.0)
+}
+
+fn last(times: &[f64]) -> f64 {
+    times.last().copied().unwrap_or(1.0)
+}
+
+/// `10⁻¹²`.
+fn power_of_ten(exponent: i32) -> String {
+    format!("10{}", superscript(exponent))
+}

@@ -1,0 +1,93 @@
+//! Fewer points without hiding anything: extremes of each stretch, or the envelope of a drift.
+//! Takes samples; gives points in the order of time.
+
+use crate::record::Record;
+use clebsch::integrate::Drift;
+
+/// Stretches of a curve. A plot is about 650 pixels wide and drawn four times finer; two points a
+/// stretch then leave no visible gap, and files stay small.
+const STRETCHES: usize = 1000;
+
+/// Points of an envelope: a smooth line rather than a band.
+const ENVELOPE: usize = 150;
+
+/// Least and greatest value of each stretch, in the order in which they occur.
+pub(super) fn extremes(times: &[f64], values: impl Iterator<Item = f64>) -> Vec<(f64, f64)> {
+    let points: Vec<(f64, f64)> = times.iter().copied().zip(values).collect();
+    let stretch = points.len().div_ceil(STRETCHES);
+    if stretch <= 2 {
+        return points;
+    }
+    let mut kept = Vec::with_capacity(2 * STRETCHES + 2);
+    kept.extend(points.first());
+    for stretch in points.chunks(stretch) {
+        let by_value = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
+        let pair = (
+            stretch.iter().min_by(by_value),
+            stretch.iter().max_by(by_value),
+        );
+        if let (Some(&least), Some(&greatest)) = pair {
+            let in_order = least.0 <= greatest.0;
+            kept.extend(if in_order {
+                [least, greatest]
+            } else {
+                [greatest, least]
+            });
+        }
+    }
+    kept.extend(points.last());
+    kept
+}
+
+/// Largest relative drift of the components that begin at column `from`, at every sample after the
+/// first, where it is zero by definition.
+pub(super) fn drift(record: &Record, from: usize, components: &[Drift]) -> Vec<(f64, f64)> {
+    let rows = || record.invariants.rows().map(|row| row.iter().skip(from));
+    let start: Vec<f64> = rows()
+        .next()
+        .map_or_else(Vec::new, |row| row.copied().collect());
+    let largest = |row: std::iter::Skip<std::slice::Iter<'_, f64>>| {
+        let each = row.zip(&start).zip(components);
+        each.fold(0.0, |most: f64, ((now, then), drift)| {
+            most.max(((now - then) / drift.scale).abs())
+        })
+    };
+    let drifts = rows().map(largest);
+    record.times.iter().copied().zip(drifts).skip(1).collect()
+}
+
+/// How many of `samples` samples share a point of an envelope.
+pub(super) fn group(samples: usize) -> usize {
+    samples.div_ceil(ENVELOPE).max(1)
+}
+
+/// The largest value of each group of samples, at the time where it occurs. Groups are of equal size
+/// up to one: a last one of few samples would look like a fall.
+pub(super) fn envelope(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let count = points.len().div_ceil(group(points.len()));
+    let groups = (0..count).filter_map(|index| {
+        points.get(index * points.len() / count..(index + 1) * points.len() / count)
+    });
+    groups
+        .filter_map(|group| group.iter().max_by(|a, b| a.1.total_cmp(&b.1)).copied())
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_single_spike_survives() {
+        let times: Vec<f64> = (0..100_000).map(f64::from).collect();
+        let spike = |time: f64| if time == 54_321.0 { 7.0 } else { 0.0 };
+        let kept = extremes(&times, times.iter().copied().map(spike));
+        assert!(kept.len() <= 2 * STRETCHES + 2);
+        assert!(kept.contains(&(54_321.0, 7.0)));
+        assert!(kept.is_sorted_by(|a, b| a.0 <= b.0));
+        let points: Vec<_> = times.iter().map(|&time| (time, spike(time))).collect();
+        let kept = envelope(&points);
+        assert!(kept.len() <= ENVELOPE);
+        assert!(kept.contains(&(54_321.0, 7.0)));
+    }
+}

@@ -1,0 +1,164 @@
+//! `clebsch run`: from a case to a checked trajectory.
+//! Takes the gallery and the options; gives files, a table of what was conserved, and the exit code.
+
+use crate::Streams;
+use crate::failure::{BOUND_LEFT, DONE, Failure};
+use crate::gallery::Gallery;
+use crate::list::first_line;
+use crate::output::{self, Finished, Staging, run_json};
+use crate::plan::Plan;
+use crate::record::{LARGEST, Record, Recorder, Samples};
+use crate::verdict::{Verdict, judge, table};
+use clap::ArgMatches;
+use clebsch::card::Card;
+use clebsch::integrate;
+use serde_json::json;
+use std::io::Write;
+use std::path::PathBuf;
+
+/// Steps whose every node is kept for the plots: all the swings there is room for, of 150 steps each.
+const OPENING: u64 = 10_000;
+
+/// Runs the command; the code is 0, or 3 when an invariant left its bound.
+///
+/// # Errors
+/// Usage for a wrong request, failed when the solver or the file system gives up. Nothing is left
+/// behind then.
+pub fn run(
+    gallery: &Gallery,
+    matches: &ArgMatches,
+    streams: &mut Streams<'_>,
+) -> Result<u8, Failure> {
+    let model = matches
+        .get_one::<String>("model")
+        .map_or("", String::as_str);
+    let entry = gallery.find(model)?;
+    let card = &entry.card;
+    let plan = Plan::new(entry, matches)?;
+    let target = matches.get_one::<PathBuf>("out");
+    let as_json = matches.get_flag("json");
+    let staging = match target {
+        None => None,
+        Some(target) => {
+            fits(card, &plan)?;
+            Some(Staging::new(target, matches.get_flag("force"))?)
+        }
+    };
+    let mut trajectory = plan.open(card)?;
+    if !as_json {
+        introduce(streams.out, card, &plan)?;
+    }
+    let steps = plan.case.steps;
+    let mut recorder = Recorder::new(card, steps, staging.is_some(), streams.progress);
+    let summary = integrate::run(trajectory.as_mut(), steps, plan.every, &mut recorder);
+    let record = recorder.finish();
+    let summary = summary.map_err(|error| Failure::Failed(error.to_string()))?;
+    let outcomes = judge(card, &plan.case, &summary.drifts);
+    let run = Finished {
+        card,
+        plan: &plan,
+        outcomes: &outcomes,
+        samples: summary.samples,
+    };
+    let mut files = Vec::new();
+    if let (Some(staging), Some(record)) = (staging, record) {
+        let opening = opening(card, &plan)?;
+        files = output::write(&staging, &run, &Samples { record, opening })?;
+        staging.commit()?;
+    }
+    let left: Vec<&str> = outcomes
+        .iter()
+        .filter(|outcome| outcome.verdict == Verdict::Left)
+        .map(|outcome| outcome.invariant.name)
+        .collect();
+    let code = if left.is_empty() { DONE } else { BOUND_LEFT };
+    if as_json {
+        let mut object = run_json(&run, &files);
+        if let Some(object) = object.as_object_mut() {
+            object.insert(
+                "out".to_owned(),
+                json!(target.map(|path| path.display().to_string())),
+            );
+            object.insert("exit_code".to_owned(), json!(code));
+        }
+        writeln!(streams.out, "{object}")?;
+    } else {
+        write!(streams.out, "\n{}", table(&outcomes))?;
+        if let Some(target) = target {
+            let shown = target.display();
+            writeln!(streams.out, "\nwritten to {shown}: {}", files.join(", "))?;
+        }
+    }
+    if !left.is_empty() {
+        let message = format!("left the bound of the case: {}", left.join(", "));
+        // The exit code says the same; nothing is lost when this cannot be written.
+        let _ = writeln!(streams.err, "clebsch: {message}");
+    }
+    Ok(code)
+}
+
+/// The beginning of the run once more with every node kept, when the record is sparser than that.
+fn opening(card: &Card, plan: &Plan) -> Result<Option<Record>, Failure> {
+    if plan.every == 1 {
+        return Ok(None);
+    }
+    let steps = plan.case.steps.min(OPENING);
+    let mut recorder = Recorder::new(card, steps, true, false);
+    let mut trajectory = plan.open(card)?;
+    integrate::run(trajectory.as_mut(), steps, 1, &mut recorder)
+        .map_err(|error| Failure::Failed(error.to_string()))?;
+    Ok(recorder.finish())
+}
+
+/// The samples must fit into memory.
+fn fits(card: &Card, plan: &Plan) -> Result<(), Failure> {
+    let size = Record::size(card, plan.case.steps, plan.every);
+    if size <= LARGEST {
+        return Ok(());
+    }
+    let every = plan.every.saturating_mul(size.div_ceil(LARGEST));
+    Err(Failure::Usage(format!(
+        "--every {}: {size} numbers would be written, at most {LARGEST} can be; give --every {every} or more",
+        plan.every
+    )))
+}
+
+/// What runs, and what was derived for it.
+fn introduce(out: &mut dyn Write, card: &Card, plan: &Plan) -> Result<(), Failure> {
+    let case = &plan.case;
+    writeln!(out, "{}: {}", card.kebab, first_line(card.doc))?;
+    writeln!(out, "{}", card.summary.trim())?;
+    let reversible = if card.reversible {
+        "reversible"
+    } else {
+        "not reversible"
+    };
+    writeln!(
+        out,
+        "solver: {}; order {}, {reversible}",
+        card.solver, card.order
+    )?;
+    let doc = first_line(&case.doc);
+    let colon = if doc.is_empty() { "" } else { ": " };
+    writeln!(out, "case {}{colon}{doc}", case.name)?;
+    writeln!(
+        out,
+        "h = {}, {} steps, to time {}",
+        case.h,
+        case.steps,
+        end(case.h, case.steps)
+    )?;
+    Ok(())
+}
+
+/// The time at the last node, for print.
+#[allow(clippy::cast_precision_loss)]
+pub(crate) fn end(h: f64, steps: u64) -> f64 {
+    h * steps as f64
+}
+
+/// The object that stands for a run that did not come to its end.
+#[must_use]
+pub fn failure_json(failure: &Failure) -> serde_json::Value {
+    json!({"error": failure.to_string(), "exit_code": failure.code()})
+}

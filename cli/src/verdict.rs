@@ -1,0 +1,166 @@
+//! What a run conserved: each invariant's drift against the bound of the case.
+//! Takes the drifts of all components; gives one outcome per invariant and the table to print.
+
+use crate::gallery::Case;
+use clebsch::card::{Card, Conserved, Invariant};
+use clebsch::integrate::Drift;
+use serde_json::{Value, json};
+
+/// Drift allowed to an exactly conserved invariant when the case names no bound. Rounding adds up to
+/// some 1e-16 a step at worst, so this holds for about 1e4 steps of any stepper and 1e6 of a careful one.
+pub const DEFAULT_BOUND: f64 = 1e-12;
+
+/// How an invariant fared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Within its bound at every node.
+    Kept,
+    /// Beyond its bound (or not a number) at some node.
+    Left,
+    /// No bound is set: the drift is reported, not judged.
+    Bounded,
+}
+
+impl Verdict {
+    /// The word printed and written to files.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Kept => "kept",
+            Self::Left => "LEFT ITS BOUND",
+            Self::Bounded => "bounded",
+        }
+    }
+}
+
+/// The outcome of one invariant, its components taken together.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The invariant.
+    pub invariant: &'static Invariant,
+    /// Drift of each component.
+    pub components: Vec<Drift>,
+    /// Largest natural scale of a component.
+    pub scale: f64,
+    /// Largest drift of a component at any node, relative to its scale.
+    pub worst: f64,
+    /// Drift at the last node of the component that moved most, relative to its scale, with its sign.
+    pub last: f64,
+    /// Bound on the drift, if there is one.
+    pub bound: Option<f64>,
+    /// Whether the bound was kept.
+    pub verdict: Verdict,
+}
+
+/// Judges the drifts of all components, in the order of the card.
+#[must_use]
+pub fn judge(card: &Card, case: &Case, drifts: &[Drift]) -> Vec<Outcome> {
+    let mut drifts = drifts.iter();
+    let one = |invariant: &'static Invariant| {
+        let components: Vec<Drift> = drifts.by_ref().take(invariant.rows).copied().collect();
+        let worst = components.iter().map(|drift| drift.worst).fold(0.0, larger);
+        let bound = bound(case, invariant);
+        Outcome {
+            invariant,
+            scale: components.iter().map(|drift| drift.scale).fold(0.0, larger),
+            worst,
+            last: components.iter().map(|drift| drift.last).fold(0.0, farther),
+            bound,
+            // A drift that is not a number is not within any bound.
+            verdict: match bound {
+                Some(bound) if worst <= bound => Verdict::Kept,
+                None if worst.is_finite() => Verdict::Bounded,
+                _ => Verdict::Left,
+            },
+            components,
+        }
+    };
+    card.invariants.iter().map(one).collect()
+}
+
+/// The larger number; NaN wins, so that it cannot hide.
+fn larger(a: f64, b: f64) -> f64 {
+    if b.is_nan() || b > a { b } else { a }
+}
+
+/// The number farther from zero; NaN wins.
+fn farther(a: f64, b: f64) -> f64 {
+    if b.is_nan() || b.abs() > a.abs() {
+        b
+    } else {
+        a
+    }
+}
+
+fn bound(case: &Case, invariant: &Invariant) -> Option<f64> {
+    let stated = case.bounds.iter().find(|(name, _)| name == invariant.name);
+    match (stated, invariant.conserved) {
+        (Some((_, bound)), _) => Some(*bound),
+        (None, Conserved::Exactly) => Some(DEFAULT_BOUND),
+        (None, Conserved::Boundedly) => None,
+    }
+}
+
+impl Outcome {
+    /// The outcome for files.
+    #[must_use]
+    pub fn json(&self) -> Value {
+        let parts: fn(&Drift) -> Value =
+            |drift| json!({"scale": drift.scale, "worst": drift.worst, "last": drift.last});
+        json!({
+            "name": self.invariant.name,
+            "formula": self.invariant.formula,
+            "conserved": match self.invariant.conserved {
+                Conserved::Exactly => "exactly",
+                Conserved::Boundedly => "boundedly",
+            },
+            "scale": self.scale,
+            "worst_drift": self.worst,
+            "last_drift": self.last,
+            "bound": self.bound,
+            "verdict": match self.verdict {
+                Verdict::Kept => "kept",
+                Verdict::Left => "left",
+                Verdict::Bounded => "bounded",
+            },
+            "components": self.components.iter().map(parts).collect::<Vec<_>>(),
+        })
+    }
+
+    fn cells(&self) -> Vec<String> {
+        let number = |x: f64| {
+            if x == 0.0 {
+                "0".to_owned()
+            } else {
+                format!("{x:.3e}")
+            }
+        };
+        vec![
+            self.invariant.name.to_owned(),
+            self.invariant.formula.to_owned(),
+            number(self.scale),
+            number(self.worst),
+            number(self.last),
+            self.bound
+                .map_or_else(|| "-".to_owned(), |bound| format!("{bound:e}")),
+            self.verdict.word().to_owned(),
+        ]
+    }
+}
+
+/// The table of all outcomes; drifts are relative to the natural scale.
+#[must_use]
+pub fn table(outcomes: &[Outcome]) -> String {
+    let head = [
+        "invariant",
+        "formula",
+        "scale",
+        "worst drift",
+        "last drift",
+        "bound",
+        "verdict",
+    ];
+    let mut rows = vec![head.map(str::to_owned).to_vec()];
+    rows.extend(outcomes.iter().map(Outcome::cells));
+    crate::columns::aligned(&rows, &[2, 3, 4, 5])
+}

@@ -1,0 +1,185 @@
+//! Factors of a word: letters in one of four modes, unit vectors, hats and axial vectors, with
+//! their shapes and transposes. Words are sequences of factors whose shapes chain.
+
+use super::Algebra;
+use crate::expr::Letter;
+use crate::expr::shape::{Dim, Shape, Structure};
+
+/// Where a letter of a word comes from.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub enum Source {
+    /// A symbol at an offset.
+    Letter(Letter),
+    /// An interned sub-expression.
+    Opaque(u32),
+}
+
+/// One factor of a word.
+#[derive(Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub enum Factor {
+    /// A matrix or vector letter.
+    Letter {
+        /// What it is.
+        source: Source,
+        /// Whether it is transposed (for orthogonal letters: inverted).
+        transposed: bool,
+        /// Whether it is inverted (never set for orthogonal letters).
+        inverted: bool,
+    },
+    /// A unit vector.
+    Unit {
+        /// Its dimension.
+        dim: Dim,
+        /// Its axis, counted from 0.
+        axis: u8,
+        /// Whether it is a row.
+        transposed: bool,
+    },
+    /// The skew matrix of a vector word.
+    Hat(Word),
+    /// The axial vector of a matrix word.
+    Vee {
+        /// The matrix word.
+        word: Word,
+        /// Whether it is a row.
+        transposed: bool,
+    },
+}
+
+/// A product of factors; the empty word is the identity.
+pub type Word = Vec<Factor>;
+
+impl Algebra<'_> {
+    /// Shape of a factor as it stands.
+    pub(super) fn shape_of(&self, f: &Factor) -> Shape {
+        let (shape, transposed) = match f {
+            Factor::Letter {
+                source, transposed, ..
+            } => (self.source_shape(*source), *transposed),
+            Factor::Unit {
+                dim, transposed, ..
+            } => (Shape::vector(*dim), *transposed),
+            Factor::Hat(_) => return Shape::square(Dim::Fixed(3)),
+            Factor::Vee { transposed, .. } => (Shape::vector(Dim::Fixed(3)), *transposed),
+        };
+        if transposed {
+            shape.transposed()
+        } else {
+            shape
+        }
+    }
+
+    fn source_shape(&self, source: Source) -> Shape {
+        match source {
+            Source::Letter(at) => self.symbols.get(at.symbol).shape,
+            Source::Opaque(i) => self.matrices.borrow()[i as usize].meaning.shape(),
+        }
+    }
+
+    /// Structure of a letter.
+    pub(super) fn structure(&self, source: Source) -> Structure {
+        match source {
+            Source::Letter(at) => self.symbols.get(at.symbol).structure,
+            Source::Opaque(i) => {
+                let table = self.matrices.borrow();
+                let key = &table[i as usize].key;
+                if key.symmetric {
+                    Structure::Symmetric
+                } else {
+                    Structure::General
+                }
+            }
+        }
+    }
+
+    /// Whether the factor is an element of an orthogonal group.
+    pub(super) fn is_orthogonal(&self, f: &Factor) -> bool {
+        matches!(f, Factor::Letter { source, .. } if self.structure(*source) == Structure::Orthogonal)
+    }
+
+    /// The transpose of a factor, with the sign that skew ones give.
+    pub(super) fn transposed(&self, f: &Factor) -> (bool, Factor) {
+        match f {
+            Factor::Letter {
+                source,
+                transposed,
+                inverted,
+            } => {
+                let structure = self.structure(*source);
+                let flip = match structure {
+                    Structure::Symmetric | Structure::Diagonal | Structure::Skew => false,
+                    Structure::General | Structure::Orthogonal | Structure::Invertible => true,
+                };
+                let factor = Factor::Letter {
+                    source: *source,
+                    transposed: *transposed ^ flip,
+                    inverted: *inverted,
+                };
+                (structure == Structure::Skew, factor)
+            }
+            Factor::Unit {
+                dim,
+                axis,
+                transposed,
+            } => (
+                false,
+                Factor::Unit {
+                    dim: *dim,
+                    axis: *axis,
+                    transposed: !transposed,
+                },
+            ),
+            Factor::Hat(_) => (true, f.clone()),
+            Factor::Vee { word, transposed } => (
+                false,
+                Factor::Vee {
+                    word: word.clone(),
+                    transposed: !transposed,
+                },
+            ),
+        }
+    }
+
+    /// The transpose of a word: reversed, each factor transposed; `true` for a minus sign.
+    pub(super) fn transposed_word(&self, word: &[Factor]) -> (bool, Word) {
+        let mut negative = false;
+        let out = word
+            .iter()
+            .rev()
+            .map(|f| {
+                let (minus, t) = self.transposed(f);
+                negative ^= minus;
+                t
+            })
+            .collect();
+        (negative, out)
+    }
+
+    /// Whether `a b` is the identity.
+    pub(super) fn cancel(&self, a: &Factor, b: &Factor) -> bool {
+        let (
+            Factor::Letter {
+                source: s,
+                transposed: t,
+                inverted: i,
+            },
+            Factor::Letter {
+                source: s2,
+                transposed: t2,
+                inverted: i2,
+            },
+        ) = (a, b)
+        else {
+            return false;
+        };
+        s == s2
+            && match self.structure(*s) {
+                Structure::Orthogonal => t != t2,
+                Structure::Invertible
+                | Structure::General
+                | Structure::Symmetric
+                | Structure::Diagonal
+                | Structure::Skew => t == t2 && i != i2,
+            }
+    }
+}

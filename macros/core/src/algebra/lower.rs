@@ -1,0 +1,385 @@
+//! From expressions to normal forms: one rule for each kind of node.
+
+use super::Algebra;
+use super::factor::{Factor, Source, Word};
+use super::monomial::{self, Atom, Monomial};
+use super::poly::{Poly, Term};
+use super::rational::Rational;
+use crate::expr::shape::{Dim, Shape, Structure};
+use crate::expr::symbol::Role;
+use crate::expr::{self, Expr, Function, Node, Part};
+
+impl Algebra<'_> {
+    /// The normal form of an expression.
+    pub fn lower(&self, e: &Expr) -> Poly {
+        let shape = e.shape();
+        if self.exhausted() {
+            return Poly::zero(shape);
+        }
+        match e.node() {
+            Node::Number(q) => Poly::constant(shape, *q),
+            Node::Zero(_) => Poly::zero(shape),
+            Node::Identity(_) => Poly::constant(shape, Rational::ONE),
+            Node::Letter(at) if shape.is_scalar() => self.scalar_atom(Atom::Letter(*at)),
+            Node::Letter(at) => self.one_factor(
+                shape,
+                Factor::Letter {
+                    source: Source::Letter(*at),
+                    transposed: false,
+                    inverted: false,
+                },
+            ),
+            Node::Unit(dim, axis) => self.one_factor(
+                shape,
+                Factor::Unit {
+                    dim: *dim,
+                    axis: *axis,
+                    transposed: false,
+                },
+            ),
+            Node::Sum(terms) => {
+                let mut out = Poly::zero(shape);
+                for t in terms {
+                    self.accumulate(&mut out, &self.lower(t), Rational::ONE);
+                }
+                out
+            }
+            Node::Neg(a) => self.scaled(&self.lower(a), Rational::MINUS_ONE),
+            Node::Product(factors) => {
+                let mut lowered = factors.iter().map(|f| self.lower(f));
+                let first = lowered
+                    .next()
+                    .unwrap_or_else(|| Poly::constant(shape, Rational::ONE));
+                lowered.fold(first, |acc, f| self.mul(&acc, &f))
+            }
+            Node::Quotient(a, b) => {
+                let inverse = self.power(&self.lower(b), Rational::MINUS_ONE, b);
+                self.mul(&self.lower(a), &inverse)
+            }
+            Node::Power(a, q) => self.power(&self.lower(a), *q, a),
+            Node::Transpose(a) => self.transpose(&self.lower(a)),
+            Node::Inverse(a) => self.inverse(&self.lower(a), a),
+            Node::Trace(a) => self.trace_poly(&self.lower(a)),
+            Node::Det(a) => self.det(&self.lower(a), a),
+            Node::Dot(a, b) => {
+                let row = self.transpose(&self.lower(a));
+                self.mul(&row, &self.lower(b))
+            }
+            Node::Cross(a, b) => {
+                let hat = self.linear(&self.lower(a), Shape::square(Dim::Fixed(3)), |w| {
+                    self.hat_word(w)
+                });
+                self.mul(&hat, &self.lower(b))
+            }
+            Node::Hat(v) => self.linear(&self.lower(v), shape, |w| self.hat_word(w)),
+            Node::Vee(a) => self.linear(&self.lower(a), shape, |w| self.vee_word(w)),
+            Node::Part(part, a) => self.part(*part, &self.lower(a), a),
+            Node::Call(function, a) => self.call(*function, self.lower(a), a),
+        }
+    }
+
+    fn scalar_atom(&self, atom: Atom) -> Poly {
+        let term = Term {
+            monomial: vec![(atom, Rational::ONE)],
+            word: Word::new(),
+        };
+        Poly::term(Shape::SCALAR, Rational::ONE, term)
+    }
+
+    fn one_factor(&self, shape: Shape, factor: Factor) -> Poly {
+        let term = Term {
+            monomial: Monomial::new(),
+            word: vec![factor],
+        };
+        Poly::term(shape, Rational::ONE, term)
+    }
+
+    pub(super) fn scaled(&self, a: &Poly, q: Rational) -> Poly {
+        a.scaled(q).unwrap_or_else(|| {
+            self.exhaust();
+            Poly::zero(a.shape)
+        })
+    }
+
+    fn accumulate(&self, out: &mut Poly, a: &Poly, q: Rational) {
+        if !self.spend(a.terms.len()) {
+            return;
+        }
+        for (t, c) in &a.terms {
+            let ok = c.times(q).is_some_and(|c| out.push(t.clone(), c));
+            if !ok {
+                self.exhaust();
+            }
+        }
+    }
+
+    /// Product of normal forms; a number times a matrix is allowed either way.
+    pub(super) fn mul(&self, a: &Poly, b: &Poly) -> Poly {
+        let shape = if a.shape.is_scalar() && !b.shape.is_scalar() && b.shape.rows != Dim::Fixed(1)
+        {
+            b.shape
+        } else if b.shape.is_scalar() && a.shape.cols != Dim::Fixed(1) {
+            a.shape
+        } else {
+            Shape {
+                rows: a.shape.rows,
+                cols: b.shape.cols,
+            }
+        };
+        let mut out = Poly::zero(shape);
+        for (ta, ca) in &a.terms {
+            for (tb, cb) in &b.terms {
+                match (monomial::times(&ta.monomial, &tb.monomial), ca.times(*cb)) {
+                    (Some(m), Some(c)) => {
+                        let word = [&ta.word[..], &tb.word].concat();
+                        self.push_reduced(&mut out, c, &m, word);
+                    }
+                    _ => self.exhaust(),
+                }
+                if self.exhausted() {
+                    return out;
+                }
+            }
+        }
+        out
+    }
+
+    pub(super) fn transpose(&self, a: &Poly) -> Poly {
+        let mut out = Poly::zero(a.shape.transposed());
+        for (t, c) in &a.terms {
+            let (minus, word) = self.transposed_word(&t.word);
+            let c = if minus { c.negated() } else { *c };
+            self.push_reduced(&mut out, c, &t.monomial, word);
+        }
+        out
+    }
+
+    /// Applies a map that is linear in the word.
+    fn linear(&self, a: &Poly, shape: Shape, f: impl Fn(&[Factor]) -> Poly) -> Poly {
+        let mut out = Poly::zero(shape);
+        for (t, c) in &a.terms {
+            for (t2, c2) in &f(&t.word).terms {
+                match (monomial::times(&t.monomial, &t2.monomial), c.times(*c2)) {
+                    (Some(m), Some(c)) => self.push_term(&mut out, c, m, t2.word.clone()),
+                    _ => self.exhaust(),
+                }
+            }
+        }
+        out
+    }
+
+    /// The only term, if there is exactly one.
+    fn single(a: &Poly) -> Option<(&Term, Rational)> {
+        let mut terms = a.terms.iter();
+        match (terms.next(), terms.next()) {
+            (Some((t, c)), None) => Some((t, *c)),
+            _ => None,
+        }
+    }
+
+    fn power(&self, a: &Poly, q: Rational, meaning: &Expr) -> Poly {
+        if let Some(n) = q.as_integer() {
+            if let Some((t, c)) = Self::single(a)
+                && let (Some(c), Some(m)) = (c.power(n), monomial::power(&t.monomial, q))
+            {
+                let mut out = Poly::zero(Shape::SCALAR);
+                self.push_term(&mut out, c, m, Word::new());
+                return out;
+            }
+            if (0..=4).contains(&n) {
+                let one = Poly::constant(Shape::SCALAR, Rational::ONE);
+                return (0..n).fold(one, |acc, _| self.mul(&acc, a));
+            }
+        } else if let Some((t, c)) = Self::single(a)
+            && c.is_one()
+            && t.monomial.iter().all(|(atom, _)| self.is_positive(atom))
+            && let Some(m) = monomial::power(&t.monomial, q)
+        {
+            // Only for positive numbers is (x y)^q = x^q y^q.
+            let term = Term {
+                monomial: m,
+                word: Word::new(),
+            };
+            return Poly::term(Shape::SCALAR, Rational::ONE, term);
+        }
+        let id = self.intern(&self.numbers, a.clone(), || meaning.clone());
+        let term = Term {
+            monomial: vec![(Atom::Base(id), q)],
+            word: Word::new(),
+        };
+        Poly::term(Shape::SCALAR, Rational::ONE, term)
+    }
+
+    fn is_positive(&self, atom: &Atom) -> bool {
+        match atom {
+            Atom::Letter(at) => self.symbols.get(at.symbol).role == Role::Step,
+            Atom::Exp(_) | Atom::Dimension(_) => true,
+            Atom::Trace(_)
+            | Atom::Bracket(_)
+            | Atom::Det(_)
+            | Atom::OpaqueDet(_)
+            | Atom::Base(_)
+            | Atom::Log(_) => false,
+        }
+    }
+
+    fn inverse(&self, a: &Poly, meaning: &Expr) -> Poly {
+        if let Some((t, c)) = Self::single(a)
+            && let (Some(c), Some(m)) = (
+                c.inverse(),
+                monomial::power(&t.monomial, Rational::MINUS_ONE),
+            )
+            && t.word
+                .iter()
+                .all(|f| self.shape_of(f).is_square() && !matches!(f, Factor::Hat(_)))
+        {
+            let word = t
+                .word
+                .iter()
+                .rev()
+                .map(|f| self.inverse_factor(f))
+                .collect();
+            let mut out = Poly::zero(a.shape);
+            self.push_reduced(&mut out, c, &m, word);
+            return out;
+        }
+        let mut key = a.clone();
+        key.symmetric = self.transpose(a).terms == a.terms;
+        let id = self.intern(&self.matrices, key, || meaning.clone());
+        self.one_factor(
+            a.shape,
+            Factor::Letter {
+                source: Source::Opaque(id),
+                transposed: false,
+                inverted: true,
+            },
+        )
+    }
+
+    fn inverse_factor(&self, f: &Factor) -> Factor {
+        match f {
+            Factor::Letter {
+                source,
+                transposed,
+                inverted,
+            } => {
+                let orthogonal = self.structure(*source) == Structure::Orthogonal;
+                Factor::Letter {
+                    source: *source,
+                    transposed: *transposed ^ orthogonal,
+                    inverted: *inverted ^ !orthogonal,
+                }
+            }
+            Factor::Unit { .. } | Factor::Hat(_) | Factor::Vee { .. } => f.clone(),
+        }
+    }
+
+    fn det(&self, a: &Poly, meaning: &Expr) -> Poly {
+        if let Some((t, c)) = Self::single(a)
+            && let Dim::Fixed(n) = a.shape.rows
+            && let Ok(exponent) = i32::try_from(n)
+            && t.word
+                .iter()
+                .all(|f| matches!(f, Factor::Letter { .. }) && self.shape_of(f).is_square())
+            && let (Some(c), Some(mut m)) = (
+                c.power(exponent),
+                monomial::power(&t.monomial, Rational::integer(i64::from(n))),
+            )
+        {
+            for f in &t.word {
+                let Factor::Letter {
+                    source, inverted, ..
+                } = f
+                else {
+                    continue;
+                };
+                if self.structure(*source) == Structure::Orthogonal {
+                    continue;
+                }
+                let atom = match source {
+                    Source::Letter(_) => Atom::Det(*source),
+                    Source::Opaque(i) => Atom::OpaqueDet(*i),
+                };
+                let e = if *inverted {
+                    Rational::MINUS_ONE
+                } else {
+                    Rational::ONE
+                };
+                match monomial::times(&m, &vec![(atom, e)]) {
+                    Some(next) => m = next,
+                    None => self.exhaust(),
+                }
+            }
+            let mut out = Poly::zero(Shape::SCALAR);
+            self.push_term(&mut out, c, m, Word::new());
+            return out;
+        }
+        if a.is_zero() {
+            return Poly::zero(Shape::SCALAR);
+        }
+        let mut key = a.clone();
+        key.symmetric = self.transpose(a).terms == a.terms;
+        let id = self.intern(&self.matrices, key, || meaning.clone());
+        self.scalar_atom(Atom::OpaqueDet(id))
+    }
+
+    fn part(&self, part: Part, a: &Poly, meaning: &Expr) -> Poly {
+        let mut out = Poly::zero(a.shape);
+        match part {
+            Part::Symmetric | Part::Skew => {
+                self.accumulate(&mut out, a, Rational::HALF);
+                let back = if part == Part::Skew {
+                    Rational::HALF.negated()
+                } else {
+                    Rational::HALF
+                };
+                self.accumulate(&mut out, &self.transpose(a), back);
+            }
+            // diag(A) = sum of E_i (E_i^T A E_i) E_i^T
+            Part::Diagonal => {
+                let Dim::Fixed(n) = a.shape.rows else {
+                    let mut key = a.clone();
+                    key.symmetric = true;
+                    let diagonal = || expr::part(Part::Diagonal, meaning.clone());
+                    let id = self.intern(&self.matrices, key, diagonal);
+                    return self.one_factor(
+                        a.shape,
+                        Factor::Letter {
+                            source: Source::Opaque(id),
+                            transposed: false,
+                            inverted: false,
+                        },
+                    );
+                };
+                for axis in 0..n.min(64) as u8 {
+                    let unit = |transposed| Factor::Unit {
+                        dim: a.shape.rows,
+                        axis,
+                        transposed,
+                    };
+                    for (t, c) in &a.terms {
+                        let word = [
+                            &[unit(false), unit(true)][..],
+                            &t.word,
+                            &[unit(false), unit(true)],
+                        ]
+                        .concat();
+                        self.push_reduced(&mut out, *c, &t.monomial, word);
+                    }
+                }
+            }
+        }
+        out
+    }
+
+    fn call(&self, function: Function, a: Poly, meaning: &Expr) -> Poly {
+        if a.is_zero() && function == Function::Exp {
+            return Poly::constant(Shape::SCALAR, Rational::ONE);
+        }
+        let id = self.intern(&self.numbers, a, || meaning.clone());
+        self.scalar_atom(match function {
+            Function::Exp => Atom::Exp(id),
+            Function::Log => Atom::Log(id),
+        })
+    }
+}

@@ -1,0 +1,104 @@
+//! Normal forms: exact decisions about noncommutative matrix expressions. An [`Algebra`] lowers
+//! expressions to polynomials in words of letters ([`Poly`]), where equal things are identical.
+//! No search; work is bounded, and running out of bounds is reported, never guessed.
+
+mod bracket;
+mod factor;
+mod lower;
+mod monomial;
+mod poly;
+mod raise;
+mod rational;
+mod reduce;
+
+pub use factor::{Factor, Source, Word};
+pub use monomial::{Atom, Monomial};
+pub use poly::{Poly, Term};
+pub use rational::Rational;
+
+use crate::expr::Expr;
+use crate::expr::symbol::Symbols;
+use std::cell::{Cell, RefCell};
+
+/// Work allowed for one model, in products of terms. A model of the gallery needs a few
+/// thousand; the bound keeps any input of 10 kB below two seconds.
+const WORK_LIMIT: u64 = 150_000;
+
+/// Longest word and largest number of terms kept; beyond that the work is refused too.
+const TERM_LIMIT: usize = 4_000;
+
+/// The normal-form engine of one model: its symbols, the opaque quantities met so far (inverses
+/// of sums, roots of sums, ...) and the work spent.
+pub struct Algebra<'a> {
+    symbols: &'a Symbols,
+    matrices: RefCell<Vec<Opaque>>,
+    numbers: RefCell<Vec<Opaque>>,
+    work: Cell<u64>,
+}
+
+/// A sub-expression that the normal form treats as one letter.
+struct Opaque {
+    key: Poly,
+    meaning: Expr,
+}
+
+impl<'a> Algebra<'a> {
+    /// An engine for the symbols of one model.
+    pub fn new(symbols: &'a Symbols) -> Self {
+        Algebra {
+            symbols,
+            matrices: RefCell::default(),
+            numbers: RefCell::default(),
+            work: Cell::new(0),
+        }
+    }
+
+    /// The symbols.
+    pub fn symbols(&self) -> &'a Symbols {
+        self.symbols
+    }
+
+    /// Whether an expression was too large to normalise; every answer since is void.
+    pub fn exhausted(&self) -> bool {
+        self.work.get() > WORK_LIMIT
+    }
+
+    /// Whether the expression vanishes identically. `false` also when the work ran out.
+    pub fn is_zero(&self, e: &Expr) -> bool {
+        let poly = self.lower(e);
+        poly.is_zero() && !self.exhausted()
+    }
+
+    /// Whether two expressions of one shape are the same.
+    pub fn equal(&self, a: &Expr, b: &Expr) -> bool {
+        self.is_zero(&crate::expr::sub(a.clone(), b.clone()))
+    }
+
+    /// Books work; `false` when there is none left.
+    fn spend(&self, units: usize) -> bool {
+        self.work.set(self.work.get().saturating_add(units as u64));
+        !self.exhausted()
+    }
+
+    /// Gives up on the present model.
+    fn exhaust(&self) {
+        self.work.set(u64::MAX);
+    }
+
+    fn intern(
+        &self,
+        table: &RefCell<Vec<Opaque>>,
+        key: Poly,
+        meaning: impl FnOnce() -> Expr,
+    ) -> u32 {
+        let mut table = table.borrow_mut();
+        if let Some(i) = table.iter().position(|o| o.key == key) {
+            return i as u32;
+        }
+        table.push(Opaque {
+            key,
+            meaning: meaning(),
+        });
+        (table.len() - 1) as u32
+    }
+}

@@ -1,0 +1,320 @@
+//! Declarations: symbols with their shapes, the configurations and advected quantities that
+//! constraints must serve, and the bookkeeping of which constraint was stated.
+
+use super::messages;
+use super::shapes;
+use super::spec::{Dimension, Group};
+use crate::diagnostic::{Diagnostic, Errors, Place, closest};
+use crate::expr::Expr;
+use crate::expr::shape::{Shape, Structure};
+use crate::expr::symbol::{Role, SymbolId, Symbols};
+use crate::syntax::FUNCTIONS;
+use crate::syntax::ast::{Model, Name, Statement};
+
+/// A declared configuration and its constraint, once stated.
+#[derive(Clone)]
+pub struct DeclaredGroup {
+    pub element: SymbolId,
+    pub velocity: SymbolId,
+    pub group: Group,
+    pub place: Place,
+    pub update: Option<(Expr, Place)>,
+    stated: bool,
+}
+
+/// A declared advected quantity, its constraint and its definition, once stated.
+#[derive(Clone)]
+pub struct DeclaredAdvected {
+    pub quantity: SymbolId,
+    pub place: Place,
+    pub update: Option<(Expr, Place)>,
+    pub definition: Option<(Expr, Place)>,
+    stated: bool,
+}
+
+/// Everything declared.
+#[derive(Clone)]
+pub struct Declared {
+    pub symbols: Symbols,
+    pub time_index: String,
+    pub step: SymbolId,
+    pub dimensions: Vec<Dimension>,
+    pub parameters: Vec<SymbolId>,
+    pub configurations: Vec<DeclaredGroup>,
+    pub advected: Vec<DeclaredAdvected>,
+    places: Vec<(String, Place)>,
+}
+
+/// Names with a fixed meaning.
+const RESERVED: [&str; 5] = ["Id", "T", "E1", "E2", "E3"];
+
+/// Reads all declarations of a model.
+pub fn declare(model: &Model, errors: &mut Errors) -> Declared {
+    let mut symbols = Symbols::default();
+    let (mut time_index, mut step_name) = ("k".to_owned(), "h".to_owned());
+    let mut step_place = None;
+    for statement in &model.statements {
+        if let Statement::Time { index, step } = statement {
+            time_index = index.text.clone();
+            step_name = step.text.clone();
+            step_place = Some(step.place);
+        }
+    }
+    let step = symbols.add(&step_name, Shape::SCALAR, Structure::General, Role::Step);
+    let mut d = Declared {
+        symbols,
+        time_index,
+        step,
+        dimensions: Vec::new(),
+        parameters: Vec::new(),
+        configurations: Vec::new(),
+        advected: Vec::new(),
+        places: Vec::new(),
+    };
+    if let Some(place) = step_place {
+        d.places.push((step_name, place));
+    }
+    for statement in &model.statements {
+        d.statement(statement, errors);
+    }
+    d
+}
+
+impl Declared {
+    fn statement(&mut self, statement: &Statement, errors: &mut Errors) {
+        match statement {
+            Statement::Dim { name, from, to } => {
+                if self.admit(name, errors) {
+                    self.symbols.add_dim(&name.text);
+                    self.dimensions.push(Dimension {
+                        name: name.text.clone(),
+                        from: *from,
+                        to: *to,
+                    });
+                }
+            }
+            Statement::Param { names, shape } => {
+                let Some((shape, structure)) = shapes::shape(&self.symbols, shape, errors) else {
+                    // Later uses of the names must not be reported as unknown as well.
+                    names
+                        .iter()
+                        .for_each(|n| self.places.push((n.text.clone(), n.place)));
+                    return;
+                };
+                for name in names {
+                    if self.admit(name, errors) {
+                        let id = self
+                            .symbols
+                            .add(&name.text, shape, structure, Role::Parameter);
+                        self.parameters.push(id);
+                    }
+                }
+            }
+            Statement::Group {
+                name,
+                group,
+                velocity,
+            } => {
+                let Some(kind) = shapes::group(&self.symbols, group, errors) else {
+                    for n in [name, velocity] {
+                        self.places.push((n.text.clone(), n.place));
+                    }
+                    return;
+                };
+                if !self.admit(name, errors) || !self.admit(velocity, errors) {
+                    return;
+                }
+                let shape = Shape::square(kind.size());
+                let structure = if kind.is_orthogonal() {
+                    Structure::Orthogonal
+                } else {
+                    Structure::Invertible
+                };
+                let element = self
+                    .symbols
+                    .add(&name.text, shape, structure, Role::Element);
+                let velocity = self
+                    .symbols
+                    .add(&velocity.text, shape, structure, Role::Velocity);
+                self.configurations.push(DeclaredGroup {
+                    element,
+                    velocity,
+                    group: kind,
+                    place: name.place,
+                    update: None,
+                    stated: false,
+                });
+            }
+            Statement::Advected { name, shape, .. } => {
+                let Some((shape, structure)) = shapes::advected_shape(&self.symbols, shape, errors)
+                else {
+                    self.places.push((name.text.clone(), name.place));
+                    return;
+                };
+                if self.admit(name, errors) {
+                    let quantity = self
+                        .symbols
+                        .add(&name.text, shape, structure, Role::Advected);
+                    self.advected.push(DeclaredAdvected {
+                        quantity,
+                        place: name.place,
+                        update: None,
+                        definition: None,
+                        stated: false,
+                    });
+                }
+            }
+            Statement::Time { .. }
+            | Statement::Assume { .. }
+            | Statement::Constraint { .. }
+            | Statement::Let { .. }
+            | Statement::Scale(_)
+            | Statement::Node(..)
+            | Statement::Lagrangian(_) => {}
+        }
+    }
+
+    /// Whether the name is free; reports it otherwise.
+    pub fn admit(&mut self, name: &Name, errors: &mut Errors) -> bool {
+        let text = name.text.as_str();
+        if RESERVED.contains(&text) || FUNCTIONS.contains(&text) {
+            errors.push(
+                Diagnostic::new(
+                    name.place,
+                    format!("`{text}` has a fixed meaning in the language"),
+                )
+                .help("choose another name"),
+            );
+            return false;
+        }
+        if let Some((_, first)) = self.places.iter().find(|(n, _)| n == text) {
+            errors.push(
+                Diagnostic::new(name.place, format!("`{text}` is declared twice"))
+                    .also(*first, format!("`{text}` is declared here first")),
+            );
+            return false;
+        }
+        if self.symbols.find(text) == Some(self.step) {
+            errors.push(
+                Diagnostic::new(name.place, format!("`{text}` is the time step"))
+                    .help("choose another name, or rename the step: `time k step dt;`"),
+            );
+            return false;
+        }
+        self.places.push((name.text.clone(), name.place));
+        true
+    }
+
+    /// Whether the name was declared, successfully or not.
+    pub fn was_declared(&self, text: &str) -> bool {
+        self.places.iter().any(|(n, _)| n == text)
+    }
+
+    /// The symbol that a constraint carries.
+    pub fn slot(&self, name: &Name, errors: &mut Errors) -> Option<SymbolId> {
+        let found = self.symbols.find(&name.text);
+        match found.map(|id| (id, self.symbols.get(id).role)) {
+            Some((id, Role::Element | Role::Advected)) => Some(id),
+            Some((_, Role::Velocity)) => {
+                errors.push(
+                    Diagnostic::new(name.place, format!("`{}` is a velocity: it lives on one edge and is not carried to the next", name.text))
+                        .help("constraints carry group elements and advected quantities"),
+                );
+                None
+            }
+            Some(_) => {
+                errors.push(
+                    Diagnostic::new(
+                        name.place,
+                        format!(
+                            "`{}` is constant in time: no constraint carries it",
+                            name.text
+                        ),
+                    )
+                    .help("declare it with `advected` if it moves with the group"),
+                );
+                None
+            }
+            None if self.was_declared(&name.text) => None,
+            None => {
+                let known = self.configurations.iter().map(|g| g.element);
+                let known = known.chain(self.advected.iter().map(|a| a.quantity));
+                let names: Vec<String> =
+                    known.map(|id| self.symbols.get(id).name.clone()).collect();
+                let mut e = Diagnostic::new(name.place, format!("`{}` is not declared", name.text));
+                if let Some(near) = closest(&name.text, names.iter().map(String::as_str)) {
+                    e = e.help(format!("did you mean `{near}`?"));
+                } else {
+                    e = e.help("declare it with `group` or `advected`");
+                }
+                errors.push(e);
+                None
+            }
+        }
+    }
+
+    /// Notes that a constraint was stated, though it was wrong.
+    pub fn mark_stated(&mut self, id: SymbolId) {
+        for g in self.configurations.iter_mut().filter(|g| g.element == id) {
+            g.stated = true;
+        }
+        for a in self.advected.iter_mut().filter(|a| a.quantity == id) {
+            a.stated = true;
+        }
+    }
+
+    /// Stores the right side of a constraint.
+    pub fn set_update(&mut self, id: SymbolId, e: Expr, place: Place, errors: &mut Errors) {
+        let name = self.symbols.get(id).name.clone();
+        let groups = self.configurations.iter_mut().filter(|g| g.element == id);
+        let slots = groups.map(|g| (&mut g.update, &mut g.stated));
+        let advected = self.advected.iter_mut().filter(|a| a.quantity == id);
+        let slots = slots.chain(advected.map(|a| (&mut a.update, &mut a.stated)));
+        for (update, stated) in slots {
+            *stated = true;
+            match update {
+                Some((_, first)) => errors.push(
+                    Diagnostic::new(place, format!("`{name}` has two constraints"))
+                        .also(*first, "the first one is here"),
+                ),
+                None => *update = Some((e.clone(), place)),
+            }
+        }
+    }
+
+    /// Stores the definition of an advected quantity.
+    pub fn set_definition(&mut self, id: SymbolId, e: Expr, place: Place, errors: &mut Errors) {
+        let allowed = crate::expr::letters(&e).iter().all(|l| {
+            let role = self.symbols.get(l.symbol).role;
+            l.shift == crate::expr::Shift::HERE && matches!(role, Role::Element | Role::Parameter)
+        });
+        if !allowed {
+            errors.push(messages::definition_not_of_configuration(place));
+        }
+        for a in self.advected.iter_mut().filter(|a| a.quantity == id) {
+            a.definition = Some((e.clone(), place));
+        }
+    }
+
+    /// Every configuration and advected quantity needs its constraint.
+    pub fn require_constraints(&self, errors: &mut Errors) {
+        for g in self.configurations.iter().filter(|g| !g.stated) {
+            errors.push(messages::missing_constraint(
+                &self.symbols,
+                g.element,
+                g.velocity,
+                g.place,
+            ));
+        }
+        let velocity = self.configurations.first().map(|g| g.velocity);
+        for a in self.advected.iter().filter(|a| !a.stated) {
+            let v = velocity.unwrap_or(a.quantity);
+            errors.push(messages::missing_constraint(
+                &self.symbols,
+                a.quantity,
+                v,
+                a.place,
+            ));
+        }
+    }
+}

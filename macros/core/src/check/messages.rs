@@ -1,0 +1,121 @@
+//! Messages of `check` that name several things at once: what is wrong, why, what to write.
+
+use super::declare::DeclaredGroup;
+use super::spec::{Configuration, Spec};
+use crate::diagnostic::{Diagnostic, Place};
+use crate::expr::shape::Shape;
+use crate::expr::symbol::{Role, SymbolId, Symbols};
+
+/// A shape as the user writes it.
+pub fn shape_text(symbols: &Symbols, shape: Shape) -> String {
+    let dim = |d| symbols.dim_text(d);
+    if shape.is_scalar() {
+        "a number".to_owned()
+    } else if shape.is_vector() {
+        format!("a vector of length {}", dim(shape.rows))
+    } else {
+        format!("a {} x {} matrix", dim(shape.rows), dim(shape.cols))
+    }
+}
+
+pub fn too_large(place: Place) -> Diagnostic {
+    Diagnostic::new(
+        place,
+        "this expression is too large to derive from (nested `let`s multiply)",
+    )
+    .help("shorten it, or make parts of it parameters")
+}
+
+pub fn no_lagrangian(place: Place) -> Diagnostic {
+    Diagnostic::new(place, "the model has no Lagrangian")
+        .help("add `lagrangian = ...;`, the action of one step, for example `-tr(J*Ω)/h`")
+}
+
+pub fn second_lagrangian(place: Place) -> Diagnostic {
+    Diagnostic::new(place, "the model has two Lagrangians").help("add them up in one statement")
+}
+
+pub fn assumption_not_constant(place: Place) -> Diagnostic {
+    Diagnostic::new(
+        place,
+        "an assumption is about parameters only; this one changes in time",
+    )
+    .help("drop the quantities that move, or make it a definition of an advected quantity")
+}
+
+pub fn scale_not_constant(place: Place) -> Diagnostic {
+    Diagnostic::new(
+        place,
+        "`scale` must be a non-zero number made of the step and parameters",
+    )
+    .help("the thesis's normalisation of rigid bodies is `scale -h;`")
+}
+
+pub fn definition_not_of_configuration(place: Place) -> Diagnostic {
+    Diagnostic::new(
+        place,
+        "a definition gives the quantity by the configuration and parameters at the same time level",
+    )
+    .help("write for example `advected Γ: Vec<3> = Λ^T * z;`")
+}
+
+pub fn missing_constraint(
+    symbols: &Symbols,
+    quantity: SymbolId,
+    velocity: SymbolId,
+    place: Place,
+) -> Diagnostic {
+    let q = symbols.get(quantity);
+    let (name, v) = (&q.name, &symbols.get(velocity).name);
+    let example = match q.role {
+        Role::Element => format!("constraint next({name}) = {name} * {v};"),
+        _ if q.shape.is_vector() => format!("constraint next({name}) = {v}^T * {name};"),
+        _ => format!("constraint next({name}) = {v}^T * {name} * {v};"),
+    };
+    Diagnostic::new(
+        place,
+        format!("nothing says how `{name}` is carried from one node to the next"),
+    )
+    .help(format!(
+        "add its Clebsch constraint, for example `{example}`"
+    ))
+}
+
+pub fn not_a_reconstruction(symbols: &Symbols, g: &DeclaredGroup, place: Place) -> Diagnostic {
+    let (e, v) = (&symbols.get(g.element).name, &symbols.get(g.velocity).name);
+    Diagnostic::new(
+        place,
+        format!("the constraint of the configuration `{e}` must multiply it by its velocity `{v}` on one side"),
+    )
+    .help(format!("write `constraint next({e}) = {e} * {v};` (body) or `constraint next({e}) = {v} * {e};` (spatial)"))
+}
+
+pub fn unused_velocity(spec: &Spec, c: &Configuration) -> Diagnostic {
+    let v = &spec.symbols.get(c.velocity).name;
+    Diagnostic::new(
+        spec.lagrangian_place,
+        format!(
+            "the velocity `{v}` does not appear in the Lagrangian, so its motion is not determined"
+        ),
+    )
+    .help(format!("add a kinetic term, for example `-tr(J*{v})/h`"))
+}
+
+pub fn shift_too_far(spec: &Spec) -> Diagnostic {
+    Diagnostic::new(
+        spec.lagrangian_place,
+        "the action of one step involves one edge only: its start and `next(...)`, its end",
+    )
+    .help("shift the whole term by one step: `x * prev(x)` is `next(x) * x`")
+}
+
+pub fn shifted_velocity(spec: &Spec, velocity: SymbolId) -> Diagnostic {
+    let v = &spec.symbols.get(velocity).name;
+    Diagnostic::new(
+        spec.lagrangian_place,
+        format!("the velocity `{v}` lives on the edge itself and cannot be taken on another one"),
+    )
+    .help(format!(
+        "write `{v}` for the velocity of the step from k to k+1"
+    ))
+}

@@ -1,0 +1,234 @@
+//! From the syntax tree to a typed specification: names, shapes, sides of actions. Every message
+//! names the token and the remedy; after this stage user mistakes are only left to the
+//! certificate (an action that is none).
+
+mod declare;
+mod elaborate;
+mod messages;
+mod shapes;
+pub mod spec;
+
+use crate::diagnostic::{Diagnostic, Errors};
+use crate::expr::symbol::Role;
+use crate::expr::{self, Expr, Letter, Shift};
+use crate::syntax::ast::{Model, NodeRule, Statement};
+use declare::Declared;
+use elaborate::Elaborator;
+use spec::{Advected, Assumption, Configuration, Spec};
+
+/// Largest expression tree the derivation takes on.
+const LARGEST: u32 = 4_000;
+
+/// Checks a model.
+pub fn check(model: &Model) -> Result<Spec, Errors> {
+    let mut errors = Errors::new();
+    let mut declared = declare::declare(model, &mut errors);
+    let names = declared.clone();
+    let mut elaborator = Elaborator::new(&names);
+    let mut typed: Option<(Expr, crate::diagnostic::Place)> = None;
+    let mut scale = None;
+    let mut assumptions = Vec::new();
+    let mut node_rule = NodeRule::Symmetric;
+    for statement in &model.statements {
+        match statement {
+            Statement::Let { name, value } => match elaborator.any(value) {
+                Ok(e) if e.size() > LARGEST => errors.push(messages::too_large(value.place)),
+                Ok(e) => elaborator.bind(name, e, &mut errors),
+                Err(e) => errors.push(*e),
+            },
+            Statement::Assume {
+                left,
+                relation,
+                right,
+                place,
+            } => match elaborator.pair(left, right) {
+                Ok((l, r)) => {
+                    if [&l, &r].iter().any(|e| !is_constant(&names, e)) {
+                        errors.push(messages::assumption_not_constant(*place));
+                    }
+                    assumptions.push(Assumption {
+                        left: l,
+                        relation: *relation,
+                        right: r,
+                    });
+                }
+                Err(e) => errors.push(*e),
+            },
+            Statement::Constraint { name, value, place } => {
+                if let Some(slot) = declared.slot(name, &mut errors) {
+                    let shape = names.symbols.get(slot).shape;
+                    match elaborator.of_shape(value, shape) {
+                        Ok(e) => declared.set_update(slot, e, *place, &mut errors),
+                        Err(e) => {
+                            declared.mark_stated(slot);
+                            errors.push(*e);
+                        }
+                    }
+                }
+            }
+            Statement::Advected {
+                name,
+                definition: Some(value),
+                ..
+            } => {
+                if let Some(slot) = names.symbols.find(&name.text) {
+                    match elaborator.of_shape(value, names.symbols.get(slot).shape) {
+                        Ok(e) => declared.set_definition(slot, e, value.place, &mut errors),
+                        Err(e) => errors.push(*e),
+                    }
+                }
+            }
+            Statement::Scale(value) => match elaborator.number(value) {
+                Ok(e) => {
+                    if !is_constant(&names, &e) || e.is_zero() {
+                        errors.push(messages::scale_not_constant(value.place));
+                    }
+                    scale = Some(e);
+                }
+                Err(e) => errors.push(*e),
+            },
+            Statement::Node(rule, _) => node_rule = *rule,
+            Statement::Lagrangian(value) => match elaborator.number(value) {
+                Ok(_) if typed.is_some() => errors.push(messages::second_lagrangian(value.place)),
+                Ok(e) if e.size() > LARGEST => errors.push(messages::too_large(value.place)),
+                Ok(e) => typed = Some((e, value.place)),
+                Err(e) => {
+                    errors.push(*e);
+                    typed = Some((expr::integer(0), value.place));
+                }
+            },
+            Statement::Dim { .. }
+            | Statement::Time { .. }
+            | Statement::Param { .. }
+            | Statement::Group { .. }
+            | Statement::Advected { .. } => {}
+        }
+    }
+    declared.require_constraints(&mut errors);
+    let Some((typed, place)) = typed else {
+        errors.push(messages::no_lagrangian(model.name.place));
+        errors.propagate()?;
+        return Err(messages::no_lagrangian(model.name.place).into());
+    };
+    errors.propagate()?;
+    let lagrangian = match &scale {
+        Some(s) => expr::quotient(typed.clone(), s.clone()),
+        None => typed.clone(),
+    };
+    let spec = finish(
+        model,
+        declared,
+        assumptions,
+        typed,
+        scale,
+        lagrangian,
+        place,
+        node_rule,
+    )?;
+    usage(&spec)?;
+    Ok(spec)
+}
+
+fn is_constant(names: &Declared, e: &Expr) -> bool {
+    expr::letters(e).iter().all(|l| {
+        matches!(
+            names.symbols.get(l.symbol).role,
+            Role::Parameter | Role::Step
+        )
+    })
+}
+
+#[allow(clippy::too_many_arguments)]
+fn finish(
+    model: &Model,
+    declared: Declared,
+    assumptions: Vec<Assumption>,
+    typed: Expr,
+    scale: Option<Expr>,
+    lagrangian: Expr,
+    lagrangian_place: crate::diagnostic::Place,
+    node_rule: NodeRule,
+) -> Result<Spec, Errors> {
+    let mut errors = Errors::new();
+    let mut configurations = Vec::new();
+    for g in &declared.configurations {
+        let Some((update, place)) = g.update.clone() else {
+            continue;
+        };
+        match shapes::side(&declared.symbols, g, &update) {
+            Some(side) => configurations.push(Configuration {
+                element: g.element,
+                velocity: g.velocity,
+                group: g.group,
+                side,
+                update,
+                place,
+            }),
+            None => errors.push(messages::not_a_reconstruction(&declared.symbols, g, place)),
+        }
+    }
+    let advected = declared
+        .advected
+        .iter()
+        .filter_map(|a| {
+            let (update, place) = a.update.clone()?;
+            Some(Advected {
+                quantity: a.quantity,
+                definition: a.definition.clone().map(|(e, _)| e),
+                definition_place: a.definition.as_ref().map(|(_, p)| *p),
+                update,
+                place,
+            })
+        })
+        .collect();
+    errors.propagate()?;
+    Ok(Spec {
+        name: model.name.text.clone(),
+        name_place: model.name.place,
+        docs: model.docs.clone(),
+        public: model.public,
+        symbols: declared.symbols,
+        time_index: declared.time_index,
+        step: declared.step,
+        dimensions: declared.dimensions,
+        parameters: declared.parameters,
+        assumptions,
+        configurations,
+        advected,
+        typed,
+        scale,
+        lagrangian,
+        lagrangian_place,
+        node_rule,
+    })
+}
+
+/// What is declared must be used where the theory needs it, and only there.
+fn usage(spec: &Spec) -> Result<(), Errors> {
+    let mut errors = Errors::new();
+    let used = expr::letters(&spec.lagrangian);
+    for c in &spec.configurations {
+        let velocity = Letter {
+            symbol: c.velocity,
+            shift: Shift::HERE,
+        };
+        if !used.contains(&velocity) {
+            errors.push(messages::unused_velocity(spec, c));
+        }
+    }
+    if spec.configurations.is_empty() {
+        errors.push(
+            Diagnostic::new(spec.name_place, "the model has no configuration")
+                .help("state one, for example `group Λ: SO<3> velocity Ω;`"),
+        );
+    }
+    for l in &used {
+        if l.shift.time.abs() > 1 || l.shift.time < 0 {
+            errors.push(messages::shift_too_far(spec));
+        }
+        if spec.symbols.get(l.symbol).role == Role::Velocity && l.shift != Shift::HERE {
+            errors.push(messages::shifted_velocity(spec, l.symbol));
+        }
+    }
+    errors.propagate()
+}

@@ -1,0 +1,148 @@
+//! Shapes and groups by name, and the side on which a velocity acts.
+
+use super::declare::DeclaredGroup;
+use super::spec::{Group, Side};
+use crate::diagnostic::{Diagnostic, Errors, closest};
+use crate::expr::shape::{Dim, Shape, Structure};
+use crate::expr::symbol::Symbols;
+use crate::expr::{self, Expr};
+use crate::syntax::ast::{Kindred, Size};
+
+/// Largest matrix of the language.
+const LARGEST: u64 = 32;
+
+const SHAPES: [&str; 6] = ["Real", "Vec", "Sym", "Skew", "Diag", "Mat"];
+const GROUPS: [&str; 2] = ["SO", "GL"];
+
+fn size(symbols: &Symbols, s: &Size, errors: &mut Errors) -> Option<Dim> {
+    match s {
+        Size::Number(n, place) => {
+            if (2..=LARGEST).contains(n) {
+                return u32::try_from(*n).ok().map(Dim::Fixed);
+            }
+            errors.push(
+                Diagnostic::new(
+                    *place,
+                    format!("a size is between 2 and {LARGEST}, not {n}"),
+                )
+                .help("a single number is `Real`"),
+            );
+            None
+        }
+        Size::Name(name) => {
+            let found = symbols.find_dim(&name.text);
+            if found.is_none() {
+                errors.push(
+                    Diagnostic::new(
+                        name.place,
+                        format!("`{}` is not a declared dimension", name.text),
+                    )
+                    .help(format!("declare it first: `dim {} in 3..=8;`", name.text)),
+                );
+            }
+            found
+        }
+    }
+}
+
+fn sizes(symbols: &Symbols, k: &Kindred, count: usize, errors: &mut Errors) -> Option<Vec<Dim>> {
+    if k.sizes.len() != count {
+        let name = &k.name.text;
+        let example = match count {
+            0 => format!("`{name}`"),
+            _ => format!("`{name}<3>`"),
+        };
+        errors.push(
+            Diagnostic::new(
+                k.place,
+                format!("`{name}` takes {count} size(s), {} given", k.sizes.len()),
+            )
+            .help(format!("write {example}")),
+        );
+        return None;
+    }
+    k.sizes.iter().map(|s| size(symbols, s, errors)).collect()
+}
+
+/// The shape and structure of a parameter.
+pub fn shape(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<(Shape, Structure)> {
+    let square = |structure| move |d: Vec<Dim>| (Shape::square(d[0]), structure);
+    let one = |errors: &mut Errors| sizes(symbols, k, 1, errors);
+    match k.name.text.as_str() {
+        "Real" => sizes(symbols, k, 0, errors).map(|_| (Shape::SCALAR, Structure::General)),
+        "Vec" => one(errors).map(|d| (Shape::vector(d[0]), Structure::General)),
+        "Sym" => one(errors).map(square(Structure::Symmetric)),
+        "Skew" => one(errors).map(square(Structure::Skew)),
+        "Diag" => one(errors).map(square(Structure::Diagonal)),
+        "Mat" if k.sizes.len() == 2 => sizes(symbols, k, 2, errors).map(|d| {
+            let shape = Shape {
+                rows: d[0],
+                cols: d[1],
+            };
+            (shape, Structure::General)
+        }),
+        "Mat" => one(errors).map(square(Structure::General)),
+        "SO" => one(errors).map(square(Structure::Orthogonal)),
+        "GL" => one(errors).map(square(Structure::Invertible)),
+        other => {
+            let mut e = Diagnostic::new(k.name.place, format!("`{other}` is not a shape"));
+            e = match closest(other, SHAPES.into_iter().chain(GROUPS)) {
+                Some(near) => e.help(format!("did you mean `{near}`?")),
+                None => {
+                    e.help("shapes are Real, Vec<n>, Sym<n>, Skew<n>, Diag<n>, Mat<n>, Mat<n, m>")
+                }
+            };
+            errors.push(e);
+            None
+        }
+    }
+}
+
+/// The shape and structure of an advected quantity.
+pub fn advected_shape(
+    symbols: &Symbols,
+    k: &Kindred,
+    errors: &mut Errors,
+) -> Option<(Shape, Structure)> {
+    shape(symbols, k, errors)
+}
+
+/// A group of the table.
+pub fn group(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<Group> {
+    match k.name.text.as_str() {
+        "SO" => sizes(symbols, k, 1, errors).map(|d| Group::SpecialOrthogonal(d[0])),
+        "GL" => sizes(symbols, k, 1, errors).map(|d| Group::GeneralLinear(d[0])),
+        "SU" | "SE" => {
+            errors.push(
+                Diagnostic::new(
+                    k.place,
+                    format!("the group `{}` is not in this version's table of groups", k.name.text),
+                )
+                .help("the groups are SO<n> and GL<n>; SU<2> covers SO<3>, and SE<3> can be stated by its rotation and an advected vector"),
+            );
+            None
+        }
+        other => {
+            let mut e = Diagnostic::new(k.name.place, format!("`{other}` is not a group"));
+            e = match closest(other, GROUPS) {
+                Some(near) => e.help(format!("did you mean `{near}<3>`?")),
+                None => e.help("the groups are SO<n> and GL<n>"),
+            };
+            errors.push(e);
+            None
+        }
+    }
+}
+
+/// Body or spatial, read off the reconstruction.
+pub fn side(symbols: &Symbols, g: &DeclaredGroup, update: &Expr) -> Option<Side> {
+    let element = expr::here(symbols, g.element);
+    let velocity = expr::here(symbols, g.velocity);
+    if *update == expr::mul(element.clone(), velocity.clone()) {
+        Some(Side::Body)
+    } else if *update == expr::mul(velocity, element) {
+        Some(Side::Spatial)
+    } else {
+        None
+    }
+}

@@ -1,0 +1,140 @@
+//! The typed specification of a model: what `check` hands to `derive`. Everything in it has
+//! passed names, shapes and sides; spans are kept only to report what a derivation refuses.
+
+use crate::diagnostic::Place;
+use crate::expr::Expr;
+use crate::expr::shape::{Dim, Shape};
+use crate::expr::symbol::{SymbolId, Symbols};
+use crate::syntax::ast::{Comparison, NodeRule};
+
+/// A matrix group of the engine's table.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Group {
+    /// Rotations, SO(n).
+    SpecialOrthogonal(Dim),
+    /// Invertible matrices, GL(n).
+    GeneralLinear(Dim),
+}
+
+impl Group {
+    /// The size n of its matrices.
+    pub fn size(self) -> Dim {
+        match self {
+            Group::SpecialOrthogonal(n) | Group::GeneralLinear(n) => n,
+        }
+    }
+
+    /// Whether its Lie algebra is the skew matrices.
+    pub fn is_orthogonal(self) -> bool {
+        matches!(self, Group::SpecialOrthogonal(_))
+    }
+}
+
+/// On which side the velocity stands in the reconstruction.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Side {
+    /// `next(Λ) = Λ Ω`: left-invariant systems, velocity and momentum in the body frame.
+    Body,
+    /// `next(Λ) = ω Λ`: right-invariant systems, velocity and momentum in the space frame.
+    Spatial,
+}
+
+/// A configuration variable and its velocity.
+#[derive(Clone, Debug)]
+pub struct Configuration {
+    /// The group element, at nodes.
+    pub element: SymbolId,
+    /// The velocity, on the edge k -> k+1.
+    pub velocity: SymbolId,
+    /// The group.
+    pub group: Group,
+    /// Body or spatial.
+    pub side: Side,
+    /// Right side of its constraint.
+    pub update: Expr,
+    /// Where the constraint stands.
+    pub place: Place,
+}
+
+/// A quantity carried by the group.
+#[derive(Clone, Debug)]
+pub struct Advected {
+    /// The quantity, at nodes.
+    pub quantity: SymbolId,
+    /// Its definition by the configuration, if stated.
+    pub definition: Option<Expr>,
+    /// Where the definition stands.
+    pub definition_place: Option<Place>,
+    /// Right side of its constraint.
+    pub update: Expr,
+    /// Where the constraint stands.
+    pub place: Place,
+}
+
+/// A condition on the parameters, checked when they are given.
+#[derive(Clone, Debug)]
+pub struct Assumption {
+    /// Left side.
+    pub left: Expr,
+    /// Relation.
+    pub relation: Comparison,
+    /// Right side.
+    pub right: Expr,
+}
+
+/// A named range `dim n in from..=to`.
+#[derive(Clone, Debug)]
+pub struct Dimension {
+    /// The name.
+    pub name: String,
+    /// Smallest value.
+    pub from: u64,
+    /// Largest value.
+    pub to: u64,
+}
+
+/// A checked model.
+#[derive(Clone, Debug)]
+pub struct Spec {
+    /// Name as written.
+    pub name: String,
+    /// Where the name stands.
+    pub name_place: Place,
+    /// Documentation lines.
+    pub docs: Vec<String>,
+    /// Whether it is `pub`.
+    pub public: bool,
+    /// Every symbol, in order of declaration; the derivation adds its own after these.
+    pub symbols: Symbols,
+    /// Name of the time index.
+    pub time_index: String,
+    /// The time step.
+    pub step: SymbolId,
+    /// Named dimensions.
+    pub dimensions: Vec<Dimension>,
+    /// Parameters in order.
+    pub parameters: Vec<SymbolId>,
+    /// Conditions on them.
+    pub assumptions: Vec<Assumption>,
+    /// Configurations in order.
+    pub configurations: Vec<Configuration>,
+    /// Advected quantities in order.
+    pub advected: Vec<Advected>,
+    /// The Lagrangian as typed.
+    pub typed: Expr,
+    /// What `scale` says: typed = scale x physical.
+    pub scale: Option<Expr>,
+    /// The physical action of one step before nodal terms are distributed.
+    pub lagrangian: Expr,
+    /// Where the Lagrangian stands.
+    pub lagrangian_place: Place,
+    /// The rule for nodal terms.
+    pub node_rule: NodeRule,
+}
+
+impl Spec {
+    /// Shape of a symbol.
+    pub fn shape(&self, id: SymbolId) -> Shape {
+        self.symbols.get(id).shape
+    }
+}

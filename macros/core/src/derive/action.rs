@@ -1,0 +1,112 @@
+//! The action of one step: the Lagrangian with its purely nodal terms (potentials) distributed
+//! over the two adjacent edges by the model's node rule.
+
+use crate::algebra::Rational;
+use crate::check::spec::Spec;
+use crate::expr::shape::Shape;
+use crate::expr::symbol::{Role, Symbols};
+use crate::expr::{self, Expr, Node, Shift};
+use crate::syntax::ast::NodeRule;
+
+/// The action of the step from node k to node k+1 and its parts.
+#[derive(Clone, Debug)]
+pub struct Action {
+    /// The whole action of the step, nodal terms distributed.
+    pub total: Expr,
+    /// Terms that involve a velocity or both ends of the edge.
+    pub edge: Expr,
+    /// Purely nodal terms at node k, before they are distributed.
+    pub nodal: Expr,
+}
+
+/// Splits and distributes.
+pub fn action(spec: &Spec) -> Action {
+    let symbols = &spec.symbols;
+    let (mut edge, mut nodal) = (Vec::new(), Vec::new());
+    for term in summands(&spec.lagrangian) {
+        match place(symbols, &term) {
+            Place::Constant => {}
+            Place::Node(level) => nodal.push(expr::shift_time(symbols, &term, -level)),
+            Place::Edge => edge.push(term),
+        }
+    }
+    let edge = expr::sum(edge, Shape::SCALAR);
+    let nodal = expr::sum(nodal, Shape::SCALAR);
+    let next = expr::shift_time(symbols, &nodal, Shift::NEXT.time);
+    let distributed = match spec.node_rule {
+        NodeRule::Outgoing => nodal.clone(),
+        NodeRule::Incoming => next,
+        NodeRule::Symmetric => {
+            let halves = summands(&nodal).into_iter().chain(summands(&next));
+            expr::sum(
+                halves
+                    .map(|t| expr::scale(Rational::HALF, t))
+                    .collect::<Vec<_>>(),
+                Shape::SCALAR,
+            )
+        }
+    };
+    Action {
+        total: expr::add(edge.clone(), distributed),
+        edge,
+        nodal,
+    }
+}
+
+/// Where a term lives.
+enum Place {
+    /// Only constants: it varies with nothing.
+    Constant,
+    /// At one node, at this time level.
+    Node(i8),
+    /// On the edge.
+    Edge,
+}
+
+fn place(symbols: &Symbols, term: &Expr) -> Place {
+    let mut level = None;
+    for l in expr::letters(term) {
+        match symbols.get(l.symbol).role {
+            Role::Velocity => return Place::Edge,
+            Role::Element | Role::Advected => match level {
+                None => level = Some(l.shift.time),
+                Some(t) if t != l.shift.time => return Place::Edge,
+                Some(_) => {}
+            },
+            Role::Step | Role::Parameter | Role::Multiplier | Role::Variation | Role::Derived => {}
+        }
+    }
+    level.map_or(Place::Constant, Place::Node)
+}
+
+/// The summands of a number, with common factors and divisors of a sum multiplied in.
+pub fn summands(e: &Expr) -> Vec<Expr> {
+    match e.node() {
+        Node::Sum(terms) => terms.iter().flat_map(summands).collect(),
+        Node::Neg(a) => summands(a).into_iter().map(expr::neg).collect(),
+        Node::Quotient(a, b) => summands(a)
+            .into_iter()
+            .map(|t| expr::quotient(t, b.clone()))
+            .collect(),
+        Node::Product(factors) if factors.iter().all(|f| f.shape().is_scalar()) => {
+            let open =
+                |f: &Expr| matches!(f.node(), Node::Sum(_) | Node::Quotient(..) | Node::Neg(_));
+            match factors
+                .iter()
+                .position(|f| open(f) && summands(f).len() > 1)
+            {
+                Some(i) => summands(&factors[i])
+                    .into_iter()
+                    .flat_map(|t| {
+                        let mut rest = factors.clone();
+                        rest[i] = t;
+                        summands(&expr::product(rest))
+                    })
+                    .collect(),
+                None => vec![e.clone()],
+            }
+        }
+        _ if e.is_zero() => Vec::new(),
+        _ => vec![e.clone()],
+    }
+}

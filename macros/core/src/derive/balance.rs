@@ -1,0 +1,167 @@
+//! The discrete Euler-Lagrange balance at node k: what the two adjacent edges contribute to the
+//! variation of the action, split by source (the velocity, quantities at the node), each as an
+//! element of the dual of the Lie algebra.
+
+use super::Letters;
+use super::action::Action;
+use super::variation::{Variation, at};
+use crate::algebra::{Algebra, Rational};
+use crate::check::spec::{Configuration, Group, Spec};
+use crate::expr::shape::Dim;
+use crate::expr::{self, Expr, Letter, Shift};
+
+/// The balance of one configuration. Every part is a covector of the Lie algebra in the form of
+/// [`covector`]: a vector for SO(3), a skew matrix for SO(n), a matrix for GL(n).
+#[derive(Clone, Debug)]
+pub struct Balance {
+    /// Gradient of the action of the outgoing edge with respect to its velocity.
+    pub gradient: Expr,
+    /// The velocity's part of the outgoing edge: `R`, with a plus sign in the node momentum.
+    pub edge_out: Expr,
+    /// What quantities at node k contribute to the outgoing edge: the node momentum is
+    /// `edge_out + node_out`.
+    pub node_out: Expr,
+    /// The velocity's part of the incoming edge, written at the outgoing edge of node k-1 shifted
+    /// to start at k: the transported `R`.
+    pub edge_in: Expr,
+    /// What quantities at the end of the edge contribute, written on the edge that starts at k
+    /// (so they are taken at k+1): the momentum at k+1 is `edge_in + node_in`.
+    pub node_in: Expr,
+    /// For each advected quantity: gradient of the outgoing edge at its start and at its end.
+    pub advected_gradients: Vec<(Expr, Expr)>,
+    /// The variation of the action as a number linear in `ξ`: outgoing edge of node k.
+    pub variation_out: Expr,
+    /// The same for the incoming edge of node k.
+    pub variation_in: Expr,
+}
+
+impl Balance {
+    /// The node momentum by the outgoing edge.
+    pub fn outgoing(&self) -> Expr {
+        expr::add(self.edge_out.clone(), self.node_out.clone())
+    }
+
+    /// The node momentum at the end of the edge, by that edge.
+    pub fn incoming(&self) -> Expr {
+        expr::add(self.edge_in.clone(), self.node_in.clone())
+    }
+}
+
+/// The covector whose pairing with `ξ` is `<y, ξ>`: `2 vee(y)` for SO(3) (pairing with the axial
+/// vector of `ξ`), `y - y^T` for SO(n), `y` for GL(n).
+pub fn covector(letters: &Letters, group: Group, y: Expr) -> Expr {
+    let s = &letters.symbols;
+    match group {
+        Group::SpecialOrthogonal(Dim::Fixed(3)) => expr::scale(Rational::integer(2), expr::vee(y)),
+        Group::SpecialOrthogonal(_) => expr::sub(y.clone(), expr::transpose(s, y)),
+        Group::GeneralLinear(_) => y,
+    }
+}
+
+/// The number that a covector gives on `ξ`.
+pub fn pair_with_variation(letters: &Letters, group: Group, covector: Expr, xi: Expr) -> Expr {
+    let s = &letters.symbols;
+    match group {
+        Group::SpecialOrthogonal(Dim::Fixed(3)) => expr::dot(covector, expr::vee(xi)),
+        Group::SpecialOrthogonal(_) => expr::scale(
+            Rational::HALF,
+            expr::trace(expr::mul(expr::transpose(s, covector), xi)),
+        ),
+        Group::GeneralLinear(_) => expr::trace(expr::mul(expr::transpose(s, covector), xi)),
+    }
+}
+
+/// The balances of all configurations.
+pub fn balances(
+    spec: &Spec,
+    letters: &Letters,
+    action: &Action,
+    variations: &[Variation],
+    algebra: &Algebra,
+) -> Vec<Balance> {
+    let pairs = spec.configurations.iter().zip(variations).enumerate();
+    pairs
+        .map(|(i, (c, v))| balance(spec, letters, action, v, c, i, algebra))
+        .collect()
+}
+
+fn balance(
+    spec: &Spec,
+    letters: &Letters,
+    action: &Action,
+    v: &Variation,
+    c: &Configuration,
+    i: usize,
+    algebra: &Algebra,
+) -> Balance {
+    let s = &letters.symbols;
+    let l = &action.total;
+    let xi = at(letters.variation[i], Shift::HERE);
+    let gradient = expr::gradient(s, l, at(c.velocity, Shift::HERE));
+    let velocity_next = expr::shift_time(s, &v.incoming.1, Shift::NEXT.time);
+    let dual = |pairing: Expr| {
+        let y = expr::gradient(s, &pairing, xi);
+        covector(letters, c.group, y)
+    };
+    let edge_out = dual(expr::neg(pairing(letters, &gradient, &v.outgoing.1)));
+    let edge_in = dual(pairing(letters, &gradient, &velocity_next));
+    // Quantities at a node: short forms come from the algebra.
+    let nodes = |shift: Shift| {
+        let mut terms = Vec::new();
+        for (letter, change) in v.advected.iter().chain([&v.element]) {
+            let wrt = Letter {
+                symbol: letter.symbol,
+                shift,
+            };
+            let g = expr::gradient(s, l, wrt);
+            let change = expr::shift_time(s, change, shift.time);
+            if !g.is_zero() && !change.is_zero() {
+                terms.push(pairing(letters, &g, &change));
+            }
+        }
+        let total = expr::sum(terms, crate::expr::shape::Shape::SCALAR);
+        let value = dual(total);
+        shorter(algebra, value)
+    };
+    let advected_gradients = spec
+        .advected
+        .iter()
+        .map(|a| {
+            let g = |shift| expr::gradient(s, l, at(a.quantity, shift));
+            (g(Shift::HERE), g(Shift::NEXT))
+        })
+        .collect();
+    let before = expr::shift_time(s, l, Shift::PREVIOUS.time);
+    Balance {
+        edge_out: shorter(algebra, edge_out),
+        node_out: expr::neg(nodes(Shift::HERE)),
+        edge_in: shorter(algebra, edge_in),
+        node_in: nodes(Shift::NEXT),
+        gradient,
+        advected_gradients,
+        variation_out: expr::directional(s, l, &v.on_outgoing()),
+        variation_in: expr::directional(s, &before, &v.on_incoming()),
+    }
+}
+
+/// `<a, b> = tr(a^T b)`.
+pub fn pairing(letters: &Letters, a: &Expr, b: &Expr) -> Expr {
+    if a.shape().is_scalar() {
+        expr::mul(a.clone(), b.clone())
+    } else if a.shape().is_vector() {
+        expr::dot(a.clone(), b.clone())
+    } else {
+        let t = expr::transpose(&letters.symbols, a.clone());
+        expr::trace(expr::mul(t, b.clone()))
+    }
+}
+
+/// The reduced form of the algebra if it is smaller than the expression itself.
+pub fn shorter(algebra: &Algebra, e: Expr) -> Expr {
+    let reduced = algebra.raise(&algebra.lower(&e));
+    if !algebra.exhausted() && reduced.size() <= e.size() {
+        reduced
+    } else {
+        e
+    }
+}

@@ -1,0 +1,224 @@
+//! The certificate: a proof by normal form that the balance is a combination of the Clebsch
+//! relations, with the variations as coefficients, so that no multiplier is left; and that the
+//! named (momentum map) form is the balance. Its steps are small identities that a second prover
+//! can check on its own. A model whose certificate fails does not compile.
+
+use super::Letters;
+use super::action::Action;
+use super::balance::{self, Balance, pairing};
+use super::clebsch::{Relation, constraint_terms};
+use super::momentum::Momentum;
+use super::variation::{Variation, at, on_shell, substitute_previous_elements};
+use crate::algebra::{Algebra, Rational};
+use crate::check::spec::Spec;
+use crate::diagnostic::{Diagnostic, Errors};
+use crate::expr::shape::Shape;
+use crate::expr::{self, Expr, Letter, Shift};
+
+/// What the proof is about.
+pub struct Inputs<'a> {
+    /// The model.
+    pub spec: &'a Spec,
+    /// All letters.
+    pub letters: &'a Letters,
+    /// The action of a step.
+    pub action: &'a Action,
+    /// The variations.
+    pub variations: &'a [Variation],
+    /// The balances.
+    pub balances: &'a [Balance],
+    /// The Clebsch relations.
+    pub relations: &'a [Relation],
+    /// The named forms.
+    pub momenta: &'a [Momentum],
+    /// The normal forms.
+    pub algebra: &'a Algebra<'a>,
+}
+
+/// One identity of the proof, between numbers.
+#[derive(Clone, Debug)]
+pub struct Step {
+    /// What it says.
+    pub name: String,
+    /// Left side.
+    pub left: Expr,
+    /// Right side.
+    pub right: Expr,
+}
+
+/// A finished proof.
+#[derive(Clone, Debug)]
+pub struct Certificate {
+    /// The identities, each of which has been reduced to `0 = 0`.
+    pub steps: Vec<Step>,
+}
+
+/// Proves, or says what is left.
+pub fn certify(x: &Inputs) -> Result<Certificate, Errors> {
+    let mut steps = Vec::new();
+    for i in 0..x.spec.configurations.len() {
+        constraint_steps(x, i, &mut steps);
+        gradient_steps(x, i, &mut steps);
+        combination(x, i, &mut steps);
+        named_form(x, i, &mut steps);
+    }
+    let mut errors = Errors::new();
+    for step in &steps {
+        let rest = x
+            .algebra
+            .lower(&expr::sub(step.left.clone(), step.right.clone()));
+        if !rest.is_zero() && !x.algebra.exhausted() {
+            let style = crate::print::Style::new(&x.spec.time_index);
+            let text = crate::print::expression(
+                &x.algebra.raise(&rest),
+                &x.letters.symbols,
+                &style,
+                crate::print::Format::Text,
+            );
+            errors.push(
+                Diagnostic::new(
+                    x.spec.lagrangian_place,
+                    format!("the derivation of this model cannot be proved: {}: {text} is left", step.name),
+                )
+                .help("state the same Lagrangian in simpler terms; the algebra knows products, transposes, traces, hats and inverses, not every identity of functions"),
+            );
+        }
+    }
+    errors.propagate()?;
+    Ok(Certificate { steps })
+}
+
+fn name_of(x: &Inputs, l: Letter) -> String {
+    x.letters.symbols.get(l.symbol).name.clone()
+}
+
+/// The variations preserve every constraint: on the outgoing edge as they stand, on the incoming
+/// edge with node k written by node k-1.
+fn constraint_steps(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
+    let s = &x.letters.symbols;
+    let v = &x.variations[i];
+    let nodes = x.spec.configurations.iter().map(|c| (c.element, &c.update));
+    let nodes = nodes.chain(x.spec.advected.iter().map(|a| (a.quantity, &a.update)));
+    let multipliers = x.letters.momentum.iter().chain(&x.letters.multiplier);
+    for ((quantity, update), p) in nodes.zip(multipliers) {
+        let name = &s.get(quantity).name;
+        let p_next = expr::letter(s, *p, Shift::NEXT);
+        let change = expr::directional(s, update, &v.on_outgoing());
+        steps.push(Step {
+            name: format!("the variation keeps the constraint of {name} on the outgoing edge"),
+            left: pairing(x.letters, &p_next, &change),
+            right: expr::integer(0),
+        });
+        let p_here = expr::here(s, *p);
+        let back = expr::shift_time(s, update, Shift::PREVIOUS.time);
+        let change = expr::directional(s, &back, &v.on_incoming());
+        let change = substitute_previous_elements(x.spec, x.letters, &change);
+        let letter = at(quantity, Shift::HERE);
+        let mut moved = v.advected.iter().chain([&v.element]);
+        let own = moved
+            .find(|(l, _)| *l == letter)
+            .map_or_else(|| expr::zero(s.get(quantity).shape), |(_, e)| e.clone());
+        let own = expr::substitute(s, &own, &on_shell(x.spec, x.letters));
+        steps.push(Step {
+            name: format!("the variation keeps the constraint of {name} on the incoming edge"),
+            left: pairing(x.letters, &p_here, &own),
+            right: pairing(x.letters, &p_here, &change),
+        });
+    }
+}
+
+/// Gradients of the action, paired with the variations, are its directional derivatives.
+fn gradient_steps(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
+    let s = &x.letters.symbols;
+    let l = &x.action.total;
+    let v = &x.variations[i];
+    for (letter, change) in v.on_outgoing() {
+        let g = expr::gradient(s, l, letter);
+        if g.is_zero() || change.is_zero() {
+            continue;
+        }
+        steps.push(Step {
+            name: format!(
+                "⟨∇ℓ, δ{0}⟩ is the derivative of ℓ along δ{0}",
+                name_of(x, letter)
+            ),
+            left: pairing(x.letters, &g, &change),
+            right: expr::directional(s, l, &[(letter, change)]),
+        });
+    }
+}
+
+/// `Σ ⟨E_v, δv⟩ = δS`: the balance is a combination of the Clebsch relations.
+fn combination(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
+    let s = &x.letters.symbols;
+    let v = &x.variations[i];
+    let back = |e: &Expr| expr::shift_time(s, e, Shift::PREVIOUS.time);
+    // The relations are those of the constrained action: the sum of the action and these terms.
+    debug_assert_eq!(
+        constraint_terms(x.spec, x.letters).len(),
+        x.letters.momentum.len() + x.letters.multiplier.len()
+    );
+    let mut terms = Vec::new();
+    for relation in x.relations {
+        for (letter, change) in v.on_outgoing() {
+            if letter == relation.variable {
+                terms.push(pairing(x.letters, &relation.gradient, &change));
+            }
+        }
+        // The velocity of the incoming edge has its relation one level earlier.
+        if v.incoming.0.symbol == relation.variable.symbol {
+            let earlier = back(&relation.gradient);
+            terms.push(pairing(x.letters, &earlier, &v.incoming.1));
+        }
+    }
+    let b = &x.balances[i];
+    let left = expr::sum(terms, Shape::SCALAR);
+    let right = expr::add(b.variation_out.clone(), b.variation_in.clone());
+    let close = |e: Expr| {
+        let e = substitute_previous_elements(x.spec, x.letters, &e);
+        expr::substitute(s, &e, &on_shell(x.spec, x.letters))
+    };
+    let name = &s.get(x.spec.configurations[i].element).name;
+    steps.push(Step {
+        name: format!("the balance of {name} is a combination of the Clebsch relations"),
+        left: close(left),
+        right: close(right),
+    });
+}
+
+/// `-(M + node terms) + (Ad* M + node terms)` paired with `ξ` is the variation of the action.
+fn named_form(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
+    let s = &x.letters.symbols;
+    let (b, m) = (&x.balances[i], &x.momenta[i]);
+    let c = &x.spec.configurations[i];
+    let xi = expr::here(s, x.letters.variation[i]);
+    let back = |e: &Expr| expr::shift_time(s, e, Shift::PREVIOUS.time);
+    let weight = if c.group.is_orthogonal() {
+        Rational::HALF
+    } else {
+        Rational::ONE
+    };
+    let matrix = |e: &Expr| expr::scale(weight, pairing(x.letters, e, &xi));
+    let node = |e: Expr| balance::pair_with_variation(x.letters, c.group, e, xi.clone());
+    let name = &s.get(c.element).name;
+    steps.push(Step {
+        name: format!("momentum form of the outgoing edge of {name}"),
+        left: expr::neg(expr::add(matrix(&m.edge), node(b.node_out.clone()))),
+        right: b.variation_out.clone(),
+    });
+    steps.push(Step {
+        name: format!("momentum form of the incoming edge of {name}, with Ad*"),
+        left: expr::add(matrix(&back(&m.transported)), node(back(&b.node_in))),
+        right: b.variation_in.clone(),
+    });
+    steps.push(Step {
+        name: format!("emitted residual of {name}, outgoing edge"),
+        left: expr::neg(node(b.outgoing())),
+        right: b.variation_out.clone(),
+    });
+    steps.push(Step {
+        name: format!("emitted residual of {name}, incoming edge"),
+        left: node(back(&b.incoming())),
+        right: b.variation_in.clone(),
+    });
+}

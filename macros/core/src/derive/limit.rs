@@ -1,0 +1,184 @@
+//! The limit of small steps: the Lagrangian per unit time whose discretisation the action of a
+//! step is, found by expanding `Ω = exp(h ξ)`; from it the physical energy. It catches wrong
+//! signs and factors, and gives runs their energy.
+
+use super::Letters;
+use super::action::Action;
+use super::variation::{Variation, at};
+use crate::algebra::{Algebra, Atom, Monomial, Poly, Rational, Term};
+use crate::check::spec::Spec;
+use crate::expr::shape::Shape;
+use crate::expr::symbol::Role;
+use crate::expr::{self, Expr, Letter, Shift};
+
+/// The continuous Lagrangian in the body velocities `ξ` (letters of
+/// [`Letters::variation`]), at most quadratic in them.
+#[derive(Clone, Debug)]
+pub struct Limit {
+    /// The whole Lagrangian per unit time.
+    pub lagrangian: Expr,
+    /// Its part without velocities, with the opposite sign.
+    pub potential: Expr,
+    /// Its part linear in the velocities.
+    pub linear: Expr,
+    /// The kinetic energy, quadratic in the velocities.
+    pub kinetic: Expr,
+}
+
+/// The limit, or why there is none.
+pub fn limit(
+    spec: &Spec,
+    letters: &Letters,
+    action: &Action,
+    variations: &[Variation],
+    algebra: &Algebra,
+) -> Result<Limit, String> {
+    let s = &letters.symbols;
+    let mut forward: Vec<(Letter, Expr)> = Vec::new();
+    let (mut identity, mut first, mut second) = (Vec::new(), Vec::new(), Vec::new());
+    for (i, c) in spec.configurations.iter().enumerate() {
+        let xi = expr::here(s, letters.variation[i]);
+        let w = at(c.velocity, Shift::HERE);
+        forward.push((at(c.element, Shift::NEXT), c.update.clone()));
+        identity.push((w, expr::identity(c.group.size())));
+        first.push((w, xi.clone()));
+        second.push((w, expr::mul(xi.clone(), xi)));
+    }
+    let carried = spec.advected.iter();
+    forward.extend(carried.map(|a| (at(a.quantity, Shift::NEXT), a.update.clone())));
+    let l = expr::substitute(s, &action.total, &forward);
+    let step = expr::here(s, spec.step);
+    let d1 = expr::directional(s, &l, &first);
+    let d2 = expr::add(
+        expr::directional(s, &d1, &first),
+        expr::directional(s, &l, &second),
+    );
+    let series = expr::sum(
+        [
+            l,
+            expr::mul(step.clone(), d1),
+            expr::product([
+                expr::number(Rational::HALF),
+                expr::power(step, Rational::integer(2)),
+                d2,
+            ]),
+        ],
+        Shape::SCALAR,
+    );
+    let series = expr::substitute(s, &series, &identity);
+    let poly = algebra.lower(&series);
+    let h = Atom::Letter(at(spec.step, Shift::HERE));
+    let mut parts = [
+        Poly::zero(Shape::SCALAR),
+        Poly::zero(Shape::SCALAR),
+        Poly::zero(Shape::SCALAR),
+    ];
+    for (term, coefficient) in &poly.terms {
+        let (order, rest) = order_in(&term.monomial, &h);
+        let value = algebra.raise(&Poly::term(
+            Shape::SCALAR,
+            *coefficient,
+            Term {
+                monomial: rest.clone(),
+                word: Vec::new(),
+            },
+        ));
+        let constant = expr::letters(&value)
+            .iter()
+            .all(|l| matches!(s.get(l.symbol).role, Role::Parameter));
+        if expr::contains(&value, at(spec.step, Shift::HERE)) {
+            return Err("the step stands inside a function or root".to_owned());
+        }
+        if constant || order > Rational::ONE {
+            continue;
+        }
+        if order < Rational::ONE {
+            if is_carried_constant(spec, letters, variations, algebra, &value) {
+                continue;
+            }
+            return Err(
+                "the action of a step does not shrink in proportion to the step".to_owned(),
+            );
+        }
+        let degree = degree(letters, &rest, algebra);
+        let Some(part) = parts.get_mut(degree) else {
+            return Err("the Lagrangian is not quadratic in the velocity".to_owned());
+        };
+        let pushed = part.push(
+            Term {
+                monomial: rest,
+                word: Vec::new(),
+            },
+            *coefficient,
+        );
+        if !pushed {
+            return Err("its coefficients are too large".to_owned());
+        }
+    }
+    let [constant, linear, kinetic] = parts.map(|p| algebra.raise(&p));
+    Ok(Limit {
+        lagrangian: expr::sum(
+            [kinetic.clone(), linear.clone(), constant.clone()],
+            Shape::SCALAR,
+        ),
+        potential: expr::neg(constant),
+        linear,
+        kinetic,
+    })
+}
+
+/// Whether the group leaves a function of advected quantities alone (such as the trace of an
+/// advected inertia): it is a constant of every motion and varies with nothing.
+fn is_carried_constant(
+    spec: &Spec,
+    letters: &Letters,
+    variations: &[Variation],
+    algebra: &Algebra,
+    value: &Expr,
+) -> bool {
+    let s = &letters.symbols;
+    let node = expr::letters(value).iter().all(|l| {
+        matches!(s.get(l.symbol).role, Role::Parameter)
+            || spec.advected.iter().any(|a| a.quantity == l.symbol)
+    });
+    node && variations
+        .iter()
+        .all(|v| algebra.is_zero(&expr::directional(s, value, &v.advected)))
+}
+
+fn order_in(monomial: &Monomial, h: &Atom) -> (Rational, Monomial) {
+    let mut rest = monomial.clone();
+    match rest.iter().position(|(a, _)| a == h) {
+        Some(i) => {
+            let (_, e) = rest.remove(i);
+            (e, rest)
+        }
+        None => (Rational::ZERO, rest),
+    }
+}
+
+/// How many velocities a term holds: found by scaling them.
+fn degree(letters: &Letters, monomial: &Monomial, algebra: &Algebra) -> usize {
+    let s = &letters.symbols;
+    let term = Term {
+        monomial: monomial.clone(),
+        word: Vec::new(),
+    };
+    let value = algebra.raise(&Poly::term(Shape::SCALAR, Rational::ONE, term));
+    let doubled: Vec<(Letter, Expr)> = letters
+        .variation
+        .iter()
+        .map(|v| {
+            let twice = expr::scale(Rational::integer(2), expr::here(s, *v));
+            (at(*v, Shift::HERE), twice)
+        })
+        .collect();
+    let scaled = expr::substitute(s, &value, &doubled);
+    for (n, factor) in [1, 2, 4].into_iter().enumerate() {
+        let expected = expr::scale(Rational::integer(factor), value.clone());
+        if algebra.equal(&scaled, &expected) {
+            return n;
+        }
+    }
+    usize::MAX
+}

@@ -1,0 +1,213 @@
+//! From a checked model to its derivation: the action of one step, constraint-preserving
+//! variations, the discrete Euler-Lagrange balance, Clebsch relations, momentum maps, the
+//! certificate, what must be solved each step, invariants, time reversal, the continuous limit.
+
+pub mod action;
+pub mod balance;
+pub mod certificate;
+pub mod clebsch;
+pub mod invariants;
+pub mod limit;
+pub mod momentum;
+pub mod recognise;
+pub mod reversal;
+pub mod transport;
+pub mod variation;
+
+use crate::algebra::Algebra;
+use crate::check::spec::{Group, Side, Spec};
+use crate::diagnostic::{Diagnostic, Errors};
+use crate::expr::shape::{Dim, Shape, Structure};
+use crate::expr::symbol::{Role, SymbolId, Symbols};
+
+/// Letters that the derivation adds to those of the model.
+#[derive(Clone, Debug)]
+pub struct Letters {
+    /// The model's symbols and the ones below.
+    pub symbols: Symbols,
+    /// For each configuration: a free element of its Lie algebra, the variation `ξ`.
+    pub variation: Vec<SymbolId>,
+    /// For each configuration: a second one, the direction of a tangent `η`.
+    pub direction: Vec<SymbolId>,
+    /// For each configuration: the multiplier of its reconstruction.
+    pub momentum: Vec<SymbolId>,
+    /// For each advected quantity: the multiplier of its constraint.
+    pub multiplier: Vec<SymbolId>,
+    /// For each advected quantity: a placeholder of its shape and structure.
+    pub placeholder: Vec<SymbolId>,
+    /// For each configuration: the name of its edge momentum, an element of the Lie algebra.
+    pub edge_momentum: Vec<SymbolId>,
+    /// For each configuration: the name of its node momentum, a covector (a vector for SO(3)).
+    pub node_momentum: Vec<SymbolId>,
+}
+
+/// Everything derived from one model.
+#[derive(Clone, Debug)]
+pub struct Derivation {
+    /// The checked model.
+    pub spec: Spec,
+    /// Symbols of the model and of the derivation.
+    pub letters: Letters,
+    /// The action of one step and its parts.
+    pub action: action::Action,
+    /// How every quantity varies, per configuration.
+    pub variations: Vec<variation::Variation>,
+    /// The balance of every configuration.
+    pub balances: Vec<balance::Balance>,
+    /// Stationarity of the Clebsch action, as the thesis prints it.
+    pub relations: Vec<clebsch::Relation>,
+    /// The proof that the balance is a combination of the Clebsch relations.
+    pub certificate: certificate::Certificate,
+    /// Momentum maps and the named form of the balance.
+    pub momenta: Vec<momentum::Momentum>,
+    /// What each step must solve.
+    pub solve: recognise::Solve,
+    /// How advected quantities follow from the configuration.
+    pub transports: Vec<transport::Transport>,
+    /// Whether the one-step action is symmetric under time reversal.
+    pub reversible: bool,
+    /// The Lagrangian in the limit of small steps, or why there is none.
+    pub limit: Result<limit::Limit, String>,
+    /// Conserved quantities.
+    pub invariants: Vec<invariants::Invariant>,
+}
+
+fn letters(spec: &Spec) -> Letters {
+    let mut symbols = spec.symbols.clone();
+    let many = spec.configurations.len() > 1;
+    let mut numbered = |base: &str, i: usize, shape: Shape, structure, role| {
+        let name = if many {
+            format!("{base}{}", i + 1)
+        } else {
+            base.to_owned()
+        };
+        let name = symbols.fresh_name(&name);
+        symbols.add(&name, shape, structure, role)
+    };
+    let algebra = |c: &crate::check::spec::Configuration| {
+        if c.group.is_orthogonal() {
+            Structure::Skew
+        } else {
+            Structure::General
+        }
+    };
+    let (mut variation, mut direction, mut momentum, mut edge, mut node) =
+        (Vec::new(), Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    for (i, c) in spec.configurations.iter().enumerate() {
+        let shape = Shape::square(c.group.size());
+        variation.push(numbered("ξ", i, shape, algebra(c), Role::Variation));
+        direction.push(numbered("η", i, shape, algebra(c), Role::Variation));
+        momentum.push(numbered(
+            "P",
+            i,
+            shape,
+            Structure::General,
+            Role::Multiplier,
+        ));
+        edge.push(numbered("M", i, shape, algebra(c), Role::Derived));
+        let (covector, structure) = match c.group {
+            Group::SpecialOrthogonal(n @ Dim::Fixed(3)) => (Shape::vector(n), Structure::General),
+            Group::SpecialOrthogonal(_) => (shape, Structure::Skew),
+            Group::GeneralLinear(_) => (shape, Structure::General),
+        };
+        let name = match c.side {
+            Side::Body => "μ",
+            Side::Spatial => "m",
+        };
+        node.push(numbered(name, i, covector, structure, Role::Derived));
+    }
+    let (mut multiplier, mut placeholder) = (Vec::new(), Vec::new());
+    for a in &spec.advected {
+        let s = symbols.get(a.quantity).clone();
+        // A multiplier is paired with the difference of two quantities of this structure.
+        let name = symbols.fresh_name(&format!("V_{}", s.name));
+        let dual = match s.structure {
+            Structure::Symmetric | Structure::Diagonal | Structure::Skew => s.structure,
+            Structure::General | Structure::Orthogonal | Structure::Invertible => {
+                Structure::General
+            }
+        };
+        multiplier.push(symbols.add(&name, s.shape, dual, Role::Multiplier));
+        let name = symbols.fresh_name(&format!("d{}", s.name));
+        placeholder.push(symbols.add(&name, s.shape, dual, Role::Variation));
+    }
+    Letters {
+        symbols,
+        variation,
+        direction,
+        momentum,
+        multiplier,
+        placeholder,
+        edge_momentum: edge,
+        node_momentum: node,
+    }
+}
+
+/// Derives a checked model, in the order in which each result needs those before it.
+pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
+    let letters = letters(&spec);
+    let algebra = Algebra::new(&letters.symbols);
+    let whole = spec.lagrangian_place;
+    let bounded = |algebra: &Algebra| {
+        if algebra.exhausted() {
+            return Err(Errors::from(
+                Diagnostic::new(
+                    whole,
+                    "this model is too large to derive: its normal form does not fit",
+                )
+                .help("reduce powers of sums and nested products, or make parts of it parameters"),
+            ));
+        }
+        Ok(())
+    };
+    let action = action::action(&spec);
+    // The constraints first: a wrong-sided action makes everything below meaningless.
+    let variations = variation::variations(&spec, &letters, &algebra);
+    bounded(&algebra)?;
+    let variations = variations?;
+    let transports = transport::transports(&spec, &letters, &algebra);
+    bounded(&algebra)?;
+    let transports = transports?;
+    let balances = balance::balances(&spec, &letters, &action, &variations, &algebra);
+    let relations = clebsch::relations(&spec, &letters, &action, &algebra);
+    let momenta = momentum::momenta(&spec, &letters, &balances, &algebra);
+    let certificate = certificate::certify(&certificate::Inputs {
+        spec: &spec,
+        letters: &letters,
+        action: &action,
+        variations: &variations,
+        balances: &balances,
+        relations: &relations,
+        momenta: &momenta,
+        algebra: &algebra,
+    });
+    bounded(&algebra)?;
+    let certificate = certificate?;
+    let solve = recognise::recognise(&spec, &letters, &balances, &algebra);
+    let reversible = reversal::is_reversible(&spec, &action, &algebra);
+    let limit = limit::limit(&spec, &letters, &action, &variations, &algebra);
+    let invariants = invariants::invariants(&invariants::Inputs {
+        spec: &spec,
+        letters: &letters,
+        balances: &balances,
+        solve: &solve,
+        limit: limit.as_ref().ok(),
+        algebra: &algebra,
+    });
+    bounded(&algebra)?;
+    Ok(Derivation {
+        spec,
+        letters,
+        action,
+        variations,
+        balances,
+        relations,
+        certificate,
+        momenta,
+        solve,
+        transports,
+        reversible,
+        limit,
+        invariants,
+    })
+}

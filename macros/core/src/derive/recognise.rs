@@ -1,0 +1,263 @@
+//! What each step must solve for the velocities: the Moser-Veselov equation
+//! `Ω C^T - C Ω^T = h N` when the balance is linear in the velocity with `C` free of velocities
+//! (an exact matrix Riccati equation), else Newton on the derived residual and tangent.
+
+use super::Letters;
+use super::balance::{Balance, shorter};
+use super::variation::at;
+use crate::algebra::{Algebra, Factor, Monomial, Poly, Source};
+use crate::check::spec::Spec;
+use crate::expr::shape::{Dim, Shape};
+use crate::expr::symbol::{Role, SymbolId};
+use crate::expr::{self, Expr, Shift};
+
+/// The Riccati form of one balance.
+#[derive(Clone, Debug)]
+pub enum Riccati {
+    /// `Ω C^T - C Ω^T = h N` with `C` made of parameters and node quantities.
+    Exact(MoserVeselov),
+    /// The same with a `C` that contains other velocities.
+    Coupled(MoserVeselov),
+    /// None, with the reason.
+    None(String),
+}
+
+/// The parts of a Moser-Veselov equation.
+#[derive(Clone, Debug)]
+pub struct MoserVeselov {
+    /// The left factor `C`, an n x n matrix (for the free body the Poinsot matrix).
+    pub factor: Expr,
+    /// Whether `C` equals its transpose.
+    pub symmetric: bool,
+    /// The part of the node momentum that does not depend on the velocity, as a covector: the
+    /// edge momentum is `N = μ - rest`.
+    pub rest: Expr,
+}
+
+/// How the step is solved.
+#[derive(Clone, Debug)]
+pub enum Method {
+    /// Explicitly, with the constants of the trajectory found once: `C` is constant and the edge
+    /// momentum is the node momentum, so that `κ` is conserved.
+    FreeMoserVeselov,
+    /// Explicitly, one quartic a step.
+    ForcedMoserVeselov,
+    /// Newton on the group, residual and tangent derived.
+    Newton,
+}
+
+/// What must be solved and how.
+#[derive(Clone, Debug)]
+pub struct Solve {
+    /// The Riccati form of each balance.
+    pub riccati: Vec<Riccati>,
+    /// The method of the emitted stepper.
+    pub method: Method,
+    /// Why this method, in one sentence.
+    pub reason: String,
+}
+
+/// Recognises.
+pub fn recognise(spec: &Spec, letters: &Letters, balances: &[Balance], algebra: &Algebra) -> Solve {
+    let riccati: Vec<Riccati> = balances
+        .iter()
+        .enumerate()
+        .map(|(i, b)| riccati(spec, letters, b, i, algebra))
+        .collect();
+    let three = |i: usize| {
+        let size = spec.configurations[i].group.size();
+        size == Dim::Fixed(3) && spec.configurations[i].group.is_orthogonal()
+    };
+    let (method, reason) = match riccati.as_slice() {
+        [Riccati::Exact(mv)] if three(0) && mv.symmetric => {
+            if is_free(spec, letters, balances, mv) {
+                (
+                    Method::FreeMoserVeselov,
+                    "C is constant and no node term acts, so κ is conserved: solved once, every step explicit".to_owned(),
+                )
+            } else {
+                (
+                    Method::ForcedMoserVeselov,
+                    "C is symmetric and free of velocities: explicit after one quartic a step"
+                        .to_owned(),
+                )
+            }
+        }
+        [Riccati::Exact(mv)] if three(0) && !mv.symmetric => (
+            Method::Newton,
+            "C is not symmetric: Newton on the derived residual".to_owned(),
+        ),
+        [Riccati::Exact(_)] => (
+            Method::Newton,
+            "the explicit solution is known for SO(3) only: Newton on the derived residual"
+                .to_owned(),
+        ),
+        [Riccati::None(why)] => (
+            Method::Newton,
+            format!("{why}: Newton on the derived residual"),
+        ),
+        _ => (
+            Method::Newton,
+            "several velocities are solved together: Newton on the derived residuals".to_owned(),
+        ),
+    };
+    Solve {
+        riccati,
+        method,
+        reason,
+    }
+}
+
+/// Whether the motion is free: constant `C`, and nothing but the velocity moves the momentum.
+fn is_free(spec: &Spec, letters: &Letters, balances: &[Balance], mv: &MoserVeselov) -> bool {
+    let s = &letters.symbols;
+    let constant = expr::letters(&mv.factor)
+        .iter()
+        .all(|l| matches!(s.get(l.symbol).role, Role::Parameter | Role::Step));
+    let body = spec.configurations[0].side == crate::check::spec::Side::Body;
+    constant
+        && body
+        && mv.rest.is_zero()
+        && balances[0].node_out.is_zero()
+        && balances[0].node_in.is_zero()
+}
+
+fn riccati(spec: &Spec, letters: &Letters, b: &Balance, i: usize, algebra: &Algebra) -> Riccati {
+    let s = &letters.symbols;
+    let c = &spec.configurations[i];
+    if !c.group.is_orthogonal() {
+        return Riccati::None("the group is not orthogonal".to_owned());
+    }
+    let n = c.group.size();
+    let outgoing = b.outgoing();
+    let matrix = if n == Dim::Fixed(3) {
+        expr::hat(outgoing)
+    } else {
+        outgoing
+    };
+    let poly = algebra.lower(&matrix);
+    let Some((factor, rest)) = split(algebra, &poly, c.velocity, s) else {
+        let name = &s.get(c.velocity).name;
+        return Riccati::None(format!("the momentum is not linear in {name} on the left"));
+    };
+    let step = expr::here(s, spec.step);
+    // h N = Ω C^T - C Ω^T, and the balance carries 1/h.
+    let transposed = expr::mul(step, algebra.raise(&factor));
+    let factor = shorter(algebra, expr::transpose(s, transposed));
+    let symmetric = algebra.is_zero(&expr::sub(
+        factor.clone(),
+        expr::transpose(s, factor.clone()),
+    ));
+    let rest = algebra.raise(&rest);
+    // The node's own part, where that is all of it: it reads as the user would write it.
+    let own = if n == Dim::Fixed(3) {
+        expr::hat(b.node_out.clone())
+    } else {
+        b.node_out.clone()
+    };
+    let rest = if algebra.equal(&own, &rest) {
+        b.node_out.clone()
+    } else if n == Dim::Fixed(3) {
+        shorter(algebra, expr::vee(rest))
+    } else {
+        rest
+    };
+    let mv = MoserVeselov {
+        factor: factor.clone(),
+        symmetric,
+        rest: rest.clone(),
+    };
+    let moving = |e: &Expr| expr::contains_role(s, e, Role::Velocity);
+    if moving(&factor) || moving(&rest) {
+        return Riccati::Coupled(mv);
+    }
+    Riccati::Exact(mv)
+}
+
+/// Splits `Ω X - X^T Ω^T + rest`: returns `X` and the rest, or nothing if the velocity stands
+/// anywhere else.
+fn split(
+    algebra: &Algebra,
+    poly: &Poly,
+    velocity: SymbolId,
+    s: &crate::expr::symbol::Symbols,
+) -> Option<(Poly, Poly)> {
+    let w = at(velocity, Shift::HERE);
+    let is_velocity =
+        |f: &Factor| matches!(f, Factor::Letter { source: Source::Letter(l), .. } if *l == w);
+    let (mut x, mut rest) = (Poly::zero(poly.shape), Poly::zero(poly.shape));
+    let mut mirrored = Poly::zero(poly.shape);
+    for (term, coefficient) in &poly.terms {
+        let in_number = mentions(algebra, &term.monomial, velocity);
+        let count = term
+            .word
+            .iter()
+            .filter(|f| word_mentions(f, &is_velocity))
+            .count();
+        if in_number {
+            return None;
+        }
+        if count == 0 {
+            let ok = rest.push(term.clone(), *coefficient);
+            debug_assert!(ok);
+            continue;
+        }
+        let plain = |f: &Factor| {
+            matches!(
+                f,
+                Factor::Letter {
+                    transposed: false,
+                    inverted: false,
+                    ..
+                }
+            ) && is_velocity(f)
+        };
+        let flipped = |f: &Factor| {
+            matches!(
+                f,
+                Factor::Letter {
+                    transposed: true,
+                    inverted: false,
+                    ..
+                }
+            ) && is_velocity(f)
+        };
+        let mut shorter = term.clone();
+        if count == 1 && term.word.first().is_some_and(plain) {
+            shorter.word.remove(0);
+            let ok = x.push(shorter, *coefficient);
+            debug_assert!(ok);
+        } else if count == 1 && term.word.last().is_some_and(flipped) {
+            shorter.word.pop();
+            let ok = mirrored.push(shorter, coefficient.negated());
+            debug_assert!(ok);
+        } else {
+            return None;
+        }
+    }
+    let x_t = expr::transpose(s, algebra.raise(&x));
+    let agrees = algebra.is_zero(&expr::sub(x_t, algebra.raise(&mirrored)));
+    (agrees && !x.is_zero()).then_some((x, rest))
+}
+
+fn word_mentions(f: &Factor, wanted: &impl Fn(&Factor) -> bool) -> bool {
+    match f {
+        Factor::Hat(word) | Factor::Vee { word, .. } => {
+            word.iter().any(|g| word_mentions(g, wanted))
+        }
+        Factor::Letter { .. } | Factor::Unit { .. } => wanted(f),
+    }
+}
+
+fn mentions(algebra: &Algebra, monomial: &Monomial, velocity: SymbolId) -> bool {
+    let term = crate::algebra::Term {
+        monomial: monomial.clone(),
+        word: Vec::new(),
+    };
+    let number = algebra.raise(&Poly::term(
+        Shape::SCALAR,
+        crate::algebra::Rational::ONE,
+        term,
+    ));
+    expr::letters(&number).iter().any(|l| l.symbol == velocity)
+}

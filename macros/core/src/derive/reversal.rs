@@ -1,0 +1,43 @@
+//! Time reversal: whether the action of one step changes sign when its ends change places and
+//! the step changes sign. Established here before any composition to higher order is offered.
+
+use super::action::Action;
+use super::variation::at;
+use crate::algebra::Algebra;
+use crate::check::spec::Spec;
+use crate::expr::symbol::Role;
+use crate::expr::{self, Expr, Letter, Shift};
+
+/// Whether `ℓ(q0, q1, h) = -ℓ(q1, q0, -h)` up to constants.
+pub fn is_reversible(spec: &Spec, action: &Action, algebra: &Algebra) -> bool {
+    let s = &spec.symbols;
+    let mut swap: Vec<(Letter, Expr)> = vec![(
+        at(spec.step, Shift::HERE),
+        expr::neg(expr::here(s, spec.step)),
+    )];
+    let mut forward = Vec::new();
+    for c in &spec.configurations {
+        let w = expr::here(s, c.velocity);
+        swap.push((at(c.velocity, Shift::HERE), expr::inverse(s, w)));
+        forward.push((at(c.element, Shift::NEXT), c.update.clone()));
+    }
+    forward.extend(
+        spec.advected
+            .iter()
+            .map(|a| (at(a.quantity, Shift::NEXT), a.update.clone())),
+    );
+    let nodes = spec.configurations.iter().map(|c| c.element);
+    for x in nodes.chain(spec.advected.iter().map(|a| a.quantity)) {
+        swap.push((at(x, Shift::HERE), expr::letter(s, x, Shift::NEXT)));
+        swap.push((at(x, Shift::NEXT), expr::here(s, x)));
+    }
+    let reversed = expr::substitute(s, &action.total, &swap);
+    let sum = expr::add(action.total.clone(), reversed);
+    let rest = algebra.lower(&expr::substitute(s, &sum, &forward));
+    !algebra.exhausted() && {
+        let rest = algebra.raise(&rest);
+        expr::letters(&rest)
+            .iter()
+            .all(|l| matches!(s.get(l.symbol).role, Role::Parameter | Role::Step))
+    }
+}

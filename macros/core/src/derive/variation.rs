@@ -1,0 +1,283 @@
+//! Constraint-preserving variations at node k: the configuration moves by a free element of its
+//! Lie algebra, the two adjacent velocities absorb the motion, and every advected quantity
+//! follows. That it can is exactly "advected by a group action of the right side".
+
+use super::Letters;
+use crate::algebra::{Algebra, Factor, Poly, Rational, Source};
+use crate::check::spec::{Advected, Configuration, Side, Spec};
+use crate::diagnostic::{Diagnostic, Errors};
+use crate::expr::shape::{Dim, Shape};
+use crate::expr::symbol::SymbolId;
+use crate::expr::{self, Expr, Letter, Shift};
+
+/// How everything moves when one configuration varies at node k.
+#[derive(Clone, Debug)]
+pub struct Variation {
+    /// The group element at node k: `Λ ξ` (body) or `ξ Λ` (spatial).
+    pub element: (Letter, Expr),
+    /// Its velocity on the edge that starts at node k.
+    pub outgoing: (Letter, Expr),
+    /// Its velocity on the edge that ends at node k.
+    pub incoming: (Letter, Expr),
+    /// Every advected quantity at node k, in order of declaration.
+    pub advected: Vec<(Letter, Expr)>,
+}
+
+impl Variation {
+    /// Changes of what the outgoing edge sees: its velocity and everything at node k.
+    pub fn on_outgoing(&self) -> Vec<(Letter, Expr)> {
+        let mut all = vec![self.element.clone(), self.outgoing.clone()];
+        all.extend(self.advected.iter().cloned());
+        all
+    }
+
+    /// Changes of what the incoming edge sees.
+    pub fn on_incoming(&self) -> Vec<(Letter, Expr)> {
+        let mut all = vec![self.element.clone(), self.incoming.clone()];
+        all.extend(self.advected.iter().cloned());
+        all
+    }
+}
+
+pub(super) fn at(symbol: SymbolId, shift: Shift) -> Letter {
+    Letter { symbol, shift }
+}
+
+/// The variations of all configurations.
+pub fn variations(
+    spec: &Spec,
+    letters: &Letters,
+    algebra: &Algebra,
+) -> Result<Vec<Variation>, Errors> {
+    let mut errors = Errors::new();
+    let mut out = Vec::new();
+    for (i, c) in spec.configurations.iter().enumerate() {
+        let mut v = of_configuration(c, letters, i);
+        for (j, a) in spec.advected.iter().enumerate() {
+            match of_advected(spec, letters, algebra, &v, a, j) {
+                Ok(change) => v.advected.push(change),
+                Err(d) => {
+                    errors.push(*d);
+                    break;
+                }
+            }
+        }
+        out.push(v);
+        if errors.iter().next().is_some() {
+            break;
+        }
+    }
+    errors.propagate()?;
+    Ok(out)
+}
+
+fn of_configuration(c: &Configuration, letters: &Letters, i: usize) -> Variation {
+    let s = &letters.symbols;
+    let g = expr::here(s, c.element);
+    let xi = expr::here(s, letters.variation[i]);
+    let out = expr::here(s, c.velocity);
+    let back = expr::letter(s, c.velocity, Shift::PREVIOUS);
+    let (dg, d_out, d_in) = match c.side {
+        Side::Body => (
+            expr::mul(g, xi.clone()),
+            expr::neg(expr::mul(xi.clone(), out)),
+            expr::mul(back, xi),
+        ),
+        Side::Spatial => (
+            expr::mul(xi.clone(), g),
+            expr::neg(expr::mul(out, xi.clone())),
+            expr::mul(xi, back),
+        ),
+    };
+    Variation {
+        element: (at(c.element, Shift::HERE), dg),
+        outgoing: (at(c.velocity, Shift::HERE), d_out),
+        incoming: (at(c.velocity, Shift::PREVIOUS), d_in),
+        advected: Vec::new(),
+    }
+}
+
+/// Solves the outgoing constraint for the change of `a`, then requires the incoming one.
+fn of_advected(
+    spec: &Spec,
+    letters: &Letters,
+    algebra: &Algebra,
+    v: &Variation,
+    a: &Advected,
+    j: usize,
+) -> Result<(Letter, Expr), Box<Diagnostic>> {
+    let s = &letters.symbols;
+    let here = at(a.quantity, Shift::HERE);
+    let name = &s.get(a.quantity).name;
+    let shape = s.get(a.quantity).shape;
+    // next(a) = f(a, ...) with next(a) held: D_a f[da] = -D_rest f.
+    let rest = expr::directional(s, &a.update, &v.on_outgoing());
+    let marker = expr::here(s, letters.placeholder[j]);
+    let own = expr::directional(s, &a.update, &[(here, marker)]);
+    let marker = at(letters.placeholder[j], Shift::HERE);
+    let Some((left, right)) = sandwich(algebra, &algebra.lower(&own), marker) else {
+        return Err(Box::new(
+            Diagnostic::new(
+                a.place,
+                format!("the constraint of `{name}` cannot be inverted for `{name}`: it must multiply `{name}` once, between invertible factors"),
+            )
+            .help("actions read like `Ω^T * Γ` or `Ω^T * S * Ω`; the velocity and parameters of SO<n> or GL<n> are invertible"),
+        ));
+    };
+    let solved = expr::neg(expr::product([
+        expr::inverse(s, left),
+        rest,
+        expr::inverse(s, right),
+    ]));
+    let solved = algebra.raise(&algebra.lower(&solved));
+    // The incoming constraint a = f(-1), on shell.
+    let backward = expr::shift_time(s, &a.update, Shift::PREVIOUS.time);
+    let wanted = expr::directional(s, &backward, &v.on_incoming());
+    let wanted = substitute_previous_elements(spec, letters, &wanted);
+    let shell = on_shell(spec, letters);
+    let found = expr::substitute(s, &solved, &shell);
+    let left_over = algebra.lower(&expr::sub(found, wanted));
+    if left_over.is_zero() || algebra.exhausted() {
+        return Ok((here, solved));
+    }
+    Err(Box::new(wrong_side(
+        spec, letters, algebra, a, &left_over, shape,
+    )))
+}
+
+/// Replacements that put advected quantities at node k back to node k-1.
+pub(super) fn on_shell(spec: &Spec, letters: &Letters) -> Vec<(Letter, Expr)> {
+    let s = &letters.symbols;
+    let back = |e: &Expr| expr::shift_time(s, e, Shift::PREVIOUS.time);
+    let advected = spec
+        .advected
+        .iter()
+        .map(|a| (at(a.quantity, Shift::HERE), back(&a.update)));
+    advected.collect()
+}
+
+/// Group elements at node k-1 by those at node k: `Λ(-1) = Λ Ω(-1)^-1`.
+pub(super) fn substitute_previous_elements(spec: &Spec, letters: &Letters, e: &Expr) -> Expr {
+    let s = &letters.symbols;
+    let list: Vec<(Letter, Expr)> = spec
+        .configurations
+        .iter()
+        .map(|c| {
+            let g = expr::here(s, c.element);
+            let w = expr::inverse(s, expr::letter(s, c.velocity, Shift::PREVIOUS));
+            let before = match c.side {
+                Side::Body => expr::mul(g, w),
+                Side::Spatial => expr::mul(w, g),
+            };
+            (at(c.element, Shift::PREVIOUS), before)
+        })
+        .collect();
+    expr::substitute(s, e, &list)
+}
+
+/// Reads `L x R` off a normal form that holds the letter once; `L` and `R` must be invertible.
+fn sandwich(algebra: &Algebra, poly: &Poly, x: Letter) -> Option<(Expr, Expr)> {
+    let mut terms = poly.terms.iter();
+    let (term, coefficient) = terms.next()?;
+    if terms.next().is_some() || coefficient.is_zero() {
+        return None;
+    }
+    let number = |monomial| {
+        let term = crate::algebra::Term {
+            monomial,
+            word: Vec::new(),
+        };
+        algebra.raise(&Poly::term(Shape::SCALAR, *coefficient, term))
+    };
+    if poly.shape.is_scalar() {
+        // A number: the letter is one atom of the monomial.
+        let mut monomial = term.monomial.clone();
+        let i = monomial.iter().position(|(atom, e)| {
+            matches!(atom, crate::algebra::Atom::Letter(l) if *l == x) && e.is_one()
+        })?;
+        monomial.remove(i);
+        return Some((number(monomial), expr::integer(1)));
+    }
+    let is_x =
+        |f: &Factor| matches!(f, Factor::Letter { source: Source::Letter(l), .. } if *l == x);
+    let i = term.word.iter().position(is_x)?;
+    let plain = matches!(
+        &term.word[i],
+        Factor::Letter {
+            transposed: false,
+            inverted: false,
+            ..
+        }
+    );
+    let (before, after) = (&term.word[..i], &term.word[i + 1..]);
+    let invertible = |f: &Factor| match f {
+        Factor::Letter {
+            source: Source::Letter(l),
+            ..
+        } => algebra.symbols().get(l.symbol).structure.is_invertible(),
+        Factor::Letter { .. } | Factor::Unit { .. } | Factor::Hat(_) | Factor::Vee { .. } => false,
+    };
+    if !plain || !before.iter().chain(after).all(invertible) || after.iter().any(is_x) {
+        return None;
+    }
+    let word = |w: &[Factor], n: Dim| {
+        let shape = Shape::square(n);
+        let term = crate::algebra::Term {
+            monomial: Vec::new(),
+            word: w.to_vec(),
+        };
+        algebra.raise(&Poly::term(shape, Rational::ONE, term))
+    };
+    let left = expr::mul(number(term.monomial.clone()), word(before, poly.shape.rows));
+    Some((left, word(after, poly.shape.cols)))
+}
+
+fn wrong_side(
+    spec: &Spec,
+    letters: &Letters,
+    algebra: &Algebra,
+    a: &Advected,
+    left_over: &Poly,
+    shape: Shape,
+) -> Diagnostic {
+    let s = &letters.symbols;
+    let name = &s.get(a.quantity).name;
+    let style = crate::print::Style::new(&spec.time_index);
+    let rest = crate::print::expression(
+        &algebra.raise(left_over),
+        s,
+        &style,
+        crate::print::Format::Text,
+    );
+    let (g, w) = match spec.configurations.first() {
+        Some(c) => (
+            s.get(c.element).name.clone(),
+            s.get(c.velocity).name.clone(),
+        ),
+        None => (String::new(), String::new()),
+    };
+    let body = spec
+        .configurations
+        .first()
+        .is_none_or(|c| c.side == Side::Body);
+    let example = match (shape.is_vector(), body) {
+        (true, true) => format!("next({name}) = {w}^T * {name}"),
+        (true, false) => format!("next({name}) = {w} * {name}"),
+        (false, true) => format!("next({name}) = {w}^T * {name} * {w}"),
+        (false, false) => format!("next({name}) = {w} * {name} * {w}^T"),
+    };
+    let reconstruction = if body {
+        format!("next({g}) = {g} * {w}")
+    } else {
+        format!("next({g}) = {w} * {g}")
+    };
+    Diagnostic::new(
+        a.place,
+        format!(
+            "`{name}` is not advected by the group: with `{reconstruction}` this constraint is no action on the matching side, and its variation leaves {rest}"
+        ),
+    )
+    .help(format!(
+        "with this reconstruction an advected quantity is carried on the other side, for example `constraint {example};`"
+    ))
+}

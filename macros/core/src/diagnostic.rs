@@ -1,0 +1,237 @@
+//! What is wrong, where, and what to write instead. Stages collect diagnostics and stop at their
+//! boundary; the macro turns them into compile errors on the exact tokens, the command line into
+//! text with line, column and caret.
+
+use proc_macro2::{Span, TokenStream};
+use quote::quote_spanned;
+
+/// A range of tokens, kept as its first and last span: joining spans does nothing on stable.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// Span of the first token.
+    pub first: Span,
+    /// Span of the last token.
+    pub last: Span,
+}
+
+impl Place {
+    /// A single token.
+    pub fn token(span: Span) -> Place {
+        Place {
+            first: span,
+            last: span,
+        }
+    }
+
+    /// From the start of one range to the end of another.
+    pub fn to(self, end: Place) -> Place {
+        Place {
+            first: self.first,
+            last: end.last,
+        }
+    }
+}
+
+/// One mistake of the user.
+#[derive(Clone, Debug)]
+pub struct Diagnostic {
+    /// The tokens to underline.
+    pub place: Place,
+    /// What is wrong and why.
+    pub message: String,
+    /// What to write instead.
+    pub help: Vec<String>,
+    /// Other tokens involved, with a word on each.
+    pub also: Vec<(Place, String)>,
+}
+
+impl Diagnostic {
+    /// A diagnostic without further remarks.
+    pub fn new(place: Place, message: impl Into<String>) -> Diagnostic {
+        Diagnostic {
+            place,
+            message: message.into(),
+            help: Vec::new(),
+            also: Vec::new(),
+        }
+    }
+
+    /// Adds a remedy.
+    #[must_use]
+    pub fn help(mut self, text: impl Into<String>) -> Diagnostic {
+        self.help.push(text.into());
+        self
+    }
+
+    /// Adds a second place.
+    #[must_use]
+    pub fn also(mut self, place: Place, text: impl Into<String>) -> Diagnostic {
+        self.also.push((place, text.into()));
+        self
+    }
+
+    /// Message and remedies as one text.
+    pub fn text(&self) -> String {
+        let mut text = self.message.clone();
+        for line in &self.help {
+            text.push_str("\n  help: ");
+            text.push_str(line);
+        }
+        text
+    }
+}
+
+/// All mistakes found before a stage gave up; never empty when returned as an error.
+#[derive(Clone, Debug, Default)]
+pub struct Errors {
+    list: Vec<Diagnostic>,
+}
+
+/// More than this many messages help nobody.
+const MOST: usize = 20;
+
+impl Errors {
+    /// Nothing wrong so far.
+    pub fn new() -> Errors {
+        Errors::default()
+    }
+
+    /// Adds a mistake.
+    pub fn push(&mut self, diagnostic: Diagnostic) {
+        if self.list.len() < MOST {
+            self.list.push(diagnostic);
+        }
+    }
+
+    /// The mistakes in the order found.
+    pub fn iter(&self) -> impl Iterator<Item = &Diagnostic> {
+        self.list.iter()
+    }
+
+    /// Stops here if anything was wrong.
+    pub fn propagate(self) -> Result<(), Errors> {
+        if self.list.is_empty() {
+            Ok(())
+        } else {
+            Err(self)
+        }
+    }
+
+    /// One `compile_error!` for each mistake, spanned over its tokens.
+    pub fn to_compile_error(&self) -> TokenStream {
+        self.list
+            .iter()
+            .map(|d| {
+                let mut error = compile_error(d.place, &d.text());
+                for (place, text) in &d.also {
+                    error.extend(compile_error(*place, text));
+                }
+                error
+            })
+            .collect()
+    }
+
+    /// The mistakes as text for a terminal: file, line, column, the line itself and carets.
+    #[cfg(feature = "locations")]
+    pub fn render(&self, source: &str, file: &str) -> String {
+        let mut out = String::new();
+        for d in &self.list {
+            out.push_str(&format!("error: {}\n", d.message));
+            out.push_str(&snippet(source, file, d.place));
+            for (place, text) in &d.also {
+                out.push_str(&format!("  note: {text}\n"));
+                out.push_str(&snippet(source, file, *place));
+            }
+            for line in &d.help {
+                out.push_str(&format!("  = help: {line}\n"));
+            }
+            out.push('\n');
+        }
+        out
+    }
+}
+
+impl From<Diagnostic> for Errors {
+    fn from(d: Diagnostic) -> Errors {
+        Errors { list: vec![d] }
+    }
+}
+
+impl core::fmt::Display for Errors {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        for (i, d) in self.list.iter().enumerate() {
+            if i > 0 {
+                writeln!(f)?;
+            }
+            write!(f, "{}", d.text())?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Errors {}
+
+/// The shape in which rustc underlines from the first to the last token.
+fn compile_error(place: Place, text: &str) -> TokenStream {
+    let mut head = quote_spanned!(place.first=> ::core::compile_error!);
+    head.extend(quote_spanned!(place.last=> { #text }));
+    head
+}
+
+#[cfg(feature = "locations")]
+fn snippet(source: &str, file: &str, place: Place) -> String {
+    let (start, end) = (place.first.start(), place.last.end());
+    let line_text = source
+        .lines()
+        .nth(start.line.saturating_sub(1))
+        .unwrap_or("");
+    let number = start.line.to_string();
+    let pad = " ".repeat(number.len());
+    let width = if end.line == start.line && end.column > start.column {
+        end.column - start.column
+    } else {
+        line_text
+            .chars()
+            .count()
+            .saturating_sub(start.column)
+            .max(1)
+    };
+    // Tabs are kept so that the caret stands under its token.
+    let lead: String = line_text
+        .chars()
+        .take(start.column)
+        .map(|c| if c == '\t' { '\t' } else { ' ' })
+        .collect();
+    format!(
+        "{pad}--> {file}:{}:{}\n{pad} |\n{number} | {line_text}\n{pad} | {lead}{}\n",
+        start.line,
+        start.column + 1,
+        "^".repeat(width)
+    )
+}
+
+/// The candidate closest to a misspelt name, if it is close.
+pub fn closest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let limit = (name.chars().count() / 3).max(1);
+    candidates
+        .into_iter()
+        .map(|c| (edit_distance(name, c), c))
+        .filter(|(d, _)| *d <= limit)
+        .min_by_key(|(d, _)| *d)
+        .map(|(_, c)| c)
+}
+
+fn edit_distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().take(64).collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.chars().take(64).enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, y) in b.iter().enumerate() {
+            let cost = diagonal + usize::from(x != *y);
+            diagonal = row[j + 1];
+            row[j + 1] = cost.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}

@@ -1,0 +1,92 @@
+//! A derivation as a paper section: the model, its constrained action, variations, Clebsch
+//! relations, the balance with its momentum map, what is solved, invariants, the limit. One
+//! document; the printers turn it into text, LaTeX, Markdown, MathML or JSON.
+
+mod compose;
+mod proof;
+mod source;
+
+pub use compose::document;
+pub use proof::proof;
+#[cfg(feature = "egraph")]
+pub use proof::second_proof;
+pub use source::source;
+
+use crate::derive::Derivation;
+use crate::derive::recognise::{Method, Riccati};
+use crate::print::{Format, Style, expression, render};
+
+/// The style of a model: its time index.
+pub fn style(d: &Derivation) -> Style {
+    Style::new(&d.spec.time_index)
+}
+
+/// The derivation in a format.
+pub fn printed(d: &Derivation, format: Format) -> String {
+    render(&document(d), &d.letters.symbols, &style(d), format)
+}
+
+/// A number that changes when the model's text or the engine's version does (FNV-1a).
+pub fn fingerprint(d: &Derivation) -> u64 {
+    let text = format!("{} {}", env!("CARGO_PKG_VERSION"), source(d));
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, b| {
+        (hash ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3)
+    })
+}
+
+/// Lines for the model's rustdoc: its own documentation, then the derivation in MathML if asked.
+pub fn rustdoc(d: &Derivation, derivation: bool) -> Vec<String> {
+    let mut lines: Vec<String> = d.spec.docs.clone();
+    if derivation {
+        lines.push(String::new());
+        lines.extend(printed(d, Format::MathMl).lines().map(str::to_owned));
+    }
+    if lines.is_empty() {
+        lines.push(format!(" The model `{}`.", d.spec.name));
+    }
+    lines
+}
+
+/// What was derived, in a few lines of plain text.
+pub fn summary(d: &Derivation) -> String {
+    let s = &d.letters.symbols;
+    let st = style(d);
+    let show = |e: &crate::expr::Expr| expression(e, s, &st, Format::Text);
+    let mut lines = vec![format!("action of one step   {}", show(&d.action.total))];
+    for (c, m) in d.spec.configurations.iter().zip(&d.momenta) {
+        let name = &s.get(c.element).name;
+        lines.push(format!("momentum of {name:<8} {}", show(&m.reduced)));
+    }
+    let riccati = d.solve.riccati.iter().map(|r| match r {
+        Riccati::Exact(mv) => format!("exact, C = {}", show(&mv.factor)),
+        Riccati::Coupled(mv) => format!("coupled, C = {}", show(&mv.factor)),
+        Riccati::None(why) => format!("none: {why}"),
+    });
+    lines.push(format!(
+        "Riccati form         {}",
+        riccati.collect::<Vec<_>>().join("; ")
+    ));
+    lines.push(format!(
+        "solved               {}",
+        match d.solve.method {
+            Method::FreeMoserVeselov => "explicitly, constants found once (κ conserved)",
+            Method::ForcedMoserVeselov => "explicitly, one quartic a step",
+            Method::Newton => "by Newton on the group, tangent derived",
+        }
+    ));
+    let names: Vec<&str> = d.invariants.iter().map(|i| i.name.as_str()).collect();
+    lines.push(format!("invariants           {}", names.join(", ")));
+    lines.push(format!(
+        "time reversal        {}",
+        if d.reversible {
+            "symmetric: second order"
+        } else {
+            "not symmetric: first order"
+        }
+    ));
+    lines.push(format!(
+        "certificate          {} identities proved by normal form",
+        d.certificate.steps.len()
+    ));
+    lines.join("\n")
+}

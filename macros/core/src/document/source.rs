@@ -1,0 +1,112 @@
+//! The model as text of the language, in one canonical layout: what is stored with results, and
+//! what derives the same model again.
+
+use crate::check::spec::{Group, Spec};
+use crate::derive::Derivation;
+use crate::expr::Expr;
+use crate::expr::shape::Structure;
+use crate::expr::symbol::SymbolId;
+use crate::print::statement;
+use crate::syntax::ast::{Comparison, NodeRule};
+
+/// The canonical text of the model.
+pub fn source(d: &Derivation) -> String {
+    let spec = &d.spec;
+    let st = super::style(d);
+    let show = |e: &Expr| statement(e, &spec.symbols, &st);
+    let name = |id: SymbolId| spec.symbols.get(id).name.clone();
+    let mut out = String::new();
+    for line in &spec.docs {
+        out.push_str(&format!("///{line}\n"));
+    }
+    let public = if spec.public { "pub " } else { "" };
+    out.push_str(&format!("{public}model {} {{\n", spec.name));
+    let mut line = |text: String| out.push_str(&format!("    {text};\n"));
+    for n in &spec.dimensions {
+        line(format!("dim {} in {}..={}", n.name, n.from, n.to));
+    }
+    let step = name(spec.step);
+    if spec.time_index != "k" || step != "h" {
+        line(format!("time {} step {step}", spec.time_index));
+    }
+    for p in &spec.parameters {
+        line(format!("param {}: {}", name(*p), shape(spec, *p)));
+    }
+    for a in &spec.assumptions {
+        let relation = match a.relation {
+            Comparison::Equal => "==",
+            Comparison::Greater => ">",
+            Comparison::AtLeast => ">=",
+            Comparison::Less => "<",
+            Comparison::AtMost => "<=",
+        };
+        line(format!(
+            "assume {} {relation} {}",
+            show(&a.left),
+            show(&a.right)
+        ));
+    }
+    for c in &spec.configurations {
+        let group = match c.group {
+            Group::SpecialOrthogonal(n) => format!("SO<{}>", spec.symbols.dim_text(n)),
+            Group::GeneralLinear(n) => format!("GL<{}>", spec.symbols.dim_text(n)),
+        };
+        line(format!(
+            "group {}: {group} velocity {}",
+            name(c.element),
+            name(c.velocity)
+        ));
+    }
+    for a in &spec.advected {
+        let definition = a.definition.as_ref().map(|e| format!(" = {}", show(e)));
+        let definition = definition.unwrap_or_default();
+        line(format!(
+            "advected {}: {}{definition}",
+            name(a.quantity),
+            shape(spec, a.quantity)
+        ));
+    }
+    let configurations = spec.configurations.iter().map(|c| (c.element, &c.update));
+    let advected = spec.advected.iter().map(|a| (a.quantity, &a.update));
+    for (quantity, update) in configurations.chain(advected) {
+        line(format!(
+            "constraint next({}) = {}",
+            name(quantity),
+            show(update)
+        ));
+    }
+    if let Some(scale) = &spec.scale {
+        line(format!("scale {}", show(scale)));
+    }
+    match spec.node_rule {
+        NodeRule::Symmetric => {}
+        NodeRule::Incoming => line("node incoming".to_owned()),
+        NodeRule::Outgoing => line("node outgoing".to_owned()),
+    }
+    line(format!("lagrangian = {}", show(&spec.typed)));
+    out.push('}');
+    out
+}
+
+fn shape(spec: &Spec, id: SymbolId) -> String {
+    let symbol = spec.symbols.get(id);
+    let (rows, cols) = (
+        spec.symbols.dim_text(symbol.shape.rows),
+        spec.symbols.dim_text(symbol.shape.cols),
+    );
+    if symbol.shape.is_scalar() {
+        return "Real".to_owned();
+    }
+    if symbol.shape.is_vector() {
+        return format!("Vec<{rows}>");
+    }
+    match symbol.structure {
+        Structure::Symmetric => format!("Sym<{rows}>"),
+        Structure::Skew => format!("Skew<{rows}>"),
+        Structure::Diagonal => format!("Diag<{rows}>"),
+        Structure::Orthogonal => format!("SO<{rows}>"),
+        Structure::Invertible => format!("GL<{rows}>"),
+        Structure::General if symbol.shape.is_square() => format!("Mat<{rows}>"),
+        Structure::General => format!("Mat<{rows}, {cols}>"),
+    }
+}

@@ -1,0 +1,316 @@
+//! The model as data: fields of its parameters, initial values, observables and invariants, and a
+//! way to run it without knowing its type. What the command line and the generic tests use.
+
+use super::invariants::{formula, scale};
+use super::items::kept;
+use super::names::{Names, item, kebab, own, per_configuration};
+use crate::check::spec::Side;
+use crate::derive::Derivation;
+use crate::derive::invariants::Kind;
+use crate::derive::recognise::Method;
+use crate::expr::shape::{Shape, Structure};
+use crate::expr::symbol::SymbolId;
+use crate::syntax::ast::NodeRule;
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
+
+struct FieldOf {
+    name: String,
+    shape: Shape,
+    kind: &'static str,
+    doc: String,
+}
+
+impl FieldOf {
+    fn tokens(&self) -> TokenStream {
+        let (name, doc) = (&self.name, &self.doc);
+        let ascii = crate::expr::symbol::ascii(name);
+        let (rows, cols) = super::expression::dims(self.shape);
+        let kind = format_ident!("{}", self.kind);
+        quote! {
+            Field { name: #name, ascii: #ascii, rows: #rows, cols: #cols, kind: Kind::#kind, doc: #doc }
+        }
+    }
+}
+
+fn of_symbol(d: &Derivation, id: SymbolId, when: &str) -> FieldOf {
+    let symbol = d.letters.symbols.get(id);
+    let kind = if symbol.shape.is_scalar() {
+        "Scalar"
+    } else if symbol.shape.is_vector() {
+        "Vector"
+    } else {
+        match symbol.structure {
+            Structure::Symmetric => "Symmetric",
+            Structure::Skew => "Skew",
+            Structure::Diagonal => "Diagonal",
+            Structure::General | Structure::Orthogonal | Structure::Invertible => "Matrix",
+        }
+    };
+    FieldOf {
+        name: symbol.name.clone(),
+        shape: symbol.shape,
+        kind,
+        doc: when.to_owned(),
+    }
+}
+
+const THREE: crate::expr::shape::Dim = crate::expr::shape::Dim::Fixed(3);
+
+fn element_field(d: &Derivation, i: usize) -> FieldOf {
+    FieldOf {
+        name: d
+            .letters
+            .symbols
+            .get(d.spec.configurations[i].element)
+            .name
+            .clone(),
+        shape: Shape::square(THREE),
+        kind: "Rotation",
+        doc: "attitude, body to space".to_owned(),
+    }
+}
+
+fn momentum_field(d: &Derivation, i: usize, body: bool) -> FieldOf {
+    let (base, kind, frame) = if body {
+        ("body_momentum", "BodyMomentum", "body")
+    } else {
+        ("spatial_momentum", "SpatialMomentum", "space")
+    };
+    FieldOf {
+        name: per_configuration(d, base, i).to_string(),
+        shape: Shape::vector(THREE),
+        kind,
+        doc: format!("momentum, {frame} frame"),
+    }
+}
+
+/// `CARD` and the trajectory behind it.
+pub fn card(d: &Derivation, names: &Names) -> TokenStream {
+    let (name, state, work) = (item(d, ""), item(d, "State"), item(d, "Workspace"));
+    let trajectory = item(d, "Trajectory");
+    let count = d.spec.configurations.len();
+    let parameters: Vec<FieldOf> = d
+        .spec
+        .parameters
+        .iter()
+        .map(|p| of_symbol(d, *p, ""))
+        .collect();
+    let mut initial = Vec::new();
+    let mut observables = Vec::new();
+    let mut observed = Vec::new();
+    for i in 0..count {
+        let c = &d.spec.configurations[i];
+        let body = c.side == Side::Body;
+        initial.push(element_field(d, i));
+        initial.push(momentum_field(d, i, body));
+        observables.push(element_field(d, i));
+        observables.push(momentum_field(d, i, true));
+        observables.push(momentum_field(d, i, false));
+        let element = own(d, c.element);
+        let (b, s) = (
+            per_configuration(d, "body_momentum", i),
+            per_configuration(d, "spatial_momentum", i),
+        );
+        observed.push(quote! {
+            let out = put(out, rows(state.#element().matrix()));
+            let out = put(out, rows(state.#b().0));
+            let out = put(out, rows(state.#s().0));
+        });
+    }
+    for id in kept(d) {
+        initial.push(of_symbol(d, id, "value at node 0"));
+    }
+    for a in &d.spec.advected {
+        observables.push(of_symbol(d, a.quantity, ""));
+        let method = own(d, a.quantity);
+        let scalar = d.letters.symbols.get(a.quantity).shape.is_scalar();
+        observed.push(if scalar {
+            quote!(let out = put(out, [self.model.#method(state)]);)
+        } else {
+            quote!(let out = put(out, rows(self.model.#method(state)));)
+        });
+    }
+    let mut values = TokenStream::new();
+    let mut scales = TokenStream::new();
+    let invariants: Vec<TokenStream> = d
+        .invariants
+        .iter()
+        .map(|v| {
+            let (label, text) = (&v.name, formula(d, v));
+            let rows: usize = if matches!(v.kind, Kind::SpatialMomentum(_)) { 3 } else { 1 };
+            let conserved = format_ident!("{}", if v.exact { "Exactly" } else { "Boundedly" });
+            let method = format_ident!("{}", v.name);
+            values.extend(match &v.kind {
+                Kind::SpatialMomentum(i) => {
+                    let m = per_configuration(d, "spatial_momentum", *i);
+                    quote!(let out = put(out, rows(state.#m().0));)
+                }
+                Kind::Number | Kind::Energy => quote!(let out = put(out, [self.model.#method(state)]);),
+            });
+            let size = scale(d, names, v);
+            scales.extend(quote!(let out = put(out, [#size; #rows]);));
+            quote! {
+                Invariant { name: #label, formula: #text, rows: #rows, conserved: Conserved::#conserved }
+            }
+        })
+        .collect();
+    let constructor = constructor(d);
+    let (kebab_name, model_name) = (kebab(&d.spec.name), &d.spec.name);
+    let doc = d
+        .spec
+        .docs
+        .iter()
+        .map(|l| l.trim())
+        .collect::<Vec<_>>()
+        .join(" ");
+    let summary = crate::document::summary(d);
+    let solver = format!(
+        "{}: {}",
+        match d.solve.method {
+            Method::FreeMoserVeselov => "Moser-Veselov, explicit, constants of the trajectory",
+            Method::ForcedMoserVeselov => "Moser-Veselov, explicit",
+            Method::Newton => "Newton on the group",
+        },
+        d.solve.reason
+    );
+    // A symmetric one-step action gives an even order; one-sided nodal terms leave order one.
+    let order: u32 = if d.reversible { 2 } else { 1 };
+    debug_assert!(
+        d.spec.node_rule == NodeRule::Symmetric || order == 1 || d.action.nodal.is_zero()
+    );
+    let reversible = d.reversible;
+    let fields =
+        |list: &[FieldOf]| -> Vec<TokenStream> { list.iter().map(FieldOf::tokens).collect() };
+    let (p, i, o) = (fields(&parameters), fields(&initial), fields(&observables));
+    quote! {
+        /// One trajectory of the model, its type hidden.
+        struct #trajectory {
+            model: #name<f64>,
+            state: #state<f64>,
+            work: #work<f64>,
+            start: #state<f64>,
+        }
+
+        impl Trajectory for #trajectory {
+            fn node(&self) -> u64 { self.state.node() }
+            fn time(&self) -> f64 { self.work.h * self.state.node() as f64 }
+            fn step(&mut self) -> Result<(), StepError> {
+                self.model.step(&mut self.state, &mut self.work)
+            }
+            fn card(&self) -> &'static Card { &#name::<f64>::CARD }
+            fn observe(&self, out: &mut [f64]) {
+                let state = &self.state;
+                #(#observed)*
+                let _ = out;
+            }
+            fn invariants(&self, out: &mut [f64]) {
+                let state = &self.state;
+                #values
+                let _ = out;
+            }
+            fn scales(&self, out: &mut [f64]) {
+                let state = &self.start;
+                #scales
+                let _ = out;
+            }
+        }
+
+        impl #name<f64> {
+            /// The model as data.
+            pub const CARD: Card = Card {
+                name: #model_name,
+                kebab: #kebab_name,
+                doc: #doc,
+                source: Self::SOURCE,
+                fingerprint: Self::FINGERPRINT,
+                summary: #summary,
+                solver: #solver,
+                order: #order,
+                reversible: #reversible,
+                parameters: &[#(#p),*],
+                initial: &[#(#i),*],
+                observables: &[#(#o),*],
+                invariants: &[#(#invariants),*],
+                open: Self::open,
+            };
+
+            fn open(parameters: &[Vec<f64>], initial: &[Vec<f64>], h: f64) -> Result<Box<dyn Trajectory>, OpenError> {
+                #constructor
+                let (state, work) = model.start(initial, h)?;
+                Ok(Box::new(#trajectory { model, state, work, start: state }))
+            }
+        }
+    }
+}
+
+/// From lists of numbers to parameters and initial data.
+fn constructor(d: &Derivation) -> TokenStream {
+    let s = &d.letters.symbols;
+    let (name, data, start) = (item(d, ""), item(d, "Parameters"), item(d, "Initial"));
+    let read = |id: SymbolId, source: TokenStream, index: usize| {
+        let (field, label) = (own(d, id), &s.get(id).name);
+        if s.get(id).shape.is_scalar() {
+            quote!(#field: number_of(#label, #source.get(#index))?)
+        } else {
+            quote!(#field: matrix_of(#label, #source.get(#index))?)
+        }
+    };
+    let mut parameters: Vec<TokenStream> = d
+        .spec
+        .parameters
+        .iter()
+        .enumerate()
+        .map(|(i, p)| read(*p, quote!(parameters), i))
+        .collect();
+    if parameters.is_empty() {
+        parameters.push(quote!(scalar: ::core::marker::PhantomData));
+    }
+    let mut initial = Vec::new();
+    for (i, c) in d.spec.configurations.iter().enumerate() {
+        let (element, label) = (own(d, c.element), &s.get(c.element).name);
+        let index = 2 * i;
+        initial.push(quote!(#element: rotation_of(#label, initial.get(#index))?));
+        let body = c.side == Side::Body;
+        let field = per_configuration(
+            d,
+            if body {
+                "body_momentum"
+            } else {
+                "spatial_momentum"
+            },
+            i,
+        );
+        let label = field.to_string();
+        let kind = format_ident!(
+            "{}",
+            if body {
+                "BodyMomentum"
+            } else {
+                "SpatialMomentum"
+            }
+        );
+        let index = index + 1;
+        initial.push(quote!(#field: #kind(matrix_of(#label, initial.get(#index))?)));
+    }
+    for (i, id) in kept(d).into_iter().enumerate() {
+        initial.push(read(
+            id,
+            quote!(initial),
+            2 * d.spec.configurations.len() + i,
+        ));
+    }
+    let (np, ni) = (d.spec.parameters.len(), initial.len());
+    quote! {
+        for (field, expected, found) in [
+            ("parameters", #np, parameters.len()),
+            ("initial values", #ni, initial.len()),
+        ] {
+            if expected != found {
+                return Err(OpenError::Count { field, expected, found });
+            }
+        }
+        let model = #name::new(#data { #(#parameters),* })?;
+        let initial = #start { #(#initial),* };
+    }
+}

@@ -1,0 +1,357 @@
+//! Expressions and programs as Rust: one rule for each kind of node, products bracketed by cost,
+//! numbers exact. Matrices are nalgebra's, passed by value.
+
+use crate::algebra::Rational;
+use crate::expr::shape::{Dim, Shape};
+use crate::expr::symbol::Symbols;
+use crate::expr::{self, Expr, Function, Letter, Node, Part};
+use crate::schedule::{Bracketed, Program, associate};
+use proc_macro2::{Delimiter, Ident, Literal, TokenStream, TokenTree};
+use quote::{format_ident, quote};
+
+/// Which local holds each letter.
+#[derive(Clone, Default)]
+pub struct Bindings {
+    list: Vec<(Letter, Ident)>,
+}
+
+impl Bindings {
+    /// None yet.
+    pub fn new() -> Bindings {
+        Bindings::default()
+    }
+
+    /// Adds or replaces a binding.
+    pub fn bind(&mut self, letter: Letter, local: Ident) {
+        self.list.retain(|(l, _)| *l != letter);
+        self.list.push((letter, local));
+    }
+
+    fn find(&self, symbols: &Symbols, letter: Letter) -> Ident {
+        let found = self.list.iter().find(|(l, _)| *l == letter);
+        found.map_or_else(
+            || format_ident!("{}", symbols.get(letter.symbol).name),
+            |(_, local)| local.clone(),
+        )
+    }
+}
+
+fn size(d: Dim) -> usize {
+    match d {
+        Dim::Fixed(n) => n as usize,
+        // Refused before emission.
+        Dim::Named(_) => 0,
+    }
+}
+
+/// Rows and columns as literals.
+pub fn dims(shape: Shape) -> (Literal, Literal) {
+    let literal = |d| Literal::usize_unsuffixed(size(d));
+    (literal(shape.rows), literal(shape.cols))
+}
+
+/// The type of a quantity over the scalar `T`.
+pub fn ty(shape: Shape) -> TokenStream {
+    let (rows, cols) = dims(shape);
+    if shape.is_scalar() {
+        quote!(T)
+    } else if shape.is_vector() {
+        quote!(SVector<T, #rows>)
+    } else {
+        quote!(SMatrix<T, #rows, #cols>)
+    }
+}
+
+/// An exact number.
+pub fn rational(q: Rational) -> TokenStream {
+    let (num, den) = (q.numerator(), q.denominator());
+    let exact = den.count_ones() == 1 && num.unsigned_abs() < 1 << 53 && den < 1 << 53;
+    if exact && num == 1 && den == 1 {
+        return quote!(T::one());
+    }
+    if let (false, Ok(n), Ok(d)) = (exact, i64::try_from(num), i64::try_from(den)) {
+        let (n, d) = (Literal::i64_unsuffixed(n), Literal::i64_unsuffixed(d));
+        return quote!(T::from_ratio(#n, #d));
+    }
+    let value = Literal::f64_unsuffixed(q.value());
+    quote!(T::from_f64(#value))
+}
+
+/// Emits expressions over one set of bindings.
+pub struct Writer<'a> {
+    /// The symbols.
+    pub symbols: &'a Symbols,
+    /// Where letters are found.
+    pub bindings: &'a Bindings,
+}
+
+impl Writer<'_> {
+    /// The expression as a Rust expression that can stand as an operand.
+    pub fn operand(&self, e: &Expr) -> TokenStream {
+        let tokens = self.write(e);
+        let atomic = match e.node() {
+            Node::Sum(_) | Node::Neg(_) | Node::Product(_) | Node::Quotient(..) => false,
+            Node::Power(_, q) => *q != Rational::integer(2),
+            Node::Number(_)
+            | Node::Letter(_)
+            | Node::Identity(_)
+            | Node::Zero(_)
+            | Node::Unit(..)
+            | Node::Transpose(_)
+            | Node::Inverse(_)
+            | Node::Trace(_)
+            | Node::Det(_)
+            | Node::Dot(..)
+            | Node::Cross(..)
+            | Node::Hat(_)
+            | Node::Vee(_)
+            | Node::Part(..)
+            | Node::Call(..) => true,
+        };
+        if atomic { tokens } else { quote!((#tokens)) }
+    }
+
+    /// The expression.
+    pub fn write(&self, e: &Expr) -> TokenStream {
+        let go = |x: &Expr| self.operand(x);
+        let (rows, cols) = dims(e.shape());
+        match e.node() {
+            Node::Number(q) => rational(*q),
+            Node::Letter(l) => {
+                let local = self.bindings.find(self.symbols, *l);
+                quote!(#local)
+            }
+            Node::Identity(_) => quote!(SMatrix::<T, #rows, #cols>::identity()),
+            Node::Zero(_) => quote!(SMatrix::<T, #rows, #cols>::zeros()),
+            Node::Unit(_, axis) => {
+                let axis = Literal::usize_unsuffixed(*axis as usize);
+                quote!(unit::<T, #rows>(#axis))
+            }
+            Node::Sum(terms) => self.sum(terms),
+            Node::Neg(a) => {
+                let a = go(a);
+                quote!(-#a)
+            }
+            Node::Product(factors) => self.product(factors),
+            Node::Quotient(a, b) => {
+                let (a, b) = (go(a), go(b));
+                quote!(#a / #b)
+            }
+            Node::Power(a, q) => self.power(a, *q),
+            Node::Transpose(a) => {
+                let a = go(a);
+                quote!(#a.transpose())
+            }
+            Node::Inverse(a) => {
+                let a = self.write(a);
+                quote!(inverse_or_nan(&(#a)))
+            }
+            Node::Trace(a) => {
+                let a = go(a);
+                quote!(#a.trace())
+            }
+            Node::Det(a) => {
+                let a = self.write(a);
+                quote!(determinant(&(#a)))
+            }
+            Node::Dot(a, b) => self.method(a, "dot", b),
+            Node::Cross(a, b) => self.method(a, "cross", b),
+            Node::Hat(a) => self.function("hat", a),
+            Node::Vee(a) => self.function("vee", a),
+            Node::Part(which, a) => {
+                let name = match which {
+                    Part::Symmetric => "symmetric_part",
+                    Part::Skew => "skew_part",
+                    Part::Diagonal => "diagonal_part",
+                };
+                self.function(name, a)
+            }
+            Node::Call(function, a) => {
+                let a = go(a);
+                match function {
+                    Function::Exp => quote!(#a.exp()),
+                    Function::Log => quote!(#a.ln()),
+                }
+            }
+        }
+    }
+
+    fn by_reference(&self, e: &Expr) -> TokenStream {
+        let tokens = self.operand(e);
+        quote!(&#tokens)
+    }
+
+    fn function(&self, name: &str, a: &Expr) -> TokenStream {
+        let name = format_ident!("{name}");
+        let a = self.by_reference(a);
+        quote!(#name(#a))
+    }
+
+    fn method(&self, a: &Expr, name: &str, b: &Expr) -> TokenStream {
+        let name = format_ident!("{name}");
+        let (a, b) = (self.operand(a), self.by_reference(b));
+        quote!(#a.#name(#b))
+    }
+
+    fn sum(&self, terms: &[Expr]) -> TokenStream {
+        // A leading minus sign costs an operation and reads badly: start with a positive term.
+        let first = terms
+            .iter()
+            .position(|t| !matches!(t.node(), Node::Neg(_)))
+            .unwrap_or(0);
+        let mut order: Vec<&Expr> = vec![&terms[first]];
+        order.extend(
+            terms
+                .iter()
+                .enumerate()
+                .filter(|(i, _)| *i != first)
+                .map(|(_, t)| t),
+        );
+        let mut out = TokenStream::new();
+        for (i, t) in order.into_iter().enumerate() {
+            match t.node() {
+                Node::Neg(a) if i > 0 => {
+                    let a = self.term(a);
+                    out.extend(quote!(- #a));
+                }
+                _ => {
+                    let a = self.term(t);
+                    out.extend(if i > 0 { quote!(+ #a) } else { a });
+                }
+            }
+        }
+        out
+    }
+
+    /// Products and quotients need no parentheses inside a sum.
+    fn term(&self, e: &Expr) -> TokenStream {
+        match e.node() {
+            Node::Product(_) | Node::Quotient(..) | Node::Power(..) => self.write(e),
+            _ => self.operand(e),
+        }
+    }
+
+    fn power(&self, a: &Expr, q: Rational) -> TokenStream {
+        let base = self.operand(a);
+        if q == Rational::integer(2) {
+            return quote!(#base * #base);
+        }
+        if q == Rational::HALF {
+            return quote!(#base.sqrt());
+        }
+        if let Some(n) = q.as_integer() {
+            let n = Literal::i32_unsuffixed(n);
+            return quote!(#base.powi(#n));
+        }
+        let num = Literal::i64_unsuffixed(i64::try_from(q.numerator()).unwrap_or(0));
+        let den = Literal::i64_unsuffixed(i64::try_from(q.denominator()).unwrap_or(0));
+        quote!(#base.powr(#num, #den))
+    }
+
+    fn product(&self, factors: &[Expr]) -> TokenStream {
+        let (mut numbers, matrices): (Vec<Expr>, Vec<Expr>) =
+            factors.iter().cloned().partition(|f| f.shape().is_scalar());
+        // 2 vee(A) is the axial vector of A - A^T.
+        let doubled = match matrices.as_slice() {
+            [only] => match only.node() {
+                Node::Vee(a) => Some(a.clone()),
+                _ => None,
+            },
+            _ => None,
+        };
+        let coefficient = numbers
+            .iter()
+            .position(|n| matches!(n.node(), Node::Number(_)));
+        let chain = if let (Some(a), Some(i)) = (doubled, coefficient)
+            && let Node::Number(q) = numbers[i].node()
+            && let Some(half) = q.times(Rational::HALF)
+        {
+            numbers[i] = expr::number(half);
+            if half.is_one() {
+                numbers.remove(i);
+            }
+            Some(self.function("axial_of_difference", &a))
+        } else if matrices.is_empty() {
+            None
+        } else {
+            Some(self.chain(&matrices))
+        };
+        // Divisions by a number read better than negative powers.
+        let (below, above): (Vec<Expr>, Vec<Expr>) = numbers
+            .into_iter()
+            .partition(|n| matches!(n.node(), Node::Power(_, q) if q.as_integer() == Some(-1)));
+        let above = above.iter().map(|n| self.operand(n));
+        let mut parts: Vec<TokenStream> = chain.into_iter().chain(above).collect();
+        if parts.is_empty() {
+            parts.push(quote!(T::one()));
+        }
+        let mut out = TokenStream::new();
+        for (i, part) in parts.into_iter().enumerate() {
+            let times = (i > 0).then(|| quote!(*));
+            out.extend(quote!(#times #part));
+        }
+        for n in &below {
+            if let Node::Power(base, _) = n.node() {
+                let base = self.operand(base);
+                out.extend(quote!(/ #base));
+            }
+        }
+        out
+    }
+
+    fn chain(&self, factors: &[Expr]) -> TokenStream {
+        fn write(w: &Writer, b: &Bracketed, f: &[Expr]) -> (TokenStream, Shape, Option<Expr>) {
+            match b {
+                Bracketed::Factor(i) => (w.operand(&f[*i]), f[*i].shape(), Some(f[*i].clone())),
+                Bracketed::Pair(a, b) => {
+                    let (x, left, x_expr) = write(w, a, f);
+                    let (y, right, _) = write(w, b, f);
+                    let shape = Shape {
+                        rows: left.rows,
+                        cols: right.cols,
+                    };
+                    let transposed = x_expr.as_ref().and_then(|e| match e.node() {
+                        Node::Transpose(inner) => Some(w.operand(inner)),
+                        _ => None,
+                    });
+                    let tokens = match transposed {
+                        // nalgebra multiplies by a number on the right.
+                        _ if left.is_scalar() => quote!((#y * #x)),
+                        // A row times a column, and A^T B without forming the transpose.
+                        Some(x) if shape.is_scalar() => quote!(#x.dot(&#y)),
+                        None if shape.is_scalar() => quote!(#x.transpose().dot(&#y)),
+                        Some(x) => quote!(#x.tr_mul(&#y)),
+                        None => quote!((#x * #y)),
+                    };
+                    (tokens, shape, None)
+                }
+            }
+        }
+        let (tokens, ..) = write(self, &associate(factors), factors);
+        unwrapped(tokens)
+    }
+}
+
+/// Without parentheses around the whole.
+fn unwrapped(tokens: TokenStream) -> TokenStream {
+    let mut trees = tokens.clone().into_iter();
+    match (trees.next(), trees.next()) {
+        (Some(TokenTree::Group(g)), None) if g.delimiter() == Delimiter::Parenthesis => g.stream(),
+        _ => tokens,
+    }
+}
+
+/// The statements of a program and the expressions of its results.
+pub fn program(p: &Program, bindings: &Bindings) -> (TokenStream, Vec<TokenStream>) {
+    let writer = Writer {
+        symbols: &p.symbols,
+        bindings,
+    };
+    let mut lets = TokenStream::new();
+    for (id, e) in &p.temporaries {
+        let name = format_ident!("{}", p.symbols.get(*id).name);
+        let value = writer.write(e);
+        lets.extend(quote!(let #name = #value;));
+    }
+    (lets, p.results.iter().map(|r| writer.write(r)).collect())
+}

@@ -1,0 +1,411 @@
+//! Items that hold data: the parameters and the validated model, the initial data, the state and
+//! the workspace; and the locals with which every emitted function starts.
+
+use super::expression::{Bindings, Writer, ty};
+use super::names::{Names, item, own, per_configuration, tagged};
+use crate::check::spec::{Assumption, Side};
+use crate::derive::Derivation;
+use crate::derive::recognise::{Method, Riccati};
+use crate::derive::transport::Transport;
+use crate::expr::shape::Structure;
+use crate::expr::symbol::SymbolId;
+use crate::expr::{self, Expr, Letter, Shift};
+use crate::print::{Format, Style, expression};
+use crate::syntax::ast::Comparison;
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+/// An expression as text for documentation and messages.
+pub fn text(d: &Derivation, e: &Expr) -> String {
+    let style = Style::new(&d.spec.time_index);
+    expression(e, &d.letters.symbols, &style, Format::Text)
+}
+
+/// The Moser-Veselov factor, if the stepper solves that equation.
+pub fn factor(d: &Derivation) -> Option<&Expr> {
+    match (&d.solve.method, d.solve.riccati.first()) {
+        (Method::FreeMoserVeselov | Method::ForcedMoserVeselov, Some(Riccati::Exact(mv))) => {
+            Some(&mv.factor)
+        }
+        _ => None,
+    }
+}
+
+/// A quantity that the state keeps beside elements and momenta.
+pub fn kept(d: &Derivation) -> Vec<SymbolId> {
+    let all = d.spec.advected.iter().zip(&d.transports);
+    all.filter(|(_, t)| !matches!(t, Transport::Defined(_)))
+        .map(|(a, _)| a.quantity)
+        .collect()
+}
+
+/// A word on the structure of a parameter.
+pub fn structure_text(structure: Structure) -> &'static str {
+    match structure {
+        Structure::General | Structure::Invertible => "",
+        Structure::Symmetric => ", symmetric",
+        Structure::Skew => ", skew",
+        Structure::Diagonal => ", diagonal",
+        Structure::Orthogonal => ", a rotation",
+    }
+}
+
+/// The parameters as plain data.
+pub fn parameters(d: &Derivation) -> TokenStream {
+    let s = &d.letters.symbols;
+    let name = item(d, "Parameters");
+    let doc = format!(" Parameters of [`{0}`](struct@{0}), as given.", d.spec.name);
+    let fields = d.spec.parameters.iter().map(|p| {
+        let symbol = s.get(*p);
+        let (field, t) = (own(d, *p), ty(symbol.shape));
+        let doc = format!(
+            "`{}`: {}{}.",
+            symbol.name,
+            shape_text(d, *p),
+            structure_text(symbol.structure)
+        );
+        quote!(#[doc = #doc] pub #field: #t)
+    });
+    let phantom = d.spec.parameters.is_empty().then(|| {
+        quote! {
+            #[doc = " No parameters: the scalar type alone."]
+            pub scalar: ::core::marker::PhantomData<T>
+        }
+    });
+    quote! {
+        #[doc = #doc]
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct #name<T = f64> { #(#fields,)* #phantom }
+    }
+}
+
+/// Shape of a symbol in words.
+pub fn shape_text(d: &Derivation, id: SymbolId) -> String {
+    let s = &d.letters.symbols;
+    let shape = s.get(id).shape;
+    let (rows, cols) = (s.dim_text(shape.rows), s.dim_text(shape.cols));
+    if shape.is_scalar() {
+        "a number".to_owned()
+    } else if shape.is_vector() {
+        format!("a vector of {rows} components")
+    } else {
+        format!("a {rows} x {cols} matrix")
+    }
+}
+
+/// `let Parameters { a, b, .. } = self.parameters;` for those that the expressions use.
+pub fn parameter_locals(d: &Derivation, source: TokenStream, needed: &[Letter]) -> TokenStream {
+    let used: Vec<_> = d
+        .spec
+        .parameters
+        .iter()
+        .filter(|p| needed.iter().any(|l| l.symbol == **p))
+        .map(|p| own(d, *p))
+        .collect();
+    if used.is_empty() {
+        return TokenStream::new();
+    }
+    let name = item(d, "Parameters");
+    quote!(let #name { #(#used,)* .. } = #source;)
+}
+
+/// Letters of several expressions together.
+pub fn letters_of<'a>(list: impl IntoIterator<Item = &'a Expr>) -> Vec<Letter> {
+    let mut all: Vec<Letter> = list.into_iter().flat_map(expr::letters).collect();
+    all.sort();
+    all.dedup();
+    all
+}
+
+/// Expressions that give the advected quantities among `needed` at this level, and everything
+/// they need in turn.
+pub fn with_transports(d: &Derivation, needed: &[Letter], level: i8) -> Vec<Letter> {
+    let mut all = needed.to_vec();
+    for (a, t) in d.spec.advected.iter().zip(&d.transports) {
+        let here = needed
+            .iter()
+            .any(|l| l.symbol == a.quantity && l.shift.time == level);
+        if !here {
+            continue;
+        }
+        match t {
+            Transport::Defined(e) | Transport::Carried { value: e, .. } => {
+                all.extend(expr::letters(&expr::shift_time(
+                    &d.letters.symbols,
+                    e,
+                    level,
+                )));
+            }
+            Transport::Advanced => {}
+        }
+    }
+    all.sort();
+    all.dedup();
+    all
+}
+
+/// Locals for what is known at one node: matrices of the elements and advected quantities, as far
+/// as `needed` asks for them. `element(i)` and `reference(id)` give where they come from.
+pub fn node_locals(
+    d: &Derivation,
+    names: &Names,
+    level: i8,
+    needed: &[Letter],
+    element: &dyn Fn(usize) -> TokenStream,
+    reference: &dyn Fn(SymbolId) -> TokenStream,
+    bindings: &mut Bindings,
+) -> TokenStream {
+    let s = &d.letters.symbols;
+    let shift = Shift {
+        time: level,
+        label: [0, 0],
+    };
+    let local = |id: SymbolId| match level {
+        0 => own(d, id),
+        1 => tagged(d, names, id, "next"),
+        _ => tagged(d, names, id, "before"),
+    };
+    let needed = with_transports(d, needed, level);
+    let mut out = TokenStream::new();
+    for (i, c) in d.spec.configurations.iter().enumerate() {
+        let letter = Letter {
+            symbol: c.element,
+            shift,
+        };
+        if needed.contains(&letter) {
+            let (name, value) = (local(c.element), element(i));
+            out.extend(quote!(let #name = #value.matrix();));
+            bindings.bind(letter, name);
+        }
+    }
+    for (a, t) in d.spec.advected.iter().zip(&d.transports) {
+        let letter = Letter {
+            symbol: a.quantity,
+            shift,
+        };
+        if !needed.contains(&letter) {
+            continue;
+        }
+        let name = local(a.quantity);
+        let value = match t {
+            Transport::Defined(e) => {
+                let e = expr::shift_time(s, e, level);
+                Writer {
+                    symbols: s,
+                    bindings,
+                }
+                .write(&e)
+            }
+            Transport::Carried { value, .. } => {
+                let e = expr::shift_time(s, value, level);
+                let start = tagged(d, names, a.quantity, "reference");
+                let source = reference(a.quantity);
+                out.extend(quote!(let #start = #source;));
+                let mut inner = bindings.clone();
+                inner.bind(letter, start);
+                Writer {
+                    symbols: s,
+                    bindings: &inner,
+                }
+                .write(&e)
+            }
+            Transport::Advanced if level == 1 => Writer {
+                symbols: s,
+                bindings,
+            }
+            .write(&a.update),
+            Transport::Advanced => reference(a.quantity),
+        };
+        out.extend(quote!(let #name = #value;));
+        bindings.bind(letter, name);
+    }
+    out
+}
+
+fn assumption(d: &Derivation, a: &Assumption) -> TokenStream {
+    let s = &d.letters.symbols;
+    let none = Bindings::new();
+    let w = Writer {
+        symbols: s,
+        bindings: &none,
+    };
+    let difference = w.operand(&expr::sub(a.left.clone(), a.right.clone()));
+    let (sign, shown) = match a.relation {
+        Comparison::Equal => ("=", None),
+        Comparison::Greater => (">", Some(quote!(#difference.least() > 0.0))),
+        Comparison::AtLeast => ("≥", Some(quote!(#difference.least() >= 0.0))),
+        Comparison::Less => ("<", Some(quote!(#difference.greatest() < 0.0))),
+        Comparison::AtMost => ("≤", Some(quote!(#difference.greatest() <= 0.0))),
+    };
+    let holds = shown.unwrap_or_else(|| {
+        // Equal to rounding: a few operations on numbers of this size.
+        let (l, r) = (w.operand(&a.left), w.operand(&a.right));
+        if a.left.shape().is_scalar() {
+            quote!(#difference.magnitude() <= 64.0 * T::EPSILON * (#l.magnitude() + #r.magnitude()))
+        } else {
+            quote!(length(&#difference).magnitude() <= 64.0 * T::EPSILON * (length(&#l).magnitude() + length(&#r).magnitude()))
+        }
+    });
+    let message = format!("{} {sign} {}", text(d, &a.left), text(d, &a.right));
+    quote!(validate::assumption(#holds, #message)?;)
+}
+
+/// The model: validated parameters, and the factor of its Moser-Veselov equation.
+pub fn model(d: &Derivation, documented: bool) -> TokenStream {
+    let s = &d.letters.symbols;
+    let (name, data) = (item(d, ""), item(d, "Parameters"));
+    let checks = d.spec.parameters.iter().map(|p| {
+        let symbol = s.get(*p);
+        let (field, label) = (own(d, *p), &symbol.name);
+        let finite = if symbol.shape.is_scalar() {
+            quote!(validate::finite(#label, &[parameters.#field])?;)
+        } else {
+            quote!(validate::finite(#label, parameters.#field.as_slice())?;)
+        };
+        let structure = match symbol.structure {
+            Structure::Symmetric => quote!(validate::symmetric(#label, &parameters.#field)?;),
+            Structure::Skew => quote!(validate::skew(#label, &parameters.#field)?;),
+            Structure::Diagonal => quote!(validate::diagonal(#label, &parameters.#field)?;),
+            Structure::Orthogonal => quote!(validate::orthogonal(#label, &parameters.#field)?;),
+            Structure::Invertible => quote!(validate::invertible(#label, &parameters.#field)?;),
+            Structure::General => TokenStream::new(),
+        };
+        quote!(#finite #structure)
+    });
+    let constant = factor(d);
+    let assumed: Vec<&Expr> = d
+        .spec
+        .assumptions
+        .iter()
+        .flat_map(|a| [&a.left, &a.right])
+        .collect();
+    let needed = letters_of(constant.into_iter().chain(assumed));
+    let locals = parameter_locals(d, quote!(parameters), &needed);
+    let assumptions = d.spec.assumptions.iter().map(|a| assumption(d, a));
+    let (field, build, init) = match constant {
+        Some(e) => {
+            let none = Bindings::new();
+            let value = Writer {
+                symbols: s,
+                bindings: &none,
+            }
+            .write(e);
+            let label = text(d, e);
+            (
+                quote!(factor: Poinsot<T>,),
+                quote!(let factor = Poinsot::new(#value).map_err(|e| e.in_field(#label))?;),
+                quote!(factor,),
+            )
+        }
+        None => Default::default(),
+    };
+    let docs = crate::document::rustdoc(d, documented);
+    let source = crate::document::source(d);
+    let fingerprint = crate::document::fingerprint(d);
+    quote! {
+        #(#[doc = #docs])*
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct #name<T = f64> { parameters: #data<T>, #field }
+
+        impl<T: Real> #name<T> {
+            /// The model as it was stated.
+            pub const SOURCE: &'static str = #source;
+            /// A number that changes when the model or its derivation does.
+            pub const FINGERPRINT: u64 = #fingerprint;
+
+            /// Checks the parameters.
+            ///
+            /// # Errors
+            /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
+            /// assumption, or is no admissible factor of the equation to solve.
+            pub fn new(parameters: #data<T>) -> Result<Self, ParameterError> {
+                #(#checks)*
+                #locals
+                #(#assumptions)*
+                #build
+                Ok(Self { parameters, #init })
+            }
+
+            /// The parameters.
+            pub fn parameters(&self) -> &#data<T> {
+                &self.parameters
+            }
+        }
+    }
+}
+
+/// Initial data, state and workspace.
+pub fn state(d: &Derivation, names: &Names) -> TokenStream {
+    let s = &d.letters.symbols;
+    let (initial, state, work) = (item(d, "Initial"), item(d, "State"), item(d, "Workspace"));
+    let node = names.local("node");
+    let (mut given, mut kept_fields, mut access) = (Vec::new(), Vec::new(), Vec::new());
+    for (i, c) in d.spec.configurations.iter().enumerate() {
+        let element = own(d, c.element);
+        let momentum = per_configuration(d, "momentum", i);
+        let (spatial, body) = (
+            per_configuration(d, "spatial_momentum", i),
+            per_configuration(d, "body_momentum", i),
+        );
+        let name = &s.get(c.element).name;
+        let doc = format!(" `{name}` at node 0: body -> space.");
+        given.push(match c.side {
+            Side::Body => quote! {
+                #[doc = #doc] pub #element: Rotation<T>,
+                #[doc = " Momentum at node 0, in the body frame."] pub #body: BodyMomentum<T>
+            },
+            Side::Spatial => quote! {
+                #[doc = #doc] pub #element: Rotation<T>,
+                #[doc = " Momentum at node 0, in the space frame."] pub #spatial: SpatialMomentum<T>
+            },
+        });
+        kept_fields.push(quote!(#element: Rotation<T>, #momentum: SpatialMomentum<T>));
+        let doc = format!(" `{name}` at this node: body -> space.");
+        access.push(quote! {
+            #[doc = #doc]
+            pub fn #element(&self) -> Rotation<T> { self.#element }
+            /// The momentum at this node, in the space frame.
+            pub fn #spatial(&self) -> SpatialMomentum<T> { self.#momentum }
+            /// The momentum at this node, in the body frame.
+            pub fn #body(&self) -> BodyMomentum<T> { self.#momentum.to_body(&self.#element) }
+        });
+    }
+    for id in kept(d) {
+        let (field, t) = (own(d, id), ty(s.get(id).shape));
+        let doc = format!(" `{}` at node 0.", s.get(id).name);
+        given.push(quote!(#[doc = #doc] pub #field: #t));
+        kept_fields.push(quote!(#field: #t));
+    }
+    let count = Literal::usize_unsuffixed(d.spec.configurations.len());
+    let (work_field, work_doc) = match d.solve.method {
+        Method::FreeMoserVeselov => (
+            quote!(solver: Free<T>,),
+            " The step and the constants of the trajectory. Belongs to the state it was started with.",
+        ),
+        Method::ForcedMoserVeselov => (TokenStream::new(), " The step."),
+        Method::Newton => (
+            quote!(guess: [Rotation<T>; #count],),
+            " The step and the last velocities, from which the next solve starts.",
+        ),
+    };
+    let state_doc = " What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.";
+    quote! {
+        /// Initial data.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct #initial<T = f64> { #(#given,)* }
+
+        #[doc = #state_doc]
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct #state<T = f64> { #(#kept_fields,)* #node: u64 }
+
+        impl<T: Real> #state<T> {
+            #(#access)*
+            /// The number of the node.
+            pub fn node(&self) -> u64 { self.#node }
+        }
+
+        #[doc = #work_doc]
+        #[derive(Clone, Copy, Debug)]
+        pub struct #work<T = f64> { h: T, #work_field }
+    }
+}

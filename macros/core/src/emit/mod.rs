@@ -1,0 +1,125 @@
+//! From a derivation to Rust: parameters, state, workspace, `start`, `step`, the residual, the
+//! invariants and the description of the model. Emission makes no decisions and cannot fail; what
+//! this version has no stepper for is refused before, in [`refusal`].
+
+mod card;
+mod expression;
+mod invariants;
+mod items;
+mod names;
+mod newton;
+mod residual;
+mod step;
+
+use crate::check::spec::Group;
+use crate::derive::Derivation;
+use crate::diagnostic::{Diagnostic, Errors};
+use crate::expr::shape::Dim;
+use names::Names;
+use proc_macro2::{Ident, TokenStream, TokenTree};
+use quote::{format_ident, quote};
+
+/// Why no stepper is emitted for this model, if so.
+pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
+    if let Some(dimension) = d.spec.dimensions.first() {
+        return Some(
+            Diagnostic::new(
+                d.spec.name_place,
+                format!(
+                    "this version emits steppers for given sizes only, and `{}` is a name",
+                    dimension.name
+                ),
+            )
+            .help(
+                "write the number in its place; `clebsch derive` prints the equations for any size",
+            ),
+        );
+    }
+    let rotations = |g: Group| g == Group::SpecialOrthogonal(Dim::Fixed(3));
+    if let Some(c) = d.spec.configurations.iter().find(|c| !rotations(c.group)) {
+        return Some(
+            Diagnostic::new(
+                c.place,
+                "this version emits steppers for SO<3> and products of it only",
+            )
+            .help("`clebsch derive` prints the equations for SO<n> and GL<n>"),
+        );
+    }
+    if d.spec.configurations.len() > 3 {
+        return Some(
+            Diagnostic::new(
+                d.spec.name_place,
+                "this version emits steppers for at most three bodies",
+            )
+            .help("`clebsch derive` prints the equations for any number"),
+        );
+    }
+    None
+}
+
+/// The Rust items of a model. `documented` puts the whole derivation into the rustdoc of the model.
+pub fn emit(d: &Derivation, documented: bool) -> TokenStream {
+    let names = Names::new(d);
+    let module = format_ident!("{}", names.module);
+    let visibility = d.spec.public.then(|| quote!(pub));
+    let items = [
+        items::parameters(d),
+        items::model(d, documented),
+        items::state(d, &names),
+        step::start_and_step(d, &names),
+        residual::balance(d, &names),
+        invariants::invariants(d, &names),
+        card::card(d, &names),
+    ];
+    let about = format!(
+        " The model [`{}`](struct@{}) and what belongs to it.",
+        d.spec.name, d.spec.name
+    );
+    quote! {
+        #[doc = #about]
+        #[allow(non_snake_case, uncommon_codepoints, mixed_script_confusables, clippy::all)]
+        #visibility mod #module {
+            use ::clebsch::emitted::*;
+            #(#items)*
+        }
+        #[allow(unused_imports)]
+        #visibility use #module::*;
+    }
+}
+
+/// The errors, and empty items under the model's names: code that uses them then reports nothing
+/// of its own about missing names.
+pub fn fallback(tokens: &TokenStream, errors: &Errors) -> TokenStream {
+    let mut after_model = false;
+    let mut name: Option<Ident> = None;
+    for tree in tokens.clone() {
+        if let TokenTree::Ident(word) = tree {
+            if after_model {
+                name = Some(word);
+                break;
+            }
+            after_model = word == "model";
+        }
+    }
+    let messages = errors.to_compile_error();
+    let Some(name) = name else {
+        return messages;
+    };
+    let items = [
+        "",
+        "Parameters",
+        "Initial",
+        "State",
+        "Workspace",
+        "Configuration",
+    ]
+    .map(|suffix| {
+        let item = format_ident!("{name}{suffix}");
+        quote! {
+            #[doc(hidden)]
+            #[allow(dead_code)]
+            pub struct #item<T = ::core::primitive::f64>(::core::marker::PhantomData<T>);
+        }
+    });
+    quote!(#messages #(#items)*)
+}

@@ -1,0 +1,144 @@
+//! `balance`: the residual of the discrete Euler-Lagrange equations at three consecutive
+//! configurations, which need not solve them. It is what oracles compare with the variation of
+//! the action.
+
+use super::expression::{Bindings, program, ty};
+use super::items::{kept, letters_of, node_locals, parameter_locals, with_transports};
+use super::names::{Names, item, own, tagged};
+use super::newton::stack;
+use super::step::at;
+use crate::check::spec::Side;
+use crate::derive::Derivation;
+use crate::expr::Shift;
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+/// The configuration struct and the method.
+pub fn balance(d: &Derivation, names: &Names) -> TokenStream {
+    let s = &d.letters.symbols;
+    let (name, configuration) = (item(d, ""), item(d, "Configuration"));
+    let elements = d.spec.configurations.iter().map(|c| {
+        let e = own(d, c.element);
+        let doc = format!(" `{e}` at the node: body -> space.");
+        quote!(#[doc = #doc] pub #e: Rotation<T>)
+    });
+    let others = kept(d).into_iter().map(|id| {
+        let (field, t) = (own(d, id), ty(s.get(id).shape));
+        let doc = format!(" `{field}` at the node, as its constraint carries it.");
+        quote!(#[doc = #doc] pub #field: #t)
+    });
+    let p = d.residual_program();
+    let needed = letters_of(p.temporaries.iter().map(|(_, e)| e).chain(&p.results));
+    let mut all = Vec::new();
+    let mut bindings = Bindings::new();
+    let mut locals = TokenStream::new();
+    let (before, here, after) = (
+        names.local("before"),
+        names.local("here"),
+        names.local("after"),
+    );
+    for (level, source) in [(-1i8, &before), (0, &here), (1, &after)] {
+        all.extend(with_transports(d, &needed, level));
+        let element = |i: usize| {
+            let e = own(d, d.spec.configurations[i].element);
+            quote!(#source.#e)
+        };
+        // Quantities without a definition are given at every node.
+        let mut given = TokenStream::new();
+        for id in kept(d) {
+            let local = match level {
+                0 => own(d, id),
+                1 => tagged(d, names, id, "next"),
+                _ => tagged(d, names, id, "before"),
+            };
+            let field = own(d, id);
+            let letter = at(
+                id,
+                Shift {
+                    time: level,
+                    label: [0, 0],
+                },
+            );
+            given.extend(quote!(let #local = #source.#field;));
+            bindings.bind(letter, local);
+        }
+        let undefined = kept(d);
+        let defined: Vec<_> = needed
+            .iter()
+            .filter(|l| !undefined.contains(&l.symbol))
+            .copied()
+            .collect();
+        let reference = |_| TokenStream::new();
+        let found = node_locals(
+            d,
+            names,
+            level,
+            &defined,
+            &element,
+            &reference,
+            &mut bindings,
+        );
+        locals.extend(quote!(#given #found));
+    }
+    let mut velocities = TokenStream::new();
+    for c in &d.spec.configurations {
+        let e = own(d, c.element);
+        for (level, from, to) in [(-1i8, &before, &here), (0, &here, &after)] {
+            let local = if level == 0 {
+                own(d, c.velocity)
+            } else {
+                tagged(d, names, c.velocity, "before")
+            };
+            let value = match c.side {
+                Side::Body => quote!((#from.#e.inverse() * #to.#e).matrix()),
+                Side::Spatial => quote!((#to.#e * #from.#e.inverse()).matrix()),
+            };
+            velocities.extend(quote!(let #local = #value;));
+            bindings.bind(
+                at(
+                    c.velocity,
+                    Shift {
+                        time: level,
+                        label: [0, 0],
+                    },
+                ),
+                local,
+            );
+        }
+    }
+    let parameters = parameter_locals(d, quote!(self.parameters), &all);
+    let (lets, values) = program(&p, &bindings);
+    let bodies = d.spec.configurations.len();
+    let (count, dimension) = (
+        Literal::usize_unsuffixed(bodies),
+        Literal::usize_unsuffixed(3 * bodies),
+    );
+    let stacked = stack(bodies, quote!(parts));
+    let step = own(d, d.spec.step);
+    quote! {
+        /// A configuration at one node, solution or not.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct #configuration<T = f64> { #(#elements,)* #(#others,)* }
+
+        impl<T: Real> #name<T> {
+            /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+            /// consecutive configurations: component `i` is the derivative of the action of the
+            /// two edges when the middle element is rotated about its axis `i` (a body axis on
+            /// the body side, a space axis on the spatial side). Zero on solutions.
+            pub fn balance(
+                &self,
+                #step: T,
+                #before: &#configuration<T>,
+                #here: &#configuration<T>,
+                #after: &#configuration<T>,
+            ) -> SVector<T, #dimension> {
+                #parameters
+                #locals
+                #velocities
+                #lets
+                let parts: [SVector<T, 3>; #count] = [#(#values),*];
+                #stacked
+            }
+        }
+    }
+}

@@ -1,0 +1,444 @@
+//! `start` and `step`: the momentum of the edge from that of the node, the solve, the new element,
+//! the momentum of the next node.
+
+use super::expression::{Bindings, Writer, program};
+use super::items::{kept, letters_of, node_locals, parameter_locals, with_transports};
+use super::names::{Names, item, own, per_configuration, tagged};
+use crate::check::spec::Side;
+use crate::derive::Derivation;
+use crate::derive::recognise::{Method, MoserVeselov, Riccati};
+use crate::derive::transport::Transport;
+use crate::expr::{self, Expr, Letter, Shift};
+use crate::schedule;
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+pub(super) fn at(symbol: crate::expr::symbol::SymbolId, shift: Shift) -> Letter {
+    Letter { symbol, shift }
+}
+
+/// How the spatial momentum goes from one node to the next.
+pub(super) enum Update {
+    /// Body side: what acts at the two nodes, in the body frame there: `m' = m + Λ a + Λ' b`.
+    Acted { leave: Expr, arrive: Expr },
+    /// Spatial side: the momentum that the edge brings.
+    Brought(Expr),
+}
+
+/// The update of one configuration.
+pub(super) fn update(d: &Derivation, i: usize) -> Update {
+    let b = &d.balances[i];
+    match d.spec.configurations[i].side {
+        Side::Body => Update::Acted {
+            leave: expr::neg(b.node_out.clone()),
+            arrive: b.node_in.clone(),
+        },
+        Side::Spatial => Update::Brought(b.incoming()),
+    }
+}
+
+/// `start` and `step`.
+pub fn start_and_step(d: &Derivation, names: &Names) -> TokenStream {
+    let name = item(d, "");
+    let start = start(d, names);
+    let access = advected_access(d, names);
+    let step = match (&d.solve.method, d.solve.riccati.first()) {
+        (Method::FreeMoserVeselov, _) => free_step(d, names),
+        (Method::ForcedMoserVeselov, Some(Riccati::Exact(mv))) => forced_step(d, names, mv),
+        _ => super::newton::step(d, names),
+    };
+    quote! {
+        impl<T: Real> #name<T> {
+            #start
+            #step
+            #access
+        }
+    }
+}
+
+fn start(d: &Derivation, names: &Names) -> TokenStream {
+    let s = &d.letters.symbols;
+    let (initial, state, work) = (item(d, "Initial"), item(d, "State"), item(d, "Workspace"));
+    let node = names.local("node");
+    let (mut checks, mut fields) = (Vec::new(), Vec::new());
+    for (i, c) in d.spec.configurations.iter().enumerate() {
+        let element = own(d, c.element);
+        let momentum = per_configuration(d, "momentum", i);
+        let given = per_configuration(
+            d,
+            match c.side {
+                Side::Body => "body_momentum",
+                Side::Spatial => "spatial_momentum",
+            },
+            i,
+        );
+        let label = given.to_string();
+        let name = &s.get(c.element).name;
+        checks.push(quote! {
+            validate::finite(#name, &initial.#element.quaternion())?;
+            validate::finite(#label, initial.#given.0.as_slice())?;
+        });
+        fields.push(match c.side {
+            Side::Body => {
+                quote!(#element: initial.#element, #momentum: initial.#given.to_space(&initial.#element))
+            }
+            Side::Spatial => quote!(#element: initial.#element, #momentum: initial.#given),
+        });
+    }
+    // References: the inverse element acts on the value given at node 0.
+    let mut references = TokenStream::new();
+    for (a, t) in d.spec.advected.iter().zip(&d.transports) {
+        let own_name = own(d, a.quantity);
+        let label = &s.get(a.quantity).name;
+        if matches!(t, Transport::Defined(_)) {
+            continue;
+        }
+        let values = if s.get(a.quantity).shape.is_scalar() {
+            quote!(&[initial.#own_name])
+        } else {
+            quote!(initial.#own_name.as_slice())
+        };
+        checks.push(quote!(validate::finite(#label, #values)?;));
+        fields.push(quote!(#own_name));
+        let value = match t {
+            Transport::Carried { reference, .. } => {
+                let mut bindings = Bindings::new();
+                let needed = expr::letters(reference);
+                let elements: TokenStream = d
+                    .spec
+                    .configurations
+                    .iter()
+                    .filter(|c| needed.contains(&at(c.element, Shift::HERE)))
+                    .map(|c| {
+                        let e = own(d, c.element);
+                        quote!(let #e = initial.#e.matrix();)
+                    })
+                    .collect();
+                let source = tagged(d, names, a.quantity, "start");
+                bindings.bind(at(a.quantity, Shift::HERE), source.clone());
+                let parameters = parameter_locals(d, quote!(self.parameters), &needed);
+                let e = Writer {
+                    symbols: s,
+                    bindings: &bindings,
+                }
+                .write(reference);
+                quote!({ #parameters #elements let #source = initial.#own_name; #e })
+            }
+            Transport::Defined(_) | Transport::Advanced => quote!(initial.#own_name),
+        };
+        references.extend(quote!(let #own_name = #value;));
+    }
+    let count = Literal::usize_unsuffixed(d.spec.configurations.len());
+    let work_init = match d.solve.method {
+        Method::FreeMoserVeselov => {
+            let element = own(d, d.spec.configurations[0].element);
+            let momentum = per_configuration(d, "momentum", 0);
+            quote!(solver: Free::start(&self.factor, &state.#element, &state.#momentum, h)?,)
+        }
+        Method::ForcedMoserVeselov => TokenStream::new(),
+        Method::Newton => quote!(guess: [Rotation::identity(); #count],),
+    };
+    quote! {
+        /// Starts a trajectory with step `h` from data at node 0.
+        ///
+        /// # Errors
+        /// Names the value that is not finite, or says why the first step cannot be solved and
+        /// which step could.
+        pub fn start(&self, initial: #initial<T>, h: T) -> Result<(#state<T>, #work<T>), StartError> {
+            validate::positive_step(h)?;
+            #(#checks)*
+            #references
+            let state = #state { #(#fields,)* #node: 0 };
+            let work = #work { h, #work_init };
+            // The first step is tried on a copy: what cannot run is refused here.
+            let (mut trial, mut scratch) = (state, work);
+            self.step(&mut trial, &mut scratch).map_err(|e| StartError::Refused(e.cause))?;
+            Ok((state, work))
+        }
+    }
+}
+
+fn step_signature(d: &Derivation, body: TokenStream) -> TokenStream {
+    let (state, work) = (item(d, "State"), item(d, "Workspace"));
+    let method = &d.solve.reason;
+    let doc = format!(" One step, in place. Solved thus: {method}.");
+    quote! {
+        #[doc = #doc]
+        ///
+        /// # Errors
+        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+        #[inline]
+        pub fn step(&self, state: &mut #state<T>, work: &mut #work<T>) -> Result<(), StepError> {
+            #body
+        }
+    }
+}
+
+fn free_step(d: &Derivation, names: &Names) -> TokenStream {
+    let element = own(d, d.spec.configurations[0].element);
+    let node = names.local("node");
+    step_signature(
+        d,
+        quote! {
+            if let Err(e) = work.solver.step(&mut state.#element) {
+                return Err(StepCause::from(e).at_node(state.#node));
+            }
+            state.#node += 1;
+            Ok(())
+        },
+    )
+}
+
+/// Locals at the node where the step starts.
+pub(super) fn here(
+    d: &Derivation,
+    names: &Names,
+    needed: &[Letter],
+    bindings: &mut Bindings,
+) -> TokenStream {
+    let element = |i: usize| {
+        let e = own(d, d.spec.configurations[i].element);
+        quote!(state.#e)
+    };
+    let reference = |id| {
+        let r = own(d, id);
+        quote!(state.#r)
+    };
+    node_locals(d, names, 0, needed, &element, &reference, bindings)
+}
+
+/// The tail of every step: new elements, next node's quantities, momenta, the finite test.
+pub(super) fn finish(
+    d: &Derivation,
+    names: &Names,
+    bindings: &mut Bindings,
+    solved: &dyn Fn(usize) -> TokenStream,
+    guess: TokenStream,
+) -> TokenStream {
+    let s = &d.letters.symbols;
+    let updates: Vec<Update> = (0..d.balances.len()).map(|i| update(d, i)).collect();
+    let mut wanted: Vec<Expr> = Vec::new();
+    for u in &updates {
+        match u {
+            Update::Acted { leave, arrive } => wanted.extend([leave.clone(), arrive.clone()]),
+            Update::Brought(e) => wanted.push(e.clone()),
+        }
+    }
+    let mut needed = letters_of(&wanted);
+    let advanced: Vec<_> = d
+        .spec
+        .advected
+        .iter()
+        .zip(&d.transports)
+        .filter(|(_, t)| matches!(t, Transport::Advanced))
+        .map(|(a, _)| a.quantity)
+        .collect();
+    needed.extend(advanced.iter().map(|q| at(*q, Shift::NEXT)));
+    let mut out = TokenStream::new();
+    let mut assignments = TokenStream::new();
+    let mut finite = Vec::new();
+    for (i, c) in d.spec.configurations.iter().enumerate() {
+        let moved = tagged(d, names, c.element, "moved");
+        let element = own(d, c.element);
+        let omega = solved(i);
+        out.extend(match c.side {
+            Side::Body => quote!(let #moved = state.#element * #omega;),
+            Side::Spatial => quote!(let #moved = #omega * state.#element;),
+        });
+        assignments.extend(quote!(state.#element = #moved;));
+    }
+    let element = |i: usize| {
+        let moved = tagged(d, names, d.spec.configurations[i].element, "moved");
+        quote!(#moved)
+    };
+    let reference = |id| {
+        let r = own(d, id);
+        quote!(state.#r)
+    };
+    // Rotated torques need the matrices of both nodes.
+    for (c, u) in d.spec.configurations.iter().zip(&updates) {
+        if let Update::Acted { leave, arrive } = u {
+            if !leave.is_zero() {
+                needed.push(at(c.element, Shift::HERE));
+            }
+            if !arrive.is_zero() {
+                needed.push(at(c.element, Shift::NEXT));
+            }
+        }
+    }
+    out.extend(node_locals(
+        d, names, 1, &needed, &element, &reference, bindings,
+    ));
+    let p = schedule::program(s, &wanted, "t");
+    let (lets, values) = program(&p, bindings);
+    out.extend(lets);
+    let mut values = values.into_iter();
+    for (i, (c, u)) in d.spec.configurations.iter().zip(&updates).enumerate() {
+        let field = per_configuration(d, "momentum", i);
+        let momentum = names.local(&format!("{field}_next"));
+        let value = match u {
+            Update::Acted { leave, arrive } => {
+                let (a, b) = (values.next(), values.next());
+                let here = own(d, c.element);
+                let next = tagged(d, names, c.element, "next");
+                let left = (!leave.is_zero()).then(|| quote!(+ #here * (#a)));
+                let arrived = (!arrive.is_zero()).then(|| quote!(+ #next * (#b)));
+                quote!(state.#field.0 #left #arrived)
+            }
+            Update::Brought(_) => {
+                let e = values.next();
+                quote!(#e)
+            }
+        };
+        out.extend(quote!(let #momentum = #value;));
+        assignments.extend(quote!(state.#field = SpatialMomentum(#momentum);));
+        finite.push(quote!(all_finite(&#momentum)));
+    }
+    for q in &advanced {
+        let (field, next) = (own(d, *q), tagged(d, names, *q, "next"));
+        assignments.extend(quote!(state.#field = #next;));
+    }
+    let node = names.local("node");
+    quote! {
+        #out
+        if !(#(#finite)&&*) {
+            return Err(StepCause::NotFinite { what: "momentum" }.at_node(state.#node));
+        }
+        #assignments
+        state.#node += 1;
+        #guess
+        Ok(())
+    }
+}
+
+fn forced_step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
+    let s = &d.letters.symbols;
+    let state = item(d, "State");
+    let node = names.local("node");
+    let c = &d.spec.configurations[0];
+    let momentum = per_configuration(d, "momentum", 0);
+    let element = own(d, c.element);
+    let edge = names.local("edge");
+    let omega = own(d, c.velocity);
+    // The momentum of the edge at a given step, for the solve and for the search of a step.
+    let mut bindings = Bindings::new();
+    let mut needed = letters_of([&mv.rest]);
+    if c.side == Side::Body {
+        needed.push(at(c.element, Shift::HERE));
+    }
+    let parameters = parameter_locals(d, quote!(self.parameters), &with_transports(d, &needed, 0));
+    let locals = here(d, names, &needed, &mut bindings);
+    let step = own(d, d.spec.step);
+    let p = schedule::program(s, std::slice::from_ref(&mv.rest), "t");
+    let (lets, values) = program(&p, &bindings);
+    let rest = &values[0];
+    let node_momentum = match c.side {
+        Side::Body => quote!(#element.tr_mul(&state.#momentum.0)),
+        Side::Spatial => quote!(state.#momentum.0),
+    };
+    let value = if mv.rest.is_zero() {
+        node_momentum
+    } else {
+        quote!(#node_momentum - (#rest))
+    };
+    let edge_function = quote! {
+        /// The momentum of the edge that starts at this node, for a step `h`.
+        #[inline]
+        fn edge_momentum(&self, state: &#state<T>, #step: T) -> SVector<T, 3> {
+            #parameters
+            #locals
+            #lets
+            #value
+        }
+    };
+    // The step.
+    let mut bindings = Bindings::new();
+    let updates = update(d, 0);
+    let list = match &updates {
+        Update::Acted { leave, arrive } => vec![leave, arrive],
+        Update::Brought(e) => vec![e],
+    };
+    let uses_velocity = list
+        .iter()
+        .any(|e| expr::contains(e, at(c.velocity, Shift::HERE)));
+    let mut needed: Vec<Letter> = letters_of(list.iter().copied());
+    if let Update::Acted { leave, .. } = &updates
+        && !leave.is_zero()
+    {
+        needed.push(at(c.element, Shift::HERE));
+    }
+    let mut all = with_transports(d, &needed, 0);
+    all.extend(with_transports(d, &needed, 1));
+    let parameters = parameter_locals(d, quote!(self.parameters), &all);
+    let locals = here(d, names, &needed, &mut bindings);
+    let matrix = uses_velocity.then(|| {
+        let name = tagged(d, names, c.velocity, "matrix");
+        bindings.bind(at(c.velocity, Shift::HERE), name.clone());
+        quote!(let #name = #omega.matrix();)
+    });
+    let rest = finish(
+        d,
+        names,
+        &mut bindings,
+        &|_| quote!(#omega),
+        TokenStream::new(),
+    );
+    let body = quote! {
+        let #step = work.h;
+        let #edge = self.edge_momentum(state, #step);
+        let #omega = match forced(&self.factor, &(#edge * #step)) {
+            Ok(solved) => solved,
+            Err(e) => return Err(self.refused(state, #step, e)),
+        };
+        #matrix
+        #parameters
+        #locals
+        #rest
+    };
+    let step_function = step_signature(d, body);
+    quote! {
+        #step_function
+        #edge_function
+
+        /// Says how far the step is beyond the bound, and which step could be solved.
+        #[cold]
+        fn refused(&self, state: &#state<T>, h: T, e: MoserVeselovError) -> StepError {
+            let largest = largest_step(h.value(), |trial| {
+                let n = self.edge_momentum(state, T::from_f64(trial)) * T::from_f64(trial);
+                let body = Poinsot::new(self.factor.matrix().map(|x| x.value())).ok()?;
+                Some(reach(&body, &n.map(|x| x.value())))
+            });
+            StepCause::from(e.with_steps(h.value(), largest)).at_node(state.#node)
+        }
+    }
+}
+
+/// The advected quantities at a node, as functions of the state.
+fn advected_access(d: &Derivation, names: &Names) -> TokenStream {
+    let s = &d.letters.symbols;
+    let state = item(d, "State");
+    let mut out = TokenStream::new();
+    for a in &d.spec.advected {
+        let letter = at(a.quantity, Shift::HERE);
+        let needed = with_transports(d, &[letter], 0);
+        let parameters = parameter_locals(d, quote!(self.parameters), &needed);
+        let mut bindings = Bindings::new();
+        let locals = here(d, names, &[letter], &mut bindings);
+        let (name, t) = (
+            own(d, a.quantity),
+            super::expression::ty(s.get(a.quantity).shape),
+        );
+        let doc = format!(" `{name}` at the node of this state.");
+        out.extend(quote! {
+            #[doc = #doc]
+            #[inline]
+            pub fn #name(&self, state: &#state<T>) -> #t {
+                #parameters
+                #locals
+                #name
+            }
+        });
+    }
+    debug_assert!(kept(d).len() <= d.spec.advected.len());
+    out
+}

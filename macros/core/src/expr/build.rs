@@ -1,0 +1,437 @@
+//! The only constructors of expression nodes. They compute shapes, flatten sums and products,
+//! drop neutral elements and move transposes to the leaves, so that equal things look equal.
+//! Shapes must already fit: `check` has verified the user's, the derivation builds its own.
+
+use super::shape::{Dim, Shape, Structure};
+use super::symbol::{SymbolId, Symbols};
+use super::{Expr, Function, Inner, Letter, Node, Part, Shift};
+use crate::algebra::Rational;
+use core::hash::{Hash, Hasher};
+use std::sync::Arc;
+
+/// A fixed hash (FNV-1a): the same on every machine and in every run.
+struct Fnv(u64);
+
+impl Hasher for Fnv {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+    fn write(&mut self, bytes: &[u8]) {
+        for b in bytes {
+            self.0 = (self.0 ^ u64::from(*b)).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+}
+
+fn make(node: Node, shape: Shape) -> Expr {
+    let mut hasher = Fnv(0xcbf2_9ce4_8422_2325);
+    node.hash(&mut hasher);
+    let size = node
+        .children()
+        .iter()
+        .fold(1u32, |n, c| n.saturating_add(c.size()));
+    Expr(Arc::new(Inner {
+        node,
+        shape,
+        size,
+        hash: hasher.finish(),
+    }))
+}
+
+/// An exact number.
+pub fn number(q: Rational) -> Expr {
+    make(Node::Number(q), Shape::SCALAR)
+}
+
+/// An integer.
+pub fn integer(n: i64) -> Expr {
+    number(Rational::integer(n))
+}
+
+/// A symbol at an offset.
+pub fn letter(symbols: &Symbols, symbol: SymbolId, shift: Shift) -> Expr {
+    make(
+        Node::Letter(Letter { symbol, shift }),
+        symbols.get(symbol).shape,
+    )
+}
+
+/// A symbol where the equation stands.
+pub fn here(symbols: &Symbols, symbol: SymbolId) -> Expr {
+    letter(symbols, symbol, Shift::HERE)
+}
+
+/// The same expression with the letter's shape given; used where no table is at hand.
+pub(super) fn letter_of_shape(at: Letter, shape: Shape) -> Expr {
+    make(Node::Letter(at), shape)
+}
+
+/// The identity matrix.
+pub fn identity(n: Dim) -> Expr {
+    if n == Dim::Fixed(1) {
+        return integer(1);
+    }
+    make(Node::Identity(n), Shape::square(n))
+}
+
+/// The zero of a shape.
+pub fn zero(shape: Shape) -> Expr {
+    if shape.is_scalar() {
+        return integer(0);
+    }
+    make(Node::Zero(shape), shape)
+}
+
+/// The unit vector along `axis`, counted from 0.
+pub fn unit(n: Dim, axis: u8) -> Expr {
+    make(Node::Unit(n, axis), Shape::vector(n))
+}
+
+/// Sum of terms of one shape; `shape` serves the empty sum.
+pub fn sum(terms: impl IntoIterator<Item = Expr>, shape: Shape) -> Expr {
+    let mut flat: Vec<Expr> = Vec::new();
+    let mut constant = Rational::ZERO;
+    for term in terms {
+        let parts: Vec<Expr> = match term.node() {
+            Node::Sum(inner) => inner.clone(),
+            _ => vec![term],
+        };
+        for part in parts {
+            match part.node() {
+                Node::Number(q) => match constant.plus(*q) {
+                    Some(s) => constant = s,
+                    None => flat.push(part),
+                },
+                Node::Zero(_) => {}
+                _ => flat.push(part),
+            }
+        }
+    }
+    if !constant.is_zero() {
+        flat.push(number(constant));
+    }
+    match flat.len() {
+        0 => zero(shape),
+        1 => flat.remove(0),
+        _ => make(Node::Sum(flat), shape),
+    }
+}
+
+/// `a + b`.
+pub fn add(a: Expr, b: Expr) -> Expr {
+    let shape = a.shape();
+    sum([a, b], shape)
+}
+
+/// `a - b`.
+pub fn sub(a: Expr, b: Expr) -> Expr {
+    add(a, neg(b))
+}
+
+/// `-a`.
+pub fn neg(a: Expr) -> Expr {
+    match a.node() {
+        Node::Neg(inner) => inner.clone(),
+        Node::Number(q) => number(q.negated()),
+        Node::Zero(_) => a,
+        Node::Sum(terms) => {
+            let shape = a.shape();
+            sum(terms.iter().cloned().map(neg), shape)
+        }
+        _ => {
+            let shape = a.shape();
+            make(Node::Neg(a), shape)
+        }
+    }
+}
+
+/// Product in order. Numbers commute to the front; signs come out.
+pub fn product(factors: impl IntoIterator<Item = Expr>) -> Expr {
+    let mut negative = false;
+    let mut coefficient = Rational::ONE;
+    let mut scalars: Vec<Expr> = Vec::new();
+    let mut matrices: Vec<Expr> = Vec::new();
+    let mut divisors: Vec<Expr> = Vec::new();
+    let mut left: Option<Dim> = None;
+    let mut right = Dim::Fixed(1);
+    let mut queue: Vec<Expr> = factors.into_iter().collect();
+    queue.reverse();
+    let mut vanishes = false;
+    while let Some(f) = queue.pop() {
+        match f.node() {
+            Node::Neg(inner) => {
+                negative = !negative;
+                queue.push(inner.clone());
+            }
+            // A row times a column is a number and stays whole: its factors do not commute.
+            Node::Product(inner)
+                if !f.shape().is_scalar() || inner.iter().all(|x| x.shape().is_scalar()) =>
+            {
+                queue.extend(inner.iter().rev().cloned());
+            }
+            Node::Quotient(a, b) if !matches!(a.node(), Node::Sum(_)) => {
+                divisors.push(b.clone());
+                queue.push(a.clone());
+            }
+            Node::Number(q) => match coefficient.times(*q) {
+                Some(c) => coefficient = c,
+                None => scalars.push(f),
+            },
+            _ => {
+                vanishes |= f.is_zero();
+                if f.shape().is_scalar() {
+                    scalars.push(f);
+                } else {
+                    left.get_or_insert(f.shape().rows);
+                    right = f.shape().cols;
+                    if !matches!(f.node(), Node::Identity(_)) {
+                        matrices.push(f);
+                    }
+                }
+            }
+        }
+    }
+    let shape = Shape {
+        rows: left.unwrap_or(Dim::Fixed(1)),
+        cols: right,
+    };
+    if vanishes || coefficient.is_zero() {
+        return zero(shape);
+    }
+    if coefficient.is_negative() {
+        negative = !negative;
+        coefficient = coefficient.negated();
+    }
+    let identity_left = left.is_some() && matrices.is_empty();
+    let mut all: Vec<Expr> = Vec::new();
+    if !coefficient.is_one() {
+        all.push(number(coefficient));
+    }
+    all.append(&mut scalars);
+    all.append(&mut matrices);
+    if identity_left && !shape.is_scalar() {
+        all.push(identity(shape.rows));
+    }
+    let core = match all.len() {
+        0 => integer(1),
+        1 => all.remove(0),
+        _ => make(Node::Product(all), shape),
+    };
+    let mut result = core;
+    if !divisors.is_empty() {
+        let shape = result.shape();
+        result = make(Node::Quotient(result, product(divisors)), shape);
+    }
+    if negative { neg(result) } else { result }
+}
+
+/// `a b`.
+pub fn mul(a: Expr, b: Expr) -> Expr {
+    product([a, b])
+}
+
+/// `q a` for an exact number.
+pub fn scale(q: Rational, a: Expr) -> Expr {
+    product([number(q), a])
+}
+
+/// `a / b` for a number `b`.
+pub fn quotient(a: Expr, b: Expr) -> Expr {
+    if a.is_zero() {
+        return a;
+    }
+    match (a.node(), b.node()) {
+        (_, Node::Number(q)) if q.inverse().is_some() => {
+            scale(q.inverse().unwrap_or(Rational::ONE), a)
+        }
+        (_, Node::Neg(inner)) => neg(quotient(a, inner.clone())),
+        (Node::Neg(inner), _) => neg(quotient(inner.clone(), b)),
+        (Node::Quotient(x, y), _) => quotient(x.clone(), product([y.clone(), b])),
+        _ => {
+            let shape = a.shape();
+            make(Node::Quotient(a, b), shape)
+        }
+    }
+}
+
+/// `a^q` for a number `a`.
+pub fn power(a: Expr, q: Rational) -> Expr {
+    if q.is_zero() {
+        return integer(1);
+    }
+    if q.is_one() {
+        return a;
+    }
+    if let (Node::Number(base), Some(n)) = (a.node(), q.as_integer())
+        && let Some(value) = base.power(n)
+    {
+        return number(value);
+    }
+    if let Node::Power(base, inner) = a.node()
+        && inner.as_integer().is_some()
+        && q.as_integer().is_some()
+        && let Some(total) = inner.times(q)
+    {
+        return power(base.clone(), total);
+    }
+    make(Node::Power(a, q), Shape::SCALAR)
+}
+
+/// The transpose, moved to the leaves.
+pub fn transpose(symbols: &Symbols, a: Expr) -> Expr {
+    let shape = a.shape();
+    if shape.is_scalar() {
+        return a;
+    }
+    match a.node() {
+        Node::Letter(at) => match symbols.get(at.symbol).structure {
+            Structure::Symmetric | Structure::Diagonal => a,
+            Structure::Skew => neg(a),
+            Structure::General | Structure::Orthogonal | Structure::Invertible => {
+                make(Node::Transpose(a), shape.transposed())
+            }
+        },
+        Node::Identity(_) => a,
+        Node::Zero(_) => zero(shape.transposed()),
+        Node::Sum(terms) => sum(
+            terms.iter().cloned().map(|t| transpose(symbols, t)),
+            shape.transposed(),
+        ),
+        Node::Neg(inner) => neg(transpose(symbols, inner.clone())),
+        Node::Product(factors) => {
+            product(factors.iter().rev().cloned().map(|f| transpose(symbols, f)))
+        }
+        Node::Quotient(x, y) => quotient(transpose(symbols, x.clone()), y.clone()),
+        Node::Transpose(inner) => inner.clone(),
+        Node::Hat(_) => neg(a),
+        Node::Part(part, _) => match part {
+            Part::Symmetric | Part::Diagonal => a,
+            Part::Skew => neg(a),
+        },
+        Node::Number(_)
+        | Node::Unit(..)
+        | Node::Power(..)
+        | Node::Inverse(_)
+        | Node::Trace(_)
+        | Node::Det(_)
+        | Node::Dot(..)
+        | Node::Cross(..)
+        | Node::Vee(_)
+        | Node::Call(..) => make(Node::Transpose(a), shape.transposed()),
+    }
+}
+
+/// The inverse; for a group element of SO(n) its transpose.
+pub fn inverse(symbols: &Symbols, a: Expr) -> Expr {
+    let shape = a.shape();
+    if shape.is_scalar() {
+        return power(a, Rational::MINUS_ONE);
+    }
+    match a.node() {
+        Node::Letter(at) if symbols.get(at.symbol).structure == Structure::Orthogonal => {
+            transpose(symbols, a)
+        }
+        Node::Transpose(inner)
+            if matches!(inner.node(), Node::Letter(at)
+                if symbols.get(at.symbol).structure == Structure::Orthogonal) =>
+        {
+            inner.clone()
+        }
+        Node::Identity(_) => a,
+        Node::Inverse(inner) => inner.clone(),
+        Node::Product(factors)
+            if factors
+                .iter()
+                .all(|f| f.shape().is_scalar() || f.shape().is_square()) =>
+        {
+            product(factors.iter().rev().cloned().map(|f| inverse(symbols, f)))
+        }
+        _ => make(Node::Inverse(a), shape),
+    }
+}
+
+/// The trace.
+pub fn trace(a: Expr) -> Expr {
+    match a.node() {
+        Node::Neg(inner) => neg(trace(inner.clone())),
+        Node::Zero(_) => integer(0),
+        Node::Number(_) => a,
+        Node::Identity(Dim::Fixed(n)) => integer(i64::from(*n)),
+        Node::Hat(_) => integer(0),
+        _ if a.shape().is_scalar() => a,
+        _ => make(Node::Trace(a), Shape::SCALAR),
+    }
+}
+
+/// The determinant.
+pub fn det(a: Expr) -> Expr {
+    match a.node() {
+        Node::Identity(_) => integer(1),
+        _ if a.shape().is_scalar() => a,
+        _ => make(Node::Det(a), Shape::SCALAR),
+    }
+}
+
+/// The scalar product of two vectors.
+pub fn dot(a: Expr, b: Expr) -> Expr {
+    match (a.node(), b.node()) {
+        (Node::Zero(_), _) | (_, Node::Zero(_)) => integer(0),
+        (Node::Neg(x), _) => neg(dot(x.clone(), b)),
+        (_, Node::Neg(y)) => neg(dot(a, y.clone())),
+        _ if a.shape().is_scalar() => mul(a, b),
+        _ => make(Node::Dot(a, b), Shape::SCALAR),
+    }
+}
+
+/// The vector product.
+pub fn cross(a: Expr, b: Expr) -> Expr {
+    let shape = a.shape();
+    match (a.node(), b.node()) {
+        _ if a == b => zero(shape),
+        (Node::Zero(_), _) | (_, Node::Zero(_)) => zero(shape),
+        (Node::Neg(x), _) => neg(cross(x.clone(), b)),
+        (_, Node::Neg(y)) => neg(cross(a, y.clone())),
+        _ => make(Node::Cross(a, b), shape),
+    }
+}
+
+/// The skew matrix of a vector.
+pub fn hat(v: Expr) -> Expr {
+    let shape = Shape::square(v.shape().rows);
+    match v.node() {
+        Node::Zero(_) => zero(shape),
+        Node::Neg(x) => neg(hat(x.clone())),
+        Node::Vee(a) => part(Part::Skew, a.clone()),
+        _ => make(Node::Hat(v), shape),
+    }
+}
+
+/// The axial vector of the skew part.
+pub fn vee(a: Expr) -> Expr {
+    let shape = Shape::vector(a.shape().rows);
+    match a.node() {
+        Node::Zero(_) | Node::Identity(_) => zero(shape),
+        Node::Neg(x) => neg(vee(x.clone())),
+        Node::Hat(v) => v.clone(),
+        _ => make(Node::Vee(a), shape),
+    }
+}
+
+/// A linear part of a square matrix.
+pub fn part(which: Part, a: Expr) -> Expr {
+    let shape = a.shape();
+    match (a.node(), which) {
+        (Node::Zero(_), _) => a,
+        (Node::Identity(_), Part::Symmetric | Part::Diagonal) => a,
+        (Node::Identity(_), Part::Skew) => zero(shape),
+        (Node::Hat(_), Part::Skew) => a,
+        (Node::Hat(_), Part::Symmetric | Part::Diagonal) => zero(shape),
+        (Node::Neg(x), _) => neg(part(which, x.clone())),
+        _ => make(Node::Part(which, a), shape),
+    }
+}
+
+/// A function of a number.
+pub fn call(function: Function, a: Expr) -> Expr {
+    make(Node::Call(function, a), Shape::SCALAR)
+}

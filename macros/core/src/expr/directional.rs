@@ -1,0 +1,84 @@
+//! Directional derivatives: how an expression changes to first order when some letters change
+//! by given amounts. Linear in the amounts; one rule for each kind of node.
+
+use super::*;
+use crate::expr::symbol::Symbols;
+
+/// The derivative of `e` when each letter in `changes` moves by its amount and no other letter
+/// moves.
+pub fn directional(symbols: &Symbols, e: &Expr, changes: &[(Letter, Expr)]) -> Expr {
+    let d = |x: &Expr| directional(symbols, x, changes);
+    let shape = e.shape();
+    match e.node() {
+        Node::Number(_) | Node::Identity(_) | Node::Zero(_) | Node::Unit(..) => zero(shape),
+        Node::Letter(at) => changes
+            .iter()
+            .find(|(l, _)| l == at)
+            .map_or_else(|| zero(shape), |(_, amount)| amount.clone()),
+        Node::Sum(terms) => sum(terms.iter().map(d), shape),
+        Node::Neg(a) => neg(d(a)),
+        Node::Product(factors) => {
+            let mut terms = Vec::new();
+            for (i, f) in factors.iter().enumerate() {
+                let df = d(f);
+                if !df.is_zero() {
+                    let mut word = factors.clone();
+                    word[i] = df;
+                    terms.push(product(word));
+                }
+            }
+            sum(terms, shape)
+        }
+        Node::Quotient(a, b) => {
+            let (da, db) = (d(a), d(b));
+            let first = if da.is_zero() {
+                zero(shape)
+            } else {
+                quotient(da, b.clone())
+            };
+            if db.is_zero() {
+                return first;
+            }
+            let second = quotient(mul(db, a.clone()), power(b.clone(), Rational::integer(2)));
+            sub(first, second)
+        }
+        Node::Power(a, q) => {
+            let da = d(a);
+            match q.plus(Rational::MINUS_ONE) {
+                Some(lower) if !da.is_zero() => product([number(*q), power(a.clone(), lower), da]),
+                _ => integer(0),
+            }
+        }
+        Node::Transpose(a) => transpose(symbols, d(a)),
+        Node::Inverse(a) => {
+            let da = d(a);
+            if da.is_zero() {
+                return zero(shape);
+            }
+            neg(product([e.clone(), da, e.clone()]))
+        }
+        Node::Trace(a) => trace(d(a)),
+        Node::Det(a) => {
+            let da = d(a);
+            if da.is_zero() {
+                return integer(0);
+            }
+            mul(e.clone(), trace(mul(inverse(symbols, a.clone()), da)))
+        }
+        Node::Dot(a, b) => add(dot(d(a), b.clone()), dot(a.clone(), d(b))),
+        Node::Cross(a, b) => add(cross(d(a), b.clone()), cross(a.clone(), d(b))),
+        Node::Hat(v) => hat(d(v)),
+        Node::Vee(a) => vee(d(a)),
+        Node::Part(which, a) => part(*which, d(a)),
+        Node::Call(function, a) => {
+            let da = d(a);
+            if da.is_zero() {
+                return integer(0);
+            }
+            match function {
+                Function::Exp => mul(e.clone(), da),
+                Function::Log => quotient(da, a.clone()),
+            }
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! Gradients with respect to one letter, by reverse accumulation, in the pairing
+//! `<A, B> = tr(A^T B)`: `d e = <gradient, d letter>`. The result keeps the user's structure.
+
+use super::*;
+use crate::expr::symbol::Symbols;
+
+/// The gradient of the number `e` with respect to `wrt`; its shape is the letter's.
+pub fn gradient(symbols: &Symbols, e: &Expr, wrt: Letter) -> Expr {
+    let shape = symbols.get(wrt.symbol).shape;
+    let mut terms = Vec::new();
+    pull_back(symbols, e, integer(1), wrt, &mut terms);
+    sum(terms, shape)
+}
+
+/// Adds to `out` what `seed`, the gradient with respect to `e`, contributes to that of `wrt`.
+fn pull_back(symbols: &Symbols, e: &Expr, seed: Expr, wrt: Letter, out: &mut Vec<Expr>) {
+    if !contains(e, wrt) || seed.is_zero() {
+        return;
+    }
+    let t = |x: &Expr| transpose(symbols, x.clone());
+    let mut go = |x: &Expr, s: Expr| pull_back(symbols, x, s, wrt, out);
+    match e.node() {
+        Node::Number(_) | Node::Identity(_) | Node::Zero(_) | Node::Unit(..) => {}
+        Node::Letter(at) => {
+            if *at == wrt {
+                out.push(seed);
+            }
+        }
+        Node::Sum(terms) => terms.iter().for_each(|x| go(x, seed.clone())),
+        Node::Neg(a) => go(a, neg(seed)),
+        Node::Product(factors) => {
+            for (i, f) in factors.iter().enumerate() {
+                if f.shape().is_scalar() {
+                    let rest = product(without(factors, i));
+                    go(f, pairing(symbols, seed.clone(), rest));
+                } else {
+                    let numbers = factors.iter().filter(|x| x.shape().is_scalar()).cloned();
+                    let matrix = |x: &&Expr| !x.shape().is_scalar();
+                    let before = factors[..i].iter().rev().filter(matrix).map(t);
+                    let after = factors[i + 1..].iter().rev().filter(matrix).map(t);
+                    let word = numbers
+                        .chain(before)
+                        .chain([seed.clone()])
+                        .chain(after)
+                        .collect::<Vec<_>>();
+                    go(f, product(word));
+                }
+            }
+        }
+        Node::Quotient(a, b) => {
+            go(a, quotient(seed.clone(), b.clone()));
+            let whole = pairing(symbols, seed, a.clone());
+            go(
+                b,
+                neg(quotient(whole, power(b.clone(), Rational::integer(2)))),
+            );
+        }
+        Node::Power(a, q) => {
+            if let Some(lower) = q.plus(Rational::MINUS_ONE) {
+                go(a, product([number(*q), seed, power(a.clone(), lower)]));
+            }
+        }
+        Node::Transpose(a) => go(a, t(&seed)),
+        Node::Inverse(a) => {
+            let back = transpose(symbols, e.clone());
+            go(a, neg(product([back.clone(), seed, back])));
+        }
+        Node::Trace(a) => go(a, mul(seed, identity(a.shape().rows))),
+        Node::Det(a) => {
+            let cofactor = transpose(symbols, inverse(symbols, a.clone()));
+            go(a, product([seed, e.clone(), cofactor]));
+        }
+        Node::Dot(a, b) => {
+            go(a, mul(seed.clone(), b.clone()));
+            go(b, mul(seed, a.clone()));
+        }
+        Node::Cross(a, b) => {
+            go(a, cross(b.clone(), seed.clone()));
+            go(b, cross(seed, a.clone()));
+        }
+        // <S, hat v> = 2 v . vee(S)
+        Node::Hat(v) => go(v, scale(Rational::integer(2), vee(seed))),
+        // s . vee(A) = <hat(s)/2, A>
+        Node::Vee(a) => go(a, scale(Rational::HALF, hat(seed))),
+        Node::Part(which, a) => go(a, part(*which, seed)),
+        Node::Call(function, a) => match function {
+            Function::Exp => go(a, mul(seed, e.clone())),
+            Function::Log => go(a, quotient(seed, a.clone())),
+        },
+    }
+}
+
+fn without(factors: &[Expr], i: usize) -> Vec<Expr> {
+    let mut rest = factors.to_vec();
+    rest.remove(i);
+    rest
+}
+
+/// `<a, b> = tr(a^T b)`, written as a product or scalar product where it is one.
+fn pairing(symbols: &Symbols, a: Expr, b: Expr) -> Expr {
+    if a.shape().is_scalar() {
+        mul(a, b)
+    } else if a.shape().is_vector() {
+        dot(a, b)
+    } else {
+        trace(mul(transpose(symbols, a), b))
+    }
+}

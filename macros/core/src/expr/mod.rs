@@ -1,0 +1,208 @@
+//! Expressions as the user wrote them: a closed, shaped, immutable tree. Decisions are taken on
+//! normal forms ([`crate::algebra`]); what is printed and emitted is always one of these.
+
+mod build;
+mod directional;
+mod gradient;
+pub mod shape;
+mod substitute;
+pub mod symbol;
+
+use crate::algebra::Rational;
+use shape::{Dim, Shape};
+use std::sync::Arc;
+use symbol::SymbolId;
+
+pub use build::*;
+pub use directional::directional;
+pub use gradient::gradient;
+pub use substitute::{contains, contains_role, letters, rebuild, shift_time, substitute};
+
+/// Offset of a letter from the node or edge of an equation, in time and along the labels.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug, Default)]
+pub struct Shift {
+    /// Time levels: `+1` is `next(x)`, `-1` the level before.
+    pub time: i8,
+    /// Label offsets, for rods and particles.
+    pub label: [i8; 2],
+}
+
+impl Shift {
+    /// No offset.
+    pub const HERE: Shift = Shift {
+        time: 0,
+        label: [0, 0],
+    };
+    /// One time level later.
+    pub const NEXT: Shift = Shift {
+        time: 1,
+        label: [0, 0],
+    };
+    /// One time level earlier.
+    pub const PREVIOUS: Shift = Shift {
+        time: -1,
+        label: [0, 0],
+    };
+}
+
+/// A symbol at an offset.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct Letter {
+    /// The symbol.
+    pub symbol: SymbolId,
+    /// Where it is taken.
+    pub shift: Shift,
+}
+
+/// Functions of one number.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub enum Function {
+    /// Exponential.
+    Exp,
+    /// Natural logarithm.
+    Log,
+}
+
+/// Parts of a square matrix, linear in it.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub enum Part {
+    /// `(A + A^T)/2`.
+    Symmetric,
+    /// `(A - A^T)/2`.
+    Skew,
+    /// The diagonal, as a matrix.
+    Diagonal,
+}
+
+/// One node of an expression. Shapes of children are checked by the constructors in `build`.
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub enum Node {
+    /// An exact number.
+    Number(Rational),
+    /// A symbol at an offset.
+    Letter(Letter),
+    /// The identity matrix.
+    Identity(Dim),
+    /// The zero of a shape.
+    Zero(Shape),
+    /// The unit vector along an axis (counted from 0).
+    Unit(Dim, u8),
+    /// A sum of terms of one shape.
+    Sum(Vec<Expr>),
+    /// The opposite.
+    Neg(Expr),
+    /// A product: numbers first, then matrices in order.
+    Product(Vec<Expr>),
+    /// A quotient by a number.
+    Quotient(Expr, Expr),
+    /// A rational power of a number.
+    Power(Expr, Rational),
+    /// The transpose.
+    Transpose(Expr),
+    /// The inverse of a square matrix.
+    Inverse(Expr),
+    /// The trace of a square matrix.
+    Trace(Expr),
+    /// The determinant of a square matrix.
+    Det(Expr),
+    /// The scalar product of two vectors.
+    Dot(Expr, Expr),
+    /// The vector product in three dimensions.
+    Cross(Expr, Expr),
+    /// The skew matrix of a vector: `hat(v) w = v x w`.
+    Hat(Expr),
+    /// The axial vector of the skew part of a 3 x 3 matrix, the inverse of `hat` on skew ones.
+    Vee(Expr),
+    /// A linear part of a square matrix.
+    Part(Part, Expr),
+    /// A function of a number.
+    Call(Function, Expr),
+}
+
+/// A shaped expression; cloning shares it.
+#[derive(Clone)]
+pub struct Expr(Arc<Inner>);
+
+struct Inner {
+    node: Node,
+    shape: Shape,
+    size: u32,
+    hash: u64,
+}
+
+impl Expr {
+    /// The node at the root.
+    pub fn node(&self) -> &Node {
+        &self.0.node
+    }
+
+    /// The shape.
+    pub fn shape(&self) -> Shape {
+        self.0.shape
+    }
+
+    /// Number of nodes of the tree, saturating: what a walk of it costs.
+    pub fn size(&self) -> u32 {
+        self.0.size
+    }
+
+    /// Whether this is the zero of its shape.
+    pub fn is_zero(&self) -> bool {
+        match self.node() {
+            Node::Number(q) => q.is_zero(),
+            Node::Zero(_) => true,
+            _ => false,
+        }
+    }
+
+    /// Children in order.
+    pub fn children(&self) -> Vec<&Expr> {
+        self.node().children()
+    }
+}
+
+impl Node {
+    /// Children in order.
+    pub fn children(&self) -> Vec<&Expr> {
+        match self {
+            Node::Number(_)
+            | Node::Letter(_)
+            | Node::Identity(_)
+            | Node::Zero(_)
+            | Node::Unit(..) => Vec::new(),
+            Node::Sum(list) | Node::Product(list) => list.iter().collect(),
+            Node::Neg(a)
+            | Node::Power(a, _)
+            | Node::Transpose(a)
+            | Node::Inverse(a)
+            | Node::Trace(a)
+            | Node::Det(a)
+            | Node::Hat(a)
+            | Node::Vee(a)
+            | Node::Part(_, a)
+            | Node::Call(_, a) => vec![a],
+            Node::Quotient(a, b) | Node::Dot(a, b) | Node::Cross(a, b) => vec![a, b],
+        }
+    }
+}
+
+impl PartialEq for Expr {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+            || (self.0.hash == other.0.hash && self.0.node == other.0.node)
+    }
+}
+
+impl Eq for Expr {}
+
+impl core::hash::Hash for Expr {
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        state.write_u64(self.0.hash);
+    }
+}
+
+impl core::fmt::Debug for Expr {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        self.node().fmt(f)
+    }
+}

@@ -1,0 +1,103 @@
+//! Questions about and replacements of letters: which occur, shift them in time, put
+//! expressions in their place. All other rewriting happens on normal forms.
+
+use super::build::letter_of_shape;
+use super::symbol::{Role, Symbols};
+use super::*;
+
+/// Whether the letter occurs.
+pub fn contains(e: &Expr, wanted: Letter) -> bool {
+    match e.node() {
+        Node::Letter(at) => *at == wanted,
+        _ => e.children().into_iter().any(|c| contains(c, wanted)),
+    }
+}
+
+/// Whether a letter of this role occurs, at any offset.
+pub fn contains_role(symbols: &Symbols, e: &Expr, role: Role) -> bool {
+    letters(e)
+        .iter()
+        .any(|l| symbols.get(l.symbol).role == role)
+}
+
+/// Every letter that occurs, sorted, once.
+pub fn letters(e: &Expr) -> Vec<Letter> {
+    fn walk(e: &Expr, out: &mut Vec<Letter>) {
+        if let Node::Letter(at) = e.node() {
+            out.push(*at);
+        }
+        e.children().into_iter().for_each(|c| walk(c, out));
+    }
+    let mut out = Vec::new();
+    walk(e, &mut out);
+    out.sort();
+    out.dedup();
+    out
+}
+
+/// The expression with every letter that lives in time moved by `by` levels. Constants stay.
+pub fn shift_time(symbols: &Symbols, e: &Expr, by: i8) -> Expr {
+    map_letters(symbols, e, &|at, shape| {
+        let moves = match symbols.get(at.symbol).role {
+            Role::Step | Role::Parameter | Role::Variation => false,
+            Role::Element | Role::Velocity | Role::Advected | Role::Multiplier | Role::Derived => {
+                true
+            }
+        };
+        let mut to = at;
+        if moves {
+            to.shift.time = to.shift.time.saturating_add(by);
+        }
+        letter_of_shape(to, shape)
+    })
+}
+
+/// The expression with letters replaced; letters not listed stay.
+pub fn substitute(symbols: &Symbols, e: &Expr, replacements: &[(Letter, Expr)]) -> Expr {
+    map_letters(symbols, e, &|at, shape| {
+        replacements
+            .iter()
+            .find(|(l, _)| *l == at)
+            .map_or_else(|| letter_of_shape(at, shape), |(_, x)| x.clone())
+    })
+}
+
+fn map_letters(symbols: &Symbols, e: &Expr, f: &dyn Fn(Letter, shape::Shape) -> Expr) -> Expr {
+    match e.node() {
+        Node::Letter(at) => f(*at, e.shape()),
+        _ => rebuild(symbols, e, &mut |x| map_letters(symbols, x, f)),
+    }
+}
+
+/// The same node with every child replaced; leaves stay.
+pub fn rebuild(symbols: &Symbols, e: &Expr, go: &mut dyn FnMut(&Expr) -> Expr) -> Expr {
+    match e.node() {
+        Node::Number(_) | Node::Letter(_) | Node::Identity(_) | Node::Zero(_) | Node::Unit(..) => {
+            e.clone()
+        }
+        Node::Sum(list) => sum(list.iter().map(go).collect::<Vec<_>>(), e.shape()),
+        Node::Neg(a) => neg(go(a)),
+        Node::Product(list) => product(list.iter().map(go).collect::<Vec<_>>()),
+        Node::Quotient(a, b) => {
+            let a = go(a);
+            quotient(a, go(b))
+        }
+        Node::Power(a, q) => power(go(a), *q),
+        Node::Transpose(a) => transpose(symbols, go(a)),
+        Node::Inverse(a) => inverse(symbols, go(a)),
+        Node::Trace(a) => trace(go(a)),
+        Node::Det(a) => det(go(a)),
+        Node::Dot(a, b) => {
+            let a = go(a);
+            dot(a, go(b))
+        }
+        Node::Cross(a, b) => {
+            let a = go(a);
+            cross(a, go(b))
+        }
+        Node::Hat(a) => hat(go(a)),
+        Node::Vee(a) => vee(go(a)),
+        Node::Part(which, a) => part(*which, go(a)),
+        Node::Call(function, a) => call(*function, go(a)),
+    }
+}

@@ -1,0 +1,197 @@
+//! Symbols of a model and their table: name, shape, structure and role of every letter
+//! that can appear in an expression, in order of declaration.
+
+use super::shape::{Dim, Shape, Structure};
+
+/// Index of a symbol in its table.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct SymbolId(pub u32);
+
+/// What a symbol stands for; decides where it lives.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub enum Role {
+    /// The time step, a positive constant.
+    Step,
+    /// A constant of the model.
+    Parameter,
+    /// A group element, at nodes.
+    Element,
+    /// A discrete velocity, on the edge from node k to node k+1.
+    Velocity,
+    /// A quantity carried by the group, at nodes.
+    Advected,
+    /// A Lagrange multiplier of a Clebsch constraint, at nodes.
+    Multiplier,
+    /// A free variation (an element of the Lie algebra, or a test matrix).
+    Variation,
+    /// A name given to a derived quantity for display and for structural tests.
+    Derived,
+}
+
+/// One symbol.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Symbol {
+    /// Name as written, e.g. `Λ1`.
+    pub name: String,
+    /// ASCII twin used in files, e.g. `Lambda1`.
+    pub ascii: String,
+    /// Shape.
+    pub shape: Shape,
+    /// Structure.
+    pub structure: Structure,
+    /// Role.
+    pub role: Role,
+}
+
+/// All symbols of a model, in order of creation.
+#[derive(Clone, Default, PartialEq, Eq, Debug)]
+pub struct Symbols {
+    list: Vec<Symbol>,
+    dims: Vec<String>,
+}
+
+impl Symbols {
+    /// Adds a symbol and returns its index.
+    pub fn add(&mut self, name: &str, shape: Shape, structure: Structure, role: Role) -> SymbolId {
+        self.list.push(Symbol {
+            name: name.to_owned(),
+            ascii: ascii(name),
+            shape,
+            structure,
+            role,
+        });
+        SymbolId((self.list.len() - 1) as u32)
+    }
+
+    /// Declares a named dimension.
+    pub fn add_dim(&mut self, name: &str) -> Dim {
+        self.dims.push(name.to_owned());
+        Dim::Named((self.dims.len() - 1) as u16)
+    }
+
+    /// The text of a dimension: its number or its name.
+    pub fn dim_text(&self, dim: Dim) -> String {
+        match dim {
+            Dim::Fixed(n) => n.to_string(),
+            Dim::Named(i) => self.dims.get(i as usize).cloned().unwrap_or_default(),
+        }
+    }
+
+    /// The declared dimension of that name.
+    pub fn find_dim(&self, name: &str) -> Option<Dim> {
+        let i = self.dims.iter().position(|d| d == name)?;
+        Some(Dim::Named(i as u16))
+    }
+
+    /// The symbol with this index. Indices are only made by [`Symbols::add`].
+    pub fn get(&self, id: SymbolId) -> &Symbol {
+        &self.list[id.0 as usize]
+    }
+
+    /// The symbol declared under this name.
+    pub fn find(&self, name: &str) -> Option<SymbolId> {
+        let i = self.list.iter().position(|s| s.name == name)?;
+        Some(SymbolId(i as u32))
+    }
+
+    /// All indices in order.
+    pub fn ids(&self) -> impl Iterator<Item = SymbolId> + use<> {
+        (0..self.list.len() as u32).map(SymbolId)
+    }
+
+    /// A name that no symbol bears yet: `base`, or `base` with a number.
+    pub fn fresh_name(&self, base: &str) -> String {
+        if self.find(base).is_none() {
+            return base.to_owned();
+        }
+        let mut n = 1u32;
+        loop {
+            let name = format!("{base}{n}");
+            if self.find(&name).is_none() {
+                return name;
+            }
+            n += 1;
+        }
+    }
+}
+
+/// Greek letters with their ASCII names, the public ones in files.
+pub const GREEK: [(char, &str); 49] = [
+    ('α', "alpha"),
+    ('β', "beta"),
+    ('γ', "gamma"),
+    ('δ', "delta"),
+    ('ε', "epsilon"),
+    ('ζ', "zeta"),
+    ('η', "eta"),
+    ('θ', "theta"),
+    ('ι', "iota"),
+    ('κ', "kappa"),
+    ('λ', "lambda"),
+    ('μ', "mu"),
+    ('ν', "nu"),
+    ('ξ', "xi"),
+    ('ο', "omicron"),
+    ('π', "pi"),
+    ('ρ', "rho"),
+    ('ς', "varsigma"),
+    ('σ', "sigma"),
+    ('τ', "tau"),
+    ('υ', "upsilon"),
+    ('φ', "phi"),
+    ('χ', "chi"),
+    ('ψ', "psi"),
+    ('ω', "omega"),
+    ('Α', "Alpha"),
+    ('Β', "Beta"),
+    ('Γ', "Gamma"),
+    ('Δ', "Delta"),
+    ('Ε', "Epsilon"),
+    ('Ζ', "Zeta"),
+    ('Η', "Eta"),
+    ('Θ', "Theta"),
+    ('Ι', "Iota"),
+    ('Κ', "Kappa"),
+    ('Λ', "Lambda"),
+    ('Μ', "Mu"),
+    ('Ν', "Nu"),
+    ('Ξ', "Xi"),
+    ('Ο', "Omicron"),
+    ('Π', "Pi"),
+    ('Ρ', "Rho"),
+    ('Σ', "Sigma"),
+    ('Τ', "Tau"),
+    ('Υ', "Upsilon"),
+    ('Φ', "Phi"),
+    ('Χ', "Chi"),
+    ('Ψ', "Psi"),
+    ('Ω', "Omega"),
+];
+
+/// The ASCII twin of a name: Greek letters spelled out, other non-ASCII characters as `u` and
+/// their code point in hexadecimal.
+pub fn ascii(name: &str) -> String {
+    let mut out = String::new();
+    for c in name.chars() {
+        if c.is_ascii() {
+            out.push(c);
+        } else if let Some((_, word)) = GREEK.iter().find(|(g, _)| *g == c) {
+            out.push_str(word);
+        } else {
+            out.push_str(&format!("u{:x}", c as u32));
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ascii;
+
+    #[test]
+    fn greek_names_have_ascii_twins() {
+        assert_eq!(ascii("Λ1"), "Lambda1");
+        assert_eq!(ascii("Γ"), "Gamma");
+        assert_eq!(ascii("chi"), "chi");
+    }
+}

@@ -1,0 +1,245 @@
+//! Layouts of expressions, one arm for each kind of node.
+
+use super::{Composer, transposition};
+use crate::algebra::Rational;
+use crate::expr::{self, Expr, Function, Node, Part};
+use crate::print::layout::{Layout, Sign};
+use crate::print::level::{Laid, Level};
+
+/// Width, in tenths of a letter, from which a numerator stands beside its denominator,
+/// `1/h (...)`, so that it can be broken over lines: half a line.
+const WIDEST_NUMERATOR: usize = 300;
+
+impl Composer<'_> {
+    /// An expression with its sign.
+    pub fn expression(&self, e: &Expr) -> Laid {
+        self.sum(self.terms(e))
+    }
+
+    /// The terms of an expression; `true` marks one that is subtracted.
+    pub fn terms(&self, e: &Expr) -> Vec<(bool, Laid)> {
+        match e.node() {
+            Node::Sum(terms) => terms.iter().map(|t| self.signed(t)).collect(),
+            _ => vec![self.signed(e)],
+        }
+    }
+
+    /// Takes the sign off, also the one that a number at the front carries.
+    fn signed(&self, e: &Expr) -> (bool, Laid) {
+        if let Node::Neg(inner) = e.node() {
+            let (minus, laid) = self.signed(inner);
+            return (!minus, laid);
+        }
+        match e.node() {
+            Node::Number(q) if q.is_negative() => (true, self.number(q.negated())),
+            Node::Quotient(a, b) => {
+                let mut divisors = vec![b];
+                let top = numerator(a, &mut divisors);
+                match top.node() {
+                    Node::Number(q) if q.is_negative() => {
+                        (true, self.quotient(q.negated(), &[], &divisors))
+                    }
+                    // The constructors have carried a minus into every term; it reads better out.
+                    Node::Sum(terms) if terms.iter().all(is_negative) => {
+                        let positive = [expr::neg(top.clone())];
+                        (true, self.quotient(Rational::ONE, &positive, &divisors))
+                    }
+                    _ => (false, self.unsigned(e)),
+                }
+            }
+            _ => (false, self.unsigned(e)),
+        }
+    }
+
+    fn unsigned(&self, e: &Expr) -> Laid {
+        match e.node() {
+            Node::Number(q) => self.number(*q),
+            Node::Letter(at) => Laid::atom(self.letter(*at)),
+            Node::Identity(_) => Laid::atom(Layout::Word("Id".to_owned())),
+            Node::Zero(_) => Laid::atom(Layout::Number("0".to_owned())),
+            Node::Unit(_, axis) => {
+                let axis = (u32::from(*axis) + 1).to_string();
+                Laid::atom(self.name("E", Some(&axis), None))
+            }
+            Node::Sum(_) | Node::Neg(_) => self.expression(e),
+            Node::Product(factors) => {
+                let (q, rest) = split(factors).unwrap_or((Rational::ONE, factors));
+                if rest.iter().any(|f| reciprocal(f).is_some()) {
+                    self.quotient(q, rest, &[])
+                } else {
+                    self.product(q, rest)
+                }
+            }
+            Node::Quotient(a, b) => {
+                let mut divisors = vec![b];
+                let top = numerator(a, &mut divisors);
+                match top.node() {
+                    Node::Number(q) => self.quotient(*q, &[], &divisors),
+                    Node::Product(factors) => {
+                        let (q, rest) = split(factors).unwrap_or((Rational::ONE, factors));
+                        self.quotient(q, rest, &divisors)
+                    }
+                    _ => self.quotient(Rational::ONE, std::slice::from_ref(top), &divisors),
+                }
+            }
+            Node::Power(a, q) => self.power(self.expression(a), *q),
+            Node::Transpose(a) => match a.node() {
+                Node::Inverse(inner) => self.expression(inner).raised(transposition(true)),
+                _ => self.expression(a).raised(transposition(false)),
+            },
+            Node::Inverse(a) => self.inverted(a),
+            Node::Trace(a) => self.call("tr", self.sized(a)),
+            Node::Det(a) => self.call("det", self.sized(a)),
+            Node::Dot(a, b) => self.infix(
+                self.expression(a),
+                Sign::Dot,
+                self.expression(b),
+                Level::Dot,
+            ),
+            Node::Cross(a, b) => {
+                let (a, b) = (self.expression(a), self.expression(b));
+                self.infix(a, Sign::Cross, b, Level::Infix)
+            }
+            Node::Hat(a) => self.hat(self.expression(a)),
+            Node::Vee(a) => self.call("vee", self.expression(a)),
+            Node::Part(which, a) => {
+                let word = match which {
+                    Part::Symmetric => "sym",
+                    Part::Skew => "skew",
+                    Part::Diagonal => "diag",
+                };
+                self.call(word, self.expression(a))
+            }
+            Node::Call(function, a) => {
+                let word = match function {
+                    Function::Exp => "exp",
+                    Function::Log => "log",
+                };
+                self.call(word, self.expression(a))
+            }
+        }
+    }
+
+    /// The inverse of an expression; that of a transpose bears one superscript.
+    pub fn inverted(&self, a: &Expr) -> Laid {
+        match a.node() {
+            Node::Transpose(inner) => self.expression(inner).raised(transposition(true)),
+            _ => self.power(self.expression(a), Rational::MINUS_ONE),
+        }
+    }
+
+    /// Under a trace nothing else tells the size of the identity.
+    fn sized(&self, e: &Expr) -> Laid {
+        match e.node() {
+            Node::Identity(n) => {
+                let size = self.symbols.dim_text(*n);
+                let id = Layout::Word("Id".to_owned());
+                Laid::atom(id.subscript(super::name::script(&size)))
+            }
+            _ => self.expression(e),
+        }
+    }
+
+    /// A number times factors.
+    fn product(&self, q: Rational, factors: &[Expr]) -> Laid {
+        let mut parts = Vec::new();
+        let numbered = !q.is_one() || factors.is_empty();
+        if numbered && !q.is_negative() {
+            parts.push(self.number(q));
+        } else if numbered {
+            parts.push(self.sum(vec![(true, self.number(q.negated()))]));
+        }
+        for run in factors.chunk_by(|a, b| a == b && matches!(a.node(), Node::Letter(_))) {
+            match (run, i64::try_from(run.len())) {
+                ([first, _, ..], Ok(n)) => {
+                    parts.push(self.power(self.expression(first), Rational::integer(n)));
+                }
+                _ => parts.extend(run.iter().map(|f| self.expression(f))),
+            }
+        }
+        let last = parts.len().saturating_sub(1);
+        if last == 0
+            && let Some(only) = parts.pop()
+        {
+            return only;
+        }
+        let beside = parts.into_iter().enumerate().map(|(i, part)| {
+            // Digits behind another factor would read as part of it.
+            if i > 0 && matches!(part.layout, Layout::Number(_)) {
+                Laid::new(part.layout, Level::Sum).factor(false)
+            } else {
+                part.factor(i == last)
+            }
+        });
+        self.beside(beside.collect())
+    }
+
+    /// A number times factors, over divisors, which the number's denominator and the negative
+    /// powers of numbers join.
+    fn quotient(&self, q: Rational, factors: &[Expr], divisors: &[&Expr]) -> Laid {
+        let whole = |n: i128| Rational::new(n, 1).unwrap_or(Rational::ONE);
+        let mut below = whole(q.denominator());
+        let mut under: Vec<Expr> = factors.iter().filter_map(reciprocal).collect();
+        let over: Vec<Expr> = factors
+            .iter()
+            .filter(|f| reciprocal(f).is_none())
+            .cloned()
+            .collect();
+        for divisor in divisors {
+            let Node::Product(inner) = divisor.node() else {
+                under.push((*divisor).clone());
+                continue;
+            };
+            match split(inner).and_then(|(n, rest)| Some((below.times(n)?, rest))) {
+                Some((total, rest)) => {
+                    below = total;
+                    under.extend_from_slice(rest);
+                }
+                None => under.extend_from_slice(inner),
+            }
+        }
+        let bottom = self.product(below, &under);
+        let above = whole(q.numerator());
+        let top = self.product(above, &over);
+        if !self.stacked || top.layout.width() <= WIDEST_NUMERATOR {
+            return self.fraction(top, bottom);
+        }
+        let front = self.fraction(self.number(above), bottom);
+        let rest = self.product(Rational::ONE, &over);
+        self.beside(vec![front.factor(false), rest.factor(true)])
+    }
+}
+
+/// The numerator of quotients inside one another; their divisors are added.
+fn numerator<'e>(mut top: &'e Expr, divisors: &mut Vec<&'e Expr>) -> &'e Expr {
+    while let Node::Quotient(a, b) = top.node() {
+        divisors.push(b);
+        top = a;
+    }
+    top
+}
+
+fn is_negative(term: &Expr) -> bool {
+    match term.node() {
+        Node::Neg(_) => true,
+        Node::Number(q) => q.is_negative(),
+        _ => false,
+    }
+}
+
+/// What stands below the line where the factor is a negative power of a number.
+fn reciprocal(factor: &Expr) -> Option<Expr> {
+    match factor.node() {
+        Node::Power(a, q) if q.is_negative() => Some(expr::power(a.clone(), q.negated())),
+        _ => None,
+    }
+}
+
+/// The number at the front of a product and what follows it.
+fn split(factors: &[Expr]) -> Option<(Rational, &[Expr])> {
+    let (first, rest) = factors.split_first()?;
+    match first.node() {
+        Node::Number(q) => Some((*q, rest)),
+        _ => None,
+    }
+}

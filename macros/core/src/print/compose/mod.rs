@@ -1,0 +1,278 @@
+//! From expressions and formulas to layouts: every decision on brackets, signs, scripts and
+//! fractions is taken here, once for all formats.
+
+mod expression;
+mod formula;
+
+use super::Style;
+use super::layout::{Fence, Layout, Sign, Strength};
+use super::level::{Laid, Level};
+use super::name;
+use crate::algebra::Rational;
+use crate::expr::Letter;
+use crate::expr::symbol::{Role, Symbols};
+
+/// Width, in tenths of a letter, from which a hat is not drawn over its argument any more.
+const WIDEST_HAT: usize = 80;
+
+/// Composes layouts in one style.
+pub(super) struct Composer<'a> {
+    pub symbols: &'a Symbols,
+    pub style: &'a Style,
+    /// Whether numerators stand above denominators.
+    pub stacked: bool,
+}
+
+impl Composer<'_> {
+    /// A letter with its indices.
+    fn letter(&self, at: Letter) -> Layout {
+        let symbol = self.symbols.get(at.symbol);
+        let parsed = name::parse(&symbol.name);
+        let mut subs: Vec<Layout> = parsed.subs.iter().map(|s| name::script(s)).collect();
+        if lives_in_time(symbol.role) {
+            subs.extend(offset(&self.style.time_index, at.shift.time));
+            for (i, by) in at.shift.label.into_iter().enumerate() {
+                let index = self.style.label_indices.get(i).map_or("", String::as_str);
+                subs.extend(offset(index, by));
+            }
+        }
+        scripted(parsed.base, subs, parsed.sup.as_deref())
+    }
+
+    /// A name with scripts given as text.
+    fn name(&self, base: &str, sub: Option<&str>, sup: Option<&str>) -> Layout {
+        let parsed = name::parse(base);
+        let texts = parsed.subs.iter().map(String::as_str).chain(sub);
+        let subs = texts.map(name::script).collect();
+        scripted(parsed.base, subs, sup.or(parsed.sup.as_deref()))
+    }
+
+    /// A positive number.
+    fn number(&self, q: Rational) -> Laid {
+        let digits = |n: i128| Layout::Number(n.to_string());
+        let (num, den) = (q.numerator(), q.denominator());
+        if den == 1 {
+            return Laid::atom(digits(num));
+        }
+        if self.stacked {
+            let fraction = Layout::Fraction(Box::new(digits(num)), Box::new(digits(den)));
+            return Laid::new(fraction, Level::Prefix);
+        }
+        match vulgar(num, den) {
+            Some(c) => Laid::new(Layout::Number(c.to_string()), Level::Prefix),
+            None => {
+                let row = vec![digits(num), Layout::Sign(Sign::Slash), digits(den)];
+                Laid::new(Layout::Row(row), Level::Slash)
+            }
+        }
+    }
+
+    /// A sum of signed terms; `true` marks one that is subtracted.
+    fn sum(&self, terms: Vec<(bool, Laid)>) -> Laid {
+        let several = terms.len() > 1;
+        let signed = terms.first().is_some_and(|(minus, _)| *minus);
+        if !several && !signed {
+            let zero = || Laid::atom(Layout::Number("0".to_owned()));
+            return terms.into_iter().next().map_or_else(zero, |(_, only)| only);
+        }
+        let mut row = Vec::new();
+        for (i, (minus, term)) in terms.into_iter().enumerate() {
+            match (i, minus) {
+                (0, true) => row.push(Layout::Sign(Sign::Negative)),
+                (0, false) => {}
+                (_, minus) => {
+                    row.push(Layout::Break(Strength::Term));
+                    let sign = if minus { Sign::Minus } else { Sign::Plus };
+                    row.push(Layout::Sign(sign));
+                }
+            }
+            row.push(term.term());
+        }
+        let level = if several { Level::Sum } else { Level::Signed };
+        Laid::new(Layout::Row(row), level)
+    }
+
+    /// Factors side by side, already bracketed.
+    fn beside(&self, factors: Vec<Layout>) -> Laid {
+        let mut row = Vec::new();
+        for f in factors {
+            if !row.is_empty() {
+                row.push(Layout::Sign(Sign::Times));
+            }
+            row.push(f);
+        }
+        Laid::new(Layout::row(row), Level::Product)
+    }
+
+    /// A numerator over a denominator.
+    fn fraction(&self, top: Laid, bottom: Laid) -> Laid {
+        if self.stacked {
+            let fraction = Layout::Fraction(Box::new(top.layout), Box::new(bottom.layout));
+            return Laid::new(fraction, Level::Prefix);
+        }
+        let row = vec![
+            top.before_slash(),
+            Layout::Sign(Sign::Slash),
+            bottom.after_slash(),
+        ];
+        Laid::new(Layout::Row(row), Level::Slash)
+    }
+
+    /// `a` and `b` with an infix sign between.
+    fn infix(&self, a: Laid, sign: Sign, b: Laid, level: Level) -> Laid {
+        let row = vec![a.operand(), Layout::Sign(sign), b.operand()];
+        Laid::new(Layout::Row(row), level)
+    }
+
+    /// A rational power.
+    fn power(&self, base: Laid, q: Rational) -> Laid {
+        if q == Rational::HALF {
+            return self.root(base);
+        }
+        let mut row = Vec::new();
+        if q.is_negative() {
+            row.push(Layout::Sign(Sign::Tight('-')));
+        }
+        row.push(Layout::Number(q.numerator().unsigned_abs().to_string()));
+        if q.denominator() != 1 {
+            row.push(Layout::Sign(Sign::Tight('/')));
+            row.push(Layout::Number(q.denominator().to_string()));
+        }
+        base.raised(Layout::row(row))
+    }
+
+    fn root(&self, inner: Laid) -> Laid {
+        let layout = if self.stacked {
+            Layout::Root(Box::new(inner.layout))
+        } else {
+            Layout::Row(vec![Layout::Sign(Sign::Root), inner.base()])
+        };
+        Laid::new(layout, Level::Prefix)
+    }
+
+    /// The skew matrix of a vector: a hat, on the letter alone where there is one.
+    fn hat(&self, inner: Laid) -> Laid {
+        if !self.stacked {
+            return self.call("hat", inner);
+        }
+        let hat = |a: Layout| Layout::Hat(Box::new(a));
+        Laid::atom(match inner.layout {
+            Layout::Script {
+                base,
+                sub,
+                sup: None,
+            } if matches!(*base, Layout::Identifier(_)) => Layout::Script {
+                base: Box::new(hat(*base)),
+                sub,
+                sup: None,
+            },
+            wide if wide.width() > WIDEST_HAT => {
+                Layout::fenced(Fence::Round, wide).superscript(Layout::Sign(Sign::Wedge))
+            }
+            narrow => hat(narrow),
+        })
+    }
+
+    /// An operator by its name, with its argument in brackets.
+    fn call(&self, word: &str, argument: Laid) -> Laid {
+        self.applied(Layout::Word(word.to_owned()), vec![argument.layout])
+    }
+
+    /// `f(a, b, ...)`.
+    fn applied(&self, function: Layout, arguments: Vec<Layout>) -> Laid {
+        let arguments = Layout::fenced(Fence::Round, self.commas(arguments));
+        Laid::atom(Layout::Row(vec![
+            function,
+            Layout::Sign(Sign::Apply),
+            arguments,
+        ]))
+    }
+
+    fn commas(&self, parts: Vec<Layout>) -> Layout {
+        let mut row = Vec::new();
+        for (i, part) in parts.into_iter().enumerate() {
+            if i > 0 {
+                row.push(Layout::Sign(Sign::Comma));
+                row.push(Layout::Break(Strength::Term));
+            }
+            row.push(part);
+        }
+        Layout::row(row)
+    }
+}
+
+/// `T`, or `-T` for the transpose of an inverse.
+fn transposition(inverted: bool) -> Layout {
+    let t = Layout::Word("T".to_owned());
+    if inverted {
+        Layout::Row(vec![Layout::Sign(Sign::Tight('-')), t])
+    } else {
+        t
+    }
+}
+
+fn lives_in_time(role: Role) -> bool {
+    match role {
+        Role::Element | Role::Velocity | Role::Advected | Role::Multiplier | Role::Derived => true,
+        Role::Step | Role::Parameter | Role::Variation => false,
+    }
+}
+
+/// `k`, `k+1`, `k-1`; nothing for a nameless index without offset.
+fn offset(index: &str, by: i8) -> Option<Layout> {
+    let mut row = Vec::new();
+    if !index.is_empty() {
+        row.push(name::script(index));
+    }
+    if by != 0 {
+        let sign = if by > 0 { '+' } else { '-' };
+        row.push(Layout::Sign(Sign::Tight(sign)));
+        row.push(Layout::Number(by.unsigned_abs().to_string()));
+    }
+    (!row.is_empty()).then(|| Layout::row(row))
+}
+
+fn scripted(base: String, subs: Vec<Layout>, sup: Option<&str>) -> Layout {
+    let mut row = Vec::new();
+    for sub in subs {
+        if !row.is_empty() {
+            row.push(Layout::Sign(Sign::Tight(',')));
+        }
+        row.push(sub);
+    }
+    let mut layout = if base.chars().all(|c| c.is_ascii_digit()) {
+        Layout::Number(base)
+    } else {
+        Layout::Identifier(base)
+    };
+    if !row.is_empty() {
+        layout = layout.subscript(Layout::row(row));
+    }
+    match sup {
+        Some(text) => layout.superscript(name::script(text)),
+        None => layout,
+    }
+}
+
+/// The character of a common fraction.
+fn vulgar(num: i128, den: i128) -> Option<char> {
+    const TABLE: [(i128, i128, char); 15] = [
+        (1, 2, '½'),
+        (1, 3, '⅓'),
+        (2, 3, '⅔'),
+        (1, 4, '¼'),
+        (3, 4, '¾'),
+        (1, 5, '⅕'),
+        (2, 5, '⅖'),
+        (3, 5, '⅗'),
+        (4, 5, '⅘'),
+        (1, 6, '⅙'),
+        (5, 6, '⅚'),
+        (1, 8, '⅛'),
+        (3, 8, '⅜'),
+        (5, 8, '⅝'),
+        (7, 8, '⅞'),
+    ];
+    let (_, _, c) = TABLE.iter().find(|(n, d, _)| (*n, *d) == (num, den))?;
+    Some(*c)
+}

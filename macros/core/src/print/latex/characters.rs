@@ -1,0 +1,128 @@
+//! LaTeX for single characters, names and words: Greek letters and signs by their commands,
+//! everything that LaTeX reads escaped.
+
+use crate::expr::symbol::GREEK;
+
+/// A letter, or several set as one name.
+pub(super) fn identifier(s: &str) -> String {
+    let mut chars = s.chars();
+    match (chars.next(), chars.next()) {
+        (Some(only), None) => symbol_of(only, false),
+        _ => {
+            let letters = s.chars().map(|c| symbol_of(c, false));
+            format!("\\mathit{{{}}}", joined(letters))
+        }
+    }
+}
+
+/// A character in math mode (`words` false) or inside a sentence.
+pub(super) fn symbol_of(c: char, words: bool) -> String {
+    let math = |m: &str| {
+        if words {
+            format!("${m}$")
+        } else {
+            m.to_owned()
+        }
+    };
+    if let Some((_, greek)) = GREEK.iter().find(|(g, _)| *g == c) {
+        return math(&greek_command(greek));
+    }
+    if let Some((_, command)) = SYMBOLS.iter().find(|(s, _)| *s == c) {
+        return math(command);
+    }
+    match c {
+        '#' | '$' | '%' | '&' | '_' | '{' | '}' => format!("\\{c}"),
+        '\\' if words => "\\textbackslash{}".to_owned(),
+        '~' if words => "\\textasciitilde{}".to_owned(),
+        '^' if words => "\\textasciicircum{}".to_owned(),
+        '\\' => "\\backslash ".to_owned(),
+        '~' => "\\sim ".to_owned(),
+        '^' => "\\wedge ".to_owned(),
+        '<' | '>' | '|' if words => format!("${c}$"),
+        _ if c.is_ascii() || words => c.to_string(),
+        _ => format!("\\text{{{c}}}"),
+    }
+}
+
+/// LaTeX has no commands for the capitals that look Latin.
+fn greek_command(word: &str) -> String {
+    let latin = match word {
+        "Alpha" => "A",
+        "Beta" => "B",
+        "Epsilon" => "E",
+        "Zeta" => "Z",
+        "Eta" => "H",
+        "Iota" => "I",
+        "Kappa" => "K",
+        "Mu" => "M",
+        "Nu" => "N",
+        "Omicron" => "O",
+        "Rho" => "P",
+        "Tau" => "T",
+        "Chi" => "X",
+        "omicron" => return "o".to_owned(),
+        "epsilon" => return "\\varepsilon".to_owned(),
+        "phi" => return "\\varphi".to_owned(),
+        _ => return format!("\\{word}"),
+    };
+    format!("\\mathrm{{{latin}}}")
+}
+
+/// Signs that plain LaTeX knows only by command.
+const SYMBOLS: [(char, &str); 36] = [
+    ('ℓ', "\\ell"),
+    ('∂', "\\partial"),
+    ('∇', "\\nabla"),
+    ('∑', "\\sum"),
+    ('√', "\\surd"),
+    ('∞', "\\infty"),
+    ('·', "\\cdot"),
+    ('×', "\\times"),
+    ('◇', "\\diamond"),
+    ('⋄', "\\diamond"),
+    ('∘', "\\circ"),
+    ('⊗', "\\otimes"),
+    ('∈', "\\in"),
+    ('→', "\\to"),
+    ('↦', "\\mapsto"),
+    ('⟹', "\\implies"),
+    ('≤', "\\le"),
+    ('≥', "\\ge"),
+    ('≠', "\\ne"),
+    ('≈', "\\approx"),
+    ('≡', "\\equiv"),
+    ('±', "\\pm"),
+    ('−', "-"),
+    ('⟨', "\\langle"),
+    ('⟩', "\\rangle"),
+    ('ᵀ', "{}^{T}"),
+    ('⁻', "{}^{-}"),
+    ('¹', "{}^{1}"),
+    ('²', "{}^{2}"),
+    ('³', "{}^{3}"),
+    ('½', "\\tfrac{1}{2}"),
+    ('⅓', "\\tfrac{1}{3}"),
+    ('¼', "\\tfrac{1}{4}"),
+    ('°', "{}^{\\circ}"),
+    ('ℝ', "\\mathbf{R}"),
+    ('⋉', "\\rtimes"),
+];
+
+/// Words of a sentence.
+pub(super) fn text(s: &str) -> String {
+    s.chars().map(|c| symbol_of(c, true)).collect()
+}
+
+/// Concatenates, with a space where a command would run into a letter.
+pub(super) fn joined(parts: impl Iterator<Item = String>) -> String {
+    let mut out = String::new();
+    for part in parts {
+        let letter = |c: char| c.is_ascii_alphabetic();
+        let tail = out.trim_end_matches(letter);
+        if tail.len() < out.len() && tail.ends_with('\\') && part.starts_with(letter) {
+            out.push(' ');
+        }
+        out.push_str(&part);
+    }
+    out
+}

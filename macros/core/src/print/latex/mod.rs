@@ -1,0 +1,275 @@
+//! LaTeX: formulas for math mode and documents as a section for a paper. Needs amsmath and
+//! nothing else; every character of the output that LaTeX must know is ASCII or a Latin letter.
+
+mod characters;
+
+use super::document::{Block, Document, Inline};
+use super::formula::{Formula, Relation};
+use super::layout::{Fence, Layout, Sign};
+use super::lines::{self, Piece};
+use super::{Page, name};
+use crate::expr::symbol;
+use characters::{identifier, joined, symbol_of, text};
+
+/// Whose commands may be used.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Dialect {
+    /// LaTeX with amsmath.
+    Amsmath,
+    /// What GitHub renders: it refuses `\operatorname`.
+    GitHub,
+}
+
+/// A layout on one line.
+pub(super) fn line(layout: &Layout, dialect: Dialect) -> String {
+    let go = |l: &Layout| line(l, dialect);
+    match layout {
+        Layout::Identifier(s) => identifier(s),
+        Layout::Number(s) => s.chars().map(|c| symbol_of(c, false)).collect(),
+        Layout::Word(s) => word(s, dialect),
+        Layout::Text(s) => format!("\\text{{{}}}", text(s)),
+        Layout::Sign(s) => sign(*s),
+        Layout::Row(parts) => joined(parts.iter().map(go)),
+        Layout::Script { base, sub, sup } => {
+            let mut out = match **base {
+                Layout::Row(_) | Layout::Script { .. } => format!("{{{}}}", go(base)),
+                _ => go(base),
+            };
+            if let Some(sub) = sub {
+                out.push_str(&format!("_{{{}}}", go(sub)));
+            }
+            if let Some(sup) = sup {
+                out.push_str(&format!("^{{{}}}", go(sup)));
+            }
+            out
+        }
+        Layout::Fraction(a, b) => format!("\\frac{{{}}}{{{}}}", go(a), go(b)),
+        Layout::Root(a) => format!("\\sqrt{{{}}}", go(a)),
+        Layout::Hat(a) => {
+            let command = match &**a {
+                Layout::Identifier(s) if s.chars().count() == 1 => "hat",
+                _ => "widehat",
+            };
+            format!("\\{command}{{{}}}", go(a))
+        }
+        Layout::Fenced(fence, inner) => {
+            let (open, close) = sized(*fence, inner.is_tall());
+            joined([open, go(inner), close].into_iter())
+        }
+        Layout::Break(_) => String::new(),
+    }
+}
+
+fn sign(sign: Sign) -> String {
+    let command = match sign {
+        Sign::Plus => " + ",
+        Sign::Minus => " - ",
+        Sign::Negative => "-",
+        Sign::Times | Sign::Thin => "\\,",
+        Sign::Wide => "\\;",
+        Sign::Dot => " \\cdot ",
+        Sign::Cross => " \\times ",
+        Sign::Diamond => " \\diamond ",
+        Sign::Slash => "/",
+        Sign::Comma => ", ",
+        Sign::Nabla => "\\nabla",
+        Sign::Delta => "\\delta ",
+        Sign::Sum => "\\sum",
+        Sign::Root => "\\surd",
+        Sign::Bar => "\\Big|",
+        Sign::Star => "*",
+        Sign::Wedge => "\\wedge",
+        Sign::Apply | Sign::Operand => "",
+        Sign::Tight(c) => return symbol_of(c, false),
+        Sign::Relation(r) => return format!(" {} ", relation(r)),
+    };
+    command.to_owned()
+}
+
+fn relation(r: Relation) -> &'static str {
+    match r {
+        Relation::Equal => "=",
+        Relation::Defined => ":=",
+        Relation::Carried => "\\to",
+        Relation::Identical => "\\equiv",
+        Relation::Approximate => "\\approx",
+        Relation::Member => "\\in",
+        Relation::Less => "<",
+        Relation::AtMost => "\\le",
+        Relation::Greater => ">",
+        Relation::AtLeast => "\\ge",
+        Relation::Implies => "\\implies",
+    }
+}
+
+fn brackets(fence: Fence) -> (&'static str, &'static str) {
+    match fence {
+        Fence::Round => ("(", ")"),
+        Fence::Square => ("[", "]"),
+        Fence::Angle => ("\\langle", "\\rangle"),
+        Fence::Bars => ("\\lvert", "\\rvert"),
+    }
+}
+
+fn word(s: &str, dialect: Dialect) -> String {
+    let escaped = text(s);
+    match (s, dialect) {
+        ("det" | "exp" | "log", _) => format!("\\{s}"),
+        ("T", _) => "T".to_owned(),
+        ("tr" | "sym" | "skew" | "diag" | "vee" | "hat" | "Ad", Dialect::Amsmath) => {
+            format!("\\operatorname{{{escaped}}}")
+        }
+        // An operator would carry its scripts below and above.
+        ("tr" | "sym" | "skew" | "diag" | "vee" | "hat" | "Ad", Dialect::GitHub) => {
+            format!("\\mathop{{\\mathrm{{{escaped}}}}}\\nolimits")
+        }
+        _ => format!("\\mathrm{{{escaped}}}"),
+    }
+}
+
+fn pieces(list: &[Piece], dialect: Dialect) -> String {
+    let mut parts: Vec<String> = Vec::new();
+    let mut rest = list;
+    while let Some((piece, after)) = rest.split_first() {
+        rest = after;
+        match piece {
+            Piece::Whole(layout) => parts.push(line(layout, dialect)),
+            Piece::Open(fence, tall) => match lines::enclosed(after) {
+                Some((inside, beyond)) => {
+                    let (open, close) = sized(*fence, *tall);
+                    parts.extend([open, pieces(inside, dialect), close]);
+                    rest = beyond;
+                }
+                // `\left` and `\right` cannot be parted by the end of a line.
+                None => parts.push(parted("l", brackets(*fence).0, *tall)),
+            },
+            Piece::Close(fence, tall) => parts.push(parted("r", brackets(*fence).1, *tall)),
+            Piece::Break(..) => {}
+        }
+    }
+    joined(parts.into_iter())
+}
+
+/// Brackets as high as what they enclose.
+fn sized(fence: Fence, tall: bool) -> (String, String) {
+    let (open, close) = brackets(fence);
+    if tall {
+        (format!("\\left{open}"), format!("\\right{close}"))
+    } else {
+        (open.to_owned(), close.to_owned())
+    }
+}
+
+/// One bracket of a pair on different lines.
+fn parted(side: &str, bracket: &str, tall: bool) -> String {
+    let size = if tall { "Bigg" } else { "big" };
+    format!("\\{size}{side}{bracket}")
+}
+
+/// A displayed formula, in an `aligned` environment if it takes several lines.
+pub(super) fn display(page: &Page, f: &Formula, dialect: Dialect) -> String {
+    let layout = page.stacked(f);
+    let Some(broken) = lines::typeset(&layout, page.style.letters) else {
+        return line(&layout, dialect);
+    };
+    let mut rows = Vec::new();
+    for (i, row) in broken.lines.iter().enumerate() {
+        let text = pieces(&row.pieces, dialect);
+        let left = if i == 0 {
+            pieces(&broken.left, dialect)
+        } else {
+            String::new()
+        };
+        // `{}` makes the sign at the start of a line a binary one.
+        let start = if i == 0 || row.relation {
+            String::new()
+        } else {
+            "\\quad ".repeat(row.depth + 1) + "{}"
+        };
+        // A bracket there would be an argument of the environment.
+        let guard = if left.starts_with('[') { "{}" } else { "" };
+        rows.push(format!("{guard}{left} &{start}{text}").trim().to_owned());
+    }
+    format!(
+        "\\begin{{aligned}}\n{}\n\\end{{aligned}}",
+        rows.join(" \\\\\n")
+    )
+}
+
+/// A whole document: a section with numbered, labelled equations.
+pub(super) fn document(page: &Page, document: &Document) -> String {
+    let mut out = String::from("% Needs \\usepackage{amsmath}.\n");
+    out.push_str(&format!("\\section{{{}}}\n", text(&document.title)));
+    let slug = slug(&document.title);
+    let mut number = 0usize;
+    for section in &document.sections {
+        out.push_str(&format!("\n\\subsection{{{}}}\n", text(&section.title)));
+        for block in &section.blocks {
+            // An empty line before an equation would end the paragraph it belongs to.
+            if !matches!(block, Block::Equation { .. }) {
+                out.push('\n');
+            }
+            match block {
+                Block::Paragraph(parts) => out.push_str(&format!("{}\n", sentence(page, parts))),
+                Block::List(items) => {
+                    out.push_str("\\begin{itemize}\n");
+                    for item in items {
+                        out.push_str(&format!("  \\item{{}} {}\n", sentence(page, item)));
+                    }
+                    out.push_str("\\end{itemize}\n");
+                }
+                Block::Code(code) => out.push_str(&listing(code)),
+                Block::Equation { formula, tag, note } => {
+                    number += 1;
+                    out.push_str(&format!(
+                        "\\begin{{equation}}\\label{{eq:{slug}:{number}}}\n{}\n\\end{{equation}}\n",
+                        display(page, formula, Dialect::Amsmath)
+                    ));
+                    let tag = tag.as_ref().map(|t| format!("[{}]", text(t)));
+                    let note = note.as_ref().map(|n| text(n));
+                    let remark: Vec<String> = tag.into_iter().chain(note).collect();
+                    if !remark.is_empty() {
+                        out.push_str(&format!("\\noindent {}\n", remark.join(" ")));
+                    }
+                }
+            }
+        }
+    }
+    out
+}
+
+fn sentence(page: &Page, parts: &[Inline]) -> String {
+    parts
+        .iter()
+        .map(|part| match part {
+            Inline::Plain(words) => text(words),
+            Inline::Math(f) => format!("${}$", line(&page.stacked(f), Dialect::Amsmath)),
+        })
+        .collect()
+}
+
+/// Code in a typewriter face; `verbatim` would not know the Greek letters.
+fn listing(code: &str) -> String {
+    let rows: Vec<String> = code
+        .lines()
+        .map(|row| format!("\\mbox{{{}}}", text(row).replace(' ', "~")))
+        .collect();
+    format!(
+        "\\begin{{flushleft}}\\ttfamily\n{}\n\\end{{flushleft}}\n",
+        rows.join("\\\\\n")
+    )
+}
+
+/// The title as part of a label.
+fn slug(title: &str) -> String {
+    let words = symbol::ascii(&name::letter(title)).to_lowercase();
+    let mut out = String::new();
+    for c in words.chars() {
+        if c.is_ascii_alphanumeric() {
+            out.push(c);
+        } else if !out.is_empty() && !out.ends_with('-') {
+            out.push('-');
+        }
+    }
+    out.trim_end_matches('-').to_owned()
+}

@@ -1,0 +1,105 @@
+//! Precedence: how tightly a layout holds together, and where that asks for brackets. The only
+//! place that puts them.
+
+use super::layout::{Fence, Layout};
+
+/// How tightly a layout holds together, loosest first.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub(super) enum Level {
+    /// Words and lists.
+    Loose,
+    /// A relation.
+    Relation,
+    /// A sum.
+    Sum,
+    /// One term with a minus sign before it.
+    Signed,
+    /// `a × b`, `a ◇ b`.
+    Infix,
+    /// `a · b`.
+    Dot,
+    /// A product.
+    Product,
+    /// A quotient on the line.
+    Slash,
+    /// `Ad*_g μ`, a sum over an index.
+    Application,
+    /// `∇ℓ`.
+    Gradient,
+    /// `δa`, `√a`, a fraction.
+    Prefix,
+    /// A letter, a call, anything in brackets.
+    Atom,
+}
+
+/// A layout and how tightly it holds together.
+#[derive(Clone, Debug)]
+pub(super) struct Laid {
+    pub layout: Layout,
+    pub level: Level,
+}
+
+impl Laid {
+    pub fn new(layout: Layout, level: Level) -> Laid {
+        Laid { layout, level }
+    }
+
+    pub fn atom(layout: Layout) -> Laid {
+        Laid::new(layout, Level::Atom)
+    }
+
+    fn bracketed_unless(self, bare: bool) -> Layout {
+        if bare {
+            self.layout
+        } else {
+            Layout::fenced(Fence::Round, self.layout)
+        }
+    }
+
+    /// As a term of a sum, after its sign.
+    pub fn term(self) -> Layout {
+        let bare = self.level > Level::Signed;
+        self.bracketed_unless(bare)
+    }
+
+    /// As a factor; only the `last` one may extend to the right.
+    pub fn factor(self, last: bool) -> Layout {
+        let bare = match self.level {
+            Level::Loose | Level::Relation | Level::Sum | Level::Signed | Level::Infix => false,
+            Level::Dot | Level::Product | Level::Slash | Level::Application | Level::Gradient => {
+                last
+            }
+            Level::Prefix | Level::Atom => true,
+        };
+        self.bracketed_unless(bare)
+    }
+
+    /// Beside `·`, `×` or `◇`.
+    pub fn operand(self) -> Layout {
+        let bare = self.level >= Level::Gradient;
+        self.bracketed_unless(bare)
+    }
+
+    /// Under a superscript.
+    pub fn base(self) -> Layout {
+        let bare = self.level == Level::Atom;
+        self.bracketed_unless(bare)
+    }
+
+    /// Before a slash.
+    pub fn before_slash(self) -> Layout {
+        let bare = matches!(self.level, Level::Product | Level::Prefix | Level::Atom);
+        self.bracketed_unless(bare)
+    }
+
+    /// After a slash.
+    pub fn after_slash(self) -> Layout {
+        let bare = self.level >= Level::Prefix;
+        self.bracketed_unless(bare)
+    }
+
+    /// With a superscript.
+    pub fn raised(self, sup: Layout) -> Laid {
+        Laid::atom(self.base().superscript(sup))
+    }
+}

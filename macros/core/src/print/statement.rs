@@ -1,0 +1,233 @@
+//! Expressions in the language of models, so that parsing the text gives the same expression
+//! again. Takes the names as they were declared; brackets stand wherever the constructors of
+//! expressions would otherwise group differently.
+
+use super::Style;
+use crate::algebra::Rational;
+use crate::expr::shape::Dim;
+use crate::expr::symbol::Symbols;
+use crate::expr::{Expr, Function, Node, Part};
+
+/// An expression as model text, e.g. `-(tr(J*Ω)/h) - h*dot(gU, Γ)`. Time offsets are written
+/// `next(...)` and `prev(...)`, label offsets with the name of the label from `style`. `Id`, `0`
+/// and `E1` take their shape from where they stand.
+pub fn statement(e: &Expr, symbols: &Symbols, style: &Style) -> String {
+    Writer { symbols, style }.write(e).text
+}
+
+/// How tightly the text holds together for the parser, loosest first.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Tightness {
+    Sum,
+    Minus,
+    Product,
+    Postfix,
+    Operand,
+}
+
+struct Written {
+    text: String,
+    tightness: Tightness,
+}
+
+impl Written {
+    fn new(text: String, tightness: Tightness) -> Written {
+        Written { text, tightness }
+    }
+
+    fn at_least(self, wanted: Tightness) -> String {
+        if self.tightness >= wanted {
+            self.text
+        } else {
+            format!("({})", self.text)
+        }
+    }
+}
+
+struct Writer<'a> {
+    symbols: &'a Symbols,
+    style: &'a Style,
+}
+
+impl Writer<'_> {
+    fn write(&self, e: &Expr) -> Written {
+        use Tightness::{Minus, Operand, Postfix, Product, Sum};
+        let operand = |text: String| Written::new(text, Operand);
+        match e.node() {
+            Node::Number(q) => {
+                let text = rational(*q);
+                let tightness = match (q.is_negative(), q.denominator()) {
+                    (true, _) => Minus,
+                    (false, 1) => Operand,
+                    (false, _) => Product,
+                };
+                Written::new(text, tightness)
+            }
+            Node::Letter(at) => {
+                let mut text = self.symbols.get(at.symbol).name.clone();
+                text = shifted(text, at.shift.time, "");
+                for (i, by) in at.shift.label.into_iter().enumerate() {
+                    let label = self.style.label_indices.get(i);
+                    let label = label.map_or_else(String::new, |l| format!(", {l}"));
+                    text = shifted(text, by, &label);
+                }
+                operand(text)
+            }
+            Node::Identity(_) => operand("Id".to_owned()),
+            Node::Zero(_) => operand("0".to_owned()),
+            Node::Unit(_, axis) => operand(format!("E{}", u32::from(*axis) + 1)),
+            Node::Sum(terms) => Written::new(self.sum(terms), Sum),
+            Node::Neg(a) => Written::new(self.negated(a), Minus),
+            Node::Product(factors) => Written::new(self.product(factors), Product),
+            Node::Quotient(a, b) => Written::new(self.quotient(a, b), Product),
+            Node::Power(a, q) => self.power(a, *q),
+            Node::Transpose(a) => Written::new(format!("{}^T", self.base(a)), Postfix),
+            Node::Inverse(a) => Written::new(format!("{}^-1", self.base(a)), Postfix),
+            Node::Trace(a) => operand(self.call("tr", &[a])),
+            Node::Det(a) => operand(self.call("det", &[a])),
+            Node::Dot(a, b) => operand(self.call("dot", &[a, b])),
+            Node::Cross(a, b) => operand(self.call("cross", &[a, b])),
+            Node::Hat(a) => operand(self.call("hat", &[a])),
+            Node::Vee(a) => operand(self.call("vee", &[a])),
+            Node::Part(which, a) => operand(self.call(
+                match which {
+                    Part::Symmetric => "sym",
+                    Part::Skew => "skew",
+                    Part::Diagonal => "diag",
+                },
+                &[a],
+            )),
+            Node::Call(function, a) => operand(self.call(
+                match function {
+                    Function::Exp => "exp",
+                    Function::Log => "log",
+                },
+                &[a],
+            )),
+        }
+    }
+
+    fn call(&self, name: &str, arguments: &[&Expr]) -> String {
+        let texts: Vec<String> = arguments.iter().map(|a| self.write(a).text).collect();
+        format!("{name}({})", texts.join(", "))
+    }
+
+    fn base(&self, a: &Expr) -> String {
+        self.write(a).at_least(Tightness::Operand)
+    }
+
+    fn power(&self, a: &Expr, q: Rational) -> Written {
+        if q == Rational::HALF {
+            return Written::new(self.call("sqrt", &[a]), Tightness::Operand);
+        }
+        let exponent = if q.denominator() == 1 {
+            q.numerator().to_string()
+        } else {
+            format!("({})", rational(q))
+        };
+        Written::new(format!("{}^{exponent}", self.base(a)), Tightness::Postfix)
+    }
+
+    /// A minus and what follows it. The minus binds to the first factor only, and the
+    /// constructors carry it out of a product, but into a sum and into a lone number.
+    fn negated(&self, a: &Expr) -> String {
+        let carried = |first: Option<&Expr>| !matches!(first.map(Expr::node), Some(Node::Sum(_)));
+        let bare = match a.node() {
+            Node::Product(factors) => carried(factors.first()),
+            Node::Quotient(top, _) => match top.node() {
+                Node::Product(factors) => carried(factors.first()),
+                Node::Number(_) | Node::Quotient(..) | Node::Sum(_) => false,
+                _ => true,
+            },
+            _ => false,
+        };
+        let wanted = if bare {
+            Tightness::Product
+        } else {
+            Tightness::Postfix
+        };
+        format!("-{}", self.write(a).at_least(wanted))
+    }
+
+    fn sum(&self, terms: &[Expr]) -> String {
+        let mut text = String::new();
+        for t in terms {
+            if text.is_empty() {
+                text = self.write(t).at_least(Tightness::Minus);
+                continue;
+            }
+            let (sign, inner) = match t.node() {
+                Node::Neg(inner) => (" - ", self.write(inner)),
+                Node::Number(q) if q.is_negative() => {
+                    (" - ", self.write(&crate::expr::number(q.negated())))
+                }
+                _ => (" + ", self.write(t)),
+            };
+            text.push_str(sign);
+            text.push_str(&inner.at_least(Tightness::Product));
+        }
+        text
+    }
+
+    /// A factor between asterisks; what is itself a product keeps its brackets.
+    fn factor(&self, f: &Expr) -> String {
+        self.write(f).at_least(Tightness::Postfix)
+    }
+
+    fn product(&self, factors: &[Expr]) -> String {
+        let (numbers, matrices): (Vec<&Expr>, Vec<&Expr>) =
+            factors.iter().partition(|f| f.shape().is_scalar());
+        let mut parts: Vec<String> = numbers.iter().map(|f| self.factor(f)).collect();
+        // A row times a column would become a number of its own before the next factor comes: a
+        // column is grouped with the row behind it, and numbers with the row before it.
+        let mut words: Vec<String> = Vec::new();
+        let mut list = matrices.iter().peekable();
+        while let Some(f) = list.next() {
+            let mut word = self.factor(f);
+            if f.shape().is_vector()
+                && let Some(next) = list.next_if(|n| n.shape().transposed().is_vector())
+            {
+                word = format!("({word}*{})", self.factor(next));
+            }
+            words.push(word);
+        }
+        let one = Dim::Fixed(1);
+        let scalar = matrices.first().is_some_and(|f| f.shape().rows == one)
+            && matrices.last().is_some_and(|f| f.shape().cols == one);
+        if scalar && !parts.is_empty() && words.len() > 1 {
+            parts.push(words.remove(0));
+            words.insert(0, format!("({})", parts.join("*")));
+            parts.clear();
+        }
+        parts.append(&mut words);
+        parts.join("*")
+    }
+
+    fn quotient(&self, a: &Expr, b: &Expr) -> String {
+        let bottom = self.write(b).at_least(Tightness::Postfix);
+        match a.node() {
+            // A quotient over a divisor would be joined to one quotient.
+            Node::Quotient(..) => format!("(1/{bottom})*({})", self.write(a).text),
+            Node::Number(q) if q.denominator() == 1 => {
+                format!("{}/{bottom}", self.write(a).at_least(Tightness::Minus))
+            }
+            _ => format!("{}/{bottom}", self.write(a).at_least(Tightness::Product)),
+        }
+    }
+}
+
+fn rational(q: Rational) -> String {
+    if q.denominator() == 1 {
+        q.numerator().to_string()
+    } else {
+        format!("{}/{}", q.numerator(), q.denominator())
+    }
+}
+
+fn shifted(mut text: String, by: i8, label: &str) -> String {
+    let word = if by > 0 { "next" } else { "prev" };
+    for _ in 0..by.unsigned_abs() {
+        text = format!("{word}({text}{label})");
+    }
+    text
+}

@@ -1,0 +1,238 @@
+//! Whole documents in every format: structure, numbering, wrapping, escaping.
+
+use super::mathml::check;
+use super::sample::Sample;
+use crate::expr::shape::Shape;
+use crate::expr::{self, Expr};
+use crate::print::document::{Document, Inline};
+use crate::print::formula::{Formula, Operator, Relation};
+use crate::print::{Format, Style, render};
+
+/// A sum too long for a line.
+fn long(s: &Sample) -> Expr {
+    let word = |i: i64| {
+        let w = expr::product([s.v("A"), s.at("Λ1", 1), s.v("C0"), s.t(s.v("Ω"))]);
+        let t = expr::product([expr::integer(i), s.v("c"), expr::trace(w)]);
+        if i % 2 == 0 { expr::neg(t) } else { t }
+    };
+    expr::sum((1..=7).map(word), Shape::SCALAR)
+}
+
+/// A section on the heavy top with hostile words.
+fn sample(s: &Sample) -> Document {
+    let (k, k1) = (|n: &str| s.v(n), |n: &str| s.at(n, -1));
+    let gradient = || Formula::gradient("ℓ", s.letter("Γ", 0));
+    let mut d = Document::titled("Heavy top: 100 % of Λ & co");
+    let lagrangian = d.section("Lagrangian");
+    lagrangian
+        .paragraph([
+            "The action of *one* step, a function of ".into(),
+            Inline::Math(k("Ω").into()),
+            " and ".into(),
+            Inline::Math(k("Γ").into()),
+            ", with the sign of physics [a_b] and the words that are needed to make this sentence \
+             longer than one line of a terminal; 1 < 2 and $ and ~ and ^ and \\. "
+                .into(),
+            Inline::Math(Formula::text(
+                "a*b_c [d] <e> `f` ~g~ \\h 'i' \"j\" -- k & l.",
+            )),
+        ])
+        .equation(Formula::equal(Formula::name("ℓ"), s.heavy_top()))
+        .noted("J is the matrix of second moments.")
+        .equation(Formula::equal(Formula::name("L_long"), long(s)))
+        .equation(Formula::equal(
+            Formula::name("L_q"),
+            expr::neg(expr::quotient(long(s), s.v("h"))),
+        ))
+        .equation(long(s));
+    let equations = d.section("Equations");
+    equations
+        .cited(
+            Formula::Relation(
+                vec![
+                    k("M").into(),
+                    Formula::Sum(vec![
+                        Formula::ad_star(k1("Ω"), k1("M")),
+                        Formula::diamond(gradient(), k("Γ")),
+                    ]),
+                    Formula::operator(
+                        Operator::Skew,
+                        Formula::Product(vec![
+                            Formula::gradient("ℓ", s.letter("Ω", 0)),
+                            s.t(k("Ω")).into(),
+                        ]),
+                    ),
+                ],
+                Relation::Equal,
+            ),
+            "thesis (2.155)",
+        )
+        .list(vec![
+            vec!["reconstruction ".into(), {
+                let next = expr::mul(k("Λ"), k("Ω"));
+                Inline::Math(Formula::Relation(
+                    vec![s.at("Λ", 1).into(), next.into()],
+                    Relation::Defined,
+                ))
+            }],
+            vec!["- not a list".into()],
+            vec!["[not an argument]".into()],
+        ])
+        .code("fn step() {\n    let Λ = \"```\";\n}");
+    d
+}
+
+fn print(format: Format) -> String {
+    let s = Sample::new();
+    render(&sample(&s), &s.symbols, &Style::default(), format)
+}
+
+#[test]
+fn text_is_wrapped_and_aligned() {
+    let text = print(Format::Text);
+    assert!(text.lines().all(|l| l.chars().count() <= 100), "{text}");
+    assert!(text.contains("\n  (1)   ℓ = -tr(J Ω_k)/h - h gU·Γ_k\n"));
+    let after_sign = "\n                   + 3 c tr(A Λ_{1,k+1} C₀ Ω_kᵀ) - 4 c";
+    assert!(text.contains("\n  (2)   L_{long} = c tr(") && text.contains(after_sign));
+    let wanted = "\n  (5)   M_k = Ad*_{Ω_{k-1}} M_{k-1} + ∇_{Γ_k} ℓ ◇ Γ_k = skew((∇_{Ω_k} ℓ) Ω_kᵀ)\n        \
+                  [thesis (2.155)]\n";
+    assert!(text.contains(wanted), "{text}");
+}
+
+#[test]
+fn narrow_text_breaks_at_relations_first() {
+    let s = Sample::new();
+    let style = Style {
+        columns: 60,
+        ..Style::default()
+    };
+    let text = render(&sample(&s), &s.symbols, &style, Format::Text);
+    let wanted = "\n  (5)   M_k = Ad*_{Ω_{k-1}} M_{k-1} + ∇_{Γ_k} ℓ ◇ Γ_k\n            \
+                  = skew((∇_{Ω_k} ℓ) Ω_kᵀ)\n";
+    assert!(text.contains(wanted), "{text}");
+}
+
+#[test]
+fn latex_is_a_section_with_numbered_equations() {
+    let tex = print(Format::Latex);
+    assert!(tex.is_ascii());
+    assert!(tex.contains("\\section{Heavy top: 100 \\% of $\\Lambda$ \\& co}\n"));
+    for environment in ["equation", "aligned", "itemize", "flushleft"] {
+        let count = |edge: &str| tex.matches(&format!("\\{edge}{{{environment}}}")).count();
+        assert_eq!(count("begin"), count("end"));
+        assert!(count("begin") > 0, "{environment}");
+    }
+    assert_eq!(
+        tex.matches("\\label{eq:heavy-top-100-of-lambda-co:")
+            .count(),
+        5
+    );
+    assert!(tex.contains("\n&\\quad {} - 4\\,c"), "{tex}");
+    // A bracket that ends on another line has a fixed size.
+    assert!(tex.contains("\\bigl(") && tex.contains("\\bigr)"));
+    assert!(tex.contains("\\item{} [not an argument]"));
+    assert!(!tex.contains("\n\n\\begin{equation}"));
+}
+
+#[test]
+fn markdown_fences_and_escapes() {
+    let md = print(Format::Markdown);
+    assert_eq!(md.matches("```math\n").count(), 5);
+    assert!(md.contains("\\tag{5}\n```\n\n\\[thesis (2.155)\\]\n"));
+    assert!(md.contains("\n````text\nfn step() {\n"));
+    assert!(md.contains("\n- \\- not a list\n"));
+    assert!(md.contains("\\*one\\*") && md.contains("\\[a\\_b\\]"));
+    assert!(!md.contains("operatorname"));
+}
+
+#[test]
+fn rustdoc_gets_every_formula_on_one_line() {
+    let md = print(Format::MathMl);
+    let mut rest = md.as_str();
+    let mut formulas = 0;
+    while let Some(start) = rest.find("<math") {
+        let length = rest[start..].find("</math>").unwrap() + "</math>".len();
+        let math = &rest[start..start + length];
+        assert!(!math.contains('\n'));
+        check(math);
+        formulas += 1;
+        rest = &rest[start + length..];
+    }
+    assert_eq!(formulas, 9);
+}
+
+/// Skips one JSON value; panics where it is none.
+fn skip(text: &str) -> &str {
+    let text = text.trim_start();
+    let list = |open: char, close: char, keyed: bool| {
+        let mut rest = text.strip_prefix(open).unwrap().trim_start();
+        while !rest.starts_with(close) {
+            if keyed {
+                rest = skip(rest).trim_start().strip_prefix(':').unwrap();
+            }
+            rest = skip(rest).trim_start();
+            rest = rest.strip_prefix(',').unwrap_or(rest).trim_start();
+        }
+        rest.strip_prefix(close).unwrap()
+    };
+    match text.chars().next().unwrap() {
+        '{' => list('{', '}', true),
+        '[' => list('[', ']', false),
+        '"' => {
+            let mut escaped = false;
+            let end = text[1..].find(|c: char| {
+                assert!(c >= ' ');
+                let ends = c == '"' && !escaped;
+                escaped = c == '\\' && !escaped;
+                ends
+            });
+            &text[end.unwrap() + 2..]
+        }
+        'n' => text.strip_prefix("null").unwrap(),
+        _ => text.trim_start_matches(|c: char| c.is_ascii_digit()),
+    }
+}
+
+#[test]
+fn json_is_well_formed_and_the_same_every_time() {
+    let json = print(Format::Json);
+    assert_eq!(skip(&json), "\n");
+    assert_eq!(json, print(Format::Json));
+    assert!(json.contains("\"number\": 5,"));
+    assert!(json.contains("\"tag\": \"thesis (2.155)\","));
+    assert!(json.contains("\"text\": \"fn step() {\\n    let Λ = \\\"```\\\";\\n}\""));
+}
+
+#[test]
+fn degenerate_documents_print() {
+    let s = Sample::new();
+    let mut empty = Document::titled("");
+    empty
+        .section("")
+        .paragraph([])
+        .list(Vec::new())
+        .code("")
+        .equation(Formula::Sum(Vec::new()))
+        .equation(Formula::Product(Vec::new()))
+        .equation(Formula::Relation(Vec::new(), Relation::Equal))
+        .equation(Formula::name(""))
+        .equation(Formula::text(""));
+    for columns in [0, 1, 100] {
+        let style = Style {
+            columns,
+            letters: columns,
+            ..Style::default()
+        };
+        for document in [&empty, &sample(&s)] {
+            for format in [
+                Format::Text,
+                Format::Latex,
+                Format::Markdown,
+                Format::MathMl,
+                Format::Json,
+            ] {
+                assert!(!render(document, &s.symbols, &style, format).is_empty());
+            }
+        }
+    }
+}

@@ -1,0 +1,7 @@
+//! Tests of the printers on one list of expressions that holds every kind of node.
+
+mod documents;
+mod mathml;
+mod sample;
+mod spelling;
+mod statements;

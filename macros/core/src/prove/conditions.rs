@@ -1,0 +1,305 @@
+//! What a rule asks of the things its variables stand for, and what it computes from them.
+//! The same conditions are decided twice: on classes during the search, on the written terms of
+//! an explanation when it is checked.
+
+use super::language::{Leaf, Number, Term};
+use crate::algebra::Rational;
+use crate::expr::shape::{Dim, Shape, Structure};
+use egg::{ENodeOrVar, Id, Language, PatternAst, RecExpr, Var};
+
+/// One condition or computation, over variables of a rule.
+#[derive(Clone, Copy, Debug)]
+pub enum Given<V> {
+    /// A letter with `A^T = A`.
+    Symmetric(V),
+    /// A letter with `A^T = -A`.
+    Skew(V),
+    /// A diagonal letter.
+    Diagonal(V),
+    /// A letter of SO(n).
+    Orthogonal(V),
+    /// 1 x 1.
+    Scalar(V),
+    /// n x 1 with n not 1.
+    Vector(V),
+    /// n x 1, where n may be 1.
+    Column(V),
+    /// n x m with m not 1.
+    Wide(V),
+    /// As many rows as columns.
+    Square(V),
+    /// The product of the two is 1 x 1.
+    Bilinear(V, V),
+    /// An exact number, taken literally.
+    Number(V),
+    /// An integer (a number asked for before).
+    Whole(V),
+    /// The first is the sum of the two numbers that follow.
+    Plus(V, V, V),
+    /// The first is one more than the number that follows.
+    After(V, V),
+    /// The first is the product of the two numbers that follow.
+    Times(V, V, V),
+    /// The first is the power of the number that follows with the integer exponent behind it.
+    Raised(V, V, V),
+    /// The first is the number of rows of the second, where it is a number.
+    Rows(V, V),
+    /// The zero of the shape of the left-hand side.
+    Zero(V),
+    /// The identity matrix of the shape of the left-hand side.
+    Identity(V),
+    // The remaining ones only save work: the rule holds without them, and a check skips them.
+    /// The left-hand side is known to equal this.
+    Itself(V),
+    /// Not known to be zero.
+    Nonzero(V),
+    /// Not known to be a number.
+    Unknown(V),
+    /// Not both known to be numbers.
+    Symbolic(V, V),
+    /// Not known to be multiples of each other.
+    Independent(V, V),
+    /// The left-hand side is not known to be a multiple of this.
+    Apart(V),
+    /// The two joined in this way are not known to be something undivided, as in `g g^T = 1`.
+    Composite(Join, V, V),
+    /// Not known to be a sum.
+    Single(V),
+    /// The left-hand side is not known to be a sum.
+    Unsplit,
+}
+
+/// How two terms are joined.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Join {
+    /// `a + b`.
+    Sum,
+    /// A number times a matrix or a number.
+    Scale,
+    /// A product of matrices.
+    Product,
+}
+
+/// What a variable is replaced by before a rule is used.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Value {
+    /// A number.
+    Number(Rational),
+    /// The zero of a shape.
+    Zero(Shape),
+    /// The identity matrix.
+    Identity(Dim),
+    /// A leaf of the statement.
+    Leaf(Leaf),
+}
+
+/// Sight of the things that the variables of a rule stand for.
+pub trait View {
+    /// The shape of what the variable stands for.
+    fn shape(&self, v: Var) -> Option<Shape>;
+    /// Its value, where it is a number.
+    fn number(&self, v: Var) -> Option<Rational>;
+    /// The shape of the left-hand side.
+    fn whole(&self) -> Option<Shape>;
+    /// Whether the left-hand side is known to equal the variable; `None` where conditions that
+    /// only save work do not count.
+    fn itself(&self, v: Var) -> Option<bool>;
+    /// Whether the variable is known to be zero; `None` as before.
+    fn zero(&self, v: Var) -> Option<bool>;
+    /// Whether two variables, or the left-hand side and one, are known to be multiples of each
+    /// other by a number; `None` as before.
+    fn multiples(&self, a: Option<Var>, b: Var) -> Option<bool>;
+    /// Whether the two, joined, are known to be undivided; `None` as before.
+    fn undivided(&self, join: Join, a: Var, b: Var) -> Option<bool>;
+    /// Whether the variable, or the left-hand side, is known to be a sum; `None` as before.
+    fn sum(&self, v: Option<Var>) -> Option<bool>;
+}
+
+impl<V: Copy> Given<V> {
+    /// The variable and the wanted structure, where the condition is about a letter.
+    pub fn letter(&self) -> Option<(V, fn(Structure) -> bool)> {
+        match *self {
+            Given::Symmetric(v) => Some((v, Structure::is_symmetric)),
+            Given::Skew(v) => Some((v, |s| s == Structure::Skew)),
+            Given::Diagonal(v) => Some((v, |s| s == Structure::Diagonal)),
+            Given::Orthogonal(v) => Some((v, |s| s == Structure::Orthogonal)),
+            _ => None,
+        }
+    }
+
+    /// The same condition over other names of the variables, unless a name is refused.
+    pub fn renamed<W, E>(&self, f: impl Fn(V) -> Result<W, E>) -> Result<Given<W>, E> {
+        Ok(match *self {
+            Given::Symmetric(a) => Given::Symmetric(f(a)?),
+            Given::Skew(a) => Given::Skew(f(a)?),
+            Given::Diagonal(a) => Given::Diagonal(f(a)?),
+            Given::Orthogonal(a) => Given::Orthogonal(f(a)?),
+            Given::Scalar(a) => Given::Scalar(f(a)?),
+            Given::Vector(a) => Given::Vector(f(a)?),
+            Given::Column(a) => Given::Column(f(a)?),
+            Given::Wide(a) => Given::Wide(f(a)?),
+            Given::Square(a) => Given::Square(f(a)?),
+            Given::Bilinear(a, b) => Given::Bilinear(f(a)?, f(b)?),
+            Given::Number(a) => Given::Number(f(a)?),
+            Given::Whole(a) => Given::Whole(f(a)?),
+            Given::Plus(r, a, b) => Given::Plus(f(r)?, f(a)?, f(b)?),
+            Given::After(r, a) => Given::After(f(r)?, f(a)?),
+            Given::Times(r, a, b) => Given::Times(f(r)?, f(a)?, f(b)?),
+            Given::Raised(r, a, b) => Given::Raised(f(r)?, f(a)?, f(b)?),
+            Given::Rows(r, a) => Given::Rows(f(r)?, f(a)?),
+            Given::Zero(a) => Given::Zero(f(a)?),
+            Given::Identity(a) => Given::Identity(f(a)?),
+            Given::Itself(a) => Given::Itself(f(a)?),
+            Given::Nonzero(a) => Given::Nonzero(f(a)?),
+            Given::Unknown(a) => Given::Unknown(f(a)?),
+            Given::Symbolic(a, b) => Given::Symbolic(f(a)?, f(b)?),
+            Given::Independent(a, b) => Given::Independent(f(a)?, f(b)?),
+            Given::Apart(a) => Given::Apart(f(a)?),
+            Given::Composite(join, a, b) => Given::Composite(join, f(a)?, f(b)?),
+            Given::Single(a) => Given::Single(f(a)?),
+            Given::Unsplit => Given::Unsplit,
+        })
+    }
+}
+
+/// Decides the conditions in order. `None` where one fails; otherwise the values of the
+/// variables that are taken literally or computed.
+pub fn decide(given: &[Given<Var>], view: &impl View) -> Option<Vec<(Var, Value)>> {
+    let shape = |v: Var| view.shape(v);
+    let number = |v: Var| view.number(v);
+    let literal = |v: Var, q: Rational| Some((v, Value::Number(q)));
+    let mut values: Vec<(Var, Value)> = Vec::new();
+    for condition in given {
+        let mut holds = true;
+        let value = match *condition {
+            // Letters were put in place when the rule was made for this statement.
+            Given::Symmetric(_) | Given::Skew(_) | Given::Diagonal(_) | Given::Orthogonal(_) => {
+                None
+            }
+            Given::Scalar(v) => {
+                holds = shape(v)?.is_scalar();
+                None
+            }
+            Given::Vector(v) => {
+                holds = shape(v)?.is_vector();
+                None
+            }
+            Given::Column(v) => {
+                holds = shape(v)?.cols == Dim::Fixed(1);
+                None
+            }
+            Given::Wide(v) => {
+                holds = shape(v)?.cols != Dim::Fixed(1);
+                None
+            }
+            Given::Square(v) => {
+                holds = shape(v)?.is_square();
+                None
+            }
+            Given::Bilinear(a, b) => {
+                holds = shape(a)?.rows == Dim::Fixed(1) && shape(b)?.cols == Dim::Fixed(1);
+                None
+            }
+            Given::Whole(v) => {
+                holds = number(v)?.as_integer().is_some();
+                None
+            }
+            Given::Itself(v) => {
+                holds = view.itself(v) != Some(false);
+                None
+            }
+            Given::Nonzero(v) => {
+                holds = view.zero(v) != Some(true);
+                None
+            }
+            Given::Unknown(v) => {
+                holds = view.itself(v).is_none() || number(v).is_none();
+                None
+            }
+            Given::Symbolic(a, b) => {
+                holds = view.itself(a).is_none() || number(a).is_none() || number(b).is_none();
+                None
+            }
+            Given::Independent(a, b) => {
+                holds = view.multiples(Some(a), b) != Some(true);
+                None
+            }
+            Given::Apart(v) => {
+                holds = view.multiples(None, v) != Some(true);
+                None
+            }
+            Given::Composite(join, a, b) => {
+                holds = view.undivided(join, a, b) != Some(true);
+                None
+            }
+            Given::Single(v) => {
+                holds = view.sum(Some(v)) != Some(true);
+                None
+            }
+            Given::Unsplit => {
+                holds = view.sum(None) != Some(true);
+                None
+            }
+            Given::Number(v) => literal(v, number(v)?),
+            Given::Plus(r, a, b) => literal(r, number(a)?.plus(number(b)?)?),
+            Given::After(r, a) => literal(r, number(a)?.plus(Rational::ONE)?),
+            Given::Times(r, a, b) => literal(r, number(a)?.times(number(b)?)?),
+            Given::Raised(r, a, b) => literal(r, number(a)?.power(number(b)?.as_integer()?)?),
+            Given::Rows(r, a) => match shape(a)?.rows {
+                Dim::Fixed(n) => literal(r, Rational::integer(i64::from(n))),
+                Dim::Named(_) => return None,
+            },
+            Given::Zero(v) => Some((v, Value::Zero(view.whole()?))),
+            Given::Identity(v) => Some((v, Value::Identity(view.whole()?.rows))),
+        };
+        if !holds {
+            return None;
+        }
+        values.extend(value);
+    }
+    Some(values)
+}
+
+impl Value {
+    fn add_to(self, pattern: &mut PatternAst<Term>) -> Id {
+        let mut add = |node: Term| pattern.add(ENodeOrVar::ENode(node));
+        match self {
+            Value::Number(q) => add(Term::Number(Number(q))),
+            Value::Leaf(leaf) => add(Term::Leaf(leaf)),
+            // A 1 x 1 zero or identity is written as a number, always.
+            Value::Zero(s) if s.is_scalar() => add(Term::Number(Number(Rational::ZERO))),
+            Value::Identity(Dim::Fixed(1)) => add(Term::Number(Number(Rational::ONE))),
+            Value::Zero(s) => {
+                let n = add(Term::Leaf(Leaf::Size(s.rows)));
+                let m = add(Term::Leaf(Leaf::Size(s.cols)));
+                add(Term::Zero([n, m]))
+            }
+            Value::Identity(dim) => {
+                let n = add(Term::Leaf(Leaf::Size(dim)));
+                add(Term::Identity(n))
+            }
+        }
+    }
+}
+
+/// The pattern with variables replaced by their values.
+pub fn put(pattern: &PatternAst<Term>, values: &[(Var, Value)]) -> PatternAst<Term> {
+    let mut out: PatternAst<Term> = RecExpr::default();
+    let mut places: Vec<Id> = Vec::new();
+    for node in pattern.as_ref() {
+        let place = match node {
+            ENodeOrVar::Var(v) => match values.iter().find(|(w, _)| w == v) {
+                Some((_, value)) => value.add_to(&mut out),
+                None => out.add(ENodeOrVar::Var(*v)),
+            },
+            ENodeOrVar::ENode(n) => {
+                let moved = n
+                    .clone()
+                    .map_children(|c| places.get(usize::from(c)).copied().unwrap_or(c));
+                out.add(ENodeOrVar::ENode(moved))
+            }
+        };
+        places.push(place);
+    }
+    out
+}

@@ -1,0 +1,191 @@
+//! A second prover, by equality saturation: it shares neither normal forms nor reductions with
+//! [`crate::algebra`]. Takes a statement `left = right`, gives a proof whose every step has been
+//! re-checked, or the reason why none was found. No answer of it refutes a statement.
+
+mod check;
+mod conditions;
+mod language;
+mod notation;
+mod rulebook;
+mod rules;
+mod search;
+mod summands;
+#[cfg(test)]
+mod tests;
+mod translate;
+
+use crate::expr::Expr;
+use crate::expr::symbol::Symbols;
+use egg::{Language, RecExpr};
+use language::{Leaf, Term};
+
+/// An equation between two expressions of one shape, to hold for all admissible values of its
+/// letters wherever both sides are defined.
+#[derive(Clone, Debug)]
+pub struct Statement {
+    /// What the statement is called in reports.
+    pub name: String,
+    /// Left-hand side.
+    pub left: Expr,
+    /// Right-hand side.
+    pub right: Expr,
+}
+
+/// How far a search may go. Counts of terms and iterations decide; the clock is a last safety.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Limits {
+    /// Terms held at once.
+    pub nodes: usize,
+    /// Iterations, all rounds together.
+    pub iterations: usize,
+    /// Summands of a side, multiplied out.
+    pub summands: usize,
+    /// Seconds; an answer that this limit decides is not reproducible.
+    pub seconds: u64,
+}
+
+impl Default for Limits {
+    /// Enough for the identities of discrete mechanics, and about a second of an optimised
+    /// build for a statement that cannot be proved.
+    fn default() -> Self {
+        Limits {
+            nodes: 20_000,
+            iterations: 60,
+            summands: 8,
+            seconds: 60,
+        }
+    }
+}
+
+/// The answer of [`prove`].
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum Verdict {
+    /// The statement holds.
+    Proved {
+        /// The proof: the left-hand side, then one line for each step with the name of its rule
+        /// (`read backwards` where its right-hand side was replaced by its left-hand side).
+        explanation: Vec<String>,
+        /// Terms held at the end of the search.
+        nodes: usize,
+        /// Iterations used.
+        iterations: usize,
+    },
+    /// No proof was found. The statement may still hold.
+    Unproved {
+        /// Why.
+        reason: String,
+        /// Terms held at the end of the search.
+        nodes: usize,
+        /// Iterations used.
+        iterations: usize,
+    },
+}
+
+impl Verdict {
+    /// Whether the statement was proved.
+    pub fn is_proved(&self) -> bool {
+        matches!(self, Verdict::Proved { .. })
+    }
+}
+
+fn refused(reason: impl Into<String>) -> Verdict {
+    Verdict::Unproved {
+        reason: reason.into(),
+        nodes: 0,
+        iterations: 0,
+    }
+}
+
+/// Tries to prove a statement. Letters bring the identities of their declared structure, and
+/// nothing else is assumed of them: definitions have to be substituted beforehand.
+pub fn prove(symbols: &Symbols, statement: &Statement, limits: &Limits) -> Verdict {
+    let (mut left, mut right) = (statement.left.clone(), statement.right.clone());
+    if left.shape() != right.shape() {
+        return refused("the two sides have different shapes");
+    }
+    let size = |l: &Expr, r: &Expr| summands::count(l).max(summands::count(r));
+    let mut removed = None;
+    let before = size(&left, &right);
+    if before > limits.summands && left != right {
+        let (l, r, common) = summands::without_common(&left, &right);
+        if size(&l, &r) > limits.summands {
+            return refused(format!(
+                "{} summands on a side, more than {}: their reorderings are too many to search",
+                before, limits.summands
+            ));
+        }
+        (left, right) = (l, r);
+        removed = Some(common.len());
+    }
+    let (Some((l, shape)), Some((r, _))) =
+        (translate::translate(&left), translate::translate(&right))
+    else {
+        return refused("the shapes inside the statement do not fit");
+    };
+    if shape != left.shape() {
+        return refused("the shapes inside the statement do not fit");
+    }
+    let first = removed.map(|n| {
+        format!("{n} summands that stand on both sides are taken from both; what is left:")
+    });
+    prove_terms(symbols, &l, &r, first, limits)
+}
+
+/// The same for terms of the search language.
+fn prove_terms(
+    symbols: &Symbols,
+    left: &RecExpr<Term>,
+    right: &RecExpr<Term>,
+    first: Option<String>,
+    limits: &Limits,
+) -> Verdict {
+    let rules = match rulebook::rules(symbols, &leaves(left, right)) {
+        Ok(rules) => rules,
+        Err(e) => return refused(e),
+    };
+    let found = match search::search(left, right, &rules, limits) {
+        Ok(found) => found,
+        Err(e) => return refused(e),
+    };
+    let (nodes, iterations) = (found.nodes, found.iterations);
+    let unproved = |reason| Verdict::Unproved {
+        reason,
+        nodes,
+        iterations,
+    };
+    let Some(chain) = found.chain else {
+        return unproved(found.end);
+    };
+    if let Err(e) = check::check(&chain, left, right, &rules) {
+        return unproved(format!("the explanation failed its re-check: {e}"));
+    }
+    let mut explanation: Vec<String> = first.into_iter().collect();
+    for term in &chain {
+        let text = notation::text(symbols, term);
+        explanation.push(match check::rule_of(term) {
+            None => text,
+            Some((name, false)) => format!("= {text}    [{name}]"),
+            Some((name, true)) => format!("= {text}    [{name}, read backwards]"),
+        });
+    }
+    Verdict::Proved {
+        explanation,
+        nodes,
+        iterations,
+    }
+}
+
+fn leaves(left: &RecExpr<Term>, right: &RecExpr<Term>) -> Vec<Leaf> {
+    let mut out: Vec<Leaf> = left
+        .as_ref()
+        .iter()
+        .chain(right.as_ref())
+        .filter_map(|node| match node {
+            Term::Leaf(leaf) if node.is_leaf() => Some(*leaf),
+            _ => None,
+        })
+        .collect();
+    out.sort();
+    out.dedup();
+    out
+}

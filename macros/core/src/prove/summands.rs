@@ -1,0 +1,58 @@
+//! How many summands a statement has when multiplied out, and the removal of those that both
+//! sides share. Takes expressions; reordering n summands makes about 3^n terms, which is what
+//! bounds the search.
+
+use crate::algebra::Rational;
+use crate::expr::{Expr, Node, neg, sum};
+
+/// The largest number of summands of any sum inside the expression, multiplied out; saturating.
+pub fn count(e: &Expr) -> usize {
+    let inside = e.children().into_iter().map(count).max().unwrap_or(1);
+    expanded(e).max(inside)
+}
+
+fn expanded(e: &Expr) -> usize {
+    match e.node() {
+        Node::Sum(list) => list.iter().map(expanded).fold(0, usize::saturating_add),
+        Node::Product(list) => list.iter().map(expanded).fold(1, usize::saturating_mul),
+        Node::Dot(a, b) | Node::Cross(a, b) => expanded(a).saturating_mul(expanded(b)),
+        Node::Neg(a) | Node::Transpose(a) | Node::Trace(a) | Node::Hat(a) | Node::Vee(a) => {
+            expanded(a)
+        }
+        Node::Part(_, a) => expanded(a),
+        Node::Quotient(a, _) => expanded(a),
+        Node::Power(a, q) if *q == Rational::integer(2) => expanded(a).saturating_mul(expanded(a)),
+        Node::Power(..)
+        | Node::Number(_)
+        | Node::Letter(_)
+        | Node::Identity(_)
+        | Node::Zero(_)
+        | Node::Unit(..)
+        | Node::Inverse(_)
+        | Node::Det(_)
+        | Node::Call(..) => 1,
+    }
+}
+
+fn summands(e: &Expr) -> Vec<Expr> {
+    match e.node() {
+        Node::Sum(list) => list.clone(),
+        Node::Neg(a) => summands(a).into_iter().map(neg).collect(),
+        _ => vec![e.clone()],
+    }
+}
+
+/// Both sides without the summands that stand, letter for letter, on both; with the summands
+/// removed. The same summands taken from both sides leave an equivalent statement.
+pub fn without_common(left: &Expr, right: &Expr) -> (Expr, Expr, Vec<Expr>) {
+    let mut rest = summands(right);
+    let mut kept = Vec::new();
+    let mut common = Vec::new();
+    for term in summands(left) {
+        match rest.iter().position(|t| *t == term) {
+            Some(i) => common.push(rest.remove(i)),
+            None => kept.push(term),
+        }
+    }
+    (sum(kept, left.shape()), sum(rest, right.shape()), common)
+}

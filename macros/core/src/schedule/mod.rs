@@ -1,0 +1,8 @@
+//! From expressions to programs near Rust's operations: common sub-expressions become named
+//! temporaries, computed once, in an order in which each uses only those before it.
+
+mod chain;
+mod program;
+
+pub use chain::{Bracketed, associate};
+pub use program::{Program, program};

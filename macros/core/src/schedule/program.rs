@@ -1,0 +1,103 @@
+//! A program: temporaries and results, each an expression in the model's letters and earlier
+//! temporaries. What is emitted and what is interpreted is the same program.
+
+use crate::expr::symbol::{Role, SymbolId, Symbols};
+use crate::expr::{self, Expr, Node};
+use std::collections::HashMap;
+
+/// Temporaries in order of computation, then results.
+#[derive(Clone, Debug)]
+pub struct Program {
+    /// The model's symbols and the temporaries.
+    pub symbols: Symbols,
+    /// Names and values of the temporaries.
+    pub temporaries: Vec<(SymbolId, Expr)>,
+    /// The results, in the order asked for.
+    pub results: Vec<Expr>,
+}
+
+/// Schedules several results together. `prefix` starts the names of temporaries.
+pub fn program(symbols: &Symbols, results: &[Expr], prefix: &str) -> Program {
+    let mut uses: HashMap<Expr, usize> = HashMap::new();
+    for r in results {
+        count(r, &mut uses);
+    }
+    let mut build = Build {
+        symbols: symbols.clone(),
+        uses,
+        done: HashMap::new(),
+        temporaries: Vec::new(),
+        prefix,
+    };
+    let results = results.iter().map(|r| build.rewrite(r)).collect();
+    Program {
+        symbols: build.symbols,
+        temporaries: build.temporaries,
+        results,
+    }
+}
+
+/// Counts how often each sub-expression is met when every one is visited once per parent.
+fn count(e: &Expr, uses: &mut HashMap<Expr, usize>) {
+    let n = uses.entry(e.clone()).or_insert(0);
+    *n += 1;
+    if *n == 1 {
+        e.children().into_iter().for_each(|c| count(c, uses));
+    }
+}
+
+/// Whether computing the expression twice costs anything.
+fn is_work(e: &Expr) -> bool {
+    match e.node() {
+        Node::Number(_)
+        | Node::Letter(_)
+        | Node::Identity(_)
+        | Node::Zero(_)
+        | Node::Unit(..)
+        | Node::Hat(_) => false,
+        Node::Neg(a) | Node::Transpose(a) => is_work(a),
+        Node::Power(a, q) => q.as_integer() != Some(2) || is_work(a),
+        Node::Sum(_)
+        | Node::Product(_)
+        | Node::Quotient(..)
+        | Node::Inverse(_)
+        | Node::Trace(_)
+        | Node::Det(_)
+        | Node::Dot(..)
+        | Node::Cross(..)
+        | Node::Vee(_)
+        | Node::Part(..)
+        | Node::Call(..) => true,
+    }
+}
+
+struct Build<'a> {
+    symbols: Symbols,
+    uses: HashMap<Expr, usize>,
+    done: HashMap<Expr, Expr>,
+    temporaries: Vec<(SymbolId, Expr)>,
+    prefix: &'a str,
+}
+
+impl Build<'_> {
+    fn rewrite(&mut self, e: &Expr) -> Expr {
+        if let Some(known) = self.done.get(e) {
+            return known.clone();
+        }
+        let inner = expr::rebuild(&self.symbols.clone(), e, &mut |c| self.rewrite(c));
+        let shared = self.uses.get(e).is_some_and(|n| *n > 1) && is_work(e);
+        let out = if shared {
+            let name =
+                self.symbols
+                    .fresh_name(&format!("{}{}", self.prefix, self.temporaries.len() + 1));
+            let structure = crate::expr::shape::Structure::General;
+            let id = self.symbols.add(&name, e.shape(), structure, Role::Derived);
+            self.temporaries.push((id, inner));
+            expr::here(&self.symbols, id)
+        } else {
+            inner
+        };
+        self.done.insert(e.clone(), out.clone());
+        out
+    }
+}

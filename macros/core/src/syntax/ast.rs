@@ -1,0 +1,184 @@
+//! The syntax tree: what was written, with the place of every part, before names and shapes mean
+//! anything.
+
+use crate::algebra::Rational;
+use crate::diagnostic::Place;
+
+/// A name and where it stands.
+#[derive(Clone, Debug)]
+pub struct Name {
+    /// The text.
+    pub text: String,
+    /// Its token.
+    pub place: Place,
+}
+
+/// An expression.
+#[derive(Clone, Debug)]
+pub struct Expression {
+    /// What it is.
+    pub kind: Kind,
+    /// From its first to its last token.
+    pub place: Place,
+}
+
+/// Kinds of expressions.
+#[derive(Clone, Debug)]
+pub enum Kind {
+    /// A number.
+    Number(Rational),
+    /// A name.
+    Name(String),
+    /// A sum of signed terms: `true` marks a term that is subtracted.
+    Sum(Vec<(bool, Expression)>),
+    /// A product in order.
+    Product(Vec<Expression>),
+    /// A quotient.
+    Quotient(Box<Expression>, Box<Expression>),
+    /// The opposite.
+    Neg(Box<Expression>),
+    /// `x^T`.
+    Transpose(Box<Expression>),
+    /// `x^q`.
+    Power(Box<Expression>, Rational),
+    /// A function of the language.
+    Call(Name, Vec<Expression>),
+}
+
+/// A size: a number or the name of a declared dimension.
+#[derive(Clone, Debug)]
+pub enum Size {
+    /// A number.
+    Number(u64, Place),
+    /// A name.
+    Name(Name),
+}
+
+/// A shape or a group: a name with sizes, `Sym<3>`.
+#[derive(Clone, Debug)]
+pub struct Kindred {
+    /// `Real`, `Vec`, `SO`, ...
+    pub name: Name,
+    /// Its sizes.
+    pub sizes: Vec<Size>,
+    /// The whole of it.
+    pub place: Place,
+}
+
+/// How purely nodal terms enter the action of a step.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum NodeRule {
+    /// Half on each adjacent edge: second order.
+    Symmetric,
+    /// On the edge that ends at the node.
+    Incoming,
+    /// On the edge that starts at the node.
+    Outgoing,
+}
+
+/// A relation between two numbers or matrices in an assumption.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Comparison {
+    /// `==`
+    Equal,
+    /// `>`
+    Greater,
+    /// `>=`
+    AtLeast,
+    /// `<`
+    Less,
+    /// `<=`
+    AtMost,
+}
+
+/// A statement.
+#[derive(Clone, Debug)]
+pub enum Statement {
+    /// `dim n in A..=B;`
+    Dim {
+        /// Its name.
+        name: Name,
+        /// Smallest value.
+        from: u64,
+        /// Largest value.
+        to: u64,
+    },
+    /// `time k step h;`
+    Time {
+        /// Name of the index.
+        index: Name,
+        /// Name of the step.
+        step: Name,
+    },
+    /// `param a, b: SHAPE;`
+    Param {
+        /// The names.
+        names: Vec<Name>,
+        /// Their shape.
+        shape: Kindred,
+    },
+    /// `assume CONDITION;`
+    Assume {
+        /// Left side.
+        left: Expression,
+        /// Relation.
+        relation: Comparison,
+        /// Right side.
+        right: Expression,
+        /// The whole condition.
+        place: Place,
+    },
+    /// `group Λ: GROUP velocity Ω;`
+    Group {
+        /// The element.
+        name: Name,
+        /// The group.
+        group: Kindred,
+        /// Its velocity.
+        velocity: Name,
+    },
+    /// `advected Γ: SHAPE [= EXPR];`
+    Advected {
+        /// The quantity.
+        name: Name,
+        /// Its shape.
+        shape: Kindred,
+        /// Its definition.
+        definition: Option<Expression>,
+    },
+    /// `constraint next(X) = EXPR;`
+    Constraint {
+        /// The quantity.
+        name: Name,
+        /// The right side.
+        value: Expression,
+        /// The whole statement.
+        place: Place,
+    },
+    /// `let W = EXPR;`
+    Let {
+        /// The name.
+        name: Name,
+        /// What it stands for.
+        value: Expression,
+    },
+    /// `scale EXPR;`
+    Scale(Expression),
+    /// `node RULE;`
+    Node(NodeRule, Place),
+    /// `lagrangian = EXPR;`
+    Lagrangian(Expression),
+}
+
+/// A model.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Lines of its documentation.
+    pub docs: Vec<String>,
+    /// Whether it is `pub`.
+    pub public: bool,
+    /// Its name.
+    pub name: Name,
+    /// Its statements in order.
+    pub statements: Vec<Statement>,
+}

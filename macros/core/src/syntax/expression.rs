@@ -1,0 +1,241 @@
+//! Expressions: a Pratt parser with the precedence of mathematics, lowest first: `+ -`, then
+//! `* /` and juxtaposition, then unary `-`, then postfix `^T ^-1 ^number`.
+
+use super::FUNCTIONS;
+use super::ast::{Expression, Kind};
+use super::token::{Cursor, Token};
+use crate::algebra::Rational;
+use crate::diagnostic::Diagnostic;
+
+/// Words that end an expression because a statement goes on with them.
+const FOLLOWING: [&str; 4] = ["at", "on", "periodic", "in"];
+
+type Parsed = Result<Expression, Diagnostic>;
+
+/// Parses one expression.
+pub fn expression(c: &mut Cursor) -> Parsed {
+    let mut terms = Vec::new();
+    let mut minus = false;
+    loop {
+        terms.push((minus, product(c)?));
+        // `->`, `==` and the like are not sums.
+        if c.is_punct('-') && matches!(c.peek_at(1), Some(Token::Punct('>', _))) {
+            break;
+        }
+        if c.take_punct('+') {
+            minus = false;
+        } else if c.take_punct('-') {
+            minus = true;
+        } else {
+            break;
+        }
+    }
+    if terms.len() == 1
+        && let Some((false, only)) = terms.pop()
+    {
+        return Ok(only);
+    }
+    let place = match (terms.first(), terms.last()) {
+        (Some(a), Some(b)) => a.1.place.to(b.1.place),
+        _ => c.place(),
+    };
+    Ok(Expression {
+        kind: Kind::Sum(terms),
+        place,
+    })
+}
+
+fn starts_operand(c: &Cursor) -> bool {
+    match c.peek() {
+        Some(Token::Name(n)) => !FOLLOWING.contains(&n.as_str()),
+        Some(Token::Number(_)) => true,
+        Some(Token::Open(d)) => *d == '(',
+        Some(Token::Literal(_) | Token::Punct(..) | Token::Close(_)) | None => false,
+    }
+}
+
+fn product(c: &mut Cursor) -> Parsed {
+    let mut factors = vec![signed(c)?];
+    loop {
+        if c.take_punct('*') {
+            factors.push(signed(c)?);
+        } else if c.take_punct('/') {
+            let numerator = joined(factors);
+            let divisor = signed(c)?;
+            let place = numerator.place.to(divisor.place);
+            factors = vec![Expression {
+                kind: Kind::Quotient(Box::new(numerator), Box::new(divisor)),
+                place,
+            }];
+        } else if starts_operand(c) {
+            factors.push(postfix(c)?);
+        } else {
+            return Ok(joined(factors));
+        }
+    }
+}
+
+fn joined(mut factors: Vec<Expression>) -> Expression {
+    if factors.len() == 1
+        && let Some(only) = factors.pop()
+    {
+        return only;
+    }
+    let place = match (factors.first(), factors.last()) {
+        (Some(a), Some(b)) => a.place.to(b.place),
+        // `product` never joins an empty list.
+        _ => crate::diagnostic::Place::token(proc_macro2::Span::call_site()),
+    };
+    Expression {
+        kind: Kind::Product(factors),
+        place,
+    }
+}
+
+fn signed(c: &mut Cursor) -> Parsed {
+    let start = c.place();
+    let mut minus = false;
+    loop {
+        if c.take_punct('-') {
+            minus = !minus;
+        } else if !c.take_punct('+') {
+            break;
+        }
+    }
+    let inner = postfix(c)?;
+    if !minus {
+        return Ok(inner);
+    }
+    let place = start.to(inner.place);
+    Ok(Expression {
+        kind: Kind::Neg(Box::new(inner)),
+        place,
+    })
+}
+
+fn postfix(c: &mut Cursor) -> Parsed {
+    let mut e = operand(c)?;
+    while c.take_punct('^') {
+        let kind = if c.take_word("T") {
+            Kind::Transpose(Box::new(e.clone()))
+        } else {
+            Kind::Power(Box::new(e.clone()), exponent(c)?)
+        };
+        let place = e.place.to(c.last_place());
+        e = Expression { kind, place };
+    }
+    if let Some(Token::Punct('\'', _)) = c.peek() {
+        return Err(c
+            .unexpected("an operator")
+            .help("write `^T` for a transpose and `next(x)` for the next time level"));
+    }
+    Ok(e)
+}
+
+/// After `^`: a number, `-1`, or a fraction in parentheses.
+fn exponent(c: &mut Cursor) -> Result<Rational, Diagnostic> {
+    let parenthesis = c.take_delimiter('(');
+    let minus = c.take_punct('-');
+    let mut value = match c.peek() {
+        Some(Token::Number(text)) => {
+            let value = rational(text).ok_or_else(|| too_large(c))?;
+            c.advance();
+            value
+        }
+        _ => {
+            return Err(c.unexpected("`T`, `-1` or a number after `^`").help(
+                "`x^T` is the transpose, `x^-1` the inverse, `x^2` and `x^(1/2)` are powers",
+            ));
+        }
+    };
+    if minus {
+        value = value.negated();
+    }
+    if parenthesis {
+        if c.take_punct('/') {
+            let bottom = match c.peek() {
+                Some(Token::Number(text)) => rational(text).and_then(Rational::inverse),
+                _ => None,
+            };
+            value = bottom
+                .and_then(|b| value.times(b))
+                .ok_or_else(|| c.unexpected("a non-zero number"))?;
+            c.advance();
+        }
+        c.delimiter(')')?;
+    }
+    Ok(value)
+}
+
+fn too_large(c: &Cursor) -> Diagnostic {
+    Diagnostic::new(
+        c.place(),
+        "this number is too large or has too many digits for exact arithmetic",
+    )
+    .help("numbers are kept as exact fractions of at most about 30 digits; make it a parameter")
+}
+
+/// The exact value of a decimal literal.
+fn rational(text: &str) -> Option<Rational> {
+    let text = text.replace('_', "");
+    let (mantissa, exponent) = match text.find(['e', 'E']) {
+        Some(i) => (&text[..i], text[i + 1..].parse::<i32>().ok()?),
+        None => (text.as_str(), 0),
+    };
+    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    let digits = format!("{whole}{fraction}");
+    if digits.len() > 30 {
+        return None;
+    }
+    let value = Rational::new(digits.parse::<i128>().ok()?, 1)?;
+    let shift = exponent.checked_sub(i32::try_from(fraction.len()).ok()?)?;
+    if !(-30..=30).contains(&shift) {
+        return None;
+    }
+    value.times(Rational::integer(10).power(shift)?)
+}
+
+fn operand(c: &mut Cursor) -> Parsed {
+    let start = c.place();
+    match c.peek().cloned() {
+        Some(Token::Number(text)) => {
+            let value = rational(&text).ok_or_else(|| too_large(c))?;
+            c.advance();
+            Ok(Expression {
+                kind: Kind::Number(value),
+                place: start,
+            })
+        }
+        Some(Token::Open('(')) => {
+            c.advance();
+            let mut inner = expression(c)?;
+            c.delimiter(')')?;
+            inner.place = start.to(c.last_place());
+            Ok(inner)
+        }
+        Some(Token::Name(_)) => {
+            let name = c.name("a name")?;
+            let called = FUNCTIONS.contains(&name.text.as_str())
+                && matches!(c.peek(), Some(Token::Open('(')));
+            if !called {
+                return Ok(Expression {
+                    place: name.place,
+                    kind: Kind::Name(name.text),
+                });
+            }
+            c.advance();
+            let mut arguments = Vec::new();
+            while !c.take_delimiter(')') {
+                if !arguments.is_empty() {
+                    c.punct(',')?;
+                }
+                arguments.push(expression(c)?);
+            }
+            Ok(Expression {
+                kind: Kind::Call(name, arguments),
+                place: start.to(c.last_place()),
+            })
+        }
+        _ => Err(c.unexpected("a quantity, a number or `(`")),
+    }
+}

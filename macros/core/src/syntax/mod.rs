@@ -1,0 +1,34 @@
+//! From tokens to a spanned syntax tree: a flat token list, a Pratt parser for expressions, one
+//! function for each statement. Knows no names and no shapes; those are `check`'s.
+
+pub mod ast;
+mod expression;
+mod statement;
+mod token;
+
+use crate::diagnostic::{Diagnostic, Errors, Place};
+use ast::Model;
+use proc_macro2::TokenStream;
+use token::Cursor;
+
+/// Functions of the language: the only names that a parenthesis turns into a call.
+pub const FUNCTIONS: [&str; 23] = [
+    "tr", "det", "log", "exp", "sqrt", "inv", "sym", "skew", "diag", "hat", "vee", "dot", "cross",
+    "perp", "re", "im", "I1", "I2", "next", "prev", "rate", "sum", "Tr",
+];
+
+/// Parses one model: `[pub] model NAME { ... }`, documentation before it.
+pub fn parse(tokens: TokenStream) -> Result<Model, Errors> {
+    let mut cursor = Cursor::new(tokens)?;
+    statement::model(&mut cursor)
+}
+
+/// The tokens of a text.
+pub fn tokens(source: &str) -> Result<TokenStream, Errors> {
+    source.parse().map_err(|e: proc_macro2::LexError| {
+        Errors::from(
+            Diagnostic::new(Place::token(e.span()), format!("this is not a token of the language: {e}"))
+                .help("write Λ^T for a transpose (not Λ'), a*b or a b for a product (not a·b), dot(a, b) for ⟨a, b⟩"),
+        )
+    })
+}

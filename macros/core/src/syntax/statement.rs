@@ -1,0 +1,362 @@
+//! Statements and the model around them, one function for each keyword. A broken statement is
+//! reported and skipped up to its `;`, so that one run shows every mistake.
+
+use super::ast::{Comparison, Kindred, Model, Name, NodeRule, Size, Statement};
+use super::expression::expression;
+use super::token::{Cursor, Token};
+use crate::diagnostic::{Diagnostic, Errors, closest};
+
+/// Keywords that start a statement.
+const KEYWORDS: [&str; 19] = [
+    "dim",
+    "time",
+    "label",
+    "grid",
+    "param",
+    "assume",
+    "group",
+    "field",
+    "advected",
+    "constraint",
+    "let",
+    "hold",
+    "given",
+    "mesh",
+    "linear",
+    "scale",
+    "node",
+    "integrate",
+    "lagrangian",
+];
+
+/// Parses a whole model.
+pub fn model(c: &mut Cursor) -> Result<Model, Errors> {
+    let docs = attributes(c)?;
+    let public = visibility(c);
+    c.word("model").map_err(|e| {
+        e.help("a model starts with `model NAME {`, or `pub model NAME {` to export it")
+    })?;
+    let name = c.name("the name of the model")?;
+    c.delimiter('{')?;
+    let mut errors = Errors::new();
+    let mut statements = Vec::new();
+    while !c.take_delimiter('}') {
+        if c.is_at_end() {
+            errors.push(c.unexpected("`}`"));
+            break;
+        }
+        if c.take_punct(';') {
+            continue;
+        }
+        match statement(c) {
+            Ok(list) => statements.push(list),
+            Err(e) => {
+                errors.push(e);
+                skip_statement(c);
+            }
+        }
+    }
+    if !c.is_at_end() {
+        errors.push(
+            c.unexpected("the end of the model")
+                .help("one `model! { ... }` holds one model"),
+        );
+    }
+    errors.propagate()?;
+    Ok(Model {
+        docs,
+        public,
+        name,
+        statements,
+    })
+}
+
+/// Documentation lines; other attributes are refused.
+fn attributes(c: &mut Cursor) -> Result<Vec<String>, Diagnostic> {
+    let mut docs = Vec::new();
+    while c.is_punct('#') {
+        let start = c.place();
+        c.advance();
+        c.delimiter('[')?;
+        if !c.take_word("doc") {
+            return Err(Diagnostic::new(
+                start.to(c.place()),
+                "only documentation (`/// ...`) may stand before a model",
+            )
+            .help("put other attributes on the items of your own crate"));
+        }
+        c.punct('=')?;
+        if let Some(Token::Literal(text)) = c.peek() {
+            docs.push(unquoted(text));
+            c.advance();
+        }
+        c.delimiter(']')?;
+    }
+    Ok(docs)
+}
+
+fn unquoted(literal: &str) -> String {
+    let body = literal
+        .trim_start_matches('r')
+        .trim_matches('#')
+        .trim_matches('"');
+    let mut out = String::new();
+    let mut chars = body.chars();
+    while let Some(ch) = chars.next() {
+        if ch != '\\' || literal.starts_with('r') {
+            out.push(ch);
+            continue;
+        }
+        match chars.next() {
+            Some('n') => out.push('\n'),
+            Some('t') => out.push('\t'),
+            Some(other) => out.push(other),
+            None => {}
+        }
+    }
+    out
+}
+
+fn visibility(c: &mut Cursor) -> bool {
+    c.take_word("pub")
+}
+
+/// Skips to the end of a broken statement.
+fn skip_statement(c: &mut Cursor) {
+    let mut depth = 0u32;
+    while let Some(token) = c.peek() {
+        match token {
+            Token::Open(_) => depth += 1,
+            Token::Close('}') if depth == 0 => return,
+            Token::Close(_) => depth = depth.saturating_sub(1),
+            Token::Punct(';', _) if depth == 0 => {
+                c.advance();
+                return;
+            }
+            Token::Name(_) | Token::Number(_) | Token::Literal(_) | Token::Punct(..) => {}
+        }
+        c.advance();
+    }
+}
+
+fn statement(c: &mut Cursor) -> Result<Statement, Diagnostic> {
+    let keyword = c.name("a statement")?;
+    let parsed = match keyword.text.as_str() {
+        "dim" => dim(c)?,
+        "time" => time(c)?,
+        "param" => param(c)?,
+        "assume" => assume(c)?,
+        "group" => group(c)?,
+        "advected" => advected(c)?,
+        "constraint" => constraint(c, &keyword)?,
+        "let" => binding(c)?,
+        "scale" => Statement::Scale(expression(c)?),
+        "node" => node(c)?,
+        "lagrangian" => {
+            c.punct('=')?;
+            Statement::Lagrangian(expression(c)?)
+        }
+        "label" | "grid" | "field" | "hold" | "given" | "mesh" | "linear" | "integrate" | "end" => {
+            return Err(Diagnostic::new(
+                keyword.place,
+                format!(
+                    "`{}` belongs to models of rods and fluids, which this version does not derive yet",
+                    keyword.text
+                ),
+            )
+            .help("models with `group`, `advected`, `constraint` and `lagrangian` are derived"));
+        }
+        other => {
+            let mut e = Diagnostic::new(
+                keyword.place,
+                format!("`{other}` does not start a statement"),
+            );
+            if let Some(word) = closest(other, KEYWORDS) {
+                e = e.help(format!("did you mean `{word}`?"));
+            } else {
+                e = e.help("statements start with param, group, advected, constraint, let, scale, node, assume or lagrangian");
+            }
+            return Err(e);
+        }
+    };
+    c.punct(';')?;
+    Ok(parsed)
+}
+
+fn dim(c: &mut Cursor) -> Result<Statement, Diagnostic> {
+    let name = c.name("the name of a dimension")?;
+    c.word("in")?;
+    let start = c.place();
+    let from = c.whole_number()?;
+    c.punct('.')?;
+    c.punct('.')?;
+    c.punct('=')?;
+    let to = c.whole_number()?;
+    if from < 2 || to > 64 || from > to {
+        return Err(Diagnostic::new(
+            start.to(c.last_place()),
+            format!("a dimension runs between 2 and 64, not {from}..={to}"),
+        )
+        .help("write for example `dim n in 3..=8;`"));
+    }
+    Ok(Statement::Dim { name, from, to })
+}
+
+fn time(c: &mut Cursor) -> Result<Statement, Diagnostic> {
+    let index = c.name("the name of the time index")?;
+    c.word("step")?;
+    let step = c.name("the name of the time step")?;
+    Ok(Statement::Time { index, step })
+}
+
+fn names(c: &mut Cursor) -> Result<Vec<Name>, Diagnostic> {
+    let mut list = vec![c.name("a name")?];
+    while c.take_punct(',') {
+        list.push(c.name("a name")?);
+    }
+    Ok(list)
+}
+
+/// `Real`, `Vec<3>`, `SO<n>`, `Mat<3, 2>`.
+fn kindred(c: &mut Cursor) -> Result<Kindred, Diagnostic> {
+    let name = c.name("a shape such as Real, Vec<3> or Sym<3>")?;
+    let mut sizes = Vec::new();
+    if c.take_punct('<') {
+        loop {
+            let place = c.place();
+            sizes.push(match c.peek() {
+                Some(Token::Number(_)) => Size::Number(c.whole_number()?, place),
+                _ => Size::Name(c.name("a size")?),
+            });
+            if !c.take_punct(',') {
+                break;
+            }
+        }
+        c.punct('>')?;
+    }
+    let place = name.place.to(c.last_place());
+    if c.is_word("at") || c.is_word("on") {
+        return Err(Diagnostic::new(
+            c.place(),
+            "label sets (`at ...`) belong to rods and fluids, which this version does not derive yet",
+        )
+        .help("leave it out: without labels every quantity lives at the nodes in time"));
+    }
+    Ok(Kindred { name, sizes, place })
+}
+
+fn param(c: &mut Cursor) -> Result<Statement, Diagnostic> {
+    let names = names(c)?;
+    c.punct(':')?;
+    let shape = kindred(c)?;
+    Ok(Statement::Param { names, shape })
+}
+
+fn assume(c: &mut Cursor) -> Result<Statement, Diagnostic> {
+    let left = expression(c)?;
+    let equal = |c: &mut Cursor| c.take_punct('=');
+    let relation = if c.take_punct('>') {
+        if equal(c) {
+            Comparison::AtLeast
+        } else {
+            Comparison::Greater
+        }
+    } else if c.take_punct('<') {
+        if equal(c) {
+            Comparison::AtMost
+        } else {
+            Comparison::Less
+        }
+    } else if c.take_punct('=') {
+        c.take_punct('=');
+        Comparison::Equal
+    } else {
+        return Err(c
+            .unexpected("`==`, `>`, `>=`, `<` or `<=`")
+            .help("write for example `assume dot(z, z) == 1;`"));
+    };
+    let right = expression(c)?;
+    let place = left.place.to(right.place);
+    Ok(Statement::Assume {
+        left,
+        relation,
+        right,
+        place,
+    })
+}
+
+fn group(c: &mut Cursor) -> Result<Statement, Diagnostic> {
+    let name = c.name("the name of the configuration")?;
+    c.punct(':')?;
+    let group = kindred(c)?;
+    c.word("velocity")
+        .map_err(|e| e.help("write for example `group Λ: SO<3> velocity Ω;`"))?;
+    let velocity = c.name("the name of the discrete velocity")?;
+    Ok(Statement::Group {
+        name,
+        group,
+        velocity,
+    })
+}
+
+fn advected(c: &mut Cursor) -> Result<Statement, Diagnostic> {
+    let name = c.name("the name of the advected quantity")?;
+    c.punct(':')?;
+    let shape = kindred(c)?;
+    let definition = if c.take_punct('=') {
+        Some(expression(c)?)
+    } else {
+        None
+    };
+    Ok(Statement::Advected {
+        name,
+        shape,
+        definition,
+    })
+}
+
+fn constraint(c: &mut Cursor, keyword: &Name) -> Result<Statement, Diagnostic> {
+    let remedy = "a constraint reads `constraint next(Γ) = Ω^T * Γ;`";
+    c.word("next").map_err(|e| e.help(remedy))?;
+    c.delimiter('(')?;
+    let name = c.name("the quantity that the constraint carries")?;
+    if c.is_punct(',') {
+        return Err(c.unexpected("`)`").help(
+            "constraints along labels belong to rods, which this version does not derive yet",
+        ));
+    }
+    c.delimiter(')')?;
+    c.punct('=')?;
+    let value = expression(c)?;
+    let place = keyword.place.to(value.place);
+    Ok(Statement::Constraint { name, value, place })
+}
+
+fn binding(c: &mut Cursor) -> Result<Statement, Diagnostic> {
+    let name = c.name("a name")?;
+    c.punct('=')?;
+    let value = expression(c)?;
+    Ok(Statement::Let { name, value })
+}
+
+fn node(c: &mut Cursor) -> Result<Statement, Diagnostic> {
+    let rule = c.name("`symmetric`, `incoming` or `outgoing`")?;
+    let which = match rule.text.as_str() {
+        "symmetric" => NodeRule::Symmetric,
+        "incoming" => NodeRule::Incoming,
+        "outgoing" => NodeRule::Outgoing,
+        other => {
+            let mut e = Diagnostic::new(
+                rule.place,
+                format!("`{other}` is not a rule for nodal terms"),
+            );
+            if let Some(word) = closest(other, ["symmetric", "incoming", "outgoing"]) {
+                e = e.help(format!("did you mean `{word}`?"));
+            }
+            return Err(e.help(
+                "`symmetric` (second order, the default), `incoming` or `outgoing` (one-sided)",
+            ));
+        }
+    };
+    Ok(Statement::Node(which, rule.place))
+}

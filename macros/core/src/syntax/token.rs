@@ -1,0 +1,270 @@
+//! Tokens as a flat list with a cursor. Groups become opening and closing tokens, `2Ω` becomes a
+//! number and a name; depth and length are bounded, so that no input exhausts the stack.
+
+use super::ast::Name;
+use crate::diagnostic::{Diagnostic, Errors, Place};
+use proc_macro2::{Delimiter, Spacing, Span, TokenStream, TokenTree};
+
+/// Deepest nesting of parentheses that the parser follows.
+const DEEPEST: usize = 100;
+/// Longest model, in tokens.
+const LONGEST: usize = 20_000;
+
+/// One flat token.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum Token {
+    /// An identifier.
+    Name(String),
+    /// A number literal, without suffix.
+    Number(String),
+    /// A string or other literal.
+    Literal(String),
+    /// One character of punctuation; `true` when the next one touches it.
+    Punct(char, bool),
+    /// An opening delimiter.
+    Open(char),
+    /// A closing delimiter.
+    Close(char),
+}
+
+impl Token {
+    /// How the token is named in a message.
+    pub fn text(&self) -> String {
+        match self {
+            Token::Name(s) | Token::Number(s) | Token::Literal(s) => s.clone(),
+            Token::Punct(c, _) | Token::Open(c) | Token::Close(c) => c.to_string(),
+        }
+    }
+}
+
+/// A position in the flat list.
+pub struct Cursor {
+    tokens: Vec<(Token, Span)>,
+    at: usize,
+    end: Span,
+}
+
+fn delimiters(d: Delimiter) -> Option<(char, char)> {
+    match d {
+        Delimiter::Parenthesis => Some(('(', ')')),
+        Delimiter::Brace => Some(('{', '}')),
+        Delimiter::Bracket => Some(('[', ']')),
+        Delimiter::None => None,
+    }
+}
+
+/// Splits `2e3x` into its number and its suffix.
+fn split_number(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let digits = |mut i: usize| {
+        while i < bytes.len() && (bytes[i].is_ascii_digit() || bytes[i] == b'_') {
+            i += 1;
+        }
+        i
+    };
+    let mut i = digits(0);
+    if i < bytes.len() && bytes[i] == b'.' {
+        i = digits(i + 1);
+    }
+    if i < bytes.len() && (bytes[i] == b'e' || bytes[i] == b'E') {
+        let mut j = i + 1;
+        if j < bytes.len() && (bytes[j] == b'+' || bytes[j] == b'-') {
+            j += 1;
+        }
+        if digits(j) > j {
+            i = digits(j);
+        }
+    }
+    i
+}
+
+impl Cursor {
+    /// Flattens a token stream.
+    pub fn new(stream: TokenStream) -> Result<Cursor, Errors> {
+        let mut tokens = Vec::new();
+        let mut end = Span::call_site();
+        let mut stack = vec![(stream.into_iter(), None::<(char, Span)>)];
+        while let Some((iter, closing)) = stack.last_mut() {
+            let Some(tree) = iter.next() else {
+                if let Some((c, span)) = closing.take() {
+                    tokens.push((Token::Close(c), span));
+                    end = span;
+                }
+                stack.pop();
+                continue;
+            };
+            let span = tree.span();
+            if tokens.len() > LONGEST {
+                let message = format!("a model of more than {LONGEST} tokens is refused");
+                return Err(Diagnostic::new(Place::token(span), message)
+                    .help("split it into several models, or shorten it with `let`")
+                    .into());
+            }
+            match tree {
+                TokenTree::Group(group) => {
+                    if stack.len() > DEEPEST {
+                        let message =
+                            format!("parentheses nested deeper than {DEEPEST} are refused");
+                        return Err(Diagnostic::new(Place::token(span), message)
+                            .help("name parts of the expression with `let`")
+                            .into());
+                    }
+                    let pair = delimiters(group.delimiter());
+                    if let Some((open, _)) = pair {
+                        tokens.push((Token::Open(open), group.span_open()));
+                    }
+                    let close = pair.map(|(_, c)| (c, group.span_close()));
+                    stack.push((group.stream().into_iter(), close));
+                }
+                TokenTree::Ident(name) => {
+                    let text = name.to_string();
+                    let text = text.strip_prefix("r#").unwrap_or(&text).to_owned();
+                    tokens.push((Token::Name(text), span));
+                }
+                TokenTree::Punct(p) => {
+                    let joint = p.spacing() == Spacing::Joint;
+                    tokens.push((Token::Punct(p.as_char(), joint), span));
+                }
+                TokenTree::Literal(literal) => {
+                    let text = literal.to_string();
+                    if text.starts_with(|c: char| c.is_ascii_digit()) {
+                        let (number, suffix) = text.split_at(split_number(&text));
+                        tokens.push((Token::Number(number.to_owned()), span));
+                        if !suffix.is_empty() {
+                            tokens.push((Token::Name(suffix.to_owned()), span));
+                        }
+                    } else {
+                        tokens.push((Token::Literal(text), span));
+                    }
+                }
+            }
+            end = span;
+        }
+        Ok(Cursor { tokens, at: 0, end })
+    }
+
+    /// The token `ahead` places on.
+    pub fn peek_at(&self, ahead: usize) -> Option<&Token> {
+        self.tokens.get(self.at + ahead).map(|(t, _)| t)
+    }
+
+    /// The next token.
+    pub fn peek(&self) -> Option<&Token> {
+        self.peek_at(0)
+    }
+
+    /// Place of the next token, or of the end.
+    pub fn place(&self) -> Place {
+        Place::token(self.tokens.get(self.at).map_or(self.end, |(_, s)| *s))
+    }
+
+    /// Place of the token just read.
+    pub fn last_place(&self) -> Place {
+        let before = self.at.checked_sub(1).and_then(|i| self.tokens.get(i));
+        Place::token(before.map_or(self.end, |(_, s)| *s))
+    }
+
+    /// Steps over one token.
+    pub fn advance(&mut self) {
+        self.at += 1;
+    }
+
+    /// Whether all tokens are read.
+    pub fn is_at_end(&self) -> bool {
+        self.at >= self.tokens.len()
+    }
+
+    /// Whether the next token is this word.
+    pub fn is_word(&self, word: &str) -> bool {
+        matches!(self.peek(), Some(Token::Name(n)) if n == word)
+    }
+
+    /// Whether the next token is this punctuation.
+    pub fn is_punct(&self, c: char) -> bool {
+        matches!(self.peek(), Some(Token::Punct(p, _)) if *p == c)
+    }
+
+    /// Reads the word if it comes next.
+    pub fn take_word(&mut self, word: &str) -> bool {
+        let found = self.is_word(word);
+        self.at += usize::from(found);
+        found
+    }
+
+    /// Reads the punctuation if it comes next.
+    pub fn take_punct(&mut self, c: char) -> bool {
+        let found = self.is_punct(c);
+        self.at += usize::from(found);
+        found
+    }
+
+    /// Reads the opening or closing delimiter if it comes next.
+    pub fn take_delimiter(&mut self, c: char) -> bool {
+        let found = matches!(self.peek(), Some(Token::Open(p) | Token::Close(p)) if *p == c);
+        self.at += usize::from(found);
+        found
+    }
+
+    /// An error at the next token: what was expected, and what stands there.
+    pub fn unexpected(&self, expected: &str) -> Diagnostic {
+        let found = match self.peek() {
+            Some(t) => format!("found `{}`", t.text()),
+            None => "the text ends here".to_owned(),
+        };
+        Diagnostic::new(self.place(), format!("expected {expected}, {found}"))
+    }
+
+    /// Reads this punctuation or fails.
+    pub fn punct(&mut self, c: char) -> Result<(), Diagnostic> {
+        if self.take_punct(c) {
+            return Ok(());
+        }
+        let mut error = self.unexpected(&format!("`{c}`"));
+        if c == ';' {
+            error = error.help("every statement ends with `;`");
+        }
+        Err(error)
+    }
+
+    /// Reads this delimiter or fails.
+    pub fn delimiter(&mut self, c: char) -> Result<(), Diagnostic> {
+        if self.take_delimiter(c) {
+            return Ok(());
+        }
+        Err(self.unexpected(&format!("`{c}`")))
+    }
+
+    /// Reads this word or fails.
+    pub fn word(&mut self, word: &str) -> Result<(), Diagnostic> {
+        if self.take_word(word) {
+            return Ok(());
+        }
+        Err(self.unexpected(&format!("`{word}`")))
+    }
+
+    /// Reads a name or fails.
+    pub fn name(&mut self, what: &str) -> Result<Name, Diagnostic> {
+        match self.peek() {
+            Some(Token::Name(text)) => {
+                let name = Name {
+                    text: text.clone(),
+                    place: self.place(),
+                };
+                self.advance();
+                Ok(name)
+            }
+            _ => Err(self.unexpected(what)),
+        }
+    }
+
+    /// Reads a whole number or fails.
+    pub fn whole_number(&mut self) -> Result<u64, Diagnostic> {
+        if let Some(Token::Number(text)) = self.peek()
+            && let Ok(n) = text.replace('_', "").parse()
+        {
+            self.advance();
+            return Ok(n);
+        }
+        Err(self.unexpected("a whole number"))
+    }
+}

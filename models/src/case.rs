@@ -1,0 +1,48 @@
+//! Named cases of a model: parameters, initial data, step, number of steps and the bounds that its
+//! invariants keep, in the order of the model's card.
+
+use clebsch::card::Card;
+
+/// A case of a model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Case {
+    /// Its name.
+    pub name: String,
+    /// What it shows and where it comes from.
+    pub doc: String,
+    /// Time step.
+    pub h: f64,
+    /// Number of steps.
+    pub steps: u64,
+    /// Values of the parameters, row by row, in the order of the card.
+    pub parameters: Vec<Vec<f64>>,
+    /// Initial values, row by row, in the order of the card.
+    pub initial: Vec<Vec<f64>>,
+    /// Largest drift of each invariant, relative to its natural scale.
+    pub bounds: Vec<(String, f64)>,
+}
+
+/// A model of the gallery with its cases; the first one is the default.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// The model as data.
+    pub card: Card,
+    /// Its cases.
+    pub cases: Vec<Case>,
+}
+
+/// The Poinsot matrix `J = tr(I)/2 - I` of principal moments of inertia, as its diagonal.
+pub fn poinsot(moments: [f64; 3]) -> [f64; 3] {
+    let half = moments.iter().sum::<f64>() / 2.0;
+    moments.map(|i| half - i)
+}
+
+/// A diagonal matrix, row by row.
+pub fn diagonal(d: [f64; 3]) -> Vec<f64> {
+    vec![d[0], 0.0, 0.0, 0.0, d[1], 0.0, 0.0, 0.0, d[2]]
+}
+
+/// The identity, row by row.
+pub fn identity() -> Vec<f64> {
+    diagonal([1.0; 3])
+}

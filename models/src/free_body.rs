@@ -1,0 +1,80 @@
+//! The free rigid body in the body representation (thesis 2.5): the Moser-Veselov system.
+
+use crate::case::{Case, Entry, diagonal, identity, poinsot};
+
+clebsch::model! {
+    /// Free rigid body, body representation.
+    pub model FreeBody {
+        param J: Sym<3>;                 // Poinsot (second-moment) matrix
+        group Λ: SO<3> velocity Ω;       // attitude, body to space
+        constraint next(Λ) = Λ*Ω;
+        lagrangian = -tr(J*Ω)/h;
+    }
+}
+
+fn case(name: &str, doc: &str, moments: [f64; 3], momentum: [f64; 3], steps: u64) -> Case {
+    Case {
+        name: name.to_owned(),
+        doc: doc.to_owned(),
+        h: 0.1,
+        steps,
+        parameters: vec![diagonal(poinsot(moments))],
+        initial: vec![identity(), momentum.to_vec()],
+        // Everything is exact: what is left is rounding, which projection every 64 steps and the
+        // spatial momentum as state keep from accumulating.
+        bounds: [
+            "energy",
+            "spatial_momentum",
+            "momentum_squared",
+            "momentum_quadratic",
+        ]
+        .map(|v| (v.to_owned(), 1e-14))
+        .to_vec(),
+    }
+}
+
+/// The model and its cases.
+pub fn entry() -> Entry {
+    let symmetric = [2.0, 2.0, 1.0];
+    let general = [3.5, 2.5, 2.0];
+    Entry {
+        card: FreeBody::CARD,
+        cases: vec![
+            case(
+                "figure-2-5",
+                "symmetric body, moments (2, 2, 1), 1000 steps: thesis figure 2.5",
+                symmetric,
+                [0.1, 0.0, 1.0],
+                1_000,
+            ),
+            case(
+                "figure-2-6",
+                "asymmetric body, moments (3.5, 2.5, 2), 1000 steps: thesis figure 2.6",
+                general,
+                [-0.5, 0.0, 1.0],
+                1_000,
+            ),
+            case(
+                "figure-2-8",
+                "asymmetric body over 10000 steps, drift of energy and momentum: thesis figure 2.8",
+                general,
+                [-0.5, 0.0, 1.0],
+                10_000,
+            ),
+            case(
+                "flat-body",
+                "moments (1, 2, 3), whose Poinsot matrix is singular: the inertia of thesis figure 2.17",
+                [1.0, 2.0, 3.0],
+                [0.5, 0.3, 1.0],
+                10_000,
+            ),
+            case(
+                "steady-rotation",
+                "rotation about the symmetry axis: the angle per step is asin(h M₃/I₃)",
+                symmetric,
+                [0.0, 0.0, 1.0],
+                1_000,
+            ),
+        ],
+    }
+}

@@ -1,0 +1,89 @@
+//! The heavy top in the body representation (thesis 2.7.1, with the corrected (2.155)).
+
+use crate::case::{Case, Entry, diagonal, poinsot};
+
+clebsch::model! {
+    /// Heavy top, body representation.
+    pub model HeavyTop {
+        param J: Sym<3>;                     // Poinsot (second-moment) matrix
+        param gU: Vec<3>;                    // weight times support -> centre of mass, body frame
+        param z: Vec<3>;                     // vertical (up), space frame
+        group Λ: SO<3> velocity Ω;           // attitude, body to space
+        advected Γ: Vec<3> = Λ^T * z;        // the vertical seen from the body
+        constraint next(Λ) = Λ * Ω;          // reconstruction
+        constraint next(Γ) = Ω^T * Γ;        // how Γ is carried
+        lagrangian = -tr(J*Ω)/h - h*dot(gU, Γ);
+    }
+}
+
+/// Rotation by the angle with this cosine and sine about the second axis: tilts the top.
+fn tilted(cos: f64, sin: f64) -> Vec<f64> {
+    vec![cos, 0.0, sin, 0.0, 1.0, 0.0, -sin, 0.0, cos]
+}
+
+fn case(
+    name: &str,
+    doc: &str,
+    moments: [f64; 3],
+    weight: [f64; 3],
+    attitude: Vec<f64>,
+    momentum: [f64; 3],
+    energy: f64,
+) -> Case {
+    Case {
+        name: name.to_owned(),
+        doc: doc.to_owned(),
+        h: 0.1,
+        steps: 10_000,
+        parameters: vec![
+            diagonal(poinsot(moments)),
+            weight.to_vec(),
+            vec![0.0, 0.0, 1.0],
+        ],
+        initial: vec![attitude, momentum.to_vec()],
+        // Casimirs to rounding; the energy oscillates within O(h²), with the amplitude of the case.
+        bounds: vec![
+            ("energy".to_owned(), energy),
+            ("momentum_Gamma".to_owned(), 1e-13),
+            ("Gamma_squared".to_owned(), 1e-13),
+        ],
+    }
+}
+
+/// The model and its cases.
+pub fn entry() -> Entry {
+    let symmetric = [2.0, 2.0, 1.0];
+    let centre = [0.0, 0.0, 1.0];
+    Entry {
+        card: HeavyTop::CARD,
+        cases: vec![
+            case(
+                "lagrange",
+                "Lagrange top (2, 2, 1), m g χ = e₃, tilted by the angle of the 3-4-5 triangle",
+                symmetric,
+                centre,
+                tilted(0.8, 0.6),
+                [0.1, 0.0, 1.0],
+                2e-2,
+            ),
+            case(
+                "figure-2-11",
+                "hanging top of thesis figure 2.11; m g χ, which the thesis omits, is chosen as -e₃",
+                symmetric,
+                [0.0, 0.0, -1.0],
+                tilted(0.8, 0.6),
+                [0.1, 0.0, 1.0],
+                2e-2,
+            ),
+            case(
+                "general",
+                "asymmetric top (3.5, 2.5, 2) with its centre of mass off the axes: chaotic",
+                [3.5, 2.5, 2.0],
+                [0.3, -0.2, 0.9],
+                tilted(0.8, 0.6),
+                [-0.5, 0.3, 1.0],
+                2e-2,
+            ),
+        ],
+    }
+}

@@ -1,0 +1,212 @@
+//! A model as data: what a command line, a test or a binding needs to know of it.
+//! Emitted code gives one [`Card`] per model; it is read by whatever lists, starts and observes.
+
+use crate::{ParameterError, StartError, StepError};
+use core::fmt;
+
+/// What sort of quantity a field is; it fixes how the numbers are read and checked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// One number.
+    Scalar,
+    /// A column of numbers.
+    Vector,
+    /// A symmetric matrix.
+    Symmetric,
+    /// A skew matrix.
+    Skew,
+    /// A diagonal matrix.
+    Diagonal,
+    /// Any matrix.
+    Matrix,
+    /// A rotation body -> space, given as its matrix of nine numbers.
+    Rotation,
+    /// Angular momentum in body axes.
+    BodyMomentum,
+    /// Angular momentum in spatial axes.
+    SpatialMomentum,
+}
+
+/// A parameter, an initial value or an observable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Field {
+    /// The name as the model writes it, such as `Λ`.
+    pub name: &'static str,
+    /// The name in ASCII, such as `Lambda`, for files and command lines.
+    pub ascii: &'static str,
+    /// Number of rows.
+    pub rows: usize,
+    /// Number of columns; 1 for scalars and vectors.
+    pub cols: usize,
+    /// What sort of quantity it is.
+    pub kind: Kind,
+    /// What it means, in a few words.
+    pub doc: &'static str,
+}
+
+impl Field {
+    /// How many numbers the field has.
+    #[must_use]
+    pub const fn count(&self) -> usize {
+        self.rows * self.cols
+    }
+}
+
+/// How well the stepper keeps an invariant of the continuous system.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Conserved {
+    /// To rounding.
+    Exactly,
+    /// It oscillates within `O(h^2)` and does not drift, as the energy of a forced system does.
+    Boundedly,
+}
+
+/// A conserved quantity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Invariant {
+    /// The name in ASCII, such as `energy`.
+    pub name: &'static str,
+    /// The formula, such as `½ μ·I⁻¹μ`.
+    pub formula: &'static str,
+    /// Number of components.
+    pub rows: usize,
+    /// How well it is kept.
+    pub conserved: Conserved,
+}
+
+/// Starts a trajectory from parameters, initial values (each field one vector, row-major) and step
+/// size.
+///
+/// # Errors
+/// [`OpenError`] for a wrong number of values, bad parameters, or a refused start.
+pub type Open = fn(&[Vec<f64>], &[Vec<f64>], f64) -> Result<Box<dyn Trajectory>, OpenError>;
+
+/// Everything there is to know about a model without knowing its type.
+#[derive(Clone, Copy, Debug)]
+pub struct Card {
+    /// The model's name, such as `HeavyTop`.
+    pub name: &'static str,
+    /// The name for command lines, such as `heavy-top`.
+    pub kebab: &'static str,
+    /// What the model is.
+    pub doc: &'static str,
+    /// The model's text as written.
+    pub source: &'static str,
+    /// A hash of the text and the generator, so that results can be traced to it.
+    pub fingerprint: u64,
+    /// What was derived, a few lines.
+    pub summary: &'static str,
+    /// How the implicit step is solved.
+    pub solver: &'static str,
+    /// Order of accuracy in the step size.
+    pub order: u32,
+    /// Whether a step with `-h` undoes a step with `h`.
+    pub reversible: bool,
+    /// The parameters, in the order [`Card::open`] takes them.
+    pub parameters: &'static [Field],
+    /// The initial values, in the order [`Card::open`] takes them.
+    pub initial: &'static [Field],
+    /// The observables, in the order [`Trajectory::observe`] gives them.
+    pub observables: &'static [Field],
+    /// The invariants, in the order [`Trajectory::invariants`] gives them.
+    pub invariants: &'static [Invariant],
+    /// Starts a trajectory.
+    pub open: Open,
+}
+
+impl Card {
+    /// How many numbers one sample of all observables has.
+    #[must_use]
+    pub fn observable_count(&self) -> usize {
+        self.observables.iter().map(Field::count).sum()
+    }
+
+    /// How many components all invariants have together.
+    #[must_use]
+    pub fn invariant_count(&self) -> usize {
+        self.invariants.iter().map(|invariant| invariant.rows).sum()
+    }
+}
+
+/// A running trajectory whose model type is hidden.
+///
+/// Slices that are too short are filled as far as they go.
+pub trait Trajectory: Send {
+    /// The node the state is at; 0 at the start.
+    fn node(&self) -> u64;
+
+    /// The time at that node, `node * h`.
+    fn time(&self) -> f64;
+
+    /// Advances by one step.
+    ///
+    /// # Errors
+    /// [`StepError`]; the state is then unchanged.
+    fn step(&mut self) -> Result<(), StepError>;
+
+    /// The model's description; it tells how long the slices below must be.
+    fn card(&self) -> &'static Card;
+
+    /// Writes all observables, each row-major, one after another.
+    fn observe(&self, out: &mut [f64]);
+
+    /// Writes all components of all invariants.
+    fn invariants(&self, out: &mut [f64]);
+
+    /// Writes one natural scale per component of the invariants, taken at node 0; positive.
+    fn scales(&self, out: &mut [f64]);
+}
+
+/// Why [`Card::open`] refuses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum OpenError {
+    /// A parameter is unusable.
+    Parameter(ParameterError),
+    /// An initial value is unusable, or the first step is refused.
+    Start(StartError),
+    /// Too few or too many numbers.
+    Count {
+        /// The field, or `parameters` / `initial values` for the number of fields itself.
+        field: &'static str,
+        /// How many are needed.
+        expected: usize,
+        /// How many were given.
+        found: usize,
+    },
+}
+
+impl fmt::Display for OpenError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Parameter(error) => write!(f, "{error}"),
+            Self::Start(error) => write!(f, "{error}"),
+            Self::Count {
+                field,
+                expected,
+                found,
+            } => write!(f, "`{field}` takes {expected} numbers, found {found}"),
+        }
+    }
+}
+
+impl std::error::Error for OpenError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::Parameter(error) => Some(error),
+            Self::Start(error) => Some(error),
+            Self::Count { .. } => None,
+        }
+    }
+}
+
+impl From<ParameterError> for OpenError {
+    fn from(error: ParameterError) -> Self {
+        Self::Parameter(error)
+    }
+}
+
+impl From<StartError> for OpenError {
+    fn from(error: StartError) -> Self {
+        Self::Start(error)
+    }
+}

@@ -1,0 +1,136 @@
+//! The names that emitted code uses, in one place: linear algebra, groups, solvers, errors and the
+//! description of a model. Not meant to be written by hand; steppers import it whole.
+
+pub use crate::card::{Card, Conserved, Field, Invariant, Kind, OpenError, Trajectory};
+pub use crate::groups::{BodyMomentum, Group, Rotation, SpatialMomentum};
+pub use crate::linalg::{axial_of_difference, determinant, hat, solve, vee};
+pub use crate::scalar::Real;
+pub use crate::solvers::moser_veselov::{
+    Free, MoserVeselovError, Poinsot, forced, largest_step, reach,
+};
+pub use crate::solvers::newton;
+pub use crate::validate;
+pub use crate::{ParameterError, StartError, StepCause, StepError};
+pub use nalgebra::{SMatrix, SVector};
+
+/// The inverse of a matrix; all NaN where there is none, so that the step that used it is refused.
+#[inline]
+#[must_use]
+pub fn inverse_or_nan<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+    crate::linalg::inverse(a).unwrap_or_else(|| SMatrix::repeat(T::from_f64(f64::NAN)))
+}
+
+/// The solution of `a x = b`; all NaN where there is none.
+#[inline]
+#[must_use]
+pub fn solve_or_nan<T: Real, const N: usize>(
+    a: &SMatrix<T, N, N>,
+    b: &SVector<T, N>,
+) -> SVector<T, N> {
+    solve(a, b).unwrap_or_else(|| SVector::repeat(T::from_f64(f64::NAN)))
+}
+
+/// The unit vector along `axis`, counted from 0.
+#[inline]
+#[must_use]
+pub fn unit<T: Real, const N: usize>(axis: usize) -> SVector<T, N> {
+    SVector::from_fn(|i, _| if i == axis { T::one() } else { T::zero() })
+}
+
+/// The skew matrix of the unit vector along `axis`: a basis of the Lie algebra of SO(3).
+#[inline]
+#[must_use]
+pub fn basis<T: Real>(axis: usize) -> SMatrix<T, 3, 3> {
+    hat(&unit(axis))
+}
+
+/// `(A + A^T)/2`.
+#[inline]
+#[must_use]
+pub fn symmetric_part<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+    (a + a.transpose()) * T::from_f64(0.5)
+}
+
+/// `(A - A^T)/2`.
+#[inline]
+#[must_use]
+pub fn skew_part<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+    (a - a.transpose()) * T::from_f64(0.5)
+}
+
+/// The diagonal of `A`, as a matrix.
+#[inline]
+#[must_use]
+pub fn diagonal_part<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+    SMatrix::from_diagonal(&a.diagonal())
+}
+
+/// The length of all entries together.
+#[inline]
+#[must_use]
+pub fn length<T: Real, const R: usize, const C: usize>(a: &SMatrix<T, R, C>) -> T {
+    a.iter().fold(T::zero(), |sum, x| sum + *x * *x).sqrt()
+}
+
+/// Whether every entry is finite.
+#[inline]
+#[must_use]
+pub fn all_finite<T: Real, const R: usize, const C: usize>(a: &SMatrix<T, R, C>) -> bool {
+    a.iter().all(|x| x.is_finite())
+}
+
+/// The values of one field as a matrix, row by row.
+///
+/// # Errors
+/// When their number is not that of the field.
+pub fn matrix_of<const R: usize, const C: usize>(
+    field: &'static str,
+    values: Option<&Vec<f64>>,
+) -> Result<SMatrix<f64, R, C>, OpenError> {
+    let found = values.map_or(0, Vec::len);
+    match values {
+        Some(list) if found == R * C => Ok(SMatrix::from_row_slice(list)),
+        _ => Err(OpenError::Count {
+            field,
+            expected: R * C,
+            found,
+        }),
+    }
+}
+
+/// The values of one field as a number.
+///
+/// # Errors
+/// When there is not exactly one.
+pub fn number_of(field: &'static str, values: Option<&Vec<f64>>) -> Result<f64, OpenError> {
+    matrix_of::<1, 1>(field, values).map(|m| m.x)
+}
+
+/// The values of one field as a rotation.
+///
+/// # Errors
+/// When they are not nine, or not a rotation.
+pub fn rotation_of(
+    field: &'static str,
+    values: Option<&Vec<f64>>,
+) -> Result<Rotation<f64>, OpenError> {
+    let matrix = matrix_of::<3, 3>(field, values)?;
+    Rotation::from_matrix(&matrix)
+        .map_err(|e| OpenError::Start(StartError::Initial(e.in_field(field))))
+}
+
+/// Copies `values` to the front of `out` and returns what is left of it.
+pub fn put(out: &mut [f64], values: impl IntoIterator<Item = f64>) -> &mut [f64] {
+    let mut filled = 0;
+    for (slot, x) in out.iter_mut().zip(values) {
+        *slot = x;
+        filled += 1;
+    }
+    out.split_at_mut(filled).1
+}
+
+/// The entries of a matrix row by row.
+pub fn rows<const R: usize, const C: usize>(a: SMatrix<f64, R, C>) -> impl Iterator<Item = f64> {
+    let t = a.transpose();
+    (0..R * C).map(move |i| t.as_slice().get(i).copied().unwrap_or(f64::NAN))
+}

@@ -1,0 +1,279 @@
+//! What can go wrong: with parameters, at the start of a trajectory, during a step.
+//! Takes the numbers of the failure; gives messages that say what to change.
+
+use crate::groups::NotARotation;
+use crate::solvers::moser_veselov::{MoserVeselovError, PoinsotError};
+use crate::solvers::newton::NewtonError;
+use core::fmt;
+
+/// A parameter or an initial value that the model cannot work with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParameterError {
+    /// The name of the quantity as the model writes it.
+    pub field: &'static str,
+    /// What is wrong, with numbers.
+    pub problem: Problem,
+    /// What to do about it.
+    pub remedy: &'static str,
+}
+
+/// What is wrong with a parameter. Rows and columns count from 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Problem {
+    /// A component is NaN or infinite.
+    NotFinite {
+        /// Position in row-major order.
+        index: usize,
+        /// The offending value.
+        value: f64,
+    },
+    /// The matrix must be symmetric and is not.
+    NotSymmetric {
+        /// Row of the entry above the diagonal.
+        row: usize,
+        /// Its column.
+        column: usize,
+        /// The entry at (row, column).
+        upper: f64,
+        /// The entry at (column, row).
+        lower: f64,
+    },
+    /// The matrix must be skew and is not.
+    NotSkew {
+        /// Row of the entry above (or on) the diagonal.
+        row: usize,
+        /// Its column.
+        column: usize,
+        /// The entry at (row, column).
+        upper: f64,
+        /// The entry at (column, row).
+        lower: f64,
+    },
+    /// The matrix must be diagonal and is not.
+    NotDiagonal {
+        /// Row of the entry.
+        row: usize,
+        /// Its column.
+        column: usize,
+        /// The entry.
+        value: f64,
+    },
+    /// The number must be positive and is not.
+    NotPositive {
+        /// The number.
+        value: f64,
+    },
+    /// An assumption stated in the model does not hold.
+    AssumptionFails {
+        /// The assumption as the model writes it.
+        text: &'static str,
+    },
+    /// The matrix is no Poinsot matrix of a body.
+    Poinsot(PoinsotError),
+    /// The matrix is no rotation.
+    Rotation(NotARotation),
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFinite { index, value } => write!(f, "component {index} is {value}"),
+            Self::NotSymmetric {
+                row,
+                column,
+                upper,
+                lower,
+            } => write!(
+                f,
+                "not symmetric: entry ({row}, {column}) is {upper} but ({column}, {row}) is {lower}"
+            ),
+            Self::NotSkew {
+                row,
+                column,
+                upper,
+                lower,
+            } => write!(
+                f,
+                "not skew: entry ({row}, {column}) is {upper} but ({column}, {row}) is {lower}"
+            ),
+            Self::NotDiagonal { row, column, value } => {
+                write!(f, "not diagonal: entry ({row}, {column}) is {value}")
+            }
+            Self::NotPositive { value } => write!(f, "{value} is not positive"),
+            Self::AssumptionFails { text } => write!(f, "the assumption `{text}` does not hold"),
+            Self::Poinsot(error) => write!(f, "{error}"),
+            Self::Rotation(error) => write!(f, "{error}"),
+        }
+    }
+}
+
+impl fmt::Display for ParameterError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "`{}`: {}; {}", self.field, self.problem, self.remedy)
+    }
+}
+
+impl std::error::Error for ParameterError {}
+
+impl PoinsotError {
+    /// The same error, said of the parameter `field`.
+    #[cold]
+    pub fn in_field(self, field: &'static str) -> ParameterError {
+        ParameterError {
+            field,
+            problem: Problem::Poinsot(self),
+            remedy: "give the matrix of second moments J = tr(I)/2 - I of a real mass distribution",
+        }
+    }
+}
+
+impl NotARotation {
+    /// The same error, said of the initial value `field`.
+    #[cold]
+    pub fn in_field(self, field: &'static str) -> ParameterError {
+        ParameterError {
+            field,
+            problem: Problem::Rotation(self),
+            remedy: "give nine numbers of a matrix with orthonormal columns and determinant +1",
+        }
+    }
+}
+
+/// Why a trajectory cannot start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StartError {
+    /// An initial value, or the step size, is unusable.
+    Initial(ParameterError),
+    /// The data are fine, but the solver refuses the first step.
+    Refused(StepCause),
+}
+
+impl fmt::Display for StartError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Initial(error) => write!(f, "cannot start: {error}"),
+            Self::Refused(cause) => write!(f, "cannot take the first step: {cause}"),
+        }
+    }
+}
+
+impl std::error::Error for StartError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::Initial(error) => Some(error),
+            Self::Refused(cause) => Some(cause),
+        }
+    }
+}
+
+impl From<ParameterError> for StartError {
+    #[cold]
+    fn from(error: ParameterError) -> Self {
+        Self::Initial(error)
+    }
+}
+
+impl From<StepCause> for StartError {
+    #[cold]
+    fn from(cause: StepCause) -> Self {
+        Self::Refused(cause)
+    }
+}
+
+impl From<MoserVeselovError> for StartError {
+    #[cold]
+    fn from(error: MoserVeselovError) -> Self {
+        Self::Refused(StepCause::MoserVeselov(error))
+    }
+}
+
+impl From<NewtonError> for StartError {
+    #[cold]
+    fn from(error: NewtonError) -> Self {
+        Self::Refused(StepCause::Newton(error))
+    }
+}
+
+/// A step that was not taken; the state is as it was before.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepError {
+    /// The node the step would have started from.
+    pub node: u64,
+    /// Why.
+    pub cause: StepCause,
+}
+
+/// Why a step was not taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StepCause {
+    /// The Moser-Veselov equation has no principal solution: the step is too long.
+    MoserVeselov(MoserVeselovError),
+    /// The Newton iteration failed.
+    Newton(NewtonError),
+    /// A quantity became NaN or infinite.
+    NotFinite {
+        /// Its name.
+        what: &'static str,
+    },
+}
+
+impl StepCause {
+    /// The error of the step from node `node`.
+    #[cold]
+    pub fn at_node(self, node: u64) -> StepError {
+        StepError { node, cause: self }
+    }
+}
+
+impl From<MoserVeselovError> for StepCause {
+    #[cold]
+    fn from(error: MoserVeselovError) -> Self {
+        Self::MoserVeselov(error)
+    }
+}
+
+impl From<NewtonError> for StepCause {
+    #[cold]
+    fn from(error: NewtonError) -> Self {
+        Self::Newton(error)
+    }
+}
+
+impl fmt::Display for StepCause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::MoserVeselov(error) => write!(f, "{error}"),
+            Self::Newton(error) => write!(f, "{error}"),
+            Self::NotFinite { what } => write!(
+                f,
+                "`{what}` is NaN or infinite; reduce the step size or check the initial values"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for StepCause {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::MoserVeselov(error) => Some(error),
+            Self::Newton(error) => Some(error),
+            Self::NotFinite { .. } => None,
+        }
+    }
+}
+
+impl fmt::Display for StepError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "no step from node {} (state unchanged): {}",
+            self.node, self.cause
+        )
+    }
+}
+
+impl std::error::Error for StepError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        Some(&self.cause)
+    }
+}

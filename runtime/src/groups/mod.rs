@@ -1,0 +1,32 @@
+//! Matrix Lie groups as the solvers see them, one file a group, and their products.
+//! Takes group elements and algebra coordinates; gives group elements.
+
+mod product;
+pub mod so3;
+
+pub use so3::{BodyMomentum, NotARotation, Rotation, SpatialMomentum};
+
+/// A Lie group with the operations an iteration on it needs.
+///
+/// Laws every implementation keeps to rounding: associativity, neutral element, inverses, and
+/// `g.retract(xi) = g . (1 + hat(xi) + O(xi^2))`.
+pub trait Group<T>: Copy {
+    /// Dimension of the Lie algebra, the number of coordinates [`Group::retract`] reads.
+    const DIMENSION: usize;
+
+    /// The neutral element.
+    fn identity() -> Self;
+
+    /// The product `self . other`.
+    fn compose(&self, other: &Self) -> Self;
+
+    /// The inverse element.
+    fn inverse(&self) -> Self;
+
+    /// `self . retraction(xi)`: the element perturbed on the right (body side) by the algebra
+    /// coordinates `xi`. Coordinates that are missing count as zero, surplus ones are ignored.
+    fn retract(&self, xi: &[T]) -> Self;
+
+    /// How far rounding has carried the element off the group, in the units of its entries.
+    fn distance_from_group(&self) -> f64;
+}

@@ -1,0 +1,360 @@
+//! Rotations of space, kept as unit quaternions, and the momenta they carry.
+//! Takes quaternions, matrices or rotation vectors; gives rotations body -> space.
+
+use super::Group;
+use crate::Real;
+use core::fmt;
+use core::ops::Mul;
+use nalgebra::{Matrix3, Vector3};
+
+/// A rotation, by convention from body to space: `v_space = R v_body`.
+///
+/// Stored as a unit quaternion `(w, x, y, z)`, so it can never shear; `q` and `-q` are the same
+/// rotation. Equality compares the four numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rotation<T = f64> {
+    q: [T; 4],
+}
+
+/// A matrix or quaternion that is not a rotation, with the number that shows it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NotARotation {
+    /// An entry is NaN or infinite.
+    NotFinite,
+    /// The largest entry of `A^T A - 1` (for a quaternion `| |q|^2 - 1 |`) is too large.
+    NotOrthogonal {
+        /// That entry, in absolute value.
+        defect: f64,
+    },
+    /// The matrix is orthogonal, but its determinant is -1.
+    Reflection,
+}
+
+impl fmt::Display for NotARotation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFinite => write!(f, "not a rotation: an entry is NaN or infinite"),
+            Self::NotOrthogonal { defect } => write!(
+                f,
+                "not a rotation: not orthogonal, off by {defect:.3e} (allowed: {ALLOWED_DEFECT:e})"
+            ),
+            Self::Reflection => write!(
+                f,
+                "not a rotation: the determinant is -1 (a reflection); flip one axis"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for NotARotation {}
+
+/// Input data typed with ten digits is accepted and made orthonormal; anything worse is a mistake.
+const ALLOWED_DEFECT: f64 = 1e-9;
+
+/// Hamilton's product, without any normalisation.
+#[inline(always)]
+fn hamilton<T: Real>([a, b, c, d]: [T; 4], [w, x, y, z]: [T; 4]) -> [T; 4] {
+    [
+        (a * w - b * x) - (c * y + d * z),
+        (a * x + b * w) + (c * z - d * y),
+        (a * y + c * w) + (d * x - b * z),
+        (a * z + d * w) + (b * y - c * x),
+    ]
+}
+
+#[inline(always)]
+fn norm_squared<T: Real>([w, x, y, z]: [T; 4]) -> T {
+    (w * w + x * x) + (y * y + z * z)
+}
+
+impl<T: Real> Rotation<T> {
+    /// The rotation that does nothing.
+    #[inline]
+    pub fn identity() -> Self {
+        let o = T::zero();
+        Self {
+            q: [T::one(), o, o, o],
+        }
+    }
+
+    /// The rotation of the unit quaternion `(w, x, y, z)`.
+    ///
+    /// # Errors
+    /// [`NotARotation`] when `|q|^2` differs from 1 by more than 1e-9 or is not finite; within
+    /// that it is normalised.
+    pub fn from_quaternion(q: [T; 4]) -> Result<Self, NotARotation> {
+        let square = norm_squared(q);
+        if !square.is_finite() {
+            return Err(NotARotation::NotFinite);
+        }
+        let defect = largest_real_part(square - T::one());
+        if defect > ALLOWED_DEFECT {
+            return Err(NotARotation::NotOrthogonal { defect });
+        }
+        Ok(Self::normalised(q))
+    }
+
+    /// The rotation of a matrix with orthonormal columns and determinant +1.
+    ///
+    /// # Errors
+    /// [`NotARotation`] when an entry of `A^T A - 1` exceeds 1e-9, the determinant is negative or
+    /// an entry is not finite; within that the matrix is replaced by a nearby rotation.
+    pub fn from_matrix(a: &Matrix3<T>) -> Result<Self, NotARotation> {
+        if !a.iter().all(|x| x.is_finite()) {
+            return Err(NotARotation::NotFinite);
+        }
+        let gram = a.transpose() * *a - Matrix3::identity();
+        let defect = gram
+            .iter()
+            .fold(0.0_f64, |worst, x| worst.max(largest_real_part(*x)));
+        if defect > ALLOWED_DEFECT {
+            return Err(NotARotation::NotOrthogonal { defect });
+        }
+        if crate::linalg::determinant(a).least() < 0.0 {
+            return Err(NotARotation::Reflection);
+        }
+        Ok(Self::normalised(quaternion_of(a)))
+    }
+
+    /// `q / |q|`, for any nonzero `q`.
+    #[inline(always)]
+    pub(crate) fn normalised(q: [T; 4]) -> Self {
+        // Root and quotient run side by side; `1 / root` would wait for the root.
+        let square = norm_squared(q);
+        let root = square.sqrt();
+        let scale = root * (T::one() / square);
+        Self {
+            q: q.map(|x| x * scale),
+        }
+    }
+
+    /// A quaternion the caller knows to be unit.
+    #[inline(always)]
+    pub(crate) fn from_unit(q: [T; 4]) -> Self {
+        Self { q }
+    }
+
+    /// The product without renormalisation: each call may move `|q|` by one rounding, so a caller
+    /// on a long path must renormalise now and then.
+    #[inline(always)]
+    pub(crate) fn compose_raw(&self, other: &Self) -> Self {
+        Self {
+            q: hamilton(self.q, other.q),
+        }
+    }
+
+    /// The factor that takes a nearly unit quaternion back to length 1: one Newton step for
+    /// `1/|q|`, which needs neither division nor root.
+    #[inline(always)]
+    pub(crate) fn repair(&self) -> T {
+        T::from_f64(1.5) - T::from_f64(0.5) * norm_squared(self.q)
+    }
+
+    /// The same rotation with `|q| = 1` to rounding, given that it is nearly so.
+    #[inline(always)]
+    pub(crate) fn renormalised(&self) -> Self {
+        let scale = self.repair();
+        Self {
+            q: self.q.map(|x| x * scale),
+        }
+    }
+
+    /// The unit quaternion `(w, x, y, z)`.
+    #[inline]
+    pub fn quaternion(&self) -> [T; 4] {
+        self.q
+    }
+
+    /// The 3x3 matrix, body -> space.
+    #[inline]
+    pub fn matrix(&self) -> Matrix3<T> {
+        let [w, x, y, z] = self.q;
+        let one = T::one();
+        let (x2, y2, z2) = (x + x, y + y, z + z);
+        let (xx, yy, zz) = (x * x2, y * y2, z * z2);
+        let (xy, xz, yz) = (x * y2, x * z2, y * z2);
+        let (wx, wy, wz) = (w * x2, w * y2, w * z2);
+        #[rustfmt::skip]
+        let matrix = Matrix3::new(
+            one - (yy + zz), xy - wz, xz + wy,
+            xy + wz, one - (xx + zz), yz - wx,
+            xz - wy, yz + wx, one - (xx + yy),
+        );
+        matrix
+    }
+
+    /// `R v`: a body vector as seen from space.
+    #[inline(always)]
+    pub fn rotate(&self, v: &Vector3<T>) -> Vector3<T> {
+        let [w, x, y, z] = self.q;
+        turn(w, [x, y, z], v)
+    }
+
+    /// `R^T v`: a spatial vector as seen from the body.
+    #[inline(always)]
+    pub fn inverse_rotate(&self, v: &Vector3<T>) -> Vector3<T> {
+        let [w, x, y, z] = self.q;
+        turn(w, [-x, -y, -z], v)
+    }
+
+    /// The inverse rotation, space -> body.
+    #[inline]
+    pub fn inverse(&self) -> Self {
+        let [w, x, y, z] = self.q;
+        Self { q: [w, -x, -y, -z] }
+    }
+
+    /// The rotation about `v` by the angle `|v|` radians: the exponential of `hat(v)`.
+    ///
+    /// Small angles use the Taylor series, so derivative parts are right at `v = 0` too.
+    pub fn exp(v: &Vector3<T>) -> Self {
+        let quarter = T::from_f64(0.25);
+        // Half the angle, squared.
+        let square = v.dot(v) * quarter;
+        let (cosine, sinc) = if square.greatest() < 1e-2 {
+            half_angle_series(square)
+        } else if square.least() > 0.0 {
+            let half = square.sqrt();
+            (half.cos(), half.sin() / half)
+        } else {
+            // Lanes of which some stand still: lift those off zero by less than rounding.
+            let lift = T::from_f64(T::EPSILON * T::EPSILON);
+            let half = (square + lift).sqrt();
+            (half.cos(), half.sin() / half)
+        };
+        let scale = sinc * T::from_f64(0.5);
+        let [[x, y, z]] = v.data.0;
+        Self::normalised([cosine, x * scale, y * scale, z * scale])
+    }
+}
+
+/// `v + 2 w (p x v) + 2 p x (p x v)`.
+#[inline(always)]
+fn turn<T: Real>(w: T, [x, y, z]: [T; 3], v: &Vector3<T>) -> Vector3<T> {
+    let [[a, b, c]] = v.data.0;
+    let (x2, y2, z2) = (x + x, y + y, z + z);
+    let (s, t, u) = (y2 * c - z2 * b, z2 * a - x2 * c, x2 * b - y2 * a);
+    Vector3::new(
+        (a + w * s) + (y * u - z * t),
+        (b + w * t) + (z * s - x * u),
+        (c + w * u) + (x * t - y * s),
+    )
+}
+
+/// `cos` and `sin(x)/x` as series in the square of the half angle, which is below 1e-2.
+fn half_angle_series<T: Real>(square: T) -> (T, T) {
+    let (mut cosine, mut sinc) = (T::one(), T::one());
+    let (mut even, mut odd) = (T::one(), T::one());
+    // 1e-2^12 / 24! is below 1e-47: enough for double-double.
+    for k in 1..=12_i64 {
+        even = -even * square * T::from_ratio(1, 2 * k * (2 * k - 1));
+        odd = -odd * square * T::from_ratio(1, 2 * k * (2 * k + 1));
+        cosine += even;
+        sinc += odd;
+    }
+    (cosine, sinc)
+}
+
+/// The largest absolute real part over the lanes.
+fn largest_real_part<T: Real>(x: T) -> f64 {
+    x.greatest().abs().max(x.least().abs())
+}
+
+/// A quaternion, not normalised, of an orthogonal matrix (Shepperd, 1978): the columns of
+/// `4 q q^T` are linear in the matrix, and each lane takes its longest one.
+fn quaternion_of<T: Real>(a: &Matrix3<T>) -> [T; 4] {
+    let [[a11, a21, a31], [a12, a22, a32], [a13, a23, a33]] = a.data.0;
+    let one = T::one();
+    let (ww, xx) = (one + a11 + a22 + a33, one + a11 - a22 - a33);
+    let (yy, zz) = (one - a11 + a22 - a33, one - a11 - a22 + a33);
+    let (wx, wy, wz) = (a32 - a23, a13 - a31, a21 - a12);
+    let (xy, xz, yz) = (a12 + a21, a13 + a31, a23 + a32);
+    let (mut longest, mut chosen) = (ww, [ww, wx, wy, wz]);
+    for (square, column) in [
+        (xx, [wx, xx, xy, xz]),
+        (yy, [wy, xy, yy, yz]),
+        (zz, [wz, xz, yz, zz]),
+    ] {
+        // A choice lane by lane: the mask is exactly 0 or 1 and carries no derivative.
+        let mask = (square - longest).where_positive(one);
+        let blend = |new: T, old: T| mask * new + (one - mask) * old;
+        longest = blend(square, longest);
+        for (old, new) in chosen.iter_mut().zip(column) {
+            *old = blend(new, *old);
+        }
+    }
+    chosen
+}
+
+impl<T: Real> Mul for Rotation<T> {
+    type Output = Self;
+
+    /// The composition: `(a * b).rotate(v) = a.rotate(b.rotate(v))`. The result is unit to
+    /// rounding however long the chain of products.
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        // The first-order correction of both norms, which need not wait for the product.
+        let excess = norm_squared(self.q) + norm_squared(other.q);
+        let scale = T::from_f64(2.0) - T::from_f64(0.5) * excess;
+        Self {
+            q: hamilton(self.q, other.q).map(|x| x * scale),
+        }
+    }
+}
+
+impl<T: Real> Group<T> for Rotation<T> {
+    const DIMENSION: usize = 3;
+
+    #[inline]
+    fn identity() -> Self {
+        Self::identity()
+    }
+
+    #[inline]
+    fn compose(&self, other: &Self) -> Self {
+        *self * *other
+    }
+
+    #[inline]
+    fn inverse(&self) -> Self {
+        self.inverse()
+    }
+
+    /// `self . cay(hat(xi))`, the Cayley map `(1 - hat(xi)/2)^-1 (1 + hat(xi)/2)`: it agrees with
+    /// the exponential to second order and needs no trigonometry.
+    #[inline]
+    fn retract(&self, xi: &[T]) -> Self {
+        let half = T::from_f64(0.5);
+        let at = |i: usize| xi.get(i).map_or_else(T::zero, |x| *x * half);
+        Self::normalised(hamilton(self.q, [T::one(), at(0), at(1), at(2)]))
+    }
+
+    #[inline]
+    fn distance_from_group(&self) -> f64 {
+        (norm_squared(self.q) - T::one()).magnitude()
+    }
+}
+
+/// Angular momentum in body axes, at a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyMomentum<T = f64>(pub Vector3<T>);
+
+/// Angular momentum in spatial axes, at a node; a free motion keeps it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpatialMomentum<T = f64>(pub Vector3<T>);
+
+impl<T: Real> BodyMomentum<T> {
+    /// `m = R mu`.
+    #[inline]
+    pub fn to_space(&self, attitude: &Rotation<T>) -> SpatialMomentum<T> {
+        SpatialMomentum(attitude.rotate(&self.0))
+    }
+}
+
+impl<T: Real> SpatialMomentum<T> {
+    /// `mu = R^T m`.
+    #[inline]
+    pub fn to_body(&self, attitude: &Rotation<T>) -> BodyMomentum<T> {
+        BodyMomentum(attitude.inverse_rotate(&self.0))
+    }
+}

@@ -1,0 +1,36 @@
+//! Runtime of discrete Clebsch variational integrators: what emitted steppers call, and what a
+//! user needs to run them.
+//!
+//! Write a model with `model!`, which derives the discrete Euler-Lagrange equations and emits a
+//! stepper; this crate supplies the scalars it runs on ([`scalar`]), the groups ([`groups`]), the
+//! solvers of the implicit steps ([`solvers`]), the loop with observers ([`integrate`]) and a
+//! description of every model as data ([`card`]). It knows no models and no symbols.
+//!
+//! Conventions everywhere: a rotation `R` maps body to space; `hat(v) w = v x w`; `J` is the
+//! Poinsot (second-moment) matrix and `I = tr(J) 1 - J` the moment of inertia; node `k` carries
+//! configurations and momenta, edge `k -> k+1` carries discrete velocities
+//! `Omega = R_k^T R_{k+1}`.
+
+pub mod card;
+pub mod emitted;
+pub mod error;
+pub mod groups;
+pub mod integrate;
+pub mod linalg;
+pub mod scalar;
+pub mod solvers;
+pub mod validate;
+
+pub use error::{ParameterError, Problem, StartError, StepCause, StepError};
+pub use groups::{BodyMomentum, Group, NotARotation, Rotation, SpatialMomentum};
+pub use scalar::{DoubleDouble, Dual, Lanes, Real};
+pub use solvers::moser_veselov::{MoserVeselovError, Poinsot, PoinsotError};
+pub use solvers::newton::NewtonError;
+
+/// States a model; see the crate documentation.
+pub use clebsch_macros::model;
+
+/// The linear algebra of the public interface, so that emitted code names this very version.
+pub use nalgebra;
+/// The traits `Zero` and `One` that [`Real`] builds on.
+pub use num_traits;

@@ -1,0 +1,153 @@
+//! Gaussian elimination of small dense matrices with partial pivoting.
+//! Takes a square matrix (and a right side); gives determinant, inverse or solution, or `None`.
+
+use crate::Real;
+use nalgebra::{SMatrix, SVector};
+
+/// The determinant.
+///
+/// Sizes 1 to 3 are expanded, which is exact to rounding for any scalar; larger ones are
+/// eliminated, and are zero when no pivot can be found.
+#[inline]
+pub fn determinant<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> T {
+    let at = |i: usize, j: usize| a.data.0[j][i];
+    match N {
+        0 => T::one(),
+        1 => at(0, 0),
+        2 => at(0, 0) * at(1, 1) - at(0, 1) * at(1, 0),
+        3 => {
+            at(0, 0) * (at(1, 1) * at(2, 2) - at(1, 2) * at(2, 1))
+                + at(0, 1) * (at(1, 2) * at(2, 0) - at(1, 0) * at(2, 2))
+                + at(0, 2) * (at(1, 0) * at(2, 1) - at(1, 1) * at(2, 0))
+        }
+        _ => eliminate(a, &SVector::<T, N>::zeros()).map_or_else(T::zero, |(_, det)| det),
+    }
+}
+
+/// The inverse, or `None` for a matrix without a usable pivot (singular to working precision, or
+/// not finite).
+#[inline]
+pub fn inverse<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> Option<SMatrix<T, N, N>> {
+    eliminate(a, &SMatrix::<T, N, N>::identity()).map(|(x, _)| x)
+}
+
+/// The solution of `a x = b`, or `None` for a matrix without a usable pivot (singular to working
+/// precision, or not finite).
+#[inline]
+pub fn solve<T: Real, const N: usize>(
+    a: &SMatrix<T, N, N>,
+    b: &SVector<T, N>,
+) -> Option<SVector<T, N>> {
+    eliminate(a, b).map(|(x, _)| x)
+}
+
+/// Solves for `M` right sides at once and gives the determinant along.
+///
+/// The pivot of a column is its entry whose smallest real part over the lanes is largest in
+/// absolute value: all lanes exchange the same rows, so the choice must suit the worst of them.
+#[inline]
+fn eliminate<T: Real, const N: usize, const M: usize>(
+    a: &SMatrix<T, N, N>,
+    b: &SMatrix<T, N, M>,
+) -> Option<(SMatrix<T, N, M>, T)> {
+    let mut a = a.data.0;
+    let mut x = b.data.0;
+    let mut det = T::one();
+    for k in 0..N {
+        let mut pivot = k;
+        let mut best = weight(a[k][k]);
+        for (i, entry) in a[k].iter().enumerate().skip(k + 1) {
+            let candidate = weight(*entry);
+            if candidate > best {
+                best = candidate;
+                pivot = i;
+            }
+        }
+        // Also refuses NaN.
+        if !(best > 0.0 && best.is_finite()) {
+            return None;
+        }
+        if pivot != k {
+            for column in &mut a {
+                column.swap(k, pivot);
+            }
+            for column in &mut x {
+                column.swap(k, pivot);
+            }
+            det = -det;
+        }
+        det *= a[k][k];
+        let reciprocal = T::one() / a[k][k];
+        for i in k + 1..N {
+            let factor = a[k][i] * reciprocal;
+            for column in a.iter_mut().skip(k + 1) {
+                let above = column[k];
+                column[i] -= factor * above;
+            }
+            for column in &mut x {
+                let above = column[k];
+                column[i] -= factor * above;
+            }
+        }
+    }
+    for column in &mut x {
+        for k in (0..N).rev() {
+            let mut sum = column[k];
+            for j in k + 1..N {
+                sum -= a[j][k] * column[j];
+            }
+            column[k] = sum / a[k][k];
+        }
+    }
+    Some((SMatrix::from_data(nalgebra::ArrayStorage(x)), det))
+}
+
+/// The smallest absolute real part over the lanes: a pivot is as good as its worst lane. NaN
+/// weighs nothing.
+#[inline(always)]
+fn weight<T: Real>(x: T) -> f64 {
+    (x.where_positive(x) - (-x).where_positive(x)).least()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Matrix4, Vector4};
+
+    #[rustfmt::skip]
+    fn sample() -> Matrix4<f64> {
+        Matrix4::new(
+            0.0, 2.0, -1.0, 0.5,
+            3.0, 0.25, 1.0, -2.0,
+            -1.5, 4.0, 0.0, 1.0,
+            0.75, -0.5, 2.5, 3.0,
+        )
+    }
+
+    #[test]
+    fn solution_satisfies_the_system() {
+        let b = Vector4::new(1.0, -2.0, 3.0, 0.5);
+        let x = solve(&sample(), &b).expect("regular");
+        assert!((sample() * x - b).norm() < 1e-14);
+        let inv = inverse(&sample()).expect("regular");
+        assert!((sample() * inv - Matrix4::identity()).norm() < 1e-14);
+    }
+
+    #[test]
+    fn determinant_agrees_with_nalgebra_and_changes_sign_with_a_row_exchange() {
+        let mut a = sample();
+        let reference = a.determinant();
+        assert!((determinant(&a) - reference).abs() < 1e-13);
+        a.swap_rows(1, 3);
+        assert!((determinant(&a) + reference).abs() < 1e-13);
+    }
+
+    #[test]
+    fn singular_and_nan_are_refused() {
+        let b = Vector4::new(1.0, 0.0, 0.0, 0.0);
+        assert!(solve(&Matrix4::zeros(), &b).is_none());
+        assert!(solve(&Matrix4::from_element(f64::NAN), &b).is_none());
+        let tiny = Matrix4::identity() * 1e-200;
+        assert!(solve(&tiny, &b).is_some());
+    }
+}

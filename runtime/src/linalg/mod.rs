@@ -1,0 +1,11 @@
+//! Small dense linear algebra for any [`Real`](crate::Real): hat and vee, determinants, inverses,
+//! linear solves, eigenvalues of a symmetric 3x3 matrix.
+//! Takes and gives nalgebra matrices of fixed size; nothing allocates.
+
+mod eigenvalues;
+mod elimination;
+mod skew;
+
+pub use eigenvalues::symmetric_eigenvalues;
+pub use elimination::{determinant, inverse, solve};
+pub use skew::{axial_of_difference, hat, vee};

@@ -1,0 +1,47 @@
+//! The isomorphism between vectors and skew matrices of so(3).
+//! Takes a vector or a 3x3 matrix; gives the other, with `hat(v) w = v x w`.
+
+use crate::Real;
+use nalgebra::{Matrix3, Vector3};
+
+/// The skew matrix of the cross product: `hat(v) w = v x w`.
+#[inline]
+pub fn hat<T: Real>(v: &Vector3<T>) -> Matrix3<T> {
+    let o = T::zero();
+    let [[x, y, z]] = v.data.0;
+    #[rustfmt::skip]
+    let matrix = Matrix3::new(
+        o, -z, y,
+        z, o, -x,
+        -y, x, o,
+    );
+    matrix
+}
+
+/// The axial vector of the skew part: `vee(hat(v)) = v`, and of any `a` that of `(a - a^T)/2`.
+#[inline]
+pub fn vee<T: Real>(a: &Matrix3<T>) -> Vector3<T> {
+    let half = T::from_f64(0.5);
+    axial_of_difference(a).map(|x| x * half)
+}
+
+/// The axial vector of `a - a^T`, that is `2 vee(a)`: no halving, as momenta need it.
+#[inline]
+pub fn axial_of_difference<T: Real>(a: &Matrix3<T>) -> Vector3<T> {
+    let [[_, a21, a31], [a12, _, a32], [a13, a23, _]] = a.data.0;
+    Vector3::new(a32 - a23, a13 - a31, a21 - a12)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hat_is_the_cross_product_and_vee_its_inverse() {
+        let v = Vector3::new(0.3, -1.7, 2.9);
+        let w = Vector3::new(-0.4, 0.6, 1.1);
+        assert_eq!(hat(&v) * w, v.cross(&w));
+        assert_eq!(vee(&hat(&v)), v);
+        assert_eq!(axial_of_difference(&hat(&v)), v * 2.0);
+    }
+}

@@ -1,0 +1,162 @@
+//! The scalar a stepper runs on: plain `f64`, SIMD lanes, dual numbers or double-double.
+//! Takes nothing; gives the trait [`Real`] and its implementations, one file each.
+
+mod double;
+mod double_double;
+mod dual;
+mod lanes;
+
+pub use double_double::DoubleDouble;
+pub use dual::Dual;
+pub use lanes::Lanes;
+
+use core::fmt::Debug;
+use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use num_traits::{One, Zero};
+
+/// A real number as the solvers and the emitted steppers see it.
+///
+/// One value may stand for several numbers: the lanes of an ensemble, or a value with its
+/// derivatives. Hence there is no order on `Real`: a test of sign names the reduction it means
+/// ([`least`](Real::least), [`greatest`](Real::greatest)), a test of convergence uses
+/// [`magnitude`](Real::magnitude), which sees every lane and every derivative part.
+///
+/// Operators act lane by lane; on dual numbers they follow the rules of differentiation.
+/// No function panics; outside their domain they give NaN, as `f64` does.
+pub trait Real:
+    Copy
+    + PartialEq
+    + Debug
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+    + DivAssign
+    + Zero
+    + One
+{
+    /// Unit roundoff: the largest relative error of one rounded operation is about this.
+    const EPSILON: f64;
+
+    /// How many orders of derivatives a value carries besides its real part (0 for plain numbers).
+    ///
+    /// An iteration that stops on the real part must be followed by this many more Newton steps,
+    /// each of which makes one more order of derivatives exact.
+    const ORDER: u32;
+
+    /// How many independent numbers stand side by side (1 unless the type has lanes).
+    const LANES: usize = 1;
+
+    /// The constant `x`, in every lane, without derivatives.
+    fn from_f64(x: f64) -> Self;
+
+    /// The constant `num / den`, rounded once in this type's precision.
+    #[inline]
+    fn from_ratio(num: i64, den: i64) -> Self {
+        Self::from_f64(num as f64) / Self::from_f64(den as f64)
+    }
+
+    /// The leading real part (lane 0 of several lanes), rounded to `f64`.
+    fn value(self) -> f64;
+
+    /// The real part of one lane, rounded to `f64`; NaN when there is no such lane.
+    #[inline]
+    fn lane(self, index: usize) -> f64 {
+        if index == 0 { self.value() } else { f64::NAN }
+    }
+
+    /// The largest absolute value over all lanes and all derivative parts; NaN if any is NaN.
+    fn magnitude(self) -> f64;
+
+    /// The smallest real part over the lanes; NaN if any lane is NaN.
+    fn least(self) -> f64;
+
+    /// The largest real part over the lanes; NaN if any lane is NaN.
+    fn greatest(self) -> f64;
+
+    /// `then` in the lanes where the real part of `self` is positive, zero in the others.
+    ///
+    /// This is how an iteration freezes the lanes that are done. NaN counts as not positive.
+    fn where_positive(self, then: Self) -> Self;
+
+    /// Square root.
+    fn sqrt(self) -> Self;
+
+    /// Exponential.
+    fn exp(self) -> Self;
+
+    /// Natural logarithm.
+    fn ln(self) -> Self;
+
+    /// Sine of an angle in radians.
+    fn sin(self) -> Self;
+
+    /// Cosine of an angle in radians.
+    fn cos(self) -> Self;
+
+    /// Integer power, by repeated squaring; `x.powi(0)` is 1.
+    #[inline]
+    fn powi(self, exponent: i32) -> Self {
+        let mut square = self;
+        let mut rest = exponent.unsigned_abs();
+        let mut power = Self::one();
+        while rest > 0 {
+            if rest & 1 == 1 {
+                power *= square;
+            }
+            rest >>= 1;
+            if rest > 0 {
+                square *= square;
+            }
+        }
+        if exponent < 0 {
+            Self::one() / power
+        } else {
+            power
+        }
+    }
+
+    /// Rational power `self^(num/den)` of a positive number (any number when `den` is 1).
+    ///
+    /// Integer and half-integer exponents use multiplications and one square root only, so that
+    /// they are exact to a few units of rounding. `den = 0` gives NaN.
+    #[inline]
+    fn powr(self, num: i64, den: i64) -> Self {
+        let (num, den) = lowest_terms(num, den);
+        match (i32::try_from(num), den) {
+            (Ok(n), 1) => self.powi(n),
+            (Ok(n), 2) => self.sqrt().powi(n),
+            (_, 0) => Self::from_f64(f64::NAN),
+            _ => (self.ln() * Self::from_ratio(num, den)).exp(),
+        }
+    }
+
+    /// Whether every lane and every derivative part is finite.
+    fn is_finite(self) -> bool;
+}
+
+/// `num/den` with a non-negative denominator and no common factor.
+fn lowest_terms(num: i64, den: i64) -> (i64, i64) {
+    let (mut a, mut b) = (num.unsigned_abs(), den.unsigned_abs());
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    let Ok(divisor) = i64::try_from(a) else {
+        return (num, den);
+    };
+    if divisor == 0 {
+        return (num, den);
+    }
+    let sign = if den < 0 { -1 } else { 1 };
+    (
+        (num / divisor).saturating_mul(sign),
+        (den / divisor).saturating_mul(sign),
+    )
+}

@@ -1,0 +1,73 @@
+//! One solve of the Moser-Veselov equation, for bodies whose momentum changes from step to step.
+//! Takes the body and `h N`; gives the rotation `Omega` of the edge.
+
+use super::cayley::{dot, gyroscopic};
+use super::kappa::kappa;
+use super::{MoserVeselovError, Poinsot};
+use crate::{Real, Rotation};
+use nalgebra::Vector3;
+
+/// The principal solution `Omega` of `Omega J - J Omega^T = hat(h N)`.
+///
+/// `h_n` is the step times the edge momentum, in the frame of `body` (body axes for `next(R) = R
+/// Omega`; spatial axes, with `J` carried along, for `next(R) = Omega R`). No iteration state is
+/// kept: equal arguments give equal results.
+///
+/// # Errors
+/// [`MoserVeselovError`] when there is no principal solution, in any lane, or `h_n` is not finite.
+/// The step size is not known here: see [`MoserVeselovError::with_steps`].
+#[inline(always)]
+pub fn forced<T: Real>(
+    body: &Poinsot<T>,
+    h_n: &Vector3<T>,
+) -> Result<Rotation<T>, MoserVeselovError> {
+    // One branch here, straight-line code on either side.
+    let solved = if body.diagonal {
+        principal::<T, true>(body, h_n)
+    } else {
+        principal::<T, false>(body, h_n)
+    };
+    match solved {
+        Some(omega) => Ok(omega),
+        None => Err(MoserVeselovError::diagnose(body, h_n)),
+    }
+}
+
+#[inline(always)]
+fn principal<T: Real, const DIAGONAL: bool>(
+    body: &Poinsot<T>,
+    h_n: &Vector3<T>,
+) -> Option<Rotation<T>> {
+    let u = body.scaled(h_n);
+    let squares = [u[0] * u[0], u[1] * u[1], u[2] * u[2]];
+    let a = squares[0] + squares[1] + squares[2];
+    let inertia_u = body.inertia_times::<DIAGONAL>(u);
+    let adjugate_u = body.adjugate_times::<DIAGONAL>(u);
+    let (p, e) = if DIAGONAL {
+        // Shorter by one multiplication on the way to kappa.
+        (
+            dot(body.moments, squares),
+            dot(body.adjugate_moments, squares),
+        )
+    } else {
+        (dot(u, inertia_u), dot(u, adjugate_u))
+    };
+    let gyro = gyroscopic::<T, DIAGONAL>(body, u);
+    // adj(I - kappa) u = adj(I) u + kappa (I - s1) u + kappa^2 u and det(I - kappa), sorted by
+    // powers so that little is left to do once kappa is known.
+    let constant = |i: usize| (adjugate_u[i] + gyro[i]) + a * u[i];
+    let linear = |i: usize| inertia_u[i] - body.s1 * u[i];
+    let ([c0, c1, c2], [l0, l1, l2]) = (
+        [constant(0), constant(1), constant(2)],
+        [linear(0), linear(1), linear(2)],
+    );
+    let kappa = kappa(body, a, e)?;
+    let square = kappa * kappa;
+    let det = ((body.s3 + p) - kappa * (body.s2 + a)) + square * (body.s1 - kappa);
+    Some(Rotation::normalised([
+        det,
+        (c0 + kappa * l0) + square * u[0],
+        (c1 + kappa * l1) + square * u[1],
+        (c2 + kappa * l2) + square * u[2],
+    ]))
+}

@@ -1,0 +1,259 @@
+//! The mass distribution of a rigid body as the solver wants it.
+//! Takes the Poinsot matrix; gives it validated, with the invariants of the inertia tensor.
+
+use crate::Real;
+use crate::linalg::{determinant, symmetric_eigenvalues};
+use crate::validate::{ROUNDINGS, mirrored_difference};
+use core::fmt;
+use nalgebra::{Matrix3, Vector3};
+
+/// A valid Poinsot matrix `J` (second moments of mass, body axes, mass times length squared) with
+/// what the solver derives from it once.
+///
+/// Any symmetric `J >= 0` of rank at least 2 is a body; `J` may be singular (a flat body).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Poinsot<T = f64> {
+    j: Matrix3<T>,
+    /// A power of two near the trace of `I`. The constants below are of `I / unit`, so that none
+    /// of them can overflow or underflow.
+    pub(super) unit: f64,
+    /// `1 / (2 unit)`, what turns `h N` into the solver's `u`.
+    pub(super) half_over_unit: T,
+    /// `I / unit`, diagonal entries.
+    pub(super) moments: [T; 3],
+    /// `I / unit`, entries (2,3), (3,1), (1,2).
+    pub(super) products: [T; 3],
+    /// `I2 - I3`, `I3 - I1`, `I1 - I2` of the diagonal entries.
+    pub(super) differences: [T; 3],
+    /// Adjugate of `I / unit`, diagonal entries.
+    pub(super) adjugate_moments: [T; 3],
+    /// Adjugate of `I / unit`, entries (2,3), (3,1), (1,2).
+    pub(super) adjugate_products: [T; 3],
+    /// Elementary symmetric functions of `I / unit`.
+    pub(super) s1: T,
+    pub(super) s2: T,
+    pub(super) s3: T,
+    /// `1 / s3`, `s1 / s3`, `s2 / s3^2`, for the start of the quartic's iteration.
+    pub(super) series: [T; 3],
+    /// Whether the off-diagonal entries are exactly zero.
+    pub(super) diagonal: bool,
+}
+
+/// Why a matrix is no Poinsot matrix. Rows and columns count from 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PoinsotError {
+    /// An entry is NaN or infinite.
+    NotFinite {
+        /// Its row.
+        row: usize,
+        /// Its column.
+        column: usize,
+    },
+    /// Two entries that should be equal differ.
+    NotSymmetric {
+        /// Row of the entry above the diagonal.
+        row: usize,
+        /// Its column.
+        column: usize,
+        /// That entry.
+        upper: f64,
+        /// Its mirror image.
+        lower: f64,
+    },
+    /// `J` has a negative eigenvalue: the triangle inequality of the moments of inertia fails.
+    Triangle {
+        /// The smallest eigenvalue of `J`.
+        smallest: f64,
+        /// The largest moment of inertia.
+        largest_moment: f64,
+        /// The sum of the two others, which it must not exceed.
+        sum_of_others: f64,
+    },
+    /// A moment of inertia vanishes: all mass lies on a line.
+    NoInertia {
+        /// The smallest moment of inertia.
+        smallest_moment: f64,
+    },
+}
+
+impl fmt::Display for PoinsotError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFinite { row, column } => {
+                write!(f, "entry ({row}, {column}) is NaN or infinite")
+            }
+            Self::NotSymmetric {
+                row,
+                column,
+                upper,
+                lower,
+            } => write!(
+                f,
+                "not symmetric: entry ({row}, {column}) is {upper} but ({column}, {row}) is {lower}"
+            ),
+            Self::Triangle {
+                smallest,
+                largest_moment,
+                sum_of_others,
+            } => write!(
+                f,
+                "negative second moment {smallest}: the moment of inertia {largest_moment} exceeds \
+                 the sum {sum_of_others} of the two others, which no body can have"
+            ),
+            Self::NoInertia { smallest_moment } => write!(
+                f,
+                "the smallest moment of inertia is {smallest_moment}: all mass lies on a line"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for PoinsotError {}
+
+impl<T: Real> Poinsot<T> {
+    /// Validates the Poinsot matrix `J`, in every lane. Asymmetry and negative eigenvalues of a few
+    /// roundings are forgiven, the former by symmetrising.
+    ///
+    /// # Errors
+    /// [`PoinsotError`] with the numbers.
+    pub fn new(j: Matrix3<T>) -> Result<Self, PoinsotError> {
+        for row in 0..3 {
+            for column in 0..3 {
+                if !j.get((row, column)).is_some_and(|x| x.is_finite()) {
+                    return Err(PoinsotError::NotFinite { row, column });
+                }
+            }
+        }
+        mirrored_difference(&j).map_err(|(row, column, upper, lower)| {
+            PoinsotError::NotSymmetric {
+                row,
+                column,
+                upper,
+                lower,
+            }
+        })?;
+        let half = T::from_f64(0.5);
+        let j = (j + j.transpose()).map(|x| x * half);
+        let mut largest: f64 = 0.0;
+        for lane in 0..T::LANES {
+            largest = largest.max(body_check(&j.map(|x| x.lane(lane)))?);
+        }
+        Ok(Self::prepared(j, power_of_two_near(largest)))
+    }
+
+    /// The body of the inertia tensor `I` (body axes): `J = tr(I)/2 1 - I`.
+    ///
+    /// # Errors
+    /// As [`Poinsot::new`], said of `J`.
+    pub fn from_inertia(inertia: &Matrix3<T>) -> Result<Self, PoinsotError> {
+        let half_trace = inertia.trace() * T::from_f64(0.5);
+        Self::new(Matrix3::from_diagonal_element(half_trace) - *inertia)
+    }
+
+    fn prepared(j: Matrix3<T>, unit: f64) -> Self {
+        let per_unit = T::from_f64(1.0 / unit);
+        let inertia = (Matrix3::from_diagonal_element(j.trace()) - j).map(|x| x * per_unit);
+        let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = inertia.data.0;
+        let adjugate_moments = [yy * zz - yz * yz, zz * xx - xz * xz, xx * yy - xy * xy];
+        let adjugate_products = [xy * xz - xx * yz, xy * yz - yy * xz, xz * yz - zz * xy];
+        let s1 = xx + yy + zz;
+        let [ax, ay, az] = adjugate_moments;
+        let s2 = ax + ay + az;
+        let s3 = determinant(&inertia);
+        let inverse = T::one() / s3;
+        Self {
+            j,
+            unit,
+            half_over_unit: T::from_f64(0.5 / unit),
+            moments: [xx, yy, zz],
+            products: [yz, xz, xy],
+            differences: [yy - zz, zz - xx, xx - yy],
+            adjugate_moments,
+            adjugate_products,
+            s1,
+            s2,
+            s3,
+            series: [inverse, s1 * inverse, s2 * inverse * inverse],
+            diagonal: yz.is_zero() && xz.is_zero() && xy.is_zero(),
+        }
+    }
+
+    /// The Poinsot matrix `J`.
+    #[inline]
+    pub fn matrix(&self) -> &Matrix3<T> {
+        &self.j
+    }
+
+    /// The inertia tensor `I = tr(J) 1 - J`.
+    #[inline]
+    pub fn inertia(&self) -> Matrix3<T> {
+        Matrix3::from_diagonal_element(self.j.trace()) - self.j
+    }
+
+    /// One lane of the body, without derivatives.
+    pub(super) fn lane(&self, lane: usize) -> Poinsot<f64> {
+        Poinsot::prepared(self.j.map(|x| x.lane(lane)), self.unit)
+    }
+
+    /// `(I / unit) v`.
+    #[inline(always)]
+    pub(super) fn inertia_times<const DIAGONAL: bool>(&self, v: [T; 3]) -> [T; 3] {
+        symmetric_times::<T, DIAGONAL>(self.moments, self.products, v)
+    }
+
+    /// `adj(I / unit) v`.
+    #[inline(always)]
+    pub(super) fn adjugate_times<const DIAGONAL: bool>(&self, v: [T; 3]) -> [T; 3] {
+        symmetric_times::<T, DIAGONAL>(self.adjugate_moments, self.adjugate_products, v)
+    }
+
+    /// `u = h N / (2 unit)`.
+    #[inline(always)]
+    pub(super) fn scaled(&self, h_n: &Vector3<T>) -> [T; 3] {
+        let [[x, y, z]] = h_n.data.0;
+        let s = self.half_over_unit;
+        [x * s, y * s, z * s]
+    }
+}
+
+#[inline(always)]
+fn symmetric_times<T: Real, const DIAGONAL: bool>(
+    [xx, yy, zz]: [T; 3],
+    [yz, xz, xy]: [T; 3],
+    [x, y, z]: [T; 3],
+) -> [T; 3] {
+    if DIAGONAL {
+        [xx * x, yy * y, zz * z]
+    } else {
+        [
+            (xx * x + xy * y) + xz * z,
+            (xy * x + yy * y) + yz * z,
+            (xz * x + yz * y) + zz * z,
+        ]
+    }
+}
+
+/// Checks one lane; gives the largest moment of inertia.
+fn body_check(j: &Matrix3<f64>) -> Result<f64, PoinsotError> {
+    let [small, middle, large] = symmetric_eigenvalues(j);
+    let allowed = ROUNDINGS * f64::EPSILON * large.abs();
+    if small < -allowed {
+        return Err(PoinsotError::Triangle {
+            smallest: small,
+            largest_moment: middle + large,
+            sum_of_others: (small + large) + (small + middle),
+        });
+    }
+    let smallest_moment = small + middle;
+    // Written so that NaN is refused.
+    if smallest_moment > allowed {
+        Ok(middle + large)
+    } else {
+        Err(PoinsotError::NoInertia { smallest_moment })
+    }
+}
+
+/// The power of two at or below a positive number, kept within the range whose inverse is normal.
+fn power_of_two_near(x: f64) -> f64 {
+    x.log2().floor().clamp(-1000.0, 1000.0).exp2()
+}

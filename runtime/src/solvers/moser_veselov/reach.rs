@@ -1,0 +1,109 @@
+//! Where the Moser-Veselov equation stops having a principal solution.
+//! Takes the body and `h N` (or a function of the step); gives the bound ratio, the largest step.
+
+use super::Poinsot;
+use crate::linalg::symmetric_eigenvalues;
+use nalgebra::Vector3;
+
+/// The ratio of `h N` to its exact bound: at most 1 if and only if the principal solution exists.
+/// It is linear in the length of `h_n`. NaN when `h_n` is not finite.
+///
+/// With the eigenvalues `j_i` of `J`, the square of the ratio is the maximum over `x > 0` of
+/// `x (x |v|^2 + |J v|^2) / prod_i (x + j_i^2)`, `v = h N` (factorisation of Hermitian matrix
+/// polynomials). Each principal component contributes one bump in `log x`, with its peak at the
+/// product of the two other eigenvalues and at least as wide as `sech^2`.
+#[must_use]
+pub fn reach(body: &Poinsot<f64>, h_n: &Vector3<f64>) -> f64 {
+    let length = h_n.amax();
+    if !h_n.iter().all(|x| x.is_finite()) {
+        return f64::NAN;
+    }
+    if length == 0.0 {
+        return 0.0;
+    }
+    let v = h_n / length;
+    let j = body.matrix() / body.unit;
+    let (vv, jv) = (v.norm_squared(), (j * v).norm_squared());
+    let [j1, j2, j3] = symmetric_eigenvalues(&j).map(|x| x.max(0.0));
+    let square = |t: f64| {
+        let x = t.exp();
+        x / (x + j1 * j1) * ((x * vv + jv) / ((x + j2 * j2) * (x + j3 * j3)))
+    };
+    // The outermost peaks bracket the maximum. For a flat body the first is at x = 0, which 1e-24
+    // of the last stands for without a visible difference.
+    let last = (j2 * j3).ln();
+    let first = (j1 * j2).max(j2 * j3 * 1e-24).ln();
+    // A quarter of a unit is a fourteenth of the width of the narrowest bump.
+    let count = ((last - first) / 0.25).ceil().max(1.0);
+    let spacing = (last - first) / count;
+    let at = |i: i32| square(first + spacing * f64::from(i));
+    let mut best: f64 = 0.0;
+    // `first` is at least `last` - 55, hence at most 222 intervals.
+    for i in 0..=(count as i32) {
+        if at(i) >= at(i - 1) && at(i) >= at(i + 1) {
+            let centre = first + spacing * f64::from(i);
+            best = best.max(peak(&square, centre - spacing, centre + spacing));
+        }
+    }
+    // Equal peaks collapse the bracket to a point; rounding may shift a peak just outside.
+    best = best.max(at(0)).max(at(count as i32));
+    best.sqrt() * (length / body.unit)
+}
+
+/// The maximum of a function with one peak between `low` and `high`, by golden section.
+fn peak(f: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+    const GOLDEN: f64 = 0.618_033_988_749_894_8;
+    let mut left = high - GOLDEN * (high - low);
+    let mut right = low + GOLDEN * (high - low);
+    let (mut f_left, mut f_right) = (f(left), f(right));
+    // The maximum is known to rounding once its place is known to half the digits.
+    for _ in 0..50 {
+        if f_left < f_right {
+            low = left;
+            (left, f_left) = (right, f_right);
+            right = low + GOLDEN * (high - low);
+            f_right = f(right);
+        } else {
+            high = right;
+            (right, f_right) = (left, f_left);
+            left = high - GOLDEN * (high - low);
+            f_left = f(left);
+        }
+    }
+    f_left.max(f_right)
+}
+
+/// The largest step not beyond `h` whose ratio is at most 1, by bisection.
+///
+/// `solvable` gives the [`reach`] ratio at a trial step, or `None` where it cannot be evaluated.
+/// For torques that depend on the step there is no closed form. The result is a hair (1e-12)
+/// inside the bound, so that the solver accepts it; it is 0 when no step above `h / 2^60` will do.
+#[must_use]
+pub fn largest_step(h: f64, solvable: impl Fn(f64) -> Option<f64>) -> f64 {
+    let fits = |trial: f64| solvable(trial).is_some_and(|ratio| ratio <= 1.0 - 1e-12);
+    if fits(h) {
+        return h;
+    }
+    let mut low = h;
+    let mut found = false;
+    for _ in 0..60 {
+        low *= 0.5;
+        if fits(low) {
+            found = true;
+            break;
+        }
+    }
+    if !found {
+        return 0.0;
+    }
+    let mut high = low + low;
+    for _ in 0..50 {
+        let middle = 0.5 * (low + high);
+        if fits(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low
+}

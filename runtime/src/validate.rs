@@ -1,0 +1,188 @@
+//! Checks of parameters and initial values, as emitted constructors call them.
+//! Takes a name and a value; gives nothing, or a [`ParameterError`] with the offending numbers.
+
+use crate::{ParameterError, Problem, Real};
+use nalgebra::SMatrix;
+
+/// Entries typed by hand agree to their last digit; those computed from an inertia tensor in other
+/// axes agree to a few roundings of the largest entry.
+pub(crate) const ROUNDINGS: f64 = 64.0;
+
+/// Every component, in every lane and with every derivative part, is finite.
+///
+/// # Errors
+/// Names the first component that is not; components count in the order given.
+pub fn finite<T: Real>(field: &'static str, values: &[T]) -> Result<(), ParameterError> {
+    match values.iter().position(|x| !x.is_finite()) {
+        None => Ok(()),
+        Some(index) => Err(ParameterError {
+            field,
+            problem: Problem::NotFinite {
+                index,
+                value: values.get(index).map_or(f64::NAN, |x| x.magnitude()),
+            },
+            remedy: "give finite numbers",
+        }),
+    }
+}
+
+/// The matrix equals its transpose, up to rounding of its largest entry.
+///
+/// # Errors
+/// Names the first pair of entries that differ.
+pub fn symmetric<T: Real, const N: usize>(
+    field: &'static str,
+    matrix: &SMatrix<T, N, N>,
+) -> Result<(), ParameterError> {
+    mirrored_difference(matrix).map_err(|(row, column, upper, lower)| ParameterError {
+        field,
+        problem: Problem::NotSymmetric {
+            row,
+            column,
+            upper,
+            lower,
+        },
+        remedy: "give the same number on both sides of the diagonal",
+    })
+}
+
+/// The matrix is minus its transpose, up to rounding of its largest entry.
+///
+/// # Errors
+/// Names the first pair of entries that are not opposite, or a diagonal entry that is not zero.
+pub fn skew<T: Real, const N: usize>(
+    field: &'static str,
+    matrix: &SMatrix<T, N, N>,
+) -> Result<(), ParameterError> {
+    mirrored(matrix, |upper, lower| upper + lower, 0).map_err(|(row, column, upper, lower)| {
+        ParameterError {
+            field,
+            problem: Problem::NotSkew {
+                row,
+                column,
+                upper,
+                lower,
+            },
+            remedy: "give opposite numbers on both sides of a zero diagonal",
+        }
+    })
+}
+
+/// The matrix is zero off its diagonal, exactly.
+///
+/// # Errors
+/// Names the first entry that is not.
+pub fn diagonal<T: Real, const N: usize>(
+    field: &'static str,
+    matrix: &SMatrix<T, N, N>,
+) -> Result<(), ParameterError> {
+    for row in 0..N {
+        for column in 0..N {
+            let Some(entry) = matrix.get((row, column)) else {
+                continue;
+            };
+            if row != column && !entry.is_zero() {
+                return Err(ParameterError {
+                    field,
+                    problem: Problem::NotDiagonal {
+                        row,
+                        column,
+                        value: entry.magnitude(),
+                    },
+                    remedy: "give zeros off the diagonal",
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The step size is positive and finite, in every lane.
+///
+/// # Errors
+/// Carries the smallest lane.
+pub fn positive_step<T: Real>(h: T) -> Result<(), ParameterError> {
+    if h.least() > 0.0 && h.is_finite() {
+        return Ok(());
+    }
+    Err(ParameterError {
+        field: "h",
+        problem: Problem::NotPositive { value: h.least() },
+        remedy: "give a positive, finite step size",
+    })
+}
+
+/// An assumption of the model, already evaluated.
+///
+/// # Errors
+/// Carries the assumption's text.
+pub fn assumption(holds: bool, text: &'static str) -> Result<(), ParameterError> {
+    if holds {
+        return Ok(());
+    }
+    Err(ParameterError {
+        field: "assume",
+        problem: Problem::AssumptionFails { text },
+        remedy: "choose parameters that satisfy it",
+    })
+}
+
+/// The symmetry test alone: row, column and the two values of the first pair that differs.
+pub(crate) fn mirrored_difference<T: Real, const N: usize>(
+    matrix: &SMatrix<T, N, N>,
+) -> Result<(), (usize, usize, f64, f64)> {
+    mirrored(matrix, |upper, lower| upper - lower, 1)
+}
+
+/// Compares entries across the diagonal, the first `offset` diagonals above it left out.
+fn mirrored<T: Real, const N: usize>(
+    matrix: &SMatrix<T, N, N>,
+    defect: impl Fn(T, T) -> T,
+    offset: usize,
+) -> Result<(), (usize, usize, f64, f64)> {
+    let largest = matrix.iter().fold(0.0, |m: f64, x| m.max(x.magnitude()));
+    let allowed = ROUNDINGS * T::EPSILON * largest;
+    for row in 0..N {
+        for column in row + offset..N {
+            let (Some(&upper), Some(&lower)) =
+                (matrix.get((row, column)), matrix.get((column, row)))
+            else {
+                continue;
+            };
+            // Written so that NaN is refused.
+            let agree = defect(upper, lower).magnitude() <= allowed;
+            if !agree {
+                return Err((row, column, upper.value(), lower.value()));
+            }
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Matrix2;
+
+    #[test]
+    fn every_check_accepts_and_refuses() {
+        assert!(finite("x", &[1.0, 2.0]).is_ok());
+        let error = finite("x", &[1.0, f64::INFINITY]).expect_err("infinite");
+        assert_eq!(
+            error.to_string(),
+            "`x`: component 1 is inf; give finite numbers"
+        );
+        assert!(symmetric("J", &Matrix2::new(1.0, 2.0, 2.0, 3.0)).is_ok());
+        assert!(symmetric("J", &Matrix2::new(1.0, 2.0, 2.1, 3.0)).is_err());
+        assert!(symmetric("J", &Matrix2::new(1.0, f64::NAN, 2.0, 3.0)).is_err());
+        assert!(skew("A", &Matrix2::new(0.0, 2.0, -2.0, 0.0)).is_ok());
+        assert!(skew("A", &Matrix2::new(0.1, 2.0, -2.0, 0.0)).is_err());
+        assert!(diagonal("D", &Matrix2::new(1.0, 0.0, 0.0, 2.0)).is_ok());
+        assert!(diagonal("D", &Matrix2::new(1.0, 1e-300, 0.0, 2.0)).is_err());
+        assert!(positive_step(0.1).is_ok());
+        assert!(positive_step(0.0).is_err());
+        assert!(positive_step(f64::NAN).is_err());
+        assert!(assumption(true, "c > 0").is_ok());
+        assert!(assumption(false, "c > 0").is_err());
+    }
+}

@@ -1,0 +1,145 @@
+//! Vectors and unit quaternions of the hand-written steppers: three and four plain numbers.
+//! Takes and gives arrays; a quaternion (w, x, y, z) stands for the rotation body -> space, composed on the right
+//! by body rotations. Order of operations is chosen for short dependency chains, since a step is bound by latency.
+
+/// Components along three axes.
+pub type Vector = [f64; 3];
+
+/// Row-major 3 x 3 matrix.
+pub type Matrix = [[f64; 3]; 3];
+
+/// Scalar product.
+#[inline(always)]
+pub fn dot(a: &Vector, b: &Vector) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Vector product a x b.
+#[inline(always)]
+pub fn cross(a: &Vector, b: &Vector) -> Vector {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+/// a + s b.
+#[inline(always)]
+pub fn add_scaled(a: &Vector, s: f64, b: &Vector) -> Vector {
+    [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
+}
+
+/// Quaternion (w, x, y, z); a rotation when its norm is one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quaternion(pub [f64; 4]);
+
+impl Quaternion {
+    /// The identity rotation.
+    pub const IDENTITY: Quaternion = Quaternion([1.0, 0.0, 0.0, 0.0]);
+
+    /// Product: the rotation `other`, stated in the frame carried by `self`, follows `self`.
+    #[inline(always)]
+    pub fn times(&self, other: &Quaternion) -> Quaternion {
+        let [a, b, c, d] = self.0;
+        let [w, x, y, z] = other.0;
+        Quaternion([
+            (a * w - b * x) - (c * y + d * z),
+            (a * x + b * w) + (c * z - d * y),
+            (a * y + c * w) + (d * x - b * z),
+            (a * z + d * w) + (b * y - c * x),
+        ])
+    }
+
+    /// The inverse rotation.
+    #[inline(always)]
+    pub fn conjugate(&self) -> Quaternion {
+        let [w, x, y, z] = self.0;
+        Quaternion([w, -x, -y, -z])
+    }
+
+    /// Square of the norm.
+    #[inline(always)]
+    pub fn norm_squared(&self) -> f64 {
+        let [w, x, y, z] = self.0;
+        (w * w + x * x) + (y * y + z * z)
+    }
+
+    /// Every component multiplied by `s`.
+    #[inline(always)]
+    pub fn scaled(&self, s: f64) -> Quaternion {
+        Quaternion(self.0.map(|c| c * s))
+    }
+
+    /// The same direction with norm one.
+    #[inline(always)]
+    pub fn normalised(&self) -> Quaternion {
+        self.scaled(1.0 / self.norm_squared().sqrt())
+    }
+
+    /// E with Id + (2/|q|^2) E the rotation matrix of q / |q|: lets a rotation begin before |q| is known.
+    #[inline(always)]
+    pub fn deviation(&self) -> Matrix {
+        let [w, x, y, z] = self.0;
+        let (xx, yy, zz) = (x * x, y * y, z * z);
+        let (xy, xz, yz) = (x * y, x * z, y * z);
+        let (wx, wy, wz) = (w * x, w * y, w * z);
+        [
+            [-(yy + zz), xy - wz, xz + wy],
+            [xy + wz, -(xx + zz), yz - wx],
+            [xz - wy, yz + wx, -(xx + yy)],
+        ]
+    }
+
+    /// The rotation matrix of a unit quaternion.
+    #[inline(always)]
+    pub fn matrix(&self) -> Matrix {
+        let e = self.deviation();
+        [
+            [1.0 + 2.0 * e[0][0], 2.0 * e[0][1], 2.0 * e[0][2]],
+            [2.0 * e[1][0], 1.0 + 2.0 * e[1][1], 2.0 * e[1][2]],
+            [2.0 * e[2][0], 2.0 * e[2][1], 1.0 + 2.0 * e[2][2]],
+        ]
+    }
+
+    /// A unit quaternion of an orthogonal matrix with determinant one (sign of the quaternion unspecified).
+    pub fn from_matrix(m: &Matrix) -> Quaternion {
+        // The largest of 4w^2, 4x^2, 4y^2, 4z^2 is at least one, so that nothing small is ever divided by.
+        let trace = m[0][0] + m[1][1] + m[2][2];
+        let squares = [
+            1.0 + trace,
+            1.0 + 2.0 * m[0][0] - trace,
+            1.0 + 2.0 * m[1][1] - trace,
+            1.0 + 2.0 * m[2][2] - trace,
+        ];
+        let skew = [m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]];
+        let sums = [m[2][1] + m[1][2], m[0][2] + m[2][0], m[1][0] + m[0][1]];
+        let largest = squares.iter().copied().fold(f64::MIN, f64::max);
+        let column = if squares[0] == largest {
+            [squares[0], skew[0], skew[1], skew[2]]
+        } else if squares[1] == largest {
+            [skew[0], squares[1], sums[2], sums[1]]
+        } else if squares[2] == largest {
+            [skew[1], sums[2], squares[2], sums[0]]
+        } else {
+            [skew[2], sums[1], sums[0], squares[3]]
+        };
+        Quaternion(column).normalised()
+    }
+}
+
+/// M v.
+#[inline(always)]
+pub fn apply(m: &Matrix, v: &Vector) -> Vector {
+    [dot(&m[0], v), dot(&m[1], v), dot(&m[2], v)]
+}
+
+/// M^T v.
+#[inline(always)]
+pub fn apply_transposed(m: &Matrix, v: &Vector) -> Vector {
+    [
+        m[0][0] * v[0] + m[1][0] * v[1] + m[2][0] * v[2],
+        m[0][1] * v[0] + m[1][1] * v[1] + m[2][1] * v[2],
+        m[0][2] * v[0] + m[1][2] * v[1] + m[2][2] * v[2],
+    ]
+}

@@ -1,0 +1,157 @@
+//! Heavy top, body representation, potential split over both ends of a step: second order, self-adjoint.
+//! Takes J, gU (weight times support -> centre of mass, body axes), z (up, space axes), attitude, body momentum, h;
+//! gives attitude, momenta and the vertical at the nodes. State: attitude quaternion and spatial momentum.
+
+use super::Unsolvable;
+use super::attitude::{
+    Matrix, Quaternion, Vector, add_scaled, apply, apply_transposed, cross, dot,
+};
+use super::principal_axes::PrincipalAxes;
+use super::principal_root::Quartic;
+use super::spaced::{SpacedQuaternion, SpacedVector};
+
+/// What a top is made of: J in body axes, gU in body axes, z in space axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Top {
+    /// Poinsot (second moment) matrix J.
+    pub poinsot: Matrix,
+    /// Weight times the vector from the support to the centre of mass.
+    pub weight: Vector,
+    /// Upward vertical.
+    pub up: Vector,
+}
+
+/// A heavy top on its way; principal axes inside. Momenta are stored times h/2, forces times h^2/4.
+#[derive(Clone, Copy, Debug)]
+pub struct HeavyTop {
+    q: SpacedQuaternion,
+    /// Spatial momentum m_k of the node.
+    m: SpacedVector,
+    /// Half the spatial change of momentum that belongs to the node: z x (R gU).
+    kick: SpacedVector,
+    /// Body momentum of the edge that begins here, R^T (m + kick): all that the solver waits for.
+    u: SpacedVector,
+    /// gU in principal axes.
+    weight: Vector,
+    double_weight: Vector,
+    up: Vector,
+    moments: Vector,
+    gyration: Vector,
+    quartic: Quartic,
+    axes: PrincipalAxes,
+    h: f64,
+}
+
+impl HeavyTop {
+    /// Starts a trajectory; the momentum is that of node 0 in body axes.
+    pub fn start(
+        top: &Top,
+        attitude: &Quaternion,
+        body_momentum: &Vector,
+        h: f64,
+    ) -> Result<HeavyTop, Unsolvable> {
+        let axes = PrincipalAxes::new(&top.poinsot)?;
+        let i = axes.moments;
+        let q = axes.enter_attitude(attitude);
+        let rotation = q.matrix();
+        let weight = axes.enter(&top.weight).map(|c| 0.25 * h * h * c);
+        let momentum = axes.enter(body_momentum).map(|c| 0.5 * h * c);
+        let vertical = apply_transposed(&rotation, &top.up);
+        Ok(HeavyTop {
+            q: SpacedQuaternion::new(q),
+            m: SpacedVector::new(apply(&rotation, &momentum)),
+            kick: SpacedVector::new(cross(&top.up, &apply(&rotation, &weight))),
+            u: SpacedVector::new(add_scaled(&momentum, 1.0, &cross(&vertical, &weight))),
+            weight,
+            double_weight: weight.map(|c| 2.0 * c),
+            up: top.up,
+            moments: i,
+            gyration: [i[1] - i[2], i[2] - i[0], i[0] - i[1]],
+            quartic: Quartic::new(&i),
+            axes,
+            h,
+        })
+    }
+
+    /// One step of the motion; unchanged when the equation has no solution.
+    #[inline(always)]
+    pub fn step(&mut self) -> Result<(), Unsolvable> {
+        let u = self.u.get();
+        let squares = u.map(|c| c * c);
+        let a = (squares[0] + squares[1]) + squares[2];
+        let kappa = self.quartic.principal_root(&squares, a)?;
+        let [i1, i2, i3] = self.moments;
+        let (d1, d2, d3) = (i1 - kappa, i2 - kappa, i3 - kappa);
+        let d23 = d2 * d3;
+        let determinant = d1 * (d23 + squares[0]) + (d2 * squares[1] + d3 * squares[2]);
+        let n1 = (d23 + a) * u[0] + self.gyration[0] * (u[1] * u[2]);
+        let n2 = (d3 * d1 + a) * u[1] + self.gyration[1] * (u[2] * u[0]);
+        let n3 = (d1 * d2 + a) * u[2] + self.gyration[2] * (u[0] * u[1]);
+        let turn = Quaternion([determinant, n1, n2, n3]);
+        let q = self.q.get();
+        let unscaled = q.times(&turn);
+        // |q|^2 is one up to rounding; the numerator takes that rounding out again, to first order.
+        let correction = 2.0 - q.norm_squared();
+        let square = turn.norm_squared();
+        let scale = (correction + correction) / square;
+        let e = unscaled.deviation();
+        // Momentum of the edge in space; then the kicks on both sides of the new node.
+        let n = add_scaled(&self.m.get(), 1.0, &self.kick.get());
+        let carried = add_scaled(&n, scale, &apply_transposed(&e, &n));
+        let vertical = add_scaled(&self.up, scale, &apply_transposed(&e, &self.up));
+        let arm = add_scaled(&self.weight, scale, &apply(&e, &self.weight));
+        let kick = cross(&self.up, &arm);
+        self.u.set(add_scaled(
+            &carried,
+            1.0,
+            &cross(&vertical, &self.double_weight),
+        ));
+        self.m.set(add_scaled(&n, 1.0, &kick));
+        self.kick.set(kick);
+        self.q.set(unscaled.scaled((0.5 * scale).sqrt()));
+        Ok(())
+    }
+
+    /// Attitude body -> space at the present node.
+    pub fn attitude(&self) -> Quaternion {
+        self.axes.leave_attitude(&self.q.get())
+    }
+
+    /// Spatial momentum m_k at the present node.
+    pub fn spatial_momentum(&self) -> Vector {
+        self.m.get().map(|c| 2.0 * c / self.h)
+    }
+
+    /// Body momentum mu_k at the present node.
+    pub fn body_momentum(&self) -> Vector {
+        self.axes
+            .leave(&apply_transposed(&self.q.get().matrix(), &self.m.get()))
+            .map(|c| 2.0 * c / self.h)
+    }
+
+    /// The vertical in body axes, Gamma_k.
+    pub fn vertical(&self) -> Vector {
+        self.axes
+            .leave(&apply_transposed(&self.q.get().matrix(), &self.up))
+    }
+
+    /// Energy mu . I^-1 mu / 2 + gU . Gamma: oscillates within O(h^2).
+    pub fn energy(&self) -> f64 {
+        let mu = apply_transposed(&self.q.get().matrix(), &self.m.get());
+        let rates = [
+            mu[0] / self.moments[0],
+            mu[1] / self.moments[1],
+            mu[2] / self.moments[2],
+        ];
+        let potential = dot(
+            &self.weight,
+            &apply_transposed(&self.q.get().matrix(), &self.up),
+        );
+        (2.0 * dot(&mu, &rates) + 4.0 * potential) / (self.h * self.h)
+    }
+
+    /// Momentum of the edge that begins here, in body axes: N_{k+1} = mu_k + (h/2) Gamma_k x gU.
+    pub fn edge_momentum(&self) -> Vector {
+        self.axes.leave(&self.u.get()).map(|c| 2.0 * c / self.h)
+    }
+}

@@ -1,0 +1,27 @@
+//! Steppers written by hand from the published equations, in plain `f64`, as the yardstick for generated code.
+//! They take inertia, initial attitude and momentum, and give attitudes and momenta; they use nothing of the
+//! library under test, so that an agreement of the two is worth something.
+
+pub mod attitude;
+pub mod free_body;
+pub mod heavy_top;
+pub mod one_sided_top;
+pub mod principal_axes;
+pub mod principal_root;
+pub mod spaced;
+
+use std::fmt;
+
+/// A step that has no solution on the principal branch: the momentum is too large for the step length, or not finite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Unsolvable;
+
+impl fmt::Display for Unsolvable {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(
+            "the discrete Moser-Veselov equation has no principal solution: reduce the step",
+        )
+    }
+}
+
+impl std::error::Error for Unsolvable {}

@@ -1,0 +1,196 @@
+//! The unreduced discrete action and its variation at one node.
+//! Takes the action of one step as a function of the two group elements it joins; gives the discrete
+//! Euler-Lagrange residual, the two discrete momenta and the scale they are to be compared on.
+
+pub mod bodies;
+pub mod coupled;
+pub mod elastic;
+pub mod spatial;
+
+use super::dual::{Dual, Number};
+use super::square::{Square, hat};
+use std::array::from_fn;
+
+/// On which side of the group element a variation acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// `Λ exp(ε X)`: the velocity is `Λ_k⁻¹ Λ_{k+1}`.
+    Body,
+    /// `exp(ε X) Λ`: the velocity is `Λ_{k+1} Λ_k⁻¹`.
+    Space,
+}
+
+/// Where a summand without velocity is evaluated on the edge from node k to node k+1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NodeRule {
+    /// The mean of both ends: second order.
+    Symmetric,
+    /// At node k+1, the node into which the edge comes.
+    Incoming,
+    /// At node k, the node out of which the edge goes.
+    Outgoing,
+}
+
+impl NodeRule {
+    /// The nodal summand of one edge from its values at both ends.
+    pub fn split<T: Number>(self, at_tail: T, at_head: T) -> T {
+        match self {
+            Self::Symmetric => (at_tail + at_head) * T::constant(0.5),
+            Self::Incoming => at_head,
+            Self::Outgoing => at_tail,
+        }
+    }
+
+    /// The word of the model language.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Symmetric => "symmetric",
+            Self::Incoming => "incoming",
+            Self::Outgoing => "outgoing",
+        }
+    }
+}
+
+/// The action of one step, unreduced: `G` group elements, each an `N` by `N` matrix, at either end.
+pub trait DiscreteAction<const N: usize, const G: usize> {
+    /// The side on which the variations act.
+    fn side(&self) -> Side {
+        Side::Body
+    }
+
+    /// The summands of the action of the edge from `tail` (node k) to `head` (node k+1).
+    fn edge<T: Number>(&self, tail: &[Square<T, N>; G], head: &[Square<T, N>; G]) -> Vec<T>;
+}
+
+/// A derivative with the size of what was added up to it.
+#[derive(Clone, Debug)]
+pub struct Variation {
+    /// The derivative along each direction, the groups one after the other.
+    pub derivative: Vec<f64>,
+    /// The natural scale: the sum over all summands of the largest component of each.
+    pub scale: f64,
+}
+
+/// The basis `hat(e1), hat(e2), hat(e3)` of the Lie algebra of SO(3).
+#[must_use]
+pub fn rotations() -> Vec<Square<f64, 3>> {
+    (0..3)
+        .map(|i| hat(&from_fn(|j| if i == j { 1.0 } else { 0.0 })))
+        .collect()
+}
+
+/// The residual of the discrete Euler-Lagrange equations at the middle one of three nodes:
+/// the derivative of the action of both edges along each direction.
+pub fn stationarity<const N: usize, const G: usize>(
+    action: &impl DiscreteAction<N, G>,
+    nodes: &[[Square<f64, N>; G]; 3],
+    basis: &[Square<f64, N>],
+) -> Variation {
+    let [before, here, after] = nodes;
+    let (before, after) = (steady(before), steady(after));
+    vary(action.side(), here, basis, |varied| {
+        let mut summands = action.edge(&before, varied);
+        summands.extend(action.edge(varied, &after));
+        summands
+    })
+}
+
+/// The momentum at the head of an edge: `d/dξ L_d(tail -> head)` for a variation of the head.
+pub fn momentum_in<const N: usize, const G: usize>(
+    action: &impl DiscreteAction<N, G>,
+    tail: &[Square<f64, N>; G],
+    head: &[Square<f64, N>; G],
+    basis: &[Square<f64, N>],
+) -> Variation {
+    let tail = steady(tail);
+    vary(action.side(), head, basis, |varied| {
+        action.edge(&tail, varied)
+    })
+}
+
+/// The momentum at the tail of an edge: `-d/dξ L_d(tail -> head)` for a variation of the tail.
+pub fn momentum_out<const N: usize, const G: usize>(
+    action: &impl DiscreteAction<N, G>,
+    tail: &[Square<f64, N>; G],
+    head: &[Square<f64, N>; G],
+    basis: &[Square<f64, N>],
+) -> Variation {
+    let head = steady(head);
+    let mut variation = vary(action.side(), tail, basis, |varied| {
+        action.edge(varied, &head)
+    });
+    for component in &mut variation.derivative {
+        *component = -*component;
+    }
+    variation
+}
+
+/// How much a result changes at most when entries of the group elements change: the factor by which it
+/// magnifies their rounding. Differences are good enough for a bound.
+pub fn sensitivity<const N: usize, const G: usize, const M: usize>(
+    nodes: &[[Square<f64, N>; G]; M],
+    basis: &[Square<f64, N>],
+    result: impl Fn(&[[Square<f64, N>; G]; M]) -> Vec<f64>,
+) -> f64 {
+    // The root of the rounding unit balances rounding and curvature.
+    let epsilon = 1e-8;
+    let here = result(nodes);
+    let mut sum = 0.0;
+    for node in 0..M {
+        for group in 0..G {
+            for direction in basis {
+                let mut moved = *nodes;
+                let element = moved[node][group];
+                moved[node][group] = element + (element * *direction).scaled(epsilon);
+                let changes = result(&moved);
+                sum += here
+                    .iter()
+                    .zip(changes)
+                    .map(|(a, b)| (a - b).abs() / epsilon)
+                    .fold(0.0, f64::max);
+            }
+        }
+    }
+    sum
+}
+
+fn steady<const N: usize, const G: usize>(node: &[Square<f64, N>; G]) -> [Square<Dual, N>; G] {
+    node.map(|element| Square::constant(&element))
+}
+
+/// Derivatives of the summands of `action` at `node`, by dual numbers.
+///
+/// The tangent of `Λ exp(ε X)` at `ε = 0` is `Λ X`: the exponential is not needed.
+fn vary<const N: usize, const G: usize>(
+    side: Side,
+    node: &[Square<f64, N>; G],
+    basis: &[Square<f64, N>],
+    action: impl Fn(&[Square<Dual, N>; G]) -> Vec<Dual>,
+) -> Variation {
+    let mut derivative = Vec::with_capacity(G * basis.len());
+    let mut largest: Vec<f64> = Vec::new();
+    for group in 0..G {
+        for direction in basis {
+            let mut varied = steady(node);
+            let tangent = match side {
+                Side::Body => node[group] * *direction,
+                Side::Space => *direction * node[group],
+            };
+            varied[group] = Square::from_entries(|i, j| Dual {
+                value: node[group].0[i][j],
+                slope: tangent.0[i][j],
+            });
+            let summands = action(&varied);
+            largest.resize(summands.len(), 0.0);
+            for (size, summand) in largest.iter_mut().zip(&summands) {
+                *size = size.max(summand.slope.abs());
+            }
+            derivative.push(summands.iter().map(|summand| summand.slope).sum());
+        }
+    }
+    Variation {
+        derivative,
+        scale: largest.iter().sum(),
+    }
+}

@@ -1,0 +1,149 @@
+//! Dual numbers of the oracle: a value and one exact directional derivative.
+//! Takes arithmetic on `Number`s; gives derivatives exact to rounding, with no step size to choose.
+//! Written apart from the dual numbers of the runtime, so that a mistake there cannot hide a mistake here.
+
+use std::fmt::Debug;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A scalar on which an unreduced action can be evaluated.
+pub trait Number:
+    Copy
+    + Debug
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// A number that does not vary.
+    fn constant(value: f64) -> Self;
+    /// The value without its derivative.
+    fn value(self) -> f64;
+    /// The square root; the derivative is infinite at 0.
+    fn sqrt(self) -> Self;
+    /// The exponential.
+    fn exp(self) -> Self;
+    /// The natural logarithm.
+    fn ln(self) -> Self;
+
+    /// An integer power by repeated multiplication; a negative exponent inverts.
+    #[must_use]
+    fn power(self, exponent: i32) -> Self {
+        let mut result = Self::constant(1.0);
+        for _ in 0..exponent.unsigned_abs() {
+            result = result * self;
+        }
+        if exponent < 0 {
+            Self::constant(1.0) / result
+        } else {
+            result
+        }
+    }
+}
+
+impl Number for f64 {
+    fn constant(value: f64) -> Self {
+        value
+    }
+    fn value(self) -> f64 {
+        self
+    }
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+    fn exp(self) -> Self {
+        f64::exp(self)
+    }
+    fn ln(self) -> Self {
+        f64::ln(self)
+    }
+}
+
+/// `value + slope ε` with `ε² = 0`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dual {
+    /// The value.
+    pub value: f64,
+    /// The derivative along the one direction that is varied.
+    pub slope: f64,
+}
+
+impl Dual {
+    fn chain(self, value: f64, derivative: f64) -> Self {
+        Self {
+            value,
+            slope: derivative * self.slope,
+        }
+    }
+}
+
+impl Number for Dual {
+    fn constant(value: f64) -> Self {
+        Self { value, slope: 0.0 }
+    }
+    fn value(self) -> f64 {
+        self.value
+    }
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        self.chain(root, 0.5 / root)
+    }
+    fn exp(self) -> Self {
+        let exponential = self.value.exp();
+        self.chain(exponential, exponential)
+    }
+    fn ln(self) -> Self {
+        self.chain(self.value.ln(), 1.0 / self.value)
+    }
+}
+
+impl Add for Dual {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self {
+            value: self.value + other.value,
+            slope: self.slope + other.slope,
+        }
+    }
+}
+
+impl Sub for Dual {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        Self {
+            value: self.value - other.value,
+            slope: self.slope - other.slope,
+        }
+    }
+}
+
+impl Mul for Dual {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        Self {
+            value: self.value * other.value,
+            slope: self.slope * other.value + self.value * other.slope,
+        }
+    }
+}
+
+impl Div for Dual {
+    type Output = Self;
+    fn div(self, other: Self) -> Self {
+        let value = self.value / other.value;
+        Self {
+            value,
+            slope: (self.slope - value * other.slope) / other.value,
+        }
+    }
+}
+
+impl Neg for Dual {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self {
+            value: -self.value,
+            slope: -self.slope,
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! Order of convergence by step halving, against the continuous motion.
+//! Takes errors at steps h, h/2, h/4, ...; gives the orders between neighbours, and the errors themselves.
+
+use super::motion::Motion;
+use super::truth::Phase;
+
+/// Errors of a motion at a fixed time for a sequence of halved steps.
+#[derive(Clone, Debug)]
+pub struct Errors {
+    /// Largest deviation of a component of the body momentum.
+    pub momentum: Vec<f64>,
+    /// Largest deviation of an entry of the attitude matrix.
+    pub attitude: Vec<f64>,
+}
+
+/// Runs `start(h)` to `time` for `steps`, `2 steps`, ... (`halvings` times) and compares with `truth` there.
+pub fn errors<M: Motion>(
+    start: impl Fn(f64) -> M,
+    time: f64,
+    steps: u64,
+    halvings: u32,
+    truth: &Phase,
+) -> Result<Errors, String> {
+    let (mut momentum, mut attitude) = (Vec::new(), Vec::new());
+    let exact = truth.attitude.matrix();
+    for halving in 0..=halvings {
+        let count = steps << halving;
+        let mut motion = start(time / count as f64);
+        for _ in 0..count {
+            motion.step()?;
+        }
+        let mu = motion.body_momentum();
+        momentum.push(
+            (0..3)
+                .map(|i| (mu[i] - truth.body_momentum[i]).abs())
+                .fold(0.0, f64::max),
+        );
+        let r = motion.attitude();
+        attitude.push(
+            (0..9)
+                .map(|i| (r[i / 3][i % 3] - exact[i / 3][i % 3]).abs())
+                .fold(0.0, f64::max),
+        );
+    }
+    Ok(Errors { momentum, attitude })
+}
+
+/// log2 of the ratio of neighbouring errors.
+pub fn orders(errors: &[f64]) -> Vec<f64> {
+    errors
+        .windows(2)
+        .map(|pair| (pair[0] / pair[1]).log2())
+        .collect()
+}
+
+/// Whether the finest two halvings show `order` to 0.05, with errors that rounding (`floor`) cannot have made.
+pub fn confirms(errors: &[f64], order: f64, floor: f64) -> bool {
+    let measured = orders(errors);
+    let clear = errors.iter().rev().take(3).all(|e| *e > 100.0 * floor);
+    measured.len() >= 2
+        && clear
+        && measured
+            .iter()
+            .rev()
+            .take(2)
+            .all(|o| (o - order).abs() <= 0.05)
+}

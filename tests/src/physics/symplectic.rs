@@ -1,0 +1,43 @@
+//! The canonical two-form of T*SO(3) in left-trivialised coordinates, attitude included.
+//! Takes the Jacobian of a map in (xi, mu), where Lambda changes by Lambda hat(xi), and the body momenta at both ends;
+//! gives how far the map is from symplectic.
+
+use crate::handwritten::attitude::Vector;
+
+/// Jacobian of a map of (xi, mu): rows are images, columns are causes.
+pub type Jacobian = [[f64; 6]; 6];
+
+/// Matrix of d(mu . xi): d theta = delta mu_1 . xi_2 - delta mu_2 . xi_1 - mu . (xi_1 x xi_2), the last term because
+/// left-invariant fields do not commute.
+pub fn two_form(mu: &Vector) -> Jacobian {
+    let mut w = [[0.0; 6]; 6];
+    for i in 0..3 {
+        w[i][i + 3] = -1.0;
+        w[i + 3][i] = 1.0;
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        w[j][k] = -mu[i];
+        w[k][j] = mu[i];
+    }
+    w
+}
+
+/// Largest entry of D^T W(mu') D - W(mu).
+pub fn defect(jacobian: &Jacobian, before: &Vector, after: &Vector) -> f64 {
+    let (old, new) = (two_form(before), two_form(after));
+    let mut worst = 0.0_f64;
+    for r in 0..6 {
+        for c in 0..6 {
+            let pulled: f64 = (0..36)
+                .map(|n| jacobian[n / 6][r] * new[n / 6][n % 6] * jacobian[n % 6][c])
+                .sum();
+            // NaN must not hide behind max.
+            let off = (pulled - old[r][c]).abs();
+            worst = if off.is_nan() {
+                f64::INFINITY
+            } else {
+                worst.max(off)
+            };
+        }
+    }
+    worst
+}

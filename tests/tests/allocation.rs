@@ -1,0 +1,99 @@
+//! A step allocates nothing: the global allocator of this binary counts the calls of the testing thread.
+//! The same count sees an allocation where there is one.
+
+// A global allocator is an unsafe trait; both methods only count and hand over to the system's.
+#![allow(unsafe_code)]
+// The fields of the models are Greek letters, as in the papers.
+#![allow(mixed_script_confusables)]
+
+mod generated_motion;
+
+use clebsch_tests::physics::cases::{asymmetric_body, generic_top, lagrange_top};
+use generated_motion::{GeneratedBody, GeneratedTop};
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::hint::black_box;
+
+thread_local! {
+    static CALLS: Cell<u64> = const { Cell::new(0) };
+}
+
+struct Counting;
+
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        CALLS.with(|calls| calls.set(calls.get() + 1));
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Allocations made by `work` on this thread.
+fn allocations(work: impl FnOnce()) -> u64 {
+    let before = CALLS.with(Cell::get);
+    work();
+    CALLS.with(Cell::get) - before
+}
+
+#[test]
+fn the_count_sees_allocations() {
+    assert_eq!(allocations(|| drop(black_box(vec![1.0_f64; 3]))), 1);
+    // Another thread's do not count.
+    let other = std::thread::spawn(|| drop(black_box(vec![0_u8; 100])));
+    assert_eq!(
+        allocations(|| while !other.is_finished() {
+            std::hint::spin_loop()
+        }),
+        0
+    );
+    other.join().expect("a quiet thread");
+}
+
+#[test]
+fn steps_allocate_nothing() {
+    let mut body = GeneratedBody::start(&asymmetric_body());
+    // More steps than between two projections onto the conserved quantities.
+    let count = allocations(|| {
+        for _ in 0..10_000 {
+            body.model
+                .step(&mut body.state, &mut body.workspace)
+                .expect("solvable");
+        }
+    });
+    assert_eq!(count, 0, "free body");
+    for start in [lagrange_top(), generic_top()] {
+        let mut top = GeneratedTop::start(&start);
+        let count = allocations(|| {
+            for _ in 0..10_000 {
+                top.model
+                    .step(&mut top.state, &mut top.workspace)
+                    .expect("solvable");
+            }
+        });
+        assert_eq!(count, 0, "heavy top");
+    }
+}
+
+#[test]
+fn observing_allocates_nothing() {
+    let body = GeneratedBody::start(&asymmetric_body());
+    let top = GeneratedTop::start(&generic_top());
+    let count = allocations(|| {
+        black_box(body.model.energy(&body.state));
+        black_box((
+            body.state.Λ(),
+            body.state.body_momentum(),
+            body.state.spatial_momentum(),
+            body.state.node(),
+        ));
+        black_box(top.model.energy(&top.state));
+        black_box((top.model.Γ(&top.state), top.state.body_momentum()));
+    });
+    assert_eq!(count, 0);
+}

@@ -1,0 +1,80 @@
+//! A counting allocator: bytes alive and their peak, for each thread.
+//! Takes every allocation of this test binary; gives the peak since it was last reset. Beyond a hard limit
+//! it refuses, so that a runaway ends the test and not the machine.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+/// Bytes alive on one thread beyond which allocations are refused: four times what is allowed.
+const REFUSED: isize = 2_000_000_000;
+
+thread_local! {
+    static ALIVE: Cell<isize> = const { Cell::new(0) };
+    static PEAK: Cell<isize> = const { Cell::new(0) };
+}
+
+/// The system allocator with counters.
+struct Counting;
+
+/// Counts a change of the bytes alive; false if it goes beyond the hard limit.
+fn count(change: isize) -> bool {
+    // While a thread ends its counters are gone: what it frees then is of no interest.
+    ALIVE
+        .try_with(|alive| {
+            let now = alive.get() + change;
+            alive.set(now);
+            PEAK.with(|peak| peak.set(peak.get().max(now)));
+            now <= REFUSED
+        })
+        .unwrap_or(true)
+}
+
+fn signed(size: usize) -> isize {
+    isize::try_from(size).unwrap_or(isize::MAX / 2)
+}
+
+// SAFETY: every call goes to the system allocator unchanged, or returns null, which the trait allows.
+#[allow(unsafe_code)]
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        if !count(signed(layout.size())) {
+            count(-signed(layout.size()));
+            return std::ptr::null_mut();
+        }
+        // SAFETY: the caller keeps the contract of `alloc`.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        count(-signed(layout.size()));
+        // SAFETY: the caller keeps the contract of `dealloc`.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        // Old and new block may be alive together.
+        if !count(signed(size)) {
+            count(-signed(size));
+            return std::ptr::null_mut();
+        }
+        // SAFETY: the caller keeps the contract of `realloc`.
+        let moved = unsafe { System.realloc(pointer, layout, size) };
+        count(-signed(if moved.is_null() { size } else { layout.size() }));
+        moved
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Begins a measurement on this thread; returns the bytes alive at its beginning.
+pub fn begin() -> isize {
+    let alive = ALIVE.with(Cell::get);
+    PEAK.with(|peak| peak.set(alive));
+    alive
+}
+
+/// The largest number of bytes alive since `begin`, beyond those alive then.
+pub fn peak_since(begin: isize) -> isize {
+    PEAK.with(Cell::get) - begin
+}

@@ -1,0 +1,217 @@
+//! Probes the engine with one input after the other.
+//! Takes inputs by number; gives how many were valid, the slowest and the largest, and every failure:
+//! a panic, more than 2 s or more than 500 MB. An input that never ends stops the test after a minute.
+
+use crate::memory;
+use clebsch_core::print::Format;
+use clebsch_core::{Assignment, document, emit};
+use std::fmt;
+use std::io::Write as _;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, Once, PoisonError};
+use std::time::{Duration, Instant};
+
+/// The time that an input of at most 10 kB may take.
+const TIME: Duration = Duration::from_secs(2);
+/// The memory that an input of at most 10 kB may take, in bytes.
+const MEMORY: isize = 500_000_000;
+/// After this time an input is taken to hang.
+const HANGS: Duration = Duration::from_secs(60);
+/// Failures after which probing ends: more tell nothing new.
+const ENOUGH: usize = 20;
+
+/// If this variable is set every input is named before it is probed: an exhausted stack aborts the process,
+/// and then the last name tells why.
+const TRACE: &str = "CLEBSCH_FUZZ_TRACE";
+
+/// An input with a name by which it can be found again.
+#[derive(Clone, Debug, Default)]
+pub struct Input {
+    /// Kind and number.
+    pub name: String,
+    /// The text.
+    pub text: String,
+}
+
+/// What came out of many inputs.
+#[derive(Debug, Default)]
+pub struct Report {
+    /// Inputs probed.
+    pub probed: u64,
+    /// Inputs that are models.
+    pub accepted: u64,
+    /// The longest time, and of which input.
+    pub slowest: (Duration, String),
+    /// The largest peak of memory, and of which input.
+    pub largest: (isize, String),
+    /// All failures.
+    pub failures: Vec<String>,
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{} probed, {} valid, slowest {:?} ({}), largest {:.1} MB ({}), {} failures",
+            self.probed,
+            self.accepted,
+            self.slowest.0,
+            self.slowest.1,
+            self.largest.0 as f64 / 1e6,
+            self.largest.1,
+            self.failures.len()
+        )
+    }
+}
+
+/// The message of the last panic on a probing thread.
+static PANIC: Mutex<Option<String>> = Mutex::new(None);
+
+/// Keeps panics of probing threads silent; all others are reported as ever.
+fn silence_probes() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        let report = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |panic| {
+            if std::thread::current().name() == Some("probe") {
+                *lock(&PANIC) = Some(panic.to_string());
+            } else {
+                report(panic);
+            }
+        }));
+    });
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// What one input did.
+struct Outcome {
+    panicked: bool,
+    accepted: bool,
+    time: Duration,
+    memory: isize,
+}
+
+fn probe(text: &str) -> Outcome {
+    let begin = memory::begin();
+    let start = Instant::now();
+    let result = catch_unwind(AssertUnwindSafe(|| {
+        match clebsch_core::derive_source(text) {
+            Ok(derivation) => {
+                // Without values nothing can be evaluated, but the program is built and the answer typed.
+                let _ = derivation.residual(&Assignment::new());
+                // What is derived is also printed and emitted.
+                for format in [
+                    Format::Text,
+                    Format::Latex,
+                    Format::Markdown,
+                    Format::MathMl,
+                    Format::Json,
+                ] {
+                    let _ = document::printed(&derivation, format);
+                }
+                if emit::refusal(&derivation).is_none() {
+                    let _ = emit::emit(&derivation, true);
+                }
+                String::new()
+            }
+            // The message is part of the answer to what is no model.
+            Err(errors) => errors.to_string(),
+        }
+    }));
+    Outcome {
+        panicked: result.is_err(),
+        accepted: result.is_ok_and(|message| message.is_empty()),
+        time: start.elapsed(),
+        memory: memory::peak_since(begin),
+    }
+}
+
+/// What is wrong with an input, if anything.
+fn failure(input: &Input, outcome: &Outcome) -> Option<String> {
+    let complaint = if outcome.panicked {
+        let message = lock(&PANIC).take().unwrap_or_default();
+        format!("panicked: {message}")
+    } else if outcome.memory > MEMORY {
+        format!("took {:.0} MB", outcome.memory as f64 / 1e6)
+    } else if outcome.time > TIME {
+        // Another process may have had the core: the best of two more counts.
+        let again = probe(&input.text).time.min(probe(&input.text).time);
+        if again <= TIME {
+            return None;
+        }
+        format!("took {again:?}")
+    } else {
+        return None;
+    };
+    let shown: String = input.text.chars().take(1500).collect();
+    Some(format!("{} {complaint}\n{shown}", input.name))
+}
+
+/// Probes the inputs `0..count` on some threads of the size of stack that tests and macros have.
+pub fn probe_all(threads: u64, count: u64, input: impl Fn(u64) -> Input + Sync) -> Report {
+    silence_probes();
+    let trace = std::env::var_os(TRACE).is_some();
+    let report = Mutex::new(Report::default());
+    let next = AtomicU64::new(0);
+    let slots: Vec<Mutex<Option<(Instant, Input)>>> =
+        (0..threads).map(|_| Mutex::new(None)).collect();
+    let work = |slot: &Mutex<Option<(Instant, Input)>>| {
+        loop {
+            let number = next.fetch_add(1, Ordering::Relaxed);
+            if number >= count || lock(&report).failures.len() >= ENOUGH {
+                break;
+            }
+            let input = input(number);
+            if trace {
+                // Straight to the stream: what the test harness captures is lost with an abort.
+                let _ = writeln!(std::io::stderr(), "{}", input.name);
+            }
+            *lock(slot) = Some((Instant::now(), input.clone()));
+            let outcome = probe(&input.text);
+            let failure = failure(&input, &outcome);
+            *lock(slot) = None;
+            let mut report = lock(&report);
+            report.probed += 1;
+            report.accepted += u64::from(outcome.accepted);
+            if outcome.time > report.slowest.0 {
+                report.slowest = (outcome.time, input.name.clone());
+            }
+            if outcome.memory > report.largest.0 {
+                report.largest = (outcome.memory, input.name);
+            }
+            report.failures.extend(failure);
+        }
+    };
+    std::thread::scope(|scope| {
+        let workers: Vec<_> = slots
+            .iter()
+            .filter_map(|slot| {
+                std::thread::Builder::new()
+                    .name("probe".to_owned())
+                    .stack_size(2 << 20)
+                    .spawn_scoped(scope, move || work(slot))
+                    .ok()
+            })
+            .collect();
+        while !workers
+            .iter()
+            .all(std::thread::ScopedJoinHandle::is_finished)
+        {
+            for slot in &slots {
+                if let Some((start, input)) = &*lock(slot)
+                    && start.elapsed() > HANGS
+                {
+                    // A thread cannot be stopped: nothing but the end of the process is left.
+                    eprintln!("{} does not end\n{}", input.name, input.text);
+                    std::process::exit(1);
+                }
+            }
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    });
+    report.into_inner().unwrap_or_else(PoisonError::into_inner)
+}
