@@ -19,10 +19,19 @@ pub fn finite<T: Real>(field: &'static str, values: &[T]) -> Result<(), Paramete
             field,
             problem: Problem::NotFinite {
                 index,
-                value: values.get(index).map_or(f64::NAN, |x| x.magnitude()),
+                value: values.get(index).map_or(f64::NAN, offending),
             },
             remedy: "give finite numbers",
         }),
+    }
+}
+
+/// The value itself if that is what is not finite, else the size of the lane or derivative.
+fn offending<T: Real>(x: &T) -> f64 {
+    if x.value().is_finite() {
+        x.magnitude()
+    } else {
+        x.value()
     }
 }
 

@@ -318,8 +318,8 @@ impl Derivation {
             .balances
             .iter()
             .map(|b| {
-                let incoming = expr::shift_time(s, &b.incoming(), Shift::PREVIOUS.time);
-                expr::sub(incoming, b.outgoing())
+                let incoming = expr::shift_time(s, &b.incoming, Shift::PREVIOUS.time);
+                expr::sub(incoming, b.outgoing.clone())
             })
             .collect();
         program(s, &results, "t")
@@ -330,7 +330,8 @@ impl Derivation {
     /// parameters, the step and undefined advected quantities must be given. See the emitted
     /// `balance` for the meaning of the components.
     pub fn residual(&self, values: &Assignment) -> Result<Vec<f64>, EvalError> {
-        self.evaluate_residual(&self.residual_program(), values)
+        let program = self.residual.get_or_init(|| self.residual_program());
+        self.evaluate_residual(program, values)
     }
 
     fn evaluate_residual(
@@ -406,35 +407,58 @@ impl Derivation {
                 Some((_, e)) => e,
                 None => &original.results[slot - original.temporaries.len()],
             };
-            let terms: Vec<Expr> = match e.node() {
-                Node::Sum(list) => list.clone(),
-                _ => vec![e.clone()],
-            };
-            for (i, term) in terms.iter().enumerate() {
-                for flip in [false, true] {
-                    let mut changed = terms.clone();
-                    changed[i] = if flip {
-                        expr::neg(term.clone())
-                    } else {
-                        expr::zero(e.shape())
-                    };
-                    let mut program = original.clone();
-                    let new = expr::sum(changed, e.shape());
-                    match program.temporaries.get_mut(slot) {
-                        Some(t) => t.1 = new,
-                        None => program.results[slot - original.temporaries.len()] = new,
-                    }
-                    out.push(Mutant {
-                        derivation: self,
-                        program,
-                        term: term.clone(),
-                        flipped: flip,
-                    });
+            for (changed, term, flipped) in changes(&original.symbols, e, true) {
+                let mut program = original.clone();
+                match program.temporaries.get_mut(slot) {
+                    Some(t) => t.1 = changed,
+                    None => program.results[slot - original.temporaries.len()] = changed,
                 }
+                out.push(Mutant {
+                    derivation: self,
+                    program,
+                    term,
+                    flipped,
+                });
             }
         }
         out
     }
+}
+
+/// Every way to drop or flip one term of a sum, at any depth; a `whole` that is no sum counts as
+/// one term. Each with the term and whether it was flipped.
+fn changes(symbols: &Symbols, e: &Expr, whole: bool) -> Vec<(Expr, Expr, bool)> {
+    let mut out = Vec::new();
+    let terms = match e.node() {
+        Node::Sum(list) => list.clone(),
+        _ if whole => vec![e.clone()],
+        _ => Vec::new(),
+    };
+    for (i, term) in terms.iter().enumerate() {
+        for (new, flipped) in [
+            (expr::zero(e.shape()), false),
+            (expr::neg(term.clone()), true),
+        ] {
+            let mut list = terms.clone();
+            list[i] = new;
+            out.push((expr::sum(list, e.shape()), term.clone(), flipped));
+        }
+    }
+    for (i, child) in e.children().into_iter().enumerate() {
+        for (new, term, flipped) in changes(symbols, child, false) {
+            let mut position = 0;
+            let changed = expr::rebuild(symbols, e, &mut |c| {
+                position += 1;
+                if position == i + 1 {
+                    new.clone()
+                } else {
+                    c.clone()
+                }
+            });
+            out.push((changed, term, flipped));
+        }
+    }
+    out
 }
 
 /// A residual with one term changed.

@@ -9,6 +9,15 @@ use num_traits::{One, Zero};
 ///
 /// A step run on dual numbers gives its exact Jacobian: seed variable `i` with
 /// [`Dual::variable`], read column `i` from `dual`.
+///
+/// ```
+/// use clebsch::{Dual, Real};
+///
+/// let x = Dual::<2>::variable(3.0, 0);
+/// let y = Dual::<2>::variable(4.0, 1);
+/// let z = x * y - x.powi(3);
+/// assert_eq!((z.real, z.dual), (-15.0, [4.0 - 27.0, 3.0]));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<const N: usize> {
     /// The value.

@@ -14,6 +14,9 @@ const MOST_ITERATIONS: usize = 50;
 /// of about sixteen rounded products of the size `scale`.
 const CONVERGED_ROUNDINGS: f64 = 16.0;
 
+/// Below this the residual is nothing but rounding, and a further step would only change it.
+const POLISHED_ROUNDINGS: f64 = 4.0;
+
 /// Ill-conditioned terms may keep the residual above [`CONVERGED_ROUNDINGS`]; when it stops falling
 /// below this many roundings, rounding is the reason.
 const STAGNATED_ROUNDINGS: f64 = 1e3;
@@ -25,7 +28,7 @@ pub struct Solved<G> {
     pub element: G,
     /// Newton steps made, the polishing one included.
     pub iterations: usize,
-    /// The largest residual component before the last step, over all lanes and derivatives.
+    /// The largest residual component before the last step, over all lanes.
     pub residual: f64,
 }
 
@@ -91,7 +94,9 @@ impl std::error::Error for NewtonError {}
 /// `tangent(g)` is the derivative of the residual with respect to the coordinates of
 /// [`Group::retract`] at 0. `scale` is the natural size of the residual's terms (positive): the
 /// solution is accepted when the residual is below `16 EPSILON scale`, or has stopped falling below
-/// `1e3 EPSILON scale`. One more step polishes it, which also makes first derivatives exact.
+/// `1e3 EPSILON scale`. The size of the residual is that of its real parts, in every lane: from a
+/// real solution one more step makes the first derivatives exact whatever they were, so that step
+/// follows for dual numbers, and for plain ones unless the residual is rounding already.
 ///
 /// # Errors
 /// [`NewtonError`]; an unconverged element is never returned.
@@ -109,9 +114,16 @@ pub fn solve<T: Real, G: Group<T>, const D: usize>(
     let mut size = f64::NAN;
     for iteration in 0..MOST_ITERATIONS {
         let value = residual(&element);
-        size = largest(&value);
-        if !size.is_finite() {
+        if !value.iter().all(|x| x.is_finite()) {
             return Err(NewtonError::NotFinite { iteration });
+        }
+        size = largest(&value);
+        if T::ORDER == 0 && size <= POLISHED_ROUNDINGS * T::EPSILON * scale {
+            return Ok(Solved {
+                element,
+                iterations: iteration,
+                residual: size,
+            });
         }
         let done = size <= tolerance || (size <= stagnation && size >= 0.5 * previous);
         let Some(correction) = linalg::solve(&tangent(&element), &value) else {
@@ -139,18 +151,10 @@ pub fn solve<T: Real, G: Group<T>, const D: usize>(
     })
 }
 
-/// The largest component over lanes and derivatives; NaN wins.
+/// The largest absolute real part over components and lanes.
 #[inline(always)]
 fn largest<T: Real, const D: usize>(v: &SVector<T, D>) -> f64 {
-    let mut largest = 0.0;
-    for x in v {
-        let size = x.magnitude();
-        if size.is_nan() {
-            return f64::NAN;
-        }
-        if size > largest {
-            largest = size;
-        }
-    }
-    largest
+    v.iter().fold(0.0, |largest: f64, x| {
+        largest.max(x.greatest()).max(-x.least())
+    })
 }

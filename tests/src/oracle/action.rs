@@ -68,7 +68,8 @@ pub trait DiscreteAction<const N: usize, const G: usize> {
 pub struct Variation {
     /// The derivative along each direction, the groups one after the other.
     pub derivative: Vec<f64>,
-    /// The natural scale: the sum over all summands of the largest component of each.
+    /// The natural scale: the sum over all summands of the size of each or of its largest derivative. The
+    /// directions turn by one radian, so that both are comparable; the size counts where derivatives cancel.
     pub scale: f64,
 }
 
@@ -184,7 +185,7 @@ fn vary<const N: usize, const G: usize>(
             let summands = action(&varied);
             largest.resize(summands.len(), 0.0);
             for (size, summand) in largest.iter_mut().zip(&summands) {
-                *size = size.max(summand.slope.abs());
+                *size = size.max(summand.slope.abs()).max(summand.value.abs());
             }
             derivative.push(summands.iter().map(|summand| summand.slope).sum());
         }

@@ -54,33 +54,72 @@ impl Algebra<'_> {
             };
             return Poly::constant(Shape::SCALAR, value);
         }
-        // Each pass puts the smaller vector under the hat, so that this ends.
-        let mut negative = false;
-        let mut best = word.to_vec();
-        for _ in 0..8 {
-            let Some((minus, ordered)) = self.ordered_triple(&best) else {
-                return zero;
-            };
-            negative ^= minus;
-            let (minus, back) = self.transposed_word(&ordered);
-            let Some((minus2, back)) = self.ordered_triple(&back) else {
-                return zero;
-            };
-            if back < ordered {
-                negative ^= minus ^ minus2;
-                best = back;
-            } else {
-                if back == ordered && (minus ^ minus2) {
-                    return zero;
-                }
-                let done = ordered == best;
-                best = ordered;
-                if done {
-                    break;
+        if let Some((i, j)) = self.facing_hats(word) {
+            return self.expanded(word, i, j);
+        }
+        let mut best: Option<(bool, Word)> = None;
+        let mut both = false;
+        for (negative, form) in self.forms(word) {
+            match &best {
+                Some((sign, least)) if *least == form => both |= *sign != negative,
+                Some((_, least)) if *least < form => {}
+                _ => {
+                    both = false;
+                    best = Some((negative, form));
                 }
             }
         }
-        self.atom(sign(negative), Atom::Bracket(best))
+        match best {
+            Some((negative, form)) if !both => self.atom(sign(negative), Atom::Bracket(form)),
+            _ => zero,
+        }
+    }
+
+    /// Every way to write a bracket: itself and its transpose; with a hat in it, `a . (u x w)` in
+    /// any order of the three vectors, in the frame in which the one under the hat is bare.
+    fn forms(&self, word: &[Factor]) -> Vec<(bool, Word)> {
+        let Some((k, u)) = word.iter().enumerate().rev().find_map(|(k, f)| match f {
+            Factor::Hat(u) => Some((k, u)),
+            _ => None,
+        }) else {
+            let (minus, back) = self.transposed_word(word);
+            return vec![(false, word.to_vec()), (minus, back)];
+        };
+        let (minus, a) = self.transposed_word(&word[..k]);
+        let (Some((m0, a)), Some((m1, w))) =
+            (self.ordered_triple(&a), self.ordered_triple(&word[k + 1..]))
+        else {
+            return Vec::new();
+        };
+        let minus = minus ^ m0 ^ m1;
+        let vectors = [a, u.clone(), w];
+        let mut out = Vec::new();
+        for j in 0..3 {
+            let front = vectors[j]
+                .iter()
+                .take_while(|f| self.is_orthogonal(f))
+                .count();
+            let (frame, bare) = vectors[j].split_at(front);
+            if matches!(bare.first(), Some(Factor::Hat(_) | Factor::Vee { .. })) {
+                continue;
+            }
+            let (_, to_frame) = self.transposed_word(frame);
+            let moved = |i: usize| {
+                let vector = self.cancelled([&to_frame[..], &vectors[i % 3]].concat());
+                self.ordered_triple(&vector)
+            };
+            let hat = [Factor::Hat(bare.to_vec())];
+            for (left, right, odd) in [(j + 2, j + 1, false), (j + 1, j + 2, true)] {
+                let (Some((m1, left)), Some((m2, right))) = (moved(left), moved(right)) else {
+                    // One of the vectors is zero.
+                    return Vec::new();
+                };
+                let (m3, row) = self.transposed_word(&left);
+                let form = [&row[..], &hat, &right].concat();
+                out.push((minus ^ odd ^ m1 ^ m2 ^ m3, form));
+            }
+        }
+        out
     }
 
     /// `z . vee(X) = -tr(hat(z) X)/2`.
@@ -168,18 +207,6 @@ impl Algebra<'_> {
         if let [Factor::Hat(_)] = word.as_slice() {
             return zero;
         }
-        // Hats that face each other across the end of the word.
-        if let Some(i) = word.iter().position(|f| matches!(f, Factor::Hat(_))) {
-            let before = word[..i].iter().rev().chain(word[i + 1..].iter().rev());
-            let facing = before.take_while(|f| self.is_orthogonal(f)).count();
-            let other = (2 * word.len() + i - facing - 1) % word.len();
-            if other != i && matches!(word[other], Factor::Hat(_)) {
-                word.rotate_left(other);
-                let mut opened = Poly::zero(Shape::square(Dim::Fixed(3)));
-                self.push_reduced(&mut opened, Rational::ONE, &Monomial::new(), word);
-                return self.trace_poly(&opened);
-            }
-        }
         let (minus, back) = self.transposed_word(&word);
         let mut best: Option<(bool, Word)> = None;
         let mut both = false;
@@ -199,9 +226,69 @@ impl Algebra<'_> {
         }
         match best {
             Some(_) if both => zero,
-            Some((negative, word)) => self.atom(sign(negative), Atom::Trace(word)),
+            Some((negative, mut word)) => match self.open_gap(&word) {
+                Some((i, gap)) => {
+                    word.rotate_left(i);
+                    let value = self.expanded(&word, 0, gap + 1);
+                    self.scaled(&value, sign(negative))
+                }
+                None => self.atom(sign(negative), Atom::Trace(word)),
+            },
             None => zero,
         }
+    }
+
+    /// A hat of a cyclic word and the length of the gap to the next hat, if `hat G hat` can be
+    /// opened there in one way only: the gap is empty, or it is the only kind that is orthogonal.
+    /// A loop of rotations and two hats can be opened on either side, with results that are equal
+    /// by Cayley-Hamilton only: such a loop stays closed.
+    fn open_gap(&self, word: &[Factor]) -> Option<(usize, usize)> {
+        let n = word.len();
+        let hats: Vec<usize> = (0..n)
+            .filter(|i| matches!(word[*i], Factor::Hat(_)))
+            .collect();
+        if hats.len() < 2 {
+            return None;
+        }
+        let gaps: Vec<(usize, usize, bool)> = hats
+            .iter()
+            .enumerate()
+            .map(|(k, i)| {
+                let next = hats[(k + 1) % hats.len()];
+                let gap = (next + n - i - 1) % n;
+                let orthogonal = (1..=gap).all(|d| self.is_orthogonal(&word[(i + d) % n]));
+                (*i, gap, orthogonal)
+            })
+            .collect();
+        let empty = gaps.iter().find(|(_, gap, _)| *gap == 0);
+        let closed = gaps.iter().all(|(_, _, orthogonal)| *orthogonal);
+        let orthogonal = gaps.iter().find(|(_, _, o)| *o && !closed);
+        empty.or(orthogonal).map(|(i, gap, _)| (*i, *gap))
+    }
+
+    /// The number that a bracket or trace becomes when the hats at `i` and `j` are multiplied out.
+    fn expanded(&self, word: &[Factor], i: usize, j: usize) -> Poly {
+        let closed = self.shape_of(&word[0]).rows != Dim::Fixed(1);
+        let mut out = Poly::zero(Shape::SCALAR);
+        for (c, m, w) in self.expand_hats(word, i, j) {
+            let value = if closed {
+                let shape = Shape::square(Dim::Fixed(3));
+                let mut opened = Poly::zero(shape);
+                self.push_reduced(&mut opened, Rational::ONE, &Monomial::new(), w);
+                self.trace_poly(&opened)
+            } else {
+                let mut opened = Poly::zero(Shape::SCALAR);
+                self.push_reduced(&mut opened, Rational::ONE, &Monomial::new(), w);
+                opened
+            };
+            for (t, c2) in &value.terms {
+                match (super::monomial::times(&m, &t.monomial), c.times(*c2)) {
+                    (Some(m), Some(c)) => self.push_term(&mut out, c, m, Word::new()),
+                    _ => self.exhaust(),
+                }
+            }
+        }
+        out
     }
 
     /// The trace of a polynomial.

@@ -35,6 +35,14 @@ pub enum Factor {
         /// Whether it is a row.
         transposed: bool,
     },
+    /// The axial vector of a skew 3 x 3 letter: such letters are always written `hat(axial)`, so
+    /// that one set of rules serves them and the hats.
+    Axial {
+        /// The skew letter.
+        source: Source,
+        /// Whether it is a row.
+        transposed: bool,
+    },
     /// The skew matrix of a vector word.
     Hat(Word),
     /// The axial vector of a matrix word.
@@ -60,7 +68,9 @@ impl Algebra<'_> {
                 dim, transposed, ..
             } => (Shape::vector(*dim), *transposed),
             Factor::Hat(_) => return Shape::square(Dim::Fixed(3)),
-            Factor::Vee { transposed, .. } => (Shape::vector(Dim::Fixed(3)), *transposed),
+            Factor::Axial { transposed, .. } | Factor::Vee { transposed, .. } => {
+                (Shape::vector(Dim::Fixed(3)), *transposed)
+            }
         };
         if transposed {
             shape.transposed()
@@ -130,6 +140,13 @@ impl Algebra<'_> {
                 },
             ),
             Factor::Hat(_) => (true, f.clone()),
+            Factor::Axial { source, transposed } => (
+                false,
+                Factor::Axial {
+                    source: *source,
+                    transposed: !transposed,
+                },
+            ),
             Factor::Vee { word, transposed } => (
                 false,
                 Factor::Vee {

@@ -21,6 +21,16 @@ impl Algebra<'_> {
             Node::Zero(_) => Poly::zero(shape),
             Node::Identity(_) => Poly::constant(shape, Rational::ONE),
             Node::Letter(at) if shape.is_scalar() => self.scalar_atom(Atom::Letter(*at)),
+            Node::Letter(at)
+                if shape == Shape::square(Dim::Fixed(3))
+                    && self.symbols.get(at.symbol).structure == Structure::Skew =>
+            {
+                let axial = Factor::Axial {
+                    source: Source::Letter(*at),
+                    transposed: false,
+                };
+                self.one_factor(shape, Factor::Hat(vec![axial]))
+            }
             Node::Letter(at) => self.one_factor(
                 shape,
                 Factor::Letter {
@@ -53,10 +63,10 @@ impl Algebra<'_> {
                 lowered.fold(first, |acc, f| self.mul(&acc, &f))
             }
             Node::Quotient(a, b) => {
-                let inverse = self.power(&self.lower(b), Rational::MINUS_ONE, b);
+                let inverse = self.lower_power(b, Rational::MINUS_ONE);
                 self.mul(&self.lower(a), &inverse)
             }
-            Node::Power(a, q) => self.power(&self.lower(a), *q, a),
+            Node::Power(a, q) => self.lower_power(a, *q),
             Node::Transpose(a) => self.transpose(&self.lower(a)),
             Node::Inverse(a) => self.inverse(&self.lower(a), a),
             Node::Trace(a) => self.trace_poly(&self.lower(a)),
@@ -177,6 +187,27 @@ impl Algebra<'_> {
         }
     }
 
+    /// `e^q`, with powers, products and quotients under it taken apart first, so that a sum under
+    /// a power is always met as the user wrote it.
+    fn lower_power(&self, e: &Expr, q: Rational) -> Poly {
+        let whole = q.as_integer().is_some();
+        match e.node() {
+            Node::Power(a, r) if whole && r.times(q).is_some() => {
+                self.lower_power(a, r.times(q).unwrap_or(q))
+            }
+            Node::Product(factors) if whole && factors.iter().all(|f| f.shape().is_scalar()) => {
+                let one = Poly::constant(Shape::SCALAR, Rational::ONE);
+                let powers = factors.iter().map(|f| self.lower_power(f, q));
+                powers.fold(one, |acc, f| self.mul(&acc, &f))
+            }
+            Node::Quotient(a, b) if whole => {
+                let below = self.lower_power(b, q.negated());
+                self.mul(&self.lower_power(a, q), &below)
+            }
+            _ => self.power(&self.lower(e), q, e),
+        }
+    }
+
     fn power(&self, a: &Poly, q: Rational, meaning: &Expr) -> Poly {
         if let Some(n) = q.as_integer() {
             if let Some((t, c)) = Self::single(a)
@@ -202,12 +233,23 @@ impl Algebra<'_> {
             };
             return Poly::term(Shape::SCALAR, Rational::ONE, term);
         }
-        let id = self.intern(&self.numbers, a.clone(), || meaning.clone());
+        // One base for all multiples of a sum: the leading coefficient comes out.
+        let leading = a.terms.values().next().copied().unwrap_or(Rational::ONE);
+        let outside = q.as_integer().and_then(|n| leading.power(n));
+        let (key, meaning, outside) = match (leading.inverse(), outside) {
+            (Some(inverse), Some(outside)) if !leading.is_one() => (
+                self.scaled(a, inverse),
+                expr::scale(inverse, meaning.clone()),
+                outside,
+            ),
+            _ => (a.clone(), meaning.clone(), Rational::ONE),
+        };
+        let id = self.intern(&self.numbers, key, || meaning);
         let term = Term {
             monomial: vec![(Atom::Base(id), q)],
             word: Word::new(),
         };
-        Poly::term(Shape::SCALAR, Rational::ONE, term)
+        Poly::term(Shape::SCALAR, outside, term)
     }
 
     fn is_positive(&self, atom: &Atom) -> bool {
@@ -270,7 +312,9 @@ impl Algebra<'_> {
                     inverted: *inverted ^ !orthogonal,
                 }
             }
-            Factor::Unit { .. } | Factor::Hat(_) | Factor::Vee { .. } => f.clone(),
+            Factor::Unit { .. } | Factor::Axial { .. } | Factor::Hat(_) | Factor::Vee { .. } => {
+                f.clone()
+            }
         }
     }
 

@@ -3,6 +3,7 @@
 //! No search; work is bounded, and running out of bounds is reported, never guessed.
 
 mod bracket;
+mod exact;
 mod factor;
 mod lower;
 mod monomial;
@@ -36,6 +37,16 @@ pub struct Algebra<'a> {
     work: Cell<u64>,
 }
 
+/// How an identity was decided.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Known {
+    /// Both sides have the same normal form.
+    NormalForm,
+    /// The normal forms differ in identities of three dimensions, which hold at random points in
+    /// exact arithmetic modulo a prime of 61 bits.
+    ExactEvaluation,
+}
+
 /// A sub-expression that the normal form treats as one letter.
 struct Opaque {
     key: Poly,
@@ -63,10 +74,25 @@ impl<'a> Algebra<'a> {
         self.work.get() > WORK_LIMIT
     }
 
-    /// Whether the expression vanishes identically. `false` also when the work ran out.
+    /// How it is known that the expression vanishes identically, if it does. Nothing when it does
+    /// not, or when the work ran out.
+    pub fn zero(&self, e: &Expr) -> Option<Known> {
+        if self.exhausted() {
+            return None;
+        }
+        let normal = self.lower(e);
+        if self.exhausted() {
+            return None;
+        }
+        if normal.is_zero() {
+            return Some(Known::NormalForm);
+        }
+        exact::vanishes(self.symbols, e).then_some(Known::ExactEvaluation)
+    }
+
+    /// Whether the expression vanishes identically.
     pub fn is_zero(&self, e: &Expr) -> bool {
-        let poly = self.lower(e);
-        poly.is_zero() && !self.exhausted()
+        self.zero(e).is_some()
     }
 
     /// Whether two expressions of one shape are the same.

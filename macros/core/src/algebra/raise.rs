@@ -30,7 +30,11 @@ impl Algebra<'_> {
 
     fn raise_word(&self, word: &Word) -> Expr {
         // hat(u) w reads as u x w when w is a vector.
-        if let Some(k) = word.iter().position(|f| matches!(f, Factor::Hat(_)))
+        let is_hat = |f: &Factor| match f {
+            Factor::Hat(v) => !matches!(v.as_slice(), [Factor::Axial { .. }]),
+            _ => false,
+        };
+        if let Some(k) = word.iter().position(is_hat)
             && let Factor::Hat(u) = &word[k]
             && let Some(last) = word.last()
             && k + 1 < word.len()
@@ -67,7 +71,13 @@ impl Algebra<'_> {
                 axis,
                 transposed,
             } => (expr::unit(*dim, *axis), *transposed),
-            Factor::Hat(v) => (expr::hat(self.raise_word(v)), false),
+            Factor::Hat(v) => match v.as_slice() {
+                [Factor::Axial { source, .. }] => (self.raise_source(*source), false),
+                _ => (expr::hat(self.raise_word(v)), false),
+            },
+            Factor::Axial { source, transposed } => {
+                (expr::vee(self.raise_source(*source)), *transposed)
+            }
             Factor::Vee { word, transposed } => {
                 let inner = if word.is_empty() {
                     expr::identity(Dim::Fixed(3))

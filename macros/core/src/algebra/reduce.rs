@@ -1,5 +1,5 @@
-//! Reduction of words: cancellation of inverses, extraction of numbers (`u^T A v`), expansion of
-//! neighbouring hats. Words come out canonical; numbers move into the monomial.
+//! Reduction of words: cancellation of inverses, extraction of numbers (`u^T A v`), hats and axial
+//! vectors of words. Words come out canonical; numbers move into the monomial.
 
 use super::factor::{Factor, Word};
 use super::monomial::{self, Atom, Monomial};
@@ -47,15 +47,6 @@ impl Algebra<'_> {
                     coefficient.times(*c),
                 ) {
                     (Some(m), Some(c)) => self.push_reduced(out, c, &m, rest.clone()),
-                    _ => self.exhaust(),
-                }
-            }
-            return;
-        }
-        if let Some((i, j)) = self.facing_hats(&word) {
-            for (c, m, w) in self.expand_hats(&word, i, j).iter() {
-                match (monomial::times(monomial, m), coefficient.times(*c)) {
-                    (Some(m), Some(c)) => self.push_reduced(out, c, &m, w.clone()),
                     _ => self.exhaust(),
                 }
             }
@@ -128,7 +119,7 @@ impl Algebra<'_> {
     }
 
     /// Two hats with nothing but orthogonal letters between them.
-    fn facing_hats(&self, word: &[Factor]) -> Option<(usize, usize)> {
+    pub(super) fn facing_hats(&self, word: &[Factor]) -> Option<(usize, usize)> {
         let mut last = None;
         for (i, f) in word.iter().enumerate() {
             match f {
@@ -146,7 +137,12 @@ impl Algebra<'_> {
     }
 
     /// `hat(a) G hat(b) = G b a^T G - (a^T G b) G` for G in SO(3).
-    fn expand_hats(&self, word: &[Factor], i: usize, j: usize) -> Vec<(Rational, Monomial, Word)> {
+    pub(super) fn expand_hats(
+        &self,
+        word: &[Factor],
+        i: usize,
+        j: usize,
+    ) -> Vec<(Rational, Monomial, Word)> {
         let (Factor::Hat(a), Factor::Hat(b)) = (&word[i], &word[j]) else {
             return Vec::new();
         };
@@ -209,8 +205,14 @@ impl Algebra<'_> {
                 self.push_reduced(&mut out, back, &none, wrap(&xt));
             }
             _ => {
-                let middle = [Factor::Hat(rest.to_vec())];
-                self.push_reduced(&mut out, Rational::ONE, &none, wrap(&middle));
+                if let Some((minus, rest)) = self.ordered_triple(rest) {
+                    let sign = if minus {
+                        Rational::MINUS_ONE
+                    } else {
+                        Rational::ONE
+                    };
+                    self.push_reduced(&mut out, sign, &none, wrap(&[Factor::Hat(rest)]));
+                }
             }
         }
         out

@@ -3,7 +3,7 @@
 
 use super::declare::Declared;
 use super::messages::shape_text;
-use crate::algebra::Rational;
+use crate::algebra::{Algebra, Rational};
 use crate::diagnostic::{Diagnostic, Errors, Place, closest};
 use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::Role;
@@ -15,6 +15,12 @@ pub struct Elaborator<'a> {
     names: &'a Declared,
     bindings: Vec<(String, Expr)>,
 }
+
+/// Longest product: its derivatives grow with the square of its length.
+const LONGEST_PRODUCT: usize = 40;
+
+/// Unit vectors along the first axes.
+const UNITS: [&str; 3] = ["E1", "E2", "E3"];
 
 type Elaborated = Result<Expr, Box<Diagnostic>>;
 
@@ -104,6 +110,9 @@ impl<'a> Elaborator<'a> {
             Kind::Number(_) => Some(Shape::SCALAR),
             Kind::Power(a, _) => self.hint(a),
             Kind::Name(n) if n == "Id" => None,
+            Kind::Name(n) if UNITS.contains(&n.as_str()) => {
+                Some(Shape::vector(self.default_size()))
+            }
             Kind::Name(n) => {
                 if let Some((_, value)) = self.bindings.iter().find(|(b, _)| b == n) {
                     return Some(value.shape());
@@ -163,8 +172,8 @@ impl<'a> Elaborator<'a> {
                         .help("multiply by the inverse: `inv(A) * b` or `A^-1 * b`"),
                     );
                 }
-                if bottom.is_zero() {
-                    return fail(Diagnostic::new(b.place, "division by zero"));
+                if self.vanishes(&bottom) {
+                    return fail(Diagnostic::new(b.place, "this divisor is identically zero"));
                 }
                 Ok(expr::quotient(top, bottom))
             }
@@ -179,7 +188,7 @@ impl<'a> Elaborator<'a> {
                 }
                 self.square(&base, a.place, "a power")?;
                 match q.as_integer() {
-                    Some(-1) => Ok(expr::inverse(&self.names.symbols, base)),
+                    Some(-1) => self.inverse(base, a.place),
                     Some(n) if (1..=8).contains(&n) => {
                         Ok(expr::product((0..n).map(|_| base.clone())))
                     }
@@ -215,7 +224,7 @@ impl<'a> Elaborator<'a> {
             };
             return Ok(expr::identity(size));
         }
-        if let Some(axis) = ["E1", "E2", "E3"].iter().position(|u| *u == n) {
+        if let Some(axis) = UNITS.iter().position(|u| *u == n) {
             let size = match expected {
                 Some(s) if s.is_vector() => s.rows,
                 _ => self.default_size(),
@@ -267,6 +276,11 @@ impl<'a> Elaborator<'a> {
     }
 
     fn product(&self, factors: &[Expression], expected: Option<Shape>) -> Elaborated {
+        if factors.len() > LONGEST_PRODUCT {
+            let place = factors[0].place.to(factors[factors.len() - 1].place);
+            let message = format!("a product of more than {LONGEST_PRODUCT} factors is refused");
+            return fail(Diagnostic::new(place, message).help("make parts of it parameters"));
+        }
         let mut left: Option<(Expr, Place)> = None;
         let mut numbers = Vec::new();
         for (i, f) in factors.iter().enumerate() {
@@ -317,6 +331,21 @@ impl<'a> Elaborator<'a> {
         } else {
             d.help("columns of the left factor and rows of the right one must agree")
         }
+    }
+
+    fn inverse(&self, a: Expr, place: Place) -> Elaborated {
+        if self.vanishes(&a) {
+            return fail(Diagnostic::new(
+                place,
+                "this is identically zero and has no inverse",
+            ));
+        }
+        Ok(expr::inverse(&self.names.symbols, a))
+    }
+
+    /// Whether an expression is zero whatever its letters are.
+    fn vanishes(&self, e: &Expr) -> bool {
+        Algebra::new(&self.names.symbols).is_zero(e)
     }
 
     fn square(&self, a: &Expr, place: Place, what: &str) -> Result<(), Box<Diagnostic>> {
@@ -381,7 +410,7 @@ impl<'a> Elaborator<'a> {
                             expr::trace(expr::mul(a.clone(), a)),
                         ),
                     ),
-                    "inv" => expr::inverse(symbols, a),
+                    "inv" => self.inverse(a, first.place)?,
                     "sym" => expr::part(Part::Symmetric, a),
                     "skew" => expr::part(Part::Skew, a),
                     _ => expr::part(Part::Diagonal, a),

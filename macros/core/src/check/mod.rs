@@ -17,7 +17,7 @@ use elaborate::Elaborator;
 use spec::{Advected, Assumption, Configuration, Spec};
 
 /// Largest expression tree the derivation takes on.
-const LARGEST: u32 = 4_000;
+const LARGEST: u32 = 1_000;
 
 /// Checks a model.
 pub fn check(model: &Model) -> Result<Spec, Errors> {
@@ -80,7 +80,8 @@ pub fn check(model: &Model) -> Result<Spec, Errors> {
             }
             Statement::Scale(value) => match elaborator.number(value) {
                 Ok(e) => {
-                    if !is_constant(&names, &e) || e.is_zero() {
+                    let zero = crate::algebra::Algebra::new(&names.symbols).is_zero(&e);
+                    if !is_constant(&names, &e) || zero {
                         errors.push(messages::scale_not_constant(value.place));
                     }
                     scale = Some(e);

@@ -27,24 +27,16 @@ pub struct Balance {
     /// What quantities at the end of the edge contribute, written on the edge that starts at k
     /// (so they are taken at k+1): the momentum at k+1 is `edge_in + node_in`.
     pub node_in: Expr,
+    /// The node momentum by the outgoing edge: `edge_out + node_out`, in its shortest form.
+    pub outgoing: Expr,
+    /// The node momentum at the end of the edge: `edge_in + node_in`, in its shortest form.
+    pub incoming: Expr,
     /// For each advected quantity: gradient of the outgoing edge at its start and at its end.
     pub advected_gradients: Vec<(Expr, Expr)>,
     /// The variation of the action as a number linear in `ξ`: outgoing edge of node k.
     pub variation_out: Expr,
     /// The same for the incoming edge of node k.
     pub variation_in: Expr,
-}
-
-impl Balance {
-    /// The node momentum by the outgoing edge.
-    pub fn outgoing(&self) -> Expr {
-        expr::add(self.edge_out.clone(), self.node_out.clone())
-    }
-
-    /// The node momentum at the end of the edge, by that edge.
-    pub fn incoming(&self) -> Expr {
-        expr::add(self.edge_in.clone(), self.node_in.clone())
-    }
 }
 
 /// The covector whose pairing with `ξ` is `<y, ξ>`: `2 vee(y)` for SO(3) (pairing with the axial
@@ -132,11 +124,16 @@ fn balance(
         })
         .collect();
     let before = expr::shift_time(s, l, Shift::PREVIOUS.time);
+    let (edge_out, edge_in) = (shorter(algebra, edge_out), shorter(algebra, edge_in));
+    let (node_out, node_in) = (expr::neg(nodes(Shift::HERE)), nodes(Shift::NEXT));
+    let total = |a: &Expr, b: &Expr| shorter(algebra, expr::add(a.clone(), b.clone()));
     Balance {
-        edge_out: shorter(algebra, edge_out),
-        node_out: expr::neg(nodes(Shift::HERE)),
-        edge_in: shorter(algebra, edge_in),
-        node_in: nodes(Shift::NEXT),
+        outgoing: total(&edge_out, &node_out),
+        incoming: total(&edge_in, &node_in),
+        edge_out,
+        node_out,
+        edge_in,
+        node_in,
         gradient,
         advected_gradients,
         variation_out: expr::directional(s, l, &v.on_outgoing()),

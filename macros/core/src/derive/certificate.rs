@@ -9,7 +9,7 @@ use super::balance::{self, Balance, pairing};
 use super::clebsch::{Relation, constraint_terms};
 use super::momentum::Momentum;
 use super::variation::{Variation, at, on_shell, substitute_previous_elements};
-use crate::algebra::{Algebra, Rational};
+use crate::algebra::{Algebra, Known, Rational};
 use crate::check::spec::Spec;
 use crate::diagnostic::{Diagnostic, Errors};
 use crate::expr::shape::Shape;
@@ -44,6 +44,8 @@ pub struct Step {
     pub left: Expr,
     /// Right side.
     pub right: Expr,
+    /// How it was proved.
+    pub known: Known,
 }
 
 /// A finished proof.
@@ -63,11 +65,12 @@ pub fn certify(x: &Inputs) -> Result<Certificate, Errors> {
         named_form(x, i, &mut steps);
     }
     let mut errors = Errors::new();
-    for step in &steps {
-        let rest = x
-            .algebra
-            .lower(&expr::sub(step.left.clone(), step.right.clone()));
-        if !rest.is_zero() && !x.algebra.exhausted() {
+    for step in &mut steps {
+        let difference = expr::sub(step.left.clone(), step.right.clone());
+        if let Some(known) = x.algebra.zero(&difference) {
+            step.known = known;
+        } else if !x.algebra.exhausted() {
+            let rest = x.algebra.lower(&difference);
             let style = crate::print::Style::new(&x.spec.time_index);
             let text = crate::print::expression(
                 &x.algebra.raise(&rest),
@@ -105,6 +108,7 @@ fn constraint_steps(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
         let p_next = expr::letter(s, *p, Shift::NEXT);
         let change = expr::directional(s, update, &v.on_outgoing());
         steps.push(Step {
+            known: Known::NormalForm,
             name: format!("the variation keeps the constraint of {name} on the outgoing edge"),
             left: pairing(x.letters, &p_next, &change),
             right: expr::integer(0),
@@ -120,6 +124,7 @@ fn constraint_steps(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
             .map_or_else(|| expr::zero(s.get(quantity).shape), |(_, e)| e.clone());
         let own = expr::substitute(s, &own, &on_shell(x.spec, x.letters));
         steps.push(Step {
+            known: Known::NormalForm,
             name: format!("the variation keeps the constraint of {name} on the incoming edge"),
             left: pairing(x.letters, &p_here, &own),
             right: pairing(x.letters, &p_here, &change),
@@ -138,6 +143,7 @@ fn gradient_steps(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
             continue;
         }
         steps.push(Step {
+            known: Known::NormalForm,
             name: format!(
                 "⟨∇ℓ, δ{0}⟩ is the derivative of ℓ along δ{0}",
                 name_of(x, letter)
@@ -180,6 +186,7 @@ fn combination(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
     };
     let name = &s.get(x.spec.configurations[i].element).name;
     steps.push(Step {
+        known: Known::NormalForm,
         name: format!("the balance of {name} is a combination of the Clebsch relations"),
         left: close(left),
         right: close(right),
@@ -202,23 +209,27 @@ fn named_form(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
     let node = |e: Expr| balance::pair_with_variation(x.letters, c.group, e, xi.clone());
     let name = &s.get(c.element).name;
     steps.push(Step {
+        known: Known::NormalForm,
         name: format!("momentum form of the outgoing edge of {name}"),
         left: expr::neg(expr::add(matrix(&m.edge), node(b.node_out.clone()))),
         right: b.variation_out.clone(),
     });
     steps.push(Step {
+        known: Known::NormalForm,
         name: format!("momentum form of the incoming edge of {name}, with Ad*"),
         left: expr::add(matrix(&back(&m.transported)), node(back(&b.node_in))),
         right: b.variation_in.clone(),
     });
     steps.push(Step {
+        known: Known::NormalForm,
         name: format!("emitted residual of {name}, outgoing edge"),
-        left: expr::neg(node(b.outgoing())),
+        left: expr::neg(node(b.outgoing.clone())),
         right: b.variation_out.clone(),
     });
     steps.push(Step {
+        known: Known::NormalForm,
         name: format!("emitted residual of {name}, incoming edge"),
-        left: node(back(&b.incoming())),
+        left: node(back(&b.incoming)),
         right: b.variation_in.clone(),
     });
 }

@@ -95,7 +95,7 @@ fn after(x: &Inputs, e: &Expr) -> Expr {
     for (i, b) in x.balances.iter().enumerate() {
         list.push((
             at(x.letters.node_momentum[i], Shift::HERE),
-            end(x, &b.incoming()),
+            end(x, &b.incoming),
         ));
     }
     expr::substitute(s, e, &list)
@@ -108,7 +108,7 @@ fn before(x: &Inputs, e: &Expr) -> Expr {
     for (i, b) in x.balances.iter().enumerate() {
         list.push((
             at(x.letters.node_momentum[i], Shift::HERE),
-            end(x, &b.outgoing()),
+            end(x, &b.outgoing),
         ));
     }
     expr::substitute(s, e, &list)

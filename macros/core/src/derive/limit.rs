@@ -25,6 +25,9 @@ pub struct Limit {
     pub kinetic: Expr,
 }
 
+/// Largest first derivative that is differentiated again.
+const LARGEST: u32 = 20_000;
+
 /// The limit, or why there is none.
 pub fn limit(
     spec: &Spec,
@@ -49,6 +52,9 @@ pub fn limit(
     let l = expr::substitute(s, &action.total, &forward);
     let step = expr::here(s, spec.step);
     let d1 = expr::directional(s, &l, &first);
+    if d1.size() > LARGEST {
+        return Err("the Lagrangian is too large to expand".to_owned());
+    }
     let d2 = expr::add(
         expr::directional(s, &d1, &first),
         expr::directional(s, &l, &second),

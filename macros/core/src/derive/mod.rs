@@ -19,6 +19,8 @@ use crate::check::spec::{Group, Side, Spec};
 use crate::diagnostic::{Diagnostic, Errors};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
+use crate::schedule::Program;
+use std::sync::OnceLock;
 
 /// Letters that the derivation adds to those of the model.
 #[derive(Clone, Debug)]
@@ -70,6 +72,8 @@ pub struct Derivation {
     pub limit: Result<limit::Limit, String>,
     /// Conserved quantities.
     pub invariants: Vec<invariants::Invariant>,
+    /// The scheduled residual, once it has been asked for.
+    pub(crate) residual: OnceLock<Program>,
 }
 
 fn letters(spec: &Spec) -> Letters {
@@ -129,7 +133,12 @@ fn letters(spec: &Spec) -> Letters {
         };
         multiplier.push(symbols.add(&name, s.shape, dual, Role::Multiplier));
         let name = symbols.fresh_name(&format!("d{}", s.name));
-        placeholder.push(symbols.add(&name, s.shape, dual, Role::Variation));
+        // Where it stands in a word must show, and skew letters are written as hats.
+        let marker = match dual {
+            Structure::Skew => Structure::General,
+            other => other,
+        };
+        placeholder.push(symbols.add(&name, s.shape, marker, Role::Variation));
     }
     Letters {
         symbols,
@@ -209,5 +218,6 @@ pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
         reversible,
         limit,
         invariants,
+        residual: OnceLock::new(),
     })
 }

@@ -129,7 +129,7 @@ fn riccati(spec: &Spec, letters: &Letters, b: &Balance, i: usize, algebra: &Alge
         return Riccati::None("the group is not orthogonal".to_owned());
     }
     let n = c.group.size();
-    let outgoing = b.outgoing();
+    let outgoing = b.outgoing.clone();
     let matrix = if n == Dim::Fixed(3) {
         expr::hat(outgoing)
     } else {
@@ -245,7 +245,7 @@ fn word_mentions(f: &Factor, wanted: &impl Fn(&Factor) -> bool) -> bool {
         Factor::Hat(word) | Factor::Vee { word, .. } => {
             word.iter().any(|g| word_mentions(g, wanted))
         }
-        Factor::Letter { .. } | Factor::Unit { .. } => wanted(f),
+        Factor::Letter { .. } | Factor::Unit { .. } | Factor::Axial { .. } => wanted(f),
     }
 }
 

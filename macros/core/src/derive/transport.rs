@@ -71,10 +71,11 @@ fn check_definition(
         .filter_map(|b| Some((at(b.quantity, Shift::HERE), b.definition.clone()?)))
         .collect();
     let by_constraint = expr::substitute(s, &a.update, &own);
-    let rest = algebra.lower(&expr::sub(by_constraint, by_definition.clone()));
-    if rest.is_zero() || algebra.exhausted() {
+    let difference = expr::sub(by_constraint, by_definition.clone());
+    if algebra.is_zero(&difference) || algebra.exhausted() {
         return;
     }
+    let rest = algebra.lower(&difference);
     let name = &s.get(a.quantity).name;
     let style = crate::print::Style::new(&spec.time_index);
     let show = |e: &Expr| crate::print::expression(e, s, &style, crate::print::Format::Text);

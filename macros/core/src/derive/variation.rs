@@ -136,10 +136,11 @@ fn of_advected(
     let wanted = substitute_previous_elements(spec, letters, &wanted);
     let shell = on_shell(spec, letters);
     let found = expr::substitute(s, &solved, &shell);
-    let left_over = algebra.lower(&expr::sub(found, wanted));
-    if left_over.is_zero() || algebra.exhausted() {
+    let difference = expr::sub(found, wanted);
+    if algebra.is_zero(&difference) || algebra.exhausted() {
         return Ok((here, solved));
     }
+    let left_over = algebra.lower(&difference);
     Err(Box::new(wrong_side(
         spec, letters, algebra, a, &left_over, shape,
     )))
@@ -215,7 +216,11 @@ fn sandwich(algebra: &Algebra, poly: &Poly, x: Letter) -> Option<(Expr, Expr)> {
             source: Source::Letter(l),
             ..
         } => algebra.symbols().get(l.symbol).structure.is_invertible(),
-        Factor::Letter { .. } | Factor::Unit { .. } | Factor::Hat(_) | Factor::Vee { .. } => false,
+        Factor::Letter { .. }
+        | Factor::Unit { .. }
+        | Factor::Axial { .. }
+        | Factor::Hat(_)
+        | Factor::Vee { .. } => false,
     };
     if !plain || !before.iter().chain(after).all(invertible) || after.iter().any(is_x) {
         return None;

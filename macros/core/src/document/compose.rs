@@ -206,11 +206,11 @@ fn momentum(d: &Derivation, doc: &mut Document) {
             " is the momentum at the node:".into(),
         ]);
         section.equation(Formula::Relation(
-            vec![math(&mu), math(&b.outgoing())],
+            vec![math(&mu), math(&b.outgoing)],
             Relation::Equal,
         ));
         let next = expr::letter(s, d.letters.node_momentum[i], Shift::NEXT);
-        section.equation(Formula::equal(math(&next), math(&b.incoming())));
+        section.equation(Formula::equal(math(&next), math(&b.incoming)));
     }
 }
 

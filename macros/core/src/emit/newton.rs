@@ -24,7 +24,7 @@ fn outgoing(d: &Derivation) -> Vec<Expr> {
         forward.push((at(a.quantity, Shift::NEXT), a.update.clone()));
     }
     let list = d.balances.iter();
-    list.map(|b| expr::substitute(s, &b.outgoing(), &forward))
+    list.map(|b| expr::substitute(s, &b.outgoing, &forward))
         .collect()
 }
 

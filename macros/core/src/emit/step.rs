@@ -33,7 +33,7 @@ pub(super) fn update(d: &Derivation, i: usize) -> Update {
             leave: expr::neg(b.node_out.clone()),
             arrive: b.node_in.clone(),
         },
-        Side::Spatial => Update::Brought(b.incoming()),
+        Side::Spatial => Update::Brought(b.incoming.clone()),
     }
 }
 

@@ -7,6 +7,9 @@ use crate::algebra::Rational;
 use crate::expr::shape::{Dim, Shape, Structure};
 use egg::{ENodeOrVar, Id, Language, PatternAst, RecExpr, Var};
 
+/// Whether a structure is the wanted one.
+pub type Structured = fn(Structure) -> bool;
+
 /// One condition or computation, over variables of a rule.
 #[derive(Clone, Copy, Debug)]
 pub enum Given<V> {
@@ -48,36 +51,6 @@ pub enum Given<V> {
     Zero(V),
     /// The identity matrix of the shape of the left-hand side.
     Identity(V),
-    // The remaining ones only save work: the rule holds without them, and a check skips them.
-    /// The left-hand side is known to equal this.
-    Itself(V),
-    /// Not known to be zero.
-    Nonzero(V),
-    /// Not known to be a number.
-    Unknown(V),
-    /// Not both known to be numbers.
-    Symbolic(V, V),
-    /// Not known to be multiples of each other.
-    Independent(V, V),
-    /// The left-hand side is not known to be a multiple of this.
-    Apart(V),
-    /// The two joined in this way are not known to be something undivided, as in `g g^T = 1`.
-    Composite(Join, V, V),
-    /// Not known to be a sum.
-    Single(V),
-    /// The left-hand side is not known to be a sum.
-    Unsplit,
-}
-
-/// How two terms are joined.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Join {
-    /// `a + b`.
-    Sum,
-    /// A number times a matrix or a number.
-    Scale,
-    /// A product of matrices.
-    Product,
 }
 
 /// What a variable is replaced by before a rule is used.
@@ -101,23 +74,11 @@ pub trait View {
     fn number(&self, v: Var) -> Option<Rational>;
     /// The shape of the left-hand side.
     fn whole(&self) -> Option<Shape>;
-    /// Whether the left-hand side is known to equal the variable; `None` where conditions that
-    /// only save work do not count.
-    fn itself(&self, v: Var) -> Option<bool>;
-    /// Whether the variable is known to be zero; `None` as before.
-    fn zero(&self, v: Var) -> Option<bool>;
-    /// Whether two variables, or the left-hand side and one, are known to be multiples of each
-    /// other by a number; `None` as before.
-    fn multiples(&self, a: Option<Var>, b: Var) -> Option<bool>;
-    /// Whether the two, joined, are known to be undivided; `None` as before.
-    fn undivided(&self, join: Join, a: Var, b: Var) -> Option<bool>;
-    /// Whether the variable, or the left-hand side, is known to be a sum; `None` as before.
-    fn sum(&self, v: Option<Var>) -> Option<bool>;
 }
 
 impl<V: Copy> Given<V> {
     /// The variable and the wanted structure, where the condition is about a letter.
-    pub fn letter(&self) -> Option<(V, fn(Structure) -> bool)> {
+    pub fn letter(&self) -> Option<(V, Structured)> {
         match *self {
             Given::Symmetric(v) => Some((v, Structure::is_symmetric)),
             Given::Skew(v) => Some((v, |s| s == Structure::Skew)),
@@ -149,15 +110,6 @@ impl<V: Copy> Given<V> {
             Given::Rows(r, a) => Given::Rows(f(r)?, f(a)?),
             Given::Zero(a) => Given::Zero(f(a)?),
             Given::Identity(a) => Given::Identity(f(a)?),
-            Given::Itself(a) => Given::Itself(f(a)?),
-            Given::Nonzero(a) => Given::Nonzero(f(a)?),
-            Given::Unknown(a) => Given::Unknown(f(a)?),
-            Given::Symbolic(a, b) => Given::Symbolic(f(a)?, f(b)?),
-            Given::Independent(a, b) => Given::Independent(f(a)?, f(b)?),
-            Given::Apart(a) => Given::Apart(f(a)?),
-            Given::Composite(join, a, b) => Given::Composite(join, f(a)?, f(b)?),
-            Given::Single(a) => Given::Single(f(a)?),
-            Given::Unsplit => Given::Unsplit,
         })
     }
 }
@@ -202,42 +154,6 @@ pub fn decide(given: &[Given<Var>], view: &impl View) -> Option<Vec<(Var, Value)
             }
             Given::Whole(v) => {
                 holds = number(v)?.as_integer().is_some();
-                None
-            }
-            Given::Itself(v) => {
-                holds = view.itself(v) != Some(false);
-                None
-            }
-            Given::Nonzero(v) => {
-                holds = view.zero(v) != Some(true);
-                None
-            }
-            Given::Unknown(v) => {
-                holds = view.itself(v).is_none() || number(v).is_none();
-                None
-            }
-            Given::Symbolic(a, b) => {
-                holds = view.itself(a).is_none() || number(a).is_none() || number(b).is_none();
-                None
-            }
-            Given::Independent(a, b) => {
-                holds = view.multiples(Some(a), b) != Some(true);
-                None
-            }
-            Given::Apart(v) => {
-                holds = view.multiples(None, v) != Some(true);
-                None
-            }
-            Given::Composite(join, a, b) => {
-                holds = view.undivided(join, a, b) != Some(true);
-                None
-            }
-            Given::Single(v) => {
-                holds = view.sum(Some(v)) != Some(true);
-                None
-            }
-            Given::Unsplit => {
-                holds = view.sum(None) != Some(true);
                 None
             }
             Given::Number(v) => literal(v, number(v)?),

@@ -13,6 +13,7 @@ mod summands;
 #[cfg(test)]
 mod tests;
 mod translate;
+mod worth;
 
 use crate::expr::Expr;
 use crate::expr::symbol::Symbols;
@@ -49,7 +50,7 @@ impl Default for Limits {
     /// build for a statement that cannot be proved.
     fn default() -> Self {
         Limits {
-            nodes: 20_000,
+            nodes: 12_000,
             iterations: 60,
             summands: 8,
             seconds: 60,
@@ -115,7 +116,7 @@ pub fn prove(symbols: &Symbols, statement: &Statement, limits: &Limits) -> Verdi
             ));
         }
         (left, right) = (l, r);
-        removed = Some(common.len());
+        removed = Some(common);
     }
     let (Some((l, shape)), Some((r, _))) =
         (translate::translate(&left), translate::translate(&right))
@@ -125,8 +126,14 @@ pub fn prove(symbols: &Symbols, statement: &Statement, limits: &Limits) -> Verdi
     if shape != left.shape() {
         return refused("the shapes inside the statement do not fit");
     }
-    let first = removed.map(|n| {
-        format!("{n} summands that stand on both sides are taken from both; what is left:")
+    let first = removed.map(|common| {
+        let terms = common.iter().filter_map(translate::translate);
+        let texts: Vec<String> = terms.map(|(t, _)| notation::whole(symbols, &t)).collect();
+        format!(
+            "{} summands stand on both sides and are taken from both ({}); what is left:",
+            common.len(),
+            texts.join(", ")
+        )
     });
     prove_terms(symbols, &l, &r, first, limits)
 }

@@ -4,7 +4,7 @@
 use super::language::{Leaf, Term};
 use crate::expr::Letter;
 use crate::expr::symbol::Symbols;
-use egg::FlatTerm;
+use egg::{FlatTerm, Id, Language, RecExpr};
 
 /// How tightly a text binds: a higher number needs fewer brackets.
 const SUM: u8 = 0;
@@ -15,6 +15,16 @@ const ATOM: u8 = 3;
 /// The text of a term.
 pub fn text(symbols: &Symbols, term: &FlatTerm<Term>) -> String {
     write(symbols, term).0
+}
+
+/// The text of a term that is written out as a list of its nodes.
+pub fn whole(symbols: &Symbols, term: &RecExpr<Term>) -> String {
+    fn from(term: &RecExpr<Term>, id: Id) -> FlatTerm<Term> {
+        let node = term[id].clone();
+        let children = node.children().iter().map(|c| from(term, *c)).collect();
+        FlatTerm::new(node, children)
+    }
+    text(symbols, &from(term, term.root()))
 }
 
 /// The text of a leaf; a shifted letter shows its offset, as in `Λ[+1]`.

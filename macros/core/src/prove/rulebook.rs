@@ -2,11 +2,12 @@
 //! structure grants (`g g^T = 1` for the rotation g of the statement, ...). Takes the table and
 //! the letters, gives rules with unique names.
 
-use super::conditions::{Given, Value, put};
+use super::conditions::{Given, Structured, Value, put};
 use super::language::{Leaf, Term};
 use super::rules::{Group, Row, TABLE};
+use super::worth::Worth;
 use crate::algebra::Rational;
-use crate::expr::shape::{Dim, Structure};
+use crate::expr::shape::Dim;
 use crate::expr::symbol::Symbols;
 use egg::{PatternAst, Var};
 
@@ -23,6 +24,8 @@ pub struct Rule {
     pub right: PatternAst<Term>,
     /// What must hold, and what is computed.
     pub given: Vec<Given<Var>>,
+    /// When the search should use it.
+    pub worth: Vec<Worth<Var>>,
 }
 
 /// All rules for a statement in these leaves, sorted and without repetition. An error names the
@@ -62,17 +65,21 @@ fn instances(
     symbols: &Symbols,
     leaves: &[Leaf],
     group: Group,
-    (name, left, right, given): &Row,
+    (name, left, right, given, when): &Row,
     out: &mut Vec<Rule>,
 ) -> Result<(), String> {
     let (left, right) = (pattern(name, left)?, pattern(name, right)?);
-    let mut wanted: Vec<(Var, fn(Structure) -> bool)> = Vec::new();
+    let mut wanted: Vec<(Var, Structured)> = Vec::new();
     let mut rest: Vec<Given<Var>> = Vec::new();
     for condition in *given {
         match condition.letter() {
             Some((v, has)) => wanted.push((variable(name, v)?, has)),
             None => rest.push(condition.renamed(|v| variable(name, v))?),
         }
+    }
+    let mut worth: Vec<Worth<Var>> = Vec::new();
+    for w in *when {
+        worth.push(w.renamed(|v| variable(name, v))?);
     }
     let mut choices: Vec<Vec<(Var, Leaf)>> = vec![Vec::new()];
     for (v, has) in wanted {
@@ -108,6 +115,7 @@ fn instances(
             left: put(&left, &values),
             right: put(&right, &values),
             given: rest.clone(),
+            worth: worth.clone(),
         });
     }
     Ok(())
@@ -148,6 +156,7 @@ fn unit_rules(leaves: &[Leaf], out: &mut Vec<Rule>) -> Result<(), String> {
                     left: put(left, &pair),
                     right,
                     given: Vec::new(),
+                    worth: Vec::new(),
                 });
             };
             rule(

@@ -1,6 +1,6 @@
 //! How many summands a statement has when multiplied out, and the removal of those that both
-//! sides share. Takes expressions; reordering n summands makes about 3^n terms, which is what
-//! bounds the search.
+//! sides share. Takes expressions; reordering n summands makes about n 2^n terms, which is
+//! what bounds the search.
 
 use crate::algebra::Rational;
 use crate::expr::{Expr, Node, neg, sum};

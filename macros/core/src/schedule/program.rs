@@ -84,7 +84,14 @@ impl Build<'_> {
         if let Some(known) = self.done.get(e) {
             return known.clone();
         }
-        let inner = expr::rebuild(&self.symbols.clone(), e, &mut |c| self.rewrite(c));
+        // Children first: they may add temporaries, which the rebuilding must know.
+        for c in e.children() {
+            self.rewrite(c);
+        }
+        let done = &self.done;
+        let inner = expr::rebuild(&self.symbols, e, &mut |c| {
+            done.get(c).cloned().unwrap_or_else(|| c.clone())
+        });
         let shared = self.uses.get(e).is_some_and(|n| *n > 1) && is_work(e);
         let out = if shared {
             let name =

@@ -10,6 +10,9 @@ use crate::diagnostic::Diagnostic;
 /// Words that end an expression because a statement goes on with them.
 const FOLLOWING: [&str; 4] = ["at", "on", "periodic", "in"];
 
+/// More transposes and powers on one operand than anybody writes.
+const MOST_POSTFIXES: usize = 16;
+
 type Parsed = Result<Expression, Diagnostic>;
 
 /// Parses one expression.
@@ -115,7 +118,12 @@ fn signed(c: &mut Cursor) -> Parsed {
 
 fn postfix(c: &mut Cursor) -> Parsed {
     let mut e = operand(c)?;
+    let mut count = 0;
     while c.take_punct('^') {
+        count += 1;
+        if count > MOST_POSTFIXES {
+            return Err(c.unexpected("fewer than 16 postfixes on one operand"));
+        }
         let kind = if c.take_word("T") {
             Kind::Transpose(Box::new(e.clone()))
         } else {

@@ -13,6 +13,22 @@ use nalgebra::Vector3;
 /// Omega`; spatial axes, with `J` carried along, for `next(R) = Omega R`). No iteration state is
 /// kept: equal arguments give equal results.
 ///
+/// ```
+/// use clebsch::nalgebra::{Matrix3, Vector3};
+/// use clebsch::solvers::moser_veselov::forced;
+/// use clebsch::Poinsot;
+///
+/// let body = Poinsot::new(Matrix3::from_diagonal(&Vector3::new(0.5, 1.5, 2.0)))?;
+/// // About a principal axis I sin(theta) = h N, here with I = 2.
+/// let omega = forced(&body, &Vector3::new(0.0, 0.0, 1.0))?;
+/// let theta = (1.0_f64 / 2.0).asin();
+/// assert!((omega.quaternion()[3] - (theta / 2.0).sin()).abs() < 1e-15);
+/// // More than the moment of inertia is more than the equation can take.
+/// let error = forced(&body, &Vector3::new(0.0, 0.0, 2.5)).unwrap_err();
+/// assert!((error.ratio - 1.25).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`MoserVeselovError`] when there is no principal solution, in any lane, or `h_n` is not finite.
 /// The step size is not known here: see [`MoserVeselovError::with_steps`].

@@ -22,6 +22,23 @@ const DEGENERATE: f64 = 1e-6;
 /// constant and a step costs one division and one square root. Every 64 steps rounding is taken
 /// out: the momentum goes back to its two quadrics, the attitude to where it maps the body
 /// momentum on the spatial one.
+///
+/// ```
+/// use clebsch::nalgebra::{Matrix3, Vector3};
+/// use clebsch::solvers::moser_veselov::Free;
+/// use clebsch::{Poinsot, Rotation, SpatialMomentum};
+///
+/// let body = Poinsot::from_inertia(&Matrix3::from_diagonal(&Vector3::new(3.5, 2.5, 2.0)))?;
+/// let mut attitude = Rotation::identity();
+/// let momentum = SpatialMomentum(Vector3::new(-0.5, 0.0, 1.0));
+/// let mut free = Free::start(&body, &attitude, &momentum, 0.1)?;
+/// for _ in 0..1000 {
+///     free.step(&mut attitude)?;
+/// }
+/// let seen_from_space = free.body_momentum().to_space(&attitude);
+/// assert!((seen_from_space.0 - momentum.0).norm() < 1e-14);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Free<T = f64> {
     body: Poinsot<T>,
@@ -54,7 +71,8 @@ impl<T: Real> Free<T> {
     ///
     /// # Errors
     /// [`MoserVeselovError`], with the largest step size that would do, when the motion is too fast
-    /// for `h`. If it starts, every further step can be made.
+    /// for `h` (in lanes of different `h`: said of the first). If it starts, every further step can
+    /// be made.
     pub fn start(
         body: &Poinsot<T>,
         attitude: &Rotation<T>,
@@ -128,7 +146,7 @@ impl<T: Real> Free<T> {
         let (det, n) = self.pencil.solve::<DIAGONAL>(&self.body, self.u());
         let [x, y, z] = n;
         let norm = (det * det + x * x) + (y * y + z * z);
-        if false {
+        if !norm.is_finite() {
             return false;
         }
         let per_norm = T::one() / norm;
@@ -136,9 +154,9 @@ impl<T: Real> Free<T> {
         for (axis, push) in self.axes.iter_mut().zip(gyro) {
             axis.body += (push + push) * per_norm;
         }
-        // The root does not wait for the quotient. The length of the old attitude is repaired on the
-        // way: its rounding errors have a common sign where `norm` hardly varies, and would add up.
-        let scale = (norm.sqrt() * per_norm) * attitude.repair();
+        // The length of the old attitude is repaired on the way: its rounding errors have a common
+        // sign where `norm` hardly varies, and would add up. Root and quotient run side by side.
+        let scale = norm.sqrt() * (attitude.repair() * per_norm);
         let omega = Rotation::from_unit([det * scale, x * scale, y * scale, z * scale]);
         *attitude = attitude.compose_raw(&omega);
         true

@@ -136,13 +136,13 @@ pub(super) fn kappa<T: Real>(body: &Poinsot<T>, a: T, e: T) -> Option<T> {
     if small && arrived {
         Some(quartic.polished(k))
     } else {
-        hard(quartic, small.then_some(k))
+        iterated(quartic, small.then_some(k))
     }
 }
 
 /// The root where one iteration does not do: more of them, or the monotone approach.
 #[inline(never)]
-fn hard<T: Real>(quartic: Quartic<T>, start: Option<T>) -> Option<T> {
+fn iterated<T: Real>(quartic: Quartic<T>, start: Option<T>) -> Option<T> {
     if let Some(mut k) = start {
         for _ in 0..MOST_FAST {
             let arrived;

@@ -5,10 +5,10 @@
 //! `I c + c x I c = (1 + |c|^2) u` (Hairer and Vilmart, J. Phys. A 39, 2006). Once
 //! `kappa = u . c` is known it is linear, `(I - kappa - hat u) c = u`, and `kappa` is the smallest
 //! root of a quartic whose coefficients depend on the body, `|u|^2` and the energy alone. Free
-//! motion keeps these, so [`Free`] finds `kappa` once; [`forced`] solves the quartic each step.
+//! motion keeps these, so [`Free`] finds `kappa` once; [`forced()`] solves the quartic each step.
 //!
 //! Of the solutions, the principal one, which tends to the identity with the step, is taken. It
-//! exists up to a bound on the step ([`reach`]); beyond it, [`MoserVeselovError`] carries the
+//! exists up to a bound on the step ([`reach()`]); beyond it, [`MoserVeselovError`] carries the
 //! numbers.
 
 mod cayley;

@@ -15,17 +15,23 @@ fn reordered_sums_up_to_the_limit() {
         &some(&[0, 1, 2, 3, 4, 5, 6, 7]),
         &some(&[7, 6, 5, 4, 3, 2, 1, 0]),
     );
-    let reason = d.refuses(
+    d.refuses(
         "eight, one exchanged",
         &some(&[0, 1, 2, 3, 4, 5, 6, 7]),
         &some(&[8, 6, 5, 4, 3, 2, 1, 0]),
     );
-    eprintln!("{reason}");
     // Nine that are all shared leave nothing to search.
     let nine = some(&[0, 1, 2, 3, 4, 5, 6, 7, 8]);
-    let lines = d.verdict("nine, reversed", &nine, &some(&[8, 7, 6, 5, 4, 3, 2, 1, 0]));
-    match lines {
-        Verdict::Proved { explanation, .. } => assert!(explanation[0].starts_with("9 summands")),
+    let reversed = some(&[8, 7, 6, 5, 4, 3, 2, 1, 0]);
+    match d.verdict("nine, reversed", &nine, &reversed) {
+        Verdict::Proved { explanation, .. } => {
+            assert_eq!(
+                explanation[0],
+                "9 summands stand on both sides and are taken from both \
+                 (A1, A2, A3, A4, A5, A6, A7, A8, A9); what is left:"
+            );
+            assert_eq!(explanation[1], "0");
+        }
         Verdict::Unproved { reason, .. } => panic!("{reason}"),
     }
 }
@@ -76,7 +82,55 @@ fn answers_repeat() {
     let first = prove(&d.symbols, &statement, &Limits::default());
     let second = prove(&d.symbols, &statement, &Limits::default());
     assert_eq!(first, second);
-    if let Verdict::Proved { explanation, .. } = first {
-        eprintln!("{}", explanation.join("\n"));
+    let Verdict::Proved { explanation, .. } = first else {
+        panic!("{first:?}");
+    };
+    assert_eq!(explanation[0], "Ω^T (J Ω^T - Ω J) Ω");
+    assert_eq!(
+        explanation[1],
+        "= Ω^T ((J Ω^T) Ω + (-Ω J) Ω)    [product of a sum]"
+    );
+}
+
+#[test]
+fn limits_end_a_search() {
+    let mut d = Desk::default();
+    let [a, b, c] = ["a", "b", "c"].map(|n| d.vector(n));
+    let statement = Statement {
+        name: "double cross".into(),
+        left: cross(a.clone(), cross(b.clone(), c.clone())),
+        right: sub(mul(dot(a.clone(), c.clone()), b.clone()), mul(dot(a, b), c)),
+    };
+    let usual = Limits::default();
+    let tight = [
+        (Limits { nodes: 20, ..usual }, "node limit"),
+        (
+            Limits {
+                iterations: 2,
+                ..usual
+            },
+            "iteration limit",
+        ),
+        (
+            Limits {
+                seconds: 0,
+                ..usual
+            },
+            "time limit",
+        ),
+        (
+            Limits {
+                summands: 1,
+                ..usual
+            },
+            "2 summands",
+        ),
+    ];
+    for (limits, why) in tight {
+        match prove(&d.symbols, &statement, &limits) {
+            Verdict::Unproved { reason, .. } => assert!(reason.contains(why), "{reason}"),
+            Verdict::Proved { .. } => panic!("proved within the {why}"),
+        }
     }
+    assert!(prove(&d.symbols, &statement, &usual).is_proved());
 }

@@ -28,10 +28,9 @@ fn product_of_two_cross_products() {
     let [a, b, c, e] = ["a", "b", "c", "e"].map(|n| d.vector(n));
     let o = |u: &Expr, v: &Expr| dot(u.clone(), v.clone());
     let left = dot(cross(a.clone(), b.clone()), cross(c.clone(), e.clone()));
-    let right = |first: Expr, second: Expr| sub(first, second);
     let (p, q) = (mul(o(&a, &c), o(&b, &e)), mul(o(&a, &e), o(&b, &c)));
-    d.proves("Lagrange", &left, &right(p.clone(), q.clone()));
-    d.refuses("Lagrange, sign", &left, &right(q, p));
+    d.proves("Lagrange", &left, &sub(p.clone(), q.clone()));
+    d.refuses("Lagrange, sign", &left, &sub(q, p));
 }
 
 #[test]
@@ -80,5 +79,19 @@ fn axial_vectors() {
     let spun = vee(product([g.clone(), m.clone(), d.t(&g)]));
     d.proves("vee(Λ M Λ^T)", &spun, &mul(g, vee(m.clone())));
     d.proves("vee of a symmetric matrix", &vee(j), &zero(w.shape()));
-    d.proves("hat of vee", &hat(vee(m.clone())), &part(Part::Skew, m));
+    let skew = quotient(sub(m.clone(), d.t(&m)), integer(2));
+    d.proves("hat of vee", &hat(vee(m)), &skew);
+}
+
+#[test]
+fn unit_vectors() {
+    let mut d = Desk::default();
+    let v = d.vector("v");
+    let e = |axis: u8| unit(N, axis);
+    d.proves("e1 x e2", &cross(e(0), e(1)), &e(2));
+    d.proves("e2 x e1", &cross(e(1), e(0)), &neg(e(2)));
+    d.proves("e1 . e1", &dot(e(0), e(0)), &integer(1));
+    let along = dot(e(2), mul(dot(e(2), v.clone()), e(2)));
+    d.proves("component", &along, &dot(v.clone(), e(2)));
+    d.refuses("e1 x e2, sign", &cross(e(0), e(1)), &neg(e(2)));
 }

@@ -1,0 +1,363 @@
+//! Decisions beyond the normal form: evaluation at random points in exact arithmetic modulo the
+//! prime 2^61 - 1. Special identities of three dimensions, which no reordering of words shows,
+//! vanish there at every point; anything else at one point with probability below 1e-16.
+
+use super::rational::Rational;
+use crate::expr::shape::{Dim, Shape, Structure};
+use crate::expr::symbol::Symbols;
+use crate::expr::{Expr, Function, Letter, Node, Part};
+
+const PRIME: u64 = (1 << 61) - 1;
+
+/// Points at which an identity must hold.
+const POINTS: u64 = 6;
+
+/// Attempts to find a point where every root exists and every divisor is non-zero.
+const ATTEMPTS: u64 = 400;
+
+/// Size taken for a named dimension, by turns.
+const SIZES: [usize; 2] = [3, 4];
+
+fn add(a: u64, b: u64) -> u64 {
+    (a + b) % PRIME
+}
+
+fn negate(a: u64) -> u64 {
+    (PRIME - a) % PRIME
+}
+
+fn mul(a: u64, b: u64) -> u64 {
+    (u128::from(a) * u128::from(b) % u128::from(PRIME)) as u64
+}
+
+fn power(mut a: u64, mut n: u64) -> u64 {
+    let mut out = 1;
+    while n > 0 {
+        if n & 1 == 1 {
+            out = mul(out, a);
+        }
+        a = mul(a, a);
+        n >>= 1;
+    }
+    out
+}
+
+fn inverse(a: u64) -> Option<u64> {
+    (a != 0).then(|| power(a, PRIME - 2))
+}
+
+/// The square root with the convention that a root of a square is found, if there is one.
+fn root(a: u64) -> Option<u64> {
+    // The prime is 3 modulo 4.
+    let r = power(a, PRIME.div_ceil(4));
+    (mul(r, r) == a).then_some(r)
+}
+
+fn of_rational(q: Rational) -> Option<u64> {
+    let num = (q.numerator().rem_euclid(i128::from(PRIME))) as u64;
+    let den = (q.denominator().rem_euclid(i128::from(PRIME))) as u64;
+    Some(mul(num, inverse(den)?))
+}
+
+/// A fixed mixing of bits (SplitMix64): the same points in every run.
+fn mix(mut x: u64) -> u64 {
+    x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    (x ^ (x >> 31)) % PRIME
+}
+
+/// A matrix over the field, row by row.
+#[derive(Clone, PartialEq)]
+struct Matrix {
+    rows: usize,
+    cols: usize,
+    data: Vec<u64>,
+}
+
+impl Matrix {
+    fn from_fn(rows: usize, cols: usize, f: impl Fn(usize, usize) -> u64) -> Matrix {
+        let data = (0..rows * cols).map(|k| f(k / cols, k % cols)).collect();
+        Matrix { rows, cols, data }
+    }
+
+    fn number(x: u64) -> Matrix {
+        Matrix {
+            rows: 1,
+            cols: 1,
+            data: vec![x],
+        }
+    }
+
+    fn identity(n: usize) -> Matrix {
+        Matrix::from_fn(n, n, |i, j| u64::from(i == j))
+    }
+
+    fn at(&self, i: usize, j: usize) -> u64 {
+        self.data.get(i * self.cols + j).copied().unwrap_or(0)
+    }
+
+    fn plus(&self, b: &Matrix) -> Matrix {
+        Matrix::from_fn(self.rows, self.cols, |i, j| add(self.at(i, j), b.at(i, j)))
+    }
+
+    fn scaled(&self, x: u64) -> Matrix {
+        Matrix::from_fn(self.rows, self.cols, |i, j| mul(x, self.at(i, j)))
+    }
+
+    fn times(&self, b: &Matrix) -> Matrix {
+        if self.data.len() == 1 {
+            return b.scaled(self.data[0]);
+        }
+        if b.data.len() == 1 {
+            return self.scaled(b.data[0]);
+        }
+        Matrix::from_fn(self.rows, b.cols, |i, j| {
+            (0..self.cols).fold(0, |s, k| add(s, mul(self.at(i, k), b.at(k, j))))
+        })
+    }
+
+    fn transposed(&self) -> Matrix {
+        Matrix::from_fn(self.cols, self.rows, |i, j| self.at(j, i))
+    }
+
+    /// Inverse and determinant; `None` for a singular matrix.
+    fn inverted(&self) -> Option<(Matrix, u64)> {
+        let n = self.rows;
+        let (mut a, mut b, mut det) = (self.clone(), Matrix::identity(n), 1);
+        for c in 0..n {
+            let p = (c..n).find(|r| a.at(*r, c) != 0)?;
+            if p != c {
+                det = negate(det);
+                for k in 0..n {
+                    a.data.swap(c * n + k, p * n + k);
+                    b.data.swap(c * n + k, p * n + k);
+                }
+            }
+            let d = a.at(c, c);
+            det = mul(det, d);
+            let d = inverse(d)?;
+            for k in 0..n {
+                a.data[c * n + k] = mul(a.at(c, k), d);
+                b.data[c * n + k] = mul(b.at(c, k), d);
+            }
+            for r in (0..n).filter(|r| *r != c) {
+                let f = negate(a.at(r, c));
+                for k in 0..n {
+                    a.data[r * n + k] = add(a.at(r, k), mul(f, a.at(c, k)));
+                    b.data[r * n + k] = add(b.at(r, k), mul(f, b.at(c, k)));
+                }
+            }
+        }
+        Some((b, det))
+    }
+}
+
+/// One point: every letter has a value made from the seed and the letter itself.
+struct Point<'a> {
+    symbols: &'a Symbols,
+    seed: u64,
+    size: usize,
+}
+
+impl Point<'_> {
+    fn dim(&self, d: Dim) -> usize {
+        match d {
+            Dim::Fixed(n) => n as usize,
+            Dim::Named(_) => self.size,
+        }
+    }
+
+    fn letter(&self, l: Letter) -> Option<Matrix> {
+        let s = self.symbols.get(l.symbol);
+        let (rows, cols) = (self.dim(s.shape.rows), self.dim(s.shape.cols));
+        let label = (l.shift.label[0] as u64) << 8 | (l.shift.label[1] as u64 & 0xff);
+        let key = mix(self.seed
+            ^ mix(u64::from(l.symbol.0) << 32
+                | (l.shift.time as u64 & 0xff) << 16
+                | label & 0xffff));
+        let raw = |i: usize, j: usize| mix(key ^ mix((i * 64 + j) as u64));
+        let skew = |i: usize, j: usize| match i.cmp(&j) {
+            core::cmp::Ordering::Less => raw(i, j),
+            core::cmp::Ordering::Equal => 0,
+            core::cmp::Ordering::Greater => negate(raw(j, i)),
+        };
+        Some(match s.structure {
+            Structure::General | Structure::Invertible => Matrix::from_fn(rows, cols, raw),
+            Structure::Symmetric => Matrix::from_fn(rows, cols, |i, j| raw(i.min(j), i.max(j))),
+            Structure::Skew => Matrix::from_fn(rows, cols, skew),
+            Structure::Diagonal => {
+                Matrix::from_fn(rows, cols, |i, j| if i == j { raw(i, i) } else { 0 })
+            }
+            // Cayley's transform of a skew matrix.
+            Structure::Orthogonal => {
+                let a = Matrix::from_fn(rows, cols, skew);
+                let id = Matrix::identity(rows);
+                let (below, _) = id.plus(&a.scaled(negate(1))).inverted()?;
+                below.times(&id.plus(&a))
+            }
+        })
+    }
+
+    /// The value, or nothing where a divisor vanishes or a root does not exist.
+    fn value(&self, e: &Expr) -> Option<Matrix> {
+        let go = |x: &Expr| self.value(x);
+        let number = |x: &Expr| self.value(x).map(|m| m.at(0, 0));
+        let Shape { rows, cols } = e.shape();
+        let (rows, cols) = (self.dim(rows), self.dim(cols));
+        let half = of_rational(Rational::HALF)?;
+        Some(match e.node() {
+            Node::Number(q) => Matrix::number(of_rational(*q)?),
+            Node::Letter(l) => self.letter(*l)?,
+            Node::Identity(_) => Matrix::identity(rows),
+            Node::Zero(_) => Matrix::from_fn(rows, cols, |_, _| 0),
+            Node::Unit(_, axis) => Matrix::from_fn(rows, 1, |i, _| u64::from(i == *axis as usize)),
+            Node::Sum(list) => {
+                let mut total = Matrix::from_fn(rows, cols, |_, _| 0);
+                for x in list {
+                    total = total.plus(&go(x)?);
+                }
+                total
+            }
+            Node::Neg(a) => go(a)?.scaled(negate(1)),
+            Node::Product(list) => {
+                let mut total = Matrix::number(1);
+                for x in list {
+                    total = total.times(&go(x)?);
+                }
+                total
+            }
+            Node::Quotient(a, b) => {
+                let below = inverse(number(b)?)?;
+                go(a)?.scaled(below)
+            }
+            Node::Power(a, q) => Matrix::number(self.powered(number(a)?, *q)?),
+            Node::Transpose(a) => go(a)?.transposed(),
+            Node::Inverse(a) => go(a)?.inverted()?.0,
+            Node::Trace(a) => {
+                let a = go(a)?;
+                Matrix::number((0..a.rows).fold(0, |s, i| add(s, a.at(i, i))))
+            }
+            Node::Det(a) => {
+                let a = go(a)?;
+                Matrix::number(a.inverted().map_or(0, |(_, det)| det))
+            }
+            Node::Dot(a, b) => go(a)?.transposed().times(&go(b)?),
+            Node::Cross(a, b) => hat(&go(a)?).times(&go(b)?),
+            Node::Hat(a) => hat(&go(a)?),
+            Node::Vee(a) => {
+                let a = go(a)?;
+                let part = |i, j| mul(half, add(a.at(i, j), negate(a.at(j, i))));
+                Matrix {
+                    rows: 3,
+                    cols: 1,
+                    data: vec![part(2, 1), part(0, 2), part(1, 0)],
+                }
+            }
+            Node::Part(part, a) => {
+                let a = go(a)?;
+                match part {
+                    Part::Symmetric => a.plus(&a.transposed()).scaled(half),
+                    Part::Skew => a.plus(&a.transposed().scaled(negate(1))).scaled(half),
+                    Part::Diagonal => {
+                        Matrix::from_fn(rows, cols, |i, j| if i == j { a.at(i, i) } else { 0 })
+                    }
+                }
+            }
+            // A function of which nothing but its being one is used.
+            Node::Call(function, a) => {
+                let tag = match function {
+                    Function::Exp => 1,
+                    Function::Log => 2,
+                };
+                Matrix::number(mix(number(a)? ^ mix(self.seed.wrapping_add(tag))))
+            }
+        })
+    }
+
+    fn powered(&self, base: u64, q: Rational) -> Option<u64> {
+        let num = i64::try_from(q.numerator()).ok()?;
+        let base = match q.denominator() {
+            1 => base,
+            2 => root(base)?,
+            // Other roots: some value that depends on the base alone.
+            n => mix(base ^ mix(self.seed ^ u64::try_from(n).ok()?)),
+        };
+        let base = if num < 0 { inverse(base)? } else { base };
+        Some(power(base, num.unsigned_abs()))
+    }
+}
+
+fn hat(v: &Matrix) -> Matrix {
+    let (x, y, z) = (v.at(0, 0), v.at(1, 0), v.at(2, 0));
+    Matrix {
+        rows: 3,
+        cols: 3,
+        data: vec![0, negate(z), y, z, 0, negate(x), negate(y), x, 0],
+    }
+}
+
+/// Whether the expression vanishes at every one of the fixed random points. `false` also when no
+/// point was found at which it has a value.
+pub fn vanishes(symbols: &Symbols, e: &Expr) -> bool {
+    let mut found = 0;
+    for attempt in 0..ATTEMPTS {
+        let point = Point {
+            symbols,
+            seed: mix(attempt.wrapping_mul(0x5851_f42d_4c95_7f2d)),
+            size: SIZES[(attempt % 2) as usize],
+        };
+        let Some(value) = point.value(e) else {
+            continue;
+        };
+        if value.data.iter().any(|x| *x != 0) {
+            return false;
+        }
+        found += 1;
+        if found == POINTS {
+            return true;
+        }
+    }
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr;
+    use crate::expr::symbol::Role;
+
+    #[test]
+    fn identities_of_three_dimensions_vanish() {
+        let mut s = Symbols::default();
+        let three = Dim::Fixed(3);
+        let m = Shape::square(three);
+        let v = Shape::vector(three);
+        let o = s.add("O", m, Structure::Orthogonal, Role::Velocity);
+        let y = s.add("Y", v, Structure::General, Role::Parameter);
+        let f = s.add("F", v, Structure::General, Role::Parameter);
+        let x = s.add("X", m, Structure::Skew, Role::Parameter);
+        let l = |i| expr::here(&s, i);
+        let t = |e| expr::transpose(&s, e);
+        let (o, y, f, x) = (l(o), l(y), l(f), l(x));
+        let ot = t(o.clone());
+        let oty = expr::mul(ot.clone(), y.clone());
+        let terms = vec![
+            expr::mul(
+                expr::trace(expr::mul(o.clone(), expr::hat(y.clone()))),
+                expr::dot(f.clone(), expr::vee(x.clone())),
+            ),
+            expr::neg(expr::mul(
+                expr::trace(expr::mul(o.clone(), x.clone())),
+                expr::dot(f.clone(), oty.clone()),
+            )),
+            expr::dot(f.clone(), expr::product([o.clone(), x.clone(), oty])),
+            expr::dot(
+                f,
+                expr::product([ot.clone(), ot, expr::cross(y, expr::mul(o, expr::vee(x)))]),
+            ),
+        ];
+        assert!(terms.iter().all(|e| !vanishes(&s, e)));
+        assert!(vanishes(&s, &expr::sum(terms, Shape::SCALAR)));
+    }
+}

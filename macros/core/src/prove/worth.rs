@@ -1,0 +1,174 @@
+//! When a rule is worth using. Rules hold in both directions and always; these conditions keep
+//! the search from writing the same thing in ever longer ways (`x = g g^T x = ...`). They look
+//! at what is known so far and never decide what is true.
+
+use super::conditions::View;
+use super::language::{Facts, Term};
+use crate::algebra::Rational;
+use crate::expr::shape::Shape;
+use egg::{EGraph, Id, Subst, Var};
+
+/// One condition on the worth of a rule, over its variables.
+#[derive(Clone, Copy, Debug)]
+pub enum Worth<V> {
+    /// The left-hand side is known to equal this.
+    Itself(V),
+    /// Not known to be a number.
+    Unknown(V),
+    /// Not both known to be numbers.
+    Symbolic(V, V),
+    /// Not known to be zero.
+    Nonzero(V),
+    /// Not known to be multiples of each other.
+    Independent(V, V),
+    /// The left-hand side is not known to be a multiple of this.
+    Apart(V),
+    /// Not known to be a sum.
+    Single(V),
+    /// The left-hand side is not known to be a sum.
+    Unsplit,
+    /// The two joined in this way are not known to be something simple, as in `g g^T = 1`.
+    Composite(Join, V, V),
+}
+
+/// How two terms are joined.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Join {
+    /// `a + b`.
+    Sum,
+    /// A number times a matrix or a number.
+    Scale,
+    /// A product of matrices.
+    Product,
+}
+
+impl<V: Copy> Worth<V> {
+    /// The same condition over other names of the variables, unless a name is refused.
+    pub fn renamed<W, E>(&self, f: impl Fn(V) -> Result<W, E>) -> Result<Worth<W>, E> {
+        Ok(match *self {
+            Worth::Itself(a) => Worth::Itself(f(a)?),
+            Worth::Unknown(a) => Worth::Unknown(f(a)?),
+            Worth::Symbolic(a, b) => Worth::Symbolic(f(a)?, f(b)?),
+            Worth::Nonzero(a) => Worth::Nonzero(f(a)?),
+            Worth::Independent(a, b) => Worth::Independent(f(a)?, f(b)?),
+            Worth::Apart(a) => Worth::Apart(f(a)?),
+            Worth::Single(a) => Worth::Single(f(a)?),
+            Worth::Unsplit => Worth::Unsplit,
+            Worth::Composite(join, a, b) => Worth::Composite(join, f(a)?, f(b)?),
+        })
+    }
+}
+
+/// A match as conditions see it.
+pub struct Matched<'a> {
+    /// All terms.
+    pub graph: &'a EGraph<Term, Facts>,
+    /// What the variables stand for.
+    pub found: &'a Subst,
+    /// The class of the left-hand side.
+    pub root: Id,
+}
+
+impl View for Matched<'_> {
+    fn shape(&self, v: Var) -> Option<Shape> {
+        self.graph[*self.found.get(v)?].data.shape
+    }
+
+    fn number(&self, v: Var) -> Option<Rational> {
+        self.graph[*self.found.get(v)?].data.number
+    }
+
+    fn whole(&self) -> Option<Shape> {
+        self.graph[self.root].data.shape
+    }
+}
+
+impl Matched<'_> {
+    fn class(&self, v: Var) -> Option<Id> {
+        Some(self.graph.find(*self.found.get(v)?))
+    }
+
+    /// Whether all the conditions hold here.
+    pub fn worth(&self, when: &[Worth<Var>]) -> bool {
+        when.iter().all(|w| self.holds(*w).unwrap_or(true))
+    }
+
+    fn holds(&self, when: Worth<Var>) -> Option<bool> {
+        let root = self.graph.find(self.root);
+        let number = |v: Var| self.number(v).is_some();
+        Some(match when {
+            Worth::Itself(v) => self.class(v)? == root,
+            Worth::Unknown(v) => !number(v),
+            Worth::Symbolic(a, b) => !(number(a) && number(b)),
+            Worth::Nonzero(v) => !self.is_zero(self.class(v)?),
+            Worth::Independent(a, b) => !self.are_multiples(self.class(a)?, self.class(b)?),
+            Worth::Apart(v) => !self.are_multiples(root, self.class(v)?),
+            Worth::Single(v) => !self.is_sum(self.class(v)?),
+            Worth::Unsplit => !self.is_sum(root),
+            Worth::Composite(join, a, b) => {
+                !self.is_simple(join, [self.class(a)?, self.class(b)?])?
+            }
+        })
+    }
+
+    fn any(&self, id: Id, test: &dyn Fn(&Term) -> bool) -> bool {
+        self.graph[id].nodes.iter().any(test)
+    }
+
+    fn is_zero(&self, id: Id) -> bool {
+        self.graph[id].data.number.is_some_and(Rational::is_zero)
+            || self.any(id, &|node| matches!(node, Term::Zero(_)))
+    }
+
+    /// The class itself and all that it is known to be a multiple of.
+    fn lines(&self, id: Id) -> Vec<Id> {
+        let scaled = self.graph[id].nodes.iter().filter_map(|node| match node {
+            Term::Scale([s, a]) if self.graph[*s].data.number.is_some() => {
+                Some(self.graph.find(*a))
+            }
+            _ => None,
+        });
+        core::iter::once(id).chain(scaled).collect()
+    }
+
+    fn are_multiples(&self, a: Id, b: Id) -> bool {
+        let (a, b) = (self.lines(a), self.lines(b));
+        a.iter().any(|id| b.contains(id))
+    }
+
+    /// `a + 0` or `a/2 + a/2` does not make a sum of `a`.
+    fn is_sum(&self, id: Id) -> bool {
+        let own = self.lines(id);
+        let part = |id: &Id| own.contains(&self.graph.find(*id));
+        self.any(id, &|node| match node {
+            Term::Sum(parts) => !parts.iter().any(part),
+            _ => false,
+        })
+    }
+
+    /// Whether the two together are a letter or the like, or one of them holds the whole again,
+    /// as in `x + (-x + y)`.
+    fn is_simple(&self, join: Join, pair: [Id; 2]) -> Option<bool> {
+        let joined = self.graph.lookup(match join {
+            Join::Sum => Term::Sum(pair),
+            Join::Scale => Term::Scale(pair),
+            Join::Product => Term::Product(pair),
+        })?;
+        let leaf = |id: Id| self.any(id, &|node| matches!(node, Term::Leaf(_)));
+        let simple = self.any(joined, &|node| match node {
+            Term::Leaf(_) | Term::Number(_) | Term::Identity(_) | Term::Zero(_) => true,
+            Term::Power(_) => true,
+            Term::Transpose(a) | Term::Inverse(a) => leaf(*a),
+            _ => false,
+        });
+        let again = |node: &Term| match (join, node) {
+            (Join::Sum, Term::Sum(parts))
+            | (Join::Scale, Term::Scale(parts))
+            | (Join::Product, Term::Product(parts)) => {
+                parts.iter().any(|id| self.graph.find(*id) == joined)
+            }
+            _ => false,
+        };
+        Some(simple || pair.iter().any(|id| self.any(*id, &again)))
+    }
+}

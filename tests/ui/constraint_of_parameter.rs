@@ -1,0 +1,13 @@
+//! A constraint for a constant.
+
+clebsch::model! {
+    model Top {
+        param J: Sym<3>;
+        group Λ: SO<3> velocity Ω;
+        constraint next(Λ) = Λ*Ω;
+        constraint next(J) = Ω^T*J*Ω;
+        lagrangian = -tr(J*Ω)/h;
+    }
+}
+
+fn main() {}

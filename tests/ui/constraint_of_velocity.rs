@@ -1,0 +1,13 @@
+//! A constraint for a velocity.
+
+clebsch::model! {
+    model Top {
+        param J: Sym<3>;
+        group Λ: SO<3> velocity Ω;
+        constraint next(Λ) = Λ*Ω;
+        constraint next(Ω) = Ω;
+        lagrangian = -tr(J*Ω)/h;
+    }
+}
+
+fn main() {}

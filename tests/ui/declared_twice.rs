@@ -1,0 +1,13 @@
+//! One name for two things.
+
+clebsch::model! {
+    model Top {
+        param J: Sym<3>;
+        param z, J: Vec<3>;
+        group Λ: SO<3> velocity Ω;
+        constraint next(Λ) = Λ*Ω;
+        lagrangian = -tr(J*Ω)/h;
+    }
+}
+
+fn main() {}

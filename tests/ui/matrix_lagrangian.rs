@@ -1,0 +1,12 @@
+//! The Lagrangian is a matrix.
+
+clebsch::model! {
+    model Top {
+        param J: Sym<3>;
+        group Λ: SO<3> velocity Ω;
+        constraint next(Λ) = Λ*Ω;
+        lagrangian = -J*Ω/h;
+    }
+}
+
+fn main() {}

@@ -1,0 +1,12 @@
+//! The model's name is one that its stepper needs for something else.
+
+clebsch::model! {
+    model Rotation {
+        param J: Sym<3>;
+        group Λ: SO<3> velocity Ω;
+        constraint next(Λ) = Λ*Ω;
+        lagrangian = -tr(J*Ω)/h;
+    }
+}
+
+fn main() {}

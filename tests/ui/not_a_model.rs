@@ -1,0 +1,7 @@
+//! The macro without a model.
+
+clebsch::model! {
+    param J: Sym<3>;
+}
+
+fn main() {}

@@ -1,0 +1,12 @@
+//! Names of functions are no names of quantities.
+
+clebsch::model! {
+    model Top {
+        param det: Sym<3>;
+        group Λ: SO<3> velocity Ω;
+        constraint next(Λ) = Λ*Ω;
+        lagrangian = -tr(Ω)/h;
+    }
+}
+
+fn main() {}

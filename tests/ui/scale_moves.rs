@@ -1,0 +1,13 @@
+//! The scale holds a quantity that moves.
+
+clebsch::model! {
+    model Top {
+        param J: Sym<3>;
+        group Λ: SO<3> velocity Ω;
+        constraint next(Λ) = Λ*Ω;
+        scale tr(Ω);
+        lagrangian = -tr(J*Ω)/h;
+    }
+}
+
+fn main() {}

@@ -1,0 +1,13 @@
+//! A matrix beyond the largest size.
+
+clebsch::model! {
+    model Top {
+        param J: Sym<3>;
+        param B: Mat<1000, 3>;
+        group Λ: SO<3> velocity Ω;
+        constraint next(Λ) = Λ*Ω;
+        lagrangian = -tr(J*Ω)/h;
+    }
+}
+
+fn main() {}

@@ -1,0 +1,13 @@
+//! A label belongs to rods.
+
+clebsch::model! {
+    model Top {
+        param J: Sym<3>;
+        label i in 0..N step s;
+        group Λ: SO<3> velocity Ω;
+        constraint next(Λ) = Λ*Ω;
+        lagrangian = -tr(J*Ω)/h;
+    }
+}
+
+fn main() {}

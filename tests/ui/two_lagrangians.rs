@@ -1,0 +1,13 @@
+//! Two Lagrangians.
+
+clebsch::model! {
+    model Top {
+        param J: Sym<3>;
+        group Λ: SO<3> velocity Ω;
+        constraint next(Λ) = Λ*Ω;
+        lagrangian = -tr(J*Ω)/h;
+        lagrangian = -tr(J*Ω)/(2*h);
+    }
+}
+
+fn main() {}

@@ -1,0 +1,13 @@
+//! A rule for nodal terms that is none.
+
+clebsch::model! {
+    model Top {
+        param J: Sym<3>;
+        group Λ: SO<3> velocity Ω;
+        constraint next(Λ) = Λ*Ω;
+        node symetric;
+        lagrangian = -tr(J*Ω)/h;
+    }
+}
+
+fn main() {}

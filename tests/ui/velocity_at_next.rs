@@ -1,0 +1,12 @@
+//! A velocity is taken on the next edge.
+
+clebsch::model! {
+    model Top {
+        param J: Sym<3>;
+        group Λ: SO<3> velocity Ω;
+        constraint next(Λ) = Λ*Ω;
+        lagrangian = -tr(J*next(Ω))/h;
+    }
+}
+
+fn main() {}

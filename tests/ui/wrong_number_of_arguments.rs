@@ -1,0 +1,15 @@
+//! A function with too few arguments.
+
+clebsch::model! {
+    model Top {
+        param J: Sym<3>;
+        param g: Vec<3>;
+        group Λ: SO<3> velocity Ω;
+        advected Γ: Vec<3>;
+        constraint next(Λ) = Λ*Ω;
+        constraint next(Γ) = Ω^T*Γ;
+        lagrangian = -tr(J*Ω)/h - h*dot(g*Γ^T);
+    }
+}
+
+fn main() {}

@@ -1,0 +1,15 @@
+//! The constraint carries Γ on the side of spatial models, in a body model.
+
+clebsch::model! {
+    model Top {
+        param J: Sym<3>;
+        param g: Vec<3>;
+        group Λ: SO<3> velocity Ω;
+        advected Γ: Vec<3>;
+        constraint next(Λ) = Λ*Ω;
+        constraint next(Γ) = Ω*Γ;
+        lagrangian = -tr(J*Ω)/h - h*dot(g, Γ);
+    }
+}
+
+fn main() {}
