@@ -313,16 +313,18 @@ impl Derivation {
     /// The residual of the discrete Euler-Lagrange equations at node k, incoming minus outgoing
     /// edge, for each configuration: the program that the macro emits.
     pub fn residual_program(&self) -> Program {
+        program(&self.letters.symbols, &self.residual_expressions(), "t")
+    }
+
+    fn residual_expressions(&self) -> Vec<Expr> {
         let s = &self.letters.symbols;
-        let results: Vec<Expr> = self
-            .balances
+        self.balances
             .iter()
             .map(|b| {
                 let incoming = expr::shift_time(s, &b.incoming, Shift::PREVIOUS.time);
                 expr::sub(incoming, b.outgoing.clone())
             })
-            .collect();
-        program(s, &results, "t")
+            .collect()
     }
 
     /// Evaluates the residual at three consecutive configurations (levels -1, 0, 1), which need
@@ -396,69 +398,26 @@ impl Derivation {
         Ok(all)
     }
 
-    /// Every program that differs from the residual by one term: dropped, or with its sign
+    /// Every residual that differs from the emitted one by one term: dropped, or with its sign
     /// flipped.
     pub fn mutations(&self) -> Vec<Mutant<'_>> {
-        let original = self.residual_program();
+        let s = &self.letters.symbols;
+        let original = self.residual_expressions();
         let mut out = Vec::new();
-        let count = original.temporaries.len() + original.results.len();
-        for slot in 0..count {
-            let e = match original.temporaries.get(slot) {
-                Some((_, e)) => e,
-                None => &original.results[slot - original.temporaries.len()],
-            };
-            for (changed, term, flipped) in changes(&original.symbols, e, true) {
-                let mut program = original.clone();
-                match program.temporaries.get_mut(slot) {
-                    Some(t) => t.1 = changed,
-                    None => program.results[slot - original.temporaries.len()] = changed,
-                }
+        for (slot, e) in original.iter().enumerate() {
+            for change in expr::changes(s, e) {
+                let mut results = original.clone();
+                results[slot] = change.changed;
                 out.push(Mutant {
                     derivation: self,
-                    program,
-                    term,
-                    flipped,
+                    program: program(s, &results, "t"),
+                    term: change.term,
+                    flipped: change.flipped,
                 });
             }
         }
         out
     }
-}
-
-/// Every way to drop or flip one term of a sum, at any depth; a `whole` that is no sum counts as
-/// one term. Each with the term and whether it was flipped.
-fn changes(symbols: &Symbols, e: &Expr, whole: bool) -> Vec<(Expr, Expr, bool)> {
-    let mut out = Vec::new();
-    let terms = match e.node() {
-        Node::Sum(list) => list.clone(),
-        _ if whole => vec![e.clone()],
-        _ => Vec::new(),
-    };
-    for (i, term) in terms.iter().enumerate() {
-        for (new, flipped) in [
-            (expr::zero(e.shape()), false),
-            (expr::neg(term.clone()), true),
-        ] {
-            let mut list = terms.clone();
-            list[i] = new;
-            out.push((expr::sum(list, e.shape()), term.clone(), flipped));
-        }
-    }
-    for (i, child) in e.children().into_iter().enumerate() {
-        for (new, term, flipped) in changes(symbols, child, false) {
-            let mut position = 0;
-            let changed = expr::rebuild(symbols, e, &mut |c| {
-                position += 1;
-                if position == i + 1 {
-                    new.clone()
-                } else {
-                    c.clone()
-                }
-            });
-            out.push((changed, term, flipped));
-        }
-    }
-    out
 }
 
 /// A residual with one term changed.

@@ -95,6 +95,12 @@ impl<'a> Algebra<'a> {
         self.zero(e).is_some()
     }
 
+    /// Whether two expressions of one shape agree at exact random points: cheaper than
+    /// [`Algebra::equal`] when, as a rule, they do not.
+    pub fn agree(&self, a: &Expr, b: &Expr) -> bool {
+        exact::vanishes(self.symbols, &crate::expr::sub(a.clone(), b.clone()))
+    }
+
     /// Whether two expressions of one shape are the same.
     pub fn equal(&self, a: &Expr, b: &Expr) -> bool {
         self.is_zero(&crate::expr::sub(a.clone(), b.clone()))

@@ -126,7 +126,10 @@ fn balance(
     let before = expr::shift_time(s, l, Shift::PREVIOUS.time);
     let (edge_out, edge_in) = (shorter(algebra, edge_out), shorter(algebra, edge_in));
     let (node_out, node_in) = (expr::neg(nodes(Shift::HERE)), nodes(Shift::NEXT));
-    let total = |a: &Expr, b: &Expr| shorter(algebra, expr::add(a.clone(), b.clone()));
+    let total = |a: &Expr, b: &Expr| {
+        let whole = shorter(algebra, expr::add(a.clone(), b.clone()));
+        without_zeros(algebra, whole)
+    };
     Balance {
         outgoing: total(&edge_out, &node_out),
         incoming: total(&edge_in, &node_in),
@@ -150,6 +153,20 @@ pub fn pairing(letters: &Letters, a: &Expr, b: &Expr) -> Expr {
     } else {
         let t = expr::transpose(&letters.symbols, a.clone());
         expr::trace(expr::mul(t, b.clone()))
+    }
+}
+
+/// The expression without terms that contribute nothing, such as the axial vector of `S S^-1`.
+fn without_zeros(algebra: &Algebra, mut e: Expr) -> Expr {
+    loop {
+        let idle = expr::changes(algebra.symbols(), &e)
+            .into_iter()
+            .find(|c| !c.flipped && algebra.agree(&e, &c.changed));
+        match idle {
+            // Dropping the only term of zero changes nothing.
+            Some(c) if c.changed != e => e = c.changed,
+            _ => return e,
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Expressions and programs as Rust: one rule for each kind of node, products bracketed by cost,
 //! numbers exact. Matrices are nalgebra's, passed by value.
 
+use super::names::variable;
 use crate::algebra::Rational;
 use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::Symbols;
@@ -30,7 +31,7 @@ impl Bindings {
     fn find(&self, symbols: &Symbols, letter: Letter) -> Ident {
         let found = self.list.iter().find(|(l, _)| *l == letter);
         found.map_or_else(
-            || format_ident!("{}", symbols.get(letter.symbol).name),
+            || variable(symbols, letter.symbol),
             |(_, local)| local.clone(),
         )
     }
@@ -349,7 +350,7 @@ pub fn program(p: &Program, bindings: &Bindings) -> (TokenStream, Vec<TokenStrea
     };
     let mut lets = TokenStream::new();
     for (id, e) in &p.temporaries {
-        let name = format_ident!("{}", p.symbols.get(*id).name);
+        let name = variable(&p.symbols, *id);
         let value = writer.write(e);
         lets.extend(quote!(let #name = #value;));
     }

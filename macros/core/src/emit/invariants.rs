@@ -2,7 +2,7 @@
 
 use super::expression::{Bindings, Writer, program};
 use super::items::{letters_of, parameter_locals, text, with_transports};
-use super::names::{Names, item, own, per_configuration};
+use super::names::{Names, item, per_configuration, variable};
 use super::step::{at, here};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
@@ -45,7 +45,7 @@ fn momenta(d: &Derivation, needed: &[Letter], bindings: &mut Bindings) -> TokenS
         if !needed.contains(&letter) {
             continue;
         }
-        let name = own(d, *id);
+        let name = variable(&d.letters.symbols, *id);
         let method = per_configuration(
             d,
             match c.side {
@@ -162,7 +162,7 @@ fn energy(d: &Derivation, names: &Names, limit: &Limit) -> TokenStream {
         ids.iter()
             .enumerate()
             .map(|(i, id)| {
-                let (name, value) = (own(d, *id), axis(index.clone(), i));
+                let (name, value) = (variable(s, *id), axis(index.clone(), i));
                 quote!(let #name = #value;)
             })
             .collect()

@@ -2,7 +2,7 @@
 //! the workspace; and the locals with which every emitted function starts.
 
 use super::expression::{Bindings, Writer, ty};
-use super::names::{Names, item, own, per_configuration, tagged};
+use super::names::{Names, field, item, own, per_configuration, tagged, variable};
 use crate::check::spec::{Assumption, Side};
 use crate::derive::Derivation;
 use crate::derive::recognise::{Method, Riccati};
@@ -100,7 +100,7 @@ pub fn parameter_locals(d: &Derivation, source: TokenStream, needed: &[Letter]) 
         .parameters
         .iter()
         .filter(|p| needed.iter().any(|l| l.symbol == **p))
-        .map(|p| own(d, *p))
+        .map(|p| field(d, *p))
         .collect();
     if used.is_empty() {
         return TokenStream::new();
@@ -161,7 +161,7 @@ pub fn node_locals(
         label: [0, 0],
     };
     let local = |id: SymbolId| match level {
-        0 => own(d, id),
+        0 => variable(s, id),
         1 => tagged(d, names, id, "next"),
         _ => tagged(d, names, id, "before"),
     };

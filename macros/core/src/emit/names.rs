@@ -2,9 +2,9 @@
 //! name of the model hides them.
 
 use crate::derive::Derivation;
-use crate::expr::symbol::SymbolId;
-use proc_macro2::Ident;
-use quote::format_ident;
+use crate::expr::symbol::{Role, SymbolId, Symbols};
+use proc_macro2::{Ident, TokenStream};
+use quote::{format_ident, quote};
 
 /// Names of one model.
 pub struct Names {
@@ -33,9 +33,91 @@ impl Names {
     }
 }
 
-/// The symbol's own name.
+/// The symbol's own name, which its field or method bears.
 pub fn own(d: &Derivation, id: SymbolId) -> Ident {
     format_ident!("{}", d.letters.symbols.get(id).name)
+}
+
+/// What emitted functions call by a plain name, and what they name themselves: a local of the
+/// model under such a name would hide it. The test of hygiene states a model with all of them.
+const INSIDE: [&str; 54] = [
+    "Err",
+    "None",
+    "Ok",
+    "Some",
+    "BodyMomentum",
+    "Poinsot",
+    "Rotation",
+    "SpatialMomentum",
+    "all_finite",
+    "axial_of_difference",
+    "axis",
+    "basis",
+    "body",
+    "determinant",
+    "diagonal_part",
+    "e",
+    "forced",
+    "found",
+    "guess",
+    "h",
+    "i",
+    "inertia",
+    "initial",
+    "inverse_or_nan",
+    "j",
+    "kinetic",
+    "largest_step",
+    "length",
+    "matrix",
+    "matrix_of",
+    "momentum",
+    "n",
+    "number_of",
+    "out",
+    "parameters",
+    "parts",
+    "potential",
+    "put",
+    "reach",
+    "rotation_of",
+    "rows",
+    "scratch",
+    "skew_part",
+    "solve",
+    "solve_or_nan",
+    "solver",
+    "state",
+    "symmetric_part",
+    "total",
+    "trial",
+    "unit",
+    "value",
+    "velocity",
+    "work",
+];
+
+/// The symbol's name as a local variable: its own, unless the emitted code needs that one itself.
+pub fn variable(symbols: &Symbols, id: SymbolId) -> Ident {
+    let own = &symbols.get(id).name;
+    let mut name = own.clone();
+    let is_step = symbols.get(id).role == Role::Step && own == "h";
+    while !is_step
+        && (INSIDE.contains(&name.as_str()) || name != *own && symbols.find(&name).is_some())
+    {
+        name.push('_');
+    }
+    format_ident!("{name}")
+}
+
+/// The symbol's field and its local variable, as struct patterns and literals write them.
+pub fn field(d: &Derivation, id: SymbolId) -> TokenStream {
+    let (field, local) = (own(d, id), variable(&d.letters.symbols, id));
+    if field == local {
+        quote!(#field)
+    } else {
+        quote!(#field: #local)
+    }
 }
 
 /// The symbol's name at another time level or in another guise.

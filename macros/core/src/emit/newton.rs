@@ -3,7 +3,7 @@
 
 use super::expression::{Bindings, program};
 use super::items::{letters_of, parameter_locals, with_transports};
-use super::names::{Names, item, own, per_configuration, tagged};
+use super::names::{Names, item, per_configuration, tagged, variable};
 use super::step::{at, finish, here, update};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
@@ -38,7 +38,7 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
     );
     let (state, work) = (item(d, "State"), item(d, "Workspace"));
     let node = names.local("node");
-    let step = own(d, d.spec.step);
+    let step = variable(s, d.spec.step);
     let (trial, residual, tangent, mu, scale, solved) = (
         names.local("trial"),
         names.local("residual"),
@@ -80,7 +80,7 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
     all.extend(with_transports(d, &needed, 1));
     let parameters = parameter_locals(d, quote!(self.parameters), &all);
     let locals = here(d, names, &needed, &mut bindings);
-    let velocity = |i: usize| own(d, d.spec.configurations[i].velocity);
+    let velocity = |i: usize| variable(s, d.spec.configurations[i].velocity);
     let velocities: TokenStream = (0..bodies)
         .map(|i| {
             let (w, i) = (velocity(i), Literal::usize_unsuffixed(i));
@@ -91,7 +91,7 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
     let node_momenta = (0..bodies).map(|i| {
         let field = per_configuration(d, "momentum", i);
         let c = &d.spec.configurations[i];
-        let element = own(d, c.element);
+        let element = variable(s, c.element);
         match c.side {
             Side::Body => quote!(#element.tr_mul(&state.#field.0)),
             Side::Spatial => quote!(state.#field.0),
@@ -125,7 +125,7 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
             .collect();
         let p = schedule::program(s, &derivatives, "t");
         let (lets, values) = program(&p, &bindings);
-        let eta = own(d, eta);
+        let eta = variable(s, eta);
         let column = if j == 0 {
             quote!(axis)
         } else {

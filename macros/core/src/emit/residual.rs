@@ -4,7 +4,7 @@
 
 use super::expression::{Bindings, program, ty};
 use super::items::{kept, letters_of, node_locals, parameter_locals, with_transports};
-use super::names::{Names, item, own, tagged};
+use super::names::{Names, item, own, tagged, variable};
 use super::newton::stack;
 use super::step::at;
 use crate::check::spec::Side;
@@ -47,7 +47,7 @@ pub fn balance(d: &Derivation, names: &Names) -> TokenStream {
         let mut given = TokenStream::new();
         for id in kept(d) {
             let local = match level {
-                0 => own(d, id),
+                0 => variable(s, id),
                 1 => tagged(d, names, id, "next"),
                 _ => tagged(d, names, id, "before"),
             };
@@ -85,7 +85,7 @@ pub fn balance(d: &Derivation, names: &Names) -> TokenStream {
         let e = own(d, c.element);
         for (level, from, to) in [(-1i8, &before, &here), (0, &here, &after)] {
             let local = if level == 0 {
-                own(d, c.velocity)
+                variable(s, c.velocity)
             } else {
                 tagged(d, names, c.velocity, "before")
             };
@@ -114,7 +114,7 @@ pub fn balance(d: &Derivation, names: &Names) -> TokenStream {
         Literal::usize_unsuffixed(3 * bodies),
     );
     let stacked = stack(bodies, quote!(parts));
-    let step = own(d, d.spec.step);
+    let step = variable(s, d.spec.step);
     quote! {
         /// A configuration at one node, solution or not.
         #[derive(Clone, Copy, Debug, PartialEq)]

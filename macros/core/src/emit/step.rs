@@ -3,7 +3,7 @@
 
 use super::expression::{Bindings, Writer, program};
 use super::items::{kept, letters_of, node_locals, parameter_locals, with_transports};
-use super::names::{Names, item, own, per_configuration, tagged};
+use super::names::{Names, field, item, own, per_configuration, tagged, variable};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::recognise::{Method, MoserVeselov, Riccati};
@@ -99,7 +99,8 @@ fn start(d: &Derivation, names: &Names) -> TokenStream {
             quote!(initial.#own_name.as_slice())
         };
         checks.push(quote!(validate::finite(#label, #values)?;));
-        fields.push(quote!(#own_name));
+        let local = variable(s, a.quantity);
+        fields.push(field(d, a.quantity));
         let value = match t {
             Transport::Carried { reference, .. } => {
                 let mut bindings = Bindings::new();
@@ -110,8 +111,8 @@ fn start(d: &Derivation, names: &Names) -> TokenStream {
                     .iter()
                     .filter(|c| needed.contains(&at(c.element, Shift::HERE)))
                     .map(|c| {
-                        let e = own(d, c.element);
-                        quote!(let #e = initial.#e.matrix();)
+                        let (e, local) = (own(d, c.element), variable(s, c.element));
+                        quote!(let #local = initial.#e.matrix();)
                     })
                     .collect();
                 let source = tagged(d, names, a.quantity, "start");
@@ -126,7 +127,7 @@ fn start(d: &Derivation, names: &Names) -> TokenStream {
             }
             Transport::Defined(_) | Transport::Advanced => quote!(initial.#own_name),
         };
-        references.extend(quote!(let #own_name = #value;));
+        references.extend(quote!(let #local = #value;));
     }
     let count = Literal::usize_unsuffixed(d.spec.configurations.len());
     let work_init = match d.solve.method {
@@ -279,7 +280,7 @@ pub(super) fn finish(
         let value = match u {
             Update::Acted { leave, arrive } => {
                 let (a, b) = (values.next(), values.next());
-                let here = own(d, c.element);
+                let here = variable(s, c.element);
                 let next = tagged(d, names, c.element, "next");
                 let left = (!leave.is_zero()).then(|| quote!(+ #here * (#a)));
                 let arrived = (!arrive.is_zero()).then(|| quote!(+ #next * (#b)));
@@ -317,9 +318,9 @@ fn forced_step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream 
     let node = names.local("node");
     let c = &d.spec.configurations[0];
     let momentum = per_configuration(d, "momentum", 0);
-    let element = own(d, c.element);
+    let element = variable(s, c.element);
     let edge = names.local("edge");
-    let omega = own(d, c.velocity);
+    let omega = variable(s, c.velocity);
     // The momentum of the edge at a given step, for the solve and for the search of a step.
     let mut bindings = Bindings::new();
     let mut needed = letters_of([&mv.rest]);
@@ -328,7 +329,7 @@ fn forced_step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream 
     }
     let parameters = parameter_locals(d, quote!(self.parameters), &with_transports(d, &needed, 0));
     let locals = here(d, names, &needed, &mut bindings);
-    let step = own(d, d.spec.step);
+    let step = variable(s, d.spec.step);
     let p = schedule::program(s, std::slice::from_ref(&mv.rest), "t");
     let (lets, values) = program(&p, &bindings);
     let rest = &values[0];
@@ -424,10 +425,8 @@ fn advected_access(d: &Derivation, names: &Names) -> TokenStream {
         let parameters = parameter_locals(d, quote!(self.parameters), &needed);
         let mut bindings = Bindings::new();
         let locals = here(d, names, &[letter], &mut bindings);
-        let (name, t) = (
-            own(d, a.quantity),
-            super::expression::ty(s.get(a.quantity).shape),
-        );
+        let (name, local) = (own(d, a.quantity), variable(s, a.quantity));
+        let t = super::expression::ty(s.get(a.quantity).shape);
         let doc = format!(" `{name}` at the node of this state.");
         out.extend(quote! {
             #[doc = #doc]
@@ -435,7 +434,7 @@ fn advected_access(d: &Derivation, names: &Names) -> TokenStream {
             pub fn #name(&self, state: &#state<T>) -> #t {
                 #parameters
                 #locals
-                #name
+                #local
             }
         });
     }

@@ -7,6 +7,7 @@ mod gradient;
 pub mod shape;
 mod substitute;
 pub mod symbol;
+mod terms;
 
 use crate::algebra::Rational;
 use shape::{Dim, Shape};
@@ -17,6 +18,7 @@ pub use build::*;
 pub use directional::directional;
 pub use gradient::gradient;
 pub use substitute::{contains, contains_role, letters, rebuild, shift_time, substitute};
+pub use terms::{Change, changes};
 
 /// Offset of a letter from the node or edge of an equation, in time and along the labels.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug, Default)]
