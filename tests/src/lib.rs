@@ -5,3 +5,8 @@ pub mod handwritten;
 pub mod oracle;
 pub mod physics;
 pub mod reference;
+
+/// The README's example is compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+pub struct Readme;

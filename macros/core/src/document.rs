@@ -84,9 +84,6 @@ pub fn summary(d: &Derivation) -> String {
             "not symmetric: first order"
         }
     ));
-    lines.push(format!(
-        "certificate          {} identities proved by normal form",
-        d.certificate.steps.len()
-    ));
+    lines.push(format!("certificate          {}", d.certificate.summary()));
     lines.join("\n")
 }

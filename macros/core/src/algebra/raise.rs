@@ -40,7 +40,17 @@ impl Algebra<'_> {
             && k + 1 < word.len()
             && self.shape_of(last).cols == Dim::Fixed(1)
         {
-            let product = expr::cross(self.raise_word(u), self.raise_word(&word[k + 1..].to_vec()));
+            let left = self.raise_word(u);
+            // u x vee(S) reads as -S u.
+            let product = match &word[k + 1..] {
+                [
+                    Factor::Axial {
+                        source,
+                        transposed: false,
+                    },
+                ] => expr::neg(expr::mul(self.raise_source(*source), left)),
+                rest => expr::cross(left, self.raise_word(&rest.to_vec())),
+            };
             let front = word[..k].iter().map(|f| self.raise_factor(f));
             return expr::product(front.chain([product]).collect::<Vec<_>>());
         }

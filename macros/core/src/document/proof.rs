@@ -1,6 +1,7 @@
 //! The certificate as text: every identity of the proof, in order, with its two sides.
 
 use super::style;
+use crate::algebra::Known;
 use crate::derive::Derivation;
 use crate::print::{Format, expression};
 
@@ -9,10 +10,14 @@ pub fn proof(d: &Derivation) -> String {
     let st = style(d);
     let show = |e: &crate::expr::Expr| expression(e, &d.letters.symbols, &st, Format::Text);
     let mut out = String::from(
-        "Proof. Each line is an identity for all variations; both sides have the same normal form.\n",
+        "Proof. Each step is an identity for all variations, of which both sides have the same normal form\nor, where it says so, agree at random points in exact arithmetic modulo 2^61 - 1.\n",
     );
     for (i, step) in d.certificate.steps.iter().enumerate() {
-        out.push_str(&format!("\n{:>3}. {}\n", i + 1, step.name));
+        let how = match step.known {
+            Known::NormalForm => "",
+            Known::ExactEvaluation => " (exact evaluation)",
+        };
+        out.push_str(&format!("\n{:>3}. {}{how}\n", i + 1, step.name));
         out.push_str(&format!(
             "     {}\n   = {}\n",
             show(&step.left),

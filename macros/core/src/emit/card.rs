@@ -144,7 +144,18 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
             values.extend(match &v.kind {
                 Kind::SpatialMomentum(i) => {
                     let m = per_configuration(d, "spatial_momentum", *i);
-                    quote!(let out = put(out, rows(state.#m().0));)
+                    let element = own(d, d.spec.configurations[*i].element);
+                    // The state keeps the spatial momentum; what shows a drift is the momentum that
+                    // the solver iterates in the body, seen from space.
+                    match d.solve.method {
+                        Method::FreeMoserVeselov => quote! {
+                            let momentum = self.work.solver.body_momentum().to_space(&state.#element());
+                            let out = put(out, rows(momentum.0));
+                        },
+                        Method::ForcedMoserVeselov | Method::Newton => {
+                            quote!(let out = put(out, rows(state.#m().0));)
+                        }
+                    }
                 }
                 Kind::Number | Kind::Energy => quote!(let out = put(out, [self.model.#method(state)]);),
             });

@@ -1,0 +1,402 @@
+// Written by `clebsch derive --write`. Do not edit.
+
+/// The model [`FreeBody`](struct@FreeBody) and what belongs to it.
+#[allow(non_snake_case, uncommon_codepoints, mixed_script_confusables, clippy::all)]
+pub mod free_body {
+    use ::clebsch::emitted::*;
+    /// Parameters of [`FreeBody`](struct@FreeBody), as given.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct FreeBodyParameters<T = f64> {
+        ///`J`: a 3 x 3 matrix, symmetric.
+        pub J: SMatrix<T, 3, 3>,
+    }
+    /// Free rigid body, body representation.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct FreeBody<T = f64> {
+        parameters: FreeBodyParameters<T>,
+        factor: Poinsot<T>,
+    }
+    impl<T: Real> FreeBody<T> {
+        /// The model as it was stated.
+        pub const SOURCE: &'static str = "/// Free rigid body, body representation.\npub model FreeBody {\n    param J: Sym<3>;\n    group Λ: SO<3> velocity Ω;\n    constraint next(Λ) = Λ*Ω;\n    lagrangian = -tr(J*Ω)/h;\n}";
+        /// A number that changes when the model or its derivation does.
+        pub const FINGERPRINT: u64 = 14906922296107499015u64;
+        /// Checks the parameters.
+        ///
+        /// # Errors
+        /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
+        /// assumption, or is no admissible factor of the equation to solve.
+        pub fn new(parameters: FreeBodyParameters<T>) -> Result<Self, ParameterError> {
+            validate::finite("J", parameters.J.as_slice())?;
+            validate::symmetric("J", &parameters.J)?;
+            let FreeBodyParameters { J, .. } = parameters;
+            let factor = Poinsot::new(J).map_err(|e| e.in_field("J"))?;
+            Ok(Self { parameters, factor })
+        }
+        /// The parameters.
+        pub fn parameters(&self) -> &FreeBodyParameters<T> {
+            &self.parameters
+        }
+    }
+    /// Initial data.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct FreeBodyInitial<T = f64> {
+        /// `Λ` at node 0: body -> space.
+        pub Λ: Rotation<T>,
+        /// Momentum at node 0, in the body frame.
+        pub body_momentum: BodyMomentum<T>,
+    }
+    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct FreeBodyState<T = f64> {
+        Λ: Rotation<T>,
+        momentum: SpatialMomentum<T>,
+        node: u64,
+    }
+    impl<T: Real> FreeBodyState<T> {
+        /// `Λ` at this node: body -> space.
+        pub fn Λ(&self) -> Rotation<T> {
+            self.Λ
+        }
+        /// The momentum at this node, in the space frame.
+        pub fn spatial_momentum(&self) -> SpatialMomentum<T> {
+            self.momentum
+        }
+        /// The momentum at this node, in the body frame.
+        pub fn body_momentum(&self) -> BodyMomentum<T> {
+            self.momentum.to_body(&self.Λ)
+        }
+        /// The number of the node.
+        pub fn node(&self) -> u64 {
+            self.node
+        }
+    }
+    /// The step and the constants of the trajectory. Belongs to the state it was started with.
+    #[derive(Clone, Copy, Debug)]
+    pub struct FreeBodyWorkspace<T = f64> {
+        h: T,
+        solver: Free<T>,
+    }
+    impl<T: Real> FreeBody<T> {
+        /// Starts a trajectory with step `h` from data at node 0.
+        ///
+        /// # Errors
+        /// Names the value that is not finite, or says why the first step cannot be solved and
+        /// which step could.
+        pub fn start(
+            &self,
+            initial: FreeBodyInitial<T>,
+            h: T,
+        ) -> Result<(FreeBodyState<T>, FreeBodyWorkspace<T>), StartError> {
+            validate::positive_step(h)?;
+            validate::finite("Λ", &initial.Λ.quaternion())?;
+            validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
+            let state = FreeBodyState {
+                Λ: initial.Λ,
+                momentum: initial.body_momentum.to_space(&initial.Λ),
+                node: 0,
+            };
+            let work = FreeBodyWorkspace {
+                h,
+                solver: Free::start(&self.factor, &state.Λ, &state.momentum, h)?,
+            };
+            let (mut trial, mut scratch) = (state, work);
+            self.step(&mut trial, &mut scratch)
+                .map_err(|e| StartError::Refused(e.cause))?;
+            Ok((state, work))
+        }
+        /// One step, in place. Solved thus: C is constant and no node term acts, so κ is conserved: solved once, every step explicit.
+        ///
+        /// # Errors
+        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+        #[inline]
+        pub fn step(
+            &self,
+            state: &mut FreeBodyState<T>,
+            work: &mut FreeBodyWorkspace<T>,
+        ) -> Result<(), StepError> {
+            if let Err(e) = work.solver.step(&mut state.Λ) {
+                return Err(StepCause::from(e).at_node(state.node));
+            }
+            state.node += 1;
+            Ok(())
+        }
+    }
+    /// A configuration at one node, solution or not.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct FreeBodyConfiguration<T = f64> {
+        /// `Λ` at the node: body -> space.
+        pub Λ: Rotation<T>,
+    }
+    impl<T: Real> FreeBody<T> {
+        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+        /// consecutive configurations: component `i` is the derivative of the action of the
+        /// two edges when the middle element is rotated about its axis `i` (a body axis on
+        /// the body side, a space axis on the spatial side). Zero on solutions.
+        pub fn balance(
+            &self,
+            h: T,
+            before: &FreeBodyConfiguration<T>,
+            here: &FreeBodyConfiguration<T>,
+            after: &FreeBodyConfiguration<T>,
+        ) -> SVector<T, 3> {
+            let FreeBodyParameters { J, .. } = self.parameters;
+            let Ω_before = (before.Λ.inverse() * here.Λ).matrix();
+            let Ω = (here.Λ.inverse() * after.Λ).matrix();
+            let t1 = h.powi(-1);
+            let parts: [SVector<T, 3>; 1] = [
+                axial_of_difference(&(J * Ω_before)) * t1
+                    + axial_of_difference(&(J * Ω.transpose())) * t1,
+            ];
+            parts[0]
+        }
+    }
+    impl<T: Real> FreeBody<T> {
+        /// The kinetic and the potential energy at this node: those of the limit of small steps,
+        /// at the node's momentum.
+        pub fn energies(&self, state: &FreeBodyState<T>) -> (T, T) {
+            let FreeBodyParameters { J, .. } = self.parameters;
+            let parts: [SVector<T, 3>; 1] = [state.body_momentum().0];
+            let momentum: SVector<T, 3> = parts[0];
+            let inertia = SMatrix::<
+                T,
+                3,
+                3,
+            >::from_fn(|i, j| {
+                let ξ = basis::<T>(i);
+                let η = basis::<T>(j);
+                T::from_f64(0.5) * J.trace()
+                    * (vee(&η).dot(&vee(&ξ)) + vee(&ξ).dot(&vee(&η)))
+                    - T::from_f64(0.5)
+                        * (vee(&η).dot(&(J * vee(&ξ))) + vee(&ξ).dot(&(J * vee(&η))))
+            });
+            let velocity = solve_or_nan(&inertia, &momentum);
+            (momentum.dot(&velocity) * T::from_f64(0.5), T::zero())
+        }
+        /// The physical energy at this node.
+        pub fn energy(&self, state: &FreeBodyState<T>) -> T {
+            let (kinetic, potential) = self.energies(state);
+            kinetic + potential
+        }
+        /// `μ_k·μ_k`: Casimir.
+        pub fn momentum_squared(&self, state: &FreeBodyState<T>) -> T {
+            let μ = state.body_momentum().0;
+            μ.dot(&μ)
+        }
+        /// `μ_k·(J² μ_k)`: Manakov integral μ·C²μ.
+        pub fn momentum_quadratic(&self, state: &FreeBodyState<T>) -> T {
+            let FreeBodyParameters { J, .. } = self.parameters;
+            let μ = state.body_momentum().0;
+            μ.dot(&(J * (J * μ)))
+        }
+    }
+    /// One trajectory of the model, its type hidden.
+    struct FreeBodyTrajectory {
+        model: FreeBody<f64>,
+        state: FreeBodyState<f64>,
+        work: FreeBodyWorkspace<f64>,
+        start: FreeBodyState<f64>,
+    }
+    impl Trajectory for FreeBodyTrajectory {
+        fn node(&self) -> u64 {
+            self.state.node()
+        }
+        fn time(&self) -> f64 {
+            self.work.h * self.state.node() as f64
+        }
+        fn step(&mut self) -> Result<(), StepError> {
+            self.model.step(&mut self.state, &mut self.work)
+        }
+        fn card(&self) -> &'static Card {
+            &FreeBody::<f64>::CARD
+        }
+        fn observe(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(out, rows(state.Λ().matrix()));
+            let out = put(out, rows(state.body_momentum().0));
+            let out = put(out, rows(state.spatial_momentum().0));
+            let _ = out;
+        }
+        fn invariants(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(out, [self.model.energy(state)]);
+            let momentum = self.work.solver.body_momentum().to_space(&state.Λ());
+            let out = put(out, rows(momentum.0));
+            let out = put(out, [self.model.momentum_squared(state)]);
+            let out = put(out, [self.model.momentum_quadratic(state)]);
+            let _ = out;
+        }
+        fn scales(&self, out: &mut [f64]) {
+            let state = &self.start;
+            let out = put(
+                out,
+                [{
+                    let (kinetic, potential) = self.model.energies(state);
+                    kinetic.abs() + potential.abs()
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let μ = state.body_momentum().0;
+                    let value: T = μ.dot(&μ).sqrt();
+                    value
+                }; 3usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let μ = state.body_momentum().0;
+                    let value: T = μ.dot(&μ);
+                    value
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let FreeBodyParameters { J, .. } = self.model.parameters;
+                    let μ = state.body_momentum().0;
+                    let value: T = (J * J).trace() * μ.dot(&μ);
+                    value
+                }; 1usize],
+            );
+            let _ = out;
+        }
+    }
+    impl FreeBody<f64> {
+        /// The model as data.
+        pub const CARD: Card = Card {
+            name: "FreeBody",
+            kebab: "free-body",
+            doc: "Free rigid body, body representation.",
+            source: Self::SOURCE,
+            fingerprint: Self::FINGERPRINT,
+            summary: "action of one step   -tr(J Ω_k)/h\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\nsolved               explicitly, constants found once (κ conserved)\ninvariants           energy, spatial_momentum, momentum_squared, momentum_quadratic\ntime reversal        symmetric: second order\ncertificate          8 identities proved by normal form",
+            solver: "Moser-Veselov, explicit, constants of the trajectory: C is constant and no node term acts, so κ is conserved: solved once, every step explicit",
+            order: 2u32,
+            reversible: true,
+            parameters: &[
+                Field {
+                    name: "J",
+                    ascii: "J",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Symmetric,
+                    doc: "",
+                },
+            ],
+            initial: &[
+                Field {
+                    name: "Λ",
+                    ascii: "Lambda",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Rotation,
+                    doc: "attitude, body to space",
+                },
+                Field {
+                    name: "body_momentum",
+                    ascii: "body_momentum",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::BodyMomentum,
+                    doc: "momentum, body frame",
+                },
+            ],
+            observables: &[
+                Field {
+                    name: "Λ",
+                    ascii: "Lambda",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Rotation,
+                    doc: "attitude, body to space",
+                },
+                Field {
+                    name: "body_momentum",
+                    ascii: "body_momentum",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::BodyMomentum,
+                    doc: "momentum, body frame",
+                },
+                Field {
+                    name: "spatial_momentum",
+                    ascii: "spatial_momentum",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::SpatialMomentum,
+                    doc: "momentum, space frame",
+                },
+            ],
+            invariants: &[
+                Invariant {
+                    name: "energy",
+                    formula: "½ μ·I⁻¹μ",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "spatial_momentum",
+                    formula: "Λ μ",
+                    rows: 3usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "momentum_squared",
+                    formula: "μ_k·μ_k",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "momentum_quadratic",
+                    formula: "μ_k·(J² μ_k)",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+            ],
+            open: Self::open,
+        };
+        fn open(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+            h: f64,
+        ) -> Result<Box<dyn Trajectory>, OpenError> {
+            for (field, expected, found) in [
+                ("parameters", 1usize, parameters.len()),
+                ("initial values", 2usize, initial.len()),
+            ] {
+                if expected != found {
+                    return Err(OpenError::Count {
+                        field,
+                        expected,
+                        found,
+                    });
+                }
+            }
+            let model = FreeBody::new(FreeBodyParameters {
+                J: matrix_of("J", parameters.get(0usize))?,
+            })?;
+            let initial = FreeBodyInitial {
+                Λ: rotation_of("Λ", initial.get(0usize))?,
+                body_momentum: BodyMomentum(
+                    matrix_of("body_momentum", initial.get(1usize))?,
+                ),
+            };
+            let (state, work) = model.start(initial, h)?;
+            Ok(
+                Box::new(FreeBodyTrajectory {
+                    model,
+                    state,
+                    work,
+                    start: state,
+                }),
+            )
+        }
+    }
+}
+#[allow(unused_imports)]
+pub use free_body::*;

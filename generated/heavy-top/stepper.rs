@@ -1,0 +1,485 @@
+// Written by `clebsch derive --write`. Do not edit.
+
+/// The model [`HeavyTop`](struct@HeavyTop) and what belongs to it.
+#[allow(non_snake_case, uncommon_codepoints, mixed_script_confusables, clippy::all)]
+pub mod heavy_top {
+    use ::clebsch::emitted::*;
+    /// Parameters of [`HeavyTop`](struct@HeavyTop), as given.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct HeavyTopParameters<T = f64> {
+        ///`J`: a 3 x 3 matrix, symmetric.
+        pub J: SMatrix<T, 3, 3>,
+        ///`gU`: a vector of 3 components.
+        pub gU: SVector<T, 3>,
+        ///`z`: a vector of 3 components.
+        pub z: SVector<T, 3>,
+    }
+    /// Heavy top, body representation.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct HeavyTop<T = f64> {
+        parameters: HeavyTopParameters<T>,
+        factor: Poinsot<T>,
+    }
+    impl<T: Real> HeavyTop<T> {
+        /// The model as it was stated.
+        pub const SOURCE: &'static str = "/// Heavy top, body representation.\npub model HeavyTop {\n    param J: Sym<3>;\n    param gU: Vec<3>;\n    param z: Vec<3>;\n    group Λ: SO<3> velocity Ω;\n    advected Γ: Vec<3> = Λ^T*z;\n    constraint next(Λ) = Λ*Ω;\n    constraint next(Γ) = Ω^T*Γ;\n    lagrangian = -tr(J*Ω)/h - h*dot(gU, Γ);\n}";
+        /// A number that changes when the model or its derivation does.
+        pub const FINGERPRINT: u64 = 8015446786651378801u64;
+        /// Checks the parameters.
+        ///
+        /// # Errors
+        /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
+        /// assumption, or is no admissible factor of the equation to solve.
+        pub fn new(parameters: HeavyTopParameters<T>) -> Result<Self, ParameterError> {
+            validate::finite("J", parameters.J.as_slice())?;
+            validate::symmetric("J", &parameters.J)?;
+            validate::finite("gU", parameters.gU.as_slice())?;
+            validate::finite("z", parameters.z.as_slice())?;
+            let HeavyTopParameters { J, .. } = parameters;
+            let factor = Poinsot::new(J).map_err(|e| e.in_field("J"))?;
+            Ok(Self { parameters, factor })
+        }
+        /// The parameters.
+        pub fn parameters(&self) -> &HeavyTopParameters<T> {
+            &self.parameters
+        }
+    }
+    /// Initial data.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct HeavyTopInitial<T = f64> {
+        /// `Λ` at node 0: body -> space.
+        pub Λ: Rotation<T>,
+        /// Momentum at node 0, in the body frame.
+        pub body_momentum: BodyMomentum<T>,
+    }
+    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct HeavyTopState<T = f64> {
+        Λ: Rotation<T>,
+        momentum: SpatialMomentum<T>,
+        node: u64,
+    }
+    impl<T: Real> HeavyTopState<T> {
+        /// `Λ` at this node: body -> space.
+        pub fn Λ(&self) -> Rotation<T> {
+            self.Λ
+        }
+        /// The momentum at this node, in the space frame.
+        pub fn spatial_momentum(&self) -> SpatialMomentum<T> {
+            self.momentum
+        }
+        /// The momentum at this node, in the body frame.
+        pub fn body_momentum(&self) -> BodyMomentum<T> {
+            self.momentum.to_body(&self.Λ)
+        }
+        /// The number of the node.
+        pub fn node(&self) -> u64 {
+            self.node
+        }
+    }
+    /// The step.
+    #[derive(Clone, Copy, Debug)]
+    pub struct HeavyTopWorkspace<T = f64> {
+        h: T,
+    }
+    impl<T: Real> HeavyTop<T> {
+        /// Starts a trajectory with step `h` from data at node 0.
+        ///
+        /// # Errors
+        /// Names the value that is not finite, or says why the first step cannot be solved and
+        /// which step could.
+        pub fn start(
+            &self,
+            initial: HeavyTopInitial<T>,
+            h: T,
+        ) -> Result<(HeavyTopState<T>, HeavyTopWorkspace<T>), StartError> {
+            validate::positive_step(h)?;
+            validate::finite("Λ", &initial.Λ.quaternion())?;
+            validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
+            let state = HeavyTopState {
+                Λ: initial.Λ,
+                momentum: initial.body_momentum.to_space(&initial.Λ),
+                node: 0,
+            };
+            let work = HeavyTopWorkspace { h };
+            let (mut trial, mut scratch) = (state, work);
+            self.step(&mut trial, &mut scratch)
+                .map_err(|e| StartError::Refused(e.cause))?;
+            Ok((state, work))
+        }
+        /// One step, in place. Solved thus: C is symmetric and free of velocities: explicit after one quartic a step.
+        ///
+        /// # Errors
+        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+        #[inline]
+        pub fn step(
+            &self,
+            state: &mut HeavyTopState<T>,
+            work: &mut HeavyTopWorkspace<T>,
+        ) -> Result<(), StepError> {
+            let h = work.h;
+            let edge = self.edge_momentum(state, h);
+            let Ω = match forced(&self.factor, &(edge * h)) {
+                Ok(solved) => solved,
+                Err(e) => return Err(self.refused(state, h, e)),
+            };
+            let HeavyTopParameters { gU, z, .. } = self.parameters;
+            let Λ = state.Λ.matrix();
+            let Γ = Λ.tr_mul(&z);
+            let Λ_moved = state.Λ * Ω;
+            let Λ_next = Λ_moved.matrix();
+            let Γ_next = Λ_next.tr_mul(&z);
+            let momentum_next = state.momentum.0
+                + Λ * (-(gU.cross(&Γ) * T::from_f64(0.5) * h))
+                + Λ_next * (-(gU.cross(&Γ_next) * T::from_f64(0.5) * h));
+            if !(all_finite(&momentum_next)) {
+                return Err(
+                    StepCause::NotFinite {
+                        what: "momentum",
+                    }
+                        .at_node(state.node),
+                );
+            }
+            state.Λ = Λ_moved;
+            state.momentum = SpatialMomentum(momentum_next);
+            state.node += 1;
+            Ok(())
+        }
+        /// The momentum of the edge that starts at this node, for a step `h`.
+        #[inline]
+        fn edge_momentum(&self, state: &HeavyTopState<T>, h: T) -> SVector<T, 3> {
+            let HeavyTopParameters { gU, z, .. } = self.parameters;
+            let Λ = state.Λ.matrix();
+            let Γ = Λ.tr_mul(&z);
+            Λ.tr_mul(&state.momentum.0) - (gU.cross(&Γ) * T::from_f64(0.5) * h)
+        }
+        /// Says how far the step is beyond the bound, and which step could be solved.
+        #[cold]
+        fn refused(
+            &self,
+            state: &HeavyTopState<T>,
+            h: T,
+            e: MoserVeselovError,
+        ) -> StepError {
+            let largest = largest_step(
+                h.value(),
+                |trial| {
+                    let n = self.edge_momentum(state, T::from_f64(trial))
+                        * T::from_f64(trial);
+                    let body = Poinsot::new(self.factor.matrix().map(|x| x.value()))
+                        .ok()?;
+                    Some(reach(&body, &n.map(|x| x.value())))
+                },
+            );
+            StepCause::from(e.with_steps(h.value(), largest)).at_node(state.node)
+        }
+        /// `Γ` at the node of this state.
+        #[inline]
+        pub fn Γ(&self, state: &HeavyTopState<T>) -> SVector<T, 3> {
+            let HeavyTopParameters { z, .. } = self.parameters;
+            let Λ = state.Λ.matrix();
+            let Γ = Λ.tr_mul(&z);
+            Γ
+        }
+    }
+    /// A configuration at one node, solution or not.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct HeavyTopConfiguration<T = f64> {
+        /// `Λ` at the node: body -> space.
+        pub Λ: Rotation<T>,
+    }
+    impl<T: Real> HeavyTop<T> {
+        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+        /// consecutive configurations: component `i` is the derivative of the action of the
+        /// two edges when the middle element is rotated about its axis `i` (a body axis on
+        /// the body side, a space axis on the spatial side). Zero on solutions.
+        pub fn balance(
+            &self,
+            h: T,
+            before: &HeavyTopConfiguration<T>,
+            here: &HeavyTopConfiguration<T>,
+            after: &HeavyTopConfiguration<T>,
+        ) -> SVector<T, 3> {
+            let HeavyTopParameters { J, gU, z, .. } = self.parameters;
+            let Λ = here.Λ.matrix();
+            let Γ = Λ.tr_mul(&z);
+            let Ω_before = (before.Λ.inverse() * here.Λ).matrix();
+            let Ω = (here.Λ.inverse() * after.Λ).matrix();
+            let t1 = h.powi(-1);
+            let t2 = -(gU.cross(&Γ) * T::from_f64(0.5) * h);
+            let parts: [SVector<T, 3>; 1] = [
+                axial_of_difference(&(J * Ω_before)) * t1 + t2
+                    + axial_of_difference(&(J * Ω.transpose())) * t1 + t2,
+            ];
+            parts[0]
+        }
+    }
+    impl<T: Real> HeavyTop<T> {
+        /// The kinetic and the potential energy at this node: those of the limit of small steps,
+        /// at the node's momentum.
+        pub fn energies(&self, state: &HeavyTopState<T>) -> (T, T) {
+            let HeavyTopParameters { J, gU, z, .. } = self.parameters;
+            let Λ = state.Λ.matrix();
+            let Γ = Λ.tr_mul(&z);
+            let parts: [SVector<T, 3>; 1] = [state.body_momentum().0];
+            let momentum: SVector<T, 3> = parts[0];
+            let inertia = SMatrix::<
+                T,
+                3,
+                3,
+            >::from_fn(|i, j| {
+                let ξ = basis::<T>(i);
+                let η = basis::<T>(j);
+                T::from_f64(0.5) * J.trace()
+                    * (vee(&η).dot(&vee(&ξ)) + vee(&ξ).dot(&vee(&η)))
+                    - T::from_f64(0.5)
+                        * (vee(&η).dot(&(J * vee(&ξ))) + vee(&ξ).dot(&(J * vee(&η))))
+            });
+            let velocity = solve_or_nan(&inertia, &momentum);
+            (momentum.dot(&velocity) * T::from_f64(0.5), gU.dot(&Γ))
+        }
+        /// The physical energy at this node.
+        pub fn energy(&self, state: &HeavyTopState<T>) -> T {
+            let (kinetic, potential) = self.energies(state);
+            kinetic + potential
+        }
+        /// `μ_k·Γ_k`: Casimir, and momentum about a fixed axis.
+        pub fn momentum_Gamma(&self, state: &HeavyTopState<T>) -> T {
+            let HeavyTopParameters { z, .. } = self.parameters;
+            let Λ = state.Λ.matrix();
+            let Γ = Λ.tr_mul(&z);
+            let μ = state.body_momentum().0;
+            μ.dot(&Γ)
+        }
+        /// `Γ_k·Γ_k`: Casimir.
+        pub fn Gamma_squared(&self, state: &HeavyTopState<T>) -> T {
+            let HeavyTopParameters { z, .. } = self.parameters;
+            let Λ = state.Λ.matrix();
+            let Γ = Λ.tr_mul(&z);
+            Γ.dot(&Γ)
+        }
+    }
+    /// One trajectory of the model, its type hidden.
+    struct HeavyTopTrajectory {
+        model: HeavyTop<f64>,
+        state: HeavyTopState<f64>,
+        work: HeavyTopWorkspace<f64>,
+        start: HeavyTopState<f64>,
+    }
+    impl Trajectory for HeavyTopTrajectory {
+        fn node(&self) -> u64 {
+            self.state.node()
+        }
+        fn time(&self) -> f64 {
+            self.work.h * self.state.node() as f64
+        }
+        fn step(&mut self) -> Result<(), StepError> {
+            self.model.step(&mut self.state, &mut self.work)
+        }
+        fn card(&self) -> &'static Card {
+            &HeavyTop::<f64>::CARD
+        }
+        fn observe(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(out, rows(state.Λ().matrix()));
+            let out = put(out, rows(state.body_momentum().0));
+            let out = put(out, rows(state.spatial_momentum().0));
+            let out = put(out, rows(self.model.Γ(state)));
+            let _ = out;
+        }
+        fn invariants(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(out, [self.model.energy(state)]);
+            let out = put(out, [self.model.momentum_Gamma(state)]);
+            let out = put(out, [self.model.Gamma_squared(state)]);
+            let _ = out;
+        }
+        fn scales(&self, out: &mut [f64]) {
+            let state = &self.start;
+            let out = put(
+                out,
+                [{
+                    let (kinetic, potential) = self.model.energies(state);
+                    kinetic.abs() + potential.abs()
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let HeavyTopParameters { z, .. } = self.model.parameters;
+                    let Λ = state.Λ.matrix();
+                    let Γ = Λ.tr_mul(&z);
+                    let μ = state.body_momentum().0;
+                    let value: T = μ.dot(&μ).sqrt() * Γ.dot(&Γ).sqrt();
+                    value
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let HeavyTopParameters { z, .. } = self.model.parameters;
+                    let Λ = state.Λ.matrix();
+                    let Γ = Λ.tr_mul(&z);
+                    let value: T = Γ.dot(&Γ).sqrt() * Γ.dot(&Γ).sqrt();
+                    value
+                }; 1usize],
+            );
+            let _ = out;
+        }
+    }
+    impl HeavyTop<f64> {
+        /// The model as data.
+        pub const CARD: Card = Card {
+            name: "HeavyTop",
+            kebab: "heavy-top",
+            doc: "Heavy top, body representation.",
+            source: Self::SOURCE,
+            fingerprint: Self::FINGERPRINT,
+            summary: "action of one step   -tr(J Ω_k)/h - ½ h gU·Γ_k - ½ h gU·Γ_{k+1}\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\nsolved               explicitly, one quartic a step\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          11 identities proved by normal form",
+            solver: "Moser-Veselov, explicit: C is symmetric and free of velocities: explicit after one quartic a step",
+            order: 2u32,
+            reversible: true,
+            parameters: &[
+                Field {
+                    name: "J",
+                    ascii: "J",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Symmetric,
+                    doc: "",
+                },
+                Field {
+                    name: "gU",
+                    ascii: "gU",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::Vector,
+                    doc: "",
+                },
+                Field {
+                    name: "z",
+                    ascii: "z",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::Vector,
+                    doc: "",
+                },
+            ],
+            initial: &[
+                Field {
+                    name: "Λ",
+                    ascii: "Lambda",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Rotation,
+                    doc: "attitude, body to space",
+                },
+                Field {
+                    name: "body_momentum",
+                    ascii: "body_momentum",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::BodyMomentum,
+                    doc: "momentum, body frame",
+                },
+            ],
+            observables: &[
+                Field {
+                    name: "Λ",
+                    ascii: "Lambda",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Rotation,
+                    doc: "attitude, body to space",
+                },
+                Field {
+                    name: "body_momentum",
+                    ascii: "body_momentum",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::BodyMomentum,
+                    doc: "momentum, body frame",
+                },
+                Field {
+                    name: "spatial_momentum",
+                    ascii: "spatial_momentum",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::SpatialMomentum,
+                    doc: "momentum, space frame",
+                },
+                Field {
+                    name: "Γ",
+                    ascii: "Gamma",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::Vector,
+                    doc: "",
+                },
+            ],
+            invariants: &[
+                Invariant {
+                    name: "energy",
+                    formula: "½ μ·I⁻¹μ + gU·Γ_k",
+                    rows: 1usize,
+                    conserved: Conserved::Boundedly,
+                },
+                Invariant {
+                    name: "momentum_Gamma",
+                    formula: "μ_k·Γ_k",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "Gamma_squared",
+                    formula: "Γ_k·Γ_k",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+            ],
+            open: Self::open,
+        };
+        fn open(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+            h: f64,
+        ) -> Result<Box<dyn Trajectory>, OpenError> {
+            for (field, expected, found) in [
+                ("parameters", 3usize, parameters.len()),
+                ("initial values", 2usize, initial.len()),
+            ] {
+                if expected != found {
+                    return Err(OpenError::Count {
+                        field,
+                        expected,
+                        found,
+                    });
+                }
+            }
+            let model = HeavyTop::new(HeavyTopParameters {
+                J: matrix_of("J", parameters.get(0usize))?,
+                gU: matrix_of("gU", parameters.get(1usize))?,
+                z: matrix_of("z", parameters.get(2usize))?,
+            })?;
+            let initial = HeavyTopInitial {
+                Λ: rotation_of("Λ", initial.get(0usize))?,
+                body_momentum: BodyMomentum(
+                    matrix_of("body_momentum", initial.get(1usize))?,
+                ),
+            };
+            let (state, work) = model.start(initial, h)?;
+            Ok(
+                Box::new(HeavyTopTrajectory {
+                    model,
+                    state,
+                    work,
+                    start: state,
+                }),
+            )
+        }
+    }
+}
+#[allow(unused_imports)]
+pub use heavy_top::*;
