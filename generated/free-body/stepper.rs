@@ -1,7 +1,13 @@
 // Written by `clebsch derive --write`. Do not edit.
 
 /// The model [`FreeBody`](struct@FreeBody) and what belongs to it.
-#[allow(non_snake_case, uncommon_codepoints, mixed_script_confusables, clippy::all)]
+#[allow(
+    non_snake_case,
+    uncommon_codepoints,
+    mixed_script_confusables,
+    confusable_idents,
+    clippy::all
+)]
 pub mod free_body {
     use ::clebsch::emitted::*;
     /// Parameters of [`FreeBody`](struct@FreeBody), as given.
@@ -274,8 +280,8 @@ pub mod free_body {
             doc: "Free rigid body, body representation.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   -tr(J Ω_k)/h\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\nsolved               explicitly, constants found once (κ conserved)\ninvariants           energy, spatial_momentum, momentum_squared, momentum_quadratic\ntime reversal        symmetric: second order\ncertificate          8 identities proved by normal form",
-            solver: "Moser-Veselov, explicit, constants of the trajectory: C is constant and no node term acts, so κ is conserved: solved once, every step explicit",
+            summary: "action of one step   -tr(J Ω_k)/h\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, spatial_momentum, momentum_squared, momentum_quadratic\ntime reversal        symmetric: second order\ncertificate          8 identities proved by normal form",
+            solver: "Moser-Veselov: C is constant and no node term acts, so κ is conserved: solved once, every step explicit",
             order: 2u32,
             reversible: true,
             parameters: &[

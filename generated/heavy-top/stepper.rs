@@ -1,7 +1,13 @@
 // Written by `clebsch derive --write`. Do not edit.
 
 /// The model [`HeavyTop`](struct@HeavyTop) and what belongs to it.
-#[allow(non_snake_case, uncommon_codepoints, mixed_script_confusables, clippy::all)]
+#[allow(
+    non_snake_case,
+    uncommon_codepoints,
+    mixed_script_confusables,
+    confusable_idents,
+    clippy::all
+)]
 pub mod heavy_top {
     use ::clebsch::emitted::*;
     /// Parameters of [`HeavyTop`](struct@HeavyTop), as given.
@@ -107,7 +113,7 @@ pub mod heavy_top {
                 .map_err(|e| StartError::Refused(e.cause))?;
             Ok((state, work))
         }
-        /// One step, in place. Solved thus: C is symmetric and free of velocities: explicit after one quartic a step.
+        /// One step, in place. Solved thus: C is constant and symmetric: explicit after one quartic a step.
         ///
         /// # Errors
         /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -337,8 +343,8 @@ pub mod heavy_top {
             doc: "Heavy top, body representation.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   -tr(J Ω_k)/h - ½ h gU·Γ_k - ½ h gU·Γ_{k+1}\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\nsolved               explicitly, one quartic a step\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          11 identities proved by normal form",
-            solver: "Moser-Veselov, explicit: C is symmetric and free of velocities: explicit after one quartic a step",
+            summary: "action of one step   -tr(J Ω_k)/h - ½ h gU·Γ_k - ½ h gU·Γ_{k+1}\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          11 identities proved by normal form",
+            solver: "Moser-Veselov: C is constant and symmetric: explicit after one quartic a step",
             order: 2u32,
             reversible: true,
             parameters: &[

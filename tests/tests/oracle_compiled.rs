@@ -154,16 +154,16 @@ compiled!(
     Λ, body_momentum: BodyMomentum, [J, L, κ, U], [c, χ]
 );
 compiled!(
-    Random29, Random29Parameters, Random29Configuration, Random29Initial,
-    Λ, body_momentum: BodyMomentum, [J, q, p, X, P], [ξ]
+    Random26, Random26Parameters, Random26Configuration, Random26Initial,
+    Λ, body_momentum: BodyMomentum, [J, K_a], []
 );
 compiled!(
-    Random45, Random45Parameters, Random45Configuration, Random45Initial,
-    Λ, spatial_momentum: SpatialMomentum, [J, u, ρ, J0, C], [c, N, ξ]
+    Random34, Random34Parameters, Random34Configuration, Random34Initial,
+    Lambda, body_momentum: BodyMomentum, [J, α, L, lever], []
 );
 compiled!(
-    Random48, Random48Parameters, Random48Configuration, Random48Initial,
-    Λ, body_momentum: BodyMomentum, [J, p, α], [a]
+    Random117, Random117Parameters, Random117Configuration, Random117Initial,
+    Q, spatial_momentum: SpatialMomentum, [J, α], [c, Γ]
 );
 compiled!(
     Random217, Random217Parameters, Random217Configuration, Random217Initial,
@@ -351,18 +351,18 @@ fn random_lagrangian_23() {
 }
 
 #[test]
-fn random_lagrangian_29() {
-    random::<Random29>(29);
+fn random_lagrangian_26() {
+    random::<Random26>(26);
 }
 
 #[test]
-fn random_lagrangian_48() {
-    random::<Random48>(48);
+fn random_lagrangian_117() {
+    random::<Random117>(117);
 }
 
 #[test]
-fn random_lagrangian_45() {
-    random::<Random45>(45);
+fn random_lagrangian_34() {
+    random::<Random34>(34);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 //! boundary; the macro turns them into compile errors on the exact tokens, the command line into
 //! text with line, column and caret.
 
+use crate::expr::symbol::ascii;
 use proc_macro2::{Span, TokenStream};
 use quote::quote_spanned;
 
@@ -43,6 +44,8 @@ pub struct Diagnostic {
     pub help: Vec<String>,
     /// Other tokens involved, with a word on each.
     pub also: Vec<(Place, String)>,
+    /// Whether it only follows from another mistake: it is not reported beside one.
+    pub follows: bool,
 }
 
 impl Diagnostic {
@@ -53,6 +56,15 @@ impl Diagnostic {
             message: message.into(),
             help: Vec::new(),
             also: Vec::new(),
+            follows: false,
+        }
+    }
+
+    /// A diagnostic that only follows from another mistake.
+    pub fn following(place: Place, message: impl Into<String>) -> Diagnostic {
+        Diagnostic {
+            follows: true,
+            ..Diagnostic::new(place, message)
         }
     }
 
@@ -98,9 +110,15 @@ impl Errors {
 
     /// Adds a mistake.
     pub fn push(&mut self, diagnostic: Diagnostic) {
-        if self.list.len() < MOST {
+        let follows = diagnostic.follows && !self.list.is_empty();
+        if self.list.len() < MOST && !follows {
             self.list.push(diagnostic);
         }
+    }
+
+    /// Adds a mistake, if there is one.
+    pub fn extend(&mut self, diagnostic: Option<Diagnostic>) {
+        diagnostic.into_iter().for_each(|d| self.push(d));
     }
 
     /// The mistakes in the order found.
@@ -210,12 +228,18 @@ fn snippet(source: &str, file: &str, place: Place) -> String {
     )
 }
 
-/// The candidate closest to a misspelt name, if it is close.
+/// The candidate closest to a misspelt name, if it is close: the same name in another case or in
+/// ASCII (`Gamma` for `Γ`), or one with a few letters changed, but never all of them.
 pub fn closest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let limit = (name.chars().count() / 3).max(1);
+    let length = name.chars().count();
+    let limit = (length / 3).max(1).min(length.saturating_sub(1));
+    let spelt = ascii(name);
     candidates
         .into_iter()
-        .map(|c| (edit_distance(name, c), c))
+        .map(|c| match ascii(c).eq_ignore_ascii_case(&spelt) {
+            true => (0, c),
+            false => (edit_distance(name, c), c),
+        })
         .filter(|(d, _)| *d <= limit)
         .min_by_key(|(d, _)| *d)
         .map(|(_, c)| c)

@@ -13,7 +13,7 @@ pub use proof::second_proof;
 pub use source::source;
 
 use crate::derive::Derivation;
-use crate::derive::recognise::{Method, Riccati};
+use crate::derive::recognise::Riccati;
 use crate::print::{Format, Style, expression, render};
 
 /// The style of a model: its time index.
@@ -65,14 +65,6 @@ pub fn summary(d: &Derivation) -> String {
     lines.push(format!(
         "Riccati form         {}",
         riccati.collect::<Vec<_>>().join("; ")
-    ));
-    lines.push(format!(
-        "solved               {}",
-        match d.solve.method {
-            Method::FreeMoserVeselov => "explicitly, constants found once (κ conserved)",
-            Method::ForcedMoserVeselov => "explicitly, one quartic a step",
-            Method::Newton => "by Newton on the group, tangent derived",
-        }
     ));
     let names: Vec<&str> = d.invariants.iter().map(|i| i.name.as_str()).collect();
     lines.push(format!("invariants           {}", names.join(", ")));

@@ -3,9 +3,10 @@
 
 use clebsch_tests::oracle::random::RandomLagrangian;
 
-/// The seeds of the models below: powers of the velocity with a name for its skew part; another name of the
-/// step; the spatial side with a skew and a plain matrix; one-sided nodes; a scaled Lagrangian with a root.
-pub const SEEDS: [u64; 5] = [23, 29, 45, 48, 217];
+/// The seeds of the models below: powers of the velocity with a name for its skew part; a quotient by an
+/// advected quantity; one-sided nodes with triple products and an inverse; the spatial side with another name
+/// of the step; a scaled Lagrangian with a root.
+pub const SEEDS: [u64; 5] = [23, 26, 34, 117, 217];
 
 clebsch::model! {
     pub model Random23 {
@@ -25,59 +26,52 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    pub model Random29 {
-        time i step s;
+    pub model Random26 {
         group Λ: SO<3> velocity Ω;
         constraint next(Λ) = Λ*Ω;
         param J: Sym<3>;
-        param q: Vec<3>;
-        param p: Vec<3>;
-        param X: Sym<3>;
-        param P: Sym<3>;
-        advected a: Vec<3> = Λ^T*(p + p);
-        constraint next(a) = Ω^T*a;
-        advected ξ: Vec<3>;
+        param K_a: Vec<3>;
+        advected b: Vec<3> = Λ^T*K_a;
+        constraint next(b) = Ω^T*b;
+        advected ξ: Vec<3> = Λ^T*(K_a + K_a);
         constraint next(ξ) = Ω^T*ξ;
-        advected eta: Sym<3> = Λ^T*X*Λ;
-        constraint next(eta) = Ω^T*eta*Ω;
-        lagrangian = -tr(J*Ω)/s - s*dot(a, Ω*ξ) + tr(Ω^T*Ω^T*eta) + (dot(vee(eta - eta^T), cross(q, a)) - dot(ξ, P*a)^2)/s + 0.75*exp(dot(p, ξ)/4);
+        lagrangian = -tr(J Ω)/h + tr(Ω^-1)/(2 + dot(K_a, ξ)^2)/(2*h) + (tr(J*(K_a*b^T)));
     }
 }
 
 clebsch::model! {
-    pub model Random45 {
-        group Λ: SO<3> velocity ω;
-        constraint next(Λ) = ω*Λ;
-        param J: Sym<3>;
-        param u: Real;
-        param ρ: Vec<3>;
-        param J0: Vec<3>;
-        param C: Sym<3>;
-        advected c: Vec<3>;
-        constraint next(c) = ω*c;
-        advected b: Vec<3> = Λ*ρ;
-        constraint next(b) = ω*b;
-        advected a: Sym<3> = Λ*C*Λ^T;
-        constraint next(a) = ω*a*ω^T;
-        advected N: Skew<3>;
-        constraint next(N) = ω*N*ω^T;
-        advected ξ: Mat<3>;
-        constraint next(ξ) = ω*ξ;
-        lagrangian = -tr(J ω)/h - dot(c, next(a)*b) + tr(N*J*ξ)/(2*h) + h*u*dot(J0, next(b)) - h*u*-dot(c, ω*b);
-    }
-}
-
-clebsch::model! {
-    pub model Random48 {
+    pub model Random34 {
         node incoming;
-        group Λ: SO<3> velocity Ω;
-        constraint next(Λ) = Λ*Ω;
+        group Lambda: SO<3> velocity Omega;
+        constraint next(Lambda) = Lambda*Omega;
         param J: Sym<3>;
-        param p: Vec<3>;
-        param α: Sym<3>;
-        advected a: Vec<3>;
-        constraint next(a) = Ω^T*a;
-        lagrangian = -tr(J*Ω)/h + h^2*(dot(p, next(a)) - tr((α)));
+        param α: Real;
+        param L: Vec<3>;
+        param lever: Sym<3>;
+        advected Y: Vec<3> = Lambda^T*(L + L);
+        constraint next(Y) = Omega^T*Y;
+        advected eta: Vec<3> = Lambda^T*L;
+        constraint next(eta) = Omega^T*eta;
+        let part = inv(J);
+        lagrangian = -tr(J*Omega)/h - dot(part*(lever*L), cross(eta, L)) + 0.75 det(Omega^T + Omega) + h*α*dot(L, cross(Y, next(eta))) - (h/2)*sqrt(1 + dot(part*(Omega*L), part*(Omega*L)))^2;
+    }
+}
+
+clebsch::model! {
+    pub model Random117 {
+        time i step s;
+        scale 2*s;
+        group Q: SO<3> velocity omega;
+        constraint next(Q) = omega*Q;
+        param J: Sym<3>;
+        param α: Vec<3>;
+        advected c: Vec<3>;
+        constraint next(c) = omega*c;
+        advected a: Vec<3> = Q*α;
+        constraint next(a) = omega*a;
+        advected Γ: Sym<3>;
+        constraint next(Γ) = omega*Γ*omega^T;
+        lagrangian = -tr(omega*J)/s - (s/2)*dot(a, omega^T*c) + s*dot(α, Γ*c);
     }
 }
 

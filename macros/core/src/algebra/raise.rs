@@ -41,15 +41,22 @@ impl Algebra<'_> {
             && self.shape_of(last).cols == Dim::Fixed(1)
         {
             let left = self.raise_word(u);
-            // u x vee(S) reads as -S u.
-            let product = match &word[k + 1..] {
-                [
+            // u x G vee(S) reads as -G S G^T u.
+            let tail = &word[k + 1..];
+            let product = match tail.split_last() {
+                Some((
                     Factor::Axial {
                         source,
                         transposed: false,
                     },
-                ] => expr::neg(expr::mul(self.raise_source(*source), left)),
-                rest => expr::cross(left, self.raise_word(&rest.to_vec())),
+                    frame,
+                )) if frame.iter().all(|f| self.is_orthogonal(f)) => {
+                    let frame = self.raise_word(&frame.to_vec());
+                    let back = expr::transpose(self.symbols, frame.clone());
+                    let skew = self.raise_source(*source);
+                    expr::neg(expr::product([frame, skew, back, left]))
+                }
+                _ => expr::cross(left, self.raise_word(&tail.to_vec())),
             };
             let front = word[..k].iter().map(|f| self.raise_factor(f));
             return expr::product(front.chain([product]).collect::<Vec<_>>());

@@ -18,6 +18,7 @@ pub struct DeclaredGroup {
     pub velocity: SymbolId,
     pub group: Group,
     pub place: Place,
+    pub group_place: Place,
     pub update: Option<(Expr, Place)>,
     stated: bool,
 }
@@ -48,9 +49,56 @@ pub struct Declared {
 /// Names with a fixed meaning.
 const RESERVED: [&str; 5] = ["Id", "T", "E1", "E2", "E3"];
 
+/// Words that no field, method or local of the emitted Rust can bear.
+const RUST: [&str; 53] = [
+    "_", "Self", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue",
+    "crate", "do", "dyn", "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if",
+    "impl", "in", "let", "loop", "macro", "match", "mod", "move", "mut", "override", "priv", "pub",
+    "ref", "return", "self", "static", "struct", "super", "trait", "true", "try", "type", "typeof",
+    "unsafe", "unsized", "use", "virtual", "where", "while", "yield",
+];
+
+/// What is wrong with a name whatever else is declared.
+fn unusable(name: &Name) -> Option<Diagnostic> {
+    let text = name.text.as_str();
+    let message = if RESERVED.contains(&text) || FUNCTIONS.contains(&text) {
+        format!("`{text}` has a fixed meaning in the language")
+    } else if RUST.contains(&text) {
+        format!(
+            "`{text}` is a word of Rust, in which the model is emitted, and names nothing there"
+        )
+    } else {
+        return None;
+    };
+    Some(Diagnostic::new(name.place, message).help("choose another name"))
+}
+
+/// The model's name is that of a type.
+fn model_name(name: &Name, errors: &mut Errors) {
+    if RUST.contains(&name.text.as_str()) {
+        errors.extend(unusable(name));
+    } else if !name.text.starts_with(char::is_uppercase) {
+        let mut letters = name.text.chars();
+        let first = letters.next().into_iter().flat_map(char::to_uppercase);
+        let capital: String = first.chain(letters).collect();
+        let d = Diagnostic::new(
+            name.place,
+            format!(
+                "`{}` names a type, which starts with a capital letter",
+                name.text
+            ),
+        );
+        errors.push(d.help(match capital.starts_with(char::is_uppercase) {
+            true => format!("write `model {capital}`"),
+            false => "write for example `model HeavyTop`".to_owned(),
+        }));
+    }
+}
+
 /// Reads all declarations of a model.
 pub fn declare(model: &Model, errors: &mut Errors) -> Declared {
     let mut symbols = Symbols::default();
+    model_name(&model.name, errors);
     let (mut time_index, mut step_name) = ("k".to_owned(), "h".to_owned());
     let mut step_place = None;
     for statement in &model.statements {
@@ -58,6 +106,7 @@ pub fn declare(model: &Model, errors: &mut Errors) -> Declared {
             time_index = index.text.clone();
             step_name = step.text.clone();
             step_place = Some(step.place);
+            errors.extend(unusable(step));
         }
     }
     let step = symbols.add(&step_name, Shape::SCALAR, Structure::General, Role::Step);
@@ -141,6 +190,7 @@ impl Declared {
                     velocity,
                     group: kind,
                     place: name.place,
+                    group_place: group.place,
                     update: None,
                     stated: false,
                 });
@@ -177,14 +227,10 @@ impl Declared {
     /// Whether the name is free; reports it otherwise.
     pub fn admit(&mut self, name: &Name, errors: &mut Errors) -> bool {
         let text = name.text.as_str();
-        if RESERVED.contains(&text) || FUNCTIONS.contains(&text) {
-            errors.push(
-                Diagnostic::new(
-                    name.place,
-                    format!("`{text}` has a fixed meaning in the language"),
-                )
-                .help("choose another name"),
-            );
+        if let Some(d) = unusable(name) {
+            errors.push(d);
+            // Later uses of the name must not be reported as well.
+            self.places.push((name.text.clone(), name.place));
             return false;
         }
         if let Some((_, first)) = self.places.iter().find(|(n, _)| n == text) {

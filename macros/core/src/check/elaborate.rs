@@ -2,12 +2,13 @@
 //! `Id`, `0` and `E1 E2 E3` take theirs from the context.
 
 use super::declare::Declared;
-use super::messages::shape_text;
+use super::messages::{self, shape_text};
 use crate::algebra::{Algebra, Rational};
 use crate::diagnostic::{Diagnostic, Errors, Place, closest};
 use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Function, Part, Shift};
+use crate::syntax::FUNCTIONS;
 use crate::syntax::ast::{Expression, Kind, Name};
 
 /// Elaborates the expressions of one model.
@@ -18,6 +19,18 @@ pub struct Elaborator<'a> {
 
 /// Longest product: its derivatives grow with the square of its length.
 const LONGEST_PRODUCT: usize = 40;
+
+/// What the functions of the language are called elsewhere.
+const OTHERWISE: [(&str, &str); 8] = [
+    ("trace", "tr(A)"),
+    ("determinant", "det(A)"),
+    ("inverse", "inv(A)"),
+    ("transpose", "A^T"),
+    ("ln", "log(a)"),
+    ("inner", "dot(a, b)"),
+    ("norm", "sqrt(dot(a, a))"),
+    ("previous", "prev(a)"),
+];
 
 /// Unit vectors along the first axes.
 const UNITS: [&str; 3] = ["E1", "E2", "E3"];
@@ -239,11 +252,19 @@ impl<'a> Elaborator<'a> {
         let bound = self.bindings.iter().map(|(b, _)| b);
         let mut d = Diagnostic::new(place, format!("`{n}` is not declared"));
         if self.names.was_declared(n) {
-            d = Diagnostic::new(place, format!("`{n}` has a faulty declaration"));
+            d = Diagnostic::following(place, format!("`{n}` has a faulty declaration"));
         } else if n == "T" {
             d = d.help("`T` is the transpose and only stands after `^`");
         } else if let Some(near) = closest(n, declared.chain(bound).map(String::as_str)) {
             d = d.help(format!("did you mean `{near}`?"));
+        } else if let Some((_, written)) = OTHERWISE.iter().find(|(other, _)| *other == n) {
+            d = d.help(format!("the language writes `{written}`"));
+        } else if let Some(near) = closest(n, FUNCTIONS) {
+            d = d.help(format!("did you mean the function `{near}`?"));
+        } else if n == self.names.time_index {
+            d = d.help(format!(
+                "`{n}` is the time index; `next(x)` is `x` at the node after"
+            ));
         } else {
             d = d.help(format!("declare it, for example `param {n}: Real;`"));
         }
@@ -373,10 +394,12 @@ impl<'a> Elaborator<'a> {
         let f = name.text.as_str();
         let count = if matches!(f, "dot" | "cross") { 2 } else { 1 };
         if args.len() != count {
-            return fail(Diagnostic::new(
-                place,
-                format!("`{f}` takes {count} argument(s), {} given", args.len()),
-            ));
+            let (wanted, example) = match count {
+                1 => ("one argument", format!("{f}(a)")),
+                _ => ("two arguments", format!("{f}(a, b)")),
+            };
+            let message = format!("`{f}` takes {wanted}, {} given", args.len());
+            return fail(Diagnostic::new(place, message).help(format!("write `{example}`")));
         }
         let three = |a: &Expr, at: Place| {
             if a.shape() == Shape::vector(Dim::Fixed(3)) {
@@ -478,7 +501,17 @@ impl<'a> Elaborator<'a> {
                 } else {
                     Shift::PREVIOUS
                 };
-                Ok(expr::shift_time(symbols, &a, by.time))
+                let shifted = expr::shift_time(symbols, &a, by.time);
+                for l in expr::letters(&shifted) {
+                    if symbols.get(l.symbol).role == Role::Velocity {
+                        let name = &symbols.get(l.symbol).name;
+                        return fail(messages::shifted_velocity(place, name));
+                    }
+                    if !messages::EDGE.contains(&l.shift.time) {
+                        return fail(messages::shift_too_far(place));
+                    }
+                }
+                Ok(shifted)
             }
             _ => fail(
                 Diagnostic::new(

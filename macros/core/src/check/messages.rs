@@ -101,21 +101,25 @@ pub fn unused_velocity(spec: &Spec, c: &Configuration) -> Diagnostic {
     .help(format!("add a kinetic term, for example `-tr(J*{v})/h`"))
 }
 
-pub fn shift_too_far(spec: &Spec) -> Diagnostic {
+/// Time levels of the edge of one step.
+pub const EDGE: core::ops::RangeInclusive<i8> = 0..=1;
+
+pub fn shift_too_far(place: Place) -> Diagnostic {
     Diagnostic::new(
-        spec.lagrangian_place,
-        "the action of one step involves one edge only: its start and `next(...)`, its end",
+        place,
+        "this lies outside the edge of the step, which has a start and an end, `next(...)`",
     )
     .help("shift the whole term by one step: `x * prev(x)` is `next(x) * x`")
 }
 
-pub fn shifted_velocity(spec: &Spec, velocity: SymbolId) -> Diagnostic {
-    let v = &spec.symbols.get(velocity).name;
+pub fn shifted_velocity(place: Place, velocity: &str) -> Diagnostic {
     Diagnostic::new(
-        spec.lagrangian_place,
-        format!("the velocity `{v}` lives on the edge itself and cannot be taken on another one"),
+        place,
+        format!(
+            "the velocity `{velocity}` lives on the edge itself and cannot be taken on another one"
+        ),
     )
     .help(format!(
-        "write `{v}` for the velocity of the step from k to k+1"
+        "write `{velocity}` for the velocity of the step from k to k+1"
     ))
 }

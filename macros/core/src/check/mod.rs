@@ -164,6 +164,8 @@ fn finish(
                 side,
                 update,
                 place,
+                name_place: g.place,
+                group_place: g.group_place,
             }),
             None => errors.push(messages::not_a_reconstruction(&declared.symbols, g, place)),
         }
@@ -179,6 +181,7 @@ fn finish(
                 definition_place: a.definition.as_ref().map(|(_, p)| *p),
                 update,
                 place,
+                name_place: a.place,
             })
         })
         .collect();
@@ -224,11 +227,12 @@ fn usage(spec: &Spec) -> Result<(), Errors> {
         );
     }
     for l in &used {
-        if l.shift.time.abs() > 1 || l.shift.time < 0 {
-            errors.push(messages::shift_too_far(spec));
+        if !messages::EDGE.contains(&l.shift.time) {
+            errors.push(messages::shift_too_far(spec.lagrangian_place));
         }
         if spec.symbols.get(l.symbol).role == Role::Velocity && l.shift != Shift::HERE {
-            errors.push(messages::shifted_velocity(spec, l.symbol));
+            let name = &spec.symbols.get(l.symbol).name;
+            errors.push(messages::shifted_velocity(spec.lagrangian_place, name));
         }
     }
     errors.propagate()

@@ -25,7 +25,10 @@ fn size(symbols: &Symbols, s: &Size, errors: &mut Errors) -> Option<Dim> {
                     *place,
                     format!("a size is between 2 and {LARGEST}, not {n}"),
                 )
-                .help("a single number is `Real`"),
+                .help(match n {
+                    0 | 1 => "a single number is `Real`",
+                    _ => "take a smaller system, or split it into blocks",
+                }),
             );
             None
         }
@@ -55,7 +58,15 @@ fn sizes(symbols: &Symbols, k: &Kindred, count: usize, errors: &mut Errors) -> O
         errors.push(
             Diagnostic::new(
                 k.place,
-                format!("`{name}` takes {count} size(s), {} given", k.sizes.len()),
+                format!(
+                    "`{name}` takes {}, {} given",
+                    match count {
+                        0 => "no size",
+                        1 => "one size",
+                        _ => "two sizes",
+                    },
+                    k.sizes.len()
+                ),
             )
             .help(format!("write {example}")),
         );
@@ -107,6 +118,22 @@ pub fn advected_shape(
     shape(symbols, k, errors)
 }
 
+/// A shape or a group as written.
+fn written(k: &Kindred) -> String {
+    let sizes: Vec<String> = k
+        .sizes
+        .iter()
+        .map(|s| match s {
+            Size::Number(n, _) => n.to_string(),
+            Size::Name(name) => name.text.clone(),
+        })
+        .collect();
+    match sizes.is_empty() {
+        true => k.name.text.clone(),
+        false => format!("{}<{}>", k.name.text, sizes.join(", ")),
+    }
+}
+
 /// A group of the table.
 pub fn group(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<Group> {
     match k.name.text.as_str() {
@@ -116,9 +143,14 @@ pub fn group(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<Grou
             errors.push(
                 Diagnostic::new(
                     k.place,
-                    format!("the group `{}` is not in this version's table of groups", k.name.text),
+                    format!("`{}` is not in this version's table of groups", written(k)),
                 )
-                .help("the groups are SO<n> and GL<n>; SU<2> covers SO<3>, and SE<3> can be stated by its rotation and an advected vector"),
+                .help(match k.name.text.as_str() {
+                    "SU" => {
+                        "the groups are SO<n> and GL<n>; SU<2> covers SO<3>, which takes its place"
+                    }
+                    _ => "the groups are SO<n> and GL<n>",
+                }),
             );
             None
         }

@@ -54,6 +54,10 @@ pub struct Configuration {
     pub update: Expr,
     /// Where the constraint stands.
     pub place: Place,
+    /// Where its name stands in its declaration.
+    pub name_place: Place,
+    /// Where its group stands.
+    pub group_place: Place,
 }
 
 /// A quantity carried by the group.
@@ -69,6 +73,8 @@ pub struct Advected {
     pub update: Expr,
     /// Where the constraint stands.
     pub place: Place,
+    /// Where its name stands in its declaration.
+    pub name_place: Place,
 }
 
 /// A condition on the parameters, checked when they are given.

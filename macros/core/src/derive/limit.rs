@@ -95,7 +95,7 @@ pub fn limit(
         if expr::contains(&value, at(spec.step, Shift::HERE)) {
             return Err("the step stands inside a function or root".to_owned());
         }
-        if constant || order > Rational::ONE {
+        if constant || order > Rational::ONE || algebra.is_zero(&value) {
             continue;
         }
         if order < Rational::ONE {

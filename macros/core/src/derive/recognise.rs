@@ -6,10 +6,10 @@ use super::Letters;
 use super::balance::{Balance, shorter};
 use super::variation::at;
 use crate::algebra::{Algebra, Factor, Monomial, Poly, Source};
-use crate::check::spec::Spec;
+use crate::check::spec::{Side, Spec};
 use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::{Role, SymbolId};
-use crate::expr::{self, Expr, Shift};
+use crate::expr::{self, Expr, Letter, Shift};
 
 /// The Riccati form of one balance.
 #[derive(Clone, Debug)]
@@ -69,8 +69,13 @@ pub fn recognise(spec: &Spec, letters: &Letters, balances: &[Balance], algebra: 
         size == Dim::Fixed(3) && spec.configurations[i].group.is_orthogonal()
     };
     let (method, reason) = match riccati.as_slice() {
+        [Riccati::Exact(mv)] if three(0) && mv.symmetric && !is_constant(letters, mv) => (
+            Method::Newton,
+            "C depends on the step or changes along the motion: Newton on the derived residual"
+                .to_owned(),
+        ),
         [Riccati::Exact(mv)] if three(0) && mv.symmetric => {
-            if is_free(spec, letters, balances, mv) {
+            if is_free(spec, balances, mv) {
                 (
                     Method::FreeMoserVeselov,
                     "C is constant and no node term acts, so κ is conserved: solved once, every step explicit".to_owned(),
@@ -78,8 +83,7 @@ pub fn recognise(spec: &Spec, letters: &Letters, balances: &[Balance], algebra: 
             } else {
                 (
                     Method::ForcedMoserVeselov,
-                    "C is symmetric and free of velocities: explicit after one quartic a step"
-                        .to_owned(),
+                    "C is constant and symmetric: explicit after one quartic a step".to_owned(),
                 )
             }
         }
@@ -108,18 +112,19 @@ pub fn recognise(spec: &Spec, letters: &Letters, balances: &[Balance], algebra: 
     }
 }
 
-/// Whether the motion is free: constant `C`, and nothing but the velocity moves the momentum.
-fn is_free(spec: &Spec, letters: &Letters, balances: &[Balance], mv: &MoserVeselov) -> bool {
+/// Whether `C` is made of parameters only: it is then validated once.
+fn is_constant(letters: &Letters, mv: &MoserVeselov) -> bool {
     let s = &letters.symbols;
-    let constant = expr::letters(&mv.factor)
+    let letters = expr::letters(&mv.factor);
+    letters
         .iter()
-        .all(|l| matches!(s.get(l.symbol).role, Role::Parameter | Role::Step));
-    let body = spec.configurations[0].side == crate::check::spec::Side::Body;
-    constant
-        && body
-        && mv.rest.is_zero()
-        && balances[0].node_out.is_zero()
-        && balances[0].node_in.is_zero()
+        .all(|l| s.get(l.symbol).role == Role::Parameter)
+}
+
+/// Whether the motion is free: nothing but the velocity moves the momentum.
+fn is_free(spec: &Spec, balances: &[Balance], mv: &MoserVeselov) -> bool {
+    let body = spec.configurations[0].side == Side::Body;
+    body && mv.rest.is_zero() && balances[0].node_out.is_zero() && balances[0].node_in.is_zero()
 }
 
 fn riccati(spec: &Spec, letters: &Letters, b: &Balance, i: usize, algebra: &Algebra) -> Riccati {
@@ -129,7 +134,18 @@ fn riccati(spec: &Spec, letters: &Letters, b: &Balance, i: usize, algebra: &Alge
         return Riccati::None("the group is not orthogonal".to_owned());
     }
     let n = c.group.size();
-    let outgoing = b.outgoing.clone();
+    // What stands at the end of the edge depends on the velocity: written so, it shows.
+    let forward: Vec<(Letter, Expr)> = spec
+        .advected
+        .iter()
+        .map(|a| (at(a.quantity, Shift::NEXT), a.update.clone()))
+        .chain(
+            spec.configurations
+                .iter()
+                .map(|c| (at(c.element, Shift::NEXT), c.update.clone())),
+        )
+        .collect();
+    let outgoing = expr::substitute(s, &b.outgoing, &forward);
     let matrix = if n == Dim::Fixed(3) {
         expr::hat(outgoing)
     } else {

@@ -179,9 +179,9 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
     let solver = format!(
         "{}: {}",
         match d.solve.method {
-            Method::FreeMoserVeselov => "Moser-Veselov, explicit, constants of the trajectory",
-            Method::ForcedMoserVeselov => "Moser-Veselov, explicit",
-            Method::Newton => "Newton on the group",
+            Method::FreeMoserVeselov => "Moser-Veselov",
+            Method::ForcedMoserVeselov => "Moser-Veselov",
+            Method::Newton => "Newton",
         },
         d.solve.reason
     );

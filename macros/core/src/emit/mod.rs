@@ -77,7 +77,7 @@ pub fn emit(d: &Derivation, documented: bool) -> TokenStream {
     );
     quote! {
         #[doc = #about]
-        #[allow(non_snake_case, uncommon_codepoints, mixed_script_confusables, clippy::all)]
+        #[allow(non_snake_case, uncommon_codepoints, mixed_script_confusables, confusable_idents, clippy::all)]
         #visibility mod #module {
             use ::clebsch::emitted::*;
             #(#items)*
