@@ -1,11 +1,13 @@
-//! Every mistake is reported, not only the first.
+//! Every mistake is reported, not only the first, and none that only follows from another.
 
 clebsch::model! {
     model Top {
         param J: Symm<3>;
+        param g, z: Vec<3>;
         group Λ: SO<3> velocity Ω;
-        constraint next(Λ) = Λ*Q;
-        lagrangian = -Tr(J*Ω)/k;
+        advected Γ: Vec<3> = Λ^T*Z;
+        constraint next(Λ) = Λ*Omega;
+        lagrangian = -tr(J*Ω)/h - h*dot(g, Γ);
     }
 }
 

@@ -135,18 +135,18 @@ impl Errors {
         }
     }
 
-    /// One `compile_error!` for each mistake, spanned over its tokens.
-    pub fn to_compile_error(&self) -> TokenStream {
-        self.list
-            .iter()
-            .map(|d| {
-                let mut error = compile_error(d.place, &d.text());
-                for (place, text) in &d.also {
-                    error.extend(compile_error(*place, text));
-                }
-                error
-            })
-            .collect()
+    /// One `compile_error!` for each place, spanned over its tokens.
+    pub fn to_compile_errors(&self) -> Vec<TokenStream> {
+        let mut all = Vec::new();
+        for d in &self.list {
+            all.push(compile_error(d.place, &d.text()));
+            all.extend(
+                d.also
+                    .iter()
+                    .map(|(place, text)| compile_error(*place, text)),
+            );
+        }
+        all
     }
 
     /// The mistakes as text for a terminal: file, line, column, the line itself and carets.

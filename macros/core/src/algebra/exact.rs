@@ -13,7 +13,7 @@ const PRIME: u64 = (1 << 61) - 1;
 const POINTS: u64 = 6;
 
 /// Attempts to find a point where every root exists and every divisor is non-zero.
-const ATTEMPTS: u64 = 400;
+const ATTEMPTS: u64 = 100;
 
 /// Size taken for a named dimension, by turns.
 const SIZES: [usize; 2] = [3, 4];

@@ -25,6 +25,9 @@ use std::cell::{Cell, RefCell};
 /// thousand; the bound keeps any input of 10 kB below two seconds.
 const WORK_LIMIT: u64 = 150_000;
 
+/// Nodes evaluated at exact points for one model; beyond it only normal forms decide.
+const EVALUATION_LIMIT: u64 = 300_000;
+
 /// Longest word and largest number of terms kept; beyond that the work is refused too.
 const TERM_LIMIT: usize = 4_000;
 
@@ -35,6 +38,7 @@ pub struct Algebra<'a> {
     matrices: RefCell<Vec<Opaque>>,
     numbers: RefCell<Vec<Opaque>>,
     work: Cell<u64>,
+    evaluated: Cell<u64>,
 }
 
 /// How an identity was decided.
@@ -61,6 +65,7 @@ impl<'a> Algebra<'a> {
             matrices: RefCell::default(),
             numbers: RefCell::default(),
             work: Cell::new(0),
+            evaluated: Cell::new(0),
         }
     }
 
@@ -87,7 +92,13 @@ impl<'a> Algebra<'a> {
         if normal.is_zero() {
             return Some(Known::NormalForm);
         }
-        exact::vanishes(self.symbols, e).then_some(Known::ExactEvaluation)
+        self.vanishes_at_points(e).then_some(Known::ExactEvaluation)
+    }
+
+    fn vanishes_at_points(&self, e: &Expr) -> bool {
+        let spent = self.evaluated.get().saturating_add(u64::from(e.size()));
+        self.evaluated.set(spent);
+        spent <= EVALUATION_LIMIT && exact::vanishes(self.symbols, e)
     }
 
     /// Whether the expression vanishes identically.
@@ -98,7 +109,7 @@ impl<'a> Algebra<'a> {
     /// Whether two expressions of one shape agree at exact random points: cheaper than
     /// [`Algebra::equal`] when, as a rule, they do not.
     pub fn agree(&self, a: &Expr, b: &Expr) -> bool {
-        exact::vanishes(self.symbols, &crate::expr::sub(a.clone(), b.clone()))
+        self.vanishes_at_points(&crate::expr::sub(a.clone(), b.clone()))
     }
 
     /// Whether two expressions of one shape are the same.

@@ -7,7 +7,7 @@ use super::spec::{Dimension, Group};
 use crate::diagnostic::{Diagnostic, Errors, Place, closest};
 use crate::expr::Expr;
 use crate::expr::shape::{Shape, Structure};
-use crate::expr::symbol::{Role, SymbolId, Symbols};
+use crate::expr::symbol::{Role, SymbolId, Symbols, ascii};
 use crate::syntax::FUNCTIONS;
 use crate::syntax::ast::{Model, Name, Statement};
 
@@ -57,6 +57,11 @@ const RUST: [&str; 53] = [
     "ref", "return", "self", "static", "struct", "super", "trait", "true", "try", "type", "typeof",
     "unsafe", "unsized", "use", "virtual", "where", "while", "yield",
 ];
+
+/// Whether Rust keeps the word for itself.
+pub fn is_rust_word(name: &str) -> bool {
+    RUST.contains(&name)
+}
 
 /// What is wrong with a name whatever else is declared.
 fn unusable(name: &Name) -> Option<Diagnostic> {
@@ -237,6 +242,20 @@ impl Declared {
             errors.push(
                 Diagnostic::new(name.place, format!("`{text}` is declared twice"))
                     .also(*first, format!("`{text}` is declared here first")),
+            );
+            return false;
+        }
+        if let Some((other, first)) = self.places.iter().find(|(n, _)| ascii(n) == ascii(text)) {
+            errors.push(
+                Diagnostic::new(
+                    name.place,
+                    format!(
+                        "in files `{text}` and `{other}` are one name, `{}`",
+                        ascii(text)
+                    ),
+                )
+                .help("choose names that differ when Greek letters are spelt out")
+                .also(*first, format!("`{other}` is declared here")),
             );
             return false;
         }

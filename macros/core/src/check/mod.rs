@@ -12,6 +12,8 @@ use crate::diagnostic::{Diagnostic, Errors};
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::syntax::ast::{Model, NodeRule, Statement};
+pub(crate) use declare::is_rust_word;
+
 use declare::Declared;
 use elaborate::Elaborator;
 use spec::{Advected, Assumption, Configuration, Spec};

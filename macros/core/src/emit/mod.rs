@@ -39,7 +39,7 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
     if let Some(c) = d.spec.configurations.iter().find(|c| !rotations(c.group)) {
         return Some(
             Diagnostic::new(
-                c.place,
+                c.group_place,
                 "this version emits steppers for SO<3> and products of it only",
             )
             .help("`clebsch derive` prints the equations for SO<n> and GL<n>"),
@@ -54,7 +54,7 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
             .help("`clebsch derive` prints the equations for any number"),
         );
     }
-    None
+    names::refusal(d)
 }
 
 /// The Rust items of a model. `documented` puts the whole derivation into the rustdoc of the model.
@@ -87,8 +87,9 @@ pub fn emit(d: &Derivation, documented: bool) -> TokenStream {
     }
 }
 
-/// The errors, and empty items under the model's names: code that uses them then reports nothing
-/// of its own about missing names.
+/// The errors, and types without meaning under the model's names. The first error is the model's
+/// type, which makes it and everything said of it an error already reported: code that uses the
+/// model adds nothing of its own.
 pub fn fallback(tokens: &TokenStream, errors: &Errors) -> TokenStream {
     let mut after_model = false;
     let mut name: Option<Ident> = None;
@@ -101,25 +102,28 @@ pub fn fallback(tokens: &TokenStream, errors: &Errors) -> TokenStream {
             after_model = word == "model";
         }
     }
-    let messages = errors.to_compile_error();
-    let Some(name) = name else {
-        return messages;
+    let mut messages = errors.to_compile_errors().into_iter();
+    let name = name.filter(|n| !crate::check::is_rust_word(&n.to_string()));
+    let (Some(name), Some(first)) = (name, messages.next()) else {
+        return errors.to_compile_errors().into_iter().collect();
     };
-    let items = [
-        "",
+    let suffixes = [
         "Parameters",
         "Initial",
         "State",
         "Workspace",
         "Configuration",
-    ]
-    .map(|suffix| {
-        let item = format_ident!("{name}{suffix}");
-        quote! {
+    ];
+    let others = suffixes.map(|suffix| format_ident!("{name}{suffix}"));
+    quote! {
+        #[doc(hidden)]
+        #[allow(dead_code, non_camel_case_types)]
+        pub type #name<T = ::core::primitive::f64> = #first;
+        #(
             #[doc(hidden)]
-            #[allow(dead_code)]
-            pub struct #item<T = ::core::primitive::f64>(::core::marker::PhantomData<T>);
-        }
-    });
-    quote!(#messages #(#items)*)
+            #[allow(dead_code, non_camel_case_types)]
+            pub type #others<T = ::core::primitive::f64> = #name<T>;
+        )*
+        #(#messages)*
+    }
 }

@@ -2,6 +2,7 @@
 //! name of the model hides them.
 
 use crate::derive::Derivation;
+use crate::diagnostic::Diagnostic;
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
@@ -18,7 +19,7 @@ impl Names {
     pub fn new(d: &Derivation) -> Names {
         let s = &d.letters.symbols;
         Names {
-            module: snake(&d.spec.name),
+            module: module(&d.spec.name),
             taken: s.ids().map(|id| s.get(id).name.clone()).collect(),
         }
     }
@@ -36,6 +37,96 @@ impl Names {
 /// The symbol's own name, which its field or method bears.
 pub fn own(d: &Derivation, id: SymbolId) -> Ident {
     format_ident!("{}", d.letters.symbols.get(id).name)
+}
+
+/// Types, traits and variants that emitted code calls by a plain name: no model can bear one.
+const TYPES: [&str; 30] = [
+    "BodyMomentum",
+    "Box",
+    "Card",
+    "Conserved",
+    "Err",
+    "Field",
+    "Free",
+    "Group",
+    "Invariant",
+    "Kind",
+    "MoserVeselovError",
+    "None",
+    "Ok",
+    "OpenError",
+    "Option",
+    "ParameterError",
+    "Poinsot",
+    "Real",
+    "Result",
+    "Rotation",
+    "SMatrix",
+    "SVector",
+    "Some",
+    "SpatialMomentum",
+    "StartError",
+    "StepCause",
+    "StepError",
+    "T",
+    "Trajectory",
+    "Vec",
+];
+
+/// Methods and constants that every model has.
+const MEMBERS: [&str; 14] = [
+    "CARD",
+    "FINGERPRINT",
+    "SOURCE",
+    "balance",
+    "edge_momentum",
+    "energies",
+    "energy",
+    "new",
+    "node",
+    "open",
+    "parameters",
+    "refused",
+    "start",
+    "step",
+];
+
+/// The model, a configuration or an advected quantity whose name emitted items need for
+/// something else. Parameters and velocities are free: they become fields and locals only.
+pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
+    let spec = &d.spec;
+    let model = spec.name.as_str();
+    if TYPES.contains(&model) {
+        let message = format!("`{model}` is a name that emitted steppers use for something else");
+        return Some(
+            Diagnostic::new(spec.name_place, message)
+                .help(format!("write for example `model {model}Model`")),
+        );
+    }
+    let momenta = ["momentum", "body_momentum", "spatial_momentum"];
+    let momenta = (0..spec.configurations.len())
+        .flat_map(|i| momenta.map(|base| per_configuration(d, base, i).to_string()));
+    let invariants = d.invariants.iter().map(|v| v.name.clone());
+    let taken: Vec<String> = MEMBERS
+        .iter()
+        .map(|m| (*m).to_owned())
+        .chain(momenta)
+        .chain(invariants)
+        .collect();
+    let elements = spec
+        .configurations
+        .iter()
+        .map(|c| (c.element, c.name_place));
+    let advected = spec.advected.iter().map(|a| (a.quantity, a.name_place));
+    for (id, place) in elements.chain(advected) {
+        let name = &d.letters.symbols.get(id).name;
+        if taken.contains(name) {
+            let message =
+                format!("`{name}` is already a function of the model's stepper or of its state");
+            return Some(Diagnostic::new(place, message).help("choose another name"));
+        }
+    }
+    None
 }
 
 /// What emitted functions call by a plain name, and what they name themselves: a local of the
@@ -143,8 +234,27 @@ pub fn per_configuration(d: &Derivation, base: &str, i: usize) -> Ident {
     }
 }
 
+/// The module of a model: its name in lower case, away from words of Rust (`model Loop`) and from
+/// crates whose names the user's code may need (`model Core`).
+fn module(model: &str) -> String {
+    let mut name = snake(model);
+    let crates = [
+        "alloc",
+        "clebsch",
+        "core",
+        "nalgebra",
+        "proc_macro",
+        "std",
+        "test",
+    ];
+    if crate::check::is_rust_word(&name) || crates.contains(&name.as_str()) {
+        name.push_str("_model");
+    }
+    name
+}
+
 /// `HeavyTop` as `heavy_top`.
-pub fn snake(name: &str) -> String {
+fn snake(name: &str) -> String {
     separated(name, '_')
 }
 

@@ -50,7 +50,7 @@ pub fn expression(c: &mut Cursor) -> Parsed {
 
 fn starts_operand(c: &Cursor) -> bool {
     match c.peek() {
-        Some(Token::Name(n)) => !FOLLOWING.contains(&n.as_str()),
+        Some(Token::Name(n)) => !FOLLOWING.contains(&n.as_str()) && !c.starts_statement(),
         Some(Token::Number(_)) => true,
         Some(Token::Open(d)) => *d == '(',
         Some(Token::Literal(_) | Token::Punct(..) | Token::Close(_)) | None => false,

@@ -3,31 +3,8 @@
 
 use super::ast::{Comparison, Kindred, Model, Name, NodeRule, Size, Statement};
 use super::expression::expression;
-use super::token::{Cursor, Token};
+use super::token::{Cursor, KEYWORDS, Token};
 use crate::diagnostic::{Diagnostic, Errors, closest};
-
-/// Keywords that start a statement.
-const KEYWORDS: [&str; 19] = [
-    "dim",
-    "time",
-    "label",
-    "grid",
-    "param",
-    "assume",
-    "group",
-    "field",
-    "advected",
-    "constraint",
-    "let",
-    "hold",
-    "given",
-    "mesh",
-    "linear",
-    "scale",
-    "node",
-    "integrate",
-    "lagrangian",
-];
 
 /// Parses a whole model.
 pub fn model(c: &mut Cursor) -> Result<Model, Errors> {

@@ -10,6 +10,29 @@ const DEEPEST: usize = 100;
 /// Longest model, in tokens.
 const LONGEST: usize = 20_000;
 
+/// Keywords that start a statement.
+pub const KEYWORDS: [&str; 19] = [
+    "dim",
+    "time",
+    "label",
+    "grid",
+    "param",
+    "assume",
+    "group",
+    "field",
+    "advected",
+    "constraint",
+    "let",
+    "hold",
+    "given",
+    "mesh",
+    "linear",
+    "scale",
+    "node",
+    "integrate",
+    "lagrangian",
+];
+
 /// One flat token.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Token {
@@ -219,11 +242,30 @@ impl Cursor {
         if self.take_punct(c) {
             return Ok(());
         }
-        let mut error = self.unexpected(&format!("`{c}`"));
-        if c == ';' {
-            error = error.help("every statement ends with `;`");
+        if c != ';' {
+            return Err(self.unexpected(&format!("`{c}`")));
         }
-        Err(error)
+        let ends = matches!(self.peek(), Some(Token::Close('}')) | None);
+        let mut error = self.unexpected("`;`");
+        if ends || self.starts_statement() {
+            error = self.unexpected("`;` after this");
+            error.place = self.last_place();
+        }
+        Err(error.help("every statement ends with `;`"))
+    }
+
+    /// Whether the next tokens read as the start of a statement, not as a factor of a product
+    /// that happens to bear the name of a keyword.
+    pub fn starts_statement(&self) -> bool {
+        let Some(Token::Name(word)) = self.peek() else {
+            return false;
+        };
+        let goes_on = match self.peek_at(1) {
+            Some(Token::Name(_)) => true,
+            Some(Token::Punct('=', _)) => word == "lagrangian",
+            _ => false,
+        };
+        goes_on && KEYWORDS.contains(&word.as_str())
     }
 
     /// Reads this delimiter or fails.

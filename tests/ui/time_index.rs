@@ -1,0 +1,12 @@
+//! The time index is no quantity.
+
+clebsch::model! {
+    model Top {
+        param J: Sym<3>;
+        group Λ: SO<3> velocity Ω;
+        constraint next(Λ) = Λ*Ω;
+        lagrangian = -tr(J*Ω)/k;
+    }
+}
+
+fn main() {}
