@@ -58,6 +58,16 @@ pub enum Problem {
         /// The entry.
         value: f64,
     },
+    /// The matrix must be a rotation and is not: either its columns are not orthonormal, or it
+    /// turns left into right.
+    NotOrthogonal {
+        /// Largest entry of `A^T A - 1`.
+        deviation: f64,
+        /// Its determinant.
+        determinant: f64,
+    },
+    /// The matrix must be invertible and is not, to working precision.
+    NotInvertible,
     /// The number must be positive and is not.
     NotPositive {
         /// The number.
@@ -99,6 +109,14 @@ impl fmt::Display for Problem {
             Self::NotDiagonal { row, column, value } => {
                 write!(f, "not diagonal: entry ({row}, {column}) is {value}")
             }
+            Self::NotOrthogonal {
+                deviation,
+                determinant,
+            } => write!(
+                f,
+                "no rotation: A^T A differs from 1 by {deviation}, and the determinant is {determinant}"
+            ),
+            Self::NotInvertible => write!(f, "not invertible"),
             Self::NotPositive { value } => write!(f, "{value} is not positive"),
             Self::AssumptionFails { text } => write!(f, "the assumption `{text}` does not hold"),
             Self::Poinsot(error) => write!(f, "{error}"),

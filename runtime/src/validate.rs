@@ -1,6 +1,7 @@
 //! Checks of parameters and initial values, as emitted constructors call them.
 //! Takes a name and a value; gives nothing, or a [`ParameterError`] with the offending numbers.
 
+use crate::linalg::{determinant, inverse};
 use crate::{ParameterError, Problem, Real};
 use nalgebra::SMatrix;
 
@@ -106,6 +107,49 @@ pub fn diagonal<T: Real, const N: usize>(
     Ok(())
 }
 
+/// The matrix is a rotation, up to rounding: an inverse is taken to be a transpose.
+///
+/// # Errors
+/// Carries the deviation from orthonormal columns and the determinant.
+pub fn orthogonal<T: Real, const N: usize>(
+    field: &'static str,
+    matrix: &SMatrix<T, N, N>,
+) -> Result<(), ParameterError> {
+    let defect = matrix.tr_mul(matrix) - SMatrix::identity();
+    let deviation = defect.iter().fold(0.0, |m: f64, x| m.max(x.magnitude()));
+    let determinant = determinant(matrix);
+    // Entries of a rotation are at most 1. Written so that NaN is refused.
+    if deviation <= ROUNDINGS * T::EPSILON && determinant.least() > 0.0 {
+        return Ok(());
+    }
+    Err(ParameterError {
+        field,
+        problem: Problem::NotOrthogonal {
+            deviation,
+            determinant: determinant.least(),
+        },
+        remedy: "give a rotation matrix with all its digits",
+    })
+}
+
+/// The matrix has an inverse, to working precision.
+///
+/// # Errors
+/// When elimination finds no pivot.
+pub fn invertible<T: Real, const N: usize>(
+    field: &'static str,
+    matrix: &SMatrix<T, N, N>,
+) -> Result<(), ParameterError> {
+    match inverse(matrix) {
+        Some(_) => Ok(()),
+        None => Err(ParameterError {
+            field,
+            problem: Problem::NotInvertible,
+            remedy: "give a matrix with a determinant that is not zero",
+        }),
+    }
+}
+
 /// The step size is positive and finite, in every lane.
 ///
 /// # Errors
@@ -188,6 +232,12 @@ mod tests {
         assert!(skew("A", &Matrix2::new(0.1, 2.0, -2.0, 0.0)).is_err());
         assert!(diagonal("D", &Matrix2::new(1.0, 0.0, 0.0, 2.0)).is_ok());
         assert!(diagonal("D", &Matrix2::new(1.0, 1e-300, 0.0, 2.0)).is_err());
+        assert!(orthogonal("R", &Matrix2::new(0.6, -0.8, 0.8, 0.6)).is_ok());
+        assert!(orthogonal("R", &Matrix2::new(0.6, 0.8, 0.8, -0.6)).is_err());
+        assert!(orthogonal("R", &Matrix2::new(0.6, -0.8, 0.8, 0.600_001)).is_err());
+        assert!(orthogonal("R", &Matrix2::new(f64::NAN, 0.0, 0.0, 1.0)).is_err());
+        assert!(invertible("A", &Matrix2::new(1.0, 2.0, 3.0, 4.0)).is_ok());
+        assert!(invertible("A", &Matrix2::new(1.0, 2.0, 2.0, 4.0)).is_err());
         assert!(positive_step(0.1).is_ok());
         assert!(positive_step(0.0).is_err());
         assert!(positive_step(f64::NAN).is_err());

@@ -197,6 +197,13 @@ fn random_lagrangians_of_odd_seeds() {
     random_lagrangians_agree((1..LAGRANGIANS).step_by(2));
 }
 
+/// Lagrangians further on whose derivations once went wrong: a determinant of a singular matrix, whose
+/// derivative is its adjugate and not the determinant times an inverse.
+#[test]
+fn random_lagrangians_that_were_hard() {
+    random_lagrangians_agree([1384].into_iter());
+}
+
 #[test]
 fn more_than_a_hundred_carry_vectors_or_symmetric_matrices() {
     let (mut vectors, mut matrices, mut either, mut spatial) = (0, 0, 0, 0);

@@ -165,6 +165,20 @@ fn explosions() -> Vec<(&'static str, String)> {
         ("negative power", top("", &format!("(2+({vectors})^2)^-64"))),
         ("product of sums", top("", &format!("tr({product})"))),
         (
+            "determinant of a product of sums",
+            top(
+                "",
+                &format!("det(Id+{})^-1", joined(16, "*", |_| "(Ω+S)".to_owned())),
+            ),
+        ),
+        (
+            "product of a named sum",
+            top(
+                "let W = c*I1(S) + c*I2(S) + det(S) - c/2*log(1+tr(S)^2);",
+                &joined(10, " ", |_| "h*W".to_owned()),
+            ),
+        ),
+        (
             "product of scalar sums",
             top("", &joined(60, "*", |_| "(c+dot(Γ,gU)+tr(S))".to_owned())),
         ),

@@ -4,6 +4,7 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
+use std::io::Write as _;
 
 /// Bytes alive on one thread beyond which allocations are refused: four times what is allowed.
 const REFUSED: isize = 2_000_000_000;
@@ -24,9 +25,16 @@ fn count(change: isize) -> bool {
             let now = alive.get() + change;
             alive.set(now);
             PEAK.with(|peak| peak.set(peak.get().max(now)));
-            now <= REFUSED
+            now <= REFUSED || refuse()
         })
         .unwrap_or(true)
+}
+
+/// Says why the process is about to end; the standard error stream is written without allocating.
+fn refuse() -> bool {
+    let why = b"more than 2 GB are refused; CLEBSCH_FUZZ_TRACE=1 names the input\n";
+    let _ = std::io::stderr().write_all(why);
+    false
 }
 
 fn signed(size: usize) -> isize {

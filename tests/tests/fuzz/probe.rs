@@ -206,7 +206,14 @@ pub fn probe_all(threads: u64, count: u64, input: impl Fn(u64) -> Input + Sync) 
                     && start.elapsed() > HANGS
                 {
                     // A thread cannot be stopped: nothing but the end of the process is left.
-                    eprintln!("{} does not end\n{}", input.name, input.text);
+                    // Straight to the stream: what the test harness captures is lost with the process.
+                    let before = lock(&report).failures.join("\n\n");
+                    let _ = writeln!(
+                        std::io::stderr(),
+                        "{} does not end\n{}\nbefore it: {before}",
+                        input.name,
+                        input.text
+                    );
                     std::process::exit(1);
                 }
             }

@@ -40,24 +40,28 @@ impl Algebra<'_> {
             && k + 1 < word.len()
             && self.shape_of(last).cols == Dim::Fixed(1)
         {
-            let left = self.raise_word(u);
-            // u x G vee(S) reads as -G S G^T u.
             let tail = &word[k + 1..];
-            let product = match tail.split_last() {
-                Some((
-                    Factor::Axial {
-                        source,
-                        transposed: false,
-                    },
-                    frame,
-                )) if frame.iter().all(|f| self.is_orthogonal(f)) => {
-                    let frame = self.raise_word(&frame.to_vec());
-                    let back = expr::transpose(self.symbols, frame.clone());
-                    let skew = self.raise_source(*source);
-                    expr::neg(expr::product([frame, skew, back, left]))
-                }
-                _ => expr::cross(left, self.raise_word(&tail.to_vec())),
-            };
+            // u x G vee(S) reads as -G S G^T u.
+            if let Some((
+                Factor::Axial {
+                    source,
+                    transposed: false,
+                },
+                frame,
+            )) = tail.split_last()
+                && frame.iter().all(|f| self.is_orthogonal(f))
+            {
+                let skew = Factor::Letter {
+                    source: *source,
+                    transposed: false,
+                    inverted: false,
+                };
+                let (_, back) = self.transposed_word(frame);
+                let turned = word[..k].iter().chain(frame).chain([&skew]);
+                let turned = turned.chain(&back).chain(u).cloned();
+                return expr::neg(self.raise_word(&self.cancelled(turned.collect())));
+            }
+            let product = expr::cross(self.raise_word(u), self.raise_word(&tail.to_vec()));
             let front = word[..k].iter().map(|f| self.raise_factor(f));
             return expr::product(front.chain([product]).collect::<Vec<_>>());
         }

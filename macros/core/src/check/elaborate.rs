@@ -15,6 +15,8 @@ use crate::syntax::ast::{Expression, Kind, Name};
 pub struct Elaborator<'a> {
     names: &'a Declared,
     bindings: Vec<(String, Expr)>,
+    /// Names of `let`s that are not among the bindings: still to come, or (`true`) faulty.
+    unbound: Vec<(String, bool)>,
 }
 
 /// Longest product: its derivatives grow with the square of its length.
@@ -42,12 +44,18 @@ fn fail<T>(d: Diagnostic) -> Result<T, Box<Diagnostic>> {
 }
 
 impl<'a> Elaborator<'a> {
-    /// With the declared names and no bindings.
-    pub fn new(names: &'a Declared) -> Self {
+    /// With the declared names and no bindings yet; `lets` are the names of those to come.
+    pub fn new(names: &'a Declared, lets: Vec<String>) -> Self {
         Elaborator {
             names,
             bindings: Vec::new(),
+            unbound: lets.into_iter().map(|name| (name, false)).collect(),
         }
+    }
+
+    /// Notes that the `let` of this name is faulty: its uses are not reported as well.
+    pub fn spoil(&mut self, name: &Name) {
+        self.unbound.push((name.text.clone(), true));
     }
 
     /// Adds `let name = value`.
@@ -61,6 +69,8 @@ impl<'a> Elaborator<'a> {
             ));
         } else if fresh.admit(name, errors) {
             self.bindings.push((name.text.clone(), value));
+        } else {
+            self.spoil(name);
         }
     }
 
@@ -251,10 +261,16 @@ impl<'a> Elaborator<'a> {
             .map(|id| &self.names.symbols.get(id).name);
         let bound = self.bindings.iter().map(|(b, _)| b);
         let mut d = Diagnostic::new(place, format!("`{n}` is not declared"));
-        if self.names.was_declared(n) {
+        if self.names.was_declared(n) || self.unbound.contains(&(n.to_owned(), true)) {
             d = Diagnostic::following(place, format!("`{n}` has a faulty declaration"));
         } else if n == "T" {
             d = d.help("`T` is the transpose and only stands after `^`");
+        } else if self.unbound.contains(&(n.to_owned(), false)) {
+            d = Diagnostic::new(place, format!("`{n}` is used before its `let`"))
+                .help(format!("move `let {n} = ...;` up, before its first use"));
+        } else if FUNCTIONS.contains(&n) {
+            d = Diagnostic::new(place, format!("`{n}` is a function of the language"))
+                .help(format!("write `{n}(...)`"));
         } else if let Some(near) = closest(n, declared.chain(bound).map(String::as_str)) {
             d = d.help(format!("did you mean `{near}`?"));
         } else if let Some((_, written)) = OTHERWISE.iter().find(|(other, _)| *other == n) {

@@ -26,7 +26,11 @@ pub fn check(model: &Model) -> Result<Spec, Errors> {
     let mut errors = Errors::new();
     let mut declared = declare::declare(model, &mut errors);
     let names = declared.clone();
-    let mut elaborator = Elaborator::new(&names);
+    let lets = model.statements.iter().filter_map(|s| match s {
+        Statement::Let { name, .. } => Some(name.text.clone()),
+        _ => None,
+    });
+    let mut elaborator = Elaborator::new(&names, lets.collect());
     let mut typed: Option<(Expr, crate::diagnostic::Place)> = None;
     let mut scale = None;
     let mut assumptions = Vec::new();
@@ -34,9 +38,15 @@ pub fn check(model: &Model) -> Result<Spec, Errors> {
     for statement in &model.statements {
         match statement {
             Statement::Let { name, value } => match elaborator.any(value) {
-                Ok(e) if e.size() > LARGEST => errors.push(messages::too_large(value.place)),
+                Ok(e) if e.size() > LARGEST => {
+                    errors.push(messages::too_large(value.place));
+                    elaborator.spoil(name);
+                }
                 Ok(e) => elaborator.bind(name, e, &mut errors),
-                Err(e) => errors.push(*e),
+                Err(e) => {
+                    errors.push(*e);
+                    elaborator.spoil(name);
+                }
             },
             Statement::Assume {
                 left,

@@ -89,22 +89,24 @@ pub fn summands(e: &Expr) -> Vec<Expr> {
             .map(|t| expr::quotient(t, b.clone()))
             .collect(),
         Node::Product(factors) if factors.iter().all(|f| f.shape().is_scalar()) => {
-            let open =
-                |f: &Expr| matches!(f.node(), Node::Sum(_) | Node::Quotient(..) | Node::Neg(_));
-            match factors
+            // A product of several sums stays one term: only a common factor is multiplied in.
+            let mut sums = factors
                 .iter()
-                .position(|f| open(f) && summands(f).len() > 1)
-            {
-                Some(i) => summands(&factors[i])
-                    .into_iter()
-                    .flat_map(|t| {
-                        let mut rest = factors.clone();
-                        rest[i] = t;
-                        summands(&expr::product(rest))
-                    })
-                    .collect(),
-                None => vec![e.clone()],
+                .enumerate()
+                .filter(|(_, f)| matches!(f.node(), Node::Sum(_) | Node::Quotient(..)));
+            let (Some((i, only)), None) = (sums.next(), sums.next()) else {
+                return vec![e.clone()];
+            };
+            let terms = summands(only);
+            if terms.len() < 2 {
+                return vec![e.clone()];
             }
+            let with = |t: Expr| {
+                let mut rest = factors.clone();
+                rest[i] = t;
+                expr::product(rest)
+            };
+            terms.into_iter().map(with).collect()
         }
         _ if e.is_zero() => Vec::new(),
         _ => vec![e.clone()],

@@ -6,8 +6,9 @@ use super::Letters;
 use super::action::Action;
 use super::variation::{Variation, at};
 use crate::algebra::{Algebra, Rational};
-use crate::check::spec::{Configuration, Group, Spec};
+use crate::check::spec::{Configuration, Group, Side, Spec};
 use crate::expr::shape::Dim;
+use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
 
 /// The balance of one configuration. Every part is a covector of the Lie algebra in the form of
@@ -31,6 +32,9 @@ pub struct Balance {
     pub outgoing: Expr,
     /// The node momentum at the end of the edge: `edge_in + node_in`, in its shortest form.
     pub incoming: Expr,
+    /// Spatial side: what the step adds to the momentum, where that is free of velocities (zero when
+    /// the momentum is conserved). Adding it keeps rounding out of what is conserved.
+    pub increment: Option<Expr>,
     /// For each advected quantity: gradient of the outgoing edge at its start and at its end.
     pub advected_gradients: Vec<(Expr, Expr)>,
     /// The variation of the action as a number linear in `ξ`: outgoing edge of node k.
@@ -130,9 +134,11 @@ fn balance(
         let whole = shorter(algebra, expr::add(a.clone(), b.clone()));
         without_zeros(algebra, whole)
     };
+    let (outgoing, incoming) = (total(&edge_out, &node_out), total(&edge_in, &node_in));
     Balance {
-        outgoing: total(&edge_out, &node_out),
-        incoming: total(&edge_in, &node_in),
+        increment: increment(s, c, &outgoing, &incoming, algebra),
+        outgoing,
+        incoming,
         edge_out,
         node_out,
         edge_in,
@@ -142,6 +148,27 @@ fn balance(
         variation_out: expr::directional(s, l, &v.on_outgoing()),
         variation_in: expr::directional(s, &before, &v.on_incoming()),
     }
+}
+
+fn increment(
+    s: &Symbols,
+    c: &Configuration,
+    outgoing: &Expr,
+    incoming: &Expr,
+    algebra: &Algebra,
+) -> Option<Expr> {
+    if c.side == Side::Body {
+        return None;
+    }
+    let difference = expr::sub(incoming.clone(), outgoing.clone());
+    let reduced = if difference.shape().is_vector() {
+        // Axial vectors cancel as skew matrices.
+        expr::vee(algebra.raise(&algebra.lower(&expr::hat(difference))))
+    } else {
+        algebra.raise(&algebra.lower(&difference))
+    };
+    let reduced = shorter(algebra, reduced);
+    (!expr::contains_role(s, &reduced, Role::Velocity)).then_some(reduced)
 }
 
 /// `<a, b> = tr(a^T b)`.
@@ -159,7 +186,7 @@ pub fn pairing(letters: &Letters, a: &Expr, b: &Expr) -> Expr {
 /// The expression without terms that contribute nothing, such as the axial vector of `S S^-1`.
 fn without_zeros(algebra: &Algebra, mut e: Expr) -> Expr {
     // A larger residual is left as it is: the search costs the square of its size.
-    while e.size() < 400 {
+    while e.size() < 1_000 {
         let idle = expr::changes(algebra.symbols(), &e)
             .into_iter()
             .find(|c| !c.flipped && algebra.agree(&e, &c.changed));

@@ -226,29 +226,51 @@ fn named_form(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
     };
     let matrix = |e: &Expr| expr::scale(weight, pairing(x.letters, e, &xi));
     let node = |e: Expr| balance::pair_with_variation(x.letters, c.group, e, xi.clone());
+    let v = &x.variations[i];
+    let l = &x.action.total;
+    let before = back(l);
+    let mut at_node = v.advected.clone();
+    at_node.push(v.element.clone());
     let name = &s.get(c.element).name;
-    steps.push(Step {
-        known: Known::NormalForm,
-        name: format!("momentum form of the outgoing edge of {name}"),
-        left: expr::neg(expr::add(matrix(&m.edge), node(b.node_out.clone()))),
-        right: b.variation_out.clone(),
-    });
-    steps.push(Step {
-        known: Known::NormalForm,
-        name: format!("momentum form of the incoming edge of {name}, with Ad*"),
-        left: expr::add(matrix(&back(&m.transported)), node(back(&b.node_in))),
-        right: b.variation_in.clone(),
-    });
-    steps.push(Step {
-        known: Known::NormalForm,
-        name: format!("emitted residual of {name}, outgoing edge"),
-        left: expr::neg(node(b.outgoing.clone())),
-        right: b.variation_out.clone(),
-    });
-    steps.push(Step {
-        known: Known::NormalForm,
-        name: format!("emitted residual of {name}, incoming edge"),
-        left: node(back(&b.incoming)),
-        right: b.variation_in.clone(),
-    });
+    // One block for each source, so that each stays small.
+    let mut block = |what: &str, left: Expr, right: Expr| {
+        if !left.is_zero() || !right.is_zero() {
+            steps.push(Step {
+                known: Known::NormalForm,
+                name: format!("{what} of {name}"),
+                left,
+                right,
+            });
+        }
+    };
+    block(
+        "momentum map of the outgoing edge",
+        expr::neg(matrix(&m.edge)),
+        expr::directional(s, l, std::slice::from_ref(&v.outgoing)),
+    );
+    block(
+        "diamonds of the outgoing edge",
+        expr::neg(node(b.node_out.clone())),
+        expr::directional(s, l, &at_node),
+    );
+    block(
+        "momentum map of the incoming edge, carried by Ad*,",
+        matrix(&back(&m.transported)),
+        expr::directional(s, &before, std::slice::from_ref(&v.incoming)),
+    );
+    block(
+        "diamonds of the incoming edge",
+        node(back(&b.node_in)),
+        expr::directional(s, &before, &at_node),
+    );
+    block(
+        "emitted residual, outgoing edge,",
+        node(b.outgoing.clone()),
+        expr::add(matrix(&m.edge), node(b.node_out.clone())),
+    );
+    block(
+        "emitted residual, incoming edge,",
+        node(back(&b.incoming)),
+        expr::add(matrix(&back(&m.transported)), node(back(&b.node_in))),
+    );
 }

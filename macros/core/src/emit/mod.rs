@@ -87,9 +87,9 @@ pub fn emit(d: &Derivation, documented: bool) -> TokenStream {
     }
 }
 
-/// The errors, and types without meaning under the model's names. The first error is the model's
-/// type, which makes it and everything said of it an error already reported: code that uses the
-/// model adds nothing of its own.
+/// The errors, and types under the model's names that are themselves errors already reported, so
+/// that code which uses the model adds no errors of its own. The first error stands inside such a
+/// type: a projection with a faulty argument, the one form that stable Rust takes without a word.
 pub fn fallback(tokens: &TokenStream, errors: &Errors) -> TokenStream {
     let mut after_model = false;
     let mut name: Option<Ident> = None;
@@ -107,6 +107,7 @@ pub fn fallback(tokens: &TokenStream, errors: &Errors) -> TokenStream {
     let (Some(name), Some(first)) = (name, messages.next()) else {
         return errors.to_compile_errors().into_iter().collect();
     };
+    let refused = format_ident!("{name}Refused");
     let suffixes = [
         "Parameters",
         "Initial",
@@ -117,8 +118,14 @@ pub fn fallback(tokens: &TokenStream, errors: &Errors) -> TokenStream {
     let others = suffixes.map(|suffix| format_ident!("{name}{suffix}"));
     quote! {
         #[doc(hidden)]
+        #[allow(non_camel_case_types)]
+        pub trait #refused<T, const REASON: ::core::primitive::usize> {
+            #[doc(hidden)]
+            type Model;
+        }
+        #[doc(hidden)]
         #[allow(dead_code, non_camel_case_types)]
-        pub type #name<T = ::core::primitive::f64> = #first;
+        pub type #name<T = ::core::primitive::f64> = <() as #refused<T, { #first }>>::Model;
         #(
             #[doc(hidden)]
             #[allow(dead_code, non_camel_case_types)]

@@ -20,14 +20,14 @@ impl Names {
         let s = &d.letters.symbols;
         Names {
             module: module(&d.spec.name),
-            taken: s.ids().map(|id| s.get(id).name.clone()).collect(),
+            taken: s.ids().map(|id| variable(s, id).to_string()).collect(),
         }
     }
 
-    /// A local name that no symbol of the model bears.
+    /// A local name that no local variable of the model bears.
     pub fn local(&self, base: &str) -> Ident {
         let mut name = base.to_owned();
-        while self.taken.iter().any(|t| *t == name) {
+        while self.taken.contains(&name) {
             name.push('_');
         }
         format_ident!("{name}")

@@ -72,7 +72,7 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
     let updates: Vec<Expr> = (0..bodies)
         .flat_map(|i| match update(d, i) {
             super::step::Update::Acted { leave, arrive } => vec![leave, arrive],
-            super::step::Update::Brought(e) => vec![e],
+            super::step::Update::Added(e) | super::step::Update::Brought(e) => vec![e],
         })
         .collect();
     needed.extend(letters_of(&updates));

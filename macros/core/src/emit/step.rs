@@ -21,6 +21,8 @@ pub(super) fn at(symbol: crate::expr::symbol::SymbolId, shift: Shift) -> Letter 
 pub(super) enum Update {
     /// Body side: what acts at the two nodes, in the body frame there: `m' = m + Λ a + Λ' b`.
     Acted { leave: Expr, arrive: Expr },
+    /// Spatial side: what is added to the momentum, free of velocities.
+    Added(Expr),
     /// Spatial side: the momentum that the edge brings.
     Brought(Expr),
 }
@@ -33,7 +35,10 @@ pub(super) fn update(d: &Derivation, i: usize) -> Update {
             leave: expr::neg(b.node_out.clone()),
             arrive: b.node_in.clone(),
         },
-        Side::Spatial => Update::Brought(b.incoming.clone()),
+        Side::Spatial => match &b.increment {
+            Some(e) => Update::Added(e.clone()),
+            None => Update::Brought(b.incoming.clone()),
+        },
     }
 }
 
@@ -222,7 +227,7 @@ pub(super) fn finish(
     for u in &updates {
         match u {
             Update::Acted { leave, arrive } => wanted.extend([leave.clone(), arrive.clone()]),
-            Update::Brought(e) => wanted.push(e.clone()),
+            Update::Added(e) | Update::Brought(e) => wanted.push(e.clone()),
         }
     }
     let mut needed = letters_of(&wanted);
@@ -285,6 +290,11 @@ pub(super) fn finish(
                 let left = (!leave.is_zero()).then(|| quote!(+ #here * (#a)));
                 let arrived = (!arrive.is_zero()).then(|| quote!(+ #next * (#b)));
                 quote!(state.#field.0 #left #arrived)
+            }
+            Update::Added(e) => {
+                let value = values.next();
+                let added = (!e.is_zero()).then(|| quote!(+ #value));
+                quote!(state.#field.0 #added)
             }
             Update::Brought(_) => {
                 let e = values.next();
@@ -357,7 +367,7 @@ fn forced_step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream 
     let updates = update(d, 0);
     let list = match &updates {
         Update::Acted { leave, arrive } => vec![leave, arrive],
-        Update::Brought(e) => vec![e],
+        Update::Added(e) | Update::Brought(e) => vec![e],
     };
     let uses_velocity = list
         .iter()

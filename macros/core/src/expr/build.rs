@@ -372,6 +372,41 @@ pub fn det(a: Expr) -> Expr {
     }
 }
 
+/// Largest argument whose adjugate is written as a polynomial.
+const LARGEST_ADJUGATE: u32 = 8;
+
+/// The adjugate, `det(A) A^-1` for an invertible `A`. In two and three dimensions it is written as
+/// a polynomial (Cayley-Hamilton), which has a value for every `A`, unless `A` is a large expression.
+pub fn adjugate(symbols: &Symbols, a: &Expr) -> Expr {
+    let n = a.shape().rows;
+    let invertible = match a.node() {
+        Node::Letter(at) => symbols.get(at.symbol).structure.is_invertible(),
+        _ => false,
+    };
+    // The polynomial repeats its argument: for large ones the inverse is the lesser evil.
+    let polynomial = !invertible && a.size() <= LARGEST_ADJUGATE;
+    let t = trace(a.clone());
+    match n {
+        Dim::Fixed(2) if polynomial => sub(mul(t, identity(n)), a.clone()),
+        Dim::Fixed(3) if polynomial => {
+            let square = mul(a.clone(), a.clone());
+            let half = scale(
+                Rational::HALF,
+                sub(
+                    power(t.clone(), Rational::integer(2)),
+                    trace(square.clone()),
+                ),
+            );
+            let shape = a.shape();
+            sum(
+                [square, neg(mul(t, a.clone())), mul(half, identity(n))],
+                shape,
+            )
+        }
+        _ => mul(det(a.clone()), inverse(symbols, a.clone())),
+    }
+}
+
 /// The scalar product of two vectors.
 pub fn dot(a: Expr, b: Expr) -> Expr {
     match (a.node(), b.node()) {

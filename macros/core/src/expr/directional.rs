@@ -63,7 +63,7 @@ pub fn directional(symbols: &Symbols, e: &Expr, changes: &[(Letter, Expr)]) -> E
             if da.is_zero() {
                 return integer(0);
             }
-            mul(e.clone(), trace(mul(inverse(symbols, a.clone()), da)))
+            trace(mul(adjugate(symbols, a), da))
         }
         Node::Dot(a, b) => add(dot(d(a), b.clone()), dot(a.clone(), d(b))),
         Node::Cross(a, b) => add(cross(d(a), b.clone()), cross(a.clone(), d(b))),

@@ -67,8 +67,8 @@ fn pull_back(symbols: &Symbols, e: &Expr, seed: Expr, wrt: Letter, out: &mut Vec
         }
         Node::Trace(a) => go(a, mul(seed, identity(a.shape().rows))),
         Node::Det(a) => {
-            let cofactor = transpose(symbols, inverse(symbols, a.clone()));
-            go(a, product([seed, e.clone(), cofactor]));
+            let cofactor = transpose(symbols, adjugate(symbols, a));
+            go(a, mul(seed, cofactor));
         }
         Node::Dot(a, b) => {
             go(a, mul(seed.clone(), b.clone()));

@@ -173,6 +173,7 @@ const VECTORS: &[Row] = &[
     ("hat times hat, in a word",     "(* (hat ?u) (* (hat ?v) ?a))",   "(+ (* ?v (* (T ?u) ?a)) (. -1 (. (* (T ?u) ?v) ?a)))", &[], &[]),
     ("hat of a cross",               "(hat (* (hat ?u) ?v))",          "(+ (* ?v (T ?u)) (. -1 (* ?u (T ?v))))", &[], &[]),
     ("hat of a vee",                 "(hat (vee ?a))",                 "(. 1/2 (+ ?a (. -1 (T ?a))))",           &[], &[]),
+    ("product of two vees",          "(* (T (vee ?a)) (vee ?b))",      "(. -1/4 (tr (* (+ ?a (. -1 (T ?a))) ?b)))", &[], &[]),
     ("vee of a hat",                 "(vee (hat ?v))",                 "?v",                                     &[], &[]),
     ("vee of a scaling",             "(vee (. ?s ?a))",                "(. ?s (vee ?a))",                        &[], &[]),
     ("vee of a zero",                "(vee (zero ?n ?m))",             "?z",                                     &[Zero("?z")], &[]),

@@ -1,0 +1,490 @@
+//! What may surround a model, and what a model may call its quantities. Takes models next to items
+//! that shadow the prelude, in functions, side by side, and with names that emitted code uses
+//! itself; gives the same motion as for plain names, without a warning. This file is the strict
+//! crate: it denies every warning that emitted code could cause.
+#![deny(warnings, missing_docs, missing_debug_implementations)]
+#![deny(unreachable_pub, unused_qualifications, single_use_lifetimes)]
+
+use clebsch::nalgebra::{Matrix3, Matrix3x2, Vector3};
+use clebsch::{BodyMomentum, Rotation, SpatialMomentum};
+
+clebsch::model! {
+    /// A documented model that the crate exports.
+    pub model Exported {
+        param J: Sym<3>;
+        param g, z: Vec<3>;
+        group Λ: SO<3> velocity Ω;
+        advected Γ: Vec<3> = Λ^T*z;
+        constraint next(Λ) = Λ*Ω;
+        constraint next(Γ) = Ω^T*Γ;
+        lagrangian = -tr(J*Ω)/h - h*dot(g, Γ);
+    }
+}
+
+clebsch::model! {
+    pub model WithoutDocumentation {
+        param J: Sym<3>;
+        group Λ: SO<3> velocity Ω;
+        constraint next(Λ) = Λ*Ω;
+        lagrangian = -tr(J*Ω)/h;
+    }
+}
+
+clebsch::model! {
+    model Private {
+        param J: Sym<3>;
+        group Λ: SO<3> velocity Ω;
+        constraint next(Λ) = Λ*Ω;
+        lagrangian = -tr(J*Ω)/h;
+    }
+}
+
+// Their modules would be `loop`, `core`, `std` and `clebsch`.
+clebsch::model! {
+    model Loop {
+        param J: Sym<3>;
+        group Λ: SO<3> velocity Ω;
+        constraint next(Λ) = Λ*Ω;
+        lagrangian = -tr(J*Ω)/h;
+    }
+}
+clebsch::model! {
+    model Core {
+        param J: Sym<3>;
+        group Λ: SO<3> velocity Ω;
+        constraint next(Λ) = Λ*Ω;
+        lagrangian = -tr(J*Ω)/h;
+    }
+}
+clebsch::model! {
+    model Std {
+        param J: Sym<3>;
+        group Λ: SO<3> velocity Ω;
+        constraint next(Λ) = Λ*Ω;
+        lagrangian = -tr(J*Ω)/h;
+    }
+}
+clebsch::model! {
+    model Clebsch {
+        param J: Sym<3>;
+        group Λ: SO<3> velocity Ω;
+        constraint next(Λ) = Λ*Ω;
+        lagrangian = -tr(J*Ω)/h;
+    }
+}
+
+/// Everything that a module may call differently.
+#[allow(
+    dead_code,
+    non_camel_case_types,
+    non_snake_case,
+    non_upper_case_globals
+)]
+mod shadowed {
+    #[allow(unused_macros)]
+    macro_rules! compile_error {
+        () => {};
+    }
+    mod core {}
+    mod std {}
+    mod alloc {}
+    mod clebsch {}
+    mod nalgebra {}
+    struct Result;
+    enum Option {}
+    struct Vec;
+    struct Box;
+    struct String;
+    struct f64;
+    struct u64;
+    struct usize;
+    struct bool;
+    struct str;
+    trait Default {}
+    trait Clone {}
+    trait Copy {}
+    trait PartialEq {}
+    trait Debug {}
+    trait Iterator {}
+    trait Into {}
+    trait Real {}
+    fn Some() {}
+    fn None() {}
+    fn Ok() {}
+    fn Err() {}
+    fn drop() {}
+    struct Rotation;
+    struct Card;
+    const T: i32 = 0;
+    const h: i32 = 0;
+    const J: i32 = 0;
+
+    ::clebsch::model! {
+        pub model Shadowed {
+            param J: Sym<3>;
+            param g, z: Vec<3>;
+            group Λ: SO<3> velocity Ω;
+            advected Γ: Vec<3> = Λ^T*z;
+            constraint next(Λ) = Λ*Ω;
+            constraint next(Γ) = Ω^T*Γ;
+            lagrangian = -tr(J*Ω)/h - h*dot(g, Γ);
+        }
+    }
+}
+
+/// Passes names on that emitted code uses itself: its functions, types and locals, and what Rust
+/// keeps in its prelude.
+macro_rules! awkward_names {
+    ($then:ident! $($rest:tt)*) => {
+        $then! {
+            [
+                // Functions and types.
+                all_finite axial_of_difference basis determinant diagonal_part forced
+                inverse_or_nan largest_step length matrix_of number_of put reach rotation_of rows
+                skew_part solve solve_or_nan symmetric_part unit BodyMomentum SpatialMomentum
+                Rotation Poinsot Free newton validate emitted
+                // Locals and parameters of functions.
+                after axis before body e edge found guess h_ here i inertia initial j kinetic
+                matrix model momenta momentum momentum_next n node out parameters parts potential
+                residual scratch solved solver state tangent total trial value velocity work x
+                field expected t1 t2 t3
+                // Members.
+                balance body_momentum edge_momentum energies energy refused spatial_momentum start
+                step factor parameters_ CARD SOURCE
+                // The prelude and the primitive types.
+                Box Clone Copy Debug Default Err None Ok Option Real Result Some String Vec alloc
+                bool clebsch core drop f64 nalgebra std str u64 usize
+                // Words of the language and words that Rust keeps in some places only.
+                advected assume auto constraint default dim given group k label lagrangian macro_rules
+                param raw safe scale time union
+                // What the derivation calls its own letters, and tags it gives to letters.
+                M P V_Γ η μ ξ m C N A S Γ_next Γ_before Γ_reference Λ_next Λ_moved Ω_matrix Ω_before
+            ]
+            $($rest)*
+        }
+    };
+}
+
+macro_rules! awkward_model {
+    ([$($name:ident)*] $model:ident { $($statement:tt)* }) => {
+        clebsch::model! {
+            model $model {
+                $(param $name: Real;)*
+                let weight = log(0 $(+ $name)*);
+                $($statement)*
+            }
+        }
+    };
+}
+
+/// The parameters of a model: every number that was added is the same.
+macro_rules! filled {
+    ([$($name:ident)*] $parameters:ident, $each:ident, { $($field:tt)* }) => {
+        $parameters { $($name: $each,)* $($field)* }
+    };
+}
+
+macro_rules! count {
+    ([$($name:ident)*]) => { [$(stringify!($name)),*].len() };
+}
+
+/// One statement under awkward names and, with one number in their place, without.
+macro_rules! twice {
+    ($awkward:ident $plain:ident { $($statement:tt)* }) => {
+        awkward_names! { awkward_model! $awkward { $($statement)* } }
+        clebsch::model! { model $plain { param weight: Real; $($statement)* } }
+    };
+}
+
+twice! { AwkwardFree PlainFree {
+    param J: Sym<3>;
+    group R: SO<3> velocity edge_velocity;
+    constraint next(R) = R*edge_velocity;
+    assume weight > 0;
+    lagrangian = -tr(weight*J*edge_velocity)/h;
+} }
+twice! { AwkwardForced PlainForced {
+    param J: Sym<3>;
+    param lever, vertical: Vec<3>;
+    group R: SO<3> velocity solved_;
+    advected above: Vec<3> = R^T*vertical;
+    advected carried: Vec<3>;
+    constraint next(R) = R*solved_;
+    constraint next(above) = solved_^T*above;
+    constraint next(carried) = solved_^T*carried;
+    lagrangian = -tr(J*solved_)/h - h*weight*(dot(lever, above) + dot(lever, carried));
+} }
+twice! { AwkwardNewton PlainNewton {
+    time n_ step tau;
+    param J: Sym<3>;
+    param lever, vertical: Vec<3>;
+    group R1: SO<3> velocity w1;
+    group R2: SO<3> velocity w2;
+    advected carried: Vec<3>;
+    constraint next(R1) = R1*w1;
+    constraint next(R2) = R2*w2;
+    constraint next(carried) = w2^T*carried;
+    lagrangian = -(tr(J*w1) + tr(J*w2))/tau - tau*weight*dot(lever, carried) - tau*dot(R1*lever, R2*vertical);
+} }
+twice! { AwkwardSpatial PlainSpatial {
+    time i_ step state_;
+    param vertical: Vec<3>;
+    group R: SO<3> velocity w;
+    advected J: Sym<3>;
+    advected carried: Vec<3>;
+    constraint next(R) = w*R;
+    constraint next(J) = w*J*w^T;
+    constraint next(carried) = w*carried;
+    lagrangian = -tr(w*J)/state_ - state_*weight*dot(carried, vertical);
+} }
+
+// The time step, the velocity and what moves may bear such names as well.
+clebsch::model! {
+    model AwkwardStep {
+        time j step work;
+        param J: Sym<3>;
+        param lever: Vec<3>;
+        group matrix: SO<3> velocity state;
+        advected initial: Vec<3>;
+        advected value: Real;
+        constraint next(matrix) = matrix*state;
+        constraint next(initial) = state^T*initial;
+        constraint next(value) = value;
+        lagrangian = -tr(J*state)/work - work*value*dot(lever, initial);
+    }
+}
+clebsch::model! {
+    model AwkwardAtHand {
+        time k step trial;
+        param h, parameters: Real;
+        param solver: Diag<3>;
+        param factor: Skew<3>;
+        param residual: Mat<3, 2>;
+        param guess: SO<3>;
+        group length: SO<3> velocity forced;
+        advected basis: Sym<3> = length^T*solver*length;
+        constraint next(length) = length*forced;
+        constraint next(basis) = forced^T*basis*forced;
+        lagrangian = -tr((solver + h*Id)*forced)/trial - trial*parameters*tr(basis*guess*factor)
+            - trial*tr(basis*residual*residual^T);
+    }
+}
+
+fn inertia() -> Matrix3<f64> {
+    Matrix3::new(0.9, 0.1, -0.05, 0.1, 1.2, 0.15, -0.05, 0.15, 0.7)
+}
+
+fn attitude() -> Rotation<f64> {
+    Rotation::exp(&Vector3::new(0.3, -0.7, 0.2))
+}
+
+fn body_momentum() -> BodyMomentum<f64> {
+    BodyMomentum(Vector3::new(0.1, -0.2, 0.8))
+}
+
+/// Each of the numbers under an awkward name: their sum is exact, its logarithm positive.
+const EACH: f64 = 1.0 / 64.0;
+
+fn weight() -> f64 {
+    (awkward_names!(count!) as f64 * EACH).ln()
+}
+
+const STEPS: usize = 20;
+
+/// Steps a model and gives its attitudes and momenta.
+macro_rules! attitudes {
+    ($model:expr, $initial:expr, $($element:ident)*) => {{
+        let model = $model;
+        let (mut state, mut work) = model.start($initial, 0.1).unwrap();
+        let mut all = Vec::new();
+        for _ in 0..STEPS {
+            model.step(&mut state, &mut work).unwrap();
+            $(all.extend(state.$element().quaternion());)*
+        }
+        all
+    }};
+}
+
+/// Runs both statements and compares them, digit by digit.
+macro_rules! same_motion {
+    (
+        [$awkward:ident $plain:ident] [$awkward_p:ident $plain_p:ident]
+        [$awkward_i:ident $plain_i:ident]
+        { $($parameter:tt)* } { $($value:tt)* } $($element:ident)*
+    ) => {{
+        let each = EACH;
+        let awkward = attitudes!(
+            $awkward::new(awkward_names!(filled! $awkward_p, each, { $($parameter)* })).unwrap(),
+            $awkward_i { $($value)* },
+            $($element)*
+        );
+        let plain = attitudes!(
+            $plain::new($plain_p { weight: weight(), $($parameter)* }).unwrap(),
+            $plain_i { $($value)* },
+            $($element)*
+        );
+        assert_eq!(awkward, plain);
+    }};
+}
+
+#[test]
+fn names_that_emitted_code_uses_change_nothing() {
+    let (up, arm) = (Vector3::new(0.0, 0.6, 0.8), Vector3::new(0.3, -0.2, 0.9));
+    let carried = Vector3::new(-0.4, 0.1, 0.5);
+    same_motion!(
+        [AwkwardFree PlainFree] [AwkwardFreeParameters PlainFreeParameters]
+        [AwkwardFreeInitial PlainFreeInitial]
+        { J: inertia() } { R: attitude(), body_momentum: body_momentum() } R
+    );
+    same_motion!(
+        [AwkwardForced PlainForced] [AwkwardForcedParameters PlainForcedParameters]
+        [AwkwardForcedInitial PlainForcedInitial]
+        { J: inertia(), lever: arm, vertical: up }
+        { R: attitude(), body_momentum: body_momentum(), carried } R
+    );
+    same_motion!(
+        [AwkwardNewton PlainNewton] [AwkwardNewtonParameters PlainNewtonParameters]
+        [AwkwardNewtonInitial PlainNewtonInitial]
+        { J: inertia(), lever: arm, vertical: up }
+        {
+            R1: attitude(), body_momentum_R1: body_momentum(),
+            R2: attitude(), body_momentum_R2: body_momentum(), carried
+        } R1 R2
+    );
+    same_motion!(
+        [AwkwardSpatial PlainSpatial] [AwkwardSpatialParameters PlainSpatialParameters]
+        [AwkwardSpatialInitial PlainSpatialInitial]
+        { vertical: up }
+        {
+            R: attitude(), spatial_momentum: SpatialMomentum(body_momentum().0),
+            J: inertia(), carried
+        } R
+    );
+}
+
+#[test]
+fn what_moves_may_bear_such_names() {
+    let model = AwkwardStep::new(AwkwardStepParameters {
+        J: inertia(),
+        lever: Vector3::x(),
+    })
+    .unwrap();
+    let start = AwkwardStepInitial {
+        matrix: attitude(),
+        body_momentum: body_momentum(),
+        initial: Vector3::y(),
+        value: 0.5,
+    };
+    let (mut state, mut workspace) = model.start(start, 0.1).unwrap();
+    model.step(&mut state, &mut workspace).unwrap();
+    assert_eq!(model.value(&state), 0.5);
+    assert!((model.initial(&state).norm() - 1.0).abs() < 1e-15);
+
+    let model = AwkwardAtHand::new(AwkwardAtHandParameters {
+        h: 1.0,
+        parameters: 0.3,
+        solver: Matrix3::from_diagonal(&Vector3::new(0.9, 1.2, 0.7)),
+        factor: Matrix3::new(0.0, 0.1, 0.2, -0.1, 0.0, 0.3, -0.2, -0.3, 0.0),
+        residual: Matrix3x2::new(0.1, 0.2, 0.3, 0.4, 0.5, 0.6),
+        guess: attitude().matrix(),
+    })
+    .unwrap();
+    let start = AwkwardAtHandInitial {
+        length: attitude(),
+        body_momentum: body_momentum(),
+    };
+    let (mut state, mut workspace) = model.start(start, 0.1).unwrap();
+    model.step(&mut state, &mut workspace).unwrap();
+    assert_eq!(state.node(), 1);
+}
+
+#[test]
+fn shadowed_items_are_not_met() {
+    let parameters = shadowed::ShadowedParameters {
+        J: inertia(),
+        g: Vector3::x(),
+        z: Vector3::z(),
+    };
+    let model = shadowed::Shadowed::new(parameters).unwrap();
+    let start = shadowed::ShadowedInitial {
+        Λ: attitude(),
+        body_momentum: body_momentum(),
+    };
+    let (mut state, mut work) = model.start(start, 0.1).unwrap();
+    model.step(&mut state, &mut work).unwrap();
+    assert_eq!(state.node(), 1);
+}
+
+#[test]
+fn models_stand_in_functions_and_next_to_each_other() {
+    clebsch::model! {
+        model Local {
+            param J: Sym<3>;
+            group Λ: SO<3> velocity Ω;
+            constraint next(Λ) = Λ*Ω;
+            lagrangian = -tr(J*Ω)/h;
+        }
+    }
+    // The same name as outside: what is inside is meant.
+    clebsch::model! {
+        model Private {
+            param J: Sym<3>;
+            param weight: Real;
+            group Λ: SO<3> velocity Ω;
+            constraint next(Λ) = Λ*Ω;
+            lagrangian = -tr(J*Ω)*weight/h;
+        }
+    }
+    let initial = LocalInitial {
+        Λ: attitude(),
+        body_momentum: body_momentum(),
+    };
+    let local = Local::new(LocalParameters { J: inertia() }).unwrap();
+    assert!(local.start(initial, 0.1).is_ok());
+    assert!(
+        Private::new(PrivateParameters {
+            J: inertia(),
+            weight: 2.0
+        })
+        .is_ok()
+    );
+    for card in [
+        Local::CARD,
+        Loop::CARD,
+        Core::CARD,
+        Std::CARD,
+        Clebsch::CARD,
+    ] {
+        let values = [inertia().as_slice().to_vec()];
+        let start = [
+            attitude().matrix().transpose().as_slice().to_vec(),
+            vec![0.1, 0.2, 0.3],
+        ];
+        assert!((card.open)(&values, &start, 0.1).is_ok(), "{}", card.name);
+    }
+    assert_eq!(Exported::CARD.kebab, "exported");
+    assert_eq!(WithoutDocumentation::CARD.kebab, "without-documentation");
+}
+
+#[test]
+fn words_of_rust_are_refused_with_a_reason() {
+    let words = "as async await break const continue crate do dyn else enum extern false final fn for gen if impl in \
+        let loop macro match mod move mut override priv pub ref return self Self static struct super trait true try \
+        type typeof unsafe unsized use virtual where while yield abstract become box _";
+    for word in words.split_whitespace() {
+        for text in [
+            format!("model M {{ param {word}: Real; }}"),
+            format!("model M {{ param J: Sym<3>; group {word}: SO<3> velocity Ω; }}"),
+            format!("model M {{ param J: Sym<3>; group Λ: SO<3> velocity {word}; }}"),
+            format!("model M {{ param J: Sym<3>; advected {word}: Vec<3>; }}"),
+            format!("model M {{ time k step {word}; }}"),
+            format!("model {word} {{ param J: Sym<3>; }}"),
+        ] {
+            let errors = clebsch_core::derive_source(&text)
+                .expect_err(&text)
+                .to_string();
+            let said = format!("`{word}` is a word of Rust");
+            assert!(errors.contains(&said), "{text}: {errors}");
+        }
+    }
+}

@@ -1,0 +1,12 @@
+//! A function without its argument.
+
+clebsch::model! {
+    model Top {
+        param J: Sym<3>;
+        group Λ: SO<3> velocity Ω;
+        constraint next(Λ) = Λ*Ω;
+        lagrangian = -tr/h;
+    }
+}
+
+fn main() {}
