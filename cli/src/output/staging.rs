@@ -66,7 +66,7 @@ impl Staging {
         }
         // One of this name was left by an interrupted run whose process id has come round again.
         match fs::remove_dir_all(&self.hidden) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
             _ => fs::create_dir(&self.hidden),
         }
     }

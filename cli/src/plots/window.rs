@@ -146,7 +146,7 @@ mod tests {
             record: record(500, 1),
             opening: None,
         };
-        let window = window(&samples, &[0..2]);
+        let window = window(&samples, std::slice::from_ref(&(0..2)));
         assert!(!window.cut);
         assert_eq!(window.count, 501);
     }
@@ -162,7 +162,7 @@ mod tests {
             opening: Some(record(10_000, 1)),
         };
         for samples in [dense, sparse] {
-            let window = window(&samples, &[0..2]);
+            let window = window(&samples, std::slice::from_ref(&(0..2)));
             assert!(window.cut);
             assert!((600..620).contains(&window.count), "{}", window.count);
             assert_eq!(window.record.nodes[1], 1);
@@ -181,6 +181,6 @@ mod tests {
             record: slow(1_000_000, 100),
             opening: Some(slow(10_000, 1)),
         };
-        assert!(!window(&samples, &[0..2]).cut);
+        assert!(!window(&samples, std::slice::from_ref(&(0..2))).cut);
     }
 }
