@@ -121,7 +121,7 @@ pub mod free_body {
             state: &mut FreeBodyState<T>,
             work: &mut FreeBodyWorkspace<T>,
         ) -> Result<(), StepError> {
-            if let Err(e) = work.solver.step(&mut state.Λ) {
+            if let Err(e) = work.solver.follow(&mut state.Λ, &state.momentum) {
                 return Err(StepCause::from(e).at_node(state.node));
             }
             state.node += 1;

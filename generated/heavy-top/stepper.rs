@@ -83,10 +83,12 @@ pub mod heavy_top {
             self.node
         }
     }
-    /// The step.
+    /// The step, and the momentum of the edge that begins at the state `here`. Made anew for any other state.
     #[derive(Clone, Copy, Debug)]
     pub struct HeavyTopWorkspace<T = f64> {
         h: T,
+        edge: Edge<T>,
+        here: HeavyTopState<T>,
     }
     impl<T: Real> HeavyTop<T> {
         /// Starts a trajectory with step `h` from data at node 0.
@@ -107,7 +109,11 @@ pub mod heavy_top {
                 momentum: initial.body_momentum.to_space(&initial.Λ),
                 node: 0,
             };
-            let work = HeavyTopWorkspace { h };
+            let work = HeavyTopWorkspace {
+                h,
+                edge: self.edge(state, h),
+                here: state,
+            };
             let (mut trial, mut scratch) = (state, work);
             self.step(&mut trial, &mut scratch)
                 .map_err(|e| StartError::Refused(e.cause))?;
@@ -124,21 +130,24 @@ pub mod heavy_top {
             work: &mut HeavyTopWorkspace<T>,
         ) -> Result<(), StepError> {
             let h = work.h;
-            let edge = self.edge_momentum(state, h);
-            let Ω = match forced(&self.factor, &(edge * h)) {
-                Ok(solved) => solved,
-                Err(e) => return Err(self.refused(state, h, e)),
+            if work.here != *state {
+                work.edge = self.edge(*state, h);
+                work.here = *state;
+            }
+            let edge = &work.edge;
+            let Λ_moved = match edge.turn(&self.factor, h, &state.Λ) {
+                Ok(turned) => turned,
+                Err(e) => return Err(self.refused(*state, h, e)),
             };
             let HeavyTopParameters { gU, z, .. } = self.parameters;
-            let Λ = state.Λ.matrix();
-            let Γ = Λ.tr_mul(&z);
-            let Λ_moved = state.Λ * Ω;
             let Λ_next = Λ_moved.matrix();
             let Γ_next = Λ_next.tr_mul(&z);
-            let momentum_next = state.momentum.0
-                + Λ * (-(gU.cross(&Γ) * T::from_f64(0.5) * h))
-                + Λ_next * (-(gU.cross(&Γ_next) * T::from_f64(0.5) * h));
-            if !(all_finite(&momentum_next)) {
+            let space = edge.space();
+            let torque = -(gU * h).cross(&Γ_next);
+            let kick = Λ_next * torque;
+            let momentum_next = space + kick * T::from_f64(0.5);
+            let edge_next = Edge::new(Λ_next.tr_mul(&space) + torque, space + kick);
+            if !all_finite(&momentum_next) {
                 return Err(
                     StepCause::NotFinite {
                         what: "momentum",
@@ -146,9 +155,13 @@ pub mod heavy_top {
                         .at_node(state.node),
                 );
             }
-            state.Λ = Λ_moved;
-            state.momentum = SpatialMomentum(momentum_next);
-            state.node += 1;
+            *state = HeavyTopState {
+                Λ: Λ_moved.rotation(),
+                momentum: SpatialMomentum(momentum_next),
+                node: state.node + 1,
+            };
+            work.edge = edge_next;
+            work.here = *state;
             Ok(())
         }
         /// The momentum of the edge that starts at this node, for a step `h`.
@@ -159,18 +172,24 @@ pub mod heavy_top {
             let Γ = Λ.tr_mul(&z);
             Λ.tr_mul(&state.momentum.0) - (gU.cross(&Γ) * T::from_f64(0.5) * h)
         }
+        /// The edge that begins at this state.
+        #[cold]
+        #[inline(never)]
+        fn edge(&self, state: HeavyTopState<T>, h: T) -> Edge<T> {
+            Edge::begin(&state.Λ, self.edge_momentum(&state, h))
+        }
         /// Says how far the step is beyond the bound, and which step could be solved.
         #[cold]
         fn refused(
             &self,
-            state: &HeavyTopState<T>,
+            state: HeavyTopState<T>,
             h: T,
             e: MoserVeselovError,
         ) -> StepError {
             let largest = largest_step(
                 h.value(),
                 |trial| {
-                    let n = self.edge_momentum(state, T::from_f64(trial))
+                    let n = self.edge_momentum(&state, T::from_f64(trial))
                         * T::from_f64(trial);
                     let body = Poinsot::new(self.factor.matrix().map(|x| x.value()))
                         .ok()?;

@@ -6,7 +6,7 @@ pub use crate::groups::{BodyMomentum, Group, Rotation, SpatialMomentum};
 pub use crate::linalg::{axial_of_difference, determinant, hat, solve, vee};
 pub use crate::scalar::Real;
 pub use crate::solvers::moser_veselov::{
-    Free, MoserVeselovError, Poinsot, forced, largest_step, reach,
+    Edge, Free, MoserVeselovError, Poinsot, forced, largest_step, reach,
 };
 pub use crate::solvers::newton;
 pub use crate::validate;
@@ -76,7 +76,8 @@ pub fn length<T: Real, const R: usize, const C: usize>(a: &SMatrix<T, R, C>) -> 
 #[inline]
 #[must_use]
 pub fn all_finite<T: Real, const R: usize, const C: usize>(a: &SMatrix<T, R, C>) -> bool {
-    a.iter().all(|x| x.is_finite())
+    // One branch at the end: none of the tests is worth one of its own.
+    a.iter().fold(true, |all, x| all & x.is_finite())
 }
 
 /// The values of one field as a matrix, row by row.

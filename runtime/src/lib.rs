@@ -22,7 +22,7 @@ pub mod solvers;
 pub mod validate;
 
 pub use error::{ParameterError, Problem, StartError, StepCause, StepError};
-pub use groups::{BodyMomentum, Group, NotARotation, Rotation, SpatialMomentum};
+pub use groups::{BodyMomentum, Group, NotARotation, Rotation, SpatialMomentum, TurnedRotation};
 pub use scalar::{DoubleDouble, Dual, Lanes, Real};
 pub use solvers::moser_veselov::{MoserVeselovError, Poinsot, PoinsotError};
 pub use solvers::newton::NewtonError;

@@ -3,7 +3,7 @@
 mod common;
 
 use clebsch::nalgebra::{Matrix3, Vector3};
-use clebsch::solvers::moser_veselov::{Free, forced};
+use clebsch::solvers::moser_veselov::{Free, forced, reach};
 use clebsch::{BodyMomentum, Poinsot, Rotation, SpatialMomentum};
 use common::{Random, body};
 
@@ -55,6 +55,51 @@ fn a_million_steps_keep_energy_and_momentum() {
             }
         }
     }
+}
+
+#[test]
+fn close_to_the_bound_nothing_is_amplified() {
+    let mut random = Random(21);
+    for case in 0..40 {
+        let body = Poinsot::new(random.poinsot(case)).expect("a body");
+        let direction = random.vector();
+        // The attitude that `drift` starts with.
+        let seen = SpatialMomentum(direction).to_body(&Random(9).rotation()).0;
+        // At the bound itself two roots meet, and what 64 steps of rounding do to the motion grows.
+        for (share, allowed) in [(0.5, 2e-14), (0.9, 4e-14), (0.99, 1e-13)] {
+            let momentum = direction * (share / reach(&body, &(seen * H)));
+            let worst = drift(&body, momentum, 20_000, 7);
+            for (name, drift) in ["energy", "|mu|^2", "spatial momentum"].iter().zip(worst) {
+                assert!(drift < allowed, "case {case}, {share}: {name} {drift:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_replaced_state_is_followed() {
+    let body = body([3.5, 2.5, 2.0], Vector3::new(0.4, -0.9, 0.3));
+    let start = Random(5).rotation();
+    let momentum = SpatialMomentum(Vector3::new(-0.5, 0.2, 1.0));
+    let other = SpatialMomentum(Vector3::new(0.3, 0.1, -0.4));
+    let run = |free: &mut Free, momentum: &SpatialMomentum, steps: u32| {
+        let mut attitude = start;
+        for _ in 0..steps {
+            free.follow(&mut attitude, momentum).expect("slow enough");
+        }
+        attitude
+    };
+    let mut free = Free::start(&body, &start, &momentum, H).expect("slow enough");
+    let first = run(&mut free, &momentum, 100);
+    // Back at the start, with the momentum kept or another.
+    assert_eq!(run(&mut free, &momentum, 100), first);
+    let mut fresh = Free::start(&body, &start, &other, H).expect("slow enough");
+    assert_eq!(run(&mut free, &other, 100), run(&mut fresh, &other, 100));
+    // A momentum that is too large is refused, and nothing has changed.
+    let (before, mut attitude) = (free, start);
+    let error = free.follow(&mut attitude, &SpatialMomentum(momentum.0 * 1e3));
+    assert!(error.expect_err("too fast").ratio > 1.0);
+    assert_eq!((free, attitude), (before, start));
 }
 
 #[test]

@@ -3,8 +3,10 @@
 
 mod product;
 pub mod so3;
+mod turned;
 
 pub use so3::{BodyMomentum, NotARotation, Rotation, SpatialMomentum};
+pub use turned::TurnedRotation;
 
 /// A Lie group with the operations an iteration on it needs.
 ///

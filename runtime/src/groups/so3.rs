@@ -11,9 +11,23 @@ use nalgebra::{Matrix3, Vector3};
 ///
 /// Stored as a unit quaternion `(w, x, y, z)`, so it can never shear; `q` and `-q` are the same
 /// rotation. Equality compares the four numbers.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Rotation<T = f64> {
     q: [T; 4],
+}
+
+/// Whether all pairs are equal, looking at all of them: steppers ask at each step, and one branch
+/// is cheaper than one per number.
+#[inline(always)]
+fn all_equal<T: PartialEq, const N: usize>(a: &[T; N], b: &[T; N]) -> bool {
+    a.iter().zip(b).fold(true, |all, (x, y)| all & (x == y))
+}
+
+impl<T: PartialEq> PartialEq for Rotation<T> {
+    #[inline(always)]
+    fn eq(&self, other: &Self) -> bool {
+        all_equal(&self.q, &other.q)
+    }
 }
 
 /// A matrix or quaternion that is not a rotation, with the number that shows it.
@@ -53,7 +67,7 @@ const ALLOWED_DEFECT: f64 = 1e-9;
 
 /// Hamilton's product, without any normalisation.
 #[inline(always)]
-fn hamilton<T: Real>([a, b, c, d]: [T; 4], [w, x, y, z]: [T; 4]) -> [T; 4] {
+pub(super) fn hamilton<T: Real>([a, b, c, d]: [T; 4], [w, x, y, z]: [T; 4]) -> [T; 4] {
     [
         (a * w - b * x) - (c * y + d * z),
         (a * x + b * w) + (c * z - d * y),
@@ -63,7 +77,7 @@ fn hamilton<T: Real>([a, b, c, d]: [T; 4], [w, x, y, z]: [T; 4]) -> [T; 4] {
 }
 
 #[inline(always)]
-fn norm_squared<T: Real>([w, x, y, z]: [T; 4]) -> T {
+pub(super) fn norm_squared<T: Real>([w, x, y, z]: [T; 4]) -> T {
     (w * w + x * x) + (y * y + z * z)
 }
 
@@ -340,8 +354,16 @@ impl<T: Real> Group<T> for Rotation<T> {
 pub struct BodyMomentum<T = f64>(pub Vector3<T>);
 
 /// Angular momentum in spatial axes, at a node; a free motion keeps it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct SpatialMomentum<T = f64>(pub Vector3<T>);
+
+impl<T: PartialEq> PartialEq for SpatialMomentum<T> {
+    #[inline(always)]
+    fn eq(&self, other: &Self) -> bool {
+        let ([a], [b]) = (&self.0.data.0, &other.0.data.0);
+        all_equal(a, b)
+    }
+}
 
 impl<T: Real> BodyMomentum<T> {
     /// `m = R mu`.

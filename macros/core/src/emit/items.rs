@@ -382,6 +382,10 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
             quote!(solver: Free<T>,),
             " The step and the constants of the trajectory. Belongs to the state it was started with.",
         ),
+        Method::ForcedMoserVeselov if super::forced::keeps_edge(d) => (
+            quote!(edge: Edge<T>, here: #state<T>,),
+            " The step, and the momentum of the edge that begins at the state `here`. Made anew for any other state.",
+        ),
         Method::ForcedMoserVeselov => (TokenStream::new(), " The step."),
         Method::Newton => (
             quote!(guess: [Rotation<T>; #count],),

@@ -4,6 +4,7 @@
 
 mod card;
 mod expression;
+mod forced;
 mod invariants;
 mod items;
 mod names;

@@ -6,7 +6,7 @@ use super::items::{kept, letters_of, node_locals, parameter_locals, with_transpo
 use super::names::{Names, field, item, own, per_configuration, tagged, variable};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
-use crate::derive::recognise::{Method, MoserVeselov, Riccati};
+use crate::derive::recognise::{Method, Riccati};
 use crate::derive::transport::Transport;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::schedule;
@@ -49,7 +49,7 @@ pub fn start_and_step(d: &Derivation, names: &Names) -> TokenStream {
     let access = advected_access(d, names);
     let step = match (&d.solve.method, d.solve.riccati.first()) {
         (Method::FreeMoserVeselov, _) => free_step(d, names),
-        (Method::ForcedMoserVeselov, Some(Riccati::Exact(mv))) => forced_step(d, names, mv),
+        (Method::ForcedMoserVeselov, Some(Riccati::Exact(mv))) => super::forced::step(d, names, mv),
         _ => super::newton::step(d, names),
     };
     quote! {
@@ -141,6 +141,9 @@ fn start(d: &Derivation, names: &Names) -> TokenStream {
             let momentum = per_configuration(d, "momentum", 0);
             quote!(solver: Free::start(&self.factor, &state.#element, &state.#momentum, h)?,)
         }
+        Method::ForcedMoserVeselov if super::forced::keeps_edge(d) => {
+            quote!(edge: self.edge(state, h), here: state)
+        }
         Method::ForcedMoserVeselov => TokenStream::new(),
         Method::Newton => quote!(guess: [Rotation::identity(); #count],),
     };
@@ -164,7 +167,7 @@ fn start(d: &Derivation, names: &Names) -> TokenStream {
     }
 }
 
-fn step_signature(d: &Derivation, body: TokenStream) -> TokenStream {
+pub(super) fn step_signature(d: &Derivation, body: TokenStream) -> TokenStream {
     let (state, work) = (item(d, "State"), item(d, "Workspace"));
     let method = &d.solve.reason;
     let doc = format!(" One step, in place. Solved thus: {method}.");
@@ -182,11 +185,12 @@ fn step_signature(d: &Derivation, body: TokenStream) -> TokenStream {
 
 fn free_step(d: &Derivation, names: &Names) -> TokenStream {
     let element = own(d, d.spec.configurations[0].element);
+    let momentum = per_configuration(d, "momentum", 0);
     let node = names.local("node");
     step_signature(
         d,
         quote! {
-            if let Err(e) = work.solver.step(&mut state.#element) {
+            if let Err(e) = work.solver.follow(&mut state.#element, &state.#momentum) {
                 return Err(StepCause::from(e).at_node(state.#node));
             }
             state.#node += 1;
@@ -319,108 +323,6 @@ pub(super) fn finish(
         state.#node += 1;
         #guess
         Ok(())
-    }
-}
-
-fn forced_step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
-    let s = &d.letters.symbols;
-    let state = item(d, "State");
-    let node = names.local("node");
-    let c = &d.spec.configurations[0];
-    let momentum = per_configuration(d, "momentum", 0);
-    let element = variable(s, c.element);
-    let edge = names.local("edge");
-    let omega = variable(s, c.velocity);
-    // The momentum of the edge at a given step, for the solve and for the search of a step.
-    let mut bindings = Bindings::new();
-    let mut needed = letters_of([&mv.rest]);
-    if c.side == Side::Body {
-        needed.push(at(c.element, Shift::HERE));
-    }
-    let parameters = parameter_locals(d, quote!(self.parameters), &with_transports(d, &needed, 0));
-    let locals = here(d, names, &needed, &mut bindings);
-    let step = variable(s, d.spec.step);
-    let p = schedule::program(s, std::slice::from_ref(&mv.rest), "t");
-    let (lets, values) = program(&p, &bindings);
-    let rest = &values[0];
-    let node_momentum = match c.side {
-        Side::Body => quote!(#element.tr_mul(&state.#momentum.0)),
-        Side::Spatial => quote!(state.#momentum.0),
-    };
-    let value = if mv.rest.is_zero() {
-        node_momentum
-    } else {
-        quote!(#node_momentum - (#rest))
-    };
-    let edge_function = quote! {
-        /// The momentum of the edge that starts at this node, for a step `h`.
-        #[inline]
-        fn edge_momentum(&self, state: &#state<T>, #step: T) -> SVector<T, 3> {
-            #parameters
-            #locals
-            #lets
-            #value
-        }
-    };
-    // The step.
-    let mut bindings = Bindings::new();
-    let updates = update(d, 0);
-    let list = match &updates {
-        Update::Acted { leave, arrive } => vec![leave, arrive],
-        Update::Added(e) | Update::Brought(e) => vec![e],
-    };
-    let uses_velocity = list
-        .iter()
-        .any(|e| expr::contains(e, at(c.velocity, Shift::HERE)));
-    let mut needed: Vec<Letter> = letters_of(list.iter().copied());
-    if let Update::Acted { leave, .. } = &updates
-        && !leave.is_zero()
-    {
-        needed.push(at(c.element, Shift::HERE));
-    }
-    let mut all = with_transports(d, &needed, 0);
-    all.extend(with_transports(d, &needed, 1));
-    let parameters = parameter_locals(d, quote!(self.parameters), &all);
-    let locals = here(d, names, &needed, &mut bindings);
-    let matrix = uses_velocity.then(|| {
-        let name = tagged(d, names, c.velocity, "matrix");
-        bindings.bind(at(c.velocity, Shift::HERE), name.clone());
-        quote!(let #name = #omega.matrix();)
-    });
-    let rest = finish(
-        d,
-        names,
-        &mut bindings,
-        &|_| quote!(#omega),
-        TokenStream::new(),
-    );
-    let body = quote! {
-        let #step = work.h;
-        let #edge = self.edge_momentum(state, #step);
-        let #omega = match forced(&self.factor, &(#edge * #step)) {
-            Ok(solved) => solved,
-            Err(e) => return Err(self.refused(state, #step, e)),
-        };
-        #matrix
-        #parameters
-        #locals
-        #rest
-    };
-    let step_function = step_signature(d, body);
-    quote! {
-        #step_function
-        #edge_function
-
-        /// Says how far the step is beyond the bound, and which step could be solved.
-        #[cold]
-        fn refused(&self, state: &#state<T>, h: T, e: MoserVeselovError) -> StepError {
-            let largest = largest_step(h.value(), |trial| {
-                let n = self.edge_momentum(state, T::from_f64(trial)) * T::from_f64(trial);
-                let body = Poinsot::new(self.factor.matrix().map(|x| x.value())).ok()?;
-                Some(reach(&body, &n.map(|x| x.value())))
-            });
-            StepCause::from(e.with_steps(h.value(), largest)).at_node(state.#node)
-        }
     }
 }
 

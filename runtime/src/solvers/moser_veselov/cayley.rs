@@ -43,20 +43,10 @@ pub(super) struct Pencil<T> {
 }
 
 impl<T: Real> Pencil<T> {
-    #[inline(always)]
-    pub(super) fn new<const DIAGONAL: bool>(body: &Poinsot<T>, kappa: T, a: T) -> Self {
+    pub(super) fn new(body: &Poinsot<T>, kappa: T, a: T) -> Self {
         let [x, y, z] = body.moments.map(|moment| moment - kappa);
-        let (yz, zx, xy) = (y * z, z * x, x * y);
-        if DIAGONAL {
-            return Self {
-                d_moments: [x, y, z],
-                adjugate_moments: [yz + a, zx + a, xy + a],
-                adjugate_products: [T::zero(); 3],
-                determinant: x * yz,
-            };
-        }
         let [f, g, h] = body.products;
-        let (p, q, r) = (yz - f * f, zx - g * g, xy - h * h);
+        let (p, q, r) = (y * z - f * f, z * x - g * g, x * y - h * h);
         let (s, t) = (g * f - z * h, h * f - y * g);
         Self {
             d_moments: [x, y, z],
@@ -68,25 +58,73 @@ impl<T: Real> Pencil<T> {
 
     /// `det` and `n`; the quaternion of `Omega` is `(det, n)` over its length.
     #[inline(always)]
-    pub(super) fn solve<const DIAGONAL: bool>(&self, body: &Poinsot<T>, u: [T; 3]) -> (T, [T; 3]) {
-        let gyro = gyroscopic::<T, DIAGONAL>(body, u);
+    pub(super) fn solve(&self, body: &Poinsot<T>, u: [T; 3]) -> (T, [T; 3]) {
+        let gyro = gyroscopic::<T, false>(body, u);
         let ([x, y, z], [dx, dy, dz]) = (u, self.d_moments);
-        let [p, q, r] = self.adjugate_moments;
-        if DIAGONAL {
-            let det = (self.determinant + dx * (x * x)) + (dy * (y * y) + dz * (z * z));
-            return (det, [p * x + gyro[0], q * y + gyro[1], r * z + gyro[2]]);
-        }
         let ([f, g, h], [s, t, v]) = (body.products, self.adjugate_products);
         let du = [
             (dx * x + h * y) + g * z,
             (h * x + dy * y) + f * z,
             (g * x + f * y) + dz * z,
         ];
+        let [p, q, r] = self.adjugate_moments;
         let n = [
             (p * x + v * y) + (t * z + gyro[0]),
             (v * x + q * y) + (s * z + gyro[1]),
             (t * x + s * y) + (r * z + gyro[2]),
         ];
         (self.determinant + dot(u, du), n)
+    }
+}
+
+/// The same for one free trajectory in principal axes, the middle moment second.
+///
+/// Along it `|u|^2` and `u . adj(I) u` are constant, hence `u_1^2` and `u_3^2` are linear in
+/// `u_2^2`, and so is the determinant. Since the moment is the middle one both lines fall, by at
+/// most 1, and rounding is not amplified. (It would be, close to the bound, by a norm found in the
+/// same way.)
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Orbit<T> {
+    /// Diagonal entries of `adj d + a`.
+    adjugate: [T; 3],
+    /// `det(d - hat u)`: the constant, and the factor of `u_2^2`.
+    determinant: [T; 2],
+    /// Twice the differences of the moments.
+    doubled: [T; 3],
+}
+
+impl<T: Real> Orbit<T> {
+    /// The trajectory through `u`.
+    pub(super) fn new(body: &Poinsot<T>, pencil: &Pencil<T>, u: [T; 3]) -> Self {
+        let ([i, j, k], [p, q, r]) = (body.moments, body.differences);
+        let one = T::one();
+        // Three equal moments: every component is constant.
+        let differ = (q * q).where_positive(one);
+        let per_spread = differ / (j * (differ * q + (one - differ)));
+        let slopes = [i * p * per_spread, one, k * r * per_spread];
+        let factor = dot(pencil.d_moments, slopes);
+        let now = pencil.determinant + dot(pencil.d_moments, u.map(|x| x * x));
+        Self {
+            adjugate: pencil.adjugate_moments,
+            determinant: [now - factor * (u[1] * u[1]), factor],
+            doubled: body.differences.map(|x| x + x),
+        }
+    }
+
+    /// As [`Pencil::solve`].
+    #[inline(always)]
+    pub(super) fn solve(&self, body: &Poinsot<T>, u: [T; 3]) -> (T, [T; 3]) {
+        let [a, b, c] = gyroscopic::<T, true>(body, u);
+        let ([x, y, z], [p, q, r]) = (u, self.adjugate);
+        let [constant, factor] = self.determinant;
+        let det = constant + factor * (y * y);
+        (det, [p * x + a, q * y + b, r * z + c])
+    }
+
+    /// Twice `(I n) x n`.
+    #[inline(always)]
+    pub(super) fn push(&self, [x, y, z]: [T; 3]) -> [T; 3] {
+        let [p, q, r] = self.doubled;
+        [p * (y * z), q * (z * x), r * (x * y)]
     }
 }

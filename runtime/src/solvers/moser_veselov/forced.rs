@@ -37,53 +37,43 @@ pub fn forced<T: Real>(
     body: &Poinsot<T>,
     h_n: &Vector3<T>,
 ) -> Result<Rotation<T>, MoserVeselovError> {
-    // One branch here, straight-line code on either side.
-    let solved = if body.diagonal {
-        principal::<T, true>(body, h_n)
-    } else {
-        principal::<T, false>(body, h_n)
-    };
-    match solved {
-        Some(omega) => Ok(omega),
+    match turn(body, body.scaled(h_n)) {
+        Some(q) => Ok(Rotation::normalised(q)),
         None => Err(MoserVeselovError::diagnose(body, h_n)),
     }
 }
 
+/// The quaternion of the principal solution, not normalised, for `u = h N / (2 unit)`.
 #[inline(always)]
-fn principal<T: Real, const DIAGONAL: bool>(
-    body: &Poinsot<T>,
-    h_n: &Vector3<T>,
-) -> Option<Rotation<T>> {
-    let u = body.scaled(h_n);
-    let squares = [u[0] * u[0], u[1] * u[1], u[2] * u[2]];
-    let a = squares[0] + squares[1] + squares[2];
-    let inertia_u = body.inertia_times::<DIAGONAL>(u);
-    let adjugate_u = body.adjugate_times::<DIAGONAL>(u);
-    let (p, e) = if DIAGONAL {
-        // Shorter by one multiplication on the way to kappa.
-        (
-            dot(body.moments, squares),
-            dot(body.adjugate_moments, squares),
-        )
+pub(super) fn turn<T: Real>(body: &Poinsot<T>, u: [T; 3]) -> Option<[T; 4]> {
+    // One branch here, straight-line code on either side.
+    if body.diagonal {
+        principal::<T, true>(body, u)
     } else {
-        (dot(u, inertia_u), dot(u, adjugate_u))
-    };
-    let gyro = gyroscopic::<T, DIAGONAL>(body, u);
+        principal::<T, false>(body, u)
+    }
+}
+
+#[inline(always)]
+fn principal<T: Real, const DIAGONAL: bool>(body: &Poinsot<T>, u: [T; 3]) -> Option<[T; 4]> {
+    let squares = [u[0] * u[0], u[1] * u[1], u[2] * u[2]];
+    let products = [u[1] * u[2], u[2] * u[0], u[0] * u[1]];
+    let a = (squares[0] + squares[1]) + squares[2];
+    let energy = body.energy.value::<DIAGONAL>(squares, products);
+    let deviation = body.deviation.value::<DIAGONAL>(squares, products);
+    let kappa = kappa(body, a, energy, deviation)?;
     // adj(I - kappa) u = adj(I) u + kappa (I - s1) u + kappa^2 u and det(I - kappa), sorted by
     // powers so that little is left to do once kappa is known.
-    let constant = |i: usize| (adjugate_u[i] + gyro[i]) + a * u[i];
-    let linear = |i: usize| inertia_u[i] - body.s1 * u[i];
-    let ([c0, c1, c2], [l0, l1, l2]) = (
-        [constant(0), constant(1), constant(2)],
-        [linear(0), linear(1), linear(2)],
-    );
-    let kappa = kappa(body, a, e)?;
+    let inertia_u = body.inertia_times::<DIAGONAL>(u);
+    let adjugate_u = body.adjugate_times::<DIAGONAL>(u);
+    let gyro = gyroscopic::<T, DIAGONAL>(body, u);
+    let p = dot(u, inertia_u);
     let square = kappa * kappa;
     let det = ((body.s3 + p) - kappa * (body.s2 + a)) + square * (body.s1 - kappa);
-    Some(Rotation::normalised([
-        det,
-        (c0 + kappa * l0) + square * u[0],
-        (c1 + kappa * l1) + square * u[1],
-        (c2 + kappa * l2) + square * u[2],
-    ]))
+    let n = |i: usize| {
+        let constant = (adjugate_u[i] + gyro[i]) + a * u[i];
+        let linear = inertia_u[i] - body.s1 * u[i];
+        (constant + kappa * linear) + square * u[i]
+    };
+    Some([det, n(0), n(1), n(2)])
 }

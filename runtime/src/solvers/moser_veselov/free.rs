@@ -1,15 +1,20 @@
 //! The torque-free rigid body, stepped explicitly.
 //! Takes the body, the start and the step size; advances the attitude, keeps the body momentum.
 
-use super::cayley::{Pencil, cross, dot, gyroscopic};
+use super::cayley::{Orbit, Pencil, cross, dot, gyroscopic};
 use super::kappa::kappa;
+use super::principal::PrincipalAxes;
 use super::{MoserVeselovError, Poinsot};
 use crate::{BodyMomentum, Real, Rotation, SpatialMomentum};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 /// Steps between two projections. Rounding moves the invariants by about one ulp per step in
 /// random directions, so eight ulps gather in between, at a sixty-fourth of the cost.
 const PROJECT_EVERY: u32 = 64;
+
+/// Steps between two repairs of the attitude's length: its rounding errors have a common sign where
+/// the angle of the step hardly varies, and would add up until the projection.
+const REPAIR_EVERY: u32 = 8;
 
 /// Squared sine of the angle between `u` and `adj(I) u` below which the energy is left alone: so
 /// near to a principal axis (or with equal moments) it depends on `|u|` only, to second order in
@@ -22,6 +27,10 @@ const DEGENERATE: f64 = 1e-6;
 /// constant and a step costs one division and one square root. Every 64 steps rounding is taken
 /// out: the momentum goes back to its two quadrics, the attitude to where it maps the body
 /// momentum on the spatial one.
+///
+/// Inside, the body stands in its principal axes, so that every body costs what a diagonal one
+/// does; a type with derivatives stays in the axes given, since those of a principal frame do not
+/// exist where two moments agree.
 ///
 /// ```
 /// use clebsch::nalgebra::{Matrix3, Vector3};
@@ -41,17 +50,33 @@ const DEGENERATE: f64 = 1e-6;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Free<T = f64> {
-    body: Poinsot<T>,
-    pencil: Pencil<T>,
     /// The momentum `h mu / (2 unit)`.
     axes: [Axis<T>; 3],
+    /// For plain numbers, in principal axes.
+    orbit: Orbit<T>,
+    /// For numbers with derivatives, in the axes given.
+    pencil: Pencil<T>,
+    /// In the axes worked in.
+    body: Poinsot<T>,
+    /// Components in the axes worked in -> components in the axes given.
+    frame: Matrix3<T>,
+    /// Whether the two differ.
+    turned: bool,
+    until_projection: u32,
+    /// Where the last step ended: an attitude that is not this one has been put there by the user.
+    attitude: Rotation<T>,
+    momentum: SpatialMomentum<T>,
+    h: T,
+    /// The body in the axes given.
+    given: Poinsot<T>,
     /// `|u|^2`; constant.
     square: T,
+    /// Its inverse; 0 for a body at rest.
+    per_square: T,
     /// `u . adj(I) u`; constant.
     energy: T,
     /// What turns `u` back into the momentum: `2 unit / h`.
     per_scale: T,
-    until_projection: u32,
 }
 
 /// One component of the scaled momentum. Body and spatial components alternate in memory on
@@ -59,7 +84,7 @@ pub struct Free<T = f64> {
 /// cannot forward from the stores of the step before (a third of the cost of a step).
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Axis<T> {
-    /// Body axes, at the current node.
+    /// Principal axes, at the current node.
     body: T,
     /// Spatial axes; constant.
     space: T,
@@ -82,32 +107,74 @@ impl<T: Real> Free<T> {
         let h_m = momentum.0.map(|x| x * h);
         let spatial = body.scaled(&h_m);
         let h_mu = attitude.inverse_rotate(&h_m);
-        let u = body.scaled(&h_mu);
+        let (given, frame) = (*body, principal_frame(body));
+        let body = match &frame {
+            Some(axes) => body.in_principal_axes(axes.moments),
+            None => given,
+        };
+        let turned = frame.filter(|axes| axes.frame != Rotation::identity());
+        let turned = turned.map(|axes| axes.frame.matrix());
+        let frame = turned.unwrap_or_else(Matrix3::identity);
+        let u = body.scaled(&frame.tr_mul(&h_mu));
         let square = dot(u, u);
+        let moving = square.where_positive(T::one());
         let energy = dot(u, body.adjugate_times::<false>(u));
-        let Some(kappa) = kappa(body, square, energy) else {
-            let error = MoserVeselovError::diagnose(body, &h_mu);
+        let products = [u[1] * u[2], u[2] * u[0], u[0] * u[1]];
+        let squares = u.map(|x| x * x);
+        let kappa = kappa(
+            &body,
+            square,
+            body.energy.value::<false>(squares, products),
+            body.deviation.value::<false>(squares, products),
+        );
+        let Some(kappa) = kappa else {
+            let error = MoserVeselovError::diagnose(&given, &h_mu);
             return Err(error.with_linear_step(h.value()));
         };
+        let pencil = Pencil::new(&body, kappa, square);
         Ok(Self {
-            body: *body,
-            pencil: Pencil::new::<false>(body, kappa, square),
             axes: [0, 1, 2].map(|i| Axis {
                 body: u[i],
                 space: spatial[i],
             }),
+            orbit: Orbit::new(&body, &pencil, u),
+            pencil,
+            body,
+            frame,
+            turned: turned.is_some(),
+            until_projection: PROJECT_EVERY,
+            attitude: *attitude,
+            momentum: *momentum,
+            h,
+            given,
             square,
+            per_square: moving / (square + (T::one() - moving)),
             energy,
             per_scale: T::from_f64(2.0 * body.unit) / h,
-            until_projection: PROJECT_EVERY,
         })
     }
 
     /// The body momentum at the current node.
     #[inline]
     pub fn body_momentum(&self) -> BodyMomentum<T> {
-        let [x, y, z] = self.u().map(|x| x * self.per_scale);
-        BodyMomentum(Vector3::new(x, y, z))
+        BodyMomentum(self.frame * Vector3::from(self.u().map(|x| x * self.per_scale)))
+    }
+
+    /// As [`Free::step`], for a state that may have been replaced: it is followed where it is, with
+    /// the momentum it has.
+    ///
+    /// # Errors
+    /// As [`Free::start`] after a replacement, as [`Free::step`] otherwise; nothing is changed.
+    #[inline]
+    pub fn follow(
+        &mut self,
+        attitude: &mut Rotation<T>,
+        momentum: &SpatialMomentum<T>,
+    ) -> Result<(), MoserVeselovError> {
+        if *attitude != self.attitude || *momentum != self.momentum {
+            self.restart(attitude, momentum)?;
+        }
+        self.step_on(attitude)
     }
 
     /// Advances the attitude, and the momentum kept inside, by one step.
@@ -117,59 +184,85 @@ impl<T: Real> Free<T> {
     /// momentum are then unchanged.
     #[inline]
     pub fn step(&mut self, attitude: &mut Rotation<T>) -> Result<(), MoserVeselovError> {
-        let sound = if self.body.diagonal {
-            self.advance::<true>(attitude)
-        } else {
-            self.advance::<false>(attitude)
-        };
-        if !sound {
-            let nan = Vector3::repeat(T::from_f64(f64::NAN));
-            return Err(MoserVeselovError::diagnose(&self.body, &nan));
-        }
-        self.until_projection -= 1;
-        if self.until_projection == 0 {
-            // The call gets a copy, so that the compiler may keep the original in registers.
-            let copy = *self;
-            let (u, aligned) = copy.projected(*attitude);
-            for (axis, x) in self.axes.iter_mut().zip(u) {
-                axis.body = x;
-            }
-            *attitude = aligned;
-            self.until_projection = PROJECT_EVERY;
-        }
+        let momentum = self.momentum;
+        self.follow(attitude, &momentum)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn restart(
+        &mut self,
+        attitude: &Rotation<T>,
+        momentum: &SpatialMomentum<T>,
+    ) -> Result<(), MoserVeselovError> {
+        *self = Self::start(&self.given, attitude, momentum, self.h)?;
         Ok(())
     }
 
-    /// One bare step; false, and nothing changed, when a number is not finite.
     #[inline(always)]
-    fn advance<const DIAGONAL: bool>(&mut self, attitude: &mut Rotation<T>) -> bool {
-        let (det, n) = self.pencil.solve::<DIAGONAL>(&self.body, self.u());
+    fn step_on(&mut self, attitude: &mut Rotation<T>) -> Result<(), MoserVeselovError> {
+        if !self.advance(attitude) {
+            let nan = Vector3::repeat(T::from_f64(f64::NAN));
+            return Err(MoserVeselovError::diagnose(&self.given, &nan));
+        }
+        self.until_projection -= 1;
+        if self.until_projection == 0 {
+            self.project(attitude);
+            self.until_projection = PROJECT_EVERY;
+        }
+        self.attitude = *attitude;
+        Ok(())
+    }
+
+    /// One step without the projection; false, and nothing changed, when a number is not finite.
+    #[inline(always)]
+    fn advance(&mut self, attitude: &mut Rotation<T>) -> bool {
+        let (det, n) = if plain::<T>() {
+            self.orbit.solve(&self.body, self.u())
+        } else {
+            self.pencil.solve(&self.body, self.u())
+        };
         let [x, y, z] = n;
         let norm = (det * det + x * x) + (y * y + z * z);
         if !norm.is_finite() {
             return false;
         }
         let per_norm = T::one() / norm;
-        let gyro = gyroscopic::<T, DIAGONAL>(&self.body, n);
-        for (axis, push) in self.axes.iter_mut().zip(gyro) {
-            axis.body += (push + push) * per_norm;
+        let push = if plain::<T>() {
+            self.orbit.push(n)
+        } else {
+            gyroscopic::<T, false>(&self.body, n).map(|x| x + x)
+        };
+        for (axis, push) in self.axes.iter_mut().zip(push) {
+            axis.body += push * per_norm;
         }
-        // The length of the old attitude is repaired on the way: its rounding errors have a common
-        // sign where `norm` hardly varies, and would add up. Root and quotient run side by side.
-        let scale = norm.sqrt() * (attitude.repair() * per_norm);
+        let [x, y, z] = if self.turned {
+            let [given] = (self.frame * Vector3::from(n)).data.0;
+            given
+        } else {
+            n
+        };
+        let mut scale = per_norm.sqrt();
+        if self.until_projection.is_multiple_of(REPAIR_EVERY) {
+            scale *= attitude.repair();
+        }
         let omega = Rotation::from_unit([det * scale, x * scale, y * scale, z * scale]);
         *attitude = attitude.compose_raw(&omega);
         true
     }
 
-    /// The momentum and the attitude with their rounding errors taken out.
+    /// Takes the rounding errors out of the momentum and the attitude.
+    #[cold]
     #[inline(never)]
-    fn projected(&self, attitude: Rotation<T>) -> ([T; 3], Rotation<T>) {
+    fn project(&mut self, attitude: &mut Rotation<T>) {
         let u = self.on_quadrics(self.u());
-        (u, self.aligned(attitude, u))
+        for (axis, x) in self.axes.iter_mut().zip(u) {
+            axis.body = x;
+        }
+        *attitude = self.aligned(*attitude, u);
     }
 
-    /// `u`, body axes.
+    /// `u`, in the axes worked in.
     #[inline(always)]
     fn u(&self) -> [T; 3] {
         let [x, y, z] = &self.axes;
@@ -180,15 +273,18 @@ impl<T: Real> Free<T> {
     /// gradients `u` and `v`; along `u` alone where they are parallel.
     fn on_quadrics(&self, u: [T; 3]) -> [T; 3] {
         let (one, half) = (T::one(), T::from_f64(0.5));
-        let v = self.body.adjugate_times::<false>(u);
+        let v = if plain::<T>() {
+            self.body.adjugate_times::<true>(u)
+        } else {
+            self.body.adjugate_times::<false>(u)
+        };
         let (uu, uv, vv) = (dot(u, u), dot(u, v), dot(v, v));
         let (f, g) = (half * (self.square - uu), half * (self.energy - uv));
         let gram = uu * vv - uv * uv;
         let both = (gram - T::from_f64(DEGENERATE) * (uu * vv)).where_positive(one);
         let gram = both * gram + (one - both);
         let y = both * ((uu * g - uv * f) / gram);
-        let moving = uu.where_positive(one);
-        let x = moving * ((f - uv * y) / (uu + (one - moving)));
+        let x = (f - uv * y) * self.per_square;
         [
             u[0] + (x * u[0] + y * v[0]),
             u[1] + (x * u[1] + y * v[1]),
@@ -198,15 +294,24 @@ impl<T: Real> Free<T> {
 
     /// Turns the attitude from the left by the small angle that takes the body momentum, seen from
     /// space, to the conserved spatial one. A body at rest is only normalised.
-    fn aligned(&self, attitude: Rotation<T>, [x, y, z]: [T; 3]) -> Rotation<T> {
-        let one = T::one();
-        let attitude = Rotation::normalised(attitude.quaternion());
-        let [[a, b, c]] = attitude.rotate(&Vector3::new(x, y, z)).data.0;
-        let moving = self.square.where_positive(one);
-        let half = moving * (T::from_f64(0.5) / (self.square + (one - moving)));
+    fn aligned(&self, attitude: Rotation<T>, u: [T; 3]) -> Rotation<T> {
+        let attitude = attitude.renormalised();
+        let [[a, b, c]] = attitude.rotate(&(self.frame * Vector3::from(u))).data.0;
+        let half = T::from_f64(0.5) * self.per_square;
         let [p, q, r] = cross([a, b, c], self.axes.map(|axis| axis.space)).map(|x| x * half);
-        Rotation::from_unit([one, p, q, r])
+        Rotation::from_unit([T::one(), p, q, r])
             .compose_raw(&attitude)
             .renormalised()
     }
+}
+
+/// Whether the numbers carry no derivatives.
+#[inline(always)]
+fn plain<T: Real>() -> bool {
+    T::ORDER == 0
+}
+
+/// The principal axes, where they are of use.
+fn principal_frame<T: Real>(body: &Poinsot<T>) -> Option<PrincipalAxes<T>> {
+    plain::<T>().then(|| PrincipalAxes::of(body))
 }

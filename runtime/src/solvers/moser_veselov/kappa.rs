@@ -1,20 +1,20 @@
 //! The scalar unknown of the Moser-Veselov equation: the smallest root of a quartic.
-//! Takes the body, `a = |u|^2` and `e = u . adj(I) u`; gives `kappa`, or nothing beyond the bound.
+//! Takes the body, `a = |u|^2` and `e = u . I^-1 u`; gives `kappa`, or nothing beyond the bound.
 //!
-//! The quartic is
-//! `g = k^4 - s1 k^3 + (s2 + 2a) k^2 - (s3 + s1 a) k + (e + a^2)`.
+//! Over `s3` the quartic is
+//! `g = (e - k) - (s1 a / s3) k + a^2 / s3 + k^2 ((s2 + 2a) / s3 - (s1 / s3) k + k^2 / s3)`.
 //! It is positive at 0; without a real root there is no principal solution.
 
 use super::Poinsot;
 use crate::Real;
 
-/// Below this, `s1 a / s3` and `s2 e / s3^2` leave the quartic so close to its linear part that
-/// the series start is inside the basin of the smallest root: in units of `e / s3` it reads
-/// `1 - w + y w^2 - ...` with higher coefficients below `y^2/3` and `y^3/27`, and a double root
-/// needs `y` near 1/4.
-const SMALL: f64 = 1.0 / 16.0;
+/// Below this, `s2 e / s3` leaves the quartic so close to its linear part that the series start is
+/// inside the basin of the smallest root: in units of `e` it reads `1 - w + y w^2 - ...` with
+/// higher coefficients below `y^2/3` and `y^3/27`, and a double root needs `y` near 1/4.
+/// `s1 a / s3` is at most twice as large.
+const SMALL: f64 = 1.0 / 32.0;
 
-/// From the series start, third-order convergence needs one to three iterations.
+/// From the series start, fourth-order convergence needs one or two iterations.
 const MOST_FAST: usize = 6;
 
 /// Near a double root Newton's method halves the error per iteration until `g` is at rounding
@@ -22,74 +22,147 @@ const MOST_FAST: usize = 6;
 /// ten. Double-double needs 53 + 10.
 const MOST_MONOTONE: usize = 100;
 
+/// What the root needs of the body; all over `s3`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Symmetric<T> {
+    /// `1 / s3`.
+    pub(super) zeroth: T,
+    /// `s1 / s3`.
+    pub(super) first: T,
+    /// `s2 / s3`.
+    pub(super) second: T,
+    /// The largest `e` for which one iteration from the series start is exact to rounding.
+    easy: T,
+}
+
+impl<T: Real> Symmetric<T> {
+    pub(super) fn new(s1: T, s2: T, s3: T) -> Self {
+        let zeroth = T::one() / s3;
+        let second = s2 * zeroth;
+        // With `y = s2 e / s3` the start is off by less than 2 y^2 of the root, and the iteration
+        // leaves less than 512 y^11.
+        let easy = (T::EPSILON / 512.0).powf(1.0 / 11.0);
+        Self {
+            zeroth,
+            first: s1 * zeroth,
+            second,
+            easy: T::from_f64(easy) / second,
+        }
+    }
+}
+
+/// The quartic for one momentum.
 struct Quartic<T> {
-    c0: T,
-    c1: T,
-    c2: T,
-    c3: T,
+    /// `e`.
+    energy: T,
+    /// `a^2 / s3`.
+    square: T,
+    /// `s1 a / s3`.
+    turn: T,
+    /// `(s2 + 2a) / s3`.
+    curvature: T,
+    /// `s1 / s3`.
+    third: T,
+    /// `1 / s3`.
+    fourth: T,
 }
 
 impl<T: Real> Quartic<T> {
     #[inline(always)]
+    fn new(body: &Symmetric<T>, a: T, energy: T) -> Self {
+        Self {
+            energy,
+            square: body.zeroth * (a * a),
+            turn: body.first * a,
+            curvature: body.second + (body.zeroth + body.zeroth) * a,
+            third: body.first,
+            fourth: body.zeroth,
+        }
+    }
+
+    /// The first terms of the series of the root.
+    #[inline(always)]
+    fn start(&self, deviation: T) -> T {
+        (self.energy + self.square) + self.energy * deviation
+    }
+
+    #[inline(always)]
     fn value(&self, k: T) -> T {
         let square = k * k;
-        (self.c0 - self.c1 * k) + square * ((self.c2 - self.c3 * k) + square)
+        (((self.energy - k) + self.square) - self.turn * k)
+            + square * ((self.curvature - self.third * k) + square * self.fourth)
     }
 
+    /// Minus the first derivative.
     #[inline(always)]
-    fn slope(&self, k: T) -> T {
-        let (two, three, four) = (T::from_f64(2.0), T::from_f64(3.0), T::from_f64(4.0));
-        ((two * self.c2) * k - self.c1) + (k * k) * (four * k - three * self.c3)
+    fn fall(&self, k: T) -> T {
+        let (three, four) = (T::from_f64(3.0), T::from_f64(4.0));
+        let linear = (T::one() + self.turn) - (self.curvature + self.curvature) * k;
+        linear + (k * k) * (three * self.third - (four * self.fourth) * k)
     }
 
-    /// Half the second derivative.
+    /// One step of fourth order: Newton's, and the next two terms of the inverse series.
     #[inline(always)]
-    fn half_curvature(&self, k: T) -> T {
-        let (three, six) = (T::from_f64(3.0), T::from_f64(6.0));
-        self.c2 + k * (six * k - three * self.c3)
+    fn improved(&self, k: T) -> T {
+        let [newton, bend, twist] = self.change(k);
+        let square = newton * newton;
+        ((k + newton) + square * bend) + (square * newton) * twist
     }
 
-    /// One step of Chebyshev's iteration (Newton's with a correction for the curvature: third
-    /// order at the price of one division), and whether it has arrived in every lane.
+    /// Newton's change of `k` and the two factors of its square and cube that improve it.
     #[inline(always)]
-    fn chebyshev(&self, k: T) -> (T, bool) {
-        let per_slope = T::one() / self.slope(k);
-        let newton = self.value(k) * per_slope;
-        let bend = newton * (self.half_curvature(k) * per_slope);
-        let next = (k - newton) - newton * bend;
-        // The error left is about newton * bend^2; it must be below a rounding of the root.
-        let left = bend * bend * newton;
-        let allowed = next * T::from_f64(T::EPSILON);
-        (next, (left * left - allowed * allowed).greatest() <= 0.0)
+    fn change(&self, k: T) -> [T; 3] {
+        let (three, four, six) = (T::from_f64(3.0), T::from_f64(4.0), T::from_f64(6.0));
+        // Half the second derivative and a sixth of the third.
+        let second = (self.curvature - (three * self.third) * k) + (six * self.fourth) * (k * k);
+        let third = (four * self.fourth) * k - self.third;
+        let per_fall = T::one() / self.fall(k);
+        let bend = second * per_fall;
+        let twist = (bend + bend) * bend + third * per_fall;
+        [self.value(k) * per_fall, bend, twist]
+    }
+
+    /// Whether an improvement from `k` is exact to rounding in every lane: what it leaves is about
+    /// `newton^4 bend (bend^2 + twist)`, with factors of a few.
+    fn arrives(&self, k: T) -> bool {
+        let [newton, bend, twist] = self.change(k);
+        let square = newton * newton;
+        let allowed = k * T::from_f64(0.125 * T::EPSILON);
+        [bend * bend, twist].into_iter().all(|x| {
+            let left = (square * square) * (bend * x);
+            (left * left - allowed * allowed).greatest() <= 0.0
+        })
     }
 
     /// Newton steps that make the derivative parts of `k` exact; none for plain numbers.
     #[inline(always)]
     fn polished(&self, mut k: T) -> T {
         for _ in 0..T::ORDER {
-            k -= self.value(k) / self.slope(k);
+            k += self.value(k) / self.fall(k);
         }
         k
     }
 
-    /// Newton's method from `c0/c1`, which is below the smallest root: the iterates rise to it and
-    /// never pass it. A point with `g > 0` and `g' >= 0` on the way proves that there is no root.
+    /// Newton's method from below the smallest root: the iterates rise to it and never pass it. A
+    /// point with `g > 0` and `g' >= 0` on the way proves that there is no root.
     fn monotone(&self) -> Option<T> {
         let one = T::one();
-        let mut k = self.c0 / self.c1;
+        let constant = self.energy + self.square;
+        let mut k = constant / (one + self.turn);
         if !k.is_finite() {
             return None;
         }
-        // Rounding of the sum in `value`, whose terms are up to about 2 c0 at a double root.
-        let noise = T::from_f64(4.0 * T::EPSILON) * self.c0;
+        // Rounding of the sum in `value`, whose terms are up to about twice the constant at a
+        // double root.
+        let noise = T::from_f64(4.0 * T::EPSILON) * constant;
         for _ in 0..MOST_MONOTONE {
-            let (value, slope) = (self.value(k), self.slope(k));
+            let (value, fall) = (self.value(k), self.fall(k));
             // 1 in the lanes still on their way, 0 in those that have arrived.
             let active = (value - noise).where_positive(one);
             if active.greatest() <= 0.0 {
                 return self.finished(k);
             }
-            let descent = active * -slope + (one - active);
+            let descent = active * fall + (one - active);
             let descends = descent.least() > 0.0;
             if !descends {
                 return None;
@@ -103,51 +176,45 @@ impl<T: Real> Quartic<T> {
     /// the derivative parts exact.
     fn finished(&self, mut k: T) -> Option<T> {
         let one = T::one();
+        let threshold = (one + self.turn) * T::from_f64(T::EPSILON.sqrt());
         for _ in 0..=T::ORDER {
-            let slope = self.slope(k);
-            let threshold = T::from_f64(T::EPSILON.sqrt()) * self.c1;
-            let steep = (-slope - threshold).where_positive(one);
-            let safe = steep * slope - (one - steep);
-            k -= steep * (self.value(k) / safe);
+            let fall = self.fall(k);
+            let steep = (fall - threshold).where_positive(one);
+            let safe = steep * fall + (one - steep);
+            k += steep * (self.value(k) / safe);
         }
         k.is_finite().then_some(k)
     }
 }
 
-/// The smallest root, in units of the body.
+/// The smallest root, in units of the body. `deviation` is `s2 e / s3 - s1 a / s3`, which the
+/// caller may know as soon as `energy`.
 ///
 /// Inlined is the case of a moderate step, where one iteration from the series does.
 #[inline(always)]
-pub(super) fn kappa<T: Real>(body: &Poinsot<T>, a: T, e: T) -> Option<T> {
-    let quartic = Quartic {
-        c0: e + a * a,
-        c1: body.s3 + body.s1 * a,
-        c2: body.s2 + (a + a),
-        c3: body.s1,
-    };
-    // First terms of the series of the root in c0/c1, and of 1/c1, without a division.
-    let [per_s3, s1_per_s3, s2_per_s3_squared] = body.series;
-    let z = s1_per_s3 * a;
-    let y = s2_per_s3_squared * e;
-    let start = (per_s3 * quartic.c0) * (y + (T::one() - z));
-    let (k, arrived) = quartic.chebyshev(start);
-    let small =
-        (z - T::from_f64(SMALL)).greatest() <= 0.0 && (y - T::from_f64(SMALL)).greatest() <= 0.0;
-    if small && arrived {
-        Some(quartic.polished(k))
-    } else {
-        iterated(quartic, small.then_some(k))
+pub(super) fn kappa<T: Real>(body: &Poinsot<T>, a: T, energy: T, deviation: T) -> Option<T> {
+    let body = &body.symmetric;
+    // Written so that NaN is not easy.
+    if (energy - body.easy).greatest() <= 0.0 {
+        let quartic = Quartic::new(body, a, energy);
+        let k = quartic.improved(quartic.start(deviation));
+        return Some(quartic.polished(k));
     }
+    hard(body, a, energy, deviation)
 }
 
 /// The root where one iteration does not do: more of them, or the monotone approach.
+#[cold]
 #[inline(never)]
-fn iterated<T: Real>(quartic: Quartic<T>, start: Option<T>) -> Option<T> {
-    if let Some(mut k) = start {
+fn hard<T: Real>(body: &Symmetric<T>, a: T, energy: T, deviation: T) -> Option<T> {
+    let quartic = Quartic::new(body, a, energy);
+    let y = energy * body.second;
+    if (y - T::from_f64(SMALL)).greatest() <= 0.0 {
+        let mut k = quartic.start(deviation);
         for _ in 0..MOST_FAST {
-            let arrived;
-            (k, arrived) = quartic.chebyshev(k);
-            if arrived {
+            let last = quartic.arrives(k);
+            k = quartic.improved(k);
+            if last {
                 return Some(quartic.polished(k));
             }
         }

@@ -12,13 +12,16 @@
 //! numbers.
 
 mod cayley;
+mod edge;
 mod failure;
 mod forced;
 mod free;
 mod kappa;
 mod poinsot;
+mod principal;
 mod reach;
 
+pub use edge::Edge;
 pub use failure::MoserVeselovError;
 pub use forced::forced;
 pub use free::Free;

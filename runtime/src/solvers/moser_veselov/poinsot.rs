@@ -1,6 +1,8 @@
 //! The mass distribution of a rigid body as the solver wants it.
 //! Takes the Poinsot matrix; gives it validated, with the invariants of the inertia tensor.
 
+use super::cayley::dot;
+use super::kappa::Symmetric;
 use crate::Real;
 use crate::linalg::{determinant, symmetric_eigenvalues};
 use crate::validate::{ROUNDINGS, mirrored_difference};
@@ -33,10 +35,32 @@ pub struct Poinsot<T = f64> {
     pub(super) s1: T,
     pub(super) s2: T,
     pub(super) s3: T,
-    /// `1 / s3`, `s1 / s3`, `s2 / s3^2`, for the start of the quartic's iteration.
-    pub(super) series: [T; 3],
+    /// The same over `s3`, for the quartic.
+    pub(super) symmetric: Symmetric<T>,
+    /// `(I / unit)^-1` and `(s2 (I / unit)^-1 - s1) / s3`, whose quadratic forms start the root.
+    pub(super) energy: Form<T>,
+    pub(super) deviation: Form<T>,
     /// Whether the off-diagonal entries are exactly zero.
     pub(super) diagonal: bool,
+}
+
+/// A quadratic form: factors of the squares of the components, and of the products (2,3), (3,1),
+/// (1,2).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Form<T> {
+    squares: [T; 3],
+    products: [T; 3],
+}
+
+impl<T: Real> Form<T> {
+    #[inline(always)]
+    pub(super) fn value<const DIAGONAL: bool>(&self, squares: [T; 3], products: [T; 3]) -> T {
+        if DIAGONAL {
+            dot(self.squares, squares)
+        } else {
+            dot(self.squares, squares) + dot(self.products, products)
+        }
+    }
 }
 
 /// Why a matrix is no Poinsot matrix. Rows and columns count from 0.
@@ -160,7 +184,17 @@ impl<T: Real> Poinsot<T> {
         let [ax, ay, az] = adjugate_moments;
         let s2 = ax + ay + az;
         let s3 = determinant(&inertia);
-        let inverse = T::one() / s3;
+        let symmetric = Symmetric::new(s1, s2, s3);
+        let energy = Form {
+            squares: adjugate_moments.map(|x| x * symmetric.zeroth),
+            products: adjugate_products.map(|x| (x + x) * symmetric.zeroth),
+        };
+        let deviation = Form {
+            squares: energy
+                .squares
+                .map(|x| x * symmetric.second - symmetric.first),
+            products: energy.products.map(|x| x * symmetric.second),
+        };
         Self {
             j,
             unit,
@@ -173,7 +207,9 @@ impl<T: Real> Poinsot<T> {
             s1,
             s2,
             s3,
-            series: [inverse, s1 * inverse, s2 * inverse * inverse],
+            symmetric,
+            energy,
+            deviation,
             diagonal: yz.is_zero() && xz.is_zero() && xy.is_zero(),
         }
     }
@@ -188,6 +224,13 @@ impl<T: Real> Poinsot<T> {
     #[inline]
     pub fn inertia(&self) -> Matrix3<T> {
         Matrix3::from_diagonal_element(self.j.trace()) - self.j
+    }
+
+    /// The same body in principal axes, with its moments over `unit` known.
+    pub(super) fn in_principal_axes(&self, [x, y, z]: [T; 3]) -> Self {
+        let half = T::from_f64(0.5 * self.unit);
+        let diagonal = [(y + z) - x, (z + x) - y, (x + y) - z].map(|j| j * half);
+        Self::prepared(Matrix3::from_diagonal(&diagonal.into()), self.unit)
     }
 
     /// One lane of the body, without derivatives.

@@ -1,0 +1,304 @@
+//! The step of a forced Moser-Veselov equation: one quartic, then the node's torques.
+//! Takes the derivation; gives `step`, the edge momentum and the words of a refusal.
+
+use super::expression::{Bindings, program};
+use super::items::{letters_of, node_locals, parameter_locals, with_transports};
+use super::names::{Names, item, own, per_configuration, tagged, variable};
+use super::step::{Update, at, finish, here, step_signature, update};
+use crate::algebra::Rational;
+use crate::check::spec::Side;
+use crate::derive::Derivation;
+use crate::derive::recognise::{Method, MoserVeselov, Riccati};
+use crate::derive::transport::Transport;
+use crate::expr::symbol::{Role, Symbols};
+use crate::expr::{self, Expr, Letter, Node, Shift};
+use crate::schedule;
+use proc_macro2::TokenStream;
+use quote::quote;
+
+/// What acts at the two nodes of an edge, where the momentum of the next edge can be made with the
+/// new node and kept: on the body side, when nothing but the node's own torques stands between
+/// momentum and edge momentum, and these follow from the state's group element.
+fn torques(d: &Derivation) -> Option<(Expr, Expr)> {
+    let (Method::ForcedMoserVeselov, Some(Riccati::Exact(mv))) =
+        (&d.solve.method, d.solve.riccati.first())
+    else {
+        return None;
+    };
+    let s = &d.letters.symbols;
+    let advanced = |t: &Transport| matches!(t, Transport::Advanced);
+    let Update::Acted { leave, arrive } = update(d, 0) else {
+        return None;
+    };
+    let own = mv.rest == d.balances.first()?.node_out;
+    let moving = [&leave, &arrive]
+        .iter()
+        .any(|e| expr::contains_role(s, e, Role::Velocity));
+    (own && !moving && !d.transports.iter().any(advanced)).then_some((leave, arrive))
+}
+
+/// Whether the workspace keeps the edge that begins at the state.
+pub(super) fn keeps_edge(d: &Derivation) -> bool {
+    torques(d).is_some()
+}
+
+/// The functions of the stepper that make a step.
+pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
+    let state = item(d, "State");
+    let node = names.local("node");
+    let momentum = edge_momentum(d, names, mv);
+    let (step, edge) = match torques(d) {
+        Some((leave, arrive)) => (kept(d, names, &leave, &arrive), edge(d)),
+        None => (plain(d, names), TokenStream::new()),
+    };
+    quote! {
+        #step
+        #momentum
+        #edge
+
+        /// Says how far the step is beyond the bound, and which step could be solved.
+        #[cold]
+        fn refused(&self, state: #state<T>, h: T, e: MoserVeselovError) -> StepError {
+            let largest = largest_step(h.value(), |trial| {
+                let n = self.edge_momentum(&state, T::from_f64(trial)) * T::from_f64(trial);
+                let body = Poinsot::new(self.factor.matrix().map(|x| x.value())).ok()?;
+                Some(reach(&body, &n.map(|x| x.value())))
+            });
+            StepCause::from(e.with_steps(h.value(), largest)).at_node(state.#node)
+        }
+    }
+}
+
+/// The momentum of the edge at a given step, for the solve and for the search of a step.
+fn edge_momentum(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
+    let s = &d.letters.symbols;
+    let state = item(d, "State");
+    let c = &d.spec.configurations[0];
+    let momentum = per_configuration(d, "momentum", 0);
+    let element = variable(s, c.element);
+    let mut bindings = Bindings::new();
+    let mut needed = letters_of([&mv.rest]);
+    if c.side == Side::Body {
+        needed.push(at(c.element, Shift::HERE));
+    }
+    let parameters = parameter_locals(d, quote!(self.parameters), &with_transports(d, &needed, 0));
+    let locals = here(d, names, &needed, &mut bindings);
+    let step = variable(s, d.spec.step);
+    let p = schedule::program(s, std::slice::from_ref(&mv.rest), "t");
+    let (lets, values) = program(&p, &bindings);
+    let node_momentum = match c.side {
+        Side::Body => quote!(#element.tr_mul(&state.#momentum.0)),
+        Side::Spatial => quote!(state.#momentum.0),
+    };
+    let rest = (!mv.rest.is_zero()).then(|| quote!(- (#(#values)*)));
+    quote! {
+        /// The momentum of the edge that starts at this node, for a step `h`.
+        #[inline]
+        fn edge_momentum(&self, state: &#state<T>, #step: T) -> SVector<T, 3> {
+            #parameters
+            #locals
+            #lets
+            #node_momentum #rest
+        }
+    }
+}
+
+fn edge(d: &Derivation) -> TokenStream {
+    let state = item(d, "State");
+    let element = own(d, d.spec.configurations[0].element);
+    quote! {
+        /// The edge that begins at this state.
+        #[cold]
+        #[inline(never)]
+        fn edge(&self, state: #state<T>, h: T) -> Edge<T> {
+            Edge::begin(&state.#element, self.edge_momentum(&state, h))
+        }
+    }
+}
+
+/// The step that finds its edge in the workspace and leaves the next one there.
+fn kept(d: &Derivation, names: &Names, leave: &Expr, arrive: &Expr) -> TokenStream {
+    let s = &d.letters.symbols;
+    let c = &d.spec.configurations[0];
+    let state = item(d, "State");
+    let (element, momentum) = (own(d, c.element), per_configuration(d, "momentum", 0));
+    let [moved, next] = ["moved", "next"].map(|tag| tagged(d, names, c.element, tag));
+    let [edge, following, space, momentum_next, node] =
+        ["edge", "edge_next", "space", "momentum_next", "node"].map(|base| names.local(base));
+    let step = variable(s, d.spec.step);
+    // Everything acts at the new node: what arrives there, and what leaves it on the next edge.
+    // Where the two are equal, half their sum is each of them.
+    let leave = expr::shift_time(s, leave, 1);
+    let wanted: Vec<Expr> = if leave == *arrive {
+        vec![prescaled(s, &expr::scale(Rational::integer(2), leave))]
+    } else {
+        vec![prescaled(s, arrive), prescaled(s, &leave)]
+    };
+    let mut needed = letters_of(&wanted);
+    let mut element_next = at(c.element, Shift::HERE);
+    element_next.shift.time = 1;
+    needed.push(element_next);
+    let parameters = parameter_locals(d, quote!(self.parameters), &with_transports(d, &needed, 1));
+    let mut bindings = Bindings::new();
+    let reference = |id| {
+        let r = own(d, id);
+        quote!(state.#r)
+    };
+    let solved = |_| quote!(#moved);
+    let locals = node_locals(d, names, 1, &needed, &solved, &reference, &mut bindings);
+    let p = schedule::program(s, &wanted, "t");
+    let (lets, values) = program(&p, &bindings);
+    let act = match values.as_slice() {
+        [both] => {
+            let [torque, kick] = ["torque", "kick"].map(|base| names.local(base));
+            quote! {
+                let #torque = #both;
+                let #kick = #next * #torque;
+                let #momentum_next = #space + #kick * T::from_f64(0.5);
+                let #following = Edge::new(#next.tr_mul(&#space) + #torque, #space + #kick);
+            }
+        }
+        _ => {
+            let acting: Vec<_> = ["arrive", "leave"]
+                .map(|base| names.local(base))
+                .into_iter()
+                .zip(&values)
+                .zip(&p.results)
+                .map(|((name, value), e)| (!e.is_zero()).then_some((name, value)))
+                .collect();
+            let named = acting.iter().flatten().map(|(n, v)| quote!(let #n = #v;));
+            let body = acting.iter().flatten().map(|(n, _)| quote!(+ #n));
+            let space_part = |i: usize| {
+                let (n, _) = acting.get(i)?.as_ref()?;
+                Some(quote!(+ #next * #n))
+            };
+            let (arrived, left) = (space_part(0), space_part(1));
+            quote! {
+                #(#named)*
+                let #momentum_next = #space #arrived;
+                let #following = Edge::new(#next.tr_mul(&#space) #(#body)*, #momentum_next #left);
+            }
+        }
+    };
+    let references = super::items::kept(d).into_iter().map(|id| own(d, id));
+    step_signature(
+        d,
+        quote! {
+            let #step = work.h;
+            if work.here != *state {
+                work.edge = self.edge(*state, #step);
+                work.here = *state;
+            }
+            let #edge = &work.edge;
+            let #moved = match #edge.turn(&self.factor, #step, &state.#element) {
+                Ok(turned) => turned,
+                Err(e) => return Err(self.refused(*state, #step, e)),
+            };
+            #parameters
+            #locals
+            #lets
+            let #space = #edge.space();
+            #act
+            if !all_finite(&#momentum_next) {
+                return Err(StepCause::NotFinite { what: "momentum" }.at_node(state.#node));
+            }
+            *state = #state {
+                #element: #moved.rotation(),
+                #momentum: SpatialMomentum(#momentum_next),
+                #(#references: state.#references,)*
+                #node: state.#node + 1,
+            };
+            work.edge = #following;
+            work.here = *state;
+            Ok(())
+        },
+    )
+}
+
+/// The same expression with its numbers multiplied into the constant factor of a vector product
+/// rather than into the product: they need not wait for the new node.
+fn prescaled(s: &Symbols, e: &Expr) -> Expr {
+    let constant = |e: &Expr| {
+        expr::letters(e)
+            .iter()
+            .all(|l| matches!(s.get(l.symbol).role, Role::Parameter | Role::Step))
+    };
+    match e.node() {
+        Node::Neg(a) => expr::neg(prescaled(s, a)),
+        Node::Sum(terms) => expr::sum(terms.iter().map(|t| prescaled(s, t)), e.shape()),
+        Node::Product(factors) => {
+            let (numbers, others): (Vec<Expr>, Vec<Expr>) = factors
+                .iter()
+                .cloned()
+                .partition(|f| f.shape().is_scalar() && constant(f));
+            let scaled = |a: &Expr| expr::product(numbers.iter().chain([a]).cloned());
+            let [only] = others.as_slice() else {
+                return e.clone();
+            };
+            match only.node() {
+                Node::Sum(terms) => {
+                    expr::sum(terms.iter().map(|t| prescaled(s, &scaled(t))), e.shape())
+                }
+                Node::Cross(a, b) if constant(a) => expr::cross(scaled(a), b.clone()),
+                Node::Cross(a, b) if constant(b) => expr::cross(a.clone(), scaled(b)),
+                _ => e.clone(),
+            }
+        }
+        _ => e.clone(),
+    }
+}
+
+/// The step that keeps nothing but the step size.
+fn plain(d: &Derivation, names: &Names) -> TokenStream {
+    let s = &d.letters.symbols;
+    let c = &d.spec.configurations[0];
+    let edge = names.local("edge");
+    let omega = variable(s, c.velocity);
+    let step = variable(s, d.spec.step);
+    let mut bindings = Bindings::new();
+    let updates = update(d, 0);
+    let list = match &updates {
+        Update::Acted { leave, arrive } => vec![leave, arrive],
+        Update::Added(e) | Update::Brought(e) => vec![e],
+    };
+    let uses_velocity = list
+        .iter()
+        .any(|e| expr::contains(e, at(c.velocity, Shift::HERE)));
+    let mut needed: Vec<Letter> = letters_of(list.iter().copied());
+    if let Update::Acted { leave, .. } = &updates
+        && !leave.is_zero()
+    {
+        needed.push(at(c.element, Shift::HERE));
+    }
+    let mut all = with_transports(d, &needed, 0);
+    all.extend(with_transports(d, &needed, 1));
+    let parameters = parameter_locals(d, quote!(self.parameters), &all);
+    let locals = here(d, names, &needed, &mut bindings);
+    let matrix = uses_velocity.then(|| {
+        let name = tagged(d, names, c.velocity, "matrix");
+        bindings.bind(at(c.velocity, Shift::HERE), name.clone());
+        quote!(let #name = #omega.matrix();)
+    });
+    let rest = finish(
+        d,
+        names,
+        &mut bindings,
+        &|_| quote!(#omega),
+        TokenStream::new(),
+    );
+    step_signature(
+        d,
+        quote! {
+            let #step = work.h;
+            let #edge = self.edge_momentum(state, #step);
+            let #omega = match forced(&self.factor, &(#edge * #step)) {
+                Ok(solved) => solved,
+                Err(e) => return Err(self.refused(*state, #step, e)),
+            };
+            #matrix
+            #parameters
+            #locals
+            #rest
+        },
+    )
+}

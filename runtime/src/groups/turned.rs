@@ -1,0 +1,56 @@
+//! The product of a rotation with one whose quaternion has not been normalised yet.
+//! Takes both; gives the product's matrix after one division, its quaternion after a root as well.
+
+use super::Rotation;
+use super::so3::{hamilton, norm_squared};
+use crate::Real;
+use nalgebra::Matrix3;
+
+/// A rotation on its way: what follows a step may begin before its length is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TurnedRotation<T = f64> {
+    /// The quaternion, of any length.
+    q: [T; 4],
+    /// Twice the inverse of its square.
+    scale: T,
+}
+
+impl<T: Real> Rotation<T> {
+    /// `self . omega`, `omega` a quaternion of any length but zero. Rounding that the length of
+    /// `self` has gathered is taken out, to first order.
+    #[inline(always)]
+    pub(crate) fn turned(&self, omega: [T; 4]) -> TurnedRotation<T> {
+        let q = self.quaternion();
+        let correction = T::from_f64(2.0) - norm_squared(q);
+        TurnedRotation {
+            q: hamilton(q, omega),
+            scale: (correction + correction) / norm_squared(omega),
+        }
+    }
+}
+
+impl<T: Real> TurnedRotation<T> {
+    /// The rotation, of unit length.
+    #[inline(always)]
+    pub fn rotation(&self) -> Rotation<T> {
+        let scale = (T::from_f64(0.5) * self.scale).sqrt();
+        Rotation::from_unit(self.q.map(|x| x * scale))
+    }
+
+    /// The 3x3 matrix, body -> space.
+    #[inline(always)]
+    pub fn matrix(&self) -> Matrix3<T> {
+        let ([w, x, y, z], s) = (self.q, self.scale);
+        let one = T::one();
+        let (xx, yy, zz) = (x * x, y * y, z * z);
+        let (xy, xz, yz) = (x * y, x * z, y * z);
+        let (wx, wy, wz) = (w * x, w * y, w * z);
+        #[rustfmt::skip]
+        let matrix = Matrix3::new(
+            one - s * (yy + zz), s * (xy - wz), s * (xz + wy),
+            s * (xy + wz), one - s * (xx + zz), s * (yz - wx),
+            s * (xz - wy), s * (yz + wx), one - s * (xx + yy),
+        );
+        matrix
+    }
+}
