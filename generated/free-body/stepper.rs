@@ -33,7 +33,7 @@ pub mod free_body {
         /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
         /// assumption, or is no admissible factor of the equation to solve.
         pub fn new(parameters: FreeBodyParameters<T>) -> Result<Self, ParameterError> {
-            validate::finite("J", parameters.J.as_slice())?;
+            validate::finite_entries("J", &parameters.J)?;
             validate::symmetric("J", &parameters.J)?;
             let FreeBodyParameters { J, .. } = parameters;
             let factor = Poinsot::new(J).map_err(|e| e.in_field("J"))?;
@@ -280,7 +280,7 @@ pub mod free_body {
             doc: "Free rigid body, body representation.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   -tr(J Ω_k)/h\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, spatial_momentum, momentum_squared, momentum_quadratic\ntime reversal        symmetric: second order\ncertificate          8 identities proved by normal form",
+            summary: "action of one step   -tr(J Ω_k)/h\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, spatial_momentum, momentum_squared, momentum_quadratic\ntime reversal        symmetric: second order\ncertificate          9 identities proved by normal form",
             solver: "Moser-Veselov: C is constant and no node term acts, so κ is conserved: solved once, every step explicit",
             order: 2u32,
             reversible: true,

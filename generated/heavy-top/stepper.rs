@@ -37,7 +37,7 @@ pub mod heavy_top {
         /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
         /// assumption, or is no admissible factor of the equation to solve.
         pub fn new(parameters: HeavyTopParameters<T>) -> Result<Self, ParameterError> {
-            validate::finite("J", parameters.J.as_slice())?;
+            validate::finite_entries("J", &parameters.J)?;
             validate::symmetric("J", &parameters.J)?;
             validate::finite("gU", parameters.gU.as_slice())?;
             validate::finite("z", parameters.z.as_slice())?;
@@ -186,17 +186,13 @@ pub mod heavy_top {
             h: T,
             e: MoserVeselovError,
         ) -> StepError {
-            let largest = largest_step(
-                h.value(),
-                |trial| {
-                    let n = self.edge_momentum(&state, T::from_f64(trial))
-                        * T::from_f64(trial);
-                    let body = Poinsot::new(self.factor.matrix().map(|x| x.value()))
-                        .ok()?;
-                    Some(reach(&body, &n.map(|x| x.value())))
-                },
-            );
-            StepCause::from(e.with_steps(h.value(), largest)).at_node(state.node)
+            let e = e
+                .with_searched_step(
+                    &self.factor,
+                    h,
+                    |trial| self.edge_momentum(&state, trial),
+                );
+            StepCause::from(e).at_node(state.node)
         }
         /// `Γ` at the node of this state.
         #[inline]
@@ -362,7 +358,7 @@ pub mod heavy_top {
             doc: "Heavy top, body representation.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   -tr(J Ω_k)/h - ½ h gU·Γ_k - ½ h gU·Γ_{k+1}\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          13 identities proved by normal form",
+            summary: "action of one step   -tr(J Ω_k)/h - ½ h gU·Γ_k - ½ h gU·Γ_{k+1}\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          15 identities proved by normal form",
             solver: "Moser-Veselov: C is constant and symmetric: explicit after one quartic a step",
             order: 2u32,
             reversible: true,

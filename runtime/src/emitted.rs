@@ -5,9 +5,7 @@ pub use crate::card::{Card, Conserved, Field, Invariant, Kind, OpenError, Trajec
 pub use crate::groups::{BodyMomentum, Group, Rotation, SpatialMomentum};
 pub use crate::linalg::{axial_of_difference, determinant, hat, solve, vee};
 pub use crate::scalar::Real;
-pub use crate::solvers::moser_veselov::{
-    Edge, Free, MoserVeselovError, Poinsot, forced, largest_step, reach,
-};
+pub use crate::solvers::moser_veselov::{Edge, Free, MoserVeselovError, Poinsot, forced};
 pub use crate::solvers::newton;
 pub use crate::validate;
 pub use crate::{ParameterError, StartError, StepCause, StepError};

@@ -22,8 +22,17 @@ pub struct ParameterError {
 pub enum Problem {
     /// A component is NaN or infinite.
     NotFinite {
-        /// Position in row-major order.
+        /// Its position.
         index: usize,
+        /// The offending value.
+        value: f64,
+    },
+    /// An entry of a matrix is NaN or infinite.
+    EntryNotFinite {
+        /// Its row.
+        row: usize,
+        /// Its column.
+        column: usize,
         /// The offending value.
         value: f64,
     },
@@ -88,6 +97,9 @@ impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotFinite { index, value } => write!(f, "component {index} is {value}"),
+            Self::EntryNotFinite { row, column, value } => {
+                write!(f, "entry ({row}, {column}) is {value}")
+            }
             Self::NotSymmetric {
                 row,
                 column,

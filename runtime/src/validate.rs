@@ -27,6 +27,32 @@ pub fn finite<T: Real>(field: &'static str, values: &[T]) -> Result<(), Paramete
     }
 }
 
+/// Every entry of the matrix is finite, as [`finite`].
+///
+/// # Errors
+/// Names the first entry that is not, row by row.
+pub fn finite_entries<T: Real, const R: usize, const C: usize>(
+    field: &'static str,
+    matrix: &SMatrix<T, R, C>,
+) -> Result<(), ParameterError> {
+    for row in 0..R {
+        for column in 0..C {
+            if let Some(entry) = matrix.get((row, column)).filter(|x| !x.is_finite()) {
+                return Err(ParameterError {
+                    field,
+                    problem: Problem::EntryNotFinite {
+                        row,
+                        column,
+                        value: offending(entry),
+                    },
+                    remedy: "give finite numbers",
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
 /// The value itself if that is what is not finite, else the size of the lane or derivative.
 fn offending<T: Real>(x: &T) -> f64 {
     if x.value().is_finite() {
@@ -224,6 +250,11 @@ mod tests {
         assert_eq!(
             error.to_string(),
             "`x`: component 1 is inf; give finite numbers"
+        );
+        let error = finite_entries("J", &Matrix2::new(1.0, f64::NAN, 3.0, 4.0)).expect_err("NaN");
+        assert_eq!(
+            error.to_string(),
+            "`J`: entry (0, 1) is NaN; give finite numbers"
         );
         assert!(symmetric("J", &Matrix2::new(1.0, 2.0, 2.0, 3.0)).is_ok());
         assert!(symmetric("J", &Matrix2::new(1.0, 2.0, 2.1, 3.0)).is_err());

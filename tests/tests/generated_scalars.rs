@@ -3,7 +3,8 @@
 //! models of the gallery and for one that needs Newton.
 
 use clebsch::nalgebra::{Matrix3, SMatrix, SVector, Vector3};
-use clebsch::{BodyMomentum, DoubleDouble, Dual, Lanes, Real, Rotation};
+use clebsch::solvers::moser_veselov::MoserVeselovError;
+use clebsch::{BodyMomentum, DoubleDouble, Dual, Lanes, Real, Rotation, StepCause};
 use clebsch_models::free_body::{FreeBody, FreeBodyInitial, FreeBodyParameters};
 use clebsch_models::heavy_top::{
     HeavyTop, HeavyTopConfiguration, HeavyTopInitial, HeavyTopParameters,
@@ -206,5 +207,40 @@ fn double_double_solves_its_own_equation() {
     assert!(
         residual.iter().all(|r| r.magnitude() < 1e-28),
         "{residual:?}"
+    );
+}
+
+/// The refusal of the first step of `h`, of the heavy top with these body momenta.
+fn refusal<T: Real>(momentum: SVector<T, 3>, h: f64) -> MoserVeselovError {
+    let model = heavy::<T>();
+    let initial = HeavyTopInitial {
+        Λ: attitude(),
+        body_momentum: BodyMomentum(momentum),
+    };
+    let (mut state, mut work) = model.start(initial, T::from_f64(h)).unwrap();
+    match model.step(&mut state, &mut work).unwrap_err().cause {
+        StepCause::MoserVeselov(e) => e,
+        other => panic!("{other}"),
+    }
+}
+
+#[test]
+fn the_largest_step_told_is_one_that_every_lane_can_make() {
+    let h = 2.0;
+    let fast = |i: usize| momentum(i) * [3.0, 5.0, 9.0, 4.0][i];
+    let alone: Vec<f64> = (0..4)
+        .map(|i| refusal(fast(i), h).largest_step.unwrap())
+        .collect();
+    let slowest = (0..4)
+        .min_by(|a, b| alone[*a].total_cmp(&alone[*b]))
+        .unwrap();
+    assert!(slowest != 0, "lane 0 would hide a fault: {alone:?}");
+    let together = SVector::from_fn(|row, _| Lanes(std::array::from_fn(|i| fast(i)[row])));
+    let e = refusal::<Lanes<4>>(together, h);
+    assert_eq!(e.lane, slowest);
+    assert_eq!(e.largest_step, Some(alone[slowest]));
+    assert!(
+        e.to_string().starts_with(&format!("lane {slowest}: ")),
+        "{e}"
     );
 }

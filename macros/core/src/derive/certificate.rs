@@ -13,7 +13,8 @@ use crate::algebra::{Algebra, Known, Rational};
 use crate::check::spec::Spec;
 use crate::diagnostic::{Diagnostic, Errors};
 use crate::expr::shape::Shape;
-use crate::expr::{self, Expr, Letter, Shift};
+use crate::expr::symbol::SymbolId;
+use crate::expr::{self, Expr, Letter, Node, Shift};
 
 /// What the proof is about.
 pub struct Inputs<'a> {
@@ -173,43 +174,105 @@ fn gradient_steps(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
     }
 }
 
-/// `Σ ⟨E_v, δv⟩ = δS`: the balance is a combination of the Clebsch relations.
+/// `Σ ⟨E_v, δv⟩ = δS`: the balance is a combination of the Clebsch relations. They are affine in
+/// the multipliers, so the sum falls into one block for the action and one for each multiplier,
+/// which must cancel by itself.
 fn combination(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
     let s = &x.letters.symbols;
-    let v = &x.variations[i];
-    let back = |e: &Expr| expr::shift_time(s, e, Shift::PREVIOUS.time);
     // The relations are those of the constrained action: the sum of the action and these terms.
     debug_assert_eq!(
         constraint_terms(x.spec, x.letters).len(),
         x.letters.momentum.len() + x.letters.multiplier.len()
     );
+    let b = &x.balances[i];
+    let balance = expr::add(b.variation_out.clone(), b.variation_in.clone());
+    let name = &s.get(x.spec.configurations[i].element).name;
+    let mut block = |what: String, left: Expr, right: Expr| {
+        let close = |e: Expr| {
+            let e = substitute_previous_elements(x.spec, x.letters, &e);
+            expr::substitute(s, &e, &on_shell(x.spec, x.letters))
+        };
+        steps.push(Step {
+            known: Known::NormalForm,
+            name: format!(
+                "the balance of {name} is a combination of the Clebsch relations: {what}"
+            ),
+            left: close(left),
+            right: close(right),
+        });
+    };
+    let action = |gradient: &Expr| with_multiplier(x, gradient, None);
+    block("the action".to_owned(), combined(x, i, &action), balance);
+    let quantities = x.spec.configurations.iter().map(|c| c.element);
+    let quantities = quantities.chain(x.spec.advected.iter().map(|a| a.quantity));
+    let multipliers = x.letters.momentum.iter().chain(&x.letters.multiplier);
+    for (quantity, multiplier) in quantities.zip(multipliers) {
+        let own = |gradient: &Expr| {
+            let (with, without) = (
+                with_multiplier(x, gradient, Some(*multiplier)),
+                with_multiplier(x, gradient, None),
+            );
+            difference(with, without)
+        };
+        let left = combined(x, i, &own);
+        if !left.is_zero() {
+            let what = format!("the multiplier of {} cancels", s.get(quantity).name);
+            block(what, left, expr::integer(0));
+        }
+    }
+}
+
+/// The relations paired with the variations, `part` of each gradient taken.
+fn combined(x: &Inputs, i: usize, part: &dyn Fn(&Expr) -> Expr) -> Expr {
+    let s = &x.letters.symbols;
+    let v = &x.variations[i];
     let mut terms = Vec::new();
     for relation in x.relations {
+        let gradient = part(&relation.gradient);
         for (letter, change) in v.on_outgoing() {
             if letter == relation.variable {
-                terms.push(pairing(x.letters, &relation.gradient, &change));
+                terms.push(pairing(x.letters, &gradient, &change));
             }
         }
         // The velocity of the incoming edge has its relation one level earlier.
         if v.incoming.0.symbol == relation.variable.symbol {
-            let earlier = back(&relation.gradient);
+            let earlier = expr::shift_time(s, &gradient, Shift::PREVIOUS.time);
             terms.push(pairing(x.letters, &earlier, &v.incoming.1));
         }
     }
-    let b = &x.balances[i];
-    let left = expr::sum(terms, Shape::SCALAR);
-    let right = expr::add(b.variation_out.clone(), b.variation_in.clone());
-    let close = |e: Expr| {
-        let e = substitute_previous_elements(x.spec, x.letters, &e);
-        expr::substitute(s, &e, &on_shell(x.spec, x.letters))
+    expr::sum(terms, Shape::SCALAR)
+}
+
+/// An expression with every multiplier but one set to zero.
+fn with_multiplier(x: &Inputs, e: &Expr, kept: Option<SymbolId>) -> Expr {
+    let s = &x.letters.symbols;
+    let multipliers = x.letters.momentum.iter().chain(&x.letters.multiplier);
+    let nothing: Vec<_> = multipliers
+        .filter(|m| Some(**m) != kept)
+        .flat_map(|m| {
+            let zero = expr::zero(s.get(*m).shape);
+            [Shift::HERE, Shift::NEXT].map(|shift| (Letter { symbol: *m, shift }, zero.clone()))
+        })
+        .collect();
+    expr::substitute(s, e, &nothing)
+}
+
+/// `a - b`, without the summands that are the same on both sides.
+fn difference(a: Expr, b: Expr) -> Expr {
+    let shape = a.shape();
+    let terms = |e: Expr| match e.node() {
+        Node::Sum(terms) => terms.clone(),
+        _ if e.is_zero() => Vec::new(),
+        _ => vec![e],
     };
-    let name = &s.get(x.spec.configurations[i].element).name;
-    steps.push(Step {
-        known: Known::NormalForm,
-        name: format!("the balance of {name} is a combination of the Clebsch relations"),
-        left: close(left),
-        right: close(right),
-    });
+    let (mut left, mut right) = (terms(a), Vec::new());
+    for term in terms(b) {
+        match left.iter().position(|other| *other == term) {
+            Some(same) => drop(left.remove(same)),
+            None => right.push(expr::neg(term)),
+        }
+    }
+    expr::sum(left.into_iter().chain(right), shape)
 }
 
 /// `-(M + node terms) + (Ad* M + node terms)` paired with `ξ` is the variation of the action.
@@ -263,14 +326,15 @@ fn named_form(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
         node(back(&b.node_in)),
         expr::directional(s, &before, &at_node),
     );
+    // The node terms stand in the residual as they are: the rest is the momentum map.
     block(
         "emitted residual, outgoing edge,",
-        node(b.outgoing.clone()),
-        expr::add(matrix(&m.edge), node(b.node_out.clone())),
+        node(difference(b.outgoing.clone(), b.node_out.clone())),
+        matrix(&m.edge),
     );
     block(
         "emitted residual, incoming edge,",
-        node(back(&b.incoming)),
-        expr::add(matrix(&back(&m.transported)), node(back(&b.node_in))),
+        node(back(&difference(b.incoming.clone(), b.node_in.clone()))),
+        matrix(&back(&m.transported)),
     );
 }

@@ -59,12 +59,8 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
         /// Says how far the step is beyond the bound, and which step could be solved.
         #[cold]
         fn refused(&self, state: #state<T>, h: T, e: MoserVeselovError) -> StepError {
-            let largest = largest_step(h.value(), |trial| {
-                let n = self.edge_momentum(&state, T::from_f64(trial)) * T::from_f64(trial);
-                let body = Poinsot::new(self.factor.matrix().map(|x| x.value())).ok()?;
-                Some(reach(&body, &n.map(|x| x.value())))
-            });
-            StepCause::from(e.with_steps(h.value(), largest)).at_node(state.#node)
+            let e = e.with_searched_step(&self.factor, h, |trial| self.edge_momentum(&state, trial));
+            StepCause::from(e).at_node(state.#node)
         }
     }
 }

@@ -259,8 +259,10 @@ pub fn model(d: &Derivation, documented: bool) -> TokenStream {
         let (field, label) = (own(d, *p), &symbol.name);
         let finite = if symbol.shape.is_scalar() {
             quote!(validate::finite(#label, &[parameters.#field])?;)
-        } else {
+        } else if symbol.shape.is_vector() {
             quote!(validate::finite(#label, parameters.#field.as_slice())?;)
+        } else {
+            quote!(validate::finite_entries(#label, &parameters.#field)?;)
         };
         let structure = match symbol.structure {
             Structure::Symmetric => quote!(validate::symmetric(#label, &parameters.#field)?;),

@@ -98,12 +98,14 @@ fn start(d: &Derivation, names: &Names) -> TokenStream {
         if matches!(t, Transport::Defined(_)) {
             continue;
         }
-        let values = if s.get(a.quantity).shape.is_scalar() {
-            quote!(&[initial.#own_name])
+        let shape = s.get(a.quantity).shape;
+        checks.push(if shape.is_scalar() {
+            quote!(validate::finite(#label, &[initial.#own_name])?;)
+        } else if shape.is_vector() {
+            quote!(validate::finite(#label, initial.#own_name.as_slice())?;)
         } else {
-            quote!(initial.#own_name.as_slice())
-        };
-        checks.push(quote!(validate::finite(#label, #values)?;));
+            quote!(validate::finite_entries(#label, &initial.#own_name)?;)
+        });
         let local = variable(s, a.quantity);
         fields.push(field(d, a.quantity));
         let value = match t {

@@ -1,7 +1,7 @@
 //! The error of a step that is too long for the Moser-Veselov equation.
 //! Takes the refused momentum; gives how far beyond the bound it is and what step would do.
 
-use super::{Poinsot, reach};
+use super::{Poinsot, largest_step, reach};
 use crate::Real;
 use core::fmt;
 use nalgebra::Vector3;
@@ -19,6 +19,9 @@ pub struct MoserVeselovError {
     pub largest_step: Option<f64>,
     /// Index (0, 1, 2) of the momentum component of largest `|h N_i| / I_ii`.
     pub component: usize,
+    /// The lane all this is about: the worst, or that of the smallest step where it was searched.
+    /// 0 for types without lanes.
+    pub lane: usize,
 }
 
 /// The step offered is this little inside the bound: at the bound itself the quartic has a double
@@ -35,6 +38,7 @@ impl MoserVeselovError {
             h: None,
             largest_step: None,
             component: 0,
+            lane: 0,
         };
         for lane in 0..T::LANES {
             let n = h_n.map(|x| x.lane(lane));
@@ -53,6 +57,7 @@ impl MoserVeselovError {
             if ratio.is_nan() || ratio > worst.ratio {
                 worst.ratio = ratio;
                 worst.component = component;
+                worst.lane = lane;
             }
             if ratio.is_nan() {
                 break;
@@ -75,8 +80,37 @@ impl MoserVeselovError {
     /// The same error for a momentum that does not depend on the step: the bound is linear in it.
     #[cold]
     #[must_use]
-    pub fn with_linear_step(self, h: f64) -> Self {
+    pub fn with_linear_step<T: Real>(self, h: T) -> Self {
+        let h = h.lane(self.lane);
         self.with_steps(h, h / self.ratio * INSIDE)
+    }
+
+    /// The same error for an edge momentum that depends on the step: the largest step is searched,
+    /// lane by lane, and the smallest of them told.
+    #[cold]
+    #[must_use]
+    pub fn with_searched_step<T: Real>(
+        self,
+        body: &Poinsot<T>,
+        h: T,
+        edge_momentum: impl Fn(T) -> Vector3<T>,
+    ) -> Self {
+        let mut told = self;
+        for lane in 0..T::LANES {
+            let (own_body, own_h) = (body.lane(lane), h.lane(lane));
+            let largest = largest_step(own_h, |trial| {
+                let n = edge_momentum(T::from_f64(trial)) * T::from_f64(trial);
+                Some(reach(&own_body, &n.map(|x| x.lane(lane))))
+            });
+            // NaN, which an infinite momentum gives, is told only if nothing else is.
+            if told.largest_step.is_none_or(|smallest| largest < smallest) {
+                told = Self {
+                    lane,
+                    ..told.with_steps(own_h, largest)
+                };
+            }
+        }
+        told
     }
 }
 
@@ -88,6 +122,9 @@ impl fmt::Display for MoserVeselovError {
                 "the momentum is NaN or infinite (component {})",
                 self.component
             );
+        }
+        if self.lane > 0 {
+            write!(f, "lane {}: ", self.lane)?;
         }
         write!(
             f,

@@ -96,7 +96,7 @@ impl<T: Real> Free<T> {
     ///
     /// # Errors
     /// [`MoserVeselovError`], with the largest step size that would do, when the motion is too fast
-    /// for `h` (in lanes of different `h`: said of the first). If it starts, every further step can
+    /// for `h`. If it starts, every further step can
     /// be made.
     pub fn start(
         body: &Poinsot<T>,
@@ -129,7 +129,7 @@ impl<T: Real> Free<T> {
         );
         let Some(kappa) = kappa else {
             let error = MoserVeselovError::diagnose(&given, &h_mu);
-            return Err(error.with_linear_step(h.value()));
+            return Err(error.with_linear_step(h));
         };
         let pencil = Pencil::new(&body, kappa, square);
         Ok(Self {
