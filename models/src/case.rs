@@ -46,3 +46,46 @@ pub fn diagonal(d: [f64; 3]) -> Vec<f64> {
 pub fn identity() -> Vec<f64> {
     diagonal([1.0; 3])
 }
+
+/// The rotation of a quaternion `(w, x, y, z)` of any length, row by row.
+pub fn rotation([w, x, y, z]: [f64; 4]) -> Vec<f64> {
+    let s = 2.0 / (w * w + x * x + y * y + z * z);
+    vec![
+        1.0 - s * (y * y + z * z),
+        s * (x * y - w * z),
+        s * (x * z + w * y),
+        s * (x * y + w * z),
+        1.0 - s * (x * x + z * z),
+        s * (y * z - w * x),
+        s * (x * z - w * y),
+        s * (y * z + w * x),
+        1.0 - s * (x * x + y * y),
+    ]
+}
+
+/// The column `R v` for a matrix of nine numbers, row by row.
+pub fn turned(r: &[f64], v: [f64; 3]) -> Vec<f64> {
+    r.chunks(3)
+        .map(|row| row.iter().zip(v).map(|(a, b)| a * b).sum())
+        .collect()
+}
+
+/// The symmetric matrix `R diag(d) Rᵀ`, row by row, to the last bit symmetric.
+pub fn carried(r: &[f64], d: [f64; 3]) -> Vec<f64> {
+    let rows: Vec<&[f64]> = r.chunks(3).collect();
+    let entry = |a: &[f64], b: &[f64]| -> f64 {
+        let products = a.iter().zip(b).zip(d);
+        products.map(|((x, y), j)| (x * y) * j).sum()
+    };
+    rows.iter()
+        .flat_map(|a| rows.iter().map(move |b| entry(a, b)))
+        .collect()
+}
+
+/// The bounds of a case, from names and largest drifts.
+pub fn bounds(drifts: &[(&str, f64)]) -> Vec<(String, f64)> {
+    drifts
+        .iter()
+        .map(|(name, drift)| ((*name).to_owned(), *drift))
+        .collect()
+}

@@ -1,15 +1,28 @@
 //! The gallery: one model, one file, each with its source, its statement, and named cases with
 //! data. Everything else about a model is derived from its statement.
 
+pub mod body_in_quadratic_field;
+pub mod body_in_two_fields;
 pub mod case;
+pub mod coupled_bodies;
 pub mod free_body;
+pub mod free_body_spatial;
 pub mod heavy_top;
+pub mod heavy_top_spatial;
 
 pub use case::{Case, Entry};
 
 /// All models, in order of their names.
 pub fn gallery() -> Vec<Entry> {
-    vec![free_body::entry(), heavy_top::entry()]
+    vec![
+        body_in_quadratic_field::entry(),
+        body_in_two_fields::entry(),
+        coupled_bodies::entry(),
+        free_body::entry(),
+        free_body_spatial::entry(),
+        heavy_top::entry(),
+        heavy_top_spatial::entry(),
+    ]
 }
 
 /// The model with this name, as the command line spells it (`heavy-top`).

@@ -9,28 +9,7 @@ use insta::assert_snapshot;
 
 /// Statements that the engine derives and prints, and that have no place in the gallery: no stepper
 /// is emitted for them, or one of the gallery integrates the same motion.
-const ENGINE_ONLY: [(&str, &str); 6] = [
-    (
-        "coupled-bodies",
-        "/// Two rigid bodies coupled by a ball and socket joint.
-        model CoupledBodies {
-            param J1, J2: Sym<3>;  param d1, d2: Vec<3>;  param eps: Real;
-            group Λ1: SO<3> velocity Ω1;  group Λ2: SO<3> velocity Ω2;
-            advected R: SO<3> = Λ1^T*Λ2;
-            constraint next(Λ1) = Λ1*Ω1;  constraint next(Λ2) = Λ2*Ω2;
-            constraint next(R) = Ω1^T*R*Ω2;
-            lagrangian = -(tr(J1*Ω1) + tr(J2*Ω2) + eps*dot((Ω1 - Id)*d1, R*(Ω2 - Id)*d2))/h;
-        }",
-    ),
-    (
-        "free-body-spatial",
-        "/// Free rigid body, spatial representation.
-        model FreeBodySpatial {
-            group Λ: SO<3> velocity ω;  advected J: Sym<3>;
-            constraint next(Λ) = ω*Λ;  constraint next(J) = ω*J*ω^T;
-            lagrangian = -tr(ω*J)/h;
-        }",
-    ),
+const ENGINE_ONLY: [(&str, &str); 4] = [
     (
         "four-dimensional-body",
         "/// Free rigid body in four dimensions.

@@ -1,0 +1,537 @@
+// Written by `clebsch derive --write`. Do not edit.
+
+/// The model [`BodyInQuadraticField`](struct@BodyInQuadraticField) and what belongs to it.
+#[allow(
+    non_snake_case,
+    uncommon_codepoints,
+    mixed_script_confusables,
+    confusable_idents,
+    clippy::all
+)]
+pub mod body_in_quadratic_field {
+    use ::clebsch::emitted::*;
+    /// Parameters of [`BodyInQuadraticField`](struct@BodyInQuadraticField), as given.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct BodyInQuadraticFieldParameters<T = f64> {
+        ///`J`: a 3 x 3 matrix, symmetric.
+        pub J: SMatrix<T, 3, 3>,
+        ///`K`: a 3 x 3 matrix, symmetric.
+        pub K: SMatrix<T, 3, 3>,
+    }
+    /// Rigid body in a quadratic field.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct BodyInQuadraticField<T = f64> {
+        parameters: BodyInQuadraticFieldParameters<T>,
+        factor: Poinsot<T>,
+    }
+    impl<T: Real> BodyInQuadraticField<T> {
+        /// The model as it was stated.
+        pub const SOURCE: &'static str = "/// Rigid body in a quadratic field.\npub model BodyInQuadraticField {\n    param J: Sym<3>;\n    param K: Sym<3>;\n    group Λ: SO<3> velocity Ω;\n    advected Γ: Vec<3>;\n    constraint next(Λ) = Λ*Ω;\n    constraint next(Γ) = Ω^T*Γ;\n    lagrangian = -tr(J*Ω)/h - (1/2)*h*dot(Γ, K*Γ);\n}";
+        /// A number that changes when the model or its derivation does.
+        pub const FINGERPRINT: u64 = 8113186643604666594u64;
+        /// Checks the parameters.
+        ///
+        /// # Errors
+        /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
+        /// assumption, or is no admissible factor of the equation to solve.
+        pub fn new(
+            parameters: BodyInQuadraticFieldParameters<T>,
+        ) -> Result<Self, ParameterError> {
+            validate::finite("J", parameters.J.as_slice())?;
+            validate::symmetric("J", &parameters.J)?;
+            validate::finite("K", parameters.K.as_slice())?;
+            validate::symmetric("K", &parameters.K)?;
+            let BodyInQuadraticFieldParameters { J, .. } = parameters;
+            let factor = Poinsot::new(J).map_err(|e| e.in_field("J"))?;
+            Ok(Self { parameters, factor })
+        }
+        /// The parameters.
+        pub fn parameters(&self) -> &BodyInQuadraticFieldParameters<T> {
+            &self.parameters
+        }
+    }
+    /// Initial data.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct BodyInQuadraticFieldInitial<T = f64> {
+        /// `Λ` at node 0: body -> space.
+        pub Λ: Rotation<T>,
+        /// Momentum at node 0, in the body frame.
+        pub body_momentum: BodyMomentum<T>,
+        /// `Γ` at node 0.
+        pub Γ: SVector<T, 3>,
+    }
+    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct BodyInQuadraticFieldState<T = f64> {
+        Λ: Rotation<T>,
+        momentum: SpatialMomentum<T>,
+        Γ: SVector<T, 3>,
+        node: u64,
+    }
+    impl<T: Real> BodyInQuadraticFieldState<T> {
+        /// `Λ` at this node: body -> space.
+        pub fn Λ(&self) -> Rotation<T> {
+            self.Λ
+        }
+        /// The momentum at this node, in the space frame.
+        pub fn spatial_momentum(&self) -> SpatialMomentum<T> {
+            self.momentum
+        }
+        /// The momentum at this node, in the body frame.
+        pub fn body_momentum(&self) -> BodyMomentum<T> {
+            self.momentum.to_body(&self.Λ)
+        }
+        /// The number of the node.
+        pub fn node(&self) -> u64 {
+            self.node
+        }
+    }
+    /// The step, and the momentum of the edge that begins at the state `here`. Made anew for any other state.
+    #[derive(Clone, Copy, Debug)]
+    pub struct BodyInQuadraticFieldWorkspace<T = f64> {
+        h: T,
+        edge: Edge<T>,
+        here: BodyInQuadraticFieldState<T>,
+    }
+    impl<T: Real> BodyInQuadraticField<T> {
+        /// Starts a trajectory with step `h` from data at node 0.
+        ///
+        /// # Errors
+        /// Names the value that is not finite, or says why the first step cannot be solved and
+        /// which step could.
+        pub fn start(
+            &self,
+            initial: BodyInQuadraticFieldInitial<T>,
+            h: T,
+        ) -> Result<
+            (BodyInQuadraticFieldState<T>, BodyInQuadraticFieldWorkspace<T>),
+            StartError,
+        > {
+            validate::positive_step(h)?;
+            validate::finite("Λ", &initial.Λ.quaternion())?;
+            validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
+            validate::finite("Γ", initial.Γ.as_slice())?;
+            let Γ = {
+                let Λ = initial.Λ.matrix();
+                let Γ_start = initial.Γ;
+                Λ * Γ_start
+            };
+            let state = BodyInQuadraticFieldState {
+                Λ: initial.Λ,
+                momentum: initial.body_momentum.to_space(&initial.Λ),
+                Γ,
+                node: 0,
+            };
+            let work = BodyInQuadraticFieldWorkspace {
+                h,
+                edge: self.edge(state, h),
+                here: state,
+            };
+            let (mut trial, mut scratch) = (state, work);
+            self.step(&mut trial, &mut scratch)
+                .map_err(|e| StartError::Refused(e.cause))?;
+            Ok((state, work))
+        }
+        /// One step, in place. Solved thus: C is constant and symmetric: explicit after one quartic a step.
+        ///
+        /// # Errors
+        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+        #[inline]
+        pub fn step(
+            &self,
+            state: &mut BodyInQuadraticFieldState<T>,
+            work: &mut BodyInQuadraticFieldWorkspace<T>,
+        ) -> Result<(), StepError> {
+            let h = work.h;
+            if work.here != *state {
+                work.edge = self.edge(*state, h);
+                work.here = *state;
+            }
+            let edge = &work.edge;
+            let Λ_moved = match edge.turn(&self.factor, h, &state.Λ) {
+                Ok(turned) => turned,
+                Err(e) => return Err(self.refused(*state, h, e)),
+            };
+            let BodyInQuadraticFieldParameters { K, .. } = self.parameters;
+            let Λ_next = Λ_moved.matrix();
+            let Γ_reference = state.Γ;
+            let Γ_next = Λ_next.tr_mul(&Γ_reference);
+            let space = edge.space();
+            let torque = -((K * Γ_next).cross(&Γ_next) * h);
+            let kick = Λ_next * torque;
+            let momentum_next = space + kick * T::from_f64(0.5);
+            let edge_next = Edge::new(Λ_next.tr_mul(&space) + torque, space + kick);
+            if !all_finite(&momentum_next) {
+                return Err(
+                    StepCause::NotFinite {
+                        what: "momentum",
+                    }
+                        .at_node(state.node),
+                );
+            }
+            *state = BodyInQuadraticFieldState {
+                Λ: Λ_moved.rotation(),
+                momentum: SpatialMomentum(momentum_next),
+                Γ: state.Γ,
+                node: state.node + 1,
+            };
+            work.edge = edge_next;
+            work.here = *state;
+            Ok(())
+        }
+        /// The momentum of the edge that starts at this node, for a step `h`.
+        #[inline]
+        fn edge_momentum(
+            &self,
+            state: &BodyInQuadraticFieldState<T>,
+            h: T,
+        ) -> SVector<T, 3> {
+            let BodyInQuadraticFieldParameters { K, .. } = self.parameters;
+            let Λ = state.Λ.matrix();
+            let Γ_reference = state.Γ;
+            let Γ = Λ.tr_mul(&Γ_reference);
+            Λ.tr_mul(&state.momentum.0) - ((K * Γ).cross(&Γ) * T::from_f64(0.5) * h)
+        }
+        /// The edge that begins at this state.
+        #[cold]
+        #[inline(never)]
+        fn edge(&self, state: BodyInQuadraticFieldState<T>, h: T) -> Edge<T> {
+            Edge::begin(&state.Λ, self.edge_momentum(&state, h))
+        }
+        /// Says how far the step is beyond the bound, and which step could be solved.
+        #[cold]
+        fn refused(
+            &self,
+            state: BodyInQuadraticFieldState<T>,
+            h: T,
+            e: MoserVeselovError,
+        ) -> StepError {
+            let largest = largest_step(
+                h.value(),
+                |trial| {
+                    let n = self.edge_momentum(&state, T::from_f64(trial))
+                        * T::from_f64(trial);
+                    let body = Poinsot::new(self.factor.matrix().map(|x| x.value()))
+                        .ok()?;
+                    Some(reach(&body, &n.map(|x| x.value())))
+                },
+            );
+            StepCause::from(e.with_steps(h.value(), largest)).at_node(state.node)
+        }
+        /// `Γ` at the node of this state.
+        #[inline]
+        pub fn Γ(&self, state: &BodyInQuadraticFieldState<T>) -> SVector<T, 3> {
+            let Λ = state.Λ.matrix();
+            let Γ_reference = state.Γ;
+            let Γ = Λ.tr_mul(&Γ_reference);
+            Γ
+        }
+    }
+    /// A configuration at one node, solution or not.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct BodyInQuadraticFieldConfiguration<T = f64> {
+        /// `Λ` at the node: body -> space.
+        pub Λ: Rotation<T>,
+        /// `Γ` at the node, as its constraint carries it.
+        pub Γ: SVector<T, 3>,
+    }
+    impl<T: Real> BodyInQuadraticField<T> {
+        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+        /// consecutive configurations: component `i` is the derivative of the action of the
+        /// two edges when the middle element is rotated about its axis `i` (a body axis on
+        /// the body side, a space axis on the spatial side). Zero on solutions.
+        pub fn balance(
+            &self,
+            h: T,
+            before: &BodyInQuadraticFieldConfiguration<T>,
+            here: &BodyInQuadraticFieldConfiguration<T>,
+            after: &BodyInQuadraticFieldConfiguration<T>,
+        ) -> SVector<T, 3> {
+            let BodyInQuadraticFieldParameters { J, K, .. } = self.parameters;
+            let Γ_before = before.Γ;
+            let Γ = here.Γ;
+            let Γ_next = after.Γ;
+            let Ω_before = (before.Λ.inverse() * here.Λ).matrix();
+            let Ω = (here.Λ.inverse() * after.Λ).matrix();
+            let t1 = h.powi(-1);
+            let t2 = -((K * Γ).cross(&Γ) * T::from_f64(0.5) * h);
+            let parts: [SVector<T, 3>; 1] = [
+                axial_of_difference(&(J * Ω_before)) * t1 + t2
+                    + axial_of_difference(&(J * Ω.transpose())) * t1 + t2,
+            ];
+            parts[0]
+        }
+    }
+    impl<T: Real> BodyInQuadraticField<T> {
+        /// The kinetic and the potential energy at this node: those of the limit of small steps,
+        /// at the node's momentum.
+        pub fn energies(&self, state: &BodyInQuadraticFieldState<T>) -> (T, T) {
+            let BodyInQuadraticFieldParameters { J, K, .. } = self.parameters;
+            let Λ = state.Λ.matrix();
+            let Γ_reference = state.Γ;
+            let Γ = Λ.tr_mul(&Γ_reference);
+            let parts: [SVector<T, 3>; 1] = [state.body_momentum().0];
+            let momentum: SVector<T, 3> = parts[0];
+            let inertia = SMatrix::<
+                T,
+                3,
+                3,
+            >::from_fn(|i, j| {
+                let ξ = basis::<T>(i);
+                let η = basis::<T>(j);
+                T::from_f64(0.5) * J.trace()
+                    * (vee(&η).dot(&vee(&ξ)) + vee(&ξ).dot(&vee(&η)))
+                    - T::from_f64(0.5)
+                        * (vee(&η).dot(&(J * vee(&ξ))) + vee(&ξ).dot(&(J * vee(&η))))
+            });
+            let velocity = solve_or_nan(&inertia, &momentum);
+            (
+                momentum.dot(&velocity) * T::from_f64(0.5),
+                T::from_f64(0.5) * Γ.dot(&(K * Γ)),
+            )
+        }
+        /// The physical energy at this node.
+        pub fn energy(&self, state: &BodyInQuadraticFieldState<T>) -> T {
+            let (kinetic, potential) = self.energies(state);
+            kinetic + potential
+        }
+        /// `μ_k·Γ_k`: Casimir, and momentum about a fixed axis.
+        pub fn momentum_Gamma(&self, state: &BodyInQuadraticFieldState<T>) -> T {
+            let Λ = state.Λ.matrix();
+            let Γ_reference = state.Γ;
+            let Γ = Λ.tr_mul(&Γ_reference);
+            let μ = state.body_momentum().0;
+            μ.dot(&Γ)
+        }
+        /// `Γ_k·Γ_k`: Casimir.
+        pub fn Gamma_squared(&self, state: &BodyInQuadraticFieldState<T>) -> T {
+            let Λ = state.Λ.matrix();
+            let Γ_reference = state.Γ;
+            let Γ = Λ.tr_mul(&Γ_reference);
+            Γ.dot(&Γ)
+        }
+    }
+    /// One trajectory of the model, its type hidden.
+    struct BodyInQuadraticFieldTrajectory {
+        model: BodyInQuadraticField<f64>,
+        state: BodyInQuadraticFieldState<f64>,
+        work: BodyInQuadraticFieldWorkspace<f64>,
+        start: BodyInQuadraticFieldState<f64>,
+    }
+    impl Trajectory for BodyInQuadraticFieldTrajectory {
+        fn node(&self) -> u64 {
+            self.state.node()
+        }
+        fn time(&self) -> f64 {
+            self.work.h * self.state.node() as f64
+        }
+        fn step(&mut self) -> Result<(), StepError> {
+            self.model.step(&mut self.state, &mut self.work)
+        }
+        fn card(&self) -> &'static Card {
+            &BodyInQuadraticField::<f64>::CARD
+        }
+        fn observe(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(out, rows(state.Λ().matrix()));
+            let out = put(out, rows(state.body_momentum().0));
+            let out = put(out, rows(state.spatial_momentum().0));
+            let out = put(out, rows(self.model.Γ(state)));
+            let _ = out;
+        }
+        fn invariants(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(out, [self.model.energy(state)]);
+            let out = put(out, [self.model.momentum_Gamma(state)]);
+            let out = put(out, [self.model.Gamma_squared(state)]);
+            let _ = out;
+        }
+        fn scales(&self, out: &mut [f64]) {
+            let state = &self.start;
+            let out = put(
+                out,
+                [{
+                    let (kinetic, potential) = self.model.energies(state);
+                    kinetic.abs() + potential.abs()
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let Λ = state.Λ.matrix();
+                    let Γ_reference = state.Γ;
+                    let Γ = Λ.tr_mul(&Γ_reference);
+                    let μ = state.body_momentum().0;
+                    let value: T = μ.dot(&μ).sqrt() * Γ.dot(&Γ).sqrt();
+                    value
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let Λ = state.Λ.matrix();
+                    let Γ_reference = state.Γ;
+                    let Γ = Λ.tr_mul(&Γ_reference);
+                    let value: T = Γ.dot(&Γ).sqrt() * Γ.dot(&Γ).sqrt();
+                    value
+                }; 1usize],
+            );
+            let _ = out;
+        }
+    }
+    impl BodyInQuadraticField<f64> {
+        /// The model as data.
+        pub const CARD: Card = Card {
+            name: "BodyInQuadraticField",
+            kebab: "body-in-quadratic-field",
+            doc: "Rigid body in a quadratic field.",
+            source: Self::SOURCE,
+            fingerprint: Self::FINGERPRINT,
+            summary: "action of one step   -tr(J Ω_k)/h - ¼ h Γ_k·(K Γ_k) - ¼ h Γ_{k+1}·(K Γ_{k+1})\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          13 identities proved by normal form",
+            solver: "Moser-Veselov: C is constant and symmetric: explicit after one quartic a step",
+            order: 2u32,
+            reversible: true,
+            parameters: &[
+                Field {
+                    name: "J",
+                    ascii: "J",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Symmetric,
+                    doc: "",
+                },
+                Field {
+                    name: "K",
+                    ascii: "K",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Symmetric,
+                    doc: "",
+                },
+            ],
+            initial: &[
+                Field {
+                    name: "Λ",
+                    ascii: "Lambda",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Rotation,
+                    doc: "attitude, body to space",
+                },
+                Field {
+                    name: "body_momentum",
+                    ascii: "body_momentum",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::BodyMomentum,
+                    doc: "momentum, body frame",
+                },
+                Field {
+                    name: "Γ",
+                    ascii: "Gamma",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::Vector,
+                    doc: "value at node 0",
+                },
+            ],
+            observables: &[
+                Field {
+                    name: "Λ",
+                    ascii: "Lambda",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Rotation,
+                    doc: "attitude, body to space",
+                },
+                Field {
+                    name: "body_momentum",
+                    ascii: "body_momentum",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::BodyMomentum,
+                    doc: "momentum, body frame",
+                },
+                Field {
+                    name: "spatial_momentum",
+                    ascii: "spatial_momentum",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::SpatialMomentum,
+                    doc: "momentum, space frame",
+                },
+                Field {
+                    name: "Γ",
+                    ascii: "Gamma",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::Vector,
+                    doc: "",
+                },
+            ],
+            invariants: &[
+                Invariant {
+                    name: "energy",
+                    formula: "½ μ·I⁻¹μ + ½ Γ_k·(K Γ_k)",
+                    rows: 1usize,
+                    conserved: Conserved::Boundedly,
+                },
+                Invariant {
+                    name: "momentum_Gamma",
+                    formula: "μ_k·Γ_k",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "Gamma_squared",
+                    formula: "Γ_k·Γ_k",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+            ],
+            open: Self::open,
+        };
+        fn open(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+            h: f64,
+        ) -> Result<Box<dyn Trajectory>, OpenError> {
+            for (field, expected, found) in [
+                ("parameters", 2usize, parameters.len()),
+                ("initial values", 3usize, initial.len()),
+            ] {
+                if expected != found {
+                    return Err(OpenError::Count {
+                        field,
+                        expected,
+                        found,
+                    });
+                }
+            }
+            let model = BodyInQuadraticField::new(BodyInQuadraticFieldParameters {
+                J: matrix_of("J", parameters.get(0usize))?,
+                K: matrix_of("K", parameters.get(1usize))?,
+            })?;
+            let initial = BodyInQuadraticFieldInitial {
+                Λ: rotation_of("Λ", initial.get(0usize))?,
+                body_momentum: BodyMomentum(
+                    matrix_of("body_momentum", initial.get(1usize))?,
+                ),
+                Γ: matrix_of("Γ", initial.get(2usize))?,
+            };
+            let (state, work) = model.start(initial, h)?;
+            Ok(
+                Box::new(BodyInQuadraticFieldTrajectory {
+                    model,
+                    state,
+                    work,
+                    start: state,
+                }),
+            )
+        }
+    }
+}
+#[allow(unused_imports)]
+pub use body_in_quadratic_field::*;

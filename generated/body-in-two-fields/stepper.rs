@@ -1,0 +1,585 @@
+// Written by `clebsch derive --write`. Do not edit.
+
+/// The model [`BodyInTwoFields`](struct@BodyInTwoFields) and what belongs to it.
+#[allow(
+    non_snake_case,
+    uncommon_codepoints,
+    mixed_script_confusables,
+    confusable_idents,
+    clippy::all
+)]
+pub mod body_in_two_fields {
+    use ::clebsch::emitted::*;
+    /// Parameters of [`BodyInTwoFields`](struct@BodyInTwoFields), as given.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct BodyInTwoFieldsParameters<T = f64> {
+        ///`J`: a 3 x 3 matrix, symmetric.
+        pub J: SMatrix<T, 3, 3>,
+        ///`gU`: a vector of 3 components.
+        pub gU: SVector<T, 3>,
+        ///`p`: a vector of 3 components.
+        pub p: SVector<T, 3>,
+        ///`z`: a vector of 3 components.
+        pub z: SVector<T, 3>,
+        ///`b`: a vector of 3 components.
+        pub b: SVector<T, 3>,
+    }
+    /// Rigid body about a fixed point in two uniform fields.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct BodyInTwoFields<T = f64> {
+        parameters: BodyInTwoFieldsParameters<T>,
+        factor: Poinsot<T>,
+    }
+    impl<T: Real> BodyInTwoFields<T> {
+        /// The model as it was stated.
+        pub const SOURCE: &'static str = "/// Rigid body about a fixed point in two uniform fields.\npub model BodyInTwoFields {\n    param J: Sym<3>;\n    param gU: Vec<3>;\n    param p: Vec<3>;\n    param z: Vec<3>;\n    param b: Vec<3>;\n    group Λ: SO<3> velocity Ω;\n    advected Γ: Vec<3> = Λ^T*z;\n    advected B: Vec<3> = Λ^T*b;\n    constraint next(Λ) = Λ*Ω;\n    constraint next(Γ) = Ω^T*Γ;\n    constraint next(B) = Ω^T*B;\n    lagrangian = -tr(J*Ω)/h - h*(dot(gU, Γ) - dot(p, B));\n}";
+        /// A number that changes when the model or its derivation does.
+        pub const FINGERPRINT: u64 = 5123335770211329113u64;
+        /// Checks the parameters.
+        ///
+        /// # Errors
+        /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
+        /// assumption, or is no admissible factor of the equation to solve.
+        pub fn new(
+            parameters: BodyInTwoFieldsParameters<T>,
+        ) -> Result<Self, ParameterError> {
+            validate::finite("J", parameters.J.as_slice())?;
+            validate::symmetric("J", &parameters.J)?;
+            validate::finite("gU", parameters.gU.as_slice())?;
+            validate::finite("p", parameters.p.as_slice())?;
+            validate::finite("z", parameters.z.as_slice())?;
+            validate::finite("b", parameters.b.as_slice())?;
+            let BodyInTwoFieldsParameters { J, .. } = parameters;
+            let factor = Poinsot::new(J).map_err(|e| e.in_field("J"))?;
+            Ok(Self { parameters, factor })
+        }
+        /// The parameters.
+        pub fn parameters(&self) -> &BodyInTwoFieldsParameters<T> {
+            &self.parameters
+        }
+    }
+    /// Initial data.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct BodyInTwoFieldsInitial<T = f64> {
+        /// `Λ` at node 0: body -> space.
+        pub Λ: Rotation<T>,
+        /// Momentum at node 0, in the body frame.
+        pub body_momentum: BodyMomentum<T>,
+    }
+    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct BodyInTwoFieldsState<T = f64> {
+        Λ: Rotation<T>,
+        momentum: SpatialMomentum<T>,
+        node: u64,
+    }
+    impl<T: Real> BodyInTwoFieldsState<T> {
+        /// `Λ` at this node: body -> space.
+        pub fn Λ(&self) -> Rotation<T> {
+            self.Λ
+        }
+        /// The momentum at this node, in the space frame.
+        pub fn spatial_momentum(&self) -> SpatialMomentum<T> {
+            self.momentum
+        }
+        /// The momentum at this node, in the body frame.
+        pub fn body_momentum(&self) -> BodyMomentum<T> {
+            self.momentum.to_body(&self.Λ)
+        }
+        /// The number of the node.
+        pub fn node(&self) -> u64 {
+            self.node
+        }
+    }
+    /// The step, and the momentum of the edge that begins at the state `here`. Made anew for any other state.
+    #[derive(Clone, Copy, Debug)]
+    pub struct BodyInTwoFieldsWorkspace<T = f64> {
+        h: T,
+        edge: Edge<T>,
+        here: BodyInTwoFieldsState<T>,
+    }
+    impl<T: Real> BodyInTwoFields<T> {
+        /// Starts a trajectory with step `h` from data at node 0.
+        ///
+        /// # Errors
+        /// Names the value that is not finite, or says why the first step cannot be solved and
+        /// which step could.
+        pub fn start(
+            &self,
+            initial: BodyInTwoFieldsInitial<T>,
+            h: T,
+        ) -> Result<(BodyInTwoFieldsState<T>, BodyInTwoFieldsWorkspace<T>), StartError> {
+            validate::positive_step(h)?;
+            validate::finite("Λ", &initial.Λ.quaternion())?;
+            validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
+            let state = BodyInTwoFieldsState {
+                Λ: initial.Λ,
+                momentum: initial.body_momentum.to_space(&initial.Λ),
+                node: 0,
+            };
+            let work = BodyInTwoFieldsWorkspace {
+                h,
+                edge: self.edge(state, h),
+                here: state,
+            };
+            let (mut trial, mut scratch) = (state, work);
+            self.step(&mut trial, &mut scratch)
+                .map_err(|e| StartError::Refused(e.cause))?;
+            Ok((state, work))
+        }
+        /// One step, in place. Solved thus: C is constant and symmetric: explicit after one quartic a step.
+        ///
+        /// # Errors
+        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+        #[inline]
+        pub fn step(
+            &self,
+            state: &mut BodyInTwoFieldsState<T>,
+            work: &mut BodyInTwoFieldsWorkspace<T>,
+        ) -> Result<(), StepError> {
+            let h = work.h;
+            if work.here != *state {
+                work.edge = self.edge(*state, h);
+                work.here = *state;
+            }
+            let edge = &work.edge;
+            let Λ_moved = match edge.turn(&self.factor, h, &state.Λ) {
+                Ok(turned) => turned,
+                Err(e) => return Err(self.refused(*state, h, e)),
+            };
+            let BodyInTwoFieldsParameters { gU, p, z, b, .. } = self.parameters;
+            let Λ_next = Λ_moved.matrix();
+            let Γ_next = Λ_next.tr_mul(&z);
+            let B_next = Λ_next.tr_mul(&b);
+            let space = edge.space();
+            let torque = (p * h).cross(&B_next) - (gU * h).cross(&Γ_next);
+            let kick = Λ_next * torque;
+            let momentum_next = space + kick * T::from_f64(0.5);
+            let edge_next = Edge::new(Λ_next.tr_mul(&space) + torque, space + kick);
+            if !all_finite(&momentum_next) {
+                return Err(
+                    StepCause::NotFinite {
+                        what: "momentum",
+                    }
+                        .at_node(state.node),
+                );
+            }
+            *state = BodyInTwoFieldsState {
+                Λ: Λ_moved.rotation(),
+                momentum: SpatialMomentum(momentum_next),
+                node: state.node + 1,
+            };
+            work.edge = edge_next;
+            work.here = *state;
+            Ok(())
+        }
+        /// The momentum of the edge that starts at this node, for a step `h`.
+        #[inline]
+        fn edge_momentum(&self, state: &BodyInTwoFieldsState<T>, h: T) -> SVector<T, 3> {
+            let BodyInTwoFieldsParameters { gU, p, z, b, .. } = self.parameters;
+            let Λ = state.Λ.matrix();
+            let Γ = Λ.tr_mul(&z);
+            let B = Λ.tr_mul(&b);
+            Λ.tr_mul(&state.momentum.0)
+                - (gU.cross(&Γ) * T::from_f64(0.5) * h
+                    - p.cross(&B) * T::from_f64(0.5) * h)
+        }
+        /// The edge that begins at this state.
+        #[cold]
+        #[inline(never)]
+        fn edge(&self, state: BodyInTwoFieldsState<T>, h: T) -> Edge<T> {
+            Edge::begin(&state.Λ, self.edge_momentum(&state, h))
+        }
+        /// Says how far the step is beyond the bound, and which step could be solved.
+        #[cold]
+        fn refused(
+            &self,
+            state: BodyInTwoFieldsState<T>,
+            h: T,
+            e: MoserVeselovError,
+        ) -> StepError {
+            let largest = largest_step(
+                h.value(),
+                |trial| {
+                    let n = self.edge_momentum(&state, T::from_f64(trial))
+                        * T::from_f64(trial);
+                    let body = Poinsot::new(self.factor.matrix().map(|x| x.value()))
+                        .ok()?;
+                    Some(reach(&body, &n.map(|x| x.value())))
+                },
+            );
+            StepCause::from(e.with_steps(h.value(), largest)).at_node(state.node)
+        }
+        /// `Γ` at the node of this state.
+        #[inline]
+        pub fn Γ(&self, state: &BodyInTwoFieldsState<T>) -> SVector<T, 3> {
+            let BodyInTwoFieldsParameters { z, .. } = self.parameters;
+            let Λ = state.Λ.matrix();
+            let Γ = Λ.tr_mul(&z);
+            Γ
+        }
+        /// `B` at the node of this state.
+        #[inline]
+        pub fn B(&self, state: &BodyInTwoFieldsState<T>) -> SVector<T, 3> {
+            let BodyInTwoFieldsParameters { b, .. } = self.parameters;
+            let Λ = state.Λ.matrix();
+            let B = Λ.tr_mul(&b);
+            B
+        }
+    }
+    /// A configuration at one node, solution or not.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct BodyInTwoFieldsConfiguration<T = f64> {
+        /// `Λ` at the node: body -> space.
+        pub Λ: Rotation<T>,
+    }
+    impl<T: Real> BodyInTwoFields<T> {
+        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+        /// consecutive configurations: component `i` is the derivative of the action of the
+        /// two edges when the middle element is rotated about its axis `i` (a body axis on
+        /// the body side, a space axis on the spatial side). Zero on solutions.
+        pub fn balance(
+            &self,
+            h: T,
+            before: &BodyInTwoFieldsConfiguration<T>,
+            here: &BodyInTwoFieldsConfiguration<T>,
+            after: &BodyInTwoFieldsConfiguration<T>,
+        ) -> SVector<T, 3> {
+            let BodyInTwoFieldsParameters { J, gU, p, z, b, .. } = self.parameters;
+            let Λ = here.Λ.matrix();
+            let Γ = Λ.tr_mul(&z);
+            let B = Λ.tr_mul(&b);
+            let Ω_before = (before.Λ.inverse() * here.Λ).matrix();
+            let Ω = (here.Λ.inverse() * after.Λ).matrix();
+            let t1 = h.powi(-1);
+            let t2 = -(gU.cross(&Γ) * T::from_f64(0.5) * h);
+            let t3 = p.cross(&B) * T::from_f64(0.5) * h;
+            let parts: [SVector<T, 3>; 1] = [
+                axial_of_difference(&(J * Ω_before)) * t1 + t2 + t3
+                    + axial_of_difference(&(J * Ω.transpose())) * t1 + t2 + t3,
+            ];
+            parts[0]
+        }
+    }
+    impl<T: Real> BodyInTwoFields<T> {
+        /// The kinetic and the potential energy at this node: those of the limit of small steps,
+        /// at the node's momentum.
+        pub fn energies(&self, state: &BodyInTwoFieldsState<T>) -> (T, T) {
+            let BodyInTwoFieldsParameters { J, gU, p, z, b, .. } = self.parameters;
+            let Λ = state.Λ.matrix();
+            let Γ = Λ.tr_mul(&z);
+            let B = Λ.tr_mul(&b);
+            let parts: [SVector<T, 3>; 1] = [state.body_momentum().0];
+            let momentum: SVector<T, 3> = parts[0];
+            let inertia = SMatrix::<
+                T,
+                3,
+                3,
+            >::from_fn(|i, j| {
+                let ξ = basis::<T>(i);
+                let η = basis::<T>(j);
+                T::from_f64(0.5) * J.trace()
+                    * (vee(&η).dot(&vee(&ξ)) + vee(&ξ).dot(&vee(&η)))
+                    - T::from_f64(0.5)
+                        * (vee(&η).dot(&(J * vee(&ξ))) + vee(&ξ).dot(&(J * vee(&η))))
+            });
+            let velocity = solve_or_nan(&inertia, &momentum);
+            (momentum.dot(&velocity) * T::from_f64(0.5), gU.dot(&Γ) - p.dot(&B))
+        }
+        /// The physical energy at this node.
+        pub fn energy(&self, state: &BodyInTwoFieldsState<T>) -> T {
+            let (kinetic, potential) = self.energies(state);
+            kinetic + potential
+        }
+        /// `Γ_k·Γ_k`: Casimir.
+        pub fn Gamma_squared(&self, state: &BodyInTwoFieldsState<T>) -> T {
+            let BodyInTwoFieldsParameters { z, .. } = self.parameters;
+            let Λ = state.Λ.matrix();
+            let Γ = Λ.tr_mul(&z);
+            Γ.dot(&Γ)
+        }
+        /// `Γ_k·B_k`: Casimir.
+        pub fn Gamma_B(&self, state: &BodyInTwoFieldsState<T>) -> T {
+            let BodyInTwoFieldsParameters { z, b, .. } = self.parameters;
+            let Λ = state.Λ.matrix();
+            let Γ = Λ.tr_mul(&z);
+            let B = Λ.tr_mul(&b);
+            Γ.dot(&B)
+        }
+        /// `B_k·B_k`: Casimir.
+        pub fn B_squared(&self, state: &BodyInTwoFieldsState<T>) -> T {
+            let BodyInTwoFieldsParameters { b, .. } = self.parameters;
+            let Λ = state.Λ.matrix();
+            let B = Λ.tr_mul(&b);
+            B.dot(&B)
+        }
+    }
+    /// One trajectory of the model, its type hidden.
+    struct BodyInTwoFieldsTrajectory {
+        model: BodyInTwoFields<f64>,
+        state: BodyInTwoFieldsState<f64>,
+        work: BodyInTwoFieldsWorkspace<f64>,
+        start: BodyInTwoFieldsState<f64>,
+    }
+    impl Trajectory for BodyInTwoFieldsTrajectory {
+        fn node(&self) -> u64 {
+            self.state.node()
+        }
+        fn time(&self) -> f64 {
+            self.work.h * self.state.node() as f64
+        }
+        fn step(&mut self) -> Result<(), StepError> {
+            self.model.step(&mut self.state, &mut self.work)
+        }
+        fn card(&self) -> &'static Card {
+            &BodyInTwoFields::<f64>::CARD
+        }
+        fn observe(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(out, rows(state.Λ().matrix()));
+            let out = put(out, rows(state.body_momentum().0));
+            let out = put(out, rows(state.spatial_momentum().0));
+            let out = put(out, rows(self.model.Γ(state)));
+            let out = put(out, rows(self.model.B(state)));
+            let _ = out;
+        }
+        fn invariants(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(out, [self.model.energy(state)]);
+            let out = put(out, [self.model.Gamma_squared(state)]);
+            let out = put(out, [self.model.Gamma_B(state)]);
+            let out = put(out, [self.model.B_squared(state)]);
+            let _ = out;
+        }
+        fn scales(&self, out: &mut [f64]) {
+            let state = &self.start;
+            let out = put(
+                out,
+                [{
+                    let (kinetic, potential) = self.model.energies(state);
+                    kinetic.abs() + potential.abs()
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let BodyInTwoFieldsParameters { z, .. } = self.model.parameters;
+                    let Λ = state.Λ.matrix();
+                    let Γ = Λ.tr_mul(&z);
+                    let value: T = Γ.dot(&Γ).sqrt() * Γ.dot(&Γ).sqrt();
+                    value
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let BodyInTwoFieldsParameters { z, b, .. } = self.model.parameters;
+                    let Λ = state.Λ.matrix();
+                    let Γ = Λ.tr_mul(&z);
+                    let B = Λ.tr_mul(&b);
+                    let value: T = Γ.dot(&Γ).sqrt() * B.dot(&B).sqrt();
+                    value
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let BodyInTwoFieldsParameters { b, .. } = self.model.parameters;
+                    let Λ = state.Λ.matrix();
+                    let B = Λ.tr_mul(&b);
+                    let value: T = B.dot(&B).sqrt() * B.dot(&B).sqrt();
+                    value
+                }; 1usize],
+            );
+            let _ = out;
+        }
+    }
+    impl BodyInTwoFields<f64> {
+        /// The model as data.
+        pub const CARD: Card = Card {
+            name: "BodyInTwoFields",
+            kebab: "body-in-two-fields",
+            doc: "Rigid body about a fixed point in two uniform fields.",
+            source: Self::SOURCE,
+            fingerprint: Self::FINGERPRINT,
+            summary: "action of one step   -tr(J Ω_k)/h - ½ h gU·Γ_k + ½ h p·B_k - ½ h gU·Γ_{k+1} + ½ h p·B_{k+1}\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, Gamma_squared, Gamma_B, B_squared\ntime reversal        symmetric: second order\ncertificate          16 identities proved by normal form",
+            solver: "Moser-Veselov: C is constant and symmetric: explicit after one quartic a step",
+            order: 2u32,
+            reversible: true,
+            parameters: &[
+                Field {
+                    name: "J",
+                    ascii: "J",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Symmetric,
+                    doc: "",
+                },
+                Field {
+                    name: "gU",
+                    ascii: "gU",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::Vector,
+                    doc: "",
+                },
+                Field {
+                    name: "p",
+                    ascii: "p",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::Vector,
+                    doc: "",
+                },
+                Field {
+                    name: "z",
+                    ascii: "z",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::Vector,
+                    doc: "",
+                },
+                Field {
+                    name: "b",
+                    ascii: "b",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::Vector,
+                    doc: "",
+                },
+            ],
+            initial: &[
+                Field {
+                    name: "Λ",
+                    ascii: "Lambda",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Rotation,
+                    doc: "attitude, body to space",
+                },
+                Field {
+                    name: "body_momentum",
+                    ascii: "body_momentum",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::BodyMomentum,
+                    doc: "momentum, body frame",
+                },
+            ],
+            observables: &[
+                Field {
+                    name: "Λ",
+                    ascii: "Lambda",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Rotation,
+                    doc: "attitude, body to space",
+                },
+                Field {
+                    name: "body_momentum",
+                    ascii: "body_momentum",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::BodyMomentum,
+                    doc: "momentum, body frame",
+                },
+                Field {
+                    name: "spatial_momentum",
+                    ascii: "spatial_momentum",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::SpatialMomentum,
+                    doc: "momentum, space frame",
+                },
+                Field {
+                    name: "Γ",
+                    ascii: "Gamma",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::Vector,
+                    doc: "",
+                },
+                Field {
+                    name: "B",
+                    ascii: "B",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::Vector,
+                    doc: "",
+                },
+            ],
+            invariants: &[
+                Invariant {
+                    name: "energy",
+                    formula: "½ μ·I⁻¹μ + gU·Γ_k - p·B_k",
+                    rows: 1usize,
+                    conserved: Conserved::Boundedly,
+                },
+                Invariant {
+                    name: "Gamma_squared",
+                    formula: "Γ_k·Γ_k",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "Gamma_B",
+                    formula: "Γ_k·B_k",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "B_squared",
+                    formula: "B_k·B_k",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+            ],
+            open: Self::open,
+        };
+        fn open(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+            h: f64,
+        ) -> Result<Box<dyn Trajectory>, OpenError> {
+            for (field, expected, found) in [
+                ("parameters", 5usize, parameters.len()),
+                ("initial values", 2usize, initial.len()),
+            ] {
+                if expected != found {
+                    return Err(OpenError::Count {
+                        field,
+                        expected,
+                        found,
+                    });
+                }
+            }
+            let model = BodyInTwoFields::new(BodyInTwoFieldsParameters {
+                J: matrix_of("J", parameters.get(0usize))?,
+                gU: matrix_of("gU", parameters.get(1usize))?,
+                p: matrix_of("p", parameters.get(2usize))?,
+                z: matrix_of("z", parameters.get(3usize))?,
+                b: matrix_of("b", parameters.get(4usize))?,
+            })?;
+            let initial = BodyInTwoFieldsInitial {
+                Λ: rotation_of("Λ", initial.get(0usize))?,
+                body_momentum: BodyMomentum(
+                    matrix_of("body_momentum", initial.get(1usize))?,
+                ),
+            };
+            let (state, work) = model.start(initial, h)?;
+            Ok(
+                Box::new(BodyInTwoFieldsTrajectory {
+                    model,
+                    state,
+                    work,
+                    start: state,
+                }),
+            )
+        }
+    }
+}
+#[allow(unused_imports)]
+pub use body_in_two_fields::*;

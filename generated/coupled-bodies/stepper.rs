@@ -1,0 +1,667 @@
+// Written by `clebsch derive --write`. Do not edit.
+
+/// The model [`CoupledBodies`](struct@CoupledBodies) and what belongs to it.
+#[allow(
+    non_snake_case,
+    uncommon_codepoints,
+    mixed_script_confusables,
+    confusable_idents,
+    clippy::all
+)]
+pub mod coupled_bodies {
+    use ::clebsch::emitted::*;
+    /// Parameters of [`CoupledBodies`](struct@CoupledBodies), as given.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct CoupledBodiesParameters<T = f64> {
+        ///`J1`: a 3 x 3 matrix, symmetric.
+        pub J1: SMatrix<T, 3, 3>,
+        ///`J2`: a 3 x 3 matrix, symmetric.
+        pub J2: SMatrix<T, 3, 3>,
+        ///`d1`: a vector of 3 components.
+        pub d1: SVector<T, 3>,
+        ///`d2`: a vector of 3 components.
+        pub d2: SVector<T, 3>,
+        ///`eps`: a number.
+        pub eps: T,
+    }
+    /// Two rigid bodies with a spherical joint.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct CoupledBodies<T = f64> {
+        parameters: CoupledBodiesParameters<T>,
+    }
+    impl<T: Real> CoupledBodies<T> {
+        /// The model as it was stated.
+        pub const SOURCE: &'static str = "/// Two rigid bodies with a spherical joint.\npub model CoupledBodies {\n    param J1: Sym<3>;\n    param J2: Sym<3>;\n    param d1: Vec<3>;\n    param d2: Vec<3>;\n    param eps: Real;\n    group Λ1: SO<3> velocity Ω1;\n    group Λ2: SO<3> velocity Ω2;\n    advected R: SO<3> = Λ1^T*Λ2;\n    constraint next(Λ1) = Λ1*Ω1;\n    constraint next(Λ2) = Λ2*Ω2;\n    constraint next(R) = Ω1^T*R*Ω2;\n    lagrangian = (-tr(J1*Ω1) - tr(J2*Ω2) - eps*dot((Ω1 - Id)*d1, R*(Ω2 - Id)*d2))/h;\n}";
+        /// A number that changes when the model or its derivation does.
+        pub const FINGERPRINT: u64 = 16093269774006103430u64;
+        /// Checks the parameters.
+        ///
+        /// # Errors
+        /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
+        /// assumption, or is no admissible factor of the equation to solve.
+        pub fn new(
+            parameters: CoupledBodiesParameters<T>,
+        ) -> Result<Self, ParameterError> {
+            validate::finite("J1", parameters.J1.as_slice())?;
+            validate::symmetric("J1", &parameters.J1)?;
+            validate::finite("J2", parameters.J2.as_slice())?;
+            validate::symmetric("J2", &parameters.J2)?;
+            validate::finite("d1", parameters.d1.as_slice())?;
+            validate::finite("d2", parameters.d2.as_slice())?;
+            validate::finite("eps", &[parameters.eps])?;
+            Ok(Self { parameters })
+        }
+        /// The parameters.
+        pub fn parameters(&self) -> &CoupledBodiesParameters<T> {
+            &self.parameters
+        }
+    }
+    /// Initial data.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct CoupledBodiesInitial<T = f64> {
+        /// `Λ1` at node 0: body -> space.
+        pub Λ1: Rotation<T>,
+        /// Momentum at node 0, in the body frame.
+        pub body_momentum_Λ1: BodyMomentum<T>,
+        /// `Λ2` at node 0: body -> space.
+        pub Λ2: Rotation<T>,
+        /// Momentum at node 0, in the body frame.
+        pub body_momentum_Λ2: BodyMomentum<T>,
+    }
+    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct CoupledBodiesState<T = f64> {
+        Λ1: Rotation<T>,
+        momentum_Λ1: SpatialMomentum<T>,
+        Λ2: Rotation<T>,
+        momentum_Λ2: SpatialMomentum<T>,
+        node: u64,
+    }
+    impl<T: Real> CoupledBodiesState<T> {
+        /// `Λ1` at this node: body -> space.
+        pub fn Λ1(&self) -> Rotation<T> {
+            self.Λ1
+        }
+        /// The momentum at this node, in the space frame.
+        pub fn spatial_momentum_Λ1(&self) -> SpatialMomentum<T> {
+            self.momentum_Λ1
+        }
+        /// The momentum at this node, in the body frame.
+        pub fn body_momentum_Λ1(&self) -> BodyMomentum<T> {
+            self.momentum_Λ1.to_body(&self.Λ1)
+        }
+        /// `Λ2` at this node: body -> space.
+        pub fn Λ2(&self) -> Rotation<T> {
+            self.Λ2
+        }
+        /// The momentum at this node, in the space frame.
+        pub fn spatial_momentum_Λ2(&self) -> SpatialMomentum<T> {
+            self.momentum_Λ2
+        }
+        /// The momentum at this node, in the body frame.
+        pub fn body_momentum_Λ2(&self) -> BodyMomentum<T> {
+            self.momentum_Λ2.to_body(&self.Λ2)
+        }
+        /// The number of the node.
+        pub fn node(&self) -> u64 {
+            self.node
+        }
+    }
+    /// The step and the last velocities, from which the next solve starts.
+    #[derive(Clone, Copy, Debug)]
+    pub struct CoupledBodiesWorkspace<T = f64> {
+        h: T,
+        guess: [Rotation<T>; 2],
+    }
+    impl<T: Real> CoupledBodies<T> {
+        /// Starts a trajectory with step `h` from data at node 0.
+        ///
+        /// # Errors
+        /// Names the value that is not finite, or says why the first step cannot be solved and
+        /// which step could.
+        pub fn start(
+            &self,
+            initial: CoupledBodiesInitial<T>,
+            h: T,
+        ) -> Result<(CoupledBodiesState<T>, CoupledBodiesWorkspace<T>), StartError> {
+            validate::positive_step(h)?;
+            validate::finite("Λ1", &initial.Λ1.quaternion())?;
+            validate::finite(
+                "body_momentum_Λ1",
+                initial.body_momentum_Λ1.0.as_slice(),
+            )?;
+            validate::finite("Λ2", &initial.Λ2.quaternion())?;
+            validate::finite(
+                "body_momentum_Λ2",
+                initial.body_momentum_Λ2.0.as_slice(),
+            )?;
+            let state = CoupledBodiesState {
+                Λ1: initial.Λ1,
+                momentum_Λ1: initial.body_momentum_Λ1.to_space(&initial.Λ1),
+                Λ2: initial.Λ2,
+                momentum_Λ2: initial.body_momentum_Λ2.to_space(&initial.Λ2),
+                node: 0,
+            };
+            let work = CoupledBodiesWorkspace {
+                h,
+                guess: [Rotation::identity(); 2],
+            };
+            let (mut trial, mut scratch) = (state, work);
+            self.step(&mut trial, &mut scratch)
+                .map_err(|e| StartError::Refused(e.cause))?;
+            Ok((state, work))
+        }
+        /// One step, in place. Solved thus: several velocities are solved together: Newton on the derived residuals.
+        ///
+        /// # Errors
+        /// When the iteration does not converge, with its residual; the state is then unchanged.
+        #[inline]
+        pub fn step(
+            &self,
+            state: &mut CoupledBodiesState<T>,
+            work: &mut CoupledBodiesWorkspace<T>,
+        ) -> Result<(), StepError> {
+            let h = work.h;
+            let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
+            let Λ1 = state.Λ1.matrix();
+            let Λ2 = state.Λ2.matrix();
+            let R = Λ1.tr_mul(&Λ2);
+            let momenta: [SVector<T, 3>; 2] = [
+                Λ1.tr_mul(&state.momentum_Λ1.0),
+                Λ2.tr_mul(&state.momentum_Λ2.0),
+            ];
+            let residual = |trial: &[Rotation<T>; 2]| {
+                let Ω1 = trial[0].matrix();
+                let Ω2 = trial[1].matrix();
+                let t1 = h.powi(-1);
+                let t2 = d1.cross(&(R * d2));
+                let parts: [SVector<T, 3>; 2] = [
+                    (t2 * t1 * eps - axial_of_difference(&(J1 * Ω1.transpose())) * t1
+                        - d1.cross(&(R * (Ω2 * d2))) * t1 * eps) - momenta[0],
+                    (R.tr_mul(&(Ω1 * d1.cross(&(Ω1.tr_mul(&(R * d2)))))) * t1 * eps
+                        - axial_of_difference(&(J2 * Ω2.transpose())) * t1
+                        - R.tr_mul(&t2) * t1 * eps) - momenta[1],
+                ];
+                SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3])
+            };
+            let tangent = |trial: &[Rotation<T>; 2]| {
+                let Ω1 = trial[0].matrix();
+                let Ω2 = trial[1].matrix();
+                let mut matrix = SMatrix::<T, 6, 6>::zeros();
+                for axis in 0..3 {
+                    let η1 = basis::<T>(axis);
+                    let t1 = h.powi(-1);
+                    let parts: [SVector<T, 3>; 2] = [
+                        axial_of_difference(&(J1 * (η1 * Ω1.transpose()))) * t1,
+                        R.tr_mul(&(Ω1 * (η1 * d1.cross(&(Ω1.tr_mul(&(R * d2)))))))
+                            * t1 * eps
+                            - R.tr_mul(&(Ω1 * d1.cross(&(η1 * Ω1.tr_mul(&(R * d2))))))
+                                * t1 * eps,
+                    ];
+                    matrix
+                        .set_column(
+                            axis,
+                            &SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3]),
+                        );
+                }
+                for axis in 0..3 {
+                    let η2 = basis::<T>(axis);
+                    let t1 = h.powi(-1);
+                    let parts: [SVector<T, 3>; 2] = [
+                        -(d1.cross(&(R * (Ω2 * (η2 * d2)))) * t1 * eps),
+                        axial_of_difference(&(J2 * (η2 * Ω2.transpose()))) * t1,
+                    ];
+                    matrix
+                        .set_column(
+                            3 + axis,
+                            &SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3]),
+                        );
+                }
+                matrix
+            };
+            let scale = {
+                let trial = &work.guess;
+                let Ω1 = trial[0].matrix();
+                let Ω2 = trial[1].matrix();
+                let mut total = 0.0;
+                total += length(&momenta[0]).magnitude();
+                total += length(&momenta[1]).magnitude();
+                total
+                    += length(
+                            &((-(J1 / h))
+                                - ((R * ((Ω2 - SMatrix::<T, 3, 3>::identity()) * d2))
+                                    * d1.transpose() * eps) / h),
+                        )
+                        .magnitude();
+                total
+                    += length(
+                            &((-(J2 / h))
+                                - (R.tr_mul(&((Ω1 - SMatrix::<T, 3, 3>::identity()) * d1))
+                                    * d2.transpose() * eps) / h),
+                        )
+                        .magnitude();
+                total
+            };
+            let solved = match newton::solve(work.guess, scale, residual, tangent) {
+                Ok(found) => found.element,
+                Err(e) => return Err(StepCause::from(e).at_node(state.node)),
+            };
+            let Ω1_matrix = solved[0].matrix();
+            let Ω2_matrix = solved[1].matrix();
+            let Λ1_moved = state.Λ1 * solved[0];
+            let Λ2_moved = state.Λ2 * solved[1];
+            let t1 = Ω1_matrix - SMatrix::<T, 3, 3>::identity();
+            let t2 = Ω2_matrix.transpose() - SMatrix::<T, 3, 3>::identity();
+            let momentum_Λ1_next = state.momentum_Λ1.0
+                + Λ1
+                    * (axial_of_difference(
+                        &(((t1 * d1) * (d2.tr_mul(&t2) * R.transpose()) * eps) / h),
+                    ));
+            let momentum_Λ2_next = state.momentum_Λ2.0
+                + Λ2
+                    * (-(axial_of_difference(
+                        &((R.tr_mul(&(t1 * d1)) * d2.tr_mul(&t2) * eps) / h),
+                    )));
+            if !(all_finite(&momentum_Λ1_next) && all_finite(&momentum_Λ2_next)) {
+                return Err(
+                    StepCause::NotFinite {
+                        what: "momentum",
+                    }
+                        .at_node(state.node),
+                );
+            }
+            state.Λ1 = Λ1_moved;
+            state.Λ2 = Λ2_moved;
+            state.momentum_Λ1 = SpatialMomentum(momentum_Λ1_next);
+            state.momentum_Λ2 = SpatialMomentum(momentum_Λ2_next);
+            state.node += 1;
+            work.guess = solved;
+            Ok(())
+        }
+        /// `R` at the node of this state.
+        #[inline]
+        pub fn R(&self, state: &CoupledBodiesState<T>) -> SMatrix<T, 3, 3> {
+            let Λ1 = state.Λ1.matrix();
+            let Λ2 = state.Λ2.matrix();
+            let R = Λ1.tr_mul(&Λ2);
+            R
+        }
+    }
+    /// A configuration at one node, solution or not.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct CoupledBodiesConfiguration<T = f64> {
+        /// `Λ1` at the node: body -> space.
+        pub Λ1: Rotation<T>,
+        /// `Λ2` at the node: body -> space.
+        pub Λ2: Rotation<T>,
+    }
+    impl<T: Real> CoupledBodies<T> {
+        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+        /// consecutive configurations: component `i` is the derivative of the action of the
+        /// two edges when the middle element is rotated about its axis `i` (a body axis on
+        /// the body side, a space axis on the spatial side). Zero on solutions.
+        pub fn balance(
+            &self,
+            h: T,
+            before: &CoupledBodiesConfiguration<T>,
+            here: &CoupledBodiesConfiguration<T>,
+            after: &CoupledBodiesConfiguration<T>,
+        ) -> SVector<T, 6> {
+            let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
+            let Λ1_before = before.Λ1.matrix();
+            let Λ2_before = before.Λ2.matrix();
+            let R_before = Λ1_before.tr_mul(&Λ2_before);
+            let Λ1 = here.Λ1.matrix();
+            let Λ2 = here.Λ2.matrix();
+            let R = Λ1.tr_mul(&Λ2);
+            let Ω1_before = (before.Λ1.inverse() * here.Λ1).matrix();
+            let Ω1 = (here.Λ1.inverse() * after.Λ1).matrix();
+            let Ω2_before = (before.Λ2.inverse() * here.Λ2).matrix();
+            let Ω2 = (here.Λ2.inverse() * after.Λ2).matrix();
+            let t1 = h.powi(-1);
+            let t2 = d1.cross(&(R * d2));
+            let parts: [SVector<T, 3>; 2] = [
+                axial_of_difference(
+                    &(Ω1_before
+                        .tr_mul(
+                            &((-(J1 / h))
+                                - ((R_before
+                                    * ((Ω2_before - SMatrix::<T, 3, 3>::identity()) * d2))
+                                    * d1.transpose() * eps) / h),
+                        )),
+                ) + axial_of_difference(&(J1 * Ω1.transpose())) * t1 - t2 * t1 * eps
+                    + d1.cross(&(R * (Ω2 * d2))) * t1 * eps,
+                axial_of_difference(
+                    &(Ω2_before
+                        .tr_mul(
+                            &((-(J2 / h))
+                                - (R_before
+                                    .tr_mul(
+                                        &((Ω1_before - SMatrix::<T, 3, 3>::identity()) * d1),
+                                    ) * d2.transpose() * eps) / h),
+                        )),
+                ) + axial_of_difference(&(J2 * Ω2.transpose())) * t1
+                    - R.tr_mul(&(Ω1 * d1.cross(&(Ω1.tr_mul(&(R * d2)))))) * t1 * eps
+                    + R.tr_mul(&t2) * t1 * eps,
+            ];
+            SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3])
+        }
+    }
+    impl<T: Real> CoupledBodies<T> {
+        /// The kinetic and the potential energy at this node: those of the limit of small steps,
+        /// at the node's momentum.
+        pub fn energies(&self, state: &CoupledBodiesState<T>) -> (T, T) {
+            let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
+            let Λ1 = state.Λ1.matrix();
+            let Λ2 = state.Λ2.matrix();
+            let R = Λ1.tr_mul(&Λ2);
+            let parts: [SVector<T, 3>; 2] = [
+                state.body_momentum_Λ1().0,
+                state.body_momentum_Λ2().0,
+            ];
+            let momentum: SVector<T, 6> = SVector::<
+                T,
+                6,
+            >::from_fn(|i, _| parts[i / 3][i % 3]);
+            let inertia = SMatrix::<
+                T,
+                6,
+                6,
+            >::from_fn(|i, j| {
+                let ξ1 = if i / 3 == 0 {
+                    basis::<T>(i % 3)
+                } else {
+                    SMatrix::<T, 3, 3>::zeros()
+                };
+                let ξ2 = if i / 3 == 1 {
+                    basis::<T>(i % 3)
+                } else {
+                    SMatrix::<T, 3, 3>::zeros()
+                };
+                let η1 = if j / 3 == 0 {
+                    basis::<T>(j % 3)
+                } else {
+                    SMatrix::<T, 3, 3>::zeros()
+                };
+                let η2 = if j / 3 == 1 {
+                    basis::<T>(j % 3)
+                } else {
+                    SMatrix::<T, 3, 3>::zeros()
+                };
+                eps * d1.dot(&(R * vee(&η2))) * d2.dot(&(R.tr_mul(&vee(&ξ1))))
+                    - eps * d1.dot(&(R * d2))
+                        * (vee(&η1).dot(&(R * vee(&ξ2)))
+                            + vee(&ξ1).dot(&(R * vee(&η2))))
+                    + eps * d1.dot(&(R * vee(&ξ2))) * d2.dot(&(R.tr_mul(&vee(&η1))))
+                    + T::from_f64(0.5) * J1.trace()
+                        * (vee(&η1).dot(&vee(&ξ1)) + vee(&ξ1).dot(&vee(&η1)))
+                    + T::from_f64(0.5) * J2.trace()
+                        * (vee(&η2).dot(&vee(&ξ2)) + vee(&ξ2).dot(&vee(&η2)))
+                    - T::from_f64(0.5)
+                        * (vee(&η1).dot(&(J1 * vee(&ξ1)))
+                            + vee(&ξ1).dot(&(J1 * vee(&η1))))
+                    - T::from_f64(0.5)
+                        * (vee(&η2).dot(&(J2 * vee(&ξ2)))
+                            + vee(&ξ2).dot(&(J2 * vee(&η2))))
+            });
+            let velocity = solve_or_nan(&inertia, &momentum);
+            (momentum.dot(&velocity) * T::from_f64(0.5), T::zero())
+        }
+        /// The physical energy at this node.
+        pub fn energy(&self, state: &CoupledBodiesState<T>) -> T {
+            let (kinetic, potential) = self.energies(state);
+            kinetic + potential
+        }
+    }
+    /// One trajectory of the model, its type hidden.
+    struct CoupledBodiesTrajectory {
+        model: CoupledBodies<f64>,
+        state: CoupledBodiesState<f64>,
+        work: CoupledBodiesWorkspace<f64>,
+        start: CoupledBodiesState<f64>,
+    }
+    impl Trajectory for CoupledBodiesTrajectory {
+        fn node(&self) -> u64 {
+            self.state.node()
+        }
+        fn time(&self) -> f64 {
+            self.work.h * self.state.node() as f64
+        }
+        fn step(&mut self) -> Result<(), StepError> {
+            self.model.step(&mut self.state, &mut self.work)
+        }
+        fn card(&self) -> &'static Card {
+            &CoupledBodies::<f64>::CARD
+        }
+        fn observe(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(out, rows(state.Λ1().matrix()));
+            let out = put(out, rows(state.body_momentum_Λ1().0));
+            let out = put(out, rows(state.spatial_momentum_Λ1().0));
+            let out = put(out, rows(state.Λ2().matrix()));
+            let out = put(out, rows(state.body_momentum_Λ2().0));
+            let out = put(out, rows(state.spatial_momentum_Λ2().0));
+            let out = put(out, rows(self.model.R(state)));
+            let _ = out;
+        }
+        fn invariants(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(out, [self.model.energy(state)]);
+            let _ = out;
+        }
+        fn scales(&self, out: &mut [f64]) {
+            let state = &self.start;
+            let out = put(
+                out,
+                [{
+                    let (kinetic, potential) = self.model.energies(state);
+                    kinetic.abs() + potential.abs()
+                }; 1usize],
+            );
+            let _ = out;
+        }
+    }
+    impl CoupledBodies<f64> {
+        /// The model as data.
+        pub const CARD: Card = Card {
+            name: "CoupledBodies",
+            kebab: "coupled-bodies",
+            doc: "Two rigid bodies with a spherical joint.",
+            source: Self::SOURCE,
+            fingerprint: Self::FINGERPRINT,
+            summary: "action of one step   -tr(J₁ Ω_{1,k})/h - tr(J₂ Ω_{2,k})/h - eps ((Ω_{1,k} - Id) d₁)·(R_k (Ω_{2,k} - Id) d₂)/h\nmomentum of Λ1       (-J₁/h - eps R_k (Ω_{2,k} - Id) d₂ d₁ᵀ/h) Ω_{1,k}ᵀ - Ω_{1,k} (-J₁/h - eps d₁ d₂ᵀ (Ω_{2,k}ᵀ - Id) R_kᵀ/h)\nmomentum of Λ2       (-J₂/h - eps R_kᵀ (Ω_{1,k} - Id) d₁ d₂ᵀ/h) Ω_{2,k}ᵀ - Ω_{2,k} (-J₂/h - eps d₂ d₁ᵀ (Ω_{1,k}ᵀ - Id) R_k/h)\nRiccati form         coupled, C = J₁; coupled, C = J₂\ninvariants           energy\ntime reversal        symmetric: second order\ncertificate          28 identities proved by normal form",
+            solver: "Newton: several velocities are solved together: Newton on the derived residuals",
+            order: 2u32,
+            reversible: true,
+            parameters: &[
+                Field {
+                    name: "J1",
+                    ascii: "J1",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Symmetric,
+                    doc: "",
+                },
+                Field {
+                    name: "J2",
+                    ascii: "J2",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Symmetric,
+                    doc: "",
+                },
+                Field {
+                    name: "d1",
+                    ascii: "d1",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::Vector,
+                    doc: "",
+                },
+                Field {
+                    name: "d2",
+                    ascii: "d2",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::Vector,
+                    doc: "",
+                },
+                Field {
+                    name: "eps",
+                    ascii: "eps",
+                    rows: 1,
+                    cols: 1,
+                    kind: Kind::Scalar,
+                    doc: "",
+                },
+            ],
+            initial: &[
+                Field {
+                    name: "Λ1",
+                    ascii: "Lambda1",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Rotation,
+                    doc: "attitude, body to space",
+                },
+                Field {
+                    name: "body_momentum_Λ1",
+                    ascii: "body_momentum_Lambda1",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::BodyMomentum,
+                    doc: "momentum, body frame",
+                },
+                Field {
+                    name: "Λ2",
+                    ascii: "Lambda2",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Rotation,
+                    doc: "attitude, body to space",
+                },
+                Field {
+                    name: "body_momentum_Λ2",
+                    ascii: "body_momentum_Lambda2",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::BodyMomentum,
+                    doc: "momentum, body frame",
+                },
+            ],
+            observables: &[
+                Field {
+                    name: "Λ1",
+                    ascii: "Lambda1",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Rotation,
+                    doc: "attitude, body to space",
+                },
+                Field {
+                    name: "body_momentum_Λ1",
+                    ascii: "body_momentum_Lambda1",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::BodyMomentum,
+                    doc: "momentum, body frame",
+                },
+                Field {
+                    name: "spatial_momentum_Λ1",
+                    ascii: "spatial_momentum_Lambda1",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::SpatialMomentum,
+                    doc: "momentum, space frame",
+                },
+                Field {
+                    name: "Λ2",
+                    ascii: "Lambda2",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Rotation,
+                    doc: "attitude, body to space",
+                },
+                Field {
+                    name: "body_momentum_Λ2",
+                    ascii: "body_momentum_Lambda2",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::BodyMomentum,
+                    doc: "momentum, body frame",
+                },
+                Field {
+                    name: "spatial_momentum_Λ2",
+                    ascii: "spatial_momentum_Lambda2",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::SpatialMomentum,
+                    doc: "momentum, space frame",
+                },
+                Field {
+                    name: "R",
+                    ascii: "R",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Matrix,
+                    doc: "",
+                },
+            ],
+            invariants: &[
+                Invariant {
+                    name: "energy",
+                    formula: "½ μ·I⁻¹μ",
+                    rows: 1usize,
+                    conserved: Conserved::Boundedly,
+                },
+            ],
+            open: Self::open,
+        };
+        fn open(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+            h: f64,
+        ) -> Result<Box<dyn Trajectory>, OpenError> {
+            for (field, expected, found) in [
+                ("parameters", 5usize, parameters.len()),
+                ("initial values", 4usize, initial.len()),
+            ] {
+                if expected != found {
+                    return Err(OpenError::Count {
+                        field,
+                        expected,
+                        found,
+                    });
+                }
+            }
+            let model = CoupledBodies::new(CoupledBodiesParameters {
+                J1: matrix_of("J1", parameters.get(0usize))?,
+                J2: matrix_of("J2", parameters.get(1usize))?,
+                d1: matrix_of("d1", parameters.get(2usize))?,
+                d2: matrix_of("d2", parameters.get(3usize))?,
+                eps: number_of("eps", parameters.get(4usize))?,
+            })?;
+            let initial = CoupledBodiesInitial {
+                Λ1: rotation_of("Λ1", initial.get(0usize))?,
+                body_momentum_Λ1: BodyMomentum(
+                    matrix_of("body_momentum_Λ1", initial.get(1usize))?,
+                ),
+                Λ2: rotation_of("Λ2", initial.get(2usize))?,
+                body_momentum_Λ2: BodyMomentum(
+                    matrix_of("body_momentum_Λ2", initial.get(3usize))?,
+                ),
+            };
+            let (state, work) = model.start(initial, h)?;
+            Ok(
+                Box::new(CoupledBodiesTrajectory {
+                    model,
+                    state,
+                    work,
+                    start: state,
+                }),
+            )
+        }
+    }
+}
+#[allow(unused_imports)]
+pub use coupled_bodies::*;

@@ -1,0 +1,536 @@
+// Written by `clebsch derive --write`. Do not edit.
+
+/// The model [`FreeBodySpatial`](struct@FreeBodySpatial) and what belongs to it.
+#[allow(
+    non_snake_case,
+    uncommon_codepoints,
+    mixed_script_confusables,
+    confusable_idents,
+    clippy::all
+)]
+pub mod free_body_spatial {
+    use ::clebsch::emitted::*;
+    /// Parameters of [`FreeBodySpatial`](struct@FreeBodySpatial), as given.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct FreeBodySpatialParameters<T = f64> {
+        /// No parameters: the scalar type alone.
+        pub scalar: ::core::marker::PhantomData<T>,
+    }
+    /// Free rigid body, spatial representation.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct FreeBodySpatial<T = f64> {
+        parameters: FreeBodySpatialParameters<T>,
+    }
+    impl<T: Real> FreeBodySpatial<T> {
+        /// The model as it was stated.
+        pub const SOURCE: &'static str = "/// Free rigid body, spatial representation.\npub model FreeBodySpatial {\n    group Λ: SO<3> velocity ω;\n    advected J: Sym<3>;\n    constraint next(Λ) = ω*Λ;\n    constraint next(J) = ω*J*ω^T;\n    lagrangian = -tr(ω*J)/h;\n}";
+        /// A number that changes when the model or its derivation does.
+        pub const FINGERPRINT: u64 = 3576971191619919990u64;
+        /// Checks the parameters.
+        ///
+        /// # Errors
+        /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
+        /// assumption, or is no admissible factor of the equation to solve.
+        pub fn new(
+            parameters: FreeBodySpatialParameters<T>,
+        ) -> Result<Self, ParameterError> {
+            Ok(Self { parameters })
+        }
+        /// The parameters.
+        pub fn parameters(&self) -> &FreeBodySpatialParameters<T> {
+            &self.parameters
+        }
+    }
+    /// Initial data.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct FreeBodySpatialInitial<T = f64> {
+        /// `Λ` at node 0: body -> space.
+        pub Λ: Rotation<T>,
+        /// Momentum at node 0, in the space frame.
+        pub spatial_momentum: SpatialMomentum<T>,
+        /// `J` at node 0.
+        pub J: SMatrix<T, 3, 3>,
+    }
+    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct FreeBodySpatialState<T = f64> {
+        Λ: Rotation<T>,
+        momentum: SpatialMomentum<T>,
+        J: SMatrix<T, 3, 3>,
+        node: u64,
+    }
+    impl<T: Real> FreeBodySpatialState<T> {
+        /// `Λ` at this node: body -> space.
+        pub fn Λ(&self) -> Rotation<T> {
+            self.Λ
+        }
+        /// The momentum at this node, in the space frame.
+        pub fn spatial_momentum(&self) -> SpatialMomentum<T> {
+            self.momentum
+        }
+        /// The momentum at this node, in the body frame.
+        pub fn body_momentum(&self) -> BodyMomentum<T> {
+            self.momentum.to_body(&self.Λ)
+        }
+        /// The number of the node.
+        pub fn node(&self) -> u64 {
+            self.node
+        }
+    }
+    /// The step and the last velocities, from which the next solve starts.
+    #[derive(Clone, Copy, Debug)]
+    pub struct FreeBodySpatialWorkspace<T = f64> {
+        h: T,
+        guess: [Rotation<T>; 1],
+    }
+    impl<T: Real> FreeBodySpatial<T> {
+        /// Starts a trajectory with step `h` from data at node 0.
+        ///
+        /// # Errors
+        /// Names the value that is not finite, or says why the first step cannot be solved and
+        /// which step could.
+        pub fn start(
+            &self,
+            initial: FreeBodySpatialInitial<T>,
+            h: T,
+        ) -> Result<(FreeBodySpatialState<T>, FreeBodySpatialWorkspace<T>), StartError> {
+            validate::positive_step(h)?;
+            validate::finite("Λ", &initial.Λ.quaternion())?;
+            validate::finite("spatial_momentum", initial.spatial_momentum.0.as_slice())?;
+            validate::finite("J", initial.J.as_slice())?;
+            let J = {
+                let Λ = initial.Λ.matrix();
+                let J_start = initial.J;
+                Λ.tr_mul(&(J_start * Λ))
+            };
+            let state = FreeBodySpatialState {
+                Λ: initial.Λ,
+                momentum: initial.spatial_momentum,
+                J,
+                node: 0,
+            };
+            let work = FreeBodySpatialWorkspace {
+                h,
+                guess: [Rotation::identity(); 1],
+            };
+            let (mut trial, mut scratch) = (state, work);
+            self.step(&mut trial, &mut scratch)
+                .map_err(|e| StartError::Refused(e.cause))?;
+            Ok((state, work))
+        }
+        /// One step, in place. Solved thus: C depends on the step or changes along the motion: Newton on the derived residual.
+        ///
+        /// # Errors
+        /// When the iteration does not converge, with its residual; the state is then unchanged.
+        #[inline]
+        pub fn step(
+            &self,
+            state: &mut FreeBodySpatialState<T>,
+            work: &mut FreeBodySpatialWorkspace<T>,
+        ) -> Result<(), StepError> {
+            let h = work.h;
+            let Λ = state.Λ.matrix();
+            let J_reference = state.J;
+            let J = Λ * (J_reference * Λ.transpose());
+            let momenta: [SVector<T, 3>; 1] = [state.momentum.0];
+            let residual = |trial: &[Rotation<T>; 1]| {
+                let ω = trial[0].matrix();
+                let parts: [SVector<T, 3>; 1] = [
+                    (axial_of_difference(&(ω * J)) / h) - momenta[0],
+                ];
+                parts[0]
+            };
+            let tangent = |trial: &[Rotation<T>; 1]| {
+                let ω = trial[0].matrix();
+                let mut matrix = SMatrix::<T, 3, 3>::zeros();
+                for axis in 0..3 {
+                    let η = basis::<T>(axis);
+                    let parts: [SVector<T, 3>; 1] = [
+                        axial_of_difference(&(ω * (η * J))) / h,
+                    ];
+                    matrix.set_column(axis, &parts[0]);
+                }
+                matrix
+            };
+            let scale = {
+                let trial = &work.guess;
+                let ω = trial[0].matrix();
+                let mut total = 0.0;
+                total += length(&momenta[0]).magnitude();
+                total += length(&(-(J / h))).magnitude();
+                total
+            };
+            let solved = match newton::solve(work.guess, scale, residual, tangent) {
+                Ok(found) => found.element,
+                Err(e) => return Err(StepCause::from(e).at_node(state.node)),
+            };
+            let ω_matrix = solved[0].matrix();
+            let Λ_moved = solved[0] * state.Λ;
+            let momentum_next = state.momentum.0;
+            if !(all_finite(&momentum_next)) {
+                return Err(
+                    StepCause::NotFinite {
+                        what: "momentum",
+                    }
+                        .at_node(state.node),
+                );
+            }
+            state.Λ = Λ_moved;
+            state.momentum = SpatialMomentum(momentum_next);
+            state.node += 1;
+            work.guess = solved;
+            Ok(())
+        }
+        /// `J` at the node of this state.
+        #[inline]
+        pub fn J(&self, state: &FreeBodySpatialState<T>) -> SMatrix<T, 3, 3> {
+            let Λ = state.Λ.matrix();
+            let J_reference = state.J;
+            let J = Λ * (J_reference * Λ.transpose());
+            J
+        }
+    }
+    /// A configuration at one node, solution or not.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct FreeBodySpatialConfiguration<T = f64> {
+        /// `Λ` at the node: body -> space.
+        pub Λ: Rotation<T>,
+        /// `J` at the node, as its constraint carries it.
+        pub J: SMatrix<T, 3, 3>,
+    }
+    impl<T: Real> FreeBodySpatial<T> {
+        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+        /// consecutive configurations: component `i` is the derivative of the action of the
+        /// two edges when the middle element is rotated about its axis `i` (a body axis on
+        /// the body side, a space axis on the spatial side). Zero on solutions.
+        pub fn balance(
+            &self,
+            h: T,
+            before: &FreeBodySpatialConfiguration<T>,
+            here: &FreeBodySpatialConfiguration<T>,
+            after: &FreeBodySpatialConfiguration<T>,
+        ) -> SVector<T, 3> {
+            let J_before = before.J;
+            let J = here.J;
+            let J_next = after.J;
+            let ω_before = (here.Λ * before.Λ.inverse()).matrix();
+            let ω = (after.Λ * here.Λ.inverse()).matrix();
+            let t1 = h.powi(-1);
+            let parts: [SVector<T, 3>; 1] = [
+                axial_of_difference(&(ω_before * J_before)) * t1
+                    - axial_of_difference(&(ω * J)) * t1,
+            ];
+            parts[0]
+        }
+    }
+    impl<T: Real> FreeBodySpatial<T> {
+        /// The kinetic and the potential energy at this node: those of the limit of small steps,
+        /// at the node's momentum.
+        pub fn energies(&self, state: &FreeBodySpatialState<T>) -> (T, T) {
+            let Λ = state.Λ.matrix();
+            let J_reference = state.J;
+            let J = Λ * (J_reference * Λ.transpose());
+            let parts: [SVector<T, 3>; 1] = [state.spatial_momentum().0];
+            let momentum: SVector<T, 3> = parts[0];
+            let inertia = SMatrix::<
+                T,
+                3,
+                3,
+            >::from_fn(|i, j| {
+                let ξ = basis::<T>(i);
+                let η = basis::<T>(j);
+                T::from_f64(0.5) * J.trace()
+                    * (vee(&η).dot(&vee(&ξ)) + vee(&ξ).dot(&vee(&η)))
+                    - T::from_f64(0.5)
+                        * (vee(&η).dot(&(J * vee(&ξ))) + vee(&ξ).dot(&(J * vee(&η))))
+            });
+            let velocity = solve_or_nan(&inertia, &momentum);
+            (momentum.dot(&velocity) * T::from_f64(0.5), T::zero())
+        }
+        /// The physical energy at this node.
+        pub fn energy(&self, state: &FreeBodySpatialState<T>) -> T {
+            let (kinetic, potential) = self.energies(state);
+            kinetic + potential
+        }
+        /// `m_k·m_k`: Casimir.
+        pub fn momentum_squared(&self, state: &FreeBodySpatialState<T>) -> T {
+            let m = state.spatial_momentum().0;
+            m.dot(&m)
+        }
+        /// `tr(J_k)`: Casimir: eigenvalues.
+        pub fn trace_J1(&self, state: &FreeBodySpatialState<T>) -> T {
+            let Λ = state.Λ.matrix();
+            let J_reference = state.J;
+            let J = Λ * (J_reference * Λ.transpose());
+            J.trace()
+        }
+        /// `tr(J_k²)`: Casimir: eigenvalues.
+        pub fn trace_J2(&self, state: &FreeBodySpatialState<T>) -> T {
+            let Λ = state.Λ.matrix();
+            let J_reference = state.J;
+            let J = Λ * (J_reference * Λ.transpose());
+            (J * J).trace()
+        }
+        /// `tr(J_k³)`: Casimir: eigenvalues.
+        pub fn trace_J3(&self, state: &FreeBodySpatialState<T>) -> T {
+            let Λ = state.Λ.matrix();
+            let J_reference = state.J;
+            let J = Λ * (J_reference * Λ.transpose());
+            (J * (J * J)).trace()
+        }
+    }
+    /// One trajectory of the model, its type hidden.
+    struct FreeBodySpatialTrajectory {
+        model: FreeBodySpatial<f64>,
+        state: FreeBodySpatialState<f64>,
+        work: FreeBodySpatialWorkspace<f64>,
+        start: FreeBodySpatialState<f64>,
+    }
+    impl Trajectory for FreeBodySpatialTrajectory {
+        fn node(&self) -> u64 {
+            self.state.node()
+        }
+        fn time(&self) -> f64 {
+            self.work.h * self.state.node() as f64
+        }
+        fn step(&mut self) -> Result<(), StepError> {
+            self.model.step(&mut self.state, &mut self.work)
+        }
+        fn card(&self) -> &'static Card {
+            &FreeBodySpatial::<f64>::CARD
+        }
+        fn observe(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(out, rows(state.Λ().matrix()));
+            let out = put(out, rows(state.body_momentum().0));
+            let out = put(out, rows(state.spatial_momentum().0));
+            let out = put(out, rows(self.model.J(state)));
+            let _ = out;
+        }
+        fn invariants(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(out, [self.model.energy(state)]);
+            let out = put(out, rows(state.spatial_momentum().0));
+            let out = put(out, [self.model.momentum_squared(state)]);
+            let out = put(out, [self.model.trace_J1(state)]);
+            let out = put(out, [self.model.trace_J2(state)]);
+            let out = put(out, [self.model.trace_J3(state)]);
+            let _ = out;
+        }
+        fn scales(&self, out: &mut [f64]) {
+            let state = &self.start;
+            let out = put(
+                out,
+                [{
+                    let (kinetic, potential) = self.model.energies(state);
+                    kinetic.abs() + potential.abs()
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let m = state.spatial_momentum().0;
+                    let value: T = m.dot(&m).sqrt();
+                    value
+                }; 3usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let m = state.spatial_momentum().0;
+                    let value: T = m.dot(&m);
+                    value
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let Λ = state.Λ.matrix();
+                    let J_reference = state.J;
+                    let J = Λ * (J_reference * Λ.transpose());
+                    let value: T = (J * J).trace().sqrt();
+                    value
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let Λ = state.Λ.matrix();
+                    let J_reference = state.J;
+                    let J = Λ * (J_reference * Λ.transpose());
+                    let value: T = (J * J).trace().sqrt() * (J * J).trace().sqrt();
+                    value
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let Λ = state.Λ.matrix();
+                    let J_reference = state.J;
+                    let J = Λ * (J_reference * Λ.transpose());
+                    let value: T = (J * J).trace().sqrt().powi(3);
+                    value
+                }; 1usize],
+            );
+            let _ = out;
+        }
+    }
+    impl FreeBodySpatial<f64> {
+        /// The model as data.
+        pub const CARD: Card = Card {
+            name: "FreeBodySpatial",
+            kebab: "free-body-spatial",
+            doc: "Free rigid body, spatial representation.",
+            source: Self::SOURCE,
+            fingerprint: Self::FINGERPRINT,
+            summary: "action of one step   -tr(ω_k J_k)/h\nmomentum of Λ        -ω_kᵀ J_k/h + J_k ω_k/h\nRiccati form         exact, C = J_k\ninvariants           energy, spatial_momentum, momentum_squared, trace_J1, trace_J2, trace_J3\ntime reversal        symmetric: second order\ncertificate          12 identities proved by normal form",
+            solver: "Newton: C depends on the step or changes along the motion: Newton on the derived residual",
+            order: 2u32,
+            reversible: true,
+            parameters: &[],
+            initial: &[
+                Field {
+                    name: "Λ",
+                    ascii: "Lambda",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Rotation,
+                    doc: "attitude, body to space",
+                },
+                Field {
+                    name: "spatial_momentum",
+                    ascii: "spatial_momentum",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::SpatialMomentum,
+                    doc: "momentum, space frame",
+                },
+                Field {
+                    name: "J",
+                    ascii: "J",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Symmetric,
+                    doc: "value at node 0",
+                },
+            ],
+            observables: &[
+                Field {
+                    name: "Λ",
+                    ascii: "Lambda",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Rotation,
+                    doc: "attitude, body to space",
+                },
+                Field {
+                    name: "body_momentum",
+                    ascii: "body_momentum",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::BodyMomentum,
+                    doc: "momentum, body frame",
+                },
+                Field {
+                    name: "spatial_momentum",
+                    ascii: "spatial_momentum",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::SpatialMomentum,
+                    doc: "momentum, space frame",
+                },
+                Field {
+                    name: "J",
+                    ascii: "J",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Symmetric,
+                    doc: "",
+                },
+            ],
+            invariants: &[
+                Invariant {
+                    name: "energy",
+                    formula: "½ μ·I⁻¹μ",
+                    rows: 1usize,
+                    conserved: Conserved::Boundedly,
+                },
+                Invariant {
+                    name: "spatial_momentum",
+                    formula: "m",
+                    rows: 3usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "momentum_squared",
+                    formula: "m_k·m_k",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "trace_J1",
+                    formula: "tr(J_k)",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "trace_J2",
+                    formula: "tr(J_k²)",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "trace_J3",
+                    formula: "tr(J_k³)",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+            ],
+            open: Self::open,
+        };
+        fn open(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+            h: f64,
+        ) -> Result<Box<dyn Trajectory>, OpenError> {
+            for (field, expected, found) in [
+                ("parameters", 0usize, parameters.len()),
+                ("initial values", 3usize, initial.len()),
+            ] {
+                if expected != found {
+                    return Err(OpenError::Count {
+                        field,
+                        expected,
+                        found,
+                    });
+                }
+            }
+            let model = FreeBodySpatial::new(FreeBodySpatialParameters {
+                scalar: ::core::marker::PhantomData,
+            })?;
+            let initial = FreeBodySpatialInitial {
+                Λ: rotation_of("Λ", initial.get(0usize))?,
+                spatial_momentum: SpatialMomentum(
+                    matrix_of("spatial_momentum", initial.get(1usize))?,
+                ),
+                J: matrix_of("J", initial.get(2usize))?,
+            };
+            let (state, work) = model.start(initial, h)?;
+            Ok(
+                Box::new(FreeBodySpatialTrajectory {
+                    model,
+                    state,
+                    work,
+                    start: state,
+                }),
+            )
+        }
+    }
+}
+#[allow(unused_imports)]
+pub use free_body_spatial::*;

@@ -1,0 +1,654 @@
+// Written by `clebsch derive --write`. Do not edit.
+
+/// The model [`HeavyTopSpatial`](struct@HeavyTopSpatial) and what belongs to it.
+#[allow(
+    non_snake_case,
+    uncommon_codepoints,
+    mixed_script_confusables,
+    confusable_idents,
+    clippy::all
+)]
+pub mod heavy_top_spatial {
+    use ::clebsch::emitted::*;
+    /// Parameters of [`HeavyTopSpatial`](struct@HeavyTopSpatial), as given.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct HeavyTopSpatialParameters<T = f64> {
+        ///`w`: a number.
+        pub w: T,
+        ///`z`: a vector of 3 components.
+        pub z: SVector<T, 3>,
+    }
+    /// Heavy top, spatial representation.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct HeavyTopSpatial<T = f64> {
+        parameters: HeavyTopSpatialParameters<T>,
+    }
+    impl<T: Real> HeavyTopSpatial<T> {
+        /// The model as it was stated.
+        pub const SOURCE: &'static str = "/// Heavy top, spatial representation.\npub model HeavyTopSpatial {\n    param w: Real;\n    param z: Vec<3>;\n    group Λ: SO<3> velocity ω;\n    advected J: Sym<3>;\n    advected χ: Vec<3>;\n    constraint next(Λ) = ω*Λ;\n    constraint next(J) = ω*J*ω^T;\n    constraint next(χ) = ω*χ;\n    lagrangian = -tr(ω*J)/h - h*w*dot(χ, z);\n}";
+        /// A number that changes when the model or its derivation does.
+        pub const FINGERPRINT: u64 = 11181439863584159380u64;
+        /// Checks the parameters.
+        ///
+        /// # Errors
+        /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
+        /// assumption, or is no admissible factor of the equation to solve.
+        pub fn new(
+            parameters: HeavyTopSpatialParameters<T>,
+        ) -> Result<Self, ParameterError> {
+            validate::finite("w", &[parameters.w])?;
+            validate::finite("z", parameters.z.as_slice())?;
+            Ok(Self { parameters })
+        }
+        /// The parameters.
+        pub fn parameters(&self) -> &HeavyTopSpatialParameters<T> {
+            &self.parameters
+        }
+    }
+    /// Initial data.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct HeavyTopSpatialInitial<T = f64> {
+        /// `Λ` at node 0: body -> space.
+        pub Λ: Rotation<T>,
+        /// Momentum at node 0, in the space frame.
+        pub spatial_momentum: SpatialMomentum<T>,
+        /// `J` at node 0.
+        pub J: SMatrix<T, 3, 3>,
+        /// `χ` at node 0.
+        pub χ: SVector<T, 3>,
+    }
+    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct HeavyTopSpatialState<T = f64> {
+        Λ: Rotation<T>,
+        momentum: SpatialMomentum<T>,
+        J: SMatrix<T, 3, 3>,
+        χ: SVector<T, 3>,
+        node: u64,
+    }
+    impl<T: Real> HeavyTopSpatialState<T> {
+        /// `Λ` at this node: body -> space.
+        pub fn Λ(&self) -> Rotation<T> {
+            self.Λ
+        }
+        /// The momentum at this node, in the space frame.
+        pub fn spatial_momentum(&self) -> SpatialMomentum<T> {
+            self.momentum
+        }
+        /// The momentum at this node, in the body frame.
+        pub fn body_momentum(&self) -> BodyMomentum<T> {
+            self.momentum.to_body(&self.Λ)
+        }
+        /// The number of the node.
+        pub fn node(&self) -> u64 {
+            self.node
+        }
+    }
+    /// The step and the last velocities, from which the next solve starts.
+    #[derive(Clone, Copy, Debug)]
+    pub struct HeavyTopSpatialWorkspace<T = f64> {
+        h: T,
+        guess: [Rotation<T>; 1],
+    }
+    impl<T: Real> HeavyTopSpatial<T> {
+        /// Starts a trajectory with step `h` from data at node 0.
+        ///
+        /// # Errors
+        /// Names the value that is not finite, or says why the first step cannot be solved and
+        /// which step could.
+        pub fn start(
+            &self,
+            initial: HeavyTopSpatialInitial<T>,
+            h: T,
+        ) -> Result<(HeavyTopSpatialState<T>, HeavyTopSpatialWorkspace<T>), StartError> {
+            validate::positive_step(h)?;
+            validate::finite("Λ", &initial.Λ.quaternion())?;
+            validate::finite("spatial_momentum", initial.spatial_momentum.0.as_slice())?;
+            validate::finite("J", initial.J.as_slice())?;
+            validate::finite("χ", initial.χ.as_slice())?;
+            let J = {
+                let Λ = initial.Λ.matrix();
+                let J_start = initial.J;
+                Λ.tr_mul(&(J_start * Λ))
+            };
+            let χ = {
+                let Λ = initial.Λ.matrix();
+                let χ_start = initial.χ;
+                Λ.tr_mul(&χ_start)
+            };
+            let state = HeavyTopSpatialState {
+                Λ: initial.Λ,
+                momentum: initial.spatial_momentum,
+                J,
+                χ,
+                node: 0,
+            };
+            let work = HeavyTopSpatialWorkspace {
+                h,
+                guess: [Rotation::identity(); 1],
+            };
+            let (mut trial, mut scratch) = (state, work);
+            self.step(&mut trial, &mut scratch)
+                .map_err(|e| StartError::Refused(e.cause))?;
+            Ok((state, work))
+        }
+        /// One step, in place. Solved thus: C depends on the step or changes along the motion: Newton on the derived residual.
+        ///
+        /// # Errors
+        /// When the iteration does not converge, with its residual; the state is then unchanged.
+        #[inline]
+        pub fn step(
+            &self,
+            state: &mut HeavyTopSpatialState<T>,
+            work: &mut HeavyTopSpatialWorkspace<T>,
+        ) -> Result<(), StepError> {
+            let h = work.h;
+            let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
+            let Λ = state.Λ.matrix();
+            let J_reference = state.J;
+            let J = Λ * (J_reference * Λ.transpose());
+            let χ_reference = state.χ;
+            let χ = Λ * χ_reference;
+            let momenta: [SVector<T, 3>; 1] = [state.momentum.0];
+            let residual = |trial: &[Rotation<T>; 1]| {
+                let ω = trial[0].matrix();
+                let parts: [SVector<T, 3>; 1] = [
+                    (axial_of_difference(&(ω * J)) / h
+                        - z.cross(&χ) * T::from_f64(0.5) * h * w) - momenta[0],
+                ];
+                parts[0]
+            };
+            let tangent = |trial: &[Rotation<T>; 1]| {
+                let ω = trial[0].matrix();
+                let mut matrix = SMatrix::<T, 3, 3>::zeros();
+                for axis in 0..3 {
+                    let η = basis::<T>(axis);
+                    let parts: [SVector<T, 3>; 1] = [
+                        axial_of_difference(&(ω * (η * J))) / h,
+                    ];
+                    matrix.set_column(axis, &parts[0]);
+                }
+                matrix
+            };
+            let scale = {
+                let trial = &work.guess;
+                let ω = trial[0].matrix();
+                let mut total = 0.0;
+                total += length(&momenta[0]).magnitude();
+                total += length(&(-(J / h))).magnitude();
+                total
+            };
+            let solved = match newton::solve(work.guess, scale, residual, tangent) {
+                Ok(found) => found.element,
+                Err(e) => return Err(StepCause::from(e).at_node(state.node)),
+            };
+            let ω_matrix = solved[0].matrix();
+            let Λ_moved = solved[0] * state.Λ;
+            let Λ_next = Λ_moved.matrix();
+            let χ_reference = state.χ;
+            let χ_next = Λ_next * χ_reference;
+            let momentum_next = state.momentum.0
+                + z.cross(&χ) * T::from_f64(0.5) * h * w
+                + z.cross(&χ_next) * T::from_f64(0.5) * h * w;
+            if !(all_finite(&momentum_next)) {
+                return Err(
+                    StepCause::NotFinite {
+                        what: "momentum",
+                    }
+                        .at_node(state.node),
+                );
+            }
+            state.Λ = Λ_moved;
+            state.momentum = SpatialMomentum(momentum_next);
+            state.node += 1;
+            work.guess = solved;
+            Ok(())
+        }
+        /// `J` at the node of this state.
+        #[inline]
+        pub fn J(&self, state: &HeavyTopSpatialState<T>) -> SMatrix<T, 3, 3> {
+            let Λ = state.Λ.matrix();
+            let J_reference = state.J;
+            let J = Λ * (J_reference * Λ.transpose());
+            J
+        }
+        /// `χ` at the node of this state.
+        #[inline]
+        pub fn χ(&self, state: &HeavyTopSpatialState<T>) -> SVector<T, 3> {
+            let Λ = state.Λ.matrix();
+            let χ_reference = state.χ;
+            let χ = Λ * χ_reference;
+            χ
+        }
+    }
+    /// A configuration at one node, solution or not.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct HeavyTopSpatialConfiguration<T = f64> {
+        /// `Λ` at the node: body -> space.
+        pub Λ: Rotation<T>,
+        /// `J` at the node, as its constraint carries it.
+        pub J: SMatrix<T, 3, 3>,
+        /// `χ` at the node, as its constraint carries it.
+        pub χ: SVector<T, 3>,
+    }
+    impl<T: Real> HeavyTopSpatial<T> {
+        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+        /// consecutive configurations: component `i` is the derivative of the action of the
+        /// two edges when the middle element is rotated about its axis `i` (a body axis on
+        /// the body side, a space axis on the spatial side). Zero on solutions.
+        pub fn balance(
+            &self,
+            h: T,
+            before: &HeavyTopSpatialConfiguration<T>,
+            here: &HeavyTopSpatialConfiguration<T>,
+            after: &HeavyTopSpatialConfiguration<T>,
+        ) -> SVector<T, 3> {
+            let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
+            let J_before = before.J;
+            let χ_before = before.χ;
+            let J = here.J;
+            let χ = here.χ;
+            let J_next = after.J;
+            let χ_next = after.χ;
+            let ω_before = (here.Λ * before.Λ.inverse()).matrix();
+            let ω = (after.Λ * here.Λ.inverse()).matrix();
+            let t1 = h.powi(-1);
+            let t2 = z.cross(&χ) * T::from_f64(0.5) * h * w;
+            let parts: [SVector<T, 3>; 1] = [
+                axial_of_difference(&(ω_before * J_before)) * t1 + t2
+                    - axial_of_difference(&(ω * J)) * t1 + t2,
+            ];
+            parts[0]
+        }
+    }
+    impl<T: Real> HeavyTopSpatial<T> {
+        /// The kinetic and the potential energy at this node: those of the limit of small steps,
+        /// at the node's momentum.
+        pub fn energies(&self, state: &HeavyTopSpatialState<T>) -> (T, T) {
+            let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
+            let Λ = state.Λ.matrix();
+            let J_reference = state.J;
+            let J = Λ * (J_reference * Λ.transpose());
+            let χ_reference = state.χ;
+            let χ = Λ * χ_reference;
+            let parts: [SVector<T, 3>; 1] = [state.spatial_momentum().0];
+            let momentum: SVector<T, 3> = parts[0];
+            let inertia = SMatrix::<
+                T,
+                3,
+                3,
+            >::from_fn(|i, j| {
+                let ξ = basis::<T>(i);
+                let η = basis::<T>(j);
+                T::from_f64(0.5) * J.trace()
+                    * (vee(&η).dot(&vee(&ξ)) + vee(&ξ).dot(&vee(&η)))
+                    - T::from_f64(0.5)
+                        * (vee(&η).dot(&(J * vee(&ξ))) + vee(&ξ).dot(&(J * vee(&η))))
+            });
+            let velocity = solve_or_nan(&inertia, &momentum);
+            (momentum.dot(&velocity) * T::from_f64(0.5), w * z.dot(&χ))
+        }
+        /// The physical energy at this node.
+        pub fn energy(&self, state: &HeavyTopSpatialState<T>) -> T {
+            let (kinetic, potential) = self.energies(state);
+            kinetic + potential
+        }
+        /// `m_k·z`: Casimir, and momentum about a fixed axis.
+        pub fn momentum_z(&self, state: &HeavyTopSpatialState<T>) -> T {
+            let HeavyTopSpatialParameters { z, .. } = self.parameters;
+            let m = state.spatial_momentum().0;
+            m.dot(&z)
+        }
+        /// `χ_k·χ_k`: Casimir.
+        pub fn chi_squared(&self, state: &HeavyTopSpatialState<T>) -> T {
+            let Λ = state.Λ.matrix();
+            let χ_reference = state.χ;
+            let χ = Λ * χ_reference;
+            χ.dot(&χ)
+        }
+        /// `tr(J_k)`: Casimir: eigenvalues.
+        pub fn trace_J1(&self, state: &HeavyTopSpatialState<T>) -> T {
+            let Λ = state.Λ.matrix();
+            let J_reference = state.J;
+            let J = Λ * (J_reference * Λ.transpose());
+            J.trace()
+        }
+        /// `tr(J_k²)`: Casimir: eigenvalues.
+        pub fn trace_J2(&self, state: &HeavyTopSpatialState<T>) -> T {
+            let Λ = state.Λ.matrix();
+            let J_reference = state.J;
+            let J = Λ * (J_reference * Λ.transpose());
+            (J * J).trace()
+        }
+        /// `tr(J_k³)`: Casimir: eigenvalues.
+        pub fn trace_J3(&self, state: &HeavyTopSpatialState<T>) -> T {
+            let Λ = state.Λ.matrix();
+            let J_reference = state.J;
+            let J = Λ * (J_reference * Λ.transpose());
+            (J * (J * J)).trace()
+        }
+        /// `χ_k·(J_k χ_k)`: Casimir.
+        pub fn chi_J_chi(&self, state: &HeavyTopSpatialState<T>) -> T {
+            let Λ = state.Λ.matrix();
+            let J_reference = state.J;
+            let J = Λ * (J_reference * Λ.transpose());
+            let χ_reference = state.χ;
+            let χ = Λ * χ_reference;
+            χ.dot(&(J * χ))
+        }
+    }
+    /// One trajectory of the model, its type hidden.
+    struct HeavyTopSpatialTrajectory {
+        model: HeavyTopSpatial<f64>,
+        state: HeavyTopSpatialState<f64>,
+        work: HeavyTopSpatialWorkspace<f64>,
+        start: HeavyTopSpatialState<f64>,
+    }
+    impl Trajectory for HeavyTopSpatialTrajectory {
+        fn node(&self) -> u64 {
+            self.state.node()
+        }
+        fn time(&self) -> f64 {
+            self.work.h * self.state.node() as f64
+        }
+        fn step(&mut self) -> Result<(), StepError> {
+            self.model.step(&mut self.state, &mut self.work)
+        }
+        fn card(&self) -> &'static Card {
+            &HeavyTopSpatial::<f64>::CARD
+        }
+        fn observe(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(out, rows(state.Λ().matrix()));
+            let out = put(out, rows(state.body_momentum().0));
+            let out = put(out, rows(state.spatial_momentum().0));
+            let out = put(out, rows(self.model.J(state)));
+            let out = put(out, rows(self.model.χ(state)));
+            let _ = out;
+        }
+        fn invariants(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(out, [self.model.energy(state)]);
+            let out = put(out, [self.model.momentum_z(state)]);
+            let out = put(out, [self.model.chi_squared(state)]);
+            let out = put(out, [self.model.trace_J1(state)]);
+            let out = put(out, [self.model.trace_J2(state)]);
+            let out = put(out, [self.model.trace_J3(state)]);
+            let out = put(out, [self.model.chi_J_chi(state)]);
+            let _ = out;
+        }
+        fn scales(&self, out: &mut [f64]) {
+            let state = &self.start;
+            let out = put(
+                out,
+                [{
+                    let (kinetic, potential) = self.model.energies(state);
+                    kinetic.abs() + potential.abs()
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let HeavyTopSpatialParameters { z, .. } = self.model.parameters;
+                    let m = state.spatial_momentum().0;
+                    let value: T = m.dot(&m).sqrt() * z.dot(&z).sqrt();
+                    value
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let Λ = state.Λ.matrix();
+                    let χ_reference = state.χ;
+                    let χ = Λ * χ_reference;
+                    let value: T = χ.dot(&χ).sqrt() * χ.dot(&χ).sqrt();
+                    value
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let Λ = state.Λ.matrix();
+                    let J_reference = state.J;
+                    let J = Λ * (J_reference * Λ.transpose());
+                    let value: T = (J * J).trace().sqrt();
+                    value
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let Λ = state.Λ.matrix();
+                    let J_reference = state.J;
+                    let J = Λ * (J_reference * Λ.transpose());
+                    let value: T = (J * J).trace().sqrt() * (J * J).trace().sqrt();
+                    value
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let Λ = state.Λ.matrix();
+                    let J_reference = state.J;
+                    let J = Λ * (J_reference * Λ.transpose());
+                    let value: T = (J * J).trace().sqrt().powi(3);
+                    value
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let Λ = state.Λ.matrix();
+                    let J_reference = state.J;
+                    let J = Λ * (J_reference * Λ.transpose());
+                    let χ_reference = state.χ;
+                    let χ = Λ * χ_reference;
+                    let value: T = χ.dot(&χ).sqrt() * (J * J).trace().sqrt()
+                        * χ.dot(&χ).sqrt();
+                    value
+                }; 1usize],
+            );
+            let _ = out;
+        }
+    }
+    impl HeavyTopSpatial<f64> {
+        /// The model as data.
+        pub const CARD: Card = Card {
+            name: "HeavyTopSpatial",
+            kebab: "heavy-top-spatial",
+            doc: "Heavy top, spatial representation.",
+            source: Self::SOURCE,
+            fingerprint: Self::FINGERPRINT,
+            summary: "action of one step   -tr(ω_k J_k)/h - ½ h w χ_k·z - ½ h w χ_{k+1}·z\nmomentum of Λ        -ω_kᵀ J_k/h + J_k ω_k/h\nRiccati form         exact, C = J_k\ninvariants           energy, momentum_z, chi_squared, trace_J1, trace_J2, trace_J3, chi_J_chi\ntime reversal        symmetric: second order\ncertificate          16 identities proved by normal form",
+            solver: "Newton: C depends on the step or changes along the motion: Newton on the derived residual",
+            order: 2u32,
+            reversible: true,
+            parameters: &[
+                Field {
+                    name: "w",
+                    ascii: "w",
+                    rows: 1,
+                    cols: 1,
+                    kind: Kind::Scalar,
+                    doc: "",
+                },
+                Field {
+                    name: "z",
+                    ascii: "z",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::Vector,
+                    doc: "",
+                },
+            ],
+            initial: &[
+                Field {
+                    name: "Λ",
+                    ascii: "Lambda",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Rotation,
+                    doc: "attitude, body to space",
+                },
+                Field {
+                    name: "spatial_momentum",
+                    ascii: "spatial_momentum",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::SpatialMomentum,
+                    doc: "momentum, space frame",
+                },
+                Field {
+                    name: "J",
+                    ascii: "J",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Symmetric,
+                    doc: "value at node 0",
+                },
+                Field {
+                    name: "χ",
+                    ascii: "chi",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::Vector,
+                    doc: "value at node 0",
+                },
+            ],
+            observables: &[
+                Field {
+                    name: "Λ",
+                    ascii: "Lambda",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Rotation,
+                    doc: "attitude, body to space",
+                },
+                Field {
+                    name: "body_momentum",
+                    ascii: "body_momentum",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::BodyMomentum,
+                    doc: "momentum, body frame",
+                },
+                Field {
+                    name: "spatial_momentum",
+                    ascii: "spatial_momentum",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::SpatialMomentum,
+                    doc: "momentum, space frame",
+                },
+                Field {
+                    name: "J",
+                    ascii: "J",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Symmetric,
+                    doc: "",
+                },
+                Field {
+                    name: "χ",
+                    ascii: "chi",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::Vector,
+                    doc: "",
+                },
+            ],
+            invariants: &[
+                Invariant {
+                    name: "energy",
+                    formula: "½ μ·I⁻¹μ + w z·χ_k",
+                    rows: 1usize,
+                    conserved: Conserved::Boundedly,
+                },
+                Invariant {
+                    name: "momentum_z",
+                    formula: "m_k·z",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "chi_squared",
+                    formula: "χ_k·χ_k",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "trace_J1",
+                    formula: "tr(J_k)",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "trace_J2",
+                    formula: "tr(J_k²)",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "trace_J3",
+                    formula: "tr(J_k³)",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "chi_J_chi",
+                    formula: "χ_k·(J_k χ_k)",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+            ],
+            open: Self::open,
+        };
+        fn open(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+            h: f64,
+        ) -> Result<Box<dyn Trajectory>, OpenError> {
+            for (field, expected, found) in [
+                ("parameters", 2usize, parameters.len()),
+                ("initial values", 4usize, initial.len()),
+            ] {
+                if expected != found {
+                    return Err(OpenError::Count {
+                        field,
+                        expected,
+                        found,
+                    });
+                }
+            }
+            let model = HeavyTopSpatial::new(HeavyTopSpatialParameters {
+                w: number_of("w", parameters.get(0usize))?,
+                z: matrix_of("z", parameters.get(1usize))?,
+            })?;
+            let initial = HeavyTopSpatialInitial {
+                Λ: rotation_of("Λ", initial.get(0usize))?,
+                spatial_momentum: SpatialMomentum(
+                    matrix_of("spatial_momentum", initial.get(1usize))?,
+                ),
+                J: matrix_of("J", initial.get(2usize))?,
+                χ: matrix_of("χ", initial.get(3usize))?,
+            };
+            let (state, work) = model.start(initial, h)?;
+            Ok(
+                Box::new(HeavyTopSpatialTrajectory {
+                    model,
+                    state,
+                    work,
+                    start: state,
+                }),
+            )
+        }
+    }
+}
+#[allow(unused_imports)]
+pub use heavy_top_spatial::*;

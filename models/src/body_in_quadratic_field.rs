@@ -1,0 +1,57 @@
+//! A rigid body in a field that is quadratic in the direction of its axis: a satellite under the
+//! gradient of gravity, or Brun's problem, which is integrable for the inertia of the body itself.
+
+use crate::case::{Case, Entry, bounds, diagonal, poinsot, rotation};
+
+clebsch::model! {
+    /// Rigid body in a quadratic field.
+    pub model BodyInQuadraticField {
+        param J: Sym<3>;                  // Poinsot (second-moment) matrix
+        param K: Sym<3>;                  // the field: energy ½ Γ·KΓ
+        group Λ: SO<3> velocity Ω;        // attitude, body to space
+        advected Γ: Vec<3>;               // axis of the field seen from the body
+        constraint next(Λ) = Λ*Ω;         // reconstruction
+        constraint next(Γ) = Ω^T*Γ;       // the axis is fixed in space
+        lagrangian = -tr(J*Ω)/h - (h/2)*dot(Γ, K*Γ);
+    }
+}
+
+fn case(name: &str, doc: &str, moments: [f64; 3], field: Vec<f64>, axis: [f64; 3]) -> Case {
+    Case {
+        name: name.to_owned(),
+        doc: doc.to_owned(),
+        h: 0.1,
+        steps: 10_000,
+        parameters: vec![diagonal(poinsot(moments)), field],
+        initial: vec![
+            rotation([1.0, 0.2, -0.1, 0.3]),
+            vec![-0.5, 0.3, 1.0],
+            axis.to_vec(),
+        ],
+        bounds: bounds(&[("energy", 1e-2)]),
+    }
+}
+
+/// The model and its cases.
+pub fn entry() -> Entry {
+    let moments = [3.5, 2.5, 2.0];
+    Entry {
+        card: BodyInQuadraticField::CARD,
+        cases: vec![
+            case(
+                "satellite",
+                "K = 3 n² I with the mean motion n = 0.3 of an orbit whose turning is left out: Brun's integrable case",
+                moments,
+                diagonal(moments.map(|i| 0.27 * i)),
+                [0.48, 0.6, 0.64],
+            ),
+            case(
+                "general",
+                "a field whose axes are not those of the body",
+                moments,
+                vec![1.0, 0.3, -0.2, 0.3, -0.5, 0.4, -0.2, 0.4, 0.7],
+                [0.48, 0.6, 0.64],
+            ),
+        ],
+    }
+}

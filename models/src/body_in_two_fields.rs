@@ -1,0 +1,72 @@
+//! A heavy top that also carries a dipole in a uniform field: two advected vectors. Of the Kowalevski
+//! type it is integrable (Bogoyavlenskij 1984; Reyman and Semenov-Tian-Shansky 1987).
+
+use crate::case::{Case, Entry, bounds, diagonal, identity, poinsot};
+
+clebsch::model! {
+    /// Rigid body about a fixed point in two uniform fields.
+    pub model BodyInTwoFields {
+        param J: Sym<3>;                  // Poinsot (second-moment) matrix
+        param gU: Vec<3>;                 // weight times support -> centre of mass, body frame
+        param p: Vec<3>;                  // dipole moment, body frame
+        param z: Vec<3>;                  // vertical (up), space frame
+        param b: Vec<3>;                  // field that acts on the dipole, space frame
+        group Λ: SO<3> velocity Ω;        // attitude, body to space
+        advected Γ: Vec<3> = Λ^T*z;       // the vertical seen from the body
+        advected B: Vec<3> = Λ^T*b;       // the field seen from the body
+        constraint next(Λ) = Λ*Ω;         // reconstruction
+        constraint next(Γ) = Ω^T*Γ;       // both are fixed in space
+        constraint next(B) = Ω^T*B;
+        lagrangian = -tr(J*Ω)/h - h*(dot(gU, Γ) - dot(p, B));
+    }
+}
+
+fn case(
+    name: &str,
+    doc: &str,
+    moments: [f64; 3],
+    weight: [f64; 3],
+    dipole: [f64; 3],
+    field: [f64; 3],
+) -> Case {
+    Case {
+        name: name.to_owned(),
+        doc: doc.to_owned(),
+        h: 0.05,
+        steps: 10_000,
+        parameters: vec![
+            diagonal(poinsot(moments)),
+            weight.to_vec(),
+            dipole.to_vec(),
+            vec![0.0, 0.0, 1.0],
+            field.to_vec(),
+        ],
+        initial: vec![identity(), vec![-0.5, 0.3, 1.0]],
+        bounds: bounds(&[("energy", 1e-2)]),
+    }
+}
+
+/// The model and its cases.
+pub fn entry() -> Entry {
+    Entry {
+        card: BodyInTwoFields::CARD,
+        cases: vec![
+            case(
+                "kowalevski",
+                "moments (2, 2, 1), centre of mass and dipole along e₁ and e₂, fields at right angles: integrable",
+                [2.0, 2.0, 1.0],
+                [1.0, 0.0, 0.0],
+                [0.0, 0.5, 0.0],
+                [1.0, 0.0, 0.0],
+            ),
+            case(
+                "general",
+                "asymmetric body, centre of mass, dipole and fields in general directions",
+                [3.5, 2.5, 2.0],
+                [0.3, -0.2, 0.9],
+                [0.4, 0.5, -0.1],
+                [0.6, 0.2, 0.3],
+            ),
+        ],
+    }
+}

@@ -1,0 +1,142 @@
+//! Two rigid bodies joined by a ball and socket (thesis 2.8, with the coupling corrected), seen from
+//! the joint; the centre of mass of the whole is at rest.
+
+use crate::case::{Case, Entry, bounds, diagonal, identity, poinsot};
+
+clebsch::model! {
+    /// Two rigid bodies with a spherical joint.
+    pub model CoupledBodies {
+        param J1, J2: Sym<3>;             // Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ
+        param d1, d2: Vec<3>;             // joint -> centre of mass, each in its body's axes
+        param eps: Real;                  // reduced mass m₁ m₂/(m₁ + m₂)
+        group Λ1: SO<3> velocity Ω1;      // attitudes, body to space
+        group Λ2: SO<3> velocity Ω2;
+        advected R: SO<3> = Λ1^T*Λ2;      // body 2 seen from body 1
+        constraint next(Λ1) = Λ1*Ω1;
+        constraint next(Λ2) = Λ2*Ω2;
+        constraint next(R) = Ω1^T*R*Ω2;
+        lagrangian = -(tr(J1*Ω1) + tr(J2*Ω2) + eps*dot((Ω1 - Id)*d1, R*(Ω2 - Id)*d2))/h;
+    }
+}
+
+/// A body: principal moments about its own centre of mass, and the arm from the joint to it.
+#[derive(Clone, Copy)]
+struct Body {
+    moments: [f64; 3],
+    arm: [f64; 3],
+    momentum: [f64; 3],
+}
+
+impl Body {
+    /// `J + eps d dᵀ`, row by row.
+    fn poinsot_about_joint(&self, eps: f64) -> Vec<f64> {
+        let arm = self.arm;
+        let added = arm
+            .iter()
+            .flat_map(|a| arm.iter().map(move |b| eps * (a * b)));
+        let own = diagonal(poinsot(self.moments));
+        own.iter().zip(added).map(|(j, a)| j + a).collect()
+    }
+}
+
+fn case(
+    name: &str,
+    doc: &str,
+    steps: u64,
+    bodies: [Body; 2],
+    second: Vec<f64>,
+    energy: f64,
+) -> Case {
+    let eps = 0.5;
+    let [one, two] = bodies;
+    Case {
+        name: name.to_owned(),
+        doc: doc.to_owned(),
+        h: 0.1,
+        steps,
+        parameters: vec![
+            one.poinsot_about_joint(eps),
+            two.poinsot_about_joint(eps),
+            one.arm.to_vec(),
+            two.arm.to_vec(),
+            vec![eps],
+        ],
+        initial: vec![
+            identity(),
+            one.momentum.to_vec(),
+            second,
+            two.momentum.to_vec(),
+        ],
+        bounds: bounds(&[("energy", energy)]),
+    }
+}
+
+/// The model and its cases.
+pub fn entry() -> Entry {
+    let body = |arm| Body {
+        moments: [2.0, 2.0, 1.0],
+        arm,
+        momentum: [0.5, 0.0, 1.0],
+    };
+    // A quarter turn of the second body about the common first axis.
+    let right_angle = vec![1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0];
+    let along = body([0.0, 0.0, 1.0]);
+    let across = body([1.0, 0.0, 0.0]);
+    let general = [
+        Body {
+            moments: [3.5, 2.5, 2.0],
+            arm: [0.4, -0.3, 0.8],
+            momentum: [-0.5, 0.2, 1.0],
+        },
+        Body {
+            moments: [1.5, 2.0, 1.0],
+            arm: [-0.2, 0.7, 0.5],
+            momentum: [0.3, 0.6, -0.4],
+        },
+    ];
+    Entry {
+        card: CoupledBodies::CARD,
+        cases: vec![
+            case(
+                "symmetric",
+                "identical symmetric bodies (2, 2, 1) at right angles, arms along their axes: μ₃ of each is exact",
+                10_000,
+                [along, along],
+                right_angle.clone(),
+                1e-4,
+            ),
+            case(
+                "figure-2-12",
+                "identical bodies at right angles; masses and arms, which the thesis omits, chosen as eps = 0.5, d = e₁",
+                1_000,
+                [across, across],
+                right_angle.clone(),
+                1e-2,
+            ),
+            case(
+                "figure-2-13",
+                "identical bodies initially aligned, the same choice: exchange symmetry, an unstable motion",
+                10_000,
+                [across, across],
+                identity(),
+                1e-2,
+            ),
+            case(
+                "figure-2-14",
+                "the bodies of figure 2.12 over 10000 steps: Casimir, energy, total spatial momentum",
+                10_000,
+                [across, across],
+                right_angle,
+                1e-2,
+            ),
+            case(
+                "general",
+                "two different asymmetric bodies with arms off their axes: chaotic",
+                10_000,
+                general,
+                identity(),
+                1e-2,
+            ),
+        ],
+    }
+}

@@ -1,0 +1,63 @@
+//! The free rigid body in the spatial representation (thesis 2.5.5): the Poinsot matrix is carried
+//! along by the motion, the spatial momentum is constant.
+
+use crate::case::{Case, Entry, bounds, carried, identity, poinsot, rotation, turned};
+
+clebsch::model! {
+    /// Free rigid body, spatial representation.
+    pub model FreeBodySpatial {
+        group Λ: SO<3> velocity ω;        // attitude, body to space
+        advected J: Sym<3>;               // Poinsot (second-moment) matrix in space axes
+        constraint next(Λ) = ω*Λ;         // reconstruction
+        constraint next(J) = ω*J*ω^T;     // the body carries its second moments along
+        lagrangian = -tr(ω*J)/h;
+    }
+}
+
+/// Momenta in body axes; the statement takes what belongs to space.
+fn case(name: &str, doc: &str, moments: [f64; 3], attitude: Vec<f64>, momentum: [f64; 3]) -> Case {
+    Case {
+        name: name.to_owned(),
+        doc: doc.to_owned(),
+        h: 0.1,
+        steps: 10_000,
+        parameters: vec![],
+        initial: vec![
+            attitude.clone(),
+            turned(&attitude, momentum),
+            carried(&attitude, poinsot(moments)),
+        ],
+        // The energy of a free body is exact, what is left is rounding.
+        bounds: bounds(&[("energy", 1e-12)]),
+    }
+}
+
+/// The model and its cases.
+pub fn entry() -> Entry {
+    Entry {
+        card: FreeBodySpatial::CARD,
+        cases: vec![
+            case(
+                "figure-2-7",
+                "symmetric body, moments (2, 2, 1), over 10000 steps: thesis figure 2.7",
+                [2.0, 2.0, 1.0],
+                identity(),
+                [0.1, 0.0, 1.0],
+            ),
+            case(
+                "figure-2-8",
+                "asymmetric body, moments (3.5, 2.5, 2), over 10000 steps: thesis figure 2.8",
+                [3.5, 2.5, 2.0],
+                identity(),
+                [-0.5, 0.0, 1.0],
+            ),
+            case(
+                "turned",
+                "the asymmetric body started from the attitude of the quaternion (√0.86, 0.1, -0.3, 0.2)",
+                [3.5, 2.5, 2.0],
+                rotation([0.86_f64.sqrt(), 0.1, -0.3, 0.2]),
+                [-0.5, 0.0, 1.0],
+            ),
+        ],
+    }
+}

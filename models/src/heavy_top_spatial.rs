@@ -1,0 +1,84 @@
+//! The heavy top in the spatial representation, which thesis 2.7 mentions and does not give: second
+//! moments and centre of mass are carried along by the motion, the vertical is fixed.
+
+use crate::case::{Case, Entry, bounds, carried, poinsot, turned};
+
+clebsch::model! {
+    /// Heavy top, spatial representation.
+    pub model HeavyTopSpatial {
+        param w: Real;                    // weight
+        param z: Vec<3>;                  // vertical (up), space frame
+        group Λ: SO<3> velocity ω;        // attitude, body to space
+        advected J: Sym<3>;               // Poinsot (second-moment) matrix in space axes
+        advected χ: Vec<3>;               // support -> centre of mass, space axes
+        constraint next(Λ) = ω*Λ;         // reconstruction
+        constraint next(J) = ω*J*ω^T;     // the body carries its second moments along
+        constraint next(χ) = ω*χ;         // and its centre of mass
+        lagrangian = -tr(ω*J)/h - h*w*dot(χ, z);
+    }
+}
+
+/// Rotation by the angle of the 3-4-5 triangle about the second axis: tilts the top.
+fn tilted() -> Vec<f64> {
+    vec![0.8, 0.0, 0.6, 0.0, 1.0, 0.0, -0.6, 0.0, 0.8]
+}
+
+/// Momentum and centre of mass in body axes; the statement takes what belongs to space.
+fn case(
+    name: &str,
+    doc: &str,
+    moments: [f64; 3],
+    centre: [f64; 3],
+    momentum: [f64; 3],
+    energy: f64,
+) -> Case {
+    let attitude = tilted();
+    Case {
+        name: name.to_owned(),
+        doc: doc.to_owned(),
+        h: 0.1,
+        steps: 10_000,
+        parameters: vec![vec![1.0], vec![0.0, 0.0, 1.0]],
+        initial: vec![
+            attitude.clone(),
+            turned(&attitude, momentum),
+            carried(&attitude, poinsot(moments)),
+            turned(&attitude, centre),
+        ],
+        bounds: bounds(&[("energy", energy)]),
+    }
+}
+
+/// The model and its cases.
+pub fn entry() -> Entry {
+    let symmetric = [2.0, 2.0, 1.0];
+    Entry {
+        card: HeavyTopSpatial::CARD,
+        cases: vec![
+            case(
+                "lagrange",
+                "Lagrange top (2, 2, 1), m g χ = e₃ in body axes, tilted by the angle of the 3-4-5 triangle",
+                symmetric,
+                [0.0, 0.0, 1.0],
+                [0.1, 0.0, 1.0],
+                2e-2,
+            ),
+            case(
+                "hanging",
+                "the same top hanging, m g χ = -e₃ in body axes",
+                symmetric,
+                [0.0, 0.0, -1.0],
+                [0.1, 0.0, 1.0],
+                2e-2,
+            ),
+            case(
+                "general",
+                "asymmetric top (3.5, 2.5, 2) with its centre of mass off the axes: chaotic",
+                [3.5, 2.5, 2.0],
+                [0.3, -0.2, 0.9],
+                [-0.5, 0.3, 1.0],
+                2e-2,
+            ),
+        ],
+    }
+}
