@@ -37,9 +37,9 @@ pub mod body_in_quadratic_field {
         pub fn new(
             parameters: BodyInQuadraticFieldParameters<T>,
         ) -> Result<Self, ParameterError> {
-            validate::finite("J", parameters.J.as_slice())?;
+            validate::finite_entries("J", &parameters.J)?;
             validate::symmetric("J", &parameters.J)?;
-            validate::finite("K", parameters.K.as_slice())?;
+            validate::finite_entries("K", &parameters.K)?;
             validate::symmetric("K", &parameters.K)?;
             let BodyInQuadraticFieldParameters { J, .. } = parameters;
             let factor = Poinsot::new(J).map_err(|e| e.in_field("J"))?;
@@ -206,17 +206,13 @@ pub mod body_in_quadratic_field {
             h: T,
             e: MoserVeselovError,
         ) -> StepError {
-            let largest = largest_step(
-                h.value(),
-                |trial| {
-                    let n = self.edge_momentum(&state, T::from_f64(trial))
-                        * T::from_f64(trial);
-                    let body = Poinsot::new(self.factor.matrix().map(|x| x.value()))
-                        .ok()?;
-                    Some(reach(&body, &n.map(|x| x.value())))
-                },
-            );
-            StepCause::from(e.with_steps(h.value(), largest)).at_node(state.node)
+            let e = e
+                .with_searched_step(
+                    &self.factor,
+                    h,
+                    |trial| self.edge_momentum(&state, trial),
+                );
+            StepCause::from(e).at_node(state.node)
         }
         /// `Γ` at the node of this state.
         #[inline]
@@ -389,7 +385,7 @@ pub mod body_in_quadratic_field {
             doc: "Rigid body in a quadratic field.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   -tr(J Ω_k)/h - ¼ h Γ_k·(K Γ_k) - ¼ h Γ_{k+1}·(K Γ_{k+1})\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          13 identities proved by normal form",
+            summary: "action of one step   -tr(J Ω_k)/h - ¼ h Γ_k·(K Γ_k) - ¼ h Γ_{k+1}·(K Γ_{k+1})\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          15 identities proved by normal form",
             solver: "Moser-Veselov: C is constant and symmetric: explicit after one quartic a step",
             order: 2u32,
             reversible: true,

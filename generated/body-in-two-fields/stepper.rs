@@ -43,7 +43,7 @@ pub mod body_in_two_fields {
         pub fn new(
             parameters: BodyInTwoFieldsParameters<T>,
         ) -> Result<Self, ParameterError> {
-            validate::finite("J", parameters.J.as_slice())?;
+            validate::finite_entries("J", &parameters.J)?;
             validate::symmetric("J", &parameters.J)?;
             validate::finite("gU", parameters.gU.as_slice())?;
             validate::finite("p", parameters.p.as_slice())?;
@@ -198,17 +198,13 @@ pub mod body_in_two_fields {
             h: T,
             e: MoserVeselovError,
         ) -> StepError {
-            let largest = largest_step(
-                h.value(),
-                |trial| {
-                    let n = self.edge_momentum(&state, T::from_f64(trial))
-                        * T::from_f64(trial);
-                    let body = Poinsot::new(self.factor.matrix().map(|x| x.value()))
-                        .ok()?;
-                    Some(reach(&body, &n.map(|x| x.value())))
-                },
-            );
-            StepCause::from(e.with_steps(h.value(), largest)).at_node(state.node)
+            let e = e
+                .with_searched_step(
+                    &self.factor,
+                    h,
+                    |trial| self.edge_momentum(&state, trial),
+                );
+            StepCause::from(e).at_node(state.node)
         }
         /// `Γ` at the node of this state.
         #[inline]
@@ -405,7 +401,7 @@ pub mod body_in_two_fields {
             doc: "Rigid body about a fixed point in two uniform fields.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   -tr(J Ω_k)/h - ½ h gU·Γ_k + ½ h p·B_k - ½ h gU·Γ_{k+1} + ½ h p·B_{k+1}\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, Gamma_squared, Gamma_B, B_squared\ntime reversal        symmetric: second order\ncertificate          16 identities proved by normal form",
+            summary: "action of one step   -tr(J Ω_k)/h - ½ h gU·Γ_k + ½ h p·B_k - ½ h gU·Γ_{k+1} + ½ h p·B_{k+1}\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, Gamma_squared, Gamma_B, B_squared\ntime reversal        symmetric: second order\ncertificate          19 identities proved by normal form",
             solver: "Moser-Veselov: C is constant and symmetric: explicit after one quartic a step",
             order: 2u32,
             reversible: true,

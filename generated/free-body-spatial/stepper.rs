@@ -97,7 +97,7 @@ pub mod free_body_spatial {
             validate::positive_step(h)?;
             validate::finite("Λ", &initial.Λ.quaternion())?;
             validate::finite("spatial_momentum", initial.spatial_momentum.0.as_slice())?;
-            validate::finite("J", initial.J.as_slice())?;
+            validate::finite_entries("J", &initial.J)?;
             let J = {
                 let Λ = initial.Λ.matrix();
                 let J_start = initial.J;
@@ -388,7 +388,7 @@ pub mod free_body_spatial {
             doc: "Free rigid body, spatial representation.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   -tr(ω_k J_k)/h\nmomentum of Λ        -ω_kᵀ J_k/h + J_k ω_k/h\nRiccati form         exact, C = J_k\ninvariants           energy, spatial_momentum, momentum_squared, trace_J1, trace_J2, trace_J3\ntime reversal        symmetric: second order\ncertificate          12 identities proved by normal form",
+            summary: "action of one step   -tr(ω_k J_k)/h\nmomentum of Λ        -ω_kᵀ J_k/h + J_k ω_k/h\nRiccati form         exact, C = J_k\ninvariants           energy, spatial_momentum, momentum_squared, trace_J1, trace_J2, trace_J3\ntime reversal        symmetric: second order\ncertificate          14 identities proved by normal form",
             solver: "Newton: C depends on the step or changes along the motion: Newton on the derived residual",
             order: 2u32,
             reversible: true,

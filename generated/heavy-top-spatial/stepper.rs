@@ -104,7 +104,7 @@ pub mod heavy_top_spatial {
             validate::positive_step(h)?;
             validate::finite("Λ", &initial.Λ.quaternion())?;
             validate::finite("spatial_momentum", initial.spatial_momentum.0.as_slice())?;
-            validate::finite("J", initial.J.as_slice())?;
+            validate::finite_entries("J", &initial.J)?;
             validate::finite("χ", initial.χ.as_slice())?;
             let J = {
                 let Λ = initial.Λ.matrix();
@@ -465,7 +465,7 @@ pub mod heavy_top_spatial {
             doc: "Heavy top, spatial representation.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   -tr(ω_k J_k)/h - ½ h w χ_k·z - ½ h w χ_{k+1}·z\nmomentum of Λ        -ω_kᵀ J_k/h + J_k ω_k/h\nRiccati form         exact, C = J_k\ninvariants           energy, momentum_z, chi_squared, trace_J1, trace_J2, trace_J3, chi_J_chi\ntime reversal        symmetric: second order\ncertificate          16 identities proved by normal form",
+            summary: "action of one step   -tr(ω_k J_k)/h - ½ h w χ_k·z - ½ h w χ_{k+1}·z\nmomentum of Λ        -ω_kᵀ J_k/h + J_k ω_k/h\nRiccati form         exact, C = J_k\ninvariants           energy, momentum_z, chi_squared, trace_J1, trace_J2, trace_J3, chi_J_chi\ntime reversal        symmetric: second order\ncertificate          19 identities proved by normal form",
             solver: "Newton: C depends on the step or changes along the motion: Newton on the derived residual",
             order: 2u32,
             reversible: true,
