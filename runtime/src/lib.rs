@@ -24,7 +24,7 @@ pub mod validate;
 pub use error::{ParameterError, Problem, StartError, StepCause, StepError};
 pub use groups::{BodyMomentum, Group, NotARotation, Rotation, SpatialMomentum, TurnedRotation};
 pub use scalar::{DoubleDouble, Dual, Lanes, Real};
-pub use solvers::moser_veselov::{MoserVeselovError, Poinsot, PoinsotError};
+pub use solvers::moser_veselov::{MoserVeselovError, Order, Poinsot, PoinsotError};
 pub use solvers::newton::NewtonError;
 
 /// States a model; see the crate documentation.

@@ -4,7 +4,7 @@
 
 use clebsch::nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use clebsch::solvers::moser_veselov::MoserVeselovError;
-use clebsch::{BodyMomentum, DoubleDouble, Dual, Lanes, Real, Rotation, StepCause};
+use clebsch::{BodyMomentum, DoubleDouble, Dual, Lanes, Real, Rotation, StartError, StepCause};
 use clebsch_models::free_body::{FreeBody, FreeBodyInitial, FreeBodyParameters};
 use clebsch_models::heavy_top::{
     HeavyTop, HeavyTopConfiguration, HeavyTopInitial, HeavyTopParameters,
@@ -217,9 +217,8 @@ fn refusal<T: Real>(momentum: SVector<T, 3>, h: f64) -> MoserVeselovError {
         Λ: attitude(),
         body_momentum: BodyMomentum(momentum),
     };
-    let (mut state, mut work) = model.start(initial, T::from_f64(h)).unwrap();
-    match model.step(&mut state, &mut work).unwrap_err().cause {
-        StepCause::MoserVeselov(e) => e,
+    match model.start(initial, T::from_f64(h)).unwrap_err() {
+        StartError::Refused(StepCause::MoserVeselov(e)) => e,
         other => panic!("{other}"),
     }
 }

@@ -1,7 +1,9 @@
 //! The error of a step that is too long for the Moser-Veselov equation.
 //! Takes the refused momentum; gives how far beyond the bound it is and what step would do.
 
-use super::{Poinsot, largest_step, reach};
+use super::forced::turn;
+use super::preprocess::preprocessed;
+use super::{Order, Poinsot, largest_step, reach};
 use crate::Real;
 use core::fmt;
 use nalgebra::Vector3;
@@ -19,6 +21,9 @@ pub struct MoserVeselovError {
     pub largest_step: Option<f64>,
     /// Index (0, 1, 2) of the momentum component of largest `|h N_i| / I_ii`.
     pub component: usize,
+    /// The order of the step: above two, the ratio is that of the modified moments, and infinite
+    /// where these are no longer positive.
+    pub order: Order,
     /// The lane all this is about: the worst, or that of the smallest step where it was searched.
     /// 0 for types without lanes.
     pub lane: usize,
@@ -38,25 +43,15 @@ impl MoserVeselovError {
             h: None,
             largest_step: None,
             component: 0,
+            order: Order::Two,
             lane: 0,
         };
         for lane in 0..T::LANES {
-            let n = h_n.map(|x| x.lane(lane));
-            let inertia = body.inertia();
-            let mut largest = -1.0;
-            let mut component = 0;
-            for (i, x) in n.iter().enumerate() {
-                let moment = inertia.get((i, i)).map_or(1.0, |x| x.lane(lane));
-                let angle = (x / moment).abs();
-                if angle > largest || angle.is_nan() {
-                    largest = angle;
-                    component = i;
-                }
-            }
-            let ratio = reach(&body.lane(lane), &n);
+            let (body, n) = (body.lane(lane), h_n.map(|x| x.lane(lane)));
+            let ratio = reach(&body, &n);
             if ratio.is_nan() || ratio > worst.ratio {
                 worst.ratio = ratio;
-                worst.component = component;
+                worst.component = fastest(&body, &n);
                 worst.lane = lane;
             }
             if ratio.is_nan() {
@@ -64,6 +59,50 @@ impl MoserVeselovError {
             }
         }
         worst
+    }
+
+    /// Diagnoses a refused trajectory of a higher order, from `h mu` at its start: the modified
+    /// moments depend on the step, so the largest step is searched.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn diagnose_order<T: Real>(
+        body: &Poinsot<T>,
+        h_mu: &Vector3<T>,
+        h: T,
+        order: Order,
+    ) -> Self {
+        let mut told: Option<Self> = None;
+        for lane in 0..T::LANES {
+            let (body, n, h) = (body.lane(lane), h_mu.map(|x| x.lane(lane)), h.lane(lane));
+            let solved = |modified: &Poinsot<f64>, scale: f64| {
+                turn(modified, modified.scaled(&(n * scale))).map(|_| 0.0)
+            };
+            let largest = INSIDE
+                * largest_step(h, |trial| {
+                    let scale = trial / h;
+                    let u = body.scaled(&(n * scale));
+                    solved(&preprocessed(&body, u, order)?, scale)
+                });
+            let ratio = match preprocessed(&body, body.scaled(&n), order) {
+                _ if !n.iter().all(|x| x.is_finite()) => f64::NAN,
+                Some(modified) => largest_step(1.0, |scale| solved(&modified, scale)).recip(),
+                None => f64::INFINITY,
+            };
+            if told
+                .and_then(|e| e.largest_step)
+                .is_none_or(|smallest| largest < smallest)
+            {
+                told = Some(Self {
+                    ratio,
+                    h: Some(h),
+                    largest_step: Some(largest),
+                    component: fastest(&body, &n),
+                    order,
+                    lane,
+                });
+            }
+        }
+        told.unwrap_or_else(|| Self::diagnose(body, h_mu))
     }
 
     /// The same error with the step size that was refused, and the largest that would do.
@@ -114,6 +153,20 @@ impl MoserVeselovError {
     }
 }
 
+/// The index of the largest `|h N_i| / I_ii`.
+fn fastest(body: &Poinsot<f64>, h_n: &Vector3<f64>) -> usize {
+    let inertia = body.inertia();
+    let (mut largest, mut component) = (-1.0, 0);
+    for (i, x) in h_n.iter().enumerate() {
+        let moment = inertia.get((i, i)).copied().unwrap_or(1.0);
+        let angle = (x / moment).abs();
+        if angle > largest || angle.is_nan() {
+            (largest, component) = (angle, i);
+        }
+    }
+    component
+}
+
 impl fmt::Display for MoserVeselovError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.ratio.is_nan() {
@@ -126,12 +179,24 @@ impl fmt::Display for MoserVeselovError {
         if self.lane > 0 {
             write!(f, "lane {}: ", self.lane)?;
         }
-        write!(
-            f,
-            "the body turns too far in one step: the momentum is {:.6} times what the \
+        if self.ratio.is_infinite() {
+            write!(
+                f,
+                "the body turns too far in one step for order {}: its modified moments are no \
+                 longer positive",
+                self.order
+            )?;
+        } else {
+            write!(
+                f,
+                "the body turns too far in one step: the momentum is {:.6} times what the \
              Moser-Veselov equation can take (component {} is the largest)",
-            self.ratio, self.component
-        )?;
+                self.ratio, self.component
+            )?;
+            if self.order != Order::Two {
+                write!(f, ", with the moments of order {}", self.order)?;
+            }
+        }
         match (self.h, self.largest_step) {
             (Some(h), Some(largest)) => {
                 write!(

@@ -3,8 +3,9 @@
 
 use super::cayley::{Orbit, Pencil, cross, dot, gyroscopic};
 use super::kappa::kappa;
+use super::preprocess::preprocessed;
 use super::principal::PrincipalAxes;
-use super::{MoserVeselovError, Poinsot};
+use super::{MoserVeselovError, Order, Poinsot};
 use crate::{BodyMomentum, Real, Rotation, SpatialMomentum};
 use nalgebra::{Matrix3, Vector3};
 
@@ -56,7 +57,7 @@ pub struct Free<T = f64> {
     orbit: Orbit<T>,
     /// For numbers with derivatives, in the axes given.
     pencil: Pencil<T>,
-    /// In the axes worked in.
+    /// In the axes worked in, with the moments of the order.
     body: Poinsot<T>,
     /// Components in the axes worked in -> components in the axes given.
     frame: Matrix3<T>,
@@ -67,6 +68,7 @@ pub struct Free<T = f64> {
     attitude: Rotation<T>,
     momentum: SpatialMomentum<T>,
     h: T,
+    order: Order,
     /// The body in the axes given.
     given: Poinsot<T>,
     /// `|u|^2`; constant.
@@ -92,7 +94,7 @@ struct Axis<T> {
 
 impl<T: Real> Free<T> {
     /// Prepares a trajectory from the attitude, the spatial momentum and the step size `h` (of
-    /// either sign, not zero).
+    /// either sign, not zero). Of order two, symplectic.
     ///
     /// # Errors
     /// [`MoserVeselovError`], with the largest step size that would do, when the motion is too fast
@@ -103,6 +105,25 @@ impl<T: Real> Free<T> {
         attitude: &Rotation<T>,
         momentum: &SpatialMomentum<T>,
         h: T,
+    ) -> Result<Self, MoserVeselovError> {
+        Self::start_of_order(body, attitude, momentum, h, Order::Two)
+    }
+
+    /// As [`Free::start`], with steps of the given order: the moments are modified once. A step
+    /// costs the same at every order.
+    ///
+    /// Above two the map of the momentum is Poisson and energy, `|mu|^2` and spatial momentum are
+    /// as exact as before, but the map of momentum and attitude together is not symplectic: the
+    /// defect is of the size of the error of the step.
+    ///
+    /// # Errors
+    /// As [`Free::start`]; the largest step is then found by bisection.
+    pub fn start_of_order(
+        body: &Poinsot<T>,
+        attitude: &Rotation<T>,
+        momentum: &SpatialMomentum<T>,
+        h: T,
+        order: Order,
     ) -> Result<Self, MoserVeselovError> {
         let h_m = momentum.0.map(|x| x * h);
         let spatial = body.scaled(&h_m);
@@ -116,6 +137,13 @@ impl<T: Real> Free<T> {
         let turned = turned.map(|axes| axes.frame.matrix());
         let frame = turned.unwrap_or_else(Matrix3::identity);
         let u = body.scaled(&frame.tr_mul(&h_mu));
+        let refused = || match order {
+            Order::Two => MoserVeselovError::diagnose(&given, &h_mu).with_linear_step(h),
+            _ => MoserVeselovError::diagnose_order(&given, &h_mu, h, order),
+        };
+        let Some(body) = preprocessed(&body, u, order) else {
+            return Err(refused());
+        };
         let square = dot(u, u);
         let moving = square.where_positive(T::one());
         let energy = dot(u, body.adjugate_times::<false>(u));
@@ -128,8 +156,7 @@ impl<T: Real> Free<T> {
             body.deviation.value::<false>(squares, products),
         );
         let Some(kappa) = kappa else {
-            let error = MoserVeselovError::diagnose(&given, &h_mu);
-            return Err(error.with_linear_step(h));
+            return Err(refused());
         };
         let pencil = Pencil::new(&body, kappa, square);
         Ok(Self {
@@ -146,6 +173,7 @@ impl<T: Real> Free<T> {
             attitude: *attitude,
             momentum: *momentum,
             h,
+            order,
             given,
             square,
             per_square: moving / (square + (T::one() - moving)),
@@ -195,7 +223,7 @@ impl<T: Real> Free<T> {
         attitude: &Rotation<T>,
         momentum: &SpatialMomentum<T>,
     ) -> Result<(), MoserVeselovError> {
-        *self = Self::start(&self.given, attitude, momentum, self.h)?;
+        *self = Self::start_of_order(&self.given, attitude, momentum, self.h, self.order)?;
         Ok(())
     }
 

@@ -12,12 +12,14 @@
 //! numbers.
 
 mod cayley;
+mod coefficients;
 mod edge;
 mod failure;
 mod forced;
 mod free;
 mod kappa;
 mod poinsot;
+mod preprocess;
 mod principal;
 mod reach;
 
@@ -26,4 +28,5 @@ pub use failure::MoserVeselovError;
 pub use forced::forced;
 pub use free::Free;
 pub use poinsot::{Poinsot, PoinsotError};
+pub use preprocess::Order;
 pub use reach::{largest_step, reach};

@@ -176,7 +176,12 @@ impl<T: Real> Poinsot<T> {
 
     fn prepared(j: Matrix3<T>, unit: f64) -> Self {
         let per_unit = T::from_f64(1.0 / unit);
-        let inertia = (Matrix3::from_diagonal_element(j.trace()) - j).map(|x| x * per_unit);
+        let inertia = Matrix3::from_diagonal_element(j.trace()) - j;
+        Self::with_constants(j, inertia.map(|x| x * per_unit), unit)
+    }
+
+    /// From `J` and `I / unit`.
+    fn with_constants(j: Matrix3<T>, inertia: Matrix3<T>, unit: f64) -> Self {
         let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = inertia.data.0;
         let adjugate_moments = [yy * zz - yz * yz, zz * xx - xz * xz, xx * yy - xy * xy];
         let adjugate_products = [xy * xz - xx * yz, xy * yz - yy * xz, xz * yz - zz * xy];
@@ -228,9 +233,22 @@ impl<T: Real> Poinsot<T> {
 
     /// The same body in principal axes, with its moments over `unit` known.
     pub(super) fn in_principal_axes(&self, [x, y, z]: [T; 3]) -> Self {
-        let half = T::from_f64(0.5 * self.unit);
-        let diagonal = [(y + z) - x, (z + x) - y, (x + y) - z].map(|j| j * half);
-        Self::prepared(Matrix3::from_diagonal(&diagonal.into()), self.unit)
+        self.with_inertia(&Matrix3::from_diagonal(&Vector3::new(x, y, z)))
+    }
+
+    /// `(I / unit)^-1`.
+    pub(super) fn inverse_inertia(&self) -> Matrix3<T> {
+        let [[x, y, z], [yz, xz, xy]] = [self.adjugate_moments, self.adjugate_products];
+        Matrix3::new(x, xy, xz, xy, y, yz, xz, yz, z).map(|entry| entry * self.symmetric.zeroth)
+    }
+
+    /// What has `inertia` for its `I / unit`, in the same unit. It need not be a body: `J` may have
+    /// a negative eigenvalue, the solver needs `I` alone.
+    pub(super) fn with_inertia(&self, inertia: &Matrix3<T>) -> Self {
+        let half = T::from_f64(0.5);
+        let inertia = (inertia + inertia.transpose()).map(|x| x * half);
+        let j = Matrix3::from_diagonal_element(inertia.trace() * half) - inertia;
+        Self::with_constants(j.map(|x| x * T::from_f64(self.unit)), inertia, self.unit)
     }
 
     /// One lane of the body, without derivatives.

@@ -1,0 +1,126 @@
+//! Modified moments, with which the Moser-Veselov step of a free body is of high order.
+//! Takes the body, its scaled momentum and the order; gives the body to step instead.
+//!
+//! With `1 / I_i' = s / I_i + d` the discrete motion stays on the orbit of the true body, and `s`
+//! and `d`, series in the square of the step, can be chosen so that it keeps time along it and
+//! turns as the true body does (Hairer and Vilmart, J. Phys. A 39 (2006) 13225). They depend on
+//! the energy and `|mu|^2` only, which the motion keeps: a trajectory needs them once.
+//!
+//! The momentum's map is Poisson at every order. The map of momentum and attitude together is
+//! symplectic at order two only: `s` and `d` differ between neighbouring trajectories. What is
+//! missing is a turn about the momentum of the size of the error of the step.
+
+use super::Poinsot;
+use super::coefficients::{FACTOR, SHIFT, Term};
+use crate::Real;
+use crate::linalg;
+use core::fmt;
+use nalgebra::Matrix3;
+
+/// The order of accuracy of a step, in momentum and attitude.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Order {
+    /// Plain: symplectic in momentum and attitude.
+    #[default]
+    Two,
+    /// Four.
+    Four,
+    /// Six.
+    Six,
+    /// Eight.
+    Eight,
+    /// Ten.
+    Ten,
+}
+
+impl Order {
+    /// All of them, from the lowest.
+    pub const ALL: [Self; 5] = [Self::Two, Self::Four, Self::Six, Self::Eight, Self::Ten];
+
+    /// As a number.
+    #[must_use]
+    pub fn number(self) -> u32 {
+        2 * (self as u32) + 2
+    }
+
+    /// The order with this number, if there is one.
+    #[must_use]
+    pub fn of_number(number: u32) -> Option<Self> {
+        Self::ALL.into_iter().find(|o| o.number() == number)
+    }
+
+    /// How many terms of the series it takes.
+    fn terms(self) -> usize {
+        self as usize
+    }
+}
+
+impl fmt::Display for Order {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.number())
+    }
+}
+
+/// The body to step instead of `body`, for the trajectory through `u = h mu / (2 unit)`; `None`
+/// where the step is so long that a modified moment is no longer positive, in any lane.
+pub(super) fn preprocessed<T: Real>(
+    body: &Poinsot<T>,
+    u: [T; 3],
+    order: Order,
+) -> Option<Poinsot<T>> {
+    if order == Order::Two {
+        return Some(*body);
+    }
+    let [x, y, z] = u;
+    let [xx, yy, zz] = [x * x, y * y, z * z];
+    let two = T::from_f64(2.0);
+    let invariants = Invariants {
+        energy: two
+            * body
+                .energy
+                .value::<false>([xx, yy, zz], [y * z, z * x, x * y]),
+        momentum: two * (xx + yy + zz),
+        // Of the inverse moments.
+        symmetric: [
+            body.symmetric.second,
+            body.symmetric.first,
+            body.symmetric.zeroth,
+        ],
+    };
+    let series = |table: &[&[Term]; 4]| {
+        let taken = table.iter().take(order.terms());
+        let terms = taken.flat_map(|list| list.iter());
+        terms.fold(T::zero(), |sum, term| sum + invariants.value(term))
+    };
+    let (s, d) = (T::one() + series(&FACTOR), series(&SHIFT));
+    let inverse = body.inverse_inertia() * s + Matrix3::from_diagonal_element(d);
+    let inertia = linalg::inverse(&inverse)?;
+    positive(&inertia).then(|| body.with_inertia(&inertia))
+}
+
+/// What the coefficients are polynomials in.
+struct Invariants<T> {
+    energy: T,
+    momentum: T,
+    symmetric: [T; 3],
+}
+
+impl<T: Real> Invariants<T> {
+    fn value(&self, term: &Term) -> T {
+        let (numerator, denominator) = term.factor;
+        let [e1, e2, e3] = self.symmetric;
+        let [p, q, r] = term.symmetric;
+        let of_body = e1.powi(p) * e2.powi(q) * e3.powi(r);
+        let of_motion = self.energy.powi(term.energy) * self.momentum.powi(term.momentum);
+        T::from_ratio(numerator, denominator) * of_body * of_motion
+    }
+}
+
+/// Whether a symmetric matrix is positive definite in every lane, by its leading minors. Written so
+/// that NaN is not.
+fn positive<T: Real>(a: &Matrix3<T>) -> bool {
+    let [[xx, xy, _], [_, yy, _], _] = a.data.0;
+    [xx, xx * yy - xy * xy, linalg::determinant(a)]
+        .iter()
+        .all(|minor| minor.least() > 0.0)
+}
