@@ -1,0 +1,163 @@
+//! Steps of high order made of several symmetric steps of order two.
+//! Takes a model shown to be reversible, a state, a step size and an order; advances the state.
+//!
+//! Each factor is a step of the model itself, so whatever a step conserves, a composition does:
+//! the symplectic form of the full phase space, momentum maps, Casimirs. On the state of a
+//! one-sided node rule the order would fall to one without a word; such a model is not
+//! [`Reversible`], and a composition of it does not build.
+
+use super::{Reversible, Stepper};
+use crate::solvers::moser_veselov::MoserVeselovError;
+use crate::{Real, StartError, StepCause, StepError};
+use core::fmt;
+
+/// The order of a composition.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum CompositionOrder {
+    /// Five steps (Suzuki, Phys. Lett. A 146 (1990) 319).
+    Four,
+    /// Nine steps (Kahan and Li, Math. Comp. 66 (1997) 1089).
+    Six,
+    /// Seventeen steps (Kahan and Li).
+    Eight,
+}
+
+/// First half of the factors of order six and the middle one.
+const SIX: [f64; 5] = [
+    0.392_161_444_007_314_1,
+    0.332_599_136_789_359_43,
+    -0.706_246_172_557_639_3,
+    0.082_213_596_293_550_8,
+    0.798_543_990_934_83,
+];
+
+/// First half of the factors of order eight and the middle one.
+const EIGHT: [f64; 9] = [
+    0.130_202_483_088_890_07,
+    0.561_162_981_775_108_4,
+    -0.389_474_962_644_847_27,
+    0.158_841_906_555_155_6,
+    -0.395_903_894_133_237_57,
+    0.184_539_640_978_315_7,
+    0.258_374_387_686_322_04,
+    0.295_011_723_609_310_3,
+    -0.605_508_533_830_034_6,
+];
+
+impl CompositionOrder {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Four, Self::Six, Self::Eight];
+
+    /// As a number.
+    #[must_use]
+    pub fn number(self) -> u32 {
+        match self {
+            Self::Four => 4,
+            Self::Six => 6,
+            Self::Eight => 8,
+        }
+    }
+
+    /// The order with this number, if there is one.
+    #[must_use]
+    pub fn of_number(number: u32) -> Option<Self> {
+        Self::ALL.into_iter().find(|o| o.number() == number)
+    }
+
+    /// The factors of the step, the different ones only: a palindrome whose middle is the last.
+    fn half(self) -> Vec<f64> {
+        match self {
+            Self::Four => {
+                let outer = 1.0 / (4.0 - 4.0_f64.cbrt());
+                vec![outer, outer, 1.0 - 4.0 * outer]
+            }
+            Self::Six => SIX.to_vec(),
+            Self::Eight => EIGHT.to_vec(),
+        }
+    }
+
+    /// The factors of the step; they add up to one.
+    #[must_use]
+    pub fn factors(self) -> Vec<f64> {
+        let mut factors = self.half();
+        let mirrored: Vec<f64> = factors.iter().rev().skip(1).copied().collect();
+        factors.extend(mirrored);
+        factors
+    }
+}
+
+impl fmt::Display for CompositionOrder {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.number())
+    }
+}
+
+/// One factor of the step, and the workspace of the steps it makes.
+#[derive(Clone, Debug)]
+struct Stage<W> {
+    factor: f64,
+    workspace: W,
+}
+
+/// A trajectory of a model, in composed steps.
+#[derive(Clone, Debug)]
+pub struct Composition<S: Stepper> {
+    stages: Vec<Stage<S::Workspace>>,
+}
+
+impl<S: Reversible> Composition<S> {
+    /// Prepares steps of `h` in all from `state`. Nothing is allocated later.
+    ///
+    /// # Errors
+    /// When one of the steps it is made of could not be made from `state`.
+    pub fn start(
+        model: &S,
+        state: &S::State,
+        h: S::Scalar,
+        order: CompositionOrder,
+    ) -> Result<Self, StartError> {
+        let factors = order.factors().into_iter();
+        let stages = factors.map(|factor| {
+            let workspace = model
+                .workspace(state, h * S::Scalar::from_f64(factor))
+                .map_err(|e| match e {
+                    StartError::Refused(cause) => StartError::Refused(in_all(cause, factor)),
+                    other => other,
+                })?;
+            Ok(Stage { factor, workspace })
+        });
+        Ok(Self {
+            stages: stages.collect::<Result<_, StartError>>()?,
+        })
+    }
+
+    /// One composed step, in place; it is counted as one node.
+    ///
+    /// # Errors
+    /// When one of its steps cannot be solved, with the numbers of the composed step; the state is
+    /// then unchanged.
+    #[inline]
+    pub fn step(&mut self, model: &S, state: &mut S::State) -> Result<(), StepError> {
+        let node = S::node(state);
+        let mut moving = *state;
+        for stage in &mut self.stages {
+            if let Err(e) = model.advance(&mut moving, &mut stage.workspace) {
+                return Err(in_all(e.cause, stage.factor).at_node(node));
+            }
+        }
+        *state = S::at_node(moving, node + 1);
+        Ok(())
+    }
+}
+
+/// The cause said of the composed step instead of the factor that failed.
+fn in_all(cause: StepCause, factor: f64) -> StepCause {
+    match cause {
+        StepCause::MoserVeselov(e) => StepCause::MoserVeselov(MoserVeselovError {
+            h: e.h.map(|h| h / factor),
+            largest_step: e.largest_step.map(|h| h / factor),
+            ..e
+        }),
+        other => other,
+    }
+}

@@ -1,0 +1,45 @@
+//! What every emitted model is, seen from the outside: something that steps.
+//! Takes a state and a workspace made for it; compositions and ensembles are written on this.
+
+use crate::{Real, StartError, StepError};
+
+/// A model with its parameters.
+pub trait Stepper {
+    /// The numbers it computes with.
+    type Scalar: Real;
+    /// What moves, at one node. Saved and compared by the user.
+    type State: Copy;
+    /// The step size, what is kept between steps, and what the first guess needs.
+    type Workspace: Clone;
+
+    /// A workspace for steps of `h`, of either sign, from `state`.
+    ///
+    /// # Errors
+    /// When the first step could not be made.
+    fn workspace(
+        &self,
+        state: &Self::State,
+        h: Self::Scalar,
+    ) -> Result<Self::Workspace, StartError>;
+
+    /// One step, in place.
+    ///
+    /// # Errors
+    /// When it cannot be solved; the state is then unchanged.
+    fn advance(
+        &self,
+        state: &mut Self::State,
+        workspace: &mut Self::Workspace,
+    ) -> Result<(), StepError>;
+
+    /// The number of the node.
+    fn node(state: &Self::State) -> u64;
+
+    /// The same state, counted as another node.
+    #[must_use]
+    fn at_node(state: Self::State, node: u64) -> Self::State;
+}
+
+/// A model whose step is its own inverse under `h -> -h`, which the derivation has shown for the
+/// action of one step. Only such steps gain order by [`Composition`](super::Composition).
+pub trait Reversible: Stepper {}
