@@ -218,3 +218,28 @@ fn derivatives_at_rest_are_those_of_the_linear_problem() {
         }
     }
 }
+
+#[test]
+fn many_steps_at_once_are_the_same_steps() {
+    let mut random = Random(23);
+    for case in 0..8 {
+        let (j, m) = case_at(&mut random, case, 0.4);
+        let body = Poinsot::new(j).expect("bodies");
+        let momentum = SpatialMomentum(m);
+        let mut one = random.rotation();
+        let mut many = one;
+        let mut single = Free::start(&body, &one, &momentum, 1.0).expect("slow enough");
+        let mut batch = single;
+        // Across several projections, in uneven portions.
+        for count in [1, 70, 63, 64, 200] {
+            for _ in 0..count {
+                single.step(&mut one).expect("free");
+            }
+            batch
+                .follow_many(&mut many, &momentum, count)
+                .expect("free");
+            assert_eq!(one.quaternion(), many.quaternion(), "case {case}, {count}");
+            assert_eq!(single, batch);
+        }
+    }
+}

@@ -245,25 +245,43 @@ impl<T: Real> Free<T> {
     /// One step without the projection; false, and nothing changed, when a number is not finite.
     #[inline(always)]
     fn advance(&mut self, attitude: &mut Rotation<T>) -> bool {
-        let (det, n) = if plain::<T>() {
-            self.orbit.solve(&self.body, self.u())
-        } else {
-            self.pencil.solve(&self.body, self.u())
-        };
-        let [x, y, z] = n;
-        let norm = (det * det + x * x) + (y * y + z * z);
+        let (u, quaternion, norm) = self.moved(self.u(), attitude, self.until_projection);
         if !norm.is_finite() {
             return false;
         }
+        for (axis, x) in self.axes.iter_mut().zip(u) {
+            axis.body = x;
+        }
+        *attitude = quaternion;
+        true
+    }
+
+    /// The next `u` and attitude, and a number that is finite if and only if they are.
+    #[inline(always)]
+    fn moved(
+        &self,
+        u: [T; 3],
+        attitude: &Rotation<T>,
+        until_projection: u32,
+    ) -> ([T; 3], Rotation<T>, T) {
+        let (det, n) = if plain::<T>() {
+            self.orbit.solve(&self.body, u)
+        } else {
+            self.pencil.solve(&self.body, u)
+        };
+        let [x, y, z] = n;
+        let norm = (det * det + x * x) + (y * y + z * z);
         let per_norm = T::one() / norm;
-        let push = if plain::<T>() {
+        let [p, q, r] = if plain::<T>() {
             self.orbit.push(n)
         } else {
             gyroscopic::<T, false>(&self.body, n).map(|x| x + x)
         };
-        for (axis, push) in self.axes.iter_mut().zip(push) {
-            axis.body += push * per_norm;
-        }
+        let pushed = [
+            u[0] + p * per_norm,
+            u[1] + q * per_norm,
+            u[2] + r * per_norm,
+        ];
         let [x, y, z] = if self.turned {
             let [given] = (self.frame * Vector3::from(n)).data.0;
             given
@@ -271,12 +289,56 @@ impl<T: Real> Free<T> {
             n
         };
         let mut scale = per_norm.sqrt();
-        if self.until_projection.is_multiple_of(REPAIR_EVERY) {
+        if until_projection.is_multiple_of(REPAIR_EVERY) {
             scale *= attitude.repair();
         }
         let omega = Rotation::from_unit([det * scale, x * scale, y * scale, z * scale]);
-        *attitude = attitude.compose_raw(&omega);
-        true
+        (pushed, attitude.compose_raw(&omega), norm)
+    }
+
+    /// `count` steps at once, with the same result as one by one: for lanes, whose numbers then stay
+    /// in registers.
+    ///
+    /// # Errors
+    /// As [`Free::follow`]; nothing is changed.
+    #[inline(always)]
+    pub fn follow_many(
+        &mut self,
+        attitude: &mut Rotation<T>,
+        momentum: &SpatialMomentum<T>,
+        count: u64,
+    ) -> Result<(), MoserVeselovError> {
+        if *attitude != self.attitude || *momentum != self.momentum {
+            self.restart(attitude, momentum)?;
+        }
+        let mut solver = *self;
+        let mut moving = *attitude;
+        let mut left = count;
+        while left > 0 {
+            let mut u = solver.u();
+            let mut norm = T::one();
+            while left > 0 && solver.until_projection > 0 {
+                (u, moving, norm) = solver.moved(u, &moving, solver.until_projection);
+                solver.until_projection -= 1;
+                left -= 1;
+            }
+            // What is not finite stays so: one test is enough.
+            if !norm.is_finite() {
+                let nan = Vector3::repeat(T::from_f64(f64::NAN));
+                return Err(MoserVeselovError::diagnose(&self.given, &nan));
+            }
+            for (axis, x) in solver.axes.iter_mut().zip(u) {
+                axis.body = x;
+            }
+            if solver.until_projection == 0 {
+                solver.project(&mut moving);
+                solver.until_projection = PROJECT_EVERY;
+            }
+        }
+        solver.attitude = moving;
+        *self = solver;
+        *attitude = moving;
+        Ok(())
     }
 
     /// Takes the rounding errors out of the momentum and the attitude.
