@@ -3,8 +3,15 @@
 //! library under test, so that an agreement of the two is worth something.
 
 pub mod attitude;
+pub mod body_in_field;
+pub mod body_n;
+pub mod cayley_klein;
+pub mod coupled_bodies;
+pub mod coupled_fixed_point;
 pub mod free_body;
+pub mod free_body_spatial;
 pub mod heavy_top;
+pub mod heavy_top_spatial;
 pub mod one_sided_top;
 pub mod principal_axes;
 pub mod principal_root;

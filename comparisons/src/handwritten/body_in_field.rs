@@ -1,0 +1,209 @@
+//! Rigid body in a field fixed in space, potential split over both ends of a step: second order, self-adjoint.
+//! Takes J, a field, attitude, body momentum and h; gives attitude and momenta at the nodes. State: attitude
+//! quaternion and the spatial momentum of the edge; what the field needs is computed from the attitude.
+
+use super::Unsolvable;
+use super::attitude::{
+    Matrix, Quaternion, Vector, add_scaled, apply, apply_transposed, cross, dot,
+};
+use super::principal_axes::PrincipalAxes;
+use super::principal_root::Quartic;
+use super::spaced::{SpacedQuaternion, SpacedVector};
+
+/// A potential of the attitude.
+pub trait Field: Copy {
+    /// The same field with body quantities in principal axes and energies times `factor`.
+    fn entered(&self, axes: &PrincipalAxes, factor: f64) -> Self;
+
+    /// Force on the momentum at an attitude: its spatial and its body components.
+    fn force(&self, rotation: &Matrix) -> (Vector, Vector);
+
+    /// Energy at an attitude.
+    fn energy(&self, rotation: &Matrix) -> f64;
+}
+
+/// Energy Gamma . K Gamma / 2 with Gamma = Lambda^T z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct QuadraticField {
+    /// K, symmetric, body axes.
+    pub stiffness: Matrix,
+    /// z, space axes.
+    pub axis: Vector,
+}
+
+impl Field for QuadraticField {
+    fn entered(&self, axes: &PrincipalAxes, factor: f64) -> QuadraticField {
+        let columns = self.stiffness.map(|row| axes.enter(&row));
+        // Rows are turned by the loop above, columns here; K stays symmetric up to rounding.
+        let rows = [0, 1, 2].map(|j| axes.enter(&[columns[0][j], columns[1][j], columns[2][j]]));
+        QuadraticField {
+            stiffness: [0, 1, 2]
+                .map(|i| [0, 1, 2].map(|j| 0.5 * factor * (rows[i][j] + rows[j][i]))),
+            axis: self.axis,
+        }
+    }
+
+    #[inline(always)]
+    fn force(&self, rotation: &Matrix) -> (Vector, Vector) {
+        let gamma = apply_transposed(rotation, &self.axis);
+        let gradient = apply(&self.stiffness, &gamma);
+        // The spatial force is normal to z by construction, so that m . z stays.
+        let spatial = cross(&self.axis, &apply(rotation, &gradient));
+        (spatial, cross(&gamma, &gradient))
+    }
+
+    fn energy(&self, rotation: &Matrix) -> f64 {
+        let gamma = apply_transposed(rotation, &self.axis);
+        0.5 * dot(&gamma, &apply(&self.stiffness, &gamma))
+    }
+}
+
+/// Energy gU . Gamma - p . B with Gamma = Lambda^T z and B = Lambda^T b.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TwoFields {
+    /// gU: weight times support -> centre of mass, body axes.
+    pub weight: Vector,
+    /// p: dipole moment, body axes.
+    pub dipole: Vector,
+    /// z, space axes.
+    pub up: Vector,
+    /// b, space axes.
+    pub field: Vector,
+}
+
+impl Field for TwoFields {
+    fn entered(&self, axes: &PrincipalAxes, factor: f64) -> TwoFields {
+        TwoFields {
+            weight: axes.enter(&self.weight).map(|c| factor * c),
+            dipole: axes.enter(&self.dipole).map(|c| factor * c),
+            ..*self
+        }
+    }
+
+    #[inline(always)]
+    fn force(&self, rotation: &Matrix) -> (Vector, Vector) {
+        let spatial = [
+            cross(&self.up, &apply(rotation, &self.weight)),
+            cross(&self.field, &apply(rotation, &self.dipole)),
+        ];
+        let body = [
+            cross(&apply_transposed(rotation, &self.up), &self.weight),
+            cross(&apply_transposed(rotation, &self.field), &self.dipole),
+        ];
+        (
+            add_scaled(&spatial[0], -1.0, &spatial[1]),
+            add_scaled(&body[0], -1.0, &body[1]),
+        )
+    }
+
+    fn energy(&self, rotation: &Matrix) -> f64 {
+        dot(&self.weight, &apply_transposed(rotation, &self.up))
+            - dot(&self.dipole, &apply_transposed(rotation, &self.field))
+    }
+}
+
+/// A body on its way; principal axes inside. Momenta are stored times h/2, forces times h^2/4.
+#[derive(Clone, Copy, Debug)]
+pub struct BodyInField<F> {
+    q: SpacedQuaternion,
+    /// Momentum of the edge that begins here, in space.
+    n: SpacedVector,
+    /// The same in the body at this node: all that the solver waits for.
+    u: SpacedVector,
+    /// Half the change of the spatial momentum that belongs to the node.
+    kick: SpacedVector,
+    field: F,
+    moments: Vector,
+    gyration: Vector,
+    quartic: Quartic,
+    axes: PrincipalAxes,
+    h: f64,
+}
+
+impl<F: Field> BodyInField<F> {
+    /// Starts a trajectory; the momentum is that of node 0 in body axes.
+    pub fn start(
+        poinsot: &Matrix,
+        field: &F,
+        attitude: &Quaternion,
+        body_momentum: &Vector,
+        h: f64,
+    ) -> Result<BodyInField<F>, Unsolvable> {
+        let axes = PrincipalAxes::new(poinsot)?;
+        let i = axes.moments;
+        let q = axes.enter_attitude(attitude);
+        let rotation = q.matrix();
+        let field = field.entered(&axes, 0.25 * h * h);
+        let momentum = axes.enter(body_momentum).map(|c| 0.5 * h * c);
+        let (kick, body_kick) = field.force(&rotation);
+        Ok(BodyInField {
+            q: SpacedQuaternion::new(q),
+            n: SpacedVector::new(add_scaled(&apply(&rotation, &momentum), 1.0, &kick)),
+            u: SpacedVector::new(add_scaled(&momentum, 1.0, &body_kick)),
+            kick: SpacedVector::new(kick),
+            field,
+            moments: i,
+            gyration: [i[1] - i[2], i[2] - i[0], i[0] - i[1]],
+            quartic: Quartic::new(&i),
+            axes,
+            h,
+        })
+    }
+
+    /// One step of the motion; unchanged when the equation has no solution.
+    #[inline(always)]
+    pub fn step(&mut self) -> Result<(), Unsolvable> {
+        let u = self.u.get();
+        let squares = u.map(|c| c * c);
+        let a = (squares[0] + squares[1]) + squares[2];
+        let kappa = self.quartic.principal_root(&squares, a)?;
+        let [i1, i2, i3] = self.moments;
+        let (d1, d2, d3) = (i1 - kappa, i2 - kappa, i3 - kappa);
+        let d23 = d2 * d3;
+        let turn = Quaternion([
+            d1 * (d23 + squares[0]) + (d2 * squares[1] + d3 * squares[2]),
+            (d23 + a) * u[0] + self.gyration[0] * (u[1] * u[2]),
+            (d3 * d1 + a) * u[1] + self.gyration[1] * (u[2] * u[0]),
+            (d1 * d2 + a) * u[2] + self.gyration[2] * (u[0] * u[1]),
+        ]);
+        let q = self.q.get();
+        let unscaled = q.times(&turn);
+        // |q|^2 is one up to rounding; the numerator takes that rounding out again, to first order.
+        let correction = 2.0 - q.norm_squared();
+        let scale = (correction + correction) / turn.norm_squared();
+        let e = unscaled.deviation();
+        let rotation =
+            [0, 1, 2].map(|r| [0, 1, 2].map(|c| scale * e[r][c] + if r == c { 1.0 } else { 0.0 }));
+        let n = self.n.get();
+        let (kick, body_kick) = self.field.force(&rotation);
+        let carried = apply_transposed(&rotation, &n);
+        self.u.set(add_scaled(&carried, 2.0, &body_kick));
+        self.n.set(add_scaled(&n, 2.0, &kick));
+        self.kick.set(kick);
+        self.q.set(unscaled.scaled((0.5 * scale).sqrt()));
+        Ok(())
+    }
+
+    /// Attitude body -> space at the present node.
+    pub fn attitude(&self) -> Quaternion {
+        self.axes.leave_attitude(&self.q.get())
+    }
+
+    /// Spatial momentum m_k at the present node.
+    pub fn spatial_momentum(&self) -> Vector {
+        add_scaled(&self.n.get(), -1.0, &self.kick.get()).map(|c| 2.0 * c / self.h)
+    }
+
+    /// Body momentum mu_k at the present node.
+    pub fn body_momentum(&self) -> Vector {
+        apply_transposed(&self.attitude().matrix(), &self.spatial_momentum())
+    }
+
+    /// Energy mu . I^-1 mu / 2 and that of the field: oscillates within O(h^2).
+    pub fn energy(&self) -> f64 {
+        let rotation = self.q.get().matrix();
+        let mu = apply_transposed(&rotation, &self.spatial_momentum());
+        let [x, y, z] = [0, 1, 2].map(|i| mu[i] * mu[i] / self.moments[i]);
+        0.5 * (x + y + z) + self.field.energy(&rotation) * 4.0 / (self.h * self.h)
+    }
+}

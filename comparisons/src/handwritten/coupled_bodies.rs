@@ -1,0 +1,343 @@
+//! Two bodies with a spherical joint: full Newton on the pair of rotations, solved by 3 x 3 blocks.
+//! Takes J_i + eps d_i d_i^T, the arms d_i, eps, attitudes, body momenta and h; gives attitudes and momenta at the
+//! nodes. State: both attitudes and both spatial momenta. The thesis's own iteration is in `coupled_fixed_point`.
+
+use super::Unsolvable;
+use super::attitude::{
+    Matrix, Quaternion, Vector, add_scaled, apply, apply_transposed, cross, dot,
+};
+use super::principal_axes::PrincipalAxes;
+
+/// What the pair is made of; matrices and arms in the axes of each body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pair {
+    /// Poinsot matrices about the centres of mass, plus eps d d^T.
+    pub poinsots: [Matrix; 2],
+    /// Joint -> centre of mass.
+    pub arms: [Vector; 2],
+    /// Reduced mass.
+    pub eps: f64,
+}
+
+/// Most Newton iterations of one step.
+pub const MOST_ITERATIONS: usize = 4;
+
+/// Largest residual of an accepted solution, in units of h/2 times the largest momentum (at least one).
+pub const RESIDUAL: f64 = 1e-15;
+
+/// One body's half of the equations, in its principal axes.
+#[derive(Clone, Copy, Debug)]
+struct Half {
+    moments: Vector,
+    arm: Vector,
+}
+
+/// Rodrigues vector c with what the equations need of it: with alpha = 1 + |c|^2,
+/// G = (I c + c x I c)/alpha and w = (c x d + c x (c x d))/alpha = (Om - Id) d / 2.
+#[derive(Clone, Copy, Debug)]
+struct Turn {
+    c: Vector,
+    inverse: f64,
+    momentum: Vector,
+    moved: Vector,
+}
+
+impl Half {
+    #[inline(always)]
+    fn turn(&self, c: &Vector) -> Turn {
+        let inverse = 1.0 / (1.0 + dot(c, c));
+        let b = [0, 1, 2].map(|i| self.moments[i] * c[i]);
+        let momentum = add_scaled(&b, 1.0, &cross(c, &b)).map(|x| inverse * x);
+        let side = cross(c, &self.arm);
+        let moved = add_scaled(&side, 1.0, &cross(c, &side)).map(|x| inverse * x);
+        Turn {
+            c: *c,
+            inverse,
+            momentum,
+            moved,
+        }
+    }
+
+    /// dG/dc = (I - hat(I c) + hat(c) I - 2 G c^T)/alpha.
+    #[inline(always)]
+    fn momentum_rate(&self, t: &Turn) -> Matrix {
+        let [i1, i2, i3] = self.moments;
+        let [x, y, z] = t.c;
+        let base = [
+            [i1, z * (i3 - i2), y * (i3 - i2)],
+            [z * (i1 - i3), i2, x * (i1 - i3)],
+            [y * (i2 - i1), x * (i2 - i1), i3],
+        ];
+        rate(&base, t.inverse, &t.momentum, &t.c)
+    }
+
+    /// dw/dc = (-hat(d) + (c.d) Id + c d^T - 2 d c^T - 2 w c^T)/alpha.
+    #[inline(always)]
+    fn moved_rate(&self, t: &Turn) -> Matrix {
+        let d = self.arm;
+        let along = dot(&t.c, &d);
+        let skew = [
+            [along, d[2], -d[1]],
+            [-d[2], along, d[0]],
+            [d[1], -d[0], along],
+        ];
+        let base = [0, 1, 2]
+            .map(|i| [0, 1, 2].map(|j| skew[i][j] + (t.c[i] * d[j] - 2.0 * (d[i] * t.c[j]))));
+        rate(&base, t.inverse, &t.moved, &t.c)
+    }
+}
+
+/// (base - 2 v c^T)/alpha.
+#[inline(always)]
+fn rate(base: &Matrix, inverse: f64, v: &Vector, c: &Vector) -> Matrix {
+    let double = c.map(|x| 2.0 * x);
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| inverse * (base[i][j] - v[i] * double[j])))
+}
+
+#[inline(always)]
+fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j]))
+}
+
+#[inline(always)]
+fn transposed(a: &Matrix) -> Matrix {
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| a[j][i]))
+}
+
+/// d x (columns of m), times `s`.
+#[inline(always)]
+fn crossed(d: &Vector, m: &Matrix, s: f64) -> Matrix {
+    let [x, y, z] = d.map(|c| s * c);
+    [
+        [0, 1, 2].map(|j| y * m[2][j] - z * m[1][j]),
+        [0, 1, 2].map(|j| z * m[0][j] - x * m[2][j]),
+        [0, 1, 2].map(|j| x * m[1][j] - y * m[0][j]),
+    ]
+}
+
+/// Inverse by cofactors; not finite when there is none, which the solvability test sees.
+#[inline(always)]
+fn inverse(m: &Matrix) -> Matrix {
+    let rows = [
+        cross(&m[1], &m[2]),
+        cross(&m[2], &m[0]),
+        cross(&m[0], &m[1]),
+    ];
+    let scale = 1.0 / dot(&m[0], &rows[0]);
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| scale * rows[j][i]))
+}
+
+/// Newton's matrix by blocks, factored: A11^-1, A21, A11^-1 A12 and the inverse of the Schur complement.
+#[derive(Clone, Copy, Debug)]
+struct Factors {
+    first: Matrix,
+    lower: Matrix,
+    upper: Matrix,
+    schur: Matrix,
+}
+
+impl Factors {
+    #[inline(always)]
+    fn solve(&self, f: &[Vector; 2]) -> [Vector; 2] {
+        let half = apply(&self.first, &f[0]);
+        let second = apply(
+            &self.schur,
+            &add_scaled(&f[1], -1.0, &apply(&self.lower, &half)),
+        );
+        [
+            add_scaled(&half, -1.0, &apply(&self.upper, &second)),
+            second,
+        ]
+    }
+}
+
+/// Two bodies on their way; principal axes of either inside. Momenta are stored times h/2.
+#[derive(Clone, Copy, Debug)]
+pub struct CoupledBodies {
+    q: [Quaternion; 2],
+    m: [Vector; 2],
+    /// Rodrigues vectors of the last four steps, the newest first: the next starts from the cubic through them.
+    past: [[Vector; 2]; 4],
+    known: u32,
+    halves: [Half; 2],
+    eps: f64,
+    axes: [PrincipalAxes; 2],
+    h: f64,
+    iterations: usize,
+    residual: f64,
+}
+
+impl CoupledBodies {
+    /// Starts a trajectory; momenta are those of node 0, each in the axes of its body.
+    pub fn start(
+        pair: &Pair,
+        attitudes: &[Quaternion; 2],
+        body_momenta: &[Vector; 2],
+        h: f64,
+    ) -> Result<CoupledBodies, Unsolvable> {
+        let axes = [
+            PrincipalAxes::new(&pair.poinsots[0])?,
+            PrincipalAxes::new(&pair.poinsots[1])?,
+        ];
+        let q = [0, 1].map(|i| axes[i].enter_attitude(&attitudes[i]));
+        let m = [0, 1]
+            .map(|i| apply(&q[i].matrix(), &axes[i].enter(&body_momenta[i])).map(|c| 0.5 * h * c));
+        Ok(CoupledBodies {
+            q,
+            m,
+            past: [[[0.0; 3]; 2]; 4],
+            known: 0,
+            halves: [0, 1].map(|i| Half {
+                moments: axes[i].moments,
+                arm: axes[i].enter(&pair.arms[i]),
+            }),
+            eps: pair.eps,
+            axes,
+            h,
+            iterations: 0,
+            residual: 0.0,
+        })
+    }
+
+    /// The equations G_1 - eps d_1 x R w_2 = u_1 and G_2 - eps d_2 x R^T w_1 = u_2, left minus right.
+    #[inline(always)]
+    fn residuals(&self, t: &[Turn; 2], r: &Matrix, u: &[Vector; 2]) -> [Vector; 2] {
+        let [one, two] = &self.halves;
+        let first = cross(&one.arm, &apply(r, &t[1].moved));
+        let second = cross(&two.arm, &apply_transposed(r, &t[0].moved));
+        [
+            add_scaled(&add_scaled(&t[0].momentum, -self.eps, &first), -1.0, &u[0]),
+            add_scaled(&add_scaled(&t[1].momentum, -self.eps, &second), -1.0, &u[1]),
+        ]
+    }
+
+    #[inline(always)]
+    fn factors(&self, t: &[Turn; 2], r: &Matrix) -> Factors {
+        let [one, two] = &self.halves;
+        let a11 = one.momentum_rate(&t[0]);
+        let a22 = two.momentum_rate(&t[1]);
+        let a12 = crossed(&one.arm, &product(r, &two.moved_rate(&t[1])), -self.eps);
+        let back = transposed(r);
+        let a21 = crossed(&two.arm, &product(&back, &one.moved_rate(&t[0])), -self.eps);
+        let first = inverse(&a11);
+        let upper = product(&first, &a12);
+        let correction = product(&a21, &upper);
+        let schur = [0, 1, 2].map(|i| [0, 1, 2].map(|j| a22[i][j] - correction[i][j]));
+        Factors {
+            first,
+            lower: a21,
+            upper,
+            schur: inverse(&schur),
+        }
+    }
+
+    /// Where Newton begins: extrapolation of what is known of the past.
+    #[inline(always)]
+    fn guess(&self) -> [Vector; 2] {
+        let [a, b, c, d] = &self.past;
+        let weights = match self.known {
+            0 => [0.0, 0.0, 0.0, 0.0],
+            1 => [1.0, 0.0, 0.0, 0.0],
+            2 => [2.0, -1.0, 0.0, 0.0],
+            3 => [3.0, -3.0, 1.0, 0.0],
+            _ => [4.0, -6.0, 4.0, -1.0],
+        };
+        let [p, q, r, s] = weights;
+        [0, 1].map(|i| [0, 1, 2].map(|j| (p * a[i][j] + q * b[i][j]) + (r * c[i][j] + s * d[i][j])))
+    }
+
+    /// One step of the motion; unchanged when Newton does not converge in [`MOST_ITERATIONS`].
+    #[inline(always)]
+    pub fn step(&mut self) -> Result<(), Unsolvable> {
+        let rotations = [self.q[0].matrix(), self.q[1].matrix()];
+        let u = [0, 1].map(|i| apply_transposed(&rotations[i], &self.m[i]));
+        let r = product(&transposed(&rotations[0]), &rotations[1]);
+        let [halves0, halves1] = &self.halves;
+        let mut c = self.guess();
+        let mut t = [halves0.turn(&c[0]), halves1.turn(&c[1])];
+        let mut f = self.residuals(&t, &r, &u);
+        let scale = u.iter().flatten().fold(1.0_f64, |m, x| m.max(x.abs()));
+        let mut iterations = 0;
+        loop {
+            iterations += 1;
+            let factors = self.factors(&t, &r);
+            // A second correction with the same matrix costs a residual instead of a factorisation; together the two
+            // are of third order.
+            for _ in 0..2 {
+                let change = factors.solve(&f);
+                c = [0, 1].map(|i| add_scaled(&c[i], -1.0, &change[i]));
+                t = [halves0.turn(&c[0]), halves1.turn(&c[1])];
+                f = self.residuals(&t, &r, &u);
+            }
+            let size = f.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+            if size <= RESIDUAL * scale {
+                self.residual = size;
+                break;
+            }
+            // Also taken by a NaN.
+            if iterations == MOST_ITERATIONS || !size.is_finite() {
+                return Err(Unsolvable);
+            }
+        }
+        self.iterations = iterations;
+        self.past = [c, self.past[0], self.past[1], self.past[2]];
+        self.known += u32::from(self.known < 4);
+        // The joint hands over eps (Om_1 - Id) d_1 x (Om_2 - Id) d_2 in space, so that the sum of momenta stays.
+        let moved = [0, 1].map(|i| apply(&rotations[i], &t[i].moved));
+        let handed = cross(&moved[0], &moved[1]).map(|x| 2.0 * self.eps * x);
+        self.m = [
+            add_scaled(&self.m[0], -1.0, &handed),
+            add_scaled(&self.m[1], 1.0, &handed),
+        ];
+        for i in 0..2 {
+            let [x, y, z] = t[i].c;
+            let q = self.q[i].times(&Quaternion([1.0, x, y, z]));
+            // |q|^2 = 1 up to rounding; the numerator takes that out again, to first order.
+            let correction = 1.5 - 0.5 * self.q[i].norm_squared();
+            self.q[i] = q.scaled(correction * t[i].inverse.sqrt());
+        }
+        Ok(())
+    }
+
+    /// Newton iterations of the last step.
+    pub fn iterations(&self) -> usize {
+        self.iterations
+    }
+
+    /// Largest residual of the last step.
+    pub fn residual(&self) -> f64 {
+        self.residual
+    }
+
+    /// Attitudes body -> space at the present node.
+    pub fn attitudes(&self) -> [Quaternion; 2] {
+        [0, 1].map(|i| self.axes[i].leave_attitude(&self.q[i]))
+    }
+
+    /// Spatial momenta at the present node.
+    pub fn spatial_momenta(&self) -> [Vector; 2] {
+        self.m.map(|m| m.map(|c| 2.0 * c / self.h))
+    }
+
+    /// Body momenta at the present node.
+    pub fn body_momenta(&self) -> [Vector; 2] {
+        [0, 1].map(|i| {
+            let u = apply_transposed(&self.q[i].matrix(), &self.m[i]);
+            self.axes[i].leave(&u).map(|c| 2.0 * c / self.h)
+        })
+    }
+
+    /// Energy mu . M^-1 mu / 2 with the mass matrix of both bodies together: oscillates within O(h^2).
+    pub fn energy(&self) -> f64 {
+        let rotations = [self.q[0].matrix(), self.q[1].matrix()];
+        let u = [0, 1].map(|i| apply_transposed(&rotations[i], &self.m[i]));
+        let r = product(&transposed(&rotations[0]), &rotations[1]);
+        let rest = [
+            self.halves[0].turn(&[0.0; 3]),
+            self.halves[1].turn(&[0.0; 3]),
+        ];
+        // At c = 0 Newton's matrix is the mass matrix.
+        let rates = self.factors(&rest, &r).solve(&u);
+        2.0 * (dot(&u[0], &rates[0]) + dot(&u[1], &rates[1])) / (self.h * self.h)
+    }
+}
