@@ -1,4 +1,4 @@
-//! Reference states of three rigid-body runs, computed elsewhere with 32-digit arithmetic and rounded to `f64` here.
+//! Reference states of rigid-body runs, computed elsewhere with 32-digit arithmetic and rounded to `f64` here.
 //! Gives attitudes (row-major matrices, body -> space) and body momenta at the nodes 1, 10, 100, 1000 of runs with
 //! h = 0.1, together with the data that start them; physical sign, moments I, Poinsot matrix J = tr(I)/2 Id - I.
 
@@ -10,6 +10,10 @@ pub const NODES: [u64; 4] = [1, 10, 100, 1000];
 
 /// Agreement asked for up to node 1000: rounding of a thousand steps, with a margin of about ten.
 pub const TOLERANCE: f64 = 1e-12;
+
+pub mod coupled_sym;
+pub mod quaternion;
+pub mod spatial;
 
 /// Free symmetric body with I = (2, 2, 1), started at the identity.
 pub mod body_sym {

@@ -289,12 +289,12 @@ impl CoupledBodies {
             add_scaled(&self.m[0], -1.0, &handed),
             add_scaled(&self.m[1], 1.0, &handed),
         ];
-        for i in 0..2 {
-            let [x, y, z] = t[i].c;
-            let q = self.q[i].times(&Quaternion([1.0, x, y, z]));
-            // |q|^2 = 1 up to rounding; the numerator takes that out again, to first order.
-            let correction = 1.5 - 0.5 * self.q[i].norm_squared();
-            self.q[i] = q.scaled(correction * t[i].inverse.sqrt());
+        for (q, turn) in self.q.iter_mut().zip(&t) {
+            let [x, y, z] = turn.c;
+            // |q|^2 = 1 up to rounding; the factor takes that out again, to first order.
+            let correction = 1.5 - 0.5 * q.norm_squared();
+            let turned = q.times(&Quaternion([1.0, x, y, z]));
+            *q = turned.scaled(correction * turn.inverse.sqrt());
         }
         Ok(())
     }
