@@ -9,5 +9,6 @@ pub mod measure;
 pub mod motion;
 pub mod order;
 pub mod symplectic;
+pub mod systems;
 pub mod trend;
 pub mod truth;
