@@ -5,5 +5,6 @@
 pub mod body;
 pub mod continuous;
 pub mod elliptic;
+pub mod gallery;
 pub mod handwritten;
 pub mod runge_kutta;

@@ -28,6 +28,33 @@ pub type Method85<const N: usize> =
 pub type Method98<const N: usize> =
     ExplicitRungeKutta<Ordinary, Adaptive, f64, [f64; N], 9, 16, 21>;
 
+/// A method: how it is made for a tolerance.
+pub trait Scheme<const N: usize>: OrdinaryNumericalMethod<f64, [f64; N]> {
+    /// The method with this tolerance of the error of one step, absolute and relative, and this first step.
+    fn with(tolerance: f64, first: f64) -> Self;
+}
+
+impl<const N: usize> Scheme<N> for Method54<N> {
+    fn with(tolerance: f64, first: f64) -> Self {
+        let method = Self::dopri5().rtol(tolerance).atol(tolerance);
+        method.h0(first).max_steps(usize::MAX)
+    }
+}
+
+impl<const N: usize> Scheme<N> for Method85<N> {
+    fn with(tolerance: f64, first: f64) -> Self {
+        let method = Self::dop853().rtol(tolerance).atol(tolerance);
+        method.h0(first).max_steps(usize::MAX)
+    }
+}
+
+impl<const N: usize> Scheme<N> for Method98<N> {
+    fn with(tolerance: f64, first: f64) -> Self {
+        let method = Self::rkv988e().rtol(tolerance).atol(tolerance);
+        method.h0(first).max_steps(usize::MAX)
+    }
+}
+
 /// How finely a method works.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
@@ -64,90 +91,18 @@ pub struct RungeKutta<R, M, const N: usize> {
     longest: f64,
 }
 
-impl<M: Motion<N>, const N: usize> RungeKutta<Method54<N>, M, N> {
-    /// Dormand and Prince 5(4).
+impl<R: Scheme<N>, M: Motion<N>, const N: usize> RungeKutta<R, M, N> {
+    /// Starts a motion whose nodes are `h` apart.
     ///
     /// # Errors
     /// [`Unsolvable`] when the start is not finite.
-    pub fn dormand_prince_54(
+    pub fn start(
         motion: M,
         start: &[f64; N],
         h: f64,
         accuracy: Accuracy,
     ) -> Result<Self, Unsolvable> {
-        let method = Method54::dopri5()
-            .rtol(accuracy.tolerance)
-            .atol(accuracy.tolerance);
-        Self::new(
-            method.h0(accuracy.part * h).max_steps(usize::MAX),
-            motion,
-            start,
-            h,
-            accuracy,
-        )
-    }
-}
-
-impl<M: Motion<N>, const N: usize> RungeKutta<Method85<N>, M, N> {
-    /// Dormand and Prince 8(5,3).
-    ///
-    /// # Errors
-    /// [`Unsolvable`] when the start is not finite.
-    pub fn dormand_prince_85(
-        motion: M,
-        start: &[f64; N],
-        h: f64,
-        accuracy: Accuracy,
-    ) -> Result<Self, Unsolvable> {
-        let method = Method85::dop853()
-            .rtol(accuracy.tolerance)
-            .atol(accuracy.tolerance);
-        Self::new(
-            method.h0(accuracy.part * h).max_steps(usize::MAX),
-            motion,
-            start,
-            h,
-            accuracy,
-        )
-    }
-}
-
-impl<M: Motion<N>, const N: usize> RungeKutta<Method98<N>, M, N> {
-    /// Verner's 9(8).
-    ///
-    /// # Errors
-    /// [`Unsolvable`] when the start is not finite.
-    pub fn verner_98(
-        motion: M,
-        start: &[f64; N],
-        h: f64,
-        accuracy: Accuracy,
-    ) -> Result<Self, Unsolvable> {
-        let method = Method98::rkv988e()
-            .rtol(accuracy.tolerance)
-            .atol(accuracy.tolerance);
-        Self::new(
-            method.h0(accuracy.part * h).max_steps(usize::MAX),
-            motion,
-            start,
-            h,
-            accuracy,
-        )
-    }
-}
-
-impl<R, M, const N: usize> RungeKutta<R, M, N>
-where
-    R: OrdinaryNumericalMethod<f64, [f64; N]>,
-    M: Motion<N>,
-{
-    fn new(
-        mut method: R,
-        motion: M,
-        start: &[f64; N],
-        h: f64,
-        accuracy: Accuracy,
-    ) -> Result<Self, Unsolvable> {
+        let mut method = R::with(accuracy.tolerance, accuracy.part * h);
         let equations = Equations(motion);
         // The library asks for an end, and only to bound steps; nodes bound them here.
         let end = h * 1e15;

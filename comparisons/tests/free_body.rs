@@ -5,11 +5,11 @@ use clebsch::{DoubleDouble, Real};
 use clebsch_comparisons::body::exact::Exact;
 use clebsch_comparisons::body::implicit::{FixedPoint, Newton};
 use clebsch_comparisons::body::splitting::{FourthOrderSplitting, MergedSplitting, Splitting};
-use clebsch_comparisons::body::{FreeMotion, Start};
+use clebsch_comparisons::body::{BodyMotion, Start};
 use clebsch_comparisons::continuous::rigid::{Field, RigidBody};
 use clebsch_comparisons::handwritten::attitude::{Matrix, Quaternion, Vector, apply, dot};
 use clebsch_comparisons::handwritten::free_body::FreeBody;
-use clebsch_comparisons::runge_kutta::{Accuracy, RungeKutta};
+use clebsch_comparisons::runge_kutta::{Accuracy, Method54, Method85, Method98, RungeKutta};
 
 /// J of principal moments, turned by a quaternion out of its axes.
 fn poinsot(moments: Vector, frame: [f64; 4]) -> Matrix {
@@ -200,7 +200,7 @@ fn separatrix_is_followed() {
 }
 
 /// Largest error at the nodes up to time 10 with these many steps.
-fn error<M: FreeMotion>(make: impl Fn(&Start) -> M, start: &Start, steps: u32) -> f64 {
+fn error<M: BodyMotion>(make: impl Fn(&Start) -> M, start: &Start, steps: u32) -> f64 {
     let start = Start {
         h: 10.0 / f64::from(steps),
         ..*start
@@ -275,7 +275,7 @@ fn iterations_solve_the_explicit_step() {
             newton.step().unwrap();
         }
         let here = (explicit.attitude(), explicit.body_momentum());
-        for other in [&fixed as &dyn FreeMotion, &newton] {
+        for other in [&fixed as &dyn BodyMotion, &newton] {
             let apart = distance(&here, &(other.attitude(), other.body_momentum()));
             // A hundred roundings, which the neighbourhood of the separatrix multiplies by ten or so.
             assert!(apart < 1e-12, "{name}: {apart:e}");
@@ -287,12 +287,12 @@ fn iterations_solve_the_explicit_step() {
 #[test]
 fn splitting_keeps_spatial_momentum_and_swings_in_energy() {
     let start = start([3.5, 2.5, 2.0], STRAIGHT, [-0.5, 0.3, 1.0], 0.1);
-    let space = |m: &dyn FreeMotion| apply(&m.attitude().matrix(), &m.body_momentum());
-    let energy = |m: &dyn FreeMotion| {
+    let space = |m: &dyn BodyMotion| apply(&m.attitude().matrix(), &m.body_momentum());
+    let energy = |m: &dyn BodyMotion| {
         let mu = m.body_momentum();
         0.5 * dot(&mu, &[mu[0] / 3.5, mu[1] / 2.5, mu[2] / 2.0])
     };
-    let mut motions: [Box<dyn FreeMotion>; 3] = [
+    let mut motions: [Box<dyn BodyMotion>; 3] = [
         Box::new(Splitting::start(&start).unwrap()),
         Box::new(MergedSplitting::start(&start).unwrap()),
         Box::new(FourthOrderSplitting::start(&start).unwrap()),
@@ -328,10 +328,12 @@ fn runge_kutta_meets_its_tolerance() {
         distance(&(Quaternion([w, x, y, z]), [a, b, c]), &exact(&start, time))
     };
     let accuracy = Accuracy::reference(2);
-    let mut reference = RungeKutta::verner_98(body(), &first, 0.1, accuracy).unwrap();
+    let mut reference =
+        RungeKutta::<Method98<7>, _, 7>::start(body(), &first, 0.1, accuracy).unwrap();
     let mut eighth =
-        RungeKutta::dormand_prince_85(body(), &first, 0.1, Accuracy::of(1e-12)).unwrap();
-    let mut fifth = RungeKutta::dormand_prince_54(body(), &first, 0.1, Accuracy::of(1e-6)).unwrap();
+        RungeKutta::<Method85<7>, _, 7>::start(body(), &first, 0.1, Accuracy::of(1e-12)).unwrap();
+    let mut fifth =
+        RungeKutta::<Method54<7>, _, 7>::start(body(), &first, 0.1, Accuracy::of(1e-6)).unwrap();
     for _ in 0..1000 {
         reference.step().unwrap();
         eighth.step().unwrap();

@@ -4,7 +4,7 @@
 //! start and a time; gives attitude and momentum, wrong by rounding only: some units of 1e-16 times
 //! the number of radians turned.
 
-use super::{FreeMotion, Start};
+use super::{BodyMotion, Start};
 use crate::elliptic::{complete, incomplete, jacobi, third_kind};
 use crate::handwritten::Unsolvable;
 use crate::handwritten::attitude::{Quaternion, Vector, apply_transposed, dot};
@@ -64,7 +64,7 @@ struct Frame {
 }
 
 impl Exact {
-    /// The motion from `start`; its h is the distance of the nodes that [`FreeMotion::step`] visits.
+    /// The motion from `start`; its h is the distance of the nodes that [`BodyMotion::step`] visits.
     ///
     /// # Errors
     /// [`Unsolvable`] for a matrix that belongs to no body.
@@ -281,7 +281,7 @@ fn nodal(mu: &Vector, norm: f64) -> Quaternion {
     Quaternion([tc, ts, 0.0, 0.0]).times(&Quaternion([pc, 0.0, 0.0, ps]))
 }
 
-impl FreeMotion for Exact {
+impl BodyMotion for Exact {
     fn step(&mut self) -> Result<(), Unsolvable> {
         self.node += 1;
         Ok(())

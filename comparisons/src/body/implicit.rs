@@ -3,7 +3,7 @@
 //! same map as the explicit step, by Hairer and Vilmart's fixed point (J. Phys. A 39, 2006, section 3)
 //! or by Newton's method. Refuses a step whose iteration does not converge.
 
-use super::{FreeMotion, Start};
+use super::{BodyMotion, Start};
 use crate::handwritten::Unsolvable;
 use crate::handwritten::attitude::{Quaternion, Vector, cross, dot};
 use crate::handwritten::principal_axes::PrincipalAxes;
@@ -116,7 +116,7 @@ impl FixedPoint {
     }
 }
 
-impl FreeMotion for FixedPoint {
+impl BodyMotion for FixedPoint {
     #[inline(always)]
     fn step(&mut self) -> Result<(), Unsolvable> {
         let c = self.solve()?;
@@ -196,7 +196,7 @@ impl Newton {
     }
 }
 
-impl FreeMotion for Newton {
+impl BodyMotion for Newton {
     #[inline(always)]
     fn step(&mut self) -> Result<(), Unsolvable> {
         let c = self.solve()?;

@@ -1,13 +1,17 @@
-//! Other ways to move a free rigid body: what they start from, and what all of them can do.
-//! Takes a Poinsot matrix, attitude, body momentum and h; gives attitude and body momentum node by
-//! node, in the user's axes.
+//! Other ways to move a rigid body: what they start from, and what all of them can do. Takes a Poinsot
+//! matrix, attitude, body momentum and h; gives attitude and body momentum node by node, in the
+//! user's axes.
 
 pub mod exact;
 pub mod implicit;
 pub mod splitting;
 
+use crate::continuous::rigid::RigidBody;
 use crate::handwritten::Unsolvable;
 use crate::handwritten::attitude::{Matrix, Quaternion, Vector};
+use crate::handwritten::free_body::FreeBody;
+use crate::handwritten::heavy_top::HeavyTop;
+use crate::runge_kutta::{RungeKutta, Scheme};
 
 /// What a free body starts from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,8 +26,8 @@ pub struct Start {
     pub h: f64,
 }
 
-/// A free body on its way.
-pub trait FreeMotion {
+/// A rigid body on its way, free or in a field.
+pub trait BodyMotion {
     /// One step.
     ///
     /// # Errors
@@ -37,7 +41,8 @@ pub trait FreeMotion {
     fn body_momentum(&self) -> Vector;
 }
 
-impl FreeMotion for crate::handwritten::free_body::FreeBody {
+impl BodyMotion for FreeBody {
+    #[inline(always)]
     fn step(&mut self) -> Result<(), Unsolvable> {
         Self::step(self);
         Ok(())
@@ -49,5 +54,36 @@ impl FreeMotion for crate::handwritten::free_body::FreeBody {
 
     fn body_momentum(&self) -> Vector {
         Self::body_momentum(self)
+    }
+}
+
+impl BodyMotion for HeavyTop {
+    #[inline(always)]
+    fn step(&mut self) -> Result<(), Unsolvable> {
+        Self::step(self)
+    }
+
+    fn attitude(&self) -> Quaternion {
+        Self::attitude(self)
+    }
+
+    fn body_momentum(&self) -> Vector {
+        Self::body_momentum(self)
+    }
+}
+
+impl<R: Scheme<7>> BodyMotion for RungeKutta<R, RigidBody, 7> {
+    fn step(&mut self) -> Result<(), Unsolvable> {
+        Self::step(self)
+    }
+
+    fn attitude(&self) -> Quaternion {
+        let [w, x, y, z, ..] = *self.state();
+        Quaternion([w, x, y, z]).normalised()
+    }
+
+    fn body_momentum(&self) -> Vector {
+        let [.., a, b, c] = *self.state();
+        [a, b, c]
     }
 }

@@ -3,7 +3,7 @@
 //! composition. Takes a start; gives motions that keep |momentum| and spatial momentum to rounding,
 //! and the energy within O(h^2) or O(h^4). Explicit: no step is refused.
 
-use super::{FreeMotion, Start};
+use super::{BodyMotion, Start};
 use crate::handwritten::Unsolvable;
 use crate::handwritten::attitude::{Quaternion, Vector};
 use crate::handwritten::principal_axes::PrincipalAxes;
@@ -97,7 +97,7 @@ impl Splitting {
     }
 }
 
-impl FreeMotion for Splitting {
+impl BodyMotion for Splitting {
     #[inline(always)]
     fn step(&mut self) -> Result<(), Unsolvable> {
         strang(&mut self.phase, &self.rates);
@@ -143,7 +143,7 @@ impl MergedSplitting {
     }
 }
 
-impl FreeMotion for MergedSplitting {
+impl BodyMotion for MergedSplitting {
     #[inline(always)]
     fn step(&mut self) -> Result<(), Unsolvable> {
         let (phase, rates) = (&mut self.ahead, &self.rates);
@@ -190,7 +190,7 @@ impl FourthOrderSplitting {
     }
 }
 
-impl FreeMotion for FourthOrderSplitting {
+impl BodyMotion for FourthOrderSplitting {
     #[inline(always)]
     fn step(&mut self) -> Result<(), Unsolvable> {
         for rates in [self.outer, self.outer, self.middle, self.outer, self.outer] {

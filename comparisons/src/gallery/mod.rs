@@ -1,0 +1,174 @@
+//! Which other methods there are for each model of the gallery. Takes a model's name and the values of
+//! a case in the order of its card; gives methods that show their state as the initial values of the
+//! same card, so that whoever compares can ask the model itself for observables and invariants there.
+
+mod coupled;
+mod rigid;
+
+use crate::handwritten::Unsolvable;
+use crate::handwritten::attitude::{Matrix, Quaternion, Vector};
+
+/// The values of a case.
+#[derive(Clone, Copy, Debug)]
+pub struct Problem<'a> {
+    /// Parameters, each row by row, in the order of the card.
+    pub parameters: &'a [Vec<f64>],
+    /// Initial values likewise.
+    pub initial: &'a [Vec<f64>],
+    /// Step length, the distance of the nodes.
+    pub h: f64,
+}
+
+/// A method on its way.
+pub trait Method {
+    /// Goes to the next node.
+    ///
+    /// # Errors
+    /// [`Unsolvable`] when it cannot.
+    fn step(&mut self) -> Result<(), Unsolvable>;
+
+    /// The state at the present node as initial values of the model, in the order of the card.
+    fn shown(&self) -> Vec<Vec<f64>>;
+}
+
+/// What a method is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// The truth that the others are measured against: closed form, or Runge-Kutta at rounding level.
+    Reference,
+    /// The generated scheme once more, written by hand.
+    ByHand,
+    /// A method from the literature.
+    Published,
+}
+
+/// A method that a model can be compared with.
+#[derive(Clone, Copy, Debug)]
+pub struct Offer {
+    /// Its name in tables and files.
+    pub name: &'static str,
+    /// What it is and where it comes from.
+    pub doc: &'static str,
+    /// What it is for.
+    pub role: Role,
+    /// Starts it.
+    pub start: Start,
+}
+
+/// What starts a method. Refuses values that are not those of the model, and steps without solution.
+pub type Start = fn(&Problem<'_>) -> Result<Box<dyn Method>, Unsolvable>;
+
+/// Tolerances of the published Runge-Kutta methods: near rounding, and as people use them.
+const TIGHT: f64 = 1e-12;
+const LOOSE: f64 = 1e-9;
+
+fn reference(start: Start) -> Offer {
+    Offer {
+        name: "verner-98",
+        doc: "Verner's Runge-Kutta 9(8), two steps a node at least",
+        role: Role::Reference,
+        start,
+    }
+}
+
+/// A second run at rounding level: its error is that of the reference, or its own.
+fn check(start: Start) -> Offer {
+    Offer {
+        name: "verner-98-finer",
+        doc: "Verner's Runge-Kutta 9(8), three steps a node: how good the reference is",
+        role: Role::Published,
+        start,
+    }
+}
+
+fn by_hand(start: Start) -> Offer {
+    Offer {
+        name: "by-hand",
+        doc: "the generated scheme, written by hand",
+        role: Role::ByHand,
+        start,
+    }
+}
+
+fn eighth(start: Start) -> Offer {
+    Offer {
+        name: "dormand-prince-85",
+        doc: "Dormand and Prince 8(5,3), tolerance 1e-12",
+        role: Role::Published,
+        start,
+    }
+}
+
+fn fifth(start: Start) -> Offer {
+    Offer {
+        name: "dormand-prince-54",
+        doc: "Dormand and Prince 5(4), as ode45, tolerance 1e-9",
+        role: Role::Published,
+        start,
+    }
+}
+
+/// The methods for the model of this name, the reference first; none for a model that nobody wrote
+/// equations for.
+pub fn offers(model: &str) -> Vec<Offer> {
+    match model {
+        "free-body" => rigid::free::<rigid::FreeBody>(),
+        "free-body-spatial" => rigid::free::<rigid::FreeBodySpatial>(),
+        "heavy-top" => rigid::top::<rigid::HeavyTop>(),
+        "heavy-top-spatial" => rigid::top::<rigid::HeavyTopSpatial>(),
+        "body-in-two-fields" => rigid::in_field::<rigid::BodyInTwoFields>(),
+        "body-in-quadratic-field" => rigid::in_field::<rigid::BodyInQuadraticField>(),
+        "coupled-bodies" => coupled::bodies(),
+        _ => Vec::new(),
+    }
+}
+
+impl Problem<'_> {
+    fn parameter<T: Value>(&self, index: usize) -> Option<T> {
+        T::read(self.parameters.get(index)?)
+    }
+
+    fn initial<T: Value>(&self, index: usize) -> Option<T> {
+        T::read(self.initial.get(index)?)
+    }
+}
+
+/// What is read from a list of numbers; nothing when their count is another.
+trait Value: Sized {
+    fn read(numbers: &[f64]) -> Option<Self>;
+}
+
+impl Value for f64 {
+    fn read(numbers: &[f64]) -> Option<Self> {
+        match numbers {
+            [one] => Some(*one),
+            _ => None,
+        }
+    }
+}
+
+impl Value for Vector {
+    fn read(numbers: &[f64]) -> Option<Self> {
+        numbers.try_into().ok()
+    }
+}
+
+impl Value for Matrix {
+    fn read(numbers: &[f64]) -> Option<Self> {
+        match *numbers {
+            [a, b, c, d, e, f, g, h, i] => Some([[a, b, c], [d, e, f], [g, h, i]]),
+            _ => None,
+        }
+    }
+}
+
+impl Value for Quaternion {
+    fn read(numbers: &[f64]) -> Option<Self> {
+        Some(Quaternion::from_matrix(&Matrix::read(numbers)?))
+    }
+}
+
+/// A matrix row by row.
+fn rows(m: &Matrix) -> Vec<f64> {
+    m.iter().flatten().copied().collect()
+}
