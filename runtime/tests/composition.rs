@@ -23,7 +23,7 @@ fn factors_are_symmetric_and_meet_the_conditions_of_their_order() {
 /// A pendulum by the Stoermer-Verlet method.
 struct Pendulum;
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Swing {
     angle: Quad,
     momentum: Quad,

@@ -1,13 +1,15 @@
-//! The integration loop: runs a trajectory, samples it, watches its invariants; and steps of high
-//! order composed of a model's own.
+//! The integration loop: runs a trajectory, samples it, watches its invariants; steps of high order
+//! composed of a model's own; ensembles of independent trajectories.
 //! Takes a trajectory and an observer; gives a summary with the drift of every invariant.
 
 mod composition;
 mod drift;
+mod ensemble;
 mod run;
 mod stepper;
 
 pub use composition::{Composition, CompositionOrder};
 pub use drift::Drift;
+pub use ensemble::{Ensemble, EnsembleError, Member};
 pub use run::{Observer, Summary, run};
 pub use stepper::{Reversible, Stepper};

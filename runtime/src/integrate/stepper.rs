@@ -8,9 +8,9 @@ pub trait Stepper {
     /// The numbers it computes with.
     type Scalar: Real;
     /// What moves, at one node. Saved and compared by the user.
-    type State: Copy;
+    type State: Copy + core::fmt::Debug;
     /// The step size, what is kept between steps, and what the first guess needs.
-    type Workspace: Clone;
+    type Workspace: Clone + core::fmt::Debug;
 
     /// A workspace for steps of `h`, of either sign, from `state`.
     ///
@@ -31,6 +31,23 @@ pub trait Stepper {
         state: &mut Self::State,
         workspace: &mut Self::Workspace,
     ) -> Result<(), StepError>;
+
+    /// `count` steps, in place, with the same result as one by one.
+    ///
+    /// # Errors
+    /// When one of them cannot be solved; the state is then somewhere between.
+    #[inline(always)]
+    fn advance_many(
+        &self,
+        state: &mut Self::State,
+        workspace: &mut Self::Workspace,
+        count: u64,
+    ) -> Result<(), StepError> {
+        for _ in 0..count {
+            self.advance(state, workspace)?;
+        }
+        Ok(())
+    }
 
     /// The number of the node.
     fn node(state: &Self::State) -> u64;
