@@ -198,3 +198,47 @@ fn what_is_no_body_is_refused_with_numbers() {
     // A flat body whose moments are not exact in binary.
     assert!(Poinsot::from_inertia(&diagonal(0.1, 0.2, 0.1 + 0.2)).is_ok());
 }
+
+#[test]
+fn a_million_random_problems_end_in_a_solution_or_an_error() {
+    let mut random = Random(31);
+    let (mut solved, mut refused, mut worst) = (0_u32, 0_u32, 0.0_f64);
+    for case in 0..1_000_000_u64 {
+        // Moments over six decades, momenta over nine around what can be solved.
+        let scale = |random: &mut Random, decades: f64| 10_f64.powf(decades * random.symmetric());
+        let mut j = random.poinsot(case);
+        if case % 3 == 0 {
+            j = Matrix3::from_diagonal(&Vector3::from_fn(|_, _| scale(&mut random, 3.0)));
+        }
+        let Ok(body) = Poinsot::new(j) else {
+            panic!("case {case}: {j}");
+        };
+        let trace = body.inertia().trace();
+        let decades = if case % 2 == 0 { 0.5 } else { 4.5 };
+        let mut h_n = random.vector() * (trace / 3.0 * scale(&mut random, decades));
+        if case % 1000 == 0 {
+            h_n[(case / 1000 % 3) as usize] = f64::NAN;
+        }
+        match forced(&body, &h_n) {
+            Ok(omega) => {
+                solved += 1;
+                // Rounding of `adj(I - kappa)` and `det(I - kappa)` is that of their largest terms,
+                // which may exceed what is left of them by the spread of the moments.
+                let moments = clebsch::linalg::symmetric_eigenvalues(&body.inertia());
+                let spread = moments[2] / moments[0];
+                worst = worst.max(residual(&j, &omega, &h_n) / (trace * spread));
+            }
+            Err(error) => {
+                refused += 1;
+                // At the bound itself either answer is right.
+                assert!(
+                    error.ratio.is_nan() || error.ratio > 1.0 - 1e-9,
+                    "case {case}: {error:?}"
+                );
+            }
+        }
+    }
+    println!("{solved} solved, {refused} refused, worst residual {worst:.1e} of the spread");
+    assert!(solved > 300_000 && refused > 300_000);
+    assert!(worst <= RESIDUAL, "{worst:e}");
+}
