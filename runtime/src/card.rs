@@ -19,7 +19,7 @@ pub enum Kind {
     Diagonal,
     /// Any matrix.
     Matrix,
-    /// A rotation body -> space, given as its matrix of nine numbers.
+    /// A rotation body -> space, given by its matrix.
     Rotation,
     /// Angular momentum in body axes.
     BodyMomentum,
@@ -74,6 +74,19 @@ pub struct Invariant {
     pub conserved: Conserved,
 }
 
+/// A named size of a model's matrices, such as `n`, and the one a card is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Dimension {
+    /// The name as the model writes it.
+    pub name: &'static str,
+    /// The smallest size the model admits.
+    pub from: usize,
+    /// The largest.
+    pub to: usize,
+    /// The size of this card.
+    pub value: usize,
+}
+
 /// Starts a trajectory from parameters, initial values (each field one vector, row-major) and step
 /// size.
 ///
@@ -112,6 +125,11 @@ pub struct Card {
     pub invariants: &'static [Invariant],
     /// Starts a trajectory.
     pub open: Open,
+    /// The named sizes of the model, with their values in this card; none for most models.
+    pub dimensions: &'static [Dimension],
+    /// The card of the same model at other sizes, one for each dimension; none where the model does
+    /// not admit them.
+    pub sized: fn(&[usize]) -> Option<Card>,
 }
 
 impl Card {

@@ -1,9 +1,12 @@
 //! The names that emitted code uses, in one place: linear algebra, groups, solvers, errors and the
 //! description of a model. Not meant to be written by hand; steppers import it whole.
 
-pub use crate::card::{Card, Conserved, Field, Invariant, Kind, OpenError, Trajectory};
-pub use crate::groups::{BodyMomentum, Group, Rotation, SpatialMomentum};
-pub use crate::linalg::{axial_of_difference, determinant, hat, solve, vee};
+pub use crate::card::{Card, Conserved, Dimension, Field, Invariant, Kind, OpenError, Trajectory};
+pub use crate::groups::{
+    BodyMomentum, BodyMomentumMatrix, Coadjoint, Group, Linear, Orthogonal, Rotation,
+    SpatialMomentum, SpatialMomentumMatrix,
+};
+pub use crate::linalg::{axial_of_difference, determinant, hat, skew_coordinates, solve, vee};
 pub use crate::scalar::Real;
 pub use crate::solvers::moser_veselov::{Edge, Free, MoserVeselovError, Poinsot, forced};
 pub use crate::solvers::newton;
@@ -40,6 +43,88 @@ pub fn unit<T: Real, const N: usize>(axis: usize) -> SVector<T, N> {
 #[must_use]
 pub fn basis<T: Real>(axis: usize) -> SMatrix<T, 3, 3> {
     hat(&unit(axis))
+}
+
+/// The solution of the leading equations of `a x = b`, `size` of them; all NaN where there is none.
+#[inline]
+#[must_use]
+pub fn solve_leading_or_nan<T: Real, const N: usize>(
+    a: &SMatrix<T, N, N>,
+    b: &SVector<T, N>,
+    size: usize,
+) -> SVector<T, N> {
+    crate::linalg::solve_leading(a, b, size)
+        .unwrap_or_else(|| SVector::repeat(T::from_f64(f64::NAN)))
+}
+
+/// The skew matrix of the coordinate with this index: a basis of the Lie algebra of SO(n), for
+/// `i < j`, row by row, -1 at (i, j) and +1 at (j, i).
+#[inline]
+#[must_use]
+pub fn skew_basis<T: Real, const N: usize>(index: usize) -> SMatrix<T, N, N> {
+    let mut basis = SMatrix::zeros();
+    let (mut i, mut rest) = (0, index);
+    // Row i has N - 1 - i entries right of the diagonal.
+    while i + 1 < N && rest >= N - 1 - i {
+        rest -= N - 1 - i;
+        i += 1;
+    }
+    let j = i + 1 + rest;
+    if j < N {
+        basis[(i, j)] = -T::one();
+        basis[(j, i)] = T::one();
+    }
+    basis
+}
+
+/// The matrix unit with this index, row by row: a basis of the Lie algebra of GL(n).
+#[inline]
+#[must_use]
+pub fn matrix_basis<T: Real, const N: usize>(index: usize) -> SMatrix<T, N, N> {
+    SMatrix::from_fn(|i, j| {
+        if N * i + j == index {
+            T::one()
+        } else {
+            T::zero()
+        }
+    })
+}
+
+/// Writes the components of a vector to the front of `out`; returns what is left of it.
+#[inline]
+pub fn put_vector<'a, T: Real, const N: usize>(
+    out: &'a mut [T],
+    value: &SVector<T, N>,
+) -> &'a mut [T] {
+    fill(out, N, value.iter().copied())
+}
+
+/// The same for the coordinates of a skew matrix.
+#[inline]
+pub fn put_skew<'a, T: Real, const N: usize>(
+    out: &'a mut [T],
+    value: &SMatrix<T, N, N>,
+) -> &'a mut [T] {
+    fill(out, N * N.saturating_sub(1) / 2, skew_coordinates(value))
+}
+
+/// The same for the entries of a matrix, row by row.
+#[inline]
+pub fn put_matrix<'a, T: Real, const N: usize>(
+    out: &'a mut [T],
+    value: &SMatrix<T, N, N>,
+) -> &'a mut [T] {
+    let entries = (0..N).flat_map(|i| (0..N).map(move |j| value[(i, j)]));
+    fill(out, N * N, entries)
+}
+
+#[inline]
+fn fill<T: Real>(out: &mut [T], count: usize, values: impl Iterator<Item = T>) -> &mut [T] {
+    let (front, rest) = out.split_at_mut(count.min(out.len()));
+    for (slot, x) in front.iter_mut().zip(values) {
+        *slot = x;
+    }
+    rest
 }
 
 /// `(A + A^T)/2`.
@@ -115,6 +200,32 @@ pub fn rotation_of(
 ) -> Result<Rotation<f64>, OpenError> {
     let matrix = matrix_of::<3, 3>(field, values)?;
     Rotation::from_matrix(&matrix)
+        .map_err(|e| OpenError::Start(StartError::Initial(e.in_field(field))))
+}
+
+/// The values of one field as a rotation of n-dimensional space.
+///
+/// # Errors
+/// When they are not as many as its matrix has, or not a rotation.
+pub fn orthogonal_of<const N: usize>(
+    field: &'static str,
+    values: Option<&Vec<f64>>,
+) -> Result<Orthogonal<N, f64>, OpenError> {
+    let matrix = matrix_of::<N, N>(field, values)?;
+    Orthogonal::from_matrix(&matrix)
+        .map_err(|e| OpenError::Start(StartError::Initial(e.in_field(field))))
+}
+
+/// The values of one field as an invertible map.
+///
+/// # Errors
+/// When they are not as many as its matrix has, or have no inverse.
+pub fn linear_of<const N: usize>(
+    field: &'static str,
+    values: Option<&Vec<f64>>,
+) -> Result<Linear<N, f64>, OpenError> {
+    let matrix = matrix_of::<N, N>(field, values)?;
+    Linear::from_matrix(&matrix)
         .map_err(|e| OpenError::Start(StartError::Initial(e.in_field(field))))
 }
 

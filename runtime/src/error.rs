@@ -1,7 +1,7 @@
 //! What can go wrong: with parameters, at the start of a trajectory, during a step.
 //! Takes the numbers of the failure; gives messages that say what to change.
 
-use crate::groups::NotARotation;
+use crate::groups::{NotARotation, NotInvertible};
 use crate::solvers::moser_veselov::{MoserVeselovError, PoinsotError};
 use crate::solvers::newton::NewtonError;
 use core::fmt;
@@ -164,7 +164,19 @@ impl NotARotation {
         ParameterError {
             field,
             problem: Problem::Rotation(self),
-            remedy: "give nine numbers of a matrix with orthonormal columns and determinant +1",
+            remedy: "give all numbers of a matrix with orthonormal columns and determinant +1",
+        }
+    }
+}
+
+impl NotInvertible {
+    /// The same error, said of the initial value `field`.
+    #[cold]
+    pub fn in_field(self, field: &'static str) -> ParameterError {
+        ParameterError {
+            field,
+            problem: Problem::NotInvertible,
+            remedy: "give a finite matrix with a determinant that is not zero",
         }
     }
 }

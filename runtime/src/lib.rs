@@ -22,7 +22,10 @@ pub mod solvers;
 pub mod validate;
 
 pub use error::{ParameterError, Problem, StartError, StepCause, StepError};
-pub use groups::{BodyMomentum, Group, NotARotation, Rotation, SpatialMomentum, TurnedRotation};
+pub use groups::{
+    BodyMomentum, BodyMomentumMatrix, Coadjoint, Group, Linear, NotARotation, NotInvertible,
+    Orthogonal, Rotation, SpatialMomentum, SpatialMomentumMatrix, TurnedRotation,
+};
 pub use scalar::{DoubleDouble, Dual, Lanes, Real};
 pub use solvers::moser_veselov::{MoserVeselovError, Order, Poinsot, PoinsotError};
 pub use solvers::newton::NewtonError;

@@ -36,6 +36,8 @@ static CARD: Card = Card {
             stop: u64::MAX,
         }))
     },
+    dimensions: &[],
+    sized: |_| None,
 };
 
 /// Counts; its invariant dips at node 5 only; refuses to go beyond `stop`.

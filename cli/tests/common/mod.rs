@@ -91,6 +91,8 @@ pub static CARD: Card = Card {
         },
     ],
     open,
+    dimensions: &[],
+    sized: |_| None,
 };
 
 struct Rotor {

@@ -1,10 +1,16 @@
 //! Matrix Lie groups as the solvers see them, one file a group, and their products.
 //! Takes group elements and algebra coordinates; gives group elements.
 
+mod linear;
+mod matrix_momentum;
+mod orthogonal;
 mod product;
 pub mod so3;
 mod turned;
 
+pub use linear::{Linear, NotInvertible};
+pub use matrix_momentum::{BodyMomentumMatrix, SpatialMomentumMatrix};
+pub use orthogonal::Orthogonal;
 pub use so3::{BodyMomentum, NotARotation, Rotation, SpatialMomentum};
 pub use turned::TurnedRotation;
 
@@ -31,4 +37,16 @@ pub trait Group<T>: Copy {
 
     /// How far rounding has carried the element off the group, in the units of its entries.
     fn distance_from_group(&self) -> f64;
+}
+
+/// How covectors of the Lie algebra, momenta, change between body and space.
+pub trait Coadjoint<T>: Group<T> {
+    /// A covector: a vector for SO(3), an n x n matrix for matrix groups.
+    type Covector: Copy;
+
+    /// A covector of the body frame seen from space: `<m, g X g^-1> = <mu, X>`.
+    fn covector_to_space(&self, body: &Self::Covector) -> Self::Covector;
+
+    /// A covector of the space frame seen from the body.
+    fn covector_to_body(&self, spatial: &Self::Covector) -> Self::Covector;
 }

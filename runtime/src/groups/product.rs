@@ -1,5 +1,5 @@
-//! Direct products of copies of a group, for coupled bodies.
-//! Takes arrays of elements; the algebra coordinates are those of the factors, one after another.
+//! Direct products of groups, for coupled bodies: arrays of one group, tuples of several.
+//! Takes arrays or tuples of elements; the algebra coordinates are those of the factors, one after another.
 
 use super::Group;
 
@@ -41,3 +41,48 @@ impl<T, G: Group<T>, const COUNT: usize> Group<T> for [G; COUNT] {
             .fold(0.0, f64::max)
     }
 }
+
+/// The product of different groups.
+macro_rules! product_of {
+    ($($group:ident $index:tt),+) => {
+        impl<T, $($group: Group<T>),+> Group<T> for ($($group,)+) {
+            const DIMENSION: usize = 0 $(+ $group::DIMENSION)+;
+
+            #[inline]
+            fn identity() -> Self {
+                ($($group::identity(),)+)
+            }
+
+            #[inline]
+            fn compose(&self, other: &Self) -> Self {
+                ($(self.$index.compose(&other.$index),)+)
+            }
+
+            #[inline]
+            fn inverse(&self) -> Self {
+                ($(self.$index.inverse(),)+)
+            }
+
+            #[inline]
+            fn retract(&self, xi: &[T]) -> Self {
+                let mut rest = xi;
+                let mut part = |count: usize| {
+                    let (part, others) = rest.split_at(count.min(rest.len()));
+                    rest = others;
+                    part
+                };
+                ($(self.$index.retract(part($group::DIMENSION)),)+)
+            }
+
+            #[inline]
+            fn distance_from_group(&self) -> f64 {
+                let mut worst = 0.0_f64;
+                $(worst = worst.max(self.$index.distance_from_group());)+
+                worst
+            }
+        }
+    };
+}
+
+product_of!(A 0, B 1);
+product_of!(A 0, B 1, C 2);

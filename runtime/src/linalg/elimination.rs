@@ -41,6 +41,26 @@ pub fn solve<T: Real, const N: usize>(
     eliminate(a, b).map(|(x, _)| x)
 }
 
+/// The solution of `A X = B` for several right sides, or `None` as for [`solve`].
+#[inline]
+pub fn solve_many<T: Real, const N: usize, const M: usize>(
+    a: &SMatrix<T, N, N>,
+    b: &SMatrix<T, N, M>,
+) -> Option<SMatrix<T, N, M>> {
+    eliminate(a, b).map(|(x, _)| x)
+}
+
+/// The solution of the leading `size` equations in as many unknowns; the others are zero. For work
+/// arrays that are larger than the problem in them.
+#[inline]
+pub fn solve_leading<T: Real, const N: usize>(
+    a: &SMatrix<T, N, N>,
+    b: &SVector<T, N>,
+    size: usize,
+) -> Option<SVector<T, N>> {
+    eliminate_leading(a, b, size.min(N)).map(|(x, _)| x)
+}
+
 /// Solves for `M` right sides at once and gives the determinant along.
 ///
 /// The pivot of a column is its entry whose smallest real part over the lanes is largest in
@@ -50,13 +70,23 @@ fn eliminate<T: Real, const N: usize, const M: usize>(
     a: &SMatrix<T, N, N>,
     b: &SMatrix<T, N, M>,
 ) -> Option<(SMatrix<T, N, M>, T)> {
+    eliminate_leading(a, b, N)
+}
+
+/// The same for the leading block of `size` rows and columns, at most `N`.
+#[inline(always)]
+fn eliminate_leading<T: Real, const N: usize, const M: usize>(
+    a: &SMatrix<T, N, N>,
+    b: &SMatrix<T, N, M>,
+    size: usize,
+) -> Option<(SMatrix<T, N, M>, T)> {
     let mut a = a.data.0;
     let mut x = b.data.0;
     let mut det = T::one();
-    for k in 0..N {
+    for k in 0..size {
         let mut pivot = k;
         let mut best = weight(a[k][k]);
-        for (i, entry) in a[k].iter().enumerate().skip(k + 1) {
+        for (i, entry) in a[k].iter().enumerate().take(size).skip(k + 1) {
             let candidate = weight(*entry);
             if candidate > best {
                 best = candidate;
@@ -78,9 +108,9 @@ fn eliminate<T: Real, const N: usize, const M: usize>(
         }
         det *= a[k][k];
         let reciprocal = T::one() / a[k][k];
-        for i in k + 1..N {
+        for i in k + 1..size {
             let factor = a[k][i] * reciprocal;
-            for column in a.iter_mut().skip(k + 1) {
+            for column in a.iter_mut().take(size).skip(k + 1) {
                 let above = column[k];
                 column[i] -= factor * above;
             }
@@ -91,9 +121,9 @@ fn eliminate<T: Real, const N: usize, const M: usize>(
         }
     }
     for column in &mut x {
-        for k in (0..N).rev() {
+        for k in (0..size).rev() {
             let mut sum = column[k];
-            for j in k + 1..N {
+            for j in k + 1..size {
                 sum -= a[j][k] * column[j];
             }
             column[k] = sum / a[k][k];

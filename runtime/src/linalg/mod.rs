@@ -7,5 +7,5 @@ mod elimination;
 mod skew;
 
 pub use eigenvalues::symmetric_eigenvalues;
-pub use elimination::{determinant, inverse, solve};
-pub use skew::{axial_of_difference, hat, vee};
+pub use elimination::{determinant, inverse, solve, solve_leading, solve_many};
+pub use skew::{axial_of_difference, hat, skew_coordinates, skew_from, vee};

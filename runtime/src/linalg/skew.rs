@@ -1,8 +1,33 @@
-//! The isomorphism between vectors and skew matrices of so(3).
+//! The isomorphism between vectors and skew matrices of so(3), and coordinates of so(n).
 //! Takes a vector or a 3x3 matrix; gives the other, with `hat(v) w = v x w`.
 
 use crate::Real;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, SMatrix, Vector3};
+
+/// The skew matrix of its coordinates: for `i < j`, row by row, `-x` at (i, j) and `+x` at (j, i).
+/// Missing coordinates count as zero, surplus ones are ignored.
+#[inline]
+pub fn skew_from<T: Real, const N: usize>(coordinates: &[T]) -> SMatrix<T, N, N> {
+    let mut skew = SMatrix::zeros();
+    let mut rest = coordinates.iter();
+    for i in 0..N {
+        for j in i + 1..N {
+            if let Some(x) = rest.next() {
+                skew[(i, j)] = -*x;
+                skew[(j, i)] = *x;
+            }
+        }
+    }
+    skew
+}
+
+/// The coordinates of a skew matrix, in the order of [`skew_from`], `N (N - 1)/2` of them.
+#[inline]
+pub fn skew_coordinates<T: Real, const N: usize>(
+    skew: &SMatrix<T, N, N>,
+) -> impl Iterator<Item = T> {
+    (0..N).flat_map(move |i| (i + 1..N).map(move |j| skew[(j, i)]))
+}
 
 /// The skew matrix of the cross product: `hat(v) w = v x w`.
 #[inline]

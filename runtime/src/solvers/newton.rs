@@ -91,6 +91,9 @@ impl std::error::Error for NewtonError {}
 
 /// Solves `residual(g) = 0` from the guess `g`.
 ///
+/// Of the `D` components the first [`Group::DIMENSION`] are looked at, so that one `D` can serve
+/// several sizes of a group.
+///
 /// `tangent(g)` is the derivative of the residual with respect to the coordinates of
 /// [`Group::retract`] at 0. `scale` is the natural size of the residual's terms (positive): the
 /// solution is accepted when the residual is below `16 EPSILON scale`, or has stopped falling below
@@ -126,7 +129,8 @@ pub fn solve<T: Real, G: Group<T>, const D: usize>(
             });
         }
         let done = size <= tolerance || (size <= stagnation && size >= 0.5 * previous);
-        let Some(correction) = linalg::solve(&tangent(&element), &value) else {
+        let Some(correction) = linalg::solve_leading(&tangent(&element), &value, G::DIMENSION)
+        else {
             return Err(NewtonError::SingularTangent {
                 iteration,
                 residual: size,

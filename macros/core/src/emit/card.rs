@@ -1,17 +1,19 @@
 //! The model as data: fields of its parameters, initial values, observables and invariants, and a
 //! way to run it without knowing its type. What the command line and the generic tests use.
 
+use super::element::{self, Family, family};
 use super::invariants::{formula, scale};
 use super::items::kept;
 use super::names::{Names, item, kebab, own, per_configuration};
+use super::sizes::{Generics, size};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::invariants::Kind;
 use crate::derive::recognise::Method;
 use crate::expr::shape::{Shape, Structure};
-use crate::expr::symbol::SymbolId;
+use crate::expr::symbol::{SymbolId, Symbols};
 use crate::syntax::ast::NodeRule;
-use proc_macro2::TokenStream;
+use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 struct FieldOf {
@@ -22,10 +24,10 @@ struct FieldOf {
 }
 
 impl FieldOf {
-    fn tokens(&self) -> TokenStream {
+    fn tokens(&self, s: &Symbols) -> TokenStream {
         let (name, doc) = (&self.name, &self.doc);
         let ascii = crate::expr::symbol::ascii(name);
-        let (rows, cols) = super::expression::dims(self.shape);
+        let (rows, cols) = super::expression::dims(s, self.shape);
         let kind = format_ident!("{}", self.kind);
         quote! {
             Field { name: #name, ascii: #ascii, rows: #rows, cols: #cols, kind: Kind::#kind, doc: #doc }
@@ -55,9 +57,12 @@ fn of_symbol(d: &Derivation, id: SymbolId, when: &str) -> FieldOf {
     }
 }
 
-const THREE: crate::expr::shape::Dim = crate::expr::shape::Dim::Fixed(3);
-
 fn element_field(d: &Derivation, i: usize) -> FieldOf {
+    let c = &d.spec.configurations[i];
+    let (kind, doc) = match family(c) {
+        Family::Rotation | Family::Orthogonal(_) => ("Rotation", "attitude, body to space"),
+        Family::Linear(_) => ("Matrix", "configuration, reference to space"),
+    };
     FieldOf {
         name: d
             .letters
@@ -65,9 +70,9 @@ fn element_field(d: &Derivation, i: usize) -> FieldOf {
             .get(d.spec.configurations[i].element)
             .name
             .clone(),
-        shape: Shape::square(THREE),
-        kind: "Rotation",
-        doc: "attitude, body to space".to_owned(),
+        shape: Shape::square(c.group.size()),
+        kind,
+        doc: doc.to_owned(),
     }
 }
 
@@ -79,7 +84,7 @@ fn momentum_field(d: &Derivation, i: usize, body: bool) -> FieldOf {
     };
     FieldOf {
         name: per_configuration(d, base, i).to_string(),
-        shape: Shape::vector(THREE),
+        shape: d.letters.symbols.get(d.letters.node_momentum[i]).shape,
         kind,
         doc: format!("momentum, {frame} frame"),
     }
@@ -138,7 +143,13 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
         .iter()
         .map(|v| {
             let (label, text) = (&v.name, formula(d, v));
-            let rows: usize = if matches!(v.kind, Kind::SpatialMomentum(_)) { 3 } else { 1 };
+            let rows = match v.kind {
+                Kind::SpatialMomentum(i) => match family(&d.spec.configurations[i]) {
+                    Family::Rotation => quote!(3usize),
+                    Family::Orthogonal(_) | Family::Linear(_) => element::coordinates(d, i),
+                },
+                Kind::Number | Kind::Energy => quote!(1usize),
+            };
             let conserved = format_ident!("{}", if v.exact { "Exactly" } else { "Boundedly" });
             let method = format_ident!("{}", v.name);
             values.extend(match &v.kind {
@@ -153,7 +164,14 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                             let out = put(out, rows(momentum.0));
                         },
                         Method::ForcedMoserVeselov | Method::Newton => {
-                            quote!(let out = put(out, rows(state.#m().0));)
+                            match family(&d.spec.configurations[*i]) {
+                                Family::Rotation | Family::Linear(_) => {
+                                    quote!(let out = put(out, rows(state.#m().0));)
+                                }
+                                Family::Orthogonal(_) => {
+                                    quote!(let out = put(out, skew_coordinates(&state.#m().0));)
+                                }
+                            }
                         }
                     }
                 }
@@ -191,25 +209,30 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
         d.spec.node_rule == NodeRule::Symmetric || order == 1 || d.action.nodal.is_zero()
     );
     let reversible = d.reversible;
-    let fields =
-        |list: &[FieldOf]| -> Vec<TokenStream> { list.iter().map(FieldOf::tokens).collect() };
+    let fields = |list: &[FieldOf]| -> Vec<TokenStream> {
+        list.iter().map(|f| f.tokens(&d.letters.symbols)).collect()
+    };
     let (p, i, o) = (fields(&parameters), fields(&initial), fields(&observables));
+    let g = Generics::of(d);
+    let (bound, used, plain) = (g.sizes_bound(), g.sizes_used(), g.plain());
+    let turbofish = (!used.is_empty()).then(|| quote!(:: #used));
+    let (dimensions, sized) = (dimensions(d), sized(d));
     quote! {
         /// One trajectory of the model, its type hidden.
-        struct #trajectory {
-            model: #name<f64>,
-            state: #state<f64>,
-            work: #work<f64>,
-            start: #state<f64>,
+        struct #trajectory #bound {
+            model: #name #plain,
+            state: #state #plain,
+            work: #work #plain,
+            start: #state #plain,
         }
 
-        impl Trajectory for #trajectory {
+        impl #bound Trajectory for #trajectory #used {
             fn node(&self) -> u64 { self.state.node() }
             fn time(&self) -> f64 { self.work.h * self.state.node() as f64 }
             fn step(&mut self) -> Result<(), StepError> {
                 self.model.step(&mut self.state, &mut self.work)
             }
-            fn card(&self) -> &'static Card { &#name::<f64>::CARD }
+            fn card(&self) -> &'static Card { &#name::#plain::CARD }
             fn observe(&self, out: &mut [f64]) {
                 let state = &self.state;
                 #(#observed)*
@@ -227,7 +250,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
             }
         }
 
-        impl #name<f64> {
+        impl #bound #name #plain {
             /// The model as data.
             pub const CARD: Card = Card {
                 name: #model_name,
@@ -244,12 +267,16 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                 observables: &[#(#o),*],
                 invariants: &[#(#invariants),*],
                 open: Self::open,
+                dimensions: &[#(#dimensions),*],
+                sized: Self::sized,
             };
+
+            #sized
 
             fn open(parameters: &[Vec<f64>], initial: &[Vec<f64>], h: f64) -> Result<Box<dyn Trajectory>, OpenError> {
                 #constructor
                 let (state, work) = model.start(initial, h)?;
-                Ok(Box::new(#trajectory { model, state, work, start: state }))
+                Ok(Box::new(#trajectory #turbofish { model, state, work, start: state }))
             }
         }
     }
@@ -281,7 +308,12 @@ fn constructor(d: &Derivation) -> TokenStream {
     for (i, c) in d.spec.configurations.iter().enumerate() {
         let (element, label) = (own(d, c.element), &s.get(c.element).name);
         let index = 2 * i;
-        initial.push(quote!(#element: rotation_of(#label, initial.get(#index))?));
+        let read = match family(c) {
+            Family::Rotation => quote!(rotation_of),
+            Family::Orthogonal(_) => quote!(orthogonal_of),
+            Family::Linear(_) => quote!(linear_of),
+        };
+        initial.push(quote!(#element: #read(#label, initial.get(#index))?));
         let body = c.side == Side::Body;
         let field = per_configuration(
             d,
@@ -293,14 +325,7 @@ fn constructor(d: &Derivation) -> TokenStream {
             i,
         );
         let label = field.to_string();
-        let kind = format_ident!(
-            "{}",
-            if body {
-                "BodyMomentum"
-            } else {
-                "SpatialMomentum"
-            }
-        );
+        let kind = element::momentum_name(d, i, c.side);
         let index = index + 1;
         initial.push(quote!(#field: #kind(matrix_of(#label, initial.get(#index))?)));
     }
@@ -323,5 +348,51 @@ fn constructor(d: &Derivation) -> TokenStream {
         }
         let model = #name::new(#data { #(#parameters),* })?;
         let initial = #start { #(#initial),* };
+    }
+}
+
+/// The named sizes of the model, with the value of this card.
+fn dimensions(d: &Derivation) -> Vec<TokenStream> {
+    let s = &d.letters.symbols;
+    let list = d.spec.dimensions.iter().zip(0u16..);
+    list.map(|(n, i)| {
+        let (name, value) = (&n.name, size(s, crate::expr::shape::Dim::Named(i)));
+        let (from, to) = (
+            Literal::u64_unsuffixed(n.from),
+            Literal::u64_unsuffixed(n.to),
+        );
+        quote!(Dimension { name: #name, from: #from, to: #to, value: #value })
+    })
+    .collect()
+}
+
+/// The card at other sizes: one arm for each of them.
+fn sized(d: &Derivation) -> TokenStream {
+    let name = item(d, "");
+    let mut all: Vec<Vec<u64>> = vec![Vec::new()];
+    for n in &d.spec.dimensions {
+        all = all
+            .into_iter()
+            .flat_map(|sizes| {
+                (n.from..=n.to).map(move |value| {
+                    let mut sizes = sizes.clone();
+                    sizes.push(value);
+                    sizes
+                })
+            })
+            .collect();
+    }
+    let arms = all.iter().map(|sizes| {
+        let sizes: Vec<Literal> = sizes.iter().map(|n| Literal::u64_unsuffixed(*n)).collect();
+        quote!([#(#sizes),*] => Some(#name::<#(#sizes,)* f64>::CARD),)
+    });
+    quote! {
+        /// The card of the model at the given sizes, in the order of their declaration.
+        fn sized(sizes: &[usize]) -> Option<Card> {
+            match sizes {
+                #(#arms)*
+                _ => None,
+            }
+        }
     }
 }

@@ -2,8 +2,9 @@
 //! numbers exact. Matrices are nalgebra's, passed by value.
 
 use super::names::variable;
+use super::sizes::size;
 use crate::algebra::Rational;
-use crate::expr::shape::{Dim, Shape};
+use crate::expr::shape::Shape;
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr, Function, Letter, Node, Part};
 use crate::schedule::{Bracketed, Program, associate};
@@ -37,23 +38,14 @@ impl Bindings {
     }
 }
 
-fn size(d: Dim) -> usize {
-    match d {
-        Dim::Fixed(n) => n as usize,
-        // Refused before emission.
-        Dim::Named(_) => 0,
-    }
-}
-
-/// Rows and columns as literals.
-pub fn dims(shape: Shape) -> (Literal, Literal) {
-    let literal = |d| Literal::usize_unsuffixed(size(d));
-    (literal(shape.rows), literal(shape.cols))
+/// Rows and columns as tokens: numbers, or const parameters.
+pub fn dims(s: &Symbols, shape: Shape) -> (TokenStream, TokenStream) {
+    (size(s, shape.rows), size(s, shape.cols))
 }
 
 /// The type of a quantity over the scalar `T`.
-pub fn ty(shape: Shape) -> TokenStream {
-    let (rows, cols) = dims(shape);
+pub fn ty(s: &Symbols, shape: Shape) -> TokenStream {
+    let (rows, cols) = dims(s, shape);
     if shape.is_scalar() {
         quote!(T)
     } else if shape.is_vector() {
@@ -115,7 +107,7 @@ impl Writer<'_> {
     /// The expression.
     pub fn write(&self, e: &Expr) -> TokenStream {
         let go = |x: &Expr| self.operand(x);
-        let (rows, cols) = dims(e.shape());
+        let (rows, cols) = dims(self.symbols, e.shape());
         match e.node() {
             Node::Number(q) => rational(*q),
             Node::Letter(l) => {

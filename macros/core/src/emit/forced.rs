@@ -4,6 +4,7 @@
 use super::expression::{Bindings, program};
 use super::items::{letters_of, node_locals, parameter_locals, with_transports};
 use super::names::{Names, item, own, per_configuration, tagged, variable};
+use super::sizes::Generics;
 use super::step::{Update, at, finish, here, step_signature, update};
 use crate::algebra::Rational;
 use crate::check::spec::Side;
@@ -47,6 +48,7 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
     let state = item(d, "State");
     let node = names.local("node");
     let momentum = edge_momentum(d, names, mv);
+    let used = Generics::of(d).used();
     let (step, edge) = match torques(d) {
         Some((leave, arrive)) => (kept(d, names, &leave, &arrive), edge(d)),
         None => (plain(d, names), TokenStream::new()),
@@ -58,7 +60,7 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
 
         /// Says how far the step is beyond the bound, and which step could be solved.
         #[cold]
-        fn refused(&self, state: #state<T>, h: T, e: MoserVeselovError) -> StepError {
+        fn refused(&self, state: #state #used, h: T, e: MoserVeselovError) -> StepError {
             let e = e.with_searched_step(&self.factor, h, |trial| self.edge_momentum(&state, trial));
             StepCause::from(e).at_node(state.#node)
         }
@@ -87,10 +89,11 @@ fn edge_momentum(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStrea
         Side::Spatial => quote!(state.#momentum.0),
     };
     let rest = (!mv.rest.is_zero()).then(|| quote!(- (#(#values)*)));
+    let used = Generics::of(d).used();
     quote! {
         /// The momentum of the edge that starts at this node, for a step `h`.
         #[inline]
-        fn edge_momentum(&self, state: &#state<T>, #step: T) -> SVector<T, 3> {
+        fn edge_momentum(&self, state: &#state #used, #step: T) -> SVector<T, 3> {
             #parameters
             #locals
             #lets
@@ -102,11 +105,12 @@ fn edge_momentum(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStrea
 fn edge(d: &Derivation) -> TokenStream {
     let state = item(d, "State");
     let element = own(d, d.spec.configurations[0].element);
+    let used = Generics::of(d).used();
     quote! {
         /// The edge that begins at this state.
         #[cold]
         #[inline(never)]
-        fn edge(&self, state: #state<T>, h: T) -> Edge<T> {
+        fn edge(&self, state: #state #used, h: T) -> Edge<T> {
             Edge::begin(&state.#element, self.edge_momentum(&state, h))
         }
     }

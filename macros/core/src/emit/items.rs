@@ -1,8 +1,10 @@
 //! Items that hold data: the parameters and the validated model, the initial data, the state and
 //! the workspace; and the locals with which every emitted function starts.
 
+use super::element;
 use super::expression::{Bindings, Writer, ty};
 use super::names::{Names, field, item, own, per_configuration, tagged, variable};
+use super::sizes::Generics;
 use crate::check::spec::{Assumption, Side};
 use crate::derive::Derivation;
 use crate::derive::recognise::{Method, Riccati};
@@ -57,7 +59,7 @@ pub fn parameters(d: &Derivation) -> TokenStream {
     let doc = format!(" Parameters of [`{0}`](struct@{0}), as given.", d.spec.name);
     let fields = d.spec.parameters.iter().map(|p| {
         let symbol = s.get(*p);
-        let (field, t) = (own(d, *p), ty(symbol.shape));
+        let (field, t) = (own(d, *p), ty(s, symbol.shape));
         let doc = format!(
             "`{}`: {}{}.",
             symbol.name,
@@ -72,10 +74,11 @@ pub fn parameters(d: &Derivation) -> TokenStream {
             pub scalar: ::core::marker::PhantomData<T>
         }
     });
+    let declared = Generics::of(d).declared();
     quote! {
         #[doc = #doc]
         #[derive(Clone, Copy, Debug, PartialEq)]
-        pub struct #name<T = f64> { #(#fields,)* #phantom }
+        pub struct #name #declared { #(#fields,)* #phantom }
     }
 }
 
@@ -304,12 +307,17 @@ pub fn model(d: &Derivation, documented: bool) -> TokenStream {
     let docs = crate::document::rustdoc(d, documented);
     let source = crate::document::source(d);
     let fingerprint = crate::document::fingerprint(d);
+    let g = Generics::of(d);
+    let (declared, bound, used) = (g.declared(), g.bound(), g.used());
+    let sizes = sizes(d);
+    let admitted = (!sizes.is_empty()).then(|| quote!(let () = Self::ADMITTED;));
     quote! {
         #(#[doc = #docs])*
         #[derive(Clone, Copy, Debug, PartialEq)]
-        pub struct #name<T = f64> { parameters: #data<T>, #field }
+        pub struct #name #declared { parameters: #data #used, #field }
 
-        impl<T: Real> #name<T> {
+        impl #bound #name #used {
+            #sizes
             /// The model as it was stated.
             pub const SOURCE: &'static str = #source;
             /// A number that changes when the model or its derivation does.
@@ -320,7 +328,8 @@ pub fn model(d: &Derivation, documented: bool) -> TokenStream {
             /// # Errors
             /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
             /// assumption, or is no admissible factor of the equation to solve.
-            pub fn new(parameters: #data<T>) -> Result<Self, ParameterError> {
+            pub fn new(parameters: #data #used) -> Result<Self, ParameterError> {
+                #admitted
                 #(#checks)*
                 #locals
                 #(#assumptions)*
@@ -329,10 +338,34 @@ pub fn model(d: &Derivation, documented: bool) -> TokenStream {
             }
 
             /// The parameters.
-            pub fn parameters(&self) -> &#data<T> {
+            pub fn parameters(&self) -> &#data #used {
                 &self.parameters
             }
         }
+    }
+}
+
+/// The test of the const parameters: a size that the model does not admit does not build.
+fn sizes(d: &Derivation) -> TokenStream {
+    let names = super::sizes::constants(&d.letters.symbols);
+    let tests: Vec<TokenStream> = d
+        .spec
+        .dimensions
+        .iter()
+        .zip(&names)
+        .map(|(n, name)| {
+            let from = Literal::u64_unsuffixed(n.from);
+            let to = Literal::u64_unsuffixed(n.to);
+            let text = format!("`{}` is from {} to {} in this model", n.name, n.from, n.to);
+            quote!(::core::assert!(#from <= #name && #name <= #to, #text);)
+        })
+        .collect();
+    if tests.is_empty() {
+        return TokenStream::new();
+    }
+    quote! {
+        /// Sizes the model does not admit do not build.
+        const ADMITTED: () = { #(#tests)* };
     }
 }
 
@@ -351,46 +384,56 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
         );
         let name = &s.get(c.element).name;
         let doc = format!(" `{name}` at node 0: body -> space.");
+        let (kind, of_body, of_space) = (
+            element::ty(d, i),
+            element::momentum(d, i, Side::Body),
+            element::momentum(d, i, Side::Spatial),
+        );
         given.push(match c.side {
             Side::Body => quote! {
-                #[doc = #doc] pub #element: Rotation<T>,
-                #[doc = " Momentum at node 0, in the body frame."] pub #body: BodyMomentum<T>
+                #[doc = #doc] pub #element: #kind,
+                #[doc = " Momentum at node 0, in the body frame."] pub #body: #of_body
             },
             Side::Spatial => quote! {
-                #[doc = #doc] pub #element: Rotation<T>,
-                #[doc = " Momentum at node 0, in the space frame."] pub #spatial: SpatialMomentum<T>
+                #[doc = #doc] pub #element: #kind,
+                #[doc = " Momentum at node 0, in the space frame."] pub #spatial: #of_space
             },
         });
-        kept_fields.push(quote!(#element: Rotation<T>, #momentum: SpatialMomentum<T>));
+        kept_fields.push(quote!(#element: #kind, #momentum: #of_space));
         let doc = format!(" `{name}` at this node: body -> space.");
         access.push(quote! {
             #[doc = #doc]
-            pub fn #element(&self) -> Rotation<T> { self.#element }
+            pub fn #element(&self) -> #kind { self.#element }
             /// The momentum at this node, in the space frame.
-            pub fn #spatial(&self) -> SpatialMomentum<T> { self.#momentum }
+            pub fn #spatial(&self) -> #of_space { self.#momentum }
             /// The momentum at this node, in the body frame.
-            pub fn #body(&self) -> BodyMomentum<T> { self.#momentum.to_body(&self.#element) }
+            pub fn #body(&self) -> #of_body { self.#momentum.to_body(&self.#element) }
         });
     }
     for id in kept(d) {
-        let (field, t) = (own(d, id), ty(s.get(id).shape));
+        let (field, t) = (own(d, id), ty(s, s.get(id).shape));
         let doc = format!(" `{}` at node 0.", s.get(id).name);
         given.push(quote!(#[doc = #doc] pub #field: #t));
         kept_fields.push(quote!(#field: #t));
     }
-    let count = Literal::usize_unsuffixed(d.spec.configurations.len());
+    let g = Generics::of(d);
+    let (declared, bound, used) = (g.declared(), g.bound(), g.used());
+    let types: Vec<TokenStream> = (0..d.spec.configurations.len())
+        .map(|i| element::ty(d, i))
+        .collect();
+    let guess = element::Bundle::of(d).ty(&types);
     let (work_field, work_doc) = match d.solve.method {
         Method::FreeMoserVeselov => (
             quote!(solver: Free<T>,),
             " The step and the constants of the trajectory. Belongs to the state it was started with.",
         ),
         Method::ForcedMoserVeselov if super::forced::keeps_edge(d) => (
-            quote!(edge: Edge<T>, here: #state<T>,),
+            quote!(edge: Edge<T>, here: #state #used,),
             " The step, and the momentum of the edge that begins at the state `here`. Made anew for any other state.",
         ),
         Method::ForcedMoserVeselov => (TokenStream::new(), " The step."),
         Method::Newton => (
-            quote!(guess: [Rotation<T>; #count],),
+            quote!(guess: #guess,),
             " The step and the last velocities, from which the next solve starts.",
         ),
     };
@@ -398,13 +441,13 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
     quote! {
         /// Initial data.
         #[derive(Clone, Copy, Debug, PartialEq)]
-        pub struct #initial<T = f64> { #(#given,)* }
+        pub struct #initial #declared { #(#given,)* }
 
         #[doc = #state_doc]
         #[derive(Clone, Copy, Debug, PartialEq)]
-        pub struct #state<T = f64> { #(#kept_fields,)* #node: u64 }
+        pub struct #state #declared { #(#kept_fields,)* #node: u64 }
 
-        impl<T: Real> #state<T> {
+        impl #bound #state #used {
             #(#access)*
             /// The number of the node.
             pub fn node(&self) -> u64 { self.#node }
@@ -412,6 +455,6 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
 
         #[doc = #work_doc]
         #[derive(Clone, Copy, Debug)]
-        pub struct #work<T = f64> { h: T, #work_field }
+        pub struct #work #declared { h: T, #work_field }
     }
 }

@@ -3,6 +3,8 @@
 //! this version has no stepper for is refused before, in [`refusal`].
 
 mod card;
+mod element;
+mod energy;
 mod expression;
 mod forced;
 mod invariants;
@@ -10,40 +12,47 @@ mod items;
 mod names;
 mod newton;
 mod residual;
+mod sizes;
 mod step;
 
-use crate::check::spec::Group;
 use crate::derive::Derivation;
 use crate::diagnostic::{Diagnostic, Errors};
-use crate::expr::shape::Dim;
 use names::Names;
 use proc_macro2::{Ident, TokenStream, TokenTree};
 use quote::{format_ident, quote};
 
+/// Coordinates of the largest Lie algebras whose tangents are kept as dense work arrays: SO(8).
+const MOST_COORDINATES: u64 = 28;
+
+/// Most sizes for which one model is compiled and described.
+const MOST_SIZES: u64 = 32;
+
 /// Why no stepper is emitted for this model, if so.
 pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
-    if let Some(dimension) = d.spec.dimensions.first() {
+    for (i, c) in d.spec.configurations.iter().enumerate() {
+        if element::most_coordinates(d, i) > MOST_COORDINATES {
+            return Some(
+                Diagnostic::new(
+                    c.group_place,
+                    "this version emits steppers up to SO<8> and GL<5>",
+                )
+                .help("take a smaller size; `clebsch derive` prints the equations for any"),
+            );
+        }
+    }
+    let sizes = d.spec.dimensions.iter();
+    let combined = sizes.fold(1u64, |n, x| {
+        n.saturating_mul(x.to.saturating_sub(x.from).saturating_add(1))
+    });
+    if combined > MOST_SIZES {
         return Some(
             Diagnostic::new(
                 d.spec.name_place,
                 format!(
-                    "this version emits steppers for given sizes only, and `{}` is a name",
-                    dimension.name
+                    "{combined} combinations of sizes are to be compiled, at most {MOST_SIZES} are"
                 ),
             )
-            .help(
-                "write the number in its place; `clebsch derive` prints the equations for any size",
-            ),
-        );
-    }
-    let rotations = |g: Group| g == Group::SpecialOrthogonal(Dim::Fixed(3));
-    if let Some(c) = d.spec.configurations.iter().find(|c| !rotations(c.group)) {
-        return Some(
-            Diagnostic::new(
-                c.group_place,
-                "this version emits steppers for SO<3> and products of it only",
-            )
-            .help("`clebsch derive` prints the equations for SO<n> and GL<n>"),
+            .help("narrow the ranges of `dim`, or write numbers in their place"),
         );
     }
     if d.spec.configurations.len() > 3 {

@@ -20,7 +20,11 @@ impl Names {
         let s = &d.letters.symbols;
         Names {
             module: module(&d.spec.name),
-            taken: s.ids().map(|id| variable(s, id).to_string()).collect(),
+            taken: s
+                .ids()
+                .map(|id| variable(s, id).to_string())
+                .chain(super::sizes::constants(s).iter().map(ToString::to_string))
+                .collect(),
         }
     }
 
@@ -40,22 +44,26 @@ pub fn own(d: &Derivation, id: SymbolId) -> Ident {
 }
 
 /// Types, traits and variants that emitted code calls by a plain name: no model can bear one.
-const TYPES: [&str; 30] = [
+const TYPES: [&str; 35] = [
     "BodyMomentum",
+    "BodyMomentumMatrix",
     "Box",
     "Card",
     "Conserved",
+    "Dimension",
     "Err",
     "Field",
     "Free",
     "Group",
     "Invariant",
     "Kind",
+    "Linear",
     "MoserVeselovError",
     "None",
     "Ok",
     "OpenError",
     "Option",
+    "Orthogonal",
     "ParameterError",
     "Poinsot",
     "Real",
@@ -65,6 +73,7 @@ const TYPES: [&str; 30] = [
     "SVector",
     "Some",
     "SpatialMomentum",
+    "SpatialMomentumMatrix",
     "StartError",
     "StepCause",
     "StepError",
@@ -74,7 +83,8 @@ const TYPES: [&str; 30] = [
 ];
 
 /// Methods and constants that every model has.
-const MEMBERS: [&str; 14] = [
+const MEMBERS: [&str; 16] = [
+    "ADMITTED",
     "CARD",
     "FINGERPRINT",
     "SOURCE",
@@ -87,6 +97,7 @@ const MEMBERS: [&str; 14] = [
     "open",
     "parameters",
     "refused",
+    "sized",
     "start",
     "step",
 ];
@@ -131,15 +142,20 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
 
 /// What emitted functions call by a plain name, and what they name themselves: a local of the
 /// model under such a name would hide it. The test of hygiene states a model with all of them.
-const INSIDE: [&str; 54] = [
+const INSIDE: [&str; 70] = [
     "Err",
     "None",
     "Ok",
     "Some",
     "BodyMomentum",
+    "BodyMomentumMatrix",
+    "Linear",
+    "Orthogonal",
     "Poinsot",
     "Rotation",
     "SpatialMomentum",
+    "SpatialMomentumMatrix",
+    "all",
     "all_finite",
     "axial_of_difference",
     "axis",
@@ -160,22 +176,33 @@ const INSIDE: [&str; 54] = [
     "kinetic",
     "largest_step",
     "length",
+    "linear_of",
     "matrix",
+    "matrix_basis",
     "matrix_of",
     "momentum",
     "n",
     "number_of",
+    "orthogonal_of",
     "out",
     "parameters",
     "parts",
     "potential",
     "put",
+    "put_matrix",
+    "put_skew",
+    "put_vector",
     "reach",
+    "rest",
     "rotation_of",
     "rows",
     "scratch",
+    "sizes",
+    "skew_basis",
+    "skew_coordinates",
     "skew_part",
     "solve",
+    "solve_leading_or_nan",
     "solve_or_nan",
     "solver",
     "state",
@@ -193,8 +220,11 @@ pub fn variable(symbols: &Symbols, id: SymbolId) -> Ident {
     let own = &symbols.get(id).name;
     let mut name = own.clone();
     let is_step = symbols.get(id).role == Role::Step && own == "h";
+    let sizes = super::sizes::constants(symbols);
     while !is_step
-        && (INSIDE.contains(&name.as_str()) || name != *own && symbols.find(&name).is_some())
+        && (INSIDE.contains(&name.as_str())
+            || sizes.iter().any(|n| *n == name)
+            || name != *own && symbols.find(&name).is_some())
     {
         name.push('_');
     }

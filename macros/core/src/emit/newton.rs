@@ -1,15 +1,17 @@
 //! The step of a model whose velocities are found by Newton's method: residual and tangent are
 //! both derived, all configurations are solved together.
 
+use super::element::{self, Bundle, Family, family, stack};
 use super::expression::{Bindings, program};
 use super::items::{letters_of, parameter_locals, with_transports};
-use super::names::{Names, item, per_configuration, tagged, variable};
+use super::names::{Names, item, own, per_configuration, tagged, variable};
+use super::sizes::Generics;
 use super::step::{at, finish, here, update};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::schedule;
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::TokenStream;
 use quote::quote;
 
 /// Node momenta by the outgoing edge, with everything at the end of the edge written by its start
@@ -32,10 +34,12 @@ fn outgoing(d: &Derivation) -> Vec<Expr> {
 pub fn step(d: &Derivation, names: &Names) -> TokenStream {
     let s = &d.letters.symbols;
     let bodies = d.spec.configurations.len();
-    let (count, dimension) = (
-        Literal::usize_unsuffixed(bodies),
-        Literal::usize_unsuffixed(3 * bodies),
-    );
+    let dimension = element::total(d);
+    let bundle = Bundle::of(d);
+    let covectors = element::covectors(d);
+    let types: Vec<TokenStream> = (0..bodies).map(|i| element::ty(d, i)).collect();
+    let elements = bundle.ty(&types);
+    let used = Generics::of(d).used();
     let (state, work) = (item(d, "State"), item(d, "Workspace"));
     let node = names.local("node");
     let step = variable(s, d.spec.step);
@@ -65,7 +69,7 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
     let mut bindings = Bindings::new();
     let mut needed = letters_of(momenta.iter().chain(&gradients));
     for c in &d.spec.configurations {
-        if c.side == Side::Body {
+        if c.side == Side::Body && family(c) == Family::Rotation {
             needed.push(at(c.element, Shift::HERE));
         }
     }
@@ -83,33 +87,42 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
     let velocity = |i: usize| variable(s, d.spec.configurations[i].velocity);
     let velocities: TokenStream = (0..bodies)
         .map(|i| {
-            let (w, i) = (velocity(i), Literal::usize_unsuffixed(i));
-            quote!(let #w = #trial[#i].matrix();)
+            let (w, part) = (velocity(i), bundle.part(quote!(#trial), i));
+            quote!(let #w = #part.matrix();)
         })
         .collect();
     // Node momenta.
-    let node_momenta = (0..bodies).map(|i| {
-        let field = per_configuration(d, "momentum", i);
-        let c = &d.spec.configurations[i];
-        let element = variable(s, c.element);
-        match c.side {
-            Side::Body => quote!(#element.tr_mul(&state.#field.0)),
-            Side::Spatial => quote!(state.#field.0),
-        }
-    });
+    let node_momenta: Vec<TokenStream> = (0..bodies)
+        .map(|i| {
+            let field = per_configuration(d, "momentum", i);
+            let c = &d.spec.configurations[i];
+            let (element, own) = (variable(s, c.element), own(d, c.element));
+            match (c.side, family(c)) {
+                (Side::Body, Family::Rotation) => quote!(#element.tr_mul(&state.#field.0)),
+                (Side::Body, _) => quote!(state.#field.to_body(&state.#own).0),
+                (Side::Spatial, _) => quote!(state.#field.0),
+            }
+        })
+        .collect();
+    let node_momenta = bundle.value(&node_momenta);
     // Residual.
     let p = schedule::program(s, &momenta, "t");
     let (lets, values) = program(&p, &bindings);
-    let parts = values.iter().enumerate().map(|(i, v)| {
-        let i = Literal::usize_unsuffixed(i);
-        quote!((#v) - #mu[#i])
-    });
-    let stacked = stack(bodies, quote!(parts));
+    let parts: Vec<TokenStream> = values
+        .iter()
+        .enumerate()
+        .map(|(i, v)| {
+            let own = bundle.part(quote!(#mu), i);
+            quote!((#v) - #own)
+        })
+        .collect();
+    let parts = bundle.value(&parts);
+    let stacked = stack(d, quote!(parts));
     let residual_closure = quote! {
-        let #residual = |#trial: &[Rotation<T>; #count]| {
+        let #residual = |#trial: &#elements| {
             #velocities
             #lets
-            let parts: [SVector<T, 3>; #count] = [#(#parts),*];
+            let parts: #covectors = #parts;
             #stacked
         };
     };
@@ -129,20 +142,25 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
         let column = if j == 0 {
             quote!(axis)
         } else {
-            let offset = Literal::usize_unsuffixed(3 * j);
+            let offset = element::offset(d, j);
             quote!(#offset + axis)
         };
+        let (directions, basis) = (
+            element::coordinates(d, j),
+            element::basis(d, j, quote!(axis)),
+        );
+        let values = bundle.value(&values);
         columns.extend(quote! {
-            for axis in 0..3 {
-                let #eta = basis::<T>(axis);
+            for axis in 0..#directions {
+                let #eta = #basis;
                 #lets
-                let parts: [SVector<T, 3>; #count] = [#(#values),*];
+                let parts: #covectors = #values;
                 matrix.set_column(#column, &#stacked);
             }
         });
     }
     let tangent_closure = quote! {
-        let #tangent = |#trial: &[Rotation<T>; #count]| {
+        let #tangent = |#trial: &#elements| {
             #velocities
             let mut matrix = SMatrix::<T, #dimension, #dimension>::zeros();
             #columns
@@ -155,7 +173,8 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
     let sizes = gradient_values
         .iter()
         .map(|v| quote!(length(&(#v)).magnitude()));
-    let indices: Vec<Literal> = (0..bodies).map(Literal::usize_unsuffixed).collect();
+    let momentum_parts: Vec<TokenStream> =
+        (0..bodies).map(|i| bundle.part(quote!(#mu), i)).collect();
     let guess_names: TokenStream = quote! {
         let #trial = &work.guess;
         #velocities
@@ -167,14 +186,11 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
             let w = d.spec.configurations[i].velocity;
             let name = tagged(d, names, w, "matrix");
             after.bind(at(w, Shift::HERE), name.clone());
-            let i = Literal::usize_unsuffixed(i);
-            quote!(let #name = #solved[#i].matrix();)
+            let part = bundle.part(quote!(#solved), i);
+            quote!(let #name = #part.matrix();)
         })
         .collect();
-    let solved_at = |i: usize| {
-        let i = Literal::usize_unsuffixed(i);
-        quote!(#solved[#i])
-    };
+    let solved_at = |i: usize| bundle.part(quote!(#solved), i);
     let rest = finish(d, names, &mut after, &solved_at, guess);
     let method = format!(" One step, in place. Solved thus: {}.", d.solve.reason);
     quote! {
@@ -183,18 +199,18 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
         /// # Errors
         /// When the iteration does not converge, with its residual; the state is then unchanged.
         #[inline]
-        pub fn step(&self, state: &mut #state<T>, work: &mut #work<T>) -> Result<(), StepError> {
+        pub fn step(&self, state: &mut #state #used, work: &mut #work #used) -> Result<(), StepError> {
             let #step = work.h;
             #parameters
             #locals
-            let #mu: [SVector<T, 3>; #count] = [#(#node_momenta),*];
+            let #mu: #covectors = #node_momenta;
             #residual_closure
             #tangent_closure
             let #scale = {
                 #guess_names
                 #gradient_lets
                 let mut total = 0.0;
-                #(total += length(&#mu[#indices]).magnitude();)*
+                #(total += length(&#momentum_parts).magnitude();)*
                 #(total += #sizes;)*
                 total
             };
@@ -206,13 +222,4 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
             #rest
         }
     }
-}
-
-/// Several vectors on top of each other.
-pub(super) fn stack(count: usize, parts: TokenStream) -> TokenStream {
-    if count == 1 {
-        return quote!(#parts[0]);
-    }
-    let dimension = Literal::usize_unsuffixed(3 * count);
-    quote!(SVector::<T, #dimension>::from_fn(|i, _| #parts[i / 3][i % 3]))
 }

@@ -2,28 +2,29 @@
 //! configurations, which need not solve them. It is what oracles compare with the variation of
 //! the action.
 
+use super::element::{self, stack};
 use super::expression::{Bindings, program, ty};
 use super::items::{kept, letters_of, node_locals, parameter_locals, with_transports};
 use super::names::{Names, item, own, tagged, variable};
-use super::newton::stack;
+use super::sizes::Generics;
 use super::step::at;
 use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::expr::Shift;
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::TokenStream;
 use quote::quote;
 
 /// The configuration struct and the method.
 pub fn balance(d: &Derivation, names: &Names) -> TokenStream {
     let s = &d.letters.symbols;
     let (name, configuration) = (item(d, ""), item(d, "Configuration"));
-    let elements = d.spec.configurations.iter().map(|c| {
-        let e = own(d, c.element);
+    let elements = d.spec.configurations.iter().enumerate().map(|(i, c)| {
+        let (e, kind) = (own(d, c.element), element::ty(d, i));
         let doc = format!(" `{e}` at the node: body -> space.");
-        quote!(#[doc = #doc] pub #e: Rotation<T>)
+        quote!(#[doc = #doc] pub #e: #kind)
     });
     let others = kept(d).into_iter().map(|id| {
-        let (field, t) = (own(d, id), ty(s.get(id).shape));
+        let (field, t) = (own(d, id), ty(s, s.get(id).shape));
         let doc = format!(" `{field}` at the node, as its constraint carries it.");
         quote!(#[doc = #doc] pub #field: #t)
     });
@@ -108,37 +109,52 @@ pub fn balance(d: &Derivation, names: &Names) -> TokenStream {
     }
     let parameters = parameter_locals(d, quote!(self.parameters), &all);
     let (lets, values) = program(&p, &bindings);
-    let bodies = d.spec.configurations.len();
-    let (count, dimension) = (
-        Literal::usize_unsuffixed(bodies),
-        Literal::usize_unsuffixed(3 * bodies),
-    );
-    let stacked = stack(bodies, quote!(parts));
+    let dimension = element::total(d);
+    let (covectors, value) = (element::covectors(d), element::Bundle::of(d).value(&values));
+    let stacked = stack(d, quote!(parts));
     let step = variable(s, d.spec.step);
+    let g = Generics::of(d);
+    let (declared, bound, used) = (g.declared(), g.bound(), g.used());
+    let components = components(d);
     quote! {
         /// A configuration at one node, solution or not.
         #[derive(Clone, Copy, Debug, PartialEq)]
-        pub struct #configuration<T = f64> { #(#elements,)* #(#others,)* }
+        pub struct #configuration #declared { #(#elements,)* #(#others,)* }
 
-        impl<T: Real> #name<T> {
+        impl #bound #name #used {
             /// The residual of the discrete Euler-Lagrange equations at the middle one of three
-            /// consecutive configurations: component `i` is the derivative of the action of the
-            /// two edges when the middle element is rotated about its axis `i` (a body axis on
-            /// the body side, a space axis on the spatial side). Zero on solutions.
+            #(#[doc = #components])*
             pub fn balance(
                 &self,
                 #step: T,
-                #before: &#configuration<T>,
-                #here: &#configuration<T>,
-                #after: &#configuration<T>,
+                #before: &#configuration #used,
+                #here: &#configuration #used,
+                #after: &#configuration #used,
             ) -> SVector<T, #dimension> {
                 #parameters
                 #locals
                 #velocities
                 #lets
-                let parts: [SVector<T, 3>; #count] = [#(#values),*];
+                let parts: #covectors = #value;
                 #stacked
             }
         }
     }
+}
+
+/// What the components of the residual are.
+fn components(d: &Derivation) -> Vec<&'static str> {
+    if element::only_rotations(d) {
+        return vec![
+            " consecutive configurations: component `i` is the derivative of the action of the",
+            " two edges when the middle element is rotated about its axis `i` (a body axis on",
+            " the body side, a space axis on the spatial side). Zero on solutions.",
+        ];
+    }
+    vec![
+        " consecutive configurations: components are derivatives of the action of the two edges",
+        " along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for",
+        " `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix",
+        " units, row by row. Components beyond the coordinates are zero. Zero on solutions.",
+    ]
 }

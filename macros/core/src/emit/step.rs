@@ -1,9 +1,11 @@
 //! `start` and `step`: the momentum of the edge from that of the node, the solve, the new element,
 //! the momentum of the next node.
 
+use super::element::{self, Bundle, Family, family};
 use super::expression::{Bindings, Writer, program};
 use super::items::{kept, letters_of, node_locals, parameter_locals, with_transports};
 use super::names::{Names, field, item, own, per_configuration, tagged, variable};
+use super::sizes::Generics;
 use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::recognise::{Method, Riccati};
@@ -52,8 +54,10 @@ pub fn start_and_step(d: &Derivation, names: &Names) -> TokenStream {
         (Method::ForcedMoserVeselov, Some(Riccati::Exact(mv))) => super::forced::step(d, names, mv),
         _ => super::newton::step(d, names),
     };
+    let g = Generics::of(d);
+    let (bound, used) = (g.bound(), g.used());
     quote! {
-        impl<T: Real> #name<T> {
+        impl #bound #name #used {
             #start
             #step
             #access
@@ -79,9 +83,13 @@ fn start(d: &Derivation, names: &Names) -> TokenStream {
         );
         let label = given.to_string();
         let name = &s.get(c.element).name;
+        let numbers = element::numbers(d, i, quote!(initial.#element));
+        let skew = matches!(family(c), Family::Orthogonal(_))
+            .then(|| quote!(validate::skew(#label, &initial.#given.0)?;));
         checks.push(quote! {
-            validate::finite(#name, &initial.#element.quaternion())?;
+            validate::finite(#name, #numbers)?;
             validate::finite(#label, initial.#given.0.as_slice())?;
+            #skew
         });
         fields.push(match c.side {
             Side::Body => {
@@ -136,7 +144,20 @@ fn start(d: &Derivation, names: &Names) -> TokenStream {
         };
         references.extend(quote!(let #local = #value;));
     }
-    let count = Literal::usize_unsuffixed(d.spec.configurations.len());
+    let identities: Vec<TokenStream> = (0..d.spec.configurations.len())
+        .map(|i| element::identity(d, i))
+        .collect();
+    let guess = Bundle::of(d).value(&identities);
+    let guess = match identities.as_slice() {
+        // Shorter, and as long as it says how often.
+        [first, _, ..] if element::only_rotations(d) => {
+            let count = Literal::usize_unsuffixed(identities.len());
+            quote!([#first; #count])
+        }
+        [first] if element::only_rotations(d) => quote!([#first; 1]),
+        _ => guess,
+    };
+    let used = Generics::of(d).used();
     let work_init = match d.solve.method {
         Method::FreeMoserVeselov => {
             let element = own(d, d.spec.configurations[0].element);
@@ -147,7 +168,7 @@ fn start(d: &Derivation, names: &Names) -> TokenStream {
             quote!(edge: self.edge(state, h), here: state)
         }
         Method::ForcedMoserVeselov => TokenStream::new(),
-        Method::Newton => quote!(guess: [Rotation::identity(); #count],),
+        Method::Newton => quote!(guess: #guess,),
     };
     quote! {
         /// Starts a trajectory with step `h` from data at node 0.
@@ -155,7 +176,7 @@ fn start(d: &Derivation, names: &Names) -> TokenStream {
         /// # Errors
         /// Names the value that is not finite, or says why the first step cannot be solved and
         /// which step could.
-        pub fn start(&self, initial: #initial<T>, h: T) -> Result<(#state<T>, #work<T>), StartError> {
+        pub fn start(&self, initial: #initial #used, h: T) -> Result<(#state #used, #work #used), StartError> {
             validate::positive_step(h)?;
             #(#checks)*
             #references
@@ -173,13 +194,14 @@ pub(super) fn step_signature(d: &Derivation, body: TokenStream) -> TokenStream {
     let (state, work) = (item(d, "State"), item(d, "Workspace"));
     let method = &d.solve.reason;
     let doc = format!(" One step, in place. Solved thus: {method}.");
+    let used = Generics::of(d).used();
     quote! {
         #[doc = #doc]
         ///
         /// # Errors
         /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
         #[inline]
-        pub fn step(&self, state: &mut #state<T>, work: &mut #work<T>) -> Result<(), StepError> {
+        pub fn step(&self, state: &mut #state #used, work: &mut #work #used) -> Result<(), StepError> {
             #body
         }
     }
@@ -269,7 +291,7 @@ pub(super) fn finish(
     };
     // Rotated torques need the matrices of both nodes.
     for (c, u) in d.spec.configurations.iter().zip(&updates) {
-        if let Update::Acted { leave, arrive } = u {
+        if let (Update::Acted { leave, arrive }, Family::Rotation) = (u, family(c)) {
             if !leave.is_zero() {
                 needed.push(at(c.element, Shift::HERE));
             }
@@ -293,8 +315,20 @@ pub(super) fn finish(
                 let (a, b) = (values.next(), values.next());
                 let here = variable(s, c.element);
                 let next = tagged(d, names, c.element, "next");
-                let left = (!leave.is_zero()).then(|| quote!(+ #here * (#a)));
-                let arrived = (!arrive.is_zero()).then(|| quote!(+ #next * (#b)));
+                let moved = tagged(d, names, c.element, "moved");
+                let element = own(d, c.element);
+                let turned = |element: TokenStream,
+                              matrix: &proc_macro2::Ident,
+                              covector: &Option<TokenStream>| {
+                    match family(c) {
+                        Family::Rotation => quote!(+ #matrix * (#covector)),
+                        Family::Orthogonal(_) | Family::Linear(_) => {
+                            quote!(+ #element.covector_to_space(&(#covector)))
+                        }
+                    }
+                };
+                let left = (!leave.is_zero()).then(|| turned(quote!(state.#element), &here, &a));
+                let arrived = (!arrive.is_zero()).then(|| turned(quote!(#moved), &next, &b));
                 quote!(state.#field.0 #left #arrived)
             }
             Update::Added(e) => {
@@ -307,8 +341,9 @@ pub(super) fn finish(
                 quote!(#e)
             }
         };
+        let kind = element::momentum_name(d, i, Side::Spatial);
         out.extend(quote!(let #momentum = #value;));
-        assignments.extend(quote!(state.#field = SpatialMomentum(#momentum);));
+        assignments.extend(quote!(state.#field = #kind(#momentum);));
         finite.push(quote!(all_finite(&#momentum)));
     }
     for q in &advanced {
@@ -332,6 +367,7 @@ pub(super) fn finish(
 fn advected_access(d: &Derivation, names: &Names) -> TokenStream {
     let s = &d.letters.symbols;
     let state = item(d, "State");
+    let used = Generics::of(d).used();
     let mut out = TokenStream::new();
     for a in &d.spec.advected {
         let letter = at(a.quantity, Shift::HERE);
@@ -340,12 +376,12 @@ fn advected_access(d: &Derivation, names: &Names) -> TokenStream {
         let mut bindings = Bindings::new();
         let locals = here(d, names, &[letter], &mut bindings);
         let (name, local) = (own(d, a.quantity), variable(s, a.quantity));
-        let t = super::expression::ty(s.get(a.quantity).shape);
+        let t = super::expression::ty(s, s.get(a.quantity).shape);
         let doc = format!(" `{name}` at the node of this state.");
         out.extend(quote! {
             #[doc = #doc]
             #[inline]
-            pub fn #name(&self, state: &#state<T>) -> #t {
+            pub fn #name(&self, state: &#state #used) -> #t {
                 #parameters
                 #locals
                 #local

@@ -77,6 +77,11 @@ impl Symbols {
         }
     }
 
+    /// How many dimensions have names.
+    pub fn dim_count(&self) -> u16 {
+        u16::try_from(self.dims.len()).unwrap_or(u16::MAX)
+    }
+
     /// The declared dimension of that name.
     pub fn find_dim(&self, name: &str) -> Option<Dim> {
         let i = self.dims.iter().position(|d| d == name)?;

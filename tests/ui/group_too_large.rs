@@ -2,8 +2,8 @@
 
 clebsch::model! {
     model Top {
-        param J: Sym<4>;
-        group Λ: SO<4> velocity Ω;
+        param J: Sym<9>;
+        group Λ: SO<9> velocity Ω;
         constraint next(Λ) = Λ*Ω;
         lagrangian = -tr(J*Ω)/h;
     }

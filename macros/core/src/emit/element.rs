@@ -1,0 +1,271 @@
+//! What emitted code says of a configuration, by its group: the types of elements and momenta, the
+//! coordinates of covectors, bases of the Lie algebra. One match per question.
+
+use super::sizes::size;
+use crate::check::spec::{Configuration, Group, Side};
+use crate::derive::Derivation;
+use crate::expr::shape::Dim;
+use proc_macro2::{Literal, TokenStream};
+use quote::{format_ident, quote};
+
+/// How the runtime keeps the elements of a group.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Family {
+    /// SO(3), by unit quaternions; covectors are vectors.
+    Rotation,
+    /// SO(n), by orthogonal matrices; covectors are skew matrices.
+    Orthogonal(Dim),
+    /// GL(n), by matrices; covectors are matrices.
+    Linear(Dim),
+}
+
+/// The family of a configuration.
+pub fn family(c: &Configuration) -> Family {
+    match c.group {
+        Group::SpecialOrthogonal(Dim::Fixed(3)) => Family::Rotation,
+        Group::SpecialOrthogonal(n) => Family::Orthogonal(n),
+        Group::GeneralLinear(n) => Family::Linear(n),
+    }
+}
+
+/// The configuration with this index. Only indices of the model are asked for.
+fn of(d: &Derivation, i: usize) -> Family {
+    family(&d.spec.configurations[i])
+}
+
+/// Whether every configuration is a rotation of space: the emitted code then has vectors only.
+pub fn only_rotations(d: &Derivation) -> bool {
+    let mut all = d.spec.configurations.iter();
+    all.all(|c| family(c) == Family::Rotation)
+}
+
+/// The largest value of a size.
+pub fn largest(d: &Derivation, n: Dim) -> u64 {
+    match n {
+        Dim::Fixed(n) => u64::from(n),
+        Dim::Named(i) => d.spec.dimensions.get(i as usize).map_or(0, |x| x.to),
+    }
+}
+
+/// How many coordinates the Lie algebra has, at most, over the sizes the model allows.
+pub fn most_coordinates(d: &Derivation, i: usize) -> u64 {
+    match of(d, i) {
+        Family::Rotation => 3,
+        Family::Orthogonal(n) => {
+            let n = largest(d, n);
+            n.saturating_mul(n.saturating_sub(1)) / 2
+        }
+        Family::Linear(n) => {
+            let n = largest(d, n);
+            n.saturating_mul(n)
+        }
+    }
+}
+
+/// Most coordinates of all configurations together, as a literal: the size of work arrays.
+pub fn total(d: &Derivation) -> Literal {
+    let sum: u64 = (0..d.spec.configurations.len())
+        .map(|i| most_coordinates(d, i))
+        .sum();
+    Literal::usize_unsuffixed(usize::try_from(sum).unwrap_or(usize::MAX))
+}
+
+/// How many coordinates the Lie algebra has, as tokens.
+pub fn coordinates(d: &Derivation, i: usize) -> TokenStream {
+    let s = &d.letters.symbols;
+    match of(d, i) {
+        Family::Rotation => quote!(3),
+        Family::Orthogonal(Dim::Fixed(_)) | Family::Linear(Dim::Fixed(_)) => {
+            let n = Literal::usize_unsuffixed(most_coordinates(d, i) as usize);
+            quote!(#n)
+        }
+        Family::Orthogonal(n) => {
+            let n = size(s, n);
+            quote!((#n * (#n - 1) / 2))
+        }
+        Family::Linear(n) => {
+            let n = size(s, n);
+            quote!((#n * #n))
+        }
+    }
+}
+
+/// Coordinates of the configurations before this one, as tokens.
+pub fn offset(d: &Derivation, i: usize) -> TokenStream {
+    if only_rotations(d) {
+        let n = Literal::usize_unsuffixed(3 * i);
+        return quote!(#n);
+    }
+    let before = (0..i).map(|j| coordinates(d, j));
+    quote!(0 #(+ #before)*)
+}
+
+/// The type of an element over the scalar `T`.
+pub fn ty(d: &Derivation, i: usize) -> TokenStream {
+    let s = &d.letters.symbols;
+    match of(d, i) {
+        Family::Rotation => quote!(Rotation<T>),
+        Family::Orthogonal(n) => {
+            let n = size(s, n);
+            quote!(Orthogonal<#n, T>)
+        }
+        Family::Linear(n) => {
+            let n = size(s, n);
+            quote!(Linear<#n, T>)
+        }
+    }
+}
+
+/// The neutral element.
+pub fn identity(d: &Derivation, i: usize) -> TokenStream {
+    match of(d, i) {
+        Family::Rotation => quote!(Rotation::identity()),
+        Family::Orthogonal(_) => quote!(Orthogonal::identity()),
+        Family::Linear(_) => quote!(Linear::identity()),
+    }
+}
+
+/// The numbers of an element as a slice.
+pub fn numbers(d: &Derivation, i: usize, element: TokenStream) -> TokenStream {
+    match of(d, i) {
+        Family::Rotation => quote!(&#element.quaternion()),
+        Family::Orthogonal(_) | Family::Linear(_) => quote!(#element.matrix().as_slice()),
+    }
+}
+
+/// The type of a covector.
+pub fn covector(d: &Derivation, i: usize) -> TokenStream {
+    let s = &d.letters.symbols;
+    match of(d, i) {
+        Family::Rotation => quote!(SVector<T, 3>),
+        Family::Orthogonal(n) | Family::Linear(n) => {
+            let n = size(s, n);
+            quote!(SMatrix<T, #n, #n>)
+        }
+    }
+}
+
+/// The name of the type of a momentum in the frame of a side.
+pub fn momentum_name(d: &Derivation, i: usize, side: Side) -> TokenStream {
+    let frame = match side {
+        Side::Body => "Body",
+        Side::Spatial => "Spatial",
+    };
+    let name = match of(d, i) {
+        Family::Rotation => format_ident!("{frame}Momentum"),
+        Family::Orthogonal(_) | Family::Linear(_) => format_ident!("{frame}MomentumMatrix"),
+    };
+    quote!(#name)
+}
+
+/// The type of a momentum in the frame of a side.
+pub fn momentum(d: &Derivation, i: usize, side: Side) -> TokenStream {
+    let s = &d.letters.symbols;
+    let name = momentum_name(d, i, side);
+    match of(d, i) {
+        Family::Rotation => quote!(#name<T>),
+        Family::Orthogonal(n) | Family::Linear(n) => {
+            let n = size(s, n);
+            quote!(#name<#n, T>)
+        }
+    }
+}
+
+/// The element of the Lie algebra's basis with this index.
+pub fn basis(d: &Derivation, i: usize, index: TokenStream) -> TokenStream {
+    let s = &d.letters.symbols;
+    match of(d, i) {
+        Family::Rotation => quote!(basis::<T>(#index)),
+        Family::Orthogonal(n) => {
+            let n = size(s, n);
+            quote!(skew_basis::<T, #n>(#index))
+        }
+        Family::Linear(n) => {
+            let n = size(s, n);
+            quote!(matrix_basis::<T, #n>(#index))
+        }
+    }
+}
+
+/// Elements or covectors of all configurations together: an array where their types agree, else a
+/// tuple.
+pub struct Bundle {
+    count: usize,
+    array: bool,
+}
+
+impl Bundle {
+    /// That of a model.
+    pub fn of(d: &Derivation) -> Bundle {
+        let list = &d.spec.configurations;
+        Bundle {
+            count: list.len(),
+            array: list.windows(2).all(|w| family(&w[0]) == family(&w[1])),
+        }
+    }
+
+    /// The type, given those of its parts.
+    pub fn ty(&self, parts: &[TokenStream]) -> TokenStream {
+        let count = Literal::usize_unsuffixed(self.count);
+        match (self.array, parts.first()) {
+            (true, Some(first)) => quote!([#first; #count]),
+            _ => quote!((#(#parts,)*)),
+        }
+    }
+
+    /// The value, given its parts.
+    pub fn value(&self, parts: &[TokenStream]) -> TokenStream {
+        match self.array {
+            true => quote!([#(#parts),*]),
+            false => quote!((#(#parts,)*)),
+        }
+    }
+
+    /// One part.
+    pub fn part(&self, bundle: TokenStream, i: usize) -> TokenStream {
+        let i = Literal::usize_unsuffixed(i);
+        match self.array {
+            true => quote!(#bundle[#i]),
+            false => quote!(#bundle.#i),
+        }
+    }
+}
+
+/// The type of the covectors of all configurations.
+pub fn covectors(d: &Derivation) -> TokenStream {
+    let parts: Vec<TokenStream> = (0..d.spec.configurations.len())
+        .map(|i| covector(d, i))
+        .collect();
+    Bundle::of(d).ty(&parts)
+}
+
+/// The coordinates of all covectors of a bundle, one configuration after another.
+pub fn stack(d: &Derivation, parts: TokenStream) -> TokenStream {
+    let count = d.spec.configurations.len();
+    let dimension = total(d);
+    if only_rotations(d) {
+        return match count {
+            1 => quote!(#parts[0]),
+            _ => {
+                quote!(SVector::<T, #dimension>::from_fn(|i, _| #parts[i / 3][i % 3]))
+            }
+        };
+    }
+    let bundle = Bundle::of(d);
+    let puts = (0..count).map(|i| {
+        let part = bundle.part(parts.clone(), i);
+        let put = match of(d, i) {
+            Family::Rotation => quote!(put_vector),
+            Family::Orthogonal(_) => quote!(put_skew),
+            Family::Linear(_) => quote!(put_matrix),
+        };
+        quote!(let rest = #put(rest, &#part);)
+    });
+    quote!({
+        let mut all = SVector::<T, #dimension>::zeros();
+        let rest = all.as_mut_slice();
+        #(#puts)*
+        let _ = rest;
+        all
+    })
+}

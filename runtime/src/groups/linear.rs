@@ -1,0 +1,137 @@
+//! Invertible linear maps of n-dimensional space, GL(n).
+//! Takes matrices with an inverse; gives group elements that carry it along.
+
+use super::{Coadjoint, Group};
+use crate::Real;
+use crate::linalg::inverse;
+use core::fmt;
+use nalgebra::SMatrix;
+
+/// An invertible matrix, by convention from reference to space: `x = Q X`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Linear<const N: usize, T = f64> {
+    matrix: SMatrix<T, N, N>,
+}
+
+/// A matrix that is no element of GL(n).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NotInvertible {
+    /// An entry is NaN or infinite.
+    NotFinite,
+    /// Elimination finds no pivot: the matrix is singular to working precision.
+    Singular,
+}
+
+impl fmt::Display for NotInvertible {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFinite => write!(f, "not invertible: an entry is NaN or infinite"),
+            Self::Singular => write!(f, "not invertible: singular to working precision"),
+        }
+    }
+}
+
+impl std::error::Error for NotInvertible {}
+
+impl<const N: usize, T: Real> Linear<N, T> {
+    /// The map that does nothing.
+    #[inline]
+    pub fn identity() -> Self {
+        Self {
+            matrix: SMatrix::identity(),
+        }
+    }
+
+    /// The map of a matrix.
+    ///
+    /// # Errors
+    /// [`NotInvertible`] when it has no inverse or is not finite.
+    pub fn from_matrix(a: &SMatrix<T, N, N>) -> Result<Self, NotInvertible> {
+        if !a.iter().all(|x| x.is_finite()) {
+            return Err(NotInvertible::NotFinite);
+        }
+        match inverse(a) {
+            Some(_) => Ok(Self { matrix: *a }),
+            None => Err(NotInvertible::Singular),
+        }
+    }
+
+    /// The matrix, reference -> space.
+    #[inline]
+    pub fn matrix(&self) -> SMatrix<T, N, N> {
+        self.matrix
+    }
+
+    /// The inverse map; all NaN where a step has made the matrix singular, so that what uses it is
+    /// refused.
+    #[inline]
+    pub fn inverse(&self) -> Self {
+        Self {
+            matrix: inverse(&self.matrix).unwrap_or_else(|| SMatrix::repeat(T::from_f64(f64::NAN))),
+        }
+    }
+}
+
+impl<const N: usize, T: Real> core::ops::Mul for Linear<N, T> {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        Self {
+            matrix: self.matrix * other.matrix,
+        }
+    }
+}
+
+impl<const N: usize, T: Real> Group<T> for Linear<N, T> {
+    const DIMENSION: usize = N * N;
+
+    #[inline]
+    fn identity() -> Self {
+        Self::identity()
+    }
+
+    #[inline]
+    fn compose(&self, other: &Self) -> Self {
+        *self * *other
+    }
+
+    #[inline]
+    fn inverse(&self) -> Self {
+        self.inverse()
+    }
+
+    /// `self . (1 + X)`, `X` the matrix of the coordinates, row by row.
+    #[inline]
+    fn retract(&self, xi: &[T]) -> Self {
+        let x =
+            SMatrix::<T, N, N>::from_fn(|i, j| xi.get(N * i + j).copied().unwrap_or_else(T::zero));
+        Self {
+            matrix: self.matrix + self.matrix * x,
+        }
+    }
+
+    /// Zero for every invertible matrix: rounding does not carry it off the group. NaN otherwise.
+    fn distance_from_group(&self) -> f64 {
+        match inverse(&self.matrix) {
+            Some(_) => 0.0,
+            None => f64::NAN,
+        }
+    }
+}
+
+impl<const N: usize, T: Real> Coadjoint<T> for Linear<N, T> {
+    type Covector = SMatrix<T, N, N>;
+
+    /// `Q^-T M Q^T`: what pairs with `Q X Q^-1` as `M` does with `X`, in `<A, B> = tr(A^T B)`.
+    #[inline]
+    fn covector_to_space(&self, body: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+        self.inverse().matrix.tr_mul(body) * self.matrix.transpose()
+    }
+
+    /// `Q^T M Q^-T`.
+    #[inline]
+    fn covector_to_body(&self, spatial: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+        self.matrix.tr_mul(spatial) * self.inverse().matrix.transpose()
+    }
+}

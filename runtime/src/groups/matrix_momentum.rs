@@ -1,0 +1,38 @@
+//! Momenta of matrix groups, by the frame they are seen from.
+//! Takes and gives covectors of the Lie algebra as matrices: skew for SO(n), any for GL(n).
+
+use super::Coadjoint;
+use crate::Real;
+use nalgebra::SMatrix;
+
+/// A node momentum seen from the body, an n x n matrix: it pairs with a body velocity `X` as
+/// `tr(M^T X)/2` for SO(n), where it is skew, and as `tr(M^T X)` for GL(n).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyMomentumMatrix<const N: usize, T = f64>(pub SMatrix<T, N, N>);
+
+/// A node momentum seen from space, an n x n matrix paired as [`BodyMomentumMatrix`]; a free motion
+/// keeps it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpatialMomentumMatrix<const N: usize, T = f64>(pub SMatrix<T, N, N>);
+
+impl<const N: usize, T: Real> BodyMomentumMatrix<N, T> {
+    /// The same momentum seen from space.
+    #[inline]
+    pub fn to_space<G: Coadjoint<T, Covector = SMatrix<T, N, N>>>(
+        &self,
+        element: &G,
+    ) -> SpatialMomentumMatrix<N, T> {
+        SpatialMomentumMatrix(element.covector_to_space(&self.0))
+    }
+}
+
+impl<const N: usize, T: Real> SpatialMomentumMatrix<N, T> {
+    /// The same momentum seen from the body.
+    #[inline]
+    pub fn to_body<G: Coadjoint<T, Covector = SMatrix<T, N, N>>>(
+        &self,
+        element: &G,
+    ) -> BodyMomentumMatrix<N, T> {
+        BodyMomentumMatrix(element.covector_to_body(&self.0))
+    }
+}

@@ -1,0 +1,159 @@
+//! Rotations of n-dimensional space, SO(n), kept as orthogonal matrices.
+//! Takes matrices or algebra coordinates; gives elements that stay orthogonal however long the
+//! chain of products.
+
+use super::{Coadjoint, Group, NotARotation};
+use crate::Real;
+use crate::linalg::{determinant, skew_from, solve_many};
+use nalgebra::SMatrix;
+
+/// A rotation of n-dimensional space, by convention from body to space: `v_space = R v_body`.
+///
+/// Products and retractions are made orthogonal again by one Newton step, so that rounding does not
+/// add up. For three dimensions [`Rotation`](super::Rotation) is shorter and faster.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Orthogonal<const N: usize, T = f64> {
+    matrix: SMatrix<T, N, N>,
+}
+
+/// Input data typed with ten digits is accepted and made orthonormal; anything worse is a mistake.
+const ALLOWED_DEFECT: f64 = 1e-9;
+
+/// Newton steps that take a defect of [`ALLOWED_DEFECT`] to rounding, for double-double too: each
+/// squares it.
+const STEPS_FROM_INPUT: usize = 2;
+
+impl<const N: usize, T: Real> Orthogonal<N, T> {
+    /// The rotation that does nothing.
+    #[inline]
+    pub fn identity() -> Self {
+        Self {
+            matrix: SMatrix::identity(),
+        }
+    }
+
+    /// The rotation of a matrix with orthonormal columns and determinant +1.
+    ///
+    /// # Errors
+    /// [`NotARotation`] when an entry of `A^T A - 1` exceeds 1e-9, the determinant is negative or
+    /// an entry is not finite; within that the matrix is replaced by a nearby rotation.
+    pub fn from_matrix(a: &SMatrix<T, N, N>) -> Result<Self, NotARotation> {
+        if !a.iter().all(|x| x.is_finite()) {
+            return Err(NotARotation::NotFinite);
+        }
+        let defect = defect(a);
+        if defect > ALLOWED_DEFECT {
+            return Err(NotARotation::NotOrthogonal { defect });
+        }
+        if determinant(a).least() < 0.0 {
+            return Err(NotARotation::Reflection);
+        }
+        let mut nearest = *a;
+        for _ in 0..STEPS_FROM_INPUT {
+            nearest = orthonormalised(&nearest);
+        }
+        Ok(Self { matrix: nearest })
+    }
+
+    /// A matrix that the caller knows to be a rotation up to rounding: it is made orthogonal to
+    /// working precision.
+    #[inline]
+    pub(crate) fn nearby(a: &SMatrix<T, N, N>) -> Self {
+        Self {
+            matrix: orthonormalised(a),
+        }
+    }
+
+    /// The matrix, body -> space.
+    #[inline]
+    pub fn matrix(&self) -> SMatrix<T, N, N> {
+        self.matrix
+    }
+
+    /// The inverse rotation, space -> body.
+    #[inline]
+    pub fn inverse(&self) -> Self {
+        Self {
+            matrix: self.matrix.transpose(),
+        }
+    }
+}
+
+/// One Newton step towards the nearest orthogonal matrix, `A (3 - A^T A)/2`: it squares the defect.
+#[inline]
+fn orthonormalised<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+    let excess = a.tr_mul(a) - SMatrix::identity();
+    a - a * excess * T::from_f64(0.5)
+}
+
+/// The largest entry of `A^T A - 1` in absolute value, over the real parts of all lanes.
+fn defect<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> f64 {
+    let gram = a.tr_mul(a) - SMatrix::identity();
+    gram.iter()
+        .fold(0.0, |worst: f64, x| worst.max(x.greatest()).max(-x.least()))
+}
+
+impl<const N: usize, T: Real> core::ops::Mul for Orthogonal<N, T> {
+    type Output = Self;
+
+    /// The composition, orthogonal to rounding however long the chain of products.
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        Self::nearby(&(self.matrix * other.matrix))
+    }
+}
+
+impl<const N: usize, T: Real> Group<T> for Orthogonal<N, T> {
+    const DIMENSION: usize = N * (N.saturating_sub(1)) / 2;
+
+    #[inline]
+    fn identity() -> Self {
+        Self::identity()
+    }
+
+    #[inline]
+    fn compose(&self, other: &Self) -> Self {
+        *self * *other
+    }
+
+    #[inline]
+    fn inverse(&self) -> Self {
+        self.inverse()
+    }
+
+    /// `self . cay(X)` with the Cayley map `(1 - X/2)^-1 (1 + X/2)`, `X` the skew matrix of the
+    /// coordinates: for `i < j`, row by row, `-xi` at (i, j) and `+xi` at (j, i).
+    #[inline]
+    fn retract(&self, xi: &[T]) -> Self {
+        let half = skew_from::<T, N>(xi) * T::from_f64(0.5);
+        let one = SMatrix::<T, N, N>::identity();
+        // cay(X) = 2 (1 - X/2)^-1 - 1; the matrix has an inverse for every skew X.
+        match solve_many(&(one - half), &one) {
+            Some(inverse) => Self::nearby(&(self.matrix * (inverse + inverse - one))),
+            None => Self {
+                matrix: SMatrix::repeat(T::from_f64(f64::NAN)),
+            },
+        }
+    }
+
+    fn distance_from_group(&self) -> f64 {
+        let gram = self.matrix.tr_mul(&self.matrix) - SMatrix::identity();
+        gram.iter().fold(0.0, |worst, x| worst.max(x.magnitude()))
+    }
+}
+
+impl<const N: usize, T: Real> Coadjoint<T> for Orthogonal<N, T> {
+    type Covector = SMatrix<T, N, N>;
+
+    /// `R M R^T` of a skew matrix.
+    #[inline]
+    fn covector_to_space(&self, body: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+        self.matrix * body * self.matrix.transpose()
+    }
+
+    /// `R^T M R` of a skew matrix.
+    #[inline]
+    fn covector_to_body(&self, spatial: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+        self.matrix.tr_mul(&(spatial * self.matrix))
+    }
+}
