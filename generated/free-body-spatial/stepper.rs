@@ -492,7 +492,16 @@ pub mod free_body_spatial {
                 },
             ],
             open: Self::open,
+            dimensions: &[],
+            sized: Self::sized,
         };
+        /// The card of the model at the given sizes, in the order of their declaration.
+        fn sized(sizes: &[usize]) -> Option<Card> {
+            match sizes {
+                [] => Some(FreeBodySpatial::<f64>::CARD),
+                _ => None,
+            }
+        }
         fn open(
             parameters: &[Vec<f64>],
             initial: &[Vec<f64>],

@@ -608,7 +608,16 @@ pub mod heavy_top_spatial {
                 },
             ],
             open: Self::open,
+            dimensions: &[],
+            sized: Self::sized,
         };
+        /// The card of the model at the given sizes, in the order of their declaration.
+        fn sized(sizes: &[usize]) -> Option<Card> {
+            match sizes {
+                [] => Some(HeavyTopSpatial::<f64>::CARD),
+                _ => None,
+            }
+        }
         fn open(
             parameters: &[Vec<f64>],
             initial: &[Vec<f64>],
