@@ -41,3 +41,41 @@ pub fn defect(jacobian: &Jacobian, before: &Vector, after: &Vector) -> f64 {
     }
     worst
 }
+
+/// The same for a product of copies of SO(3): block i belongs to momentum i, coordinates in the order (xi_1, mu_1,
+/// xi_2, mu_2, ...). Largest entry of D^T W(mu') D - W(mu); the Jacobian by rows.
+pub fn defect_of_product(jacobian: &[Vec<f64>], before: &[Vector], after: &[Vector]) -> f64 {
+    let form = |momenta: &[Vector]| {
+        let mut w = vec![vec![0.0; 6 * momenta.len()]; 6 * momenta.len()];
+        for (block, mu) in momenta.iter().enumerate() {
+            for (r, row) in two_form(mu).iter().enumerate() {
+                for (c, x) in row.iter().enumerate() {
+                    w[6 * block + r][6 * block + c] = *x;
+                }
+            }
+        }
+        w
+    };
+    let (old, new) = (form(before), form(after));
+    let size = old.len();
+    if new.len() != size || jacobian.len() != size {
+        return f64::INFINITY;
+    }
+    let mut worst = 0.0_f64;
+    for r in 0..size {
+        for c in 0..size {
+            let mut off = -old[r][c];
+            for (row, form) in jacobian.iter().zip(&new) {
+                let turned: f64 = form.iter().zip(jacobian).map(|(w, d)| w * d[c]).sum();
+                off += row[r] * turned;
+            }
+            // NaN must not hide behind max.
+            worst = if off.is_nan() {
+                f64::INFINITY
+            } else {
+                worst.max(off.abs())
+            };
+        }
+    }
+    worst
+}

@@ -1,0 +1,335 @@
+//! One step of every model of the gallery as a map of T*G, attitudes included: its exact Jacobian, from dual numbers,
+//! keeps the canonical two-form to 1e-10. Takes the data of the cases and random phases; a list below says how each
+//! model is started, and must name every model. A step whose length depends on the state fails, which is shown too.
+
+// The fields of the models are Greek letters, as in the papers.
+#![allow(mixed_script_confusables)]
+
+use clebsch::nalgebra::{Matrix3, SMatrix, Vector3};
+use clebsch::{BodyMomentum, Dual, Rotation, SpatialMomentum};
+use clebsch_models::Case;
+use clebsch_tests::handwritten::attitude::Vector;
+use clebsch_tests::physics::draws::Draws;
+use clebsch_tests::physics::symplectic::defect_of_product;
+
+/// Rounding of a product of three matrices with entries of order one to ten, with a wide margin.
+const TOLERANCE: f64 = 1e-10;
+
+/// Random phases of each case.
+const PHASES: u64 = 20;
+
+/// Numbers with derivatives with respect to (xi, mu) of one body, or of two.
+type One = Dual<6>;
+type Two = Dual<12>;
+
+/// Attitude and body momentum with their independent changes: Lambda exp(hat(xi)), mu + delta mu.
+struct Phase<const N: usize> {
+    attitude: Rotation<Dual<N>>,
+    momentum: Vector3<Dual<N>>,
+}
+
+fn number<const N: usize>(values: &[f64]) -> Dual<N> {
+    Dual::constant(values[0])
+}
+
+fn column<const N: usize>(values: &[f64]) -> Vector3<Dual<N>> {
+    Vector3::from_fn(|i, _| Dual::constant(values[i]))
+}
+
+fn matrix<const N: usize>(values: &[f64]) -> Matrix3<Dual<N>> {
+    Matrix3::from_fn(|r, c| Dual::constant(values[3 * r + c]))
+}
+
+/// A random phase of body `block`: any attitude, a momentum of order one.
+fn phase<const N: usize>(draws: &mut Draws, block: usize) -> Phase<N> {
+    let q = draws.attitude().0.map(Dual::constant);
+    let attitude = Rotation::from_quaternion(q).expect("a unit quaternion");
+    let xi = Vector3::from_fn(|i, _| Dual::variable(0.0, 6 * block + i));
+    let momentum = draws.direction();
+    Phase {
+        attitude: attitude * Rotation::exp(&xi),
+        momentum: Vector3::from_fn(|i, _| Dual::variable(momentum[i], 6 * block + 3 + i)),
+    }
+}
+
+impl<const N: usize> Phase<N> {
+    /// A vector of the body in space.
+    fn to_space(&self, v: &Vector3<Dual<N>>) -> Vector3<Dual<N>> {
+        self.attitude.rotate(v)
+    }
+
+    /// A vector of space in the body.
+    fn to_body(&self, v: &Vector3<Dual<N>>) -> Vector3<Dual<N>> {
+        self.attitude.inverse_rotate(v)
+    }
+
+    /// R J R^T, symmetric to the last bit.
+    fn carried(&self, j: &Matrix3<Dual<N>>) -> Matrix3<Dual<N>> {
+        let r = self.attitude.matrix();
+        let seen = r * j * r.transpose();
+        (seen + seen.transpose()) * Dual::constant(0.5)
+    }
+
+    fn space_momentum(&self) -> SpatialMomentum<Dual<N>> {
+        SpatialMomentum(self.to_space(&self.momentum))
+    }
+
+    fn body_momentum(&self) -> BodyMomentum<Dual<N>> {
+        BodyMomentum(self.momentum)
+    }
+}
+
+fn values<const N: usize>(v: &Vector3<Dual<N>>) -> Vector {
+    [v[0].real, v[1].real, v[2].real]
+}
+
+/// The step length, longer by the share `warp` of the first momentum component.
+fn step<const N: usize>(h: f64, warp: f64, phase: &Phase<N>) -> Dual<N> {
+    let one = Dual::constant(1.0);
+    Dual::constant(h) * (one + Dual::constant(warp) * phase.momentum[0])
+}
+
+/// Defect of a map between phases, over the size of the form, which holds momenta beside ones.
+fn defect<const N: usize>(
+    before: &[&Phase<N>],
+    after: &[(Matrix3<Dual<N>>, Vector3<Dual<N>>)],
+) -> f64 {
+    let mut jacobian = Vec::new();
+    for (attitude, momentum) in after {
+        let value: SMatrix<f64, 3, 3> = attitude.map(|x| x.real);
+        // Lambda^T delta Lambda = hat(xi).
+        let turns: Vec<Matrix3<f64>> = (0..N)
+            .map(|seed| value.transpose() * attitude.map(|x| x.dual[seed]))
+            .collect();
+        for (r, c) in [(2, 1), (0, 2), (1, 0)] {
+            jacobian.push(
+                turns
+                    .iter()
+                    .map(|t| 0.5 * (t[(r, c)] - t[(c, r)]))
+                    .collect(),
+            );
+        }
+        for i in 0..3 {
+            jacobian.push(momentum[i].dual.to_vec());
+        }
+    }
+    let before: Vec<Vector> = before.iter().map(|p| values(&p.momentum)).collect();
+    let after: Vec<Vector> = after.iter().map(|(_, mu)| values(mu)).collect();
+    let size = before
+        .iter()
+        .chain(&after)
+        .flatten()
+        .fold(1.0_f64, |m, x| m.max(x.abs()));
+    defect_of_product(&jacobian, &before, &after) / size
+}
+
+/// Starts a model at a phase, steps once, and gives the phase after it.
+macro_rules! stepped {
+    ($model:ident, $parameters:ident { $($p:ident: $value:expr),* $(,)? },
+     $initial:ident { $($i:ident: $start:expr),* $(,)? }, $h:expr,
+     $(($attitude:ident, $momentum:ident)),+) => {{
+        let model = $model::new($parameters { $($p: $value),* }).expect("parameters of a case");
+        let initial = $initial { $($i: $start),* };
+        let (mut state, mut workspace) = model.start(initial, $h).expect("solvable");
+        model.step(&mut state, &mut workspace).expect("solvable");
+        [$((state.$attitude().matrix(), state.$momentum().0)),+]
+    }};
+}
+
+/// The defect of one step of a case at a random phase, with a warped step length.
+type Defect = fn(&Case, &mut Draws, f64) -> f64;
+
+fn free_body(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
+    use clebsch_models::free_body::*;
+    let p = phase::<6>(draws, 0);
+    let after = stepped!(
+        FreeBody,
+        FreeBodyParameters {
+            J: matrix(&case.parameters[0])
+        },
+        FreeBodyInitial {
+            Λ: p.attitude,
+            body_momentum: p.body_momentum()
+        },
+        step(case.h, warp, &p),
+        (Λ, body_momentum)
+    );
+    defect(&[&p], &after)
+}
+
+fn free_body_spatial(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
+    use clebsch_models::free_body_spatial::*;
+    let p = phase::<6>(draws, 0);
+    // The body is the same in every phase: what the case gives in space is read in the body.
+    let after = stepped!(
+        FreeBodySpatial,
+        FreeBodySpatialParameters {
+            scalar: std::marker::PhantomData::<One>
+        },
+        FreeBodySpatialInitial {
+            Λ: p.attitude,
+            spatial_momentum: p.space_momentum(),
+            J: p.carried(&matrix(&case.initial[2])),
+        },
+        step(case.h, warp, &p),
+        (Λ, body_momentum)
+    );
+    defect(&[&p], &after)
+}
+
+fn heavy_top(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
+    use clebsch_models::heavy_top::*;
+    let p = phase::<6>(draws, 0);
+    let after = stepped!(
+        HeavyTop,
+        HeavyTopParameters {
+            J: matrix(&case.parameters[0]),
+            gU: column(&case.parameters[1]),
+            z: column(&case.parameters[2]),
+        },
+        HeavyTopInitial {
+            Λ: p.attitude,
+            body_momentum: p.body_momentum()
+        },
+        step(case.h, warp, &p),
+        (Λ, body_momentum)
+    );
+    defect(&[&p], &after)
+}
+
+fn heavy_top_spatial(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
+    use clebsch_models::heavy_top_spatial::*;
+    let p = phase::<6>(draws, 0);
+    let after = stepped!(
+        HeavyTopSpatial,
+        HeavyTopSpatialParameters {
+            w: number(&case.parameters[0]),
+            z: column(&case.parameters[1]),
+        },
+        HeavyTopSpatialInitial {
+            Λ: p.attitude,
+            spatial_momentum: p.space_momentum(),
+            J: p.carried(&matrix(&case.initial[2])),
+            χ: p.to_space(&column(&case.initial[3])),
+        },
+        step(case.h, warp, &p),
+        (Λ, body_momentum)
+    );
+    defect(&[&p], &after)
+}
+
+fn body_in_quadratic_field(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
+    use clebsch_models::body_in_quadratic_field::*;
+    let p = phase::<6>(draws, 0);
+    // The axis rests in space, so that it is seen differently from each attitude.
+    let after = stepped!(
+        BodyInQuadraticField,
+        BodyInQuadraticFieldParameters {
+            J: matrix(&case.parameters[0]),
+            K: matrix(&case.parameters[1]),
+        },
+        BodyInQuadraticFieldInitial {
+            Λ: p.attitude,
+            body_momentum: p.body_momentum(),
+            Γ: p.to_body(&column(&case.initial[2])),
+        },
+        step(case.h, warp, &p),
+        (Λ, body_momentum)
+    );
+    defect(&[&p], &after)
+}
+
+fn body_in_two_fields(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
+    use clebsch_models::body_in_two_fields::*;
+    let p = phase::<6>(draws, 0);
+    let after = stepped!(
+        BodyInTwoFields,
+        BodyInTwoFieldsParameters {
+            J: matrix(&case.parameters[0]),
+            gU: column(&case.parameters[1]),
+            p: column(&case.parameters[2]),
+            z: column(&case.parameters[3]),
+            b: column(&case.parameters[4]),
+        },
+        BodyInTwoFieldsInitial {
+            Λ: p.attitude,
+            body_momentum: p.body_momentum()
+        },
+        step(case.h, warp, &p),
+        (Λ, body_momentum)
+    );
+    defect(&[&p], &after)
+}
+
+fn coupled_bodies(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
+    use clebsch_models::coupled_bodies::*;
+    let (p, q) = (phase::<12>(draws, 0), phase::<12>(draws, 1));
+    let h: Two = step(case.h, warp, &p);
+    let after = stepped!(
+        CoupledBodies,
+        CoupledBodiesParameters {
+            J1: matrix(&case.parameters[0]),
+            J2: matrix(&case.parameters[1]),
+            d1: column(&case.parameters[2]),
+            d2: column(&case.parameters[3]),
+            eps: number(&case.parameters[4]),
+        },
+        CoupledBodiesInitial {
+            Λ1: p.attitude,
+            body_momentum_Λ1: p.body_momentum(),
+            Λ2: q.attitude,
+            body_momentum_Λ2: q.body_momentum(),
+        },
+        h,
+        (Λ1, body_momentum_Λ1),
+        (Λ2, body_momentum_Λ2)
+    );
+    defect(&[&p, &q], &after)
+}
+
+/// How each model is started.
+const MODELS: [(&str, Defect); 7] = [
+    ("body-in-quadratic-field", body_in_quadratic_field),
+    ("body-in-two-fields", body_in_two_fields),
+    ("coupled-bodies", coupled_bodies),
+    ("free-body", free_body),
+    ("free-body-spatial", free_body_spatial),
+    ("heavy-top", heavy_top),
+    ("heavy-top-spatial", heavy_top_spatial),
+];
+
+fn for_every_case(mut look: impl FnMut(&str, &Case, Defect)) {
+    for entry in clebsch_models::gallery() {
+        let name = entry.card.kebab;
+        let (_, defect) = MODELS
+            .iter()
+            .find(|(known, _)| *known == name)
+            .unwrap_or_else(|| panic!("say above how {name} is started"));
+        for case in &entry.cases {
+            look(name, case, *defect);
+        }
+    }
+}
+
+#[test]
+fn every_model_is_symplectic() {
+    for_every_case(|name, case, defect| {
+        let mut draws = Draws::new(21);
+        let worst = (0..PHASES)
+            .map(|_| defect(case, &mut draws, 0.0))
+            .fold(0.0, f64::max);
+        println!("{name} {}: {worst:.1e}", case.name);
+        assert!(worst < TOLERANCE, "{name} {}: {worst:e}", case.name);
+    });
+}
+
+#[test]
+fn a_step_that_depends_on_the_state_is_not() {
+    for_every_case(|name, case, defect| {
+        let mut draws = Draws::new(22);
+        for _ in 0..PHASES {
+            let found = defect(case, &mut draws, 0.1);
+            assert!(found > 1e4 * TOLERANCE, "{name} {}: {found:e}", case.name);
+        }
+    });
+}
