@@ -33,12 +33,32 @@ pub fn command() -> Command {
                 )),
         )
         .subcommand(run())
+        .subcommand(compare())
         .subcommand(derive())
 }
 
 fn run() -> Command {
-    Command::new("run")
-        .about("Run a case and check what it conserves")
+    planned(
+        Command::new("run").about("Run a case and check what it conserves"),
+        "Write every N-th node; by default such that at most 10000 are written. Invariants are \
+         watched at every node in any case",
+        "Write trajectory.csv, trajectory.npz, run.json and plots into this new folder",
+    )
+}
+
+fn compare() -> Command {
+    planned(
+        Command::new("compare").about(
+            "Run a case by the generated stepper, the hand-written one and other methods, side by side",
+        ),
+        "Compare at every N-th node; by default such that at most 10000 are compared",
+        "Write comparison.csv, comparison.json and comparison.svg into this new folder",
+    )
+}
+
+/// What every command that runs a case takes.
+fn planned(command: Command, every: &'static str, out: &'static str) -> Command {
+    command
         .arg(model())
         .arg(option(
             "case",
@@ -57,23 +77,8 @@ fn run() -> Command {
             )
             .value_parser(positive_number),
         )
-        .arg(
-            option(
-                "every",
-                "N",
-                "Write every N-th node; by default such that at most 10000 are written. Invariants \
-                 are watched at every node in any case",
-            )
-            .value_parser(positive_count),
-        )
-        .arg(
-            option(
-                "out",
-                "DIR",
-                "Write trajectory.csv, trajectory.npz, run.json and plots into this new folder",
-            )
-            .value_parser(value_parser!(std::path::PathBuf)),
-        )
+        .arg(option("every", "N", every).value_parser(positive_count))
+        .arg(option("out", "DIR", out).value_parser(value_parser!(std::path::PathBuf)))
         .arg(flag("force", "Replace DIR when it holds an earlier run").requires("out"))
         .arg(json())
 }

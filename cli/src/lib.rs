@@ -1,4 +1,5 @@
-//! The commands of `clebsch`: list the gallery, print a case, run it, derive its equations.
+//! The commands of `clebsch`: list the gallery, print a case, run it, compare methods, derive
+//! equations.
 //!
 //! The binary only calls [`run_process`]; everything else takes its arguments, its gallery and its
 //! output streams from outside, so that tests run the very same code on models of their own.
@@ -7,6 +8,7 @@
 pub mod arguments;
 pub mod case_file;
 mod columns;
+pub mod compare;
 pub mod derive;
 pub mod failure;
 pub mod gallery;
@@ -61,9 +63,9 @@ pub fn execute(
         Ok(matches) => matches,
         Err(error) => return answer_clap(&error, streams),
     };
-    let as_json = matches
-        .subcommand()
-        .is_some_and(|(name, matches)| name == "run" && matches.get_flag("json"));
+    let as_json = matches.subcommand().is_some_and(|(name, matches)| {
+        ["run", "compare"].contains(&name) && matches.get_flag("json")
+    });
     let done = dispatch(&matches, gallery, streams);
     let done = done.and_then(|code| {
         streams.out.flush()?;
@@ -100,6 +102,7 @@ fn dispatch(
             Ok(DONE)
         }
         Some(("run", matches)) => run::run(gallery, matches, streams),
+        Some(("compare", matches)) => compare::compare(gallery, matches, streams),
         Some(("derive", matches)) => {
             derive::derive(gallery, matches, streams.out)?;
             Ok(DONE)

@@ -41,7 +41,11 @@ pub fn run(
         None => None,
         Some(target) => {
             fits(card, &plan)?;
-            Some(Staging::new(target, matches.get_flag("force"))?)
+            Some(Staging::new(
+                target,
+                matches.get_flag("force"),
+                &output::FILES,
+            )?)
         }
     };
     let mut trajectory = plan.open(card)?;

@@ -2,7 +2,6 @@
 //! Takes the folder's final name; gives a hidden sibling to write into, renamed at the end and
 //! removed when anything fails before.
 
-use super::FILES;
 use crate::failure::Failure;
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -25,15 +24,15 @@ impl Staging {
     ///
     /// # Errors
     /// Usage: it exists and `force` is not given, or it is not the folder of an earlier run (empty, or
-    /// nothing but the files of a run): such a folder is never replaced. Failed: no permission.
-    pub fn new(target: &Path, force: bool) -> Result<Self, Failure> {
+    /// nothing but the files `known` of a run): such a folder is never replaced. Failed: no permission.
+    pub fn new(target: &Path, force: bool, known: &[&str]) -> Result<Self, Failure> {
         let shown = target.display();
         let Some(name) = target.file_name() else {
             return Err(Failure::Usage(format!(
                 "--out {shown}: this names no new folder"
             )));
         };
-        if let Some(obstacle) = obstacle(target, force)? {
+        if let Some(obstacle) = obstacle(target, force, known)? {
             return Err(Failure::Usage(format!("--out {shown}: {obstacle}")));
         }
         // The process id keeps simultaneous runs apart; it appears in no file.
@@ -142,7 +141,7 @@ impl Drop for Staging {
 }
 
 /// Why `target` may not be written, if so.
-fn obstacle(target: &Path, force: bool) -> Result<Option<String>, Failure> {
+fn obstacle(target: &Path, force: bool, known: &[&str]) -> Result<Option<String>, Failure> {
     let found = match fs::symlink_metadata(target) {
         Ok(found) => found,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
@@ -163,7 +162,7 @@ fn obstacle(target: &Path, force: bool) -> Result<Option<String>, Failure> {
         |error: io::Error| Failure::io(&format!("cannot look into {}", target.display()), &error);
     for entry in fs::read_dir(target).map_err(looking)? {
         let name = entry.map_err(looking)?.file_name();
-        if !FILES.iter().any(|file| name == **file) {
+        if !known.iter().any(|file| name == **file) {
             return Ok(Some(format!(
                 "not replaced, as it holds `{}`, which no run wrote; remove it or name another folder",
                 name.display()

@@ -2,10 +2,13 @@
 //! Takes a finished run and its samples; gives SVG text, or nothing when there is nothing to show.
 
 mod axis;
+mod comparison;
 mod curve;
 mod figure;
 mod reduce;
 mod window;
+
+pub(crate) use comparison::comparison;
 
 use crate::output::Finished;
 use crate::record::{Record, Samples};

@@ -21,6 +21,7 @@ pub struct Exact {
     start: Frame,
     h: f64,
     node: u64,
+    here: (Quaternion, Vector),
 }
 
 /// How the momentum moves in the frame of the formulas.
@@ -91,6 +92,7 @@ impl Exact {
             start: Frame { attitude, mu },
             h: start.h,
             node: 0,
+            here: (start.attitude, start.body_momentum),
         })
     }
 
@@ -117,11 +119,6 @@ impl Exact {
         let attitude = self.axes.leave_attitude(&q.times(&to_principal));
         let mu = apply_transposed(&to_principal.matrix(), &mu);
         (attitude, self.axes.leave(&mu))
-    }
-
-    #[allow(clippy::cast_precision_loss)]
-    fn time(&self) -> f64 {
-        self.node as f64 * self.h
     }
 }
 
@@ -282,16 +279,18 @@ fn nodal(mu: &Vector, norm: f64) -> Quaternion {
 }
 
 impl BodyMotion for Exact {
+    #[allow(clippy::cast_precision_loss)]
     fn step(&mut self) -> Result<(), Unsolvable> {
         self.node += 1;
+        self.here = self.at(self.node as f64 * self.h);
         Ok(())
     }
 
     fn attitude(&self) -> Quaternion {
-        self.at(self.time()).0
+        self.here.0
     }
 
     fn body_momentum(&self) -> Vector {
-        self.at(self.time()).1
+        self.here.1
     }
 }

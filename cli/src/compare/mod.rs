@@ -1,0 +1,257 @@
+//! `clebsch compare`: the generated stepper beside the hand-written one and other methods. Takes a
+//! model and a case; gives errors against a reference, drifts and times, as table, JSON, CSV and plot.
+
+mod clock;
+mod course;
+mod score;
+
+pub(crate) use score::{Curve, Score};
+
+use crate::Streams;
+use crate::failure::{DONE, Failure};
+use crate::gallery::Gallery;
+use crate::list::first_line;
+use crate::output::Staging;
+use crate::plan::Plan;
+use crate::plots;
+use crate::record::{LARGEST, Record};
+use clap::ArgMatches;
+use clebsch::card::Card;
+use clebsch_comparisons::gallery::{Offer, Role, offers};
+use course::Course;
+use serde_json::{Value, json};
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+/// Files of a comparison.
+const FILES: [&str; 3] = ["comparison.csv", "comparison.json", "comparison.svg"];
+
+/// A comparison that has come to its end.
+pub(crate) struct Comparison {
+    /// What the errors are measured against, and how good it is known to be.
+    pub reference: String,
+    /// The generated stepper first, the reference last.
+    pub scores: Vec<Score>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// Usage for a wrong request; failed when the generated stepper or the file system gives up. A method
+/// that gives up is reported in its line.
+pub fn compare(
+    gallery: &Gallery,
+    matches: &ArgMatches,
+    streams: &mut Streams<'_>,
+) -> Result<u8, Failure> {
+    let model = matches
+        .get_one::<String>("model")
+        .map_or("", String::as_str);
+    let entry = gallery.find(model)?;
+    let card = &entry.card;
+    let plan = Plan::new(entry, matches)?;
+    let as_json = matches.get_flag("json");
+    let target = matches.get_one::<PathBuf>("out");
+    let staging = target
+        .map(|target| Staging::new(target, matches.get_flag("force"), &FILES))
+        .transpose()?;
+    let done = against_all(card, &plan, streams.progress)?;
+    let mut object = comparison_json(card, &plan, &done);
+    let mut files: &[&str] = &[];
+    if let Some(staging) = staging {
+        write(&staging, card, &plan, &done, &object)?;
+        staging.commit()?;
+        files = &FILES;
+    }
+    if as_json {
+        if let Some(object) = object.as_object_mut() {
+            object.insert("files".to_owned(), json!(files));
+            let out = target.map(|path| path.display().to_string());
+            object.insert("out".to_owned(), json!(out));
+            object.insert("exit_code".to_owned(), json!(DONE));
+        }
+        writeln!(streams.out, "{object}")?;
+        return Ok(DONE);
+    }
+    print(streams.out, card, &plan, &done)?;
+    if let Some(target) = target {
+        let shown = target.display();
+        writeln!(streams.out, "\nwritten to {shown}: {}", files.join(", "))?;
+    }
+    Ok(DONE)
+}
+
+/// Compares everything there is for the model.
+///
+/// # Errors
+/// Those of the generated stepper.
+pub(crate) fn against_all(card: &Card, plan: &Plan, progress: bool) -> Result<Comparison, Failure> {
+    let offers = offers(card.kebab);
+    let size = Record::size(card, plan.case.steps, plan.every);
+    let courses = 2 + offers.len() as u64;
+    if size.saturating_mul(courses) > LARGEST {
+        let every = plan
+            .every
+            .saturating_mul((size.saturating_mul(courses)).div_ceil(LARGEST));
+        return Err(Failure::Usage(format!(
+            "--every {}: more numbers than memory should hold; give --every {every} or more",
+            plan.every
+        )));
+    }
+    let mut scales = vec![0.0; card.invariant_count()];
+    plan.open(card)?.scales(&mut scales);
+    let own = course::generated(card, plan, progress)?;
+    let mut others: Vec<(Offer, Course)> = offers
+        .into_iter()
+        .map(|offer| (offer, course::other(card, plan, &offer)))
+        .collect();
+    let found = others
+        .iter()
+        .position(|(offer, course)| offer.role == Role::Reference && course.stopped.is_none());
+    let reference = found.map(|index| others.remove(index));
+    let (truth, said, last) = match reference {
+        Some((offer, course)) => (
+            course,
+            format!("{}: {}", offer.name, offer.doc),
+            (offer.name, offer.doc.to_owned(), clock::other(plan, &offer)),
+        ),
+        None => {
+            let (course, accuracy) = course::extrapolated(card, plan)?;
+            let doc = "the generated stepper with steps h to h/8, extrapolated";
+            let why = if others.is_empty() {
+                "no equations of this model were written by hand"
+            } else {
+                "the reference of this model gave up"
+            };
+            let said = format!(
+                "extrapolated: {why}; {doc}: it measures the step, not the equations; \
+                 its last term is {accuracy:.0e}"
+            );
+            (course, said, ("extrapolated", doc.to_owned(), None))
+        }
+    };
+    let score = |name, doc: String, role, nanoseconds, course: Course| Score {
+        name,
+        doc,
+        role,
+        errors: score::errors(card, &course.record, &truth.record),
+        drifts: score::drifts(card, &course.record, &scales),
+        nanoseconds,
+        stopped: course.stopped,
+    };
+    let doc = format!("the stepper derived from the model, order {}", card.order);
+    let mut scores = vec![score(
+        "generated",
+        doc,
+        None,
+        clock::generated(card, plan),
+        own,
+    )];
+    for (offer, course) in others {
+        let time = clock::other(plan, &offer);
+        scores.push(score(
+            offer.name,
+            offer.doc.to_owned(),
+            Some(offer.role),
+            time,
+            course,
+        ));
+    }
+    let (name, doc, time) = last;
+    let course = truth.clone();
+    scores.push(score(name, doc, Some(Role::Reference), time, course));
+    Ok(Comparison {
+        reference: said,
+        scores,
+    })
+}
+
+fn print(out: &mut dyn Write, card: &Card, plan: &Plan, done: &Comparison) -> io::Result<()> {
+    let case = &plan.case;
+    let doc = first_line(&case.doc);
+    let colon = if doc.is_empty() { "" } else { ": " };
+    writeln!(out, "{}: {}", card.kebab, first_line(card.doc))?;
+    writeln!(out, "case {}{colon}{doc}", case.name)?;
+    let end = crate::run::end(case.h, case.steps);
+    writeln!(out, "h = {}, {} steps, to time {end}", case.h, case.steps)?;
+    writeln!(out, "reference {}", done.reference)?;
+    writeln!(
+        out,
+        "errors |x - reference| / largest |reference|, drifts |I - I(0)| / scale: the largest at {}\n",
+        match plan.every {
+            1 => "any node".to_owned(),
+            every => format!("every {every}th node"),
+        }
+    )?;
+    out.write_all(score::table(&done.scores).as_bytes())?;
+    writeln!(out)?;
+    let width = done.scores.iter().map(|score| score.name.len()).max();
+    let width = width.unwrap_or(0);
+    for score in &done.scores {
+        writeln!(out, "{:<width$}  {}", score.name, score.doc)?;
+        if let Some((node, why)) = &score.stopped {
+            writeln!(out, "{:<width$}  gave up at node {node}: {why}", "")?;
+        }
+    }
+    Ok(())
+}
+
+fn comparison_json(card: &Card, plan: &Plan, done: &Comparison) -> Value {
+    json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "model": card.kebab,
+        "fingerprint": format!("{:016x}", card.fingerprint),
+        "case": plan.case.name,
+        "h": plan.case.h,
+        "steps": plan.case.steps,
+        "every": plan.every,
+        "arguments": plan.arguments,
+        "reference": done.reference,
+        "methods": done.scores.iter().map(Score::json).collect::<Vec<_>>(),
+    })
+}
+
+/// Writes the files of a comparison.
+fn write(
+    staging: &Staging,
+    card: &Card,
+    plan: &Plan,
+    done: &Comparison,
+    object: &Value,
+) -> Result<(), Failure> {
+    let [csv, json, svg] = FILES;
+    staging.write(csv, |file| write_csv(file, &done.scores))?;
+    let text = format!("{object:#}\n");
+    staging.write(json, |file| file.write_all(text.as_bytes()))?;
+    let drawn = plots::comparison(card, plan, done)
+        .map_err(|error| Failure::Failed(format!("cannot draw {svg}: {error}")))?;
+    staging.write(svg, |file| file.write_all(drawn.as_bytes()))
+}
+
+/// One line per method and sample: long form, as tools that draw want it.
+fn write_csv(file: &mut dyn Write, scores: &[Score]) -> io::Result<()> {
+    write!(file, "method,time")?;
+    if let Some(first) = scores.first() {
+        for curve in &first.errors {
+            write!(file, ",error_{}", curve.name)?;
+        }
+        for curve in &first.drifts {
+            write!(file, ",drift_{}", curve.name)?;
+        }
+    }
+    writeln!(file)?;
+    for score in scores {
+        let curves: Vec<&Curve> = score.errors.iter().chain(&score.drifts).collect();
+        let samples = curves.iter().map(|curve| curve.points.len()).min();
+        for sample in 0..samples.unwrap_or(0) {
+            let point = |curve: &&Curve| curve.points.get(sample).copied().unwrap_or_default();
+            let time = curves.first().map(point).unwrap_or_default().0;
+            write!(file, "{},{time:?}", score.name)?;
+            for curve in &curves {
+                write!(file, ",{:?}", point(curve).1)?;
+            }
+            writeln!(file)?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,104 @@
+//! The plot of a comparison: errors and drifts of all methods against time, logarithmic, one panel a
+//! quantity. Takes a comparison; gives SVG.
+
+use super::axis::{Axis, FLOOR, plain};
+use super::curve::{Curve, Stroke};
+use super::figure::{Figure, Panel};
+use super::reduce;
+use crate::compare::{Comparison, Score};
+use crate::plan::Plan;
+use crate::run::end;
+use clebsch::card::Card;
+use clebsch_comparisons::gallery::Role;
+
+/// Draws the comparison.
+pub(crate) fn comparison(card: &Card, plan: &Plan, done: &Comparison) -> Result<String, String> {
+    let case = &plan.case;
+    let to = end(case.h, case.steps);
+    let mut panels = Vec::new();
+    let Some(first) = done.scores.first() else {
+        return Err("nothing was compared".to_owned());
+    };
+    for (index, curve) in first.errors.iter().enumerate() {
+        // The reference has no error against itself.
+        let others = done
+            .scores
+            .iter()
+            .filter(|score| score.role != Some(Role::Reference));
+        panels.push(panel(
+            &format!("error of {}", curve.name),
+            "|x − x*| / max |x*|",
+            others
+                .enumerate()
+                .filter_map(|(stroke, score)| Some((stroke, score, score.errors.get(index)?))),
+            panels.is_empty(),
+        ));
+    }
+    for (index, curve) in first.drifts.iter().enumerate() {
+        panels.push(panel(
+            &format!("drift of {}", curve.name),
+            "|I(t) − I(0)| / scale",
+            done.scores
+                .iter()
+                .enumerate()
+                .filter_map(|(stroke, score)| Some((stroke, score, score.drifts.get(index)?))),
+            panels.is_empty(),
+        ));
+    }
+    let figure = Figure {
+        title: format!("{}, case {}: methods compared", card.kebab, case.name),
+        subtitle: format!(
+            "h = {}, {} steps, to time {}; reference {}",
+            case.h,
+            case.steps,
+            plain(to),
+            done.reference.split(':').next().unwrap_or_default(),
+        ),
+        x: Axis::linear(0.0, to, 8),
+        x_label: "time t   (unit of h)".to_owned(),
+        panels,
+    };
+    figure.svg()
+}
+
+type Entry<'a> = (usize, &'a Score, &'a crate::compare::Curve);
+
+fn panel<'a>(
+    caption: &str,
+    y_label: &str,
+    entries: impl Iterator<Item = Entry<'a>>,
+    legend: bool,
+) -> Panel {
+    let logarithm = |(time, value): (f64, f64)| (time, value.max(FLOOR).log10());
+    let curves: Vec<Curve> = entries
+        .map(|(stroke, score, curve)| Curve {
+            // One legend for all panels.
+            label: if legend {
+                score.name.to_owned()
+            } else {
+                String::new()
+            },
+            note: None,
+            points: reduce::envelope(&curve.points)
+                .into_iter()
+                .map(logarithm)
+                .collect(),
+            // It lies on the generated one: dashed, so that both are seen.
+            stroke: match score.role {
+                Some(Role::ByHand) => Stroke::number(stroke).dashed(),
+                _ => Stroke::number(stroke),
+            },
+        })
+        .collect();
+    Panel {
+        caption: caption.to_owned(),
+        y_label: y_label.to_owned(),
+        y: Axis::decades(&curves),
+        height: if legend {
+            230.max(50 + 17 * u32::try_from(curves.len()).unwrap_or(0))
+        } else {
+            210
+        },
+        curves,
+    }
+}
