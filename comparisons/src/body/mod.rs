@@ -9,6 +9,7 @@ pub mod splitting;
 use crate::continuous::rigid::RigidBody;
 use crate::handwritten::Unsolvable;
 use crate::handwritten::attitude::{Matrix, Quaternion, Vector};
+use crate::handwritten::body_in_field::{BodyInField, Field};
 use crate::handwritten::free_body::FreeBody;
 use crate::handwritten::heavy_top::HeavyTop;
 use crate::runge_kutta::{RungeKutta, Scheme};
@@ -58,6 +59,21 @@ impl BodyMotion for FreeBody {
 }
 
 impl BodyMotion for HeavyTop {
+    #[inline(always)]
+    fn step(&mut self) -> Result<(), Unsolvable> {
+        Self::step(self)
+    }
+
+    fn attitude(&self) -> Quaternion {
+        Self::attitude(self)
+    }
+
+    fn body_momentum(&self) -> Vector {
+        Self::body_momentum(self)
+    }
+}
+
+impl<F: Field> BodyMotion for BodyInField<F> {
     #[inline(always)]
     fn step(&mut self) -> Result<(), Unsolvable> {
         Self::step(self)

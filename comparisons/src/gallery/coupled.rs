@@ -1,10 +1,11 @@
-//! Two bodies with a spherical joint: Runge-Kutta on the hand-written equations. Takes the values of
+//! Two bodies with a spherical joint: the hand-written stepper, Runge-Kutta on hand-written equations. Takes the values of
 //! a case, parameters (J1, J2, d1, d2, eps); gives the methods.
 
-use super::{LOOSE, Method, Offer, Problem, TIGHT, check, eighth, fifth, reference, rows};
+use super::{LOOSE, Method, Offer, Problem, TIGHT, by_hand, check, eighth, fifth, reference, rows};
 use crate::continuous::coupled::CoupledBodies;
 use crate::handwritten::Unsolvable;
-use crate::handwritten::attitude::{Quaternion, Vector};
+use crate::handwritten::attitude::{Matrix, Quaternion, Vector};
+use crate::handwritten::coupled_bodies::{CoupledBodies as Written, Pair};
 use crate::runge_kutta::{Accuracy, Method54, Method85, Method98, RungeKutta, Scheme};
 
 struct Moving<R>(RungeKutta<R, CoupledBodies, 14>);
@@ -27,24 +28,49 @@ impl<R: Scheme<14>> Method for Moving<R> {
     }
 }
 
-fn read(problem: &Problem<'_>) -> Option<(CoupledBodies, [f64; 14])> {
-    let bodies = CoupledBodies::new(
-        [problem.parameter(0)?, problem.parameter(1)?],
-        [problem.parameter(2)?, problem.parameter(3)?],
-        problem.parameter(4)?,
-    );
-    let (q1, m1): (Quaternion, Vector) = (problem.initial(0)?, problem.initial(1)?);
-    let (q2, m2): (Quaternion, Vector) = (problem.initial(2)?, problem.initial(3)?);
-    let parts = q1.0.iter().chain(&m1).chain(&q2.0).chain(&m2);
-    let numbers: Vec<f64> = parts.copied().collect();
-    Some((bodies, numbers.try_into().ok()?))
+struct ByHand(Written);
+
+impl Method for ByHand {
+    fn step(&mut self) -> Result<(), Unsolvable> {
+        self.0.step()
+    }
+
+    fn shown(&self) -> Vec<Vec<f64>> {
+        let both = self.0.attitudes().into_iter().zip(self.0.body_momenta());
+        both.flat_map(|(q, mu)| [rows(&q.matrix()), mu.to_vec()])
+            .collect()
+    }
+}
+
+/// A case: the two bodies, their attitudes, their momenta in body axes.
+fn read(problem: &Problem<'_>) -> Option<(Pair, [Quaternion; 2], [Vector; 2])> {
+    let poinsots: [Matrix; 2] = [problem.parameter(0)?, problem.parameter(1)?];
+    let arms = [problem.parameter(2)?, problem.parameter(3)?];
+    let eps = problem.parameter(4)?;
+    let pair = Pair {
+        poinsots,
+        arms,
+        eps,
+    };
+    let attitudes = [problem.initial(0)?, problem.initial(2)?];
+    Some((pair, attitudes, [problem.initial(1)?, problem.initial(3)?]))
+}
+
+fn written(problem: &Problem<'_>) -> Result<Box<dyn Method>, Unsolvable> {
+    let (pair, attitudes, momenta) = read(problem).ok_or(Unsolvable)?;
+    let motion = Written::start(&pair, &attitudes, &momenta, problem.h)?;
+    Ok(Box::new(ByHand(motion)))
 }
 
 fn runge_kutta<R: Scheme<14> + 'static>(
     problem: &Problem<'_>,
     accuracy: Accuracy,
 ) -> Result<Box<dyn Method>, Unsolvable> {
-    let (bodies, start) = read(problem).ok_or(Unsolvable)?;
+    let (pair, [p, q], [m, n]) = read(problem).ok_or(Unsolvable)?;
+    let parts = p.0.iter().chain(&m).chain(&q.0).chain(&n);
+    let start: Vec<f64> = parts.copied().collect();
+    let start: [f64; 14] = start.try_into().map_err(|_| Unsolvable)?;
+    let bodies = CoupledBodies::new(pair.poinsots, pair.arms, pair.eps);
     let motion = RungeKutta::<R, _, 14>::start(bodies, &start, problem.h, accuracy)?;
     Ok(Box::new(Moving(motion)))
 }
@@ -54,6 +80,7 @@ pub(super) fn bodies() -> Vec<Offer> {
     vec![
         reference(|p| runge_kutta::<Method98<14>>(p, Accuracy::reference(2))),
         check(|p| runge_kutta::<Method98<14>>(p, Accuracy::reference(3))),
+        by_hand(written),
         eighth(|p| runge_kutta::<Method85<14>>(p, Accuracy::of(TIGHT))),
         fifth(|p| runge_kutta::<Method54<14>>(p, Accuracy::of(LOOSE))),
     ]

@@ -9,6 +9,7 @@ use crate::body::{BodyMotion, Start};
 use crate::continuous::rigid::{Field, RigidBody};
 use crate::handwritten::Unsolvable;
 use crate::handwritten::attitude::{Matrix, Quaternion, Vector, apply, apply_transposed, dot};
+use crate::handwritten::body_in_field::{BodyInField, QuadraticField, TwoFields};
 use crate::handwritten::free_body::FreeBody as WrittenBody;
 use crate::handwritten::heavy_top::{HeavyTop as WrittenTop, Top};
 use crate::runge_kutta::{Accuracy, Method54, Method85, Method98, RungeKutta, Scheme};
@@ -287,6 +288,44 @@ fn written_top<B: Read>(problem: &Problem<'_>) -> Started {
     shown(WrittenTop::start(&top, &attitude, &body_momentum, h), by)
 }
 
+fn written_field<B: Read>(problem: &Problem<'_>) -> Started {
+    let Body {
+        start,
+        shown: by,
+        field,
+    } = body::<B>(problem)?;
+    let Start {
+        poinsot,
+        attitude,
+        body_momentum,
+        h,
+    } = start;
+    match field {
+        Field::Quadratic { matrix, axis } => {
+            let field = QuadraticField {
+                stiffness: matrix,
+                axis,
+            };
+            let motion = BodyInField::start(&poinsot, &field, &attitude, &body_momentum, h);
+            shown(motion, by)
+        }
+        Field::Uniform(pairs) => {
+            let [(weight, up), (against, direction)] = *pairs else {
+                return Err(Unsolvable);
+            };
+            let field = TwoFields {
+                weight,
+                dipole: against.map(|c| -c),
+                up,
+                field: direction,
+            };
+            let motion = BodyInField::start(&poinsot, &field, &attitude, &body_momentum, h);
+            shown(motion, by)
+        }
+        Field::None => Err(Unsolvable),
+    }
+}
+
 fn runge_kutta<B: Read, R: Scheme<7> + 'static>(
     problem: &Problem<'_>,
     accuracy: Accuracy,
@@ -327,11 +366,14 @@ impl<B: Read> Families<B> {
     }
 
     /// What every model of one body can be compared with.
-    fn offers(written: Option<super::Start>) -> Vec<Offer> {
-        let mut offers = vec![super::reference(Self::reference), super::check(Self::check)];
-        offers.extend(written.map(super::by_hand));
-        offers.extend([super::eighth(Self::eighth), super::fifth(Self::fifth)]);
-        offers
+    fn offers(written: super::Start) -> Vec<Offer> {
+        vec![
+            super::reference(Self::reference),
+            super::check(Self::check),
+            super::by_hand(written),
+            super::eighth(Self::eighth),
+            super::fifth(Self::fifth),
+        ]
     }
 }
 
@@ -349,11 +391,7 @@ pub(super) fn free<B: Read>() -> Vec<Offer> {
         role: Role::Reference,
         start: exact::<B>,
     }];
-    offers.extend(
-        Families::<B>::offers(Some(written_body::<B>))
-            .into_iter()
-            .skip(1),
-    );
+    offers.extend(Families::<B>::offers(written_body::<B>).into_iter().skip(1));
     let others: [(_, _, super::Start); 5] = [
         (
             "splitting",
@@ -383,10 +421,10 @@ pub(super) fn free<B: Read>() -> Vec<Offer> {
 
 /// The heavy top.
 pub(super) fn top<B: Read>() -> Vec<Offer> {
-    Families::<B>::offers(Some(written_top::<B>))
+    Families::<B>::offers(written_top::<B>)
 }
 
 /// A body in other fields.
 pub(super) fn in_field<B: Read>() -> Vec<Offer> {
-    Families::<B>::offers(None)
+    Families::<B>::offers(written_field::<B>)
 }
