@@ -3,8 +3,13 @@
 //! document; the printers turn it into text, LaTeX, Markdown, MathML or JSON.
 
 mod compose;
+mod motion;
+mod outlook;
 mod proof;
+mod sheet;
+mod solution;
 mod source;
+pub mod thesis;
 
 pub use compose::document;
 pub use proof::proof;
@@ -52,7 +57,14 @@ pub fn summary(d: &Derivation) -> String {
     let s = &d.letters.symbols;
     let st = style(d);
     let show = |e: &crate::expr::Expr| expression(e, s, &st, Format::Text);
-    let mut lines = vec![format!("action of one step   {}", show(&d.action.total))];
+    let show = |e: &crate::expr::Expr| show(&crate::expr::collect(s, e));
+    let mut lines = Vec::new();
+    if d.spec.scale.is_some() {
+        let terms = crate::derive::action::summands(&d.spec.lagrangian);
+        let physical = crate::expr::sum(terms, crate::expr::shape::Shape::SCALAR);
+        lines.push(format!("physical             {}", show(&physical)));
+    }
+    lines.push(format!("action of one step   {}", show(&d.action.total)));
     for (c, m) in d.spec.configurations.iter().zip(&d.momenta) {
         let name = &s.get(c.element).name;
         lines.push(format!("momentum of {name:<8} {}", show(&m.reduced)));

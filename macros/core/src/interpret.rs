@@ -237,6 +237,7 @@ pub fn evaluate(symbols: &Symbols, e: &Expr, values: &Assignment) -> Result<Matr
             Matrix::scalar((0..a.rows).map(|i| a.get(i, i)).sum())
         }
         Node::Det(a) => Matrix::scalar(go(a)?.inverse_and_det().1),
+        Node::Adjugate(a) => go(&expr::adjugate_polynomial(a))?,
         Node::Dot(a, b) => go(a)?.transposed().times(&go(b)?),
         Node::Cross(a, b) => hat(&go(a)?).times(&go(b)?),
         Node::Hat(a) => hat(&go(a)?),
@@ -345,6 +346,31 @@ impl Derivation {
         let results = run(program, &values)?;
         let groups = self.spec.configurations.iter().zip(&results);
         Ok(groups.flat_map(|(c, m)| coordinates(c.group, m)).collect())
+    }
+
+    /// Evaluates the continuous equations of motion, `-dμ/dt ± ad*_ζ μ + Σ ∂L/∂a ◇ a`, at one
+    /// moment of any curve: level 0 of elements and of advected quantities without definition,
+    /// velocities under the names of [`Letters::rate`](crate::derive::Letters), accelerations under
+    /// those of `acceleration`. Components as in [`Derivation::residual`], whose limit over the
+    /// step this is; nothing where the action has no limit.
+    pub fn continuous_balance(&self, values: &Assignment) -> Result<Option<Vec<f64>>, EvalError> {
+        let s = &self.letters.symbols;
+        let Some(continuous) = &self.continuous else {
+            return Ok(None);
+        };
+        let mut all = values.clone();
+        for (a, t) in self.spec.advected.iter().zip(&self.transports) {
+            if let Transport::Defined(definition) = t {
+                let value = evaluate(s, definition, &all)?;
+                let name = &s.get(a.quantity).name;
+                all.set(name, 0, value.rows, value.cols, &value.data);
+            }
+        }
+        let mut out = Vec::new();
+        for (c, e) in self.spec.configurations.iter().zip(&continuous.balances) {
+            out.extend(coordinates(c.group, &evaluate(s, e, &all)?));
+        }
+        Ok(Some(out))
     }
 
     /// Adds velocities on both edges and defined advected quantities at all three nodes.

@@ -242,6 +242,10 @@ impl Point<'_> {
                 let a = go(a)?;
                 Matrix::number(a.inverted().map_or(0, |(_, det)| det))
             }
+            Node::Adjugate(a) => {
+                let (inverse, det) = go(a)?.inverted()?;
+                inverse.scaled(det)
+            }
             Node::Dot(a, b) => go(a)?.transposed().times(&go(b)?),
             Node::Cross(a, b) => hat(&go(a)?).times(&go(b)?),
             Node::Hat(a) => hat(&go(a)?),

@@ -71,6 +71,11 @@ impl Algebra<'_> {
             Node::Inverse(a) => self.inverse(&self.lower(a), a),
             Node::Trace(a) => self.trace_poly(&self.lower(a)),
             Node::Det(a) => self.det(&self.lower(a), a),
+            Node::Adjugate(a) => {
+                let lowered = self.lower(a);
+                let det = self.det(&lowered, a);
+                self.mul(&det, &self.inverse(&lowered, a))
+            }
             Node::Dot(a, b) => {
                 let row = self.transpose(&self.lower(a));
                 self.mul(&row, &self.lower(b))

@@ -3,8 +3,9 @@
 
 use super::Algebra;
 use super::factor::{Factor, Source, Word};
-use super::monomial::Atom;
-use super::poly::Poly;
+use super::monomial::{Atom, Monomial};
+use super::poly::{Poly, Term};
+use super::rational::Rational;
 use crate::expr::shape::Dim;
 use crate::expr::{self, Expr, Function};
 
@@ -13,19 +14,69 @@ impl Algebra<'_> {
     pub fn raise(&self, a: &Poly) -> Expr {
         let terms = a.terms.iter().map(|(t, c)| {
             let mut factors = vec![expr::number(*c)];
-            for (atom, exponent) in &t.monomial {
+            let (monomial, adjugate) = self.adjugate_in(t);
+            for (atom, exponent) in &monomial {
                 factors.push(expr::power(self.raise_atom(atom), *exponent));
             }
             if t.word.is_empty() {
                 if !a.shape.is_scalar() {
                     factors.push(expr::identity(a.shape.rows));
                 }
+            } else if let Some((i, adjugate)) = adjugate {
+                let (before, after) = (&t.word[..i], &t.word[i + 1..]);
+                let parts =
+                    [before, after].map(|w| (!w.is_empty()).then(|| self.raise_word(&w.to_vec())));
+                let [before, after] = parts;
+                factors.extend(before.into_iter().chain([adjugate]).chain(after));
             } else {
                 factors.push(self.raise_word(&t.word));
             }
             expr::product(factors)
         });
         expr::sum(terms.collect::<Vec<_>>(), a.shape)
+    }
+
+    /// The first inverse in a word that stands with its determinant: the two are an adjugate,
+    /// which has a value where the determinant vanishes. Gives the rest of the monomial.
+    fn adjugate_in(&self, t: &Term) -> (Monomial, Option<(usize, Expr)>) {
+        for (i, f) in t.word.iter().enumerate() {
+            let Factor::Letter {
+                source,
+                transposed,
+                inverted: true,
+            } = f
+            else {
+                continue;
+            };
+            let wanted = match source {
+                Source::Letter(_) => Atom::Det(*source),
+                Source::Opaque(n) => Atom::OpaqueDet(*n),
+            };
+            let Some(at) = t
+                .monomial
+                .iter()
+                .position(|(atom, e)| *atom == wanted && e.as_integer().is_some_and(|n| n > 0))
+            else {
+                continue;
+            };
+            let mut rest = t.monomial.clone();
+            let Some(lower) = rest[at].1.plus(Rational::MINUS_ONE) else {
+                continue;
+            };
+            if lower.is_zero() {
+                rest.remove(at);
+            } else {
+                rest[at].1 = lower;
+            }
+            let adjugate = expr::adjugate(self.symbols, &self.raise_source(*source));
+            let adjugate = if *transposed {
+                expr::transpose(self.symbols, adjugate)
+            } else {
+                adjugate
+            };
+            return (rest, Some((i, adjugate)));
+        }
+        (t.monomial.clone(), None)
     }
 
     fn raise_word(&self, word: &Word) -> Expr {

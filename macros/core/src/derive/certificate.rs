@@ -6,7 +6,7 @@
 use super::Letters;
 use super::action::Action;
 use super::balance::{self, Balance, pairing};
-use super::clebsch::{Relation, constraint_terms};
+use super::clebsch::{self, Relation, constraint_terms};
 use super::momentum::Momentum;
 use super::variation::{Variation, at, on_shell, substitute_previous_elements};
 use crate::algebra::{Algebra, Known, Rational};
@@ -308,7 +308,7 @@ fn named_form(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
     };
     block(
         "momentum map of the outgoing edge",
-        expr::neg(matrix(&m.edge)),
+        expr::neg(matrix(&m.start)),
         expr::directional(s, l, std::slice::from_ref(&v.outgoing)),
     );
     block(
@@ -317,8 +317,8 @@ fn named_form(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
         expr::directional(s, l, &at_node),
     );
     block(
-        "momentum map of the incoming edge, carried by Ad*,",
-        matrix(&back(&m.transported)),
+        "momentum map of the incoming edge",
+        matrix(&back(&m.end)),
         expr::directional(s, &before, std::slice::from_ref(&v.incoming)),
     );
     block(
@@ -330,11 +330,30 @@ fn named_form(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
     block(
         "emitted residual, outgoing edge,",
         node(difference(b.outgoing.clone(), b.node_out.clone())),
-        matrix(&m.edge),
+        matrix(&m.start),
     );
     block(
         "emitted residual, incoming edge,",
         node(back(&difference(b.incoming.clone(), b.node_in.clone()))),
-        matrix(&back(&m.transported)),
+        matrix(&back(&m.end)),
     );
+    // The named maps of the multipliers, by their definition.
+    let p = expr::here(s, x.letters.momentum[i]);
+    let paired = pairing(x.letters, &p, &v.element.1);
+    block(
+        "the momentum map of the multiplier",
+        matrix(&m.cotangent),
+        expr::scale(clebsch::weight(c.group), paired),
+    );
+    for (j, (letter, change)) in v.advected.iter().enumerate() {
+        let Some(diamond) = m.diamonds.get(j).filter(|e| !e.is_zero()) else {
+            continue;
+        };
+        let multiplier = expr::here(s, x.letters.multiplier[j]);
+        block(
+            &format!("the diamond of {} along the variation", name_of(x, *letter)),
+            matrix(diamond),
+            pairing(x.letters, &multiplier, change),
+        );
+    }
 }

@@ -1,14 +1,16 @@
 //! The Clebsch relations: stationarity of the constrained action
 //! `ℓ + ½<P', Λ' - ΛΩ> + <V', a' - f(a, Ω)>` in every variable, multipliers kept, as the thesis
-//! writes them (2.57-2.62, 2.77, 2.144-2.148).
+//! writes them (2.57-2.62, 2.77, 2.144-2.148). The weight ½ belongs to SO(n), as in (2.75); for
+//! GL(n) it is 1, as in (3.25).
 
 use super::Letters;
 use super::action::Action;
 use super::balance::{pairing, shorter};
 use super::variation::at;
 use crate::algebra::{Algebra, Rational};
-use crate::check::spec::Spec;
+use crate::check::spec::{Group, Spec};
 use crate::expr::shape::Shape;
+use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr, Letter, Shift};
 
 /// Stationarity in one variable.
@@ -23,6 +25,16 @@ pub struct Relation {
     pub up_to_group_multiplier: bool,
 }
 
+/// The weight of the pairing of a group element with its multiplier: with ½ the momentum map of
+/// SO(n) is `skew(Λ^T P)`, with 1 that of GL(n) is `Q^T P`.
+pub fn weight(group: Group) -> Rational {
+    if group.is_orthogonal() {
+        Rational::HALF
+    } else {
+        Rational::ONE
+    }
+}
+
 /// The multiplier terms of one edge, one for each constraint, in order of configurations and
 /// advected quantities.
 pub fn constraint_terms(spec: &Spec, letters: &Letters) -> Vec<Expr> {
@@ -34,7 +46,7 @@ pub fn constraint_terms(spec: &Spec, letters: &Letters) -> Vec<Expr> {
         expr::scale(weight, pairing(letters, &p, &gap))
     };
     let groups = spec.configurations.iter().zip(&letters.momentum);
-    let groups = groups.map(|(c, p)| term(*p, c.element, &c.update, Rational::HALF));
+    let groups = groups.map(|(c, p)| term(*p, c.element, &c.update, weight(c.group)));
     let advected = spec.advected.iter().zip(&letters.multiplier);
     let advected = advected.map(|(a, p)| term(*p, a.quantity, &a.update, Rational::ONE));
     groups.chain(advected).collect()
@@ -54,6 +66,11 @@ pub fn relations(
         Shape::SCALAR,
     );
     let before = expr::shift_time(s, &edge, Shift::PREVIOUS.time);
+    // A gradient has the structure of its variable: symmetric for a symmetric one.
+    let own = |e: &Expr, variable: Letter| {
+        let g = expr::gradient(s, e, variable);
+        expr::projected(s, s.get(variable.symbol).structure, &g)
+    };
     let nodes = spec.configurations.iter().map(|c| c.element);
     let nodes = nodes.chain(spec.advected.iter().map(|a| a.quantity));
     let mut out: Vec<Relation> = nodes
@@ -61,12 +78,10 @@ pub fn relations(
             let variable = at(symbol, Shift::HERE);
             Relation {
                 variable,
-                gradient: shorter(
+                gradient: shortest(
+                    s,
                     algebra,
-                    expr::add(
-                        expr::gradient(s, &before, variable),
-                        expr::gradient(s, &edge, variable),
-                    ),
+                    expr::add(own(&before, variable), own(&edge, variable)),
                 ),
                 up_to_group_multiplier: false,
             }
@@ -76,9 +91,14 @@ pub fn relations(
         let variable = at(c.velocity, Shift::HERE);
         out.push(Relation {
             variable,
-            gradient: expr::gradient(s, &edge, variable),
+            gradient: expr::collect(s, &expr::gradient(s, &edge, variable)),
             up_to_group_multiplier: c.group.is_orthogonal(),
         });
     }
     out
+}
+
+/// The shorter of the gradient with like terms collected and its reduced form.
+fn shortest(s: &Symbols, algebra: &Algebra, e: Expr) -> Expr {
+    shorter(algebra, expr::collect(s, &e))
 }

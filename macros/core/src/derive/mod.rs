@@ -6,6 +6,7 @@ pub mod action;
 pub mod balance;
 pub mod certificate;
 pub mod clebsch;
+pub mod continuous;
 pub mod invariants;
 pub mod limit;
 pub mod momentum;
@@ -31,6 +32,11 @@ pub struct Letters {
     pub variation: Vec<SymbolId>,
     /// For each configuration: a second one, the direction of a tangent `η`.
     pub direction: Vec<SymbolId>,
+    /// For each configuration: its velocity `ζ` in continuous time, an element of the Lie algebra
+    /// (for SO(3) its axial vector).
+    pub rate: Vec<SymbolId>,
+    /// For each configuration: the rate of change of `ζ`.
+    pub acceleration: Vec<SymbolId>,
     /// For each configuration: the multiplier of its reconstruction.
     pub momentum: Vec<SymbolId>,
     /// For each advected quantity: the multiplier of its constraint.
@@ -70,6 +76,8 @@ pub struct Derivation {
     pub reversible: bool,
     /// The Lagrangian in the limit of small steps, or why there is none.
     pub limit: Result<limit::Limit, String>,
+    /// The equations of motion of that limit, where there is one.
+    pub continuous: Option<continuous::Continuous>,
     /// Conserved quantities.
     pub invariants: Vec<invariants::Invariant>,
     /// The scheduled residual, once it has been asked for.
@@ -140,8 +148,29 @@ fn letters(spec: &Spec) -> Letters {
         };
         placeholder.push(symbols.add(&name, s.shape, marker, Role::Variation));
     }
+    // The velocity and the acceleration of the limit, of the same kind.
+    let (mut rate, mut acceleration) = (Vec::new(), Vec::new());
+    for (i, c) in spec.configurations.iter().enumerate() {
+        let size = c.group.size();
+        let (shape, structure) = match c.group {
+            Group::SpecialOrthogonal(Dim::Fixed(3)) => (Shape::vector(size), Structure::General),
+            Group::SpecialOrthogonal(_) => (Shape::square(size), Structure::Skew),
+            Group::GeneralLinear(_) => (Shape::square(size), Structure::General),
+        };
+        let number = if many {
+            (i + 1).to_string()
+        } else {
+            String::new()
+        };
+        let name = symbols.fresh_name(&format!("ζ{number}"));
+        rate.push(symbols.add(&name, shape, structure, Role::Variation));
+        let name = symbols.fresh_name(&format!("dζ{number}"));
+        acceleration.push(symbols.add(&name, shape, structure, Role::Variation));
+    }
     Letters {
         symbols,
+        rate,
+        acceleration,
         variation,
         direction,
         momentum,
@@ -179,7 +208,7 @@ pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
     let transports = transports?;
     let balances = balance::balances(&spec, &letters, &action, &variations, &algebra);
     let relations = clebsch::relations(&spec, &letters, &action, &algebra);
-    let momenta = momentum::momenta(&spec, &letters, &balances, &algebra);
+    let momenta = momentum::momenta(&spec, &letters, &balances, &variations, &algebra);
     let certificate = certificate::certify(&certificate::Inputs {
         spec: &spec,
         letters: &letters,
@@ -195,6 +224,10 @@ pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
     let solve = recognise::recognise(&spec, &letters, &balances, &algebra);
     let reversible = reversal::is_reversible(&spec, &action, &algebra);
     let limit = limit::limit(&spec, &letters, &action, &variations, &algebra);
+    let continuous = limit
+        .as_ref()
+        .ok()
+        .map(|l| continuous::continuous(&spec, &letters, &variations, l, &algebra));
     let invariants = invariants::invariants(&invariants::Inputs {
         spec: &spec,
         letters: &letters,
@@ -217,6 +250,7 @@ pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
         transports,
         reversible,
         limit,
+        continuous,
         invariants,
         residual: OnceLock::new(),
     })

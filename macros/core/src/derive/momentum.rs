@@ -1,25 +1,34 @@
 //! Momentum maps and the named form of the balance: the edge momentum `M`, its coadjoint
-//! transport `Ad*`, and a diamond for every advected quantity:
-//! `M_k + Σ ∇ℓ_k ◇ a_k = Ad*_Ω M_{k-1} + ...` (the discrete Euler-Poincare equation).
+//! transport `Ad*`, and a diamond for every advected quantity. Body side:
+//! `M_k = Ad*_Ω M_{k-1} + Σ ∇ℓ ◇ a`; spatial side: `Ad*_ω M_k = M_{k-1} + Σ ∇ℓ ◇ a`, with
+//! `<v ◇ a, ξ> = <v, δa>` along `ξ` (thesis 2.82, 2.85, 2.120, 2.155).
 
 use super::Letters;
-use super::balance::Balance;
-use crate::algebra::{Algebra, Rational};
-use crate::check::spec::{Side, Spec};
+use super::balance::{Balance, covector, pairing, shorter};
+use super::variation::{Variation, at};
+use crate::algebra::Algebra;
+use crate::check::spec::{Configuration, Group, Side, Spec};
+use crate::expr::shape::Dim;
 use crate::expr::{self, Expr, Shift};
 
 /// The momentum map of one configuration.
 #[derive(Clone, Debug)]
 pub struct Momentum {
-    /// The edge momentum as a matrix: `2 skew(∇ℓ Ω^T)` for SO(n), `∇ℓ Ω^T` for GL(n) (body side;
-    /// on the spatial side `∇ℓ` and `Ω^T` change places).
+    /// The edge momentum as a matrix: `2 skew(∇ℓ Ω^T)` for SO(n), `∇ℓ Ω^T` for GL(n). It stands at
+    /// the start of the edge on the body side, at its end on the spatial side.
     pub edge: Expr,
     /// The same, reduced.
     pub reduced: Expr,
-    /// `Ad*_Ω M` as a matrix: `Ω^T M Ω` (body).
-    pub transported: Expr,
-    /// The right momentum map of the configuration and its multiplier: `skew(Λ^T P)`.
+    /// What the edge contributes at its start: `M` (body) or `Ad*_ω M = ω^T M ω^-T` (spatial).
+    pub start: Expr,
+    /// What the edge contributes at its end: `Ad*_Ω M` (body) or `M` (spatial).
+    pub end: Expr,
+    /// The momentum map of the configuration and its multiplier: `skew(Λ^T P)` on the body side
+    /// (the right one), `skew(P Λ^T)` on the spatial side (the left one); without `skew` for GL(n).
     pub cotangent: Expr,
+    /// For each advected quantity the momentum map of it and its multiplier, `V ◇ a`, as a matrix;
+    /// zero where this configuration does not move it.
+    pub diamonds: Vec<Expr>,
 }
 
 /// The momentum maps of all configurations.
@@ -27,42 +36,74 @@ pub fn momenta(
     spec: &Spec,
     letters: &Letters,
     balances: &[Balance],
+    variations: &[Variation],
     algebra: &Algebra,
 ) -> Vec<Momentum> {
+    let each = spec.configurations.iter().zip(balances).zip(variations);
+    each.enumerate()
+        .map(|(i, ((c, b), v))| momentum(spec, letters, c, i, b, v, algebra))
+        .collect()
+}
+
+fn momentum(
+    spec: &Spec,
+    letters: &Letters,
+    c: &Configuration,
+    i: usize,
+    b: &Balance,
+    v: &Variation,
+    algebra: &Algebra,
+) -> Momentum {
     let s = &letters.symbols;
-    let each = spec.configurations.iter().zip(balances).enumerate();
-    each.map(|(i, (c, b))| {
-        let w = expr::here(s, c.velocity);
-        let wt = expr::transpose(s, w.clone());
-        let g = b.gradient.clone();
-        let back = expr::inverse(s, wt.clone());
-        let (raw, left, right) = match c.side {
-            Side::Body => (expr::mul(g, wt.clone()), wt, back),
-            Side::Spatial => (expr::mul(wt.clone(), g), back, wt),
+    let w = expr::here(s, c.velocity);
+    let wt = expr::transpose(s, w);
+    let raw = expr::mul(expr::collect(s, &b.gradient), wt.clone());
+    let edge = if c.group.is_orthogonal() {
+        expr::sub(raw.clone(), expr::transpose(s, raw))
+    } else {
+        raw
+    };
+    let back = expr::inverse(s, wt.clone());
+    let carried = expr::product([wt, edge.clone(), back]);
+    let (start, end) = match c.side {
+        Side::Body => (edge.clone(), carried),
+        Side::Spatial => (carried, edge.clone()),
+    };
+    let element = expr::transpose(s, expr::here(s, c.element));
+    let p = expr::letter(s, letters.momentum[i], Shift::HERE);
+    let product = match c.side {
+        Side::Body => expr::mul(element, p),
+        Side::Spatial => expr::mul(p, element),
+    };
+    let cotangent = if c.group.is_orthogonal() {
+        expr::part(expr::Part::Skew, product)
+    } else {
+        product
+    };
+    let xi = at(letters.variation[i], Shift::HERE);
+    let diamonds = spec.advected.iter().enumerate().map(|(j, _)| {
+        let multiplier = expr::here(s, letters.multiplier[j]);
+        let Some((_, change)) = v.advected.get(j) else {
+            return expr::zero(edge.shape());
         };
-        let edge = if c.group.is_orthogonal() {
-            expr::sub(raw.clone(), expr::transpose(s, raw))
-        } else {
-            raw
-        };
-        let element = expr::here(s, c.element);
-        let p = expr::letter(s, letters.momentum[i], Shift::HERE);
-        let et = expr::transpose(s, element);
-        let product = match c.side {
-            Side::Body => expr::mul(et, p),
-            Side::Spatial => expr::mul(p, et),
-        };
-        let cotangent = if c.group.is_orthogonal() {
-            expr::part(expr::Part::Skew, product)
-        } else {
-            expr::scale(Rational::HALF, product)
-        };
-        Momentum {
-            reduced: super::balance::shorter(algebra, edge.clone()),
-            transported: expr::product([left, edge.clone(), right]),
-            edge,
-            cotangent,
+        let y = expr::gradient(s, &pairing(letters, &multiplier, change), xi);
+        // For a vector the map is a vector too, and reads best as one.
+        if multiplier.shape().is_vector() && c.group == Group::SpecialOrthogonal(Dim::Fixed(3)) {
+            return expr::hat(shorter(algebra, covector(letters, c.group, y)));
         }
-    })
-    .collect()
+        let matrix = if c.group.is_orthogonal() {
+            expr::sub(y.clone(), expr::transpose(s, y))
+        } else {
+            y
+        };
+        algebra.raise(&algebra.lower(&matrix))
+    });
+    Momentum {
+        diamonds: diamonds.collect(),
+        reduced: shorter(algebra, edge.clone()),
+        edge,
+        start,
+        end,
+        cotangent,
+    }
 }

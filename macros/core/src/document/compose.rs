@@ -1,377 +1,275 @@
-//! The sections of a derivation, in the order of the paper.
+//! The sections of a derivation, in the order of a paper: the first ones here, up to the Clebsch
+//! relations; motion, solution and what follows from them in files of their own.
 
-use super::source;
+use super::sheet::{Sheet, references};
+use super::{motion, outlook, solution, source};
 use crate::check::spec::{Group, Side};
 use crate::derive::Derivation;
 use crate::derive::clebsch::constraint_terms;
-use crate::derive::recognise::{Method, Riccati};
-use crate::expr::shape::{Dim, Shape};
-use crate::expr::{self, Expr, Letter, Shift};
-use crate::print::document::{Document, Inline};
-use crate::print::formula::{Formula, Operator, Relation};
+use crate::expr::shape::Shape;
+use crate::expr::{self, Expr, Node, Shift};
+use crate::print::document::{Document, Inline, Section};
+use crate::print::formula::{Formula, Relation};
 use crate::syntax::ast::NodeRule;
-
-fn math(e: &Expr) -> Formula {
-    Formula::Expr(e.clone())
-}
-
-fn at(symbol: crate::expr::symbol::SymbolId, shift: Shift) -> Letter {
-    Letter { symbol, shift }
-}
 
 /// The derivation as a document.
 pub fn document(d: &Derivation) -> Document {
+    let sheet = Sheet::new(d);
     let mut doc = Document::titled(format!("{}: discrete equations of motion", d.spec.name));
-    model(d, &mut doc);
-    action(d, &mut doc);
-    variations(d, &mut doc);
-    relations(d, &mut doc);
-    momentum(d, &mut doc);
-    solve(d, &mut doc);
-    invariants(d, &mut doc);
-    limit(d, &mut doc);
-    certificate(d, &mut doc);
+    model(&sheet, &mut doc);
+    constraints(&sheet, &mut doc);
+    action(&sheet, &mut doc);
+    variations(&sheet, &mut doc);
+    relations(&sheet, &mut doc);
+    motion::momentum_maps(&sheet, &mut doc);
+    motion::balance(&sheet, &mut doc);
+    solution::moser_veselov(&sheet, &mut doc);
+    outlook::invariants(&sheet, &mut doc);
+    outlook::limit(&sheet, &mut doc);
+    outlook::certificate(&sheet, &mut doc);
     doc
 }
 
-fn model(d: &Derivation, doc: &mut Document) {
+fn model(sheet: &Sheet, doc: &mut Document) {
     let section = doc.section("Model");
-    let words: Vec<&str> = d
-        .spec
-        .docs
-        .iter()
-        .map(|l| l.trim())
-        .filter(|l| !l.is_empty())
-        .collect();
+    let docs = sheet.d.spec.docs.iter().map(|l| l.trim());
+    let words: Vec<&str> = docs.filter(|l| !l.is_empty()).collect();
     if !words.is_empty() {
         section.text(&words.join(" "));
     }
-    let text = source(d);
+    let text = source(sheet.d);
     let statement: Vec<&str> = text.lines().filter(|l| !l.starts_with("///")).collect();
     section.code(statement.join("\n"));
+    if let Some((number, factor)) = sheet.thesis.section() {
+        section.text(&format!(
+            "By its structure this is the system of section {number} of M. F. Dixon, Geometric integrators for continuum dynamics (2007), the thesis cited below; its Lagrangian and momenta are {factor} times those printed here, and its velocities bear the index of the end of their edge."
+        ));
+    }
 }
 
-fn action(d: &Derivation, doc: &mut Document) {
+fn constraints(sheet: &Sheet, doc: &mut Document) {
+    let spec = &sheet.d.spec;
+    let section = doc.section("Constraints");
+    for (i, c) in spec.configurations.iter().enumerate() {
+        let (frame, product) = match (c.group.is_orthogonal(), c.side) {
+            (true, Side::Body) => ("; its velocity in the body is ", true),
+            (true, Side::Spatial) => ("; its velocity in space is ", false),
+            (false, Side::Body) => ("; its convective velocity is ", true),
+            (false, Side::Spatial) => ("; its velocity in space is ", false),
+        };
+        let from = if c.group.is_orthogonal() {
+            "the body"
+        } else {
+            "the reference shape"
+        };
+        let (element, next) = (sheet.here(c.element), sheet.at(c.element, Shift::NEXT));
+        let back = if c.group.is_orthogonal() {
+            Formula::transpose(element.clone())
+        } else {
+            Formula::Inverse(Box::new(element.clone()))
+        };
+        let velocity = if product {
+            vec![back, next]
+        } else {
+            vec![next, back]
+        };
+        section.paragraph([
+            element.into(),
+            format!(
+                " in {} is the configuration at node {}, from {from} to space{frame}",
+                sheet.group(c),
+                spec.time_index
+            )
+            .into(),
+            Formula::equal(sheet.here(c.velocity), Formula::Product(velocity)).into(),
+            ", on the edge from this node to the next:".into(),
+        ]);
+        let equation = Formula::equal(sheet.at(c.element, Shift::NEXT), sheet.math(&c.update));
+        section.sourced(equation, sheet.thesis.reconstruction(i));
+    }
+    if spec.advected.is_empty() {
+        return;
+    }
+    section.text("The group carries the quantities at the nodes:");
+    for (j, a) in spec.advected.iter().enumerate() {
+        let update = Formula::equal(sheet.at(a.quantity, Shift::NEXT), sheet.math(&a.update));
+        let equation = match &a.definition {
+            Some(e) => {
+                let own = Formula::equal(sheet.here(a.quantity), sheet.math(e));
+                Formula::List(vec![update, own])
+            }
+            None => update,
+        };
+        section.sourced(equation, sheet.thesis.transport(j));
+        section.labelled(&transport_label(j));
+    }
+}
+
+/// The label of the constraint of an advected quantity.
+pub fn transport_label(j: usize) -> String {
+    format!("transport {j}")
+}
+
+fn action(sheet: &Sheet, doc: &mut Document) {
+    let d = sheet.d;
     let k = &d.spec.time_index;
     let section = doc.section("Action");
     if let Some(scale) = &d.spec.scale {
+        let typed = Formula::name("ℓ^{typed}");
         section.paragraph([
             "The Lagrangian is typed as ".into(),
-            math(scale).into(),
-            " times the physical action of one step; the physical form is used below.".into(),
+            sheet.math(scale).into(),
+            " times the action of one step:".into(),
         ]);
-        section.equation(Formula::equal(Formula::name("ℓ"), math(&d.spec.typed)));
-    }
-    section.equation(Formula::defined(
-        Formula::name(&format!("ℓ_{k}")),
-        math(&d.action.total),
-    ));
-    if !d.action.nodal.is_zero() {
-        let how = match d.spec.node_rule {
-            NodeRule::Symmetric => {
-                "Terms at one node are split evenly between the two adjacent edges."
-            }
-            NodeRule::Incoming => "Terms at one node belong to the edge that ends there.",
-            NodeRule::Outgoing => "Terms at one node belong to the edge that starts there.",
+        let times = |e: &Expr| Formula::Product(vec![sheet.math(e), Formula::name("ℓ")]);
+        let scaled = match scale.node() {
+            Node::Neg(inner) => Formula::neg(times(inner)),
+            _ => times(scale),
         };
-        section.text(how);
+        section.equation(Formula::Relation(
+            vec![typed, sheet.math(&d.spec.typed), scaled],
+            Relation::Equal,
+        ));
+        section.text("physical:");
+        section.equation(Formula::equal(Formula::name("ℓ"), physical(sheet)));
     }
-    section.text("The Clebsch action adds one multiplier for each constraint:");
+    if !d.action.nodal.is_zero() {
+        section.text(match d.spec.node_rule {
+            NodeRule::Symmetric => {
+                "Terms at one node are split evenly between the two adjacent edges, which makes the action of a step:"
+            }
+            NodeRule::Incoming => {
+                "Terms at one node belong to the edge that ends there, which makes the action of a step:"
+            }
+            NodeRule::Outgoing => {
+                "Terms at one node belong to the edge that starts there, which makes the action of a step:"
+            }
+        });
+    }
+    section.sourced(
+        Formula::defined(
+            Formula::name(&format!("ℓ_{k}")),
+            sheet.math(&d.action.total),
+        ),
+        sheet.thesis.action(),
+    );
+    let pairing = if d
+        .spec
+        .configurations
+        .iter()
+        .any(|c| c.group.is_orthogonal())
+    {
+        "Matrices are paired by ⟨A, B⟩ = tr(Aᵀ B), and gradients are taken in this pairing. The Clebsch action adds one multiplier for each constraint, that of a rotation with weight 1/2:"
+    } else {
+        "Matrices are paired by ⟨A, B⟩ = tr(Aᵀ B), and gradients are taken in this pairing. The Clebsch action adds one multiplier for each constraint:"
+    };
+    section.text(pairing);
     let terms = constraint_terms(&d.spec, &d.letters);
     let total = expr::sum(
         [d.action.total.clone()].into_iter().chain(terms),
         Shape::SCALAR,
     );
-    section.equation(Formula::defined(
-        Formula::name(&format!("ℓ^c_{k}")),
-        math(&total),
-    ));
+    section.sourced(
+        Formula::defined(Formula::name(&format!("ℓ^c_{k}")), sheet.math(&total)),
+        sheet.thesis.clebsch_action(),
+    );
 }
 
-fn variations(d: &Derivation, doc: &mut Document) {
-    let s = &d.letters.symbols;
+/// The Lagrangian divided by the scale it was typed with, term by term.
+pub fn physical(sheet: &Sheet) -> Formula {
+    let terms = crate::derive::action::summands(&sheet.d.spec.lagrangian);
+    sheet.math(&expr::sum(terms, Shape::SCALAR))
+}
+
+fn variations(sheet: &Sheet, doc: &mut Document) {
+    let d = sheet.d;
     let section = doc.section("Variations that keep the constraints");
-    section.text("One element varies freely at its node; the velocities of the two adjacent edges and the advected quantities follow.");
-    for (v, xi) in d.variations.iter().zip(&d.letters.variation) {
-        let mut list = vec![&v.element, &v.outgoing, &v.incoming];
-        list.extend(v.advected.iter().filter(|(_, e)| !e.is_zero()));
-        for (letter, change) in list {
-            let x = expr::letter(s, letter.symbol, letter.shift);
-            section.equation(Formula::equal(Formula::variation(math(&x)), math(change)));
+    section.text("One element varies freely at its node; the velocities of the two adjacent edges absorb it, and the advected quantities follow.");
+    for (i, (v, xi)) in d.variations.iter().zip(&d.letters.variation).enumerate() {
+        for (letter, change) in [&v.element, &v.outgoing, &v.incoming] {
+            let x = sheet.at(letter.symbol, letter.shift);
+            section.equation(Formula::equal(Formula::variation(x), sheet.derived(change)));
         }
-        let algebra = match d.spec.configurations.first().map(|c| c.group) {
+        for (j, (letter, change)) in v.advected.iter().enumerate() {
+            if change.is_zero() {
+                continue;
+            }
+            let x = sheet.at(letter.symbol, letter.shift);
+            section.equation(Formula::equal(Formula::variation(x), sheet.derived(change)));
+            section.labelled(&variation_label(i, j));
+        }
+        let algebra = match d.spec.configurations.get(i).map(|c| c.group) {
             Some(Group::GeneralLinear(_)) | None => " is an arbitrary matrix.",
             Some(Group::SpecialOrthogonal(_)) => " is an arbitrary skew matrix.",
         };
-        section.paragraph([
-            "Here ".into(),
-            math(&expr::here(s, *xi)).into(),
-            algebra.into(),
-        ]);
+        section.paragraph(["Here ".into(), sheet.here(*xi).into(), algebra.into()]);
     }
 }
 
-fn relations(d: &Derivation, doc: &mut Document) {
-    let s = &d.letters.symbols;
+/// The label of the variation of an advected quantity.
+pub fn variation_label(i: usize, j: usize) -> String {
+    format!("variation {i} {j}")
+}
+
+fn relations(sheet: &Sheet, doc: &mut Document) {
+    let d = sheet.d;
     let section = doc.section("Clebsch relations");
-    section.text("Stationarity of the Clebsch action in each variable:");
+    section.text("Stationarity of the sum of the Clebsch actions of all edges, in each variable in turn (in the multipliers it gives the constraints back):");
     for r in &d.relations {
-        let x = expr::letter(s, r.variable.symbol, r.variable.shift);
+        let x = sheet.at(r.variable.symbol, r.variable.shift);
         let right = if r.up_to_group_multiplier {
-            Formula::Product(vec![Formula::name("Θ"), math(&x)])
+            Formula::Product(vec![theta(sheet, r.variable.symbol), x])
         } else {
             Formula::Expr(expr::integer(0))
         };
-        section.equation(Formula::equal(math(&r.gradient), right));
-        let mut note = format!("variation of {}", s.get(r.variable.symbol).name);
-        if r.up_to_group_multiplier {
-            note.push_str("; Θ is symmetric, the multiplier of the group");
-        }
-        section.noted(&note);
+        let equation = Formula::equal(sheet.derived(&r.gradient), right);
+        section.sourced(equation, sheet.thesis.relation(r.variable));
+        section.labelled(&relation_label(r.variable.symbol));
+        let name = &sheet.symbols().get(r.variable.symbol).name;
+        section.noted(&format!("Variation of {name}."));
     }
+    theta_explained(sheet, section);
 }
 
-/// `∇_a ℓ ◇ a` for the advected quantities that the action contains at this end of the edge.
-fn diamonds(d: &Derivation, i: usize, level: &str, end: bool) -> Vec<Formula> {
-    let s = &d.letters.symbols;
-    let v = &d.variations[i];
-    let mut out = Vec::new();
-    for (j, a) in d.spec.advected.iter().enumerate() {
-        let (start, stop) = &d.balances[i].advected_gradients[j];
-        let g = if end { stop } else { start };
-        let moves = v.advected.get(j).is_some_and(|(_, e)| !e.is_zero());
-        if g.is_zero() || !moves {
-            continue;
-        }
-        let gradient = Formula::gradient(&format!("ℓ_{level}"), at(a.quantity, Shift::HERE));
-        out.push(Formula::diamond(gradient, math(&expr::here(s, a.quantity))));
-    }
-    out
+fn theta(sheet: &Sheet, velocity: expr::symbol::SymbolId) -> Formula {
+    let configurations = &sheet.d.spec.configurations;
+    let i = configurations.iter().position(|c| c.velocity == velocity);
+    sheet.name("Θ", i.unwrap_or(0))
 }
 
-fn momentum(d: &Derivation, doc: &mut Document) {
-    let s = &d.letters.symbols;
-    let k = &d.spec.time_index;
-    let section = doc.section("Momentum map and discrete Euler-Poincaré equation");
-    for (i, (c, m)) in d.spec.configurations.iter().zip(&d.momenta).enumerate() {
-        let edge = expr::here(s, d.letters.edge_momentum[i]);
-        let before = expr::letter(s, d.letters.edge_momentum[i], Shift::PREVIOUS);
-        let w = expr::letter(s, c.velocity, Shift::PREVIOUS);
-        section.paragraph([
-            "The momentum of the edge, by the gradient of the action in the velocity and as the momentum map of the lifted action:".into(),
-        ]);
-        let gradient = Formula::gradient(&format!("ℓ_{k}"), at(c.velocity, Shift::HERE));
-        let wt = Formula::transpose(math(&expr::here(s, c.velocity)));
-        let product = match c.side {
-            Side::Body => Formula::Product(vec![gradient, wt]),
-            Side::Spatial => Formula::Product(vec![wt, gradient]),
-        };
-        let by_gradient = if c.group.is_orthogonal() {
-            Formula::Product(vec![
-                Formula::Expr(expr::integer(2)),
-                Formula::operator(Operator::Skew, product),
-            ])
-        } else {
-            product
-        };
-        section.cited(
-            Formula::Relation(
-                vec![math(&edge), by_gradient, math(&m.reduced)],
-                Relation::Equal,
-            ),
-            "momentum map; thesis (2.86) up to its factor -h",
-        );
-        section.equation(Formula::equal(Formula::name("J^R"), math(&m.cotangent)));
-        section.text("Balance at a node, in terms of the coadjoint action and the diamond of each advected quantity:");
-        let sign = |list: Vec<Formula>, plus: bool| -> Vec<Formula> {
-            list.into_iter()
-                .map(|f| if plus { f } else { Formula::neg(f) })
-                .collect()
-        };
-        let body = c.side == Side::Body;
-        let mut left = vec![math(&edge)];
-        left.extend(sign(diamonds(d, i, k, false), body));
-        let mut right = vec![Formula::ad_star(math(&w), math(&before))];
-        right.extend(sign(diamonds(d, i, &format!("{k}-1"), true), !body));
-        section.cited(
-            Formula::equal(Formula::Sum(left), Formula::Sum(right)),
-            "discrete Euler-Poincaré equation; thesis (2.85), (2.155) corrected",
-        );
-        let b = &d.balances[i];
-        let mu = expr::here(s, d.letters.node_momentum[i]);
-        section.paragraph([
-            "As components, which is what the emitted residual evaluates; ".into(),
-            math(&mu).into(),
-            " is the momentum at the node:".into(),
-        ]);
-        section.equation(Formula::Relation(
-            vec![math(&mu), math(&b.outgoing)],
-            Relation::Equal,
-        ));
-        let next = expr::letter(s, d.letters.node_momentum[i], Shift::NEXT);
-        section.equation(Formula::equal(math(&next), math(&b.incoming)));
-    }
-}
-
-fn solve(d: &Derivation, doc: &mut Document) {
-    let s = &d.letters.symbols;
-    let section = doc.section("Moser-Veselov and Riccati form");
-    let step = math(&expr::here(s, d.spec.step));
-    for (i, (c, r)) in d
-        .spec
-        .configurations
+fn theta_explained(sheet: &Sheet, section: &mut Section) {
+    let rotations: Vec<&crate::derive::clebsch::Relation> = sheet
+        .d
+        .relations
         .iter()
-        .zip(&d.solve.riccati)
-        .enumerate()
-    {
-        let w = math(&expr::here(s, c.velocity));
-        let mu = math(&expr::here(s, d.letters.node_momentum[i]));
-        let mv = match r {
-            Riccati::None(why) => {
-                section.paragraph([
-                    "There is no Riccati form for ".into(),
-                    w.into(),
-                    format!(": {why}.").into(),
-                ]);
-                continue;
-            }
-            Riccati::Exact(mv) => {
-                section.paragraph(["The velocity solves an exact matrix Riccati equation:".into()]);
-                mv
-            }
-            Riccati::Coupled(mv) => {
-                section.paragraph([
-                    "The velocity solves a matrix Riccati equation coupled to the other velocities:".into(),
-                ]);
-                mv
-            }
-        };
-        let (cc, n, a, sym) = (
-            Formula::name("C"),
-            Formula::name("N"),
-            Formula::name("A"),
-            Formula::name("S"),
-        );
-        let ct = Formula::transpose(cc.clone());
-        let edge = if c.group.size() == Dim::Fixed(3) {
-            Formula::hat(n.clone())
-        } else {
-            n.clone()
-        };
-        section.cited(
-            Formula::equal(
-                Formula::minus(
-                    Formula::Product(vec![w.clone(), ct.clone()]),
-                    Formula::Product(vec![cc.clone(), Formula::transpose(w.clone())]),
-                ),
-                Formula::Product(vec![step.clone(), edge.clone()]),
-            ),
-            "Moser-Veselov equation",
-        );
-        section.equation(Formula::List(vec![
-            Formula::equal(cc.clone(), math(&mv.factor)),
-            Formula::equal(
-                n,
-                if mv.rest.is_zero() {
-                    mu
-                } else {
-                    Formula::minus(mu, math(&mv.rest))
-                },
-            ),
-        ]));
-        section.cited(
-            Formula::Relation(
-                vec![
-                    Formula::Sum(vec![
-                        Formula::Product(vec![sym.clone(), sym.clone()]),
-                        Formula::Product(vec![sym.clone(), a.clone()]),
-                        Formula::neg(Formula::Product(vec![a.clone(), sym.clone()])),
-                        Formula::neg(Formula::Product(vec![a.clone(), a.clone()])),
-                        Formula::neg(Formula::Product(vec![cc.clone(), ct.clone()])),
-                    ]),
-                    Formula::Expr(expr::integer(0)),
-                ],
-                Relation::Equal,
-            ),
-            "matrix Riccati equation for the symmetric S",
-        );
-        section.equation(Formula::List(vec![
-            Formula::equal(
-                w,
-                Formula::Product(vec![
-                    Formula::Sum(vec![sym, a.clone()]),
-                    Formula::Inverse(Box::new(ct)),
-                ]),
-            ),
-            Formula::equal(
-                a,
-                Formula::Quotient(
-                    Box::new(Formula::Product(vec![step.clone(), edge])),
-                    Box::new(Formula::Expr(expr::integer(2))),
-                ),
-            ),
-        ]));
-    }
-    let method = match d.solve.method {
-        Method::FreeMoserVeselov => "The stepper solves it explicitly, with κ found once",
-        Method::ForcedMoserVeselov => {
-            "The stepper solves it explicitly, with one quartic for κ a step"
-        }
-        Method::Newton => "The stepper iterates with Newton's method on the group",
-    };
-    section.text(&format!("{method}: {}.", d.solve.reason));
-}
-
-fn invariants(d: &Derivation, doc: &mut Document) {
-    let section = doc.section("Invariants");
-    let items: Vec<Vec<Inline>> = d
-        .invariants
-        .iter()
-        .map(|v| {
-            let mut line: Vec<Inline> = vec![format!("{}: ", v.name.replace('_', " ")).into()];
-            match &v.value {
-                Some(e) => line.push(math(e).into()),
-                None => line.push("kinetic plus potential energy of the limit".into()),
-            }
-            let how = if v.exact { "exact" } else { "bounded" };
-            line.push(format!(" ({how}: {})", v.reason).into());
-            line
-        })
+        .filter(|r| r.up_to_group_multiplier)
         .collect();
-    if items.is_empty() {
-        section.text("None was found among the candidates.");
-    } else {
-        section.list(items);
-    }
-    section.text(if d.reversible {
-        "The action of one step changes sign when its ends change places and the step changes sign: the scheme is symmetric under time reversal, of even order, and may be composed."
-    } else {
-        "The action of one step is not symmetric under time reversal: the scheme is of first order and must not be composed."
+    let names = rotations.iter().map(|r| {
+        let name: Inline = theta(sheet, r.variable.symbol).into();
+        vec![name]
     });
-}
-
-fn limit(d: &Derivation, doc: &mut Document) {
-    let section = doc.section("Limit of small steps");
-    match &d.limit {
-        Ok(l) => {
-            section
-                .text("With the velocity exp(h ξ), the action of one step per unit time tends to");
-            section.equation(Formula::equal(Formula::name("L"), math(&l.lagrangian)));
-        }
-        Err(why) => {
-            section.text(&format!("There is none: {why}."));
-        }
+    let names = super::sheet::listed(names.collect());
+    if names.is_empty() {
+        return;
     }
+    let labels: Vec<String> = rotations
+        .iter()
+        .map(|r| relation_label(r.variable.symbol))
+        .collect();
+    let words = if rotations.len() == 1 {
+        " is a symmetric matrix, the multiplier of the constraint that velocities are rotations."
+    } else {
+        " are symmetric matrices, the multipliers of the constraint that velocities are rotations."
+    };
+    let mut parts = vec![Inline::from("In ")];
+    parts.extend(references(&labels));
+    parts.push(" ".into());
+    parts.extend(names);
+    parts.push(words.into());
+    section.paragraph(parts);
 }
 
-fn certificate(d: &Derivation, doc: &mut Document) {
-    let section = doc.section("Certificate");
-    section.text(&format!("{}:", d.certificate.summary()));
-    section.list(
-        d.certificate
-            .steps
-            .iter()
-            .map(|step| vec![Inline::from(format!("{}.", step.name))])
-            .collect(),
-    );
+/// The label of the Clebsch relation of a variable.
+pub fn relation_label(symbol: expr::symbol::SymbolId) -> String {
+    format!("relation {}", symbol.0)
 }

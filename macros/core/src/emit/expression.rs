@@ -94,6 +94,7 @@ impl Writer<'_> {
             | Node::Inverse(_)
             | Node::Trace(_)
             | Node::Det(_)
+            | Node::Adjugate(_)
             | Node::Dot(..)
             | Node::Cross(..)
             | Node::Hat(_)
@@ -146,6 +147,10 @@ impl Writer<'_> {
             Node::Det(a) => {
                 let a = self.write(a);
                 quote!(determinant(&(#a)))
+            }
+            Node::Adjugate(a) => {
+                let polynomial = self.write(&expr::adjugate_polynomial(a));
+                quote!((#polynomial))
             }
             Node::Dot(a, b) => self.method(a, "dot", b),
             Node::Cross(a, b) => self.method(a, "cross", b),

@@ -61,7 +61,7 @@ pub fn parameters(d: &Derivation) -> TokenStream {
         let symbol = s.get(*p);
         let (field, t) = (own(d, *p), ty(s, symbol.shape));
         let doc = format!(
-            "`{}`: {}{}.",
+            " `{}`: {}{}.",
             symbol.name,
             shape_text(d, *p),
             structure_text(symbol.structure)

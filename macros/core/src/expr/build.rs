@@ -308,6 +308,11 @@ pub fn transpose(symbols: &Symbols, a: Expr) -> Expr {
             Part::Symmetric | Part::Diagonal => a,
             Part::Skew => neg(a),
         },
+        Node::Inverse(inner) if transpose(symbols, inner.clone()) == *inner => a,
+        Node::Adjugate(inner) => {
+            let inner = transpose(symbols, inner.clone());
+            make(Node::Adjugate(inner), shape)
+        }
         Node::Number(_)
         | Node::Unit(..)
         | Node::Power(..)
@@ -372,38 +377,52 @@ pub fn det(a: Expr) -> Expr {
     }
 }
 
-/// Largest argument whose adjugate is written as a polynomial.
+/// Largest argument whose adjugate is computed as a polynomial.
 const LARGEST_ADJUGATE: u32 = 8;
 
-/// The adjugate, `det(A) A^-1` for an invertible `A`. In two and three dimensions it is written as
-/// a polynomial (Cayley-Hamilton), which has a value for every `A`, unless `A` is a large expression.
+/// The adjugate, `det(A) A^-1` for an invertible `A`. In two and three dimensions it is a node of
+/// its own, which has a value for every `A`, unless `A` is invertible by its structure or large.
 pub fn adjugate(symbols: &Symbols, a: &Expr) -> Expr {
-    let n = a.shape().rows;
     let invertible = match a.node() {
         Node::Letter(at) => symbols.get(at.symbol).structure.is_invertible(),
         _ => false,
     };
-    // The polynomial repeats its argument: for large ones the inverse is the lesser evil.
-    let polynomial = !invertible && a.size() <= LARGEST_ADJUGATE;
+    let small = matches!(a.shape().rows, Dim::Fixed(2 | 3));
+    // Its polynomial repeats its argument: for large ones the inverse is the lesser evil.
+    if small && !invertible && a.size() <= LARGEST_ADJUGATE {
+        return make(Node::Adjugate(a.clone()), a.shape());
+    }
+    mul(det(a.clone()), inverse(symbols, a.clone()))
+}
+
+/// The adjugate of a matrix of two or three rows as a polynomial (Cayley-Hamilton): what is
+/// computed and differentiated.
+pub fn adjugate_polynomial(a: &Expr) -> Expr {
+    let n = a.shape().rows;
     let t = trace(a.clone());
-    match n {
-        Dim::Fixed(2) if polynomial => sub(mul(t, identity(n)), a.clone()),
-        Dim::Fixed(3) if polynomial => {
-            let square = mul(a.clone(), a.clone());
-            let half = scale(
-                Rational::HALF,
-                sub(
-                    power(t.clone(), Rational::integer(2)),
-                    trace(square.clone()),
-                ),
-            );
-            let shape = a.shape();
-            sum(
-                [square, neg(mul(t, a.clone())), mul(half, identity(n))],
-                shape,
-            )
-        }
-        _ => mul(det(a.clone()), inverse(symbols, a.clone())),
+    if n == Dim::Fixed(2) {
+        return sub(mul(t, identity(n)), a.clone());
+    }
+    let square = mul(a.clone(), a.clone());
+    let half = scale(
+        Rational::HALF,
+        sub(
+            power(t.clone(), Rational::integer(2)),
+            trace(square.clone()),
+        ),
+    );
+    let shape = a.shape();
+    sum(
+        [square, neg(mul(t, a.clone())), mul(half, identity(n))],
+        shape,
+    )
+}
+
+/// The same expression with every adjugate written as its polynomial.
+pub fn without_adjugates(symbols: &Symbols, e: &Expr) -> Expr {
+    match e.node() {
+        Node::Adjugate(a) => adjugate_polynomial(&without_adjugates(symbols, a)),
+        _ => super::rebuild(symbols, e, &mut |x| without_adjugates(symbols, x)),
     }
 }
 

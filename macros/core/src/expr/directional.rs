@@ -65,11 +65,22 @@ pub fn directional(symbols: &Symbols, e: &Expr, changes: &[(Letter, Expr)]) -> E
             }
             trace(mul(adjugate(symbols, a), da))
         }
+        Node::Adjugate(a) => d(&adjugate_polynomial(a)),
         Node::Dot(a, b) => add(dot(d(a), b.clone()), dot(a.clone(), d(b))),
         Node::Cross(a, b) => add(cross(d(a), b.clone()), cross(a.clone(), d(b))),
         Node::Hat(v) => hat(d(v)),
         Node::Vee(a) => vee(d(a)),
         Node::Part(which, a) => part(*which, d(a)),
+        Node::Call(Function::Log, a) if matches!(a.node(), Node::Det(_)) => {
+            let Node::Det(inner) = a.node() else {
+                return integer(0);
+            };
+            let da = d(inner);
+            if da.is_zero() {
+                return integer(0);
+            }
+            trace(mul(inverse(symbols, inner.clone()), da))
+        }
         Node::Call(function, a) => {
             let da = d(a);
             if da.is_zero() {

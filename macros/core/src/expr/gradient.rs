@@ -70,6 +70,10 @@ fn pull_back(symbols: &Symbols, e: &Expr, seed: Expr, wrt: Letter, out: &mut Vec
             let cofactor = transpose(symbols, adjugate(symbols, a));
             go(a, mul(seed, cofactor));
         }
+        Node::Adjugate(a) => {
+            let polynomial = adjugate_polynomial(a);
+            pull_back(symbols, &polynomial, seed, wrt, out);
+        }
         Node::Dot(a, b) => {
             go(a, mul(seed.clone(), b.clone()));
             go(b, mul(seed, a.clone()));
@@ -83,6 +87,13 @@ fn pull_back(symbols: &Symbols, e: &Expr, seed: Expr, wrt: Letter, out: &mut Vec
         // s . vee(A) = <hat(s)/2, A>
         Node::Vee(a) => go(a, scale(Rational::HALF, hat(seed))),
         Node::Part(which, a) => go(a, part(*which, seed)),
+        // d log det A = tr(A^-1 dA): the determinant cancels.
+        Node::Call(Function::Log, a) if matches!(a.node(), Node::Det(_)) => {
+            if let Node::Det(inner) = a.node() {
+                let back = transpose(symbols, inverse(symbols, inner.clone()));
+                go(inner, mul(seed, back));
+            }
+        }
         Node::Call(function, a) => match function {
             Function::Exp => go(a, mul(seed, e.clone())),
             Function::Log => go(a, quotient(seed, a.clone())),

@@ -2,8 +2,10 @@
 //! normal forms ([`crate::algebra`]); what is printed and emitted is always one of these.
 
 mod build;
+mod collect;
 mod directional;
 mod gradient;
+mod projection;
 pub mod shape;
 mod substitute;
 pub mod symbol;
@@ -15,8 +17,10 @@ use std::sync::Arc;
 use symbol::SymbolId;
 
 pub use build::*;
+pub use collect::{collect, positive_first};
 pub use directional::directional;
 pub use gradient::gradient;
+pub use projection::projected;
 pub use substitute::{contains, contains_role, letters, rebuild, shift_time, substitute};
 pub use terms::{Change, changes};
 
@@ -107,6 +111,9 @@ pub enum Node {
     Trace(Expr),
     /// The determinant of a square matrix.
     Det(Expr),
+    /// The adjugate of a square matrix of two or three rows: `det(A) A^-1`, with a value for
+    /// every `A`.
+    Adjugate(Expr),
     /// The scalar product of two vectors.
     Dot(Expr, Expr),
     /// The vector product in three dimensions.
@@ -179,6 +186,7 @@ impl Node {
             | Node::Inverse(a)
             | Node::Trace(a)
             | Node::Det(a)
+            | Node::Adjugate(a)
             | Node::Hat(a)
             | Node::Vee(a)
             | Node::Part(_, a)

@@ -87,6 +87,7 @@ pub fn rebuild(symbols: &Symbols, e: &Expr, go: &mut dyn FnMut(&Expr) -> Expr) -
         Node::Inverse(a) => inverse(symbols, go(a)),
         Node::Trace(a) => trace(go(a)),
         Node::Det(a) => det(go(a)),
+        Node::Adjugate(a) => adjugate(symbols, &go(a)),
         Node::Dot(a, b) => {
             let a = go(a);
             dot(a, go(b))

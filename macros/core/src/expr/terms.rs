@@ -81,6 +81,7 @@ fn is_linear(e: &Expr, child: usize) -> bool {
         | Node::Power(..)
         | Node::Inverse(_)
         | Node::Det(_)
+        | Node::Adjugate(_)
         | Node::Call(..) => false,
     }
 }

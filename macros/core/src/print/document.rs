@@ -34,6 +34,8 @@ pub enum Block {
         tag: Option<String>,
         /// A remark below it.
         note: Option<String>,
+        /// What [`Inline::Reference`] calls it.
+        label: Option<String>,
     },
     /// A bulleted list.
     List(Vec<Vec<Inline>>),
@@ -48,6 +50,13 @@ pub enum Inline {
     Plain(String),
     /// Mathematics.
     Math(Formula),
+    /// The number of an equation.
+    Reference {
+        /// Its label.
+        label: String,
+        /// Its number, once the document is printed; 0 before.
+        number: usize,
+    },
 }
 
 impl From<&str> for Inline {
@@ -68,7 +77,48 @@ impl From<Formula> for Inline {
     }
 }
 
+impl Inline {
+    /// The number of the equation with this label.
+    pub fn reference(label: &str) -> Inline {
+        Inline::Reference {
+            label: label.to_owned(),
+            number: 0,
+        }
+    }
+}
+
 impl Document {
+    /// The same with the numbers of its equations filled into the references to them.
+    pub fn numbered(&self) -> Document {
+        let equations = self.sections.iter().flat_map(|s| &s.blocks);
+        let labels: Vec<Option<&String>> = equations
+            .filter_map(|b| match b {
+                Block::Equation { label, .. } => Some(label.as_ref()),
+                Block::Paragraph(_) | Block::List(_) | Block::Code(_) => None,
+            })
+            .collect();
+        let number_of = |wanted: &String| {
+            let place = labels.iter().position(|l| *l == Some(wanted));
+            place.map_or(0, |i| i + 1)
+        };
+        let fill = |parts: &mut Vec<Inline>| {
+            for part in parts {
+                if let Inline::Reference { label, number } = part {
+                    *number = number_of(label);
+                }
+            }
+        };
+        let mut out = self.clone();
+        for block in out.sections.iter_mut().flat_map(|s| &mut s.blocks) {
+            match block {
+                Block::Paragraph(parts) => fill(parts),
+                Block::List(items) => items.iter_mut().for_each(fill),
+                Block::Equation { .. } | Block::Code(_) => {}
+            }
+        }
+        out
+    }
+
     /// An empty document.
     pub fn titled(title: impl Into<String>) -> Document {
         Document {
@@ -105,6 +155,7 @@ impl Section {
             formula: formula.into(),
             tag: None,
             note: None,
+            label: None,
         });
         self
     }
@@ -115,6 +166,7 @@ impl Section {
             formula: formula.into(),
             tag: Some(source.to_owned()),
             note: None,
+            label: None,
         });
         self
     }
@@ -125,6 +177,22 @@ impl Section {
             *note = Some(remark.to_owned());
         }
         self
+    }
+
+    /// Names the last block, if that is an equation, for references.
+    pub fn labelled(&mut self, name: &str) -> &mut Section {
+        if let Some(Block::Equation { label, .. }) = self.blocks.last_mut() {
+            *label = Some(name.to_owned());
+        }
+        self
+    }
+
+    /// Adds an equation, with its source where there is one.
+    pub fn sourced(&mut self, formula: impl Into<Formula>, source: Option<String>) -> &mut Section {
+        match source {
+            Some(source) => self.cited(formula, &source),
+            None => self.equation(formula),
+        }
     }
 
     /// Adds a bulleted list.

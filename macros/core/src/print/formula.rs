@@ -62,6 +62,19 @@ pub enum Formula {
         /// The momentum.
         momentum: Box<Formula>,
     },
+    /// `ad*_ξ μ`, the dual of `ad_ξ η = [ξ, η]`.
+    LieAdStar {
+        /// The element of the Lie algebra.
+        algebra: Box<Formula>,
+        /// The momentum.
+        momentum: Box<Formula>,
+    },
+    /// `da/dt`.
+    Rate(Box<Formula>),
+    /// A matrix by its blocks, row by row.
+    Matrix(Vec<Vec<Formula>>),
+    /// The same in continuous time: no letter bears a time index.
+    Continuous(Box<Formula>),
     /// `∇_x ℓ`, the gradient in the pairing `tr(Aᵀ B)`.
     Gradient {
         /// Name of the function; scripts as in [`Formula::name`].
@@ -206,6 +219,24 @@ impl Formula {
     pub fn ad_star(group: impl Into<Formula>, momentum: impl Into<Formula>) -> Formula {
         Formula::AdStar {
             group: Box::new(group.into()),
+            momentum: Box::new(momentum.into()),
+        }
+    }
+
+    /// `da/dt`.
+    pub fn rate(a: impl Into<Formula>) -> Formula {
+        Formula::Rate(Box::new(a.into()))
+    }
+
+    /// The same without time indices.
+    pub fn continuous(a: impl Into<Formula>) -> Formula {
+        Formula::Continuous(Box::new(a.into()))
+    }
+
+    /// `ad*_ξ μ`.
+    pub fn lie_ad_star(algebra: impl Into<Formula>, momentum: impl Into<Formula>) -> Formula {
+        Formula::LieAdStar {
+            algebra: Box::new(algebra.into()),
             momentum: Box::new(momentum.into()),
         }
     }

@@ -67,7 +67,9 @@ fn block(page: &Page, block: &Block, number: &mut usize) -> Value {
         Block::Paragraph(parts) => {
             Value::Object(vec![kind("paragraph"), ("content", sentence(page, parts))])
         }
-        Block::Equation { formula, tag, note } => {
+        Block::Equation {
+            formula, tag, note, ..
+        } => {
             *number += 1;
             let optional = |text: &Option<String>| text.clone().map_or(Value::Null, Value::Text);
             let mut fields = vec![
@@ -94,6 +96,9 @@ fn sentence(page: &Page, parts: &[Inline]) -> Value {
     let part = |part: &Inline| match part {
         Inline::Plain(words) => Value::Object(vec![("text", Value::Text(words.clone()))]),
         Inline::Math(f) => Value::Object(spellings(page, f)),
+        Inline::Reference { number, .. } => {
+            Value::Object(vec![("reference", Value::Number(*number))])
+        }
     };
     Value::List(parts.iter().map(part).collect())
 }

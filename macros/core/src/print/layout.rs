@@ -35,6 +35,8 @@ pub(super) enum Layout {
     Hat(Box<Layout>),
     /// Between brackets.
     Fenced(Fence, Box<Layout>),
+    /// A matrix of entries, row by row, in its brackets.
+    Grid(Vec<Vec<Layout>>),
     /// A place where a long line may break.
     Break(Strength),
 }
@@ -144,7 +146,7 @@ impl Layout {
     /// Whether it is higher than a line of letters.
     pub fn is_tall(&self) -> bool {
         match self {
-            Layout::Fraction(..) => true,
+            Layout::Fraction(..) | Layout::Grid(_) => true,
             Layout::Row(parts) => parts.iter().any(Layout::is_tall),
             Layout::Script { base, .. } => base.is_tall(),
             Layout::Root(a) | Layout::Hat(a) | Layout::Fenced(_, a) => a.is_tall(),
@@ -180,6 +182,14 @@ impl Layout {
             Layout::Root(a) => a.width() + 12,
             Layout::Hat(a) => a.width(),
             Layout::Fenced(_, a) => a.width() + 14,
+            Layout::Grid(rows) => {
+                let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+                let widest = |j: usize| {
+                    let entries = rows.iter().filter_map(|r| r.get(j));
+                    entries.map(Layout::width).max().unwrap_or(0) + 10
+                };
+                (0..columns).map(widest).sum::<usize>() + 14
+            }
             Layout::Break(_) => 0,
         }
     }

@@ -128,7 +128,8 @@ fn flatten<'a>(layout: &'a Layout, depth: usize, out: &mut Vec<Piece<'a>>) {
         | Layout::Script { .. }
         | Layout::Fraction(..)
         | Layout::Root(_)
-        | Layout::Hat(_) => out.push(Piece::Whole(layout)),
+        | Layout::Hat(_)
+        | Layout::Grid(_) => out.push(Piece::Whole(layout)),
     }
 }
 

@@ -41,7 +41,9 @@ pub(super) fn document(page: &Page, document: &Document, math: Math) -> String {
                     }
                 }
                 Block::Code(code) => out.push_str(&fenced(code, "text")),
-                Block::Equation { formula, tag, note } => {
+                Block::Equation {
+                    formula, tag, note, ..
+                } => {
                     number += 1;
                     out.push_str(&equation(page, formula, number, math));
                     let tag = tag.as_ref().map(|t| format!("\\[{}\\]", text(t)));
@@ -87,6 +89,7 @@ fn sentence(page: &Page, parts: &[Inline], math: Math) -> String {
         .iter()
         .map(|part| match part {
             Inline::Plain(words) => text(words),
+            Inline::Reference { number, .. } => format!("({number})"),
             Inline::Math(f) => inline_math(page, f, math),
         })
         .collect()

@@ -78,6 +78,13 @@ fn element(layout: &Layout) -> String {
             )
         }
         Layout::Fenced(fence, inner) => enclosed(*fence, &content(inner)),
+        Layout::Grid(rows) => {
+            let entry = |a: &Layout| format!("<mtd>{}</mtd>", element(a));
+            let row =
+                |r: &Vec<Layout>| format!("<mtr>{}</mtr>", r.iter().map(entry).collect::<String>());
+            let rows: String = rows.iter().map(row).collect();
+            enclosed(Fence::Round, &format!("<mtable>{rows}</mtable>"))
+        }
         Layout::Break(_) => String::new(),
     }
 }

@@ -82,6 +82,7 @@ impl Style {
 /// A whole document, ending in a newline. Equations are numbered from 1 through all sections.
 pub fn render(document: &Document, symbols: &Symbols, style: &Style, format: Format) -> String {
     let page = Page { symbols, style };
+    let document = &document.numbered();
     match format {
         Format::Text => unicode::document(&page, document),
         Format::Latex => latex::document(&page, document),

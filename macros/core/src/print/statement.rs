@@ -85,6 +85,10 @@ impl Writer<'_> {
             Node::Inverse(a) => Written::new(format!("{}^-1", self.base(a)), Postfix),
             Node::Trace(a) => operand(self.call("tr", &[a])),
             Node::Det(a) => operand(self.call("det", &[a])),
+            // The language has no word for it; no statement holds one.
+            Node::Adjugate(a) => {
+                operand(format!("(det({})*{}^-1)", self.write(a).text, self.base(a)))
+            }
             Node::Dot(a, b) => operand(self.call("dot", &[a, b])),
             Node::Cross(a, b) => operand(self.call("cross", &[a, b])),
             Node::Hat(a) => operand(self.call("hat", &[a])),

@@ -37,6 +37,14 @@ pub(super) fn line(layout: &Layout) -> String {
         Layout::Fraction(a, b) => format!("({})/({})", line(a), line(b)),
         Layout::Root(a) => format!("√({})", line(a)),
         Layout::Hat(a) => format!("hat({})", line(a)),
+        Layout::Grid(rows) => {
+            let row = |r: &Vec<Layout>| {
+                let entries: Vec<String> = r.iter().map(line).collect();
+                format!("[{}]", entries.join(", "))
+            };
+            let rows: Vec<String> = rows.iter().map(row).collect();
+            format!("[{}]", rows.join(", "))
+        }
         Layout::Fenced(fence, inner) => {
             let (open, close) = brackets(*fence);
             format!("{open}{}{close}", line(inner))
@@ -217,7 +225,9 @@ pub(super) fn document(page: &Page, document: &Document) -> String {
                         out.push('\n');
                     }
                 }
-                Block::Equation { formula, tag, note } => {
+                Block::Equation {
+                    formula, tag, note, ..
+                } => {
                     number += 1;
                     let mut first = format!("  ({number})");
                     let margin = " ".repeat(MARGIN);
@@ -243,6 +253,7 @@ fn words(page: &Page, parts: &[Inline]) -> String {
     for part in parts {
         match part {
             Inline::Plain(words) => text.push_str(words),
+            Inline::Reference { number, .. } => text.push_str(&format!("({number})")),
             Inline::Math(f) => {
                 let math = line(&page.linear(f));
                 if columns(&math) <= page.style.columns / 2 {

@@ -30,6 +30,7 @@ fn expanded(e: &Expr) -> usize {
         | Node::Unit(..)
         | Node::Inverse(_)
         | Node::Det(_)
+        | Node::Adjugate(_)
         | Node::Call(..) => 1,
     }
 }

@@ -114,6 +114,11 @@ impl Builder {
             Node::Inverse(a) => self.unary(a, Term::Inverse),
             Node::Trace(a) => self.unary(a, Term::Trace),
             Node::Det(a) => self.unary(a, Term::Det),
+            Node::Adjugate(a) => {
+                let det = self.unary(a, Term::Det)?;
+                let inverse = self.unary(a, Term::Inverse)?;
+                self.add(Term::Scale([det, inverse]))
+            }
             Node::Dot(a, b) => self.binary(a, b, Term::Dot),
             Node::Cross(a, b) => self.binary(a, b, Term::Cross),
             Node::Hat(a) => self.unary(a, Term::Hat),

@@ -18,8 +18,13 @@ pub struct Program {
 
 /// Schedules several results together. `prefix` starts the names of temporaries.
 pub fn program(symbols: &Symbols, results: &[Expr], prefix: &str) -> Program {
+    // What is computed has a value where determinants vanish.
+    let results: Vec<Expr> = results
+        .iter()
+        .map(|r| expr::without_adjugates(symbols, r))
+        .collect();
     let mut uses: HashMap<Expr, usize> = HashMap::new();
-    for r in results {
+    for r in &results {
         count(r, &mut uses);
     }
     let mut build = Build {
@@ -63,6 +68,7 @@ fn is_work(e: &Expr) -> bool {
         | Node::Inverse(_)
         | Node::Trace(_)
         | Node::Det(_)
+        | Node::Adjugate(_)
         | Node::Dot(..)
         | Node::Cross(..)
         | Node::Vee(_)

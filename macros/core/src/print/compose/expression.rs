@@ -90,6 +90,7 @@ impl Composer<'_> {
             Node::Inverse(a) => self.inverted(a),
             Node::Trace(a) => self.call("tr", self.sized(a)),
             Node::Det(a) => self.call("det", self.sized(a)),
+            Node::Adjugate(a) => self.call("adj", self.expression(a)),
             Node::Dot(a, b) => self.infix(
                 self.expression(a),
                 Sign::Dot,

@@ -3,6 +3,7 @@
 use super::{Composer, transposition};
 use crate::algebra::Rational;
 use crate::expr::Node;
+use crate::print::Style;
 use crate::print::formula::{Formula, Operator, Relation};
 use crate::print::layout::{Fence, Layout, Sign, Strength};
 use crate::print::level::{Laid, Level};
@@ -37,9 +38,29 @@ impl Composer<'_> {
             Formula::Diamond(a, b) => self.between(a, Sign::Diamond, b, Level::Infix),
             Formula::Bracket(a, b) => self.pair(Fence::Square, a, b),
             Formula::Pairing(a, b) => self.pair(Fence::Angle, a, b),
-            Formula::Ad { group, argument } => self.adjoint(None, group, argument),
+            Formula::Ad { group, argument } => self.adjoint("Ad", None, group, argument),
             Formula::AdStar { group, momentum } => {
-                self.adjoint(Some(Layout::Sign(Sign::Star)), group, momentum)
+                self.adjoint("Ad", Some(Layout::Sign(Sign::Star)), group, momentum)
+            }
+            Formula::LieAdStar { algebra, momentum } => {
+                self.adjoint("ad", Some(Layout::Sign(Sign::Star)), algebra, momentum)
+            }
+            Formula::Rate(a) => self.rate(a),
+            Formula::Matrix(rows) => {
+                let entries = |r: &Vec<Formula>| r.iter().map(|f| self.formula(f).layout).collect();
+                Laid::atom(Layout::Grid(rows.iter().map(entries).collect()))
+            }
+            Formula::Continuous(a) => {
+                let style = Style {
+                    time_index: String::new(),
+                    ..self.style.clone()
+                };
+                let composer = Composer {
+                    symbols: self.symbols,
+                    style: &style,
+                    stacked: self.stacked,
+                };
+                composer.formula(a)
             }
             Formula::Gradient { of, wrt } => {
                 let nabla = Layout::Sign(Sign::Nabla).subscript(self.letter(*wrt));
@@ -186,9 +207,15 @@ impl Composer<'_> {
         Laid::atom(Layout::fenced(fence, inner))
     }
 
-    fn adjoint(&self, star: Option<Layout>, group: &Formula, argument: &Formula) -> Laid {
+    fn adjoint(
+        &self,
+        word: &str,
+        star: Option<Layout>,
+        group: &Formula,
+        argument: &Formula,
+    ) -> Laid {
         let operator = Layout::Script {
-            base: Box::new(Layout::Word("Ad".to_owned())),
+            base: Box::new(Layout::Word(word.to_owned())),
             sub: Some(Box::new(self.formula(group).layout)),
             sup: star.map(Box::new),
         };
@@ -200,6 +227,28 @@ impl Composer<'_> {
             argument.base()
         };
         let row = vec![operator, Layout::Sign(Sign::Operand), argument];
+        Laid::new(Layout::Row(row), Level::Application)
+    }
+
+    /// `da/dt`, the letter in the numerator where it is one.
+    fn rate(&self, a: &Formula) -> Laid {
+        let d = || Layout::Identifier("d".to_owned());
+        let below = Layout::row(vec![d(), Layout::Identifier("t".to_owned())]);
+        let laid = self.formula(a);
+        let (above, behind) = if laid.level == Level::Atom {
+            (Layout::row(vec![d(), laid.layout]), None)
+        } else {
+            (d(), Some(laid.base()))
+        };
+        let derivative = if self.stacked {
+            Layout::Fraction(Box::new(above), Box::new(below))
+        } else {
+            Layout::Row(vec![above, Layout::Sign(Sign::Slash), below])
+        };
+        let Some(behind) = behind else {
+            return Laid::new(derivative, Level::Prefix);
+        };
+        let row = vec![derivative, Layout::Sign(Sign::Thin), behind];
         Laid::new(Layout::Row(row), Level::Application)
     }
 

@@ -56,6 +56,14 @@ pub(super) fn line(layout: &Layout, dialect: Dialect) -> String {
             let (open, close) = sized(*fence, inner.is_tall());
             joined([open, go(inner), close].into_iter())
         }
+        Layout::Grid(rows) => {
+            let row = |r: &Vec<Layout>| r.iter().map(go).collect::<Vec<_>>().join(" & ");
+            let rows: Vec<String> = rows.iter().map(row).collect();
+            format!(
+                "\\begin{{pmatrix}} {} \\end{{pmatrix}}",
+                rows.join(" \\\\ ")
+            )
+        }
         Layout::Break(_) => String::new(),
     }
 }
@@ -116,11 +124,14 @@ fn word(s: &str, dialect: Dialect) -> String {
     match (s, dialect) {
         ("det" | "exp" | "log", _) => format!("\\{s}"),
         ("T", _) => "T".to_owned(),
-        ("tr" | "sym" | "skew" | "diag" | "vee" | "hat" | "Ad", Dialect::Amsmath) => {
+        (
+            "tr" | "sym" | "skew" | "diag" | "vee" | "hat" | "Ad" | "ad" | "adj",
+            Dialect::Amsmath,
+        ) => {
             format!("\\operatorname{{{escaped}}}")
         }
         // An operator would carry its scripts below and above.
-        ("tr" | "sym" | "skew" | "diag" | "vee" | "hat" | "Ad", Dialect::GitHub) => {
+        ("tr" | "sym" | "skew" | "diag" | "vee" | "hat" | "Ad" | "ad" | "adj", Dialect::GitHub) => {
             format!("\\mathop{{\\mathrm{{{escaped}}}}}\\nolimits")
         }
         _ => format!("\\mathrm{{{escaped}}}"),
@@ -210,16 +221,20 @@ pub(super) fn document(page: &Page, document: &Document) -> String {
                 out.push('\n');
             }
             match block {
-                Block::Paragraph(parts) => out.push_str(&format!("{}\n", sentence(page, parts))),
+                Block::Paragraph(parts) => {
+                    out.push_str(&format!("{}\n", sentence(page, &slug, parts)))
+                }
                 Block::List(items) => {
                     out.push_str("\\begin{itemize}\n");
                     for item in items {
-                        out.push_str(&format!("  \\item{{}} {}\n", sentence(page, item)));
+                        out.push_str(&format!("  \\item{{}} {}\n", sentence(page, &slug, item)));
                     }
                     out.push_str("\\end{itemize}\n");
                 }
                 Block::Code(code) => out.push_str(&listing(code)),
-                Block::Equation { formula, tag, note } => {
+                Block::Equation {
+                    formula, tag, note, ..
+                } => {
                     number += 1;
                     out.push_str(&format!(
                         "\\begin{{equation}}\\label{{eq:{slug}:{number}}}\n{}\n\\end{{equation}}\n",
@@ -238,11 +253,12 @@ pub(super) fn document(page: &Page, document: &Document) -> String {
     out
 }
 
-fn sentence(page: &Page, parts: &[Inline]) -> String {
+fn sentence(page: &Page, slug: &str, parts: &[Inline]) -> String {
     parts
         .iter()
         .map(|part| match part {
             Inline::Plain(words) => text(words),
+            Inline::Reference { number, .. } => format!("\\eqref{{eq:{slug}:{number}}}"),
             Inline::Math(f) => format!("${}$", line(&page.stacked(f), Dialect::Amsmath)),
         })
         .collect()

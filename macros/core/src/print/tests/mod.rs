@@ -1,7 +1,9 @@
 //! Tests of the printers on one list of expressions that holds every kind of node.
 
+mod derivations;
 mod documents;
 mod mathml;
 mod sample;
 mod spelling;
 mod statements;
+mod structure;

@@ -128,6 +128,7 @@ impl Sample {
             self.t(inverse(expr::add(v("A"), v("J")))),
             expr::trace(expr::mul(v("C0"), minus_id())),
             expr::det(v("Q")),
+            expr::adjugate(&self.symbols, &v("A")),
             expr::dot(
                 expr::mul(minus_id(), v("d1")),
                 expr::product([v("A"), minus_id(), v("d1")]),
@@ -193,6 +194,12 @@ impl Sample {
             },
             Formula::ad_star(Formula::Expr(self.at("Ω", -1)), self.at("M", -1)),
             Formula::ad_star(f("Ω"), sum()),
+            Formula::lie_ad_star(f("ξ"), f("M")),
+            Formula::rate(f("M")),
+            Formula::rate(sum()),
+            Formula::Matrix(vec![vec![f("A"), f("J")], vec![sum(), f("A")]]),
+            Formula::continuous(Formula::Expr(self.at("Ω", -1))),
+            Formula::continuous(f("M")),
             Formula::variation(f("Λ")),
             Formula::transpose(Formula::variation(f("Λ"))),
             Formula::Tangent {
@@ -259,17 +266,18 @@ fn kind(node: &Node) -> usize {
         Node::Vee(_) => 17,
         Node::Part(..) => 18,
         Node::Call(..) => 19,
+        Node::Adjugate(_) => 20,
     }
 }
 
 #[test]
 fn the_sample_holds_every_kind_of_node() {
-    fn walk(e: &Expr, seen: &mut [bool; 20]) {
+    fn walk(e: &Expr, seen: &mut [bool; 21]) {
         seen[kind(e.node())] = true;
         e.children().into_iter().for_each(|c| walk(c, seen));
     }
-    let mut seen = [false; 20];
+    let mut seen = [false; 21];
     let sample = Sample::new();
     sample.expressions().iter().for_each(|e| walk(e, &mut seen));
-    assert_eq!(seen, [true; 20]);
+    assert_eq!(seen, [true; 21]);
 }

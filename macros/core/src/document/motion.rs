@@ -1,0 +1,360 @@
+//! Elimination of the multipliers: the momentum map at both ends of an edge, from it the discrete
+//! Euler-Poincaré equations with their coadjoint transport and diamonds, defined where they stand.
+
+use super::compose::{relation_label, transport_label, variation_label};
+use super::sheet::{Sheet, references};
+use crate::check::spec::{Configuration, Side};
+use crate::derive::momentum::Momentum;
+use crate::expr::symbol::{Role, SymbolId};
+use crate::expr::{self, Expr, Letter, Shift};
+use crate::print::document::{Document, Inline, Section};
+use crate::print::formula::{Formula, Operator, Relation};
+
+/// What moves with a configuration at its node and stands in the action: symbol, and whether the
+/// edge that starts there and the one that ends there hold it.
+fn forces(sheet: &Sheet, i: usize) -> Vec<(SymbolId, bool, bool)> {
+    let d = sheet.d;
+    let s = sheet.symbols();
+    let holds = |symbol: SymbolId, shift: Shift| {
+        !expr::gradient(s, &d.action.total, Letter { symbol, shift }).is_zero()
+    };
+    let advected = d.spec.advected.iter().enumerate();
+    let advected = advected.filter(|(j, _)| sheet.moves(i, *j));
+    let elements = d.spec.configurations.get(i).map(|c| c.element);
+    advected
+        .map(|(_, a)| a.quantity)
+        .chain(elements)
+        .map(|x| (x, holds(x, Shift::HERE), holds(x, Shift::NEXT)))
+        .filter(|(_, start, end)| *start || *end)
+        .collect()
+}
+
+/// `(∇_a ℓ_{k-1} + ∇_a ℓ_k) ◇ a` for each of them.
+fn diamonds(sheet: &Sheet, i: usize) -> Vec<Formula> {
+    let each = forces(sheet, i).into_iter().map(|(x, start, end)| {
+        let incoming = end.then(|| sheet.gradient(-1, x));
+        let outgoing = start.then(|| sheet.gradient(0, x));
+        let terms: Vec<Formula> = incoming.into_iter().chain(outgoing).collect();
+        let gradient = match <[Formula; 1]>::try_from(terms) {
+            Ok([only]) => only,
+            Err(both) => Formula::Sum(both),
+        };
+        Formula::diamond(gradient, sheet.here(x))
+    });
+    each.collect()
+}
+
+/// `Ad*_Ω M`.
+fn carried(sheet: &Sheet, c: &Configuration, i: usize, shift: Shift) -> Formula {
+    Formula::ad_star(sheet.at(c.velocity, shift), sheet.edge_momentum(i, shift))
+}
+
+/// Momentum maps: of the multipliers, and of the edge at both its ends.
+pub fn momentum_maps(sheet: &Sheet, doc: &mut Document) {
+    let d = sheet.d;
+    let section = doc.section("Momentum maps");
+    definitions(sheet, section);
+    for (i, (c, m)) in d.spec.configurations.iter().zip(&d.momenta).enumerate() {
+        let translation = match c.side {
+            Side::Body => "right",
+            Side::Spatial => "left",
+        };
+        let lifted = if (0..d.spec.advected.len()).any(|j| sheet.moves(i, j)) {
+            " and of the action that goes with it, lifted to the multipliers, at a node:"
+        } else {
+            ", lifted to its multiplier, at a node:"
+        };
+        section.paragraph([
+            format!("The momentum map of the {translation} translation of ").into(),
+            sheet.here(c.element).into(),
+            lifted.into(),
+        ]);
+        let mut terms = vec![sheet.derived(&m.cotangent)];
+        for (j, a) in d.spec.advected.iter().enumerate() {
+            if sheet.moves(i, j)
+                && let Some(v) = d.letters.multiplier.get(j)
+            {
+                terms.push(Formula::diamond(sheet.here(*v), sheet.here(a.quantity)));
+            }
+        }
+        section.sourced(
+            Formula::equal(sheet.lifted(i, 0), Formula::Sum(terms)),
+            sheet.thesis.lifted(),
+        );
+        section.labelled(&format!("lifted {i}"));
+        section.paragraph(["The momentum of the edge:".into()]);
+        edge(sheet, section, c, m, i);
+        elimination(sheet, section, c, i);
+    }
+}
+
+/// Pairing, diamond and coadjoint action, each in one sentence.
+fn definitions(sheet: &Sheet, section: &mut Section) {
+    let d = sheet.d;
+    let orthogonal = d
+        .spec
+        .configurations
+        .iter()
+        .any(|c| c.group.is_orthogonal());
+    if orthogonal {
+        section.text("Skew matrices are paired with half the trace, ⟨M, ξ⟩ = tr(Mᵀ ξ)/2, which in three dimensions is the scalar product of their axial vectors.");
+    }
+    let star = Formula::ad_star(Formula::name("g"), Formula::name("M"));
+    let turned = Formula::Product(vec![
+        Formula::transpose(Formula::name("g")),
+        Formula::name("M"),
+        Formula::transpose(Formula::Inverse(Box::new(Formula::name("g")))),
+    ]);
+    section.paragraph([
+        "The coadjoint action is ".into(),
+        Formula::equal(star, turned).into(),
+        ", the dual of ".into(),
+        Formula::equal(
+            Formula::Ad {
+                group: Box::new(Formula::name("g")),
+                argument: Box::new(Formula::name("ξ")),
+            },
+            Formula::Product(vec![
+                Formula::name("g"),
+                Formula::name("ξ"),
+                Formula::Inverse(Box::new(Formula::name("g"))),
+            ]),
+        )
+        .into(),
+        ".".into(),
+    ]);
+    let moved: Vec<(usize, usize)> = (0..d.spec.configurations.len())
+        .flat_map(|i| (0..d.spec.advected.len()).map(move |j| (i, j)))
+        .filter(|(i, j)| sheet.moves(*i, *j))
+        .collect();
+    let elements = (0..d.spec.configurations.len()).any(|i| {
+        let own = forces(sheet, i).into_iter();
+        own.filter(|(x, ..)| sheet.symbols().get(*x).role == Role::Element)
+            .count()
+            > 0
+    });
+    if moved.is_empty() && !elements {
+        return;
+    }
+    let labels: Vec<String> = moved.iter().map(|(i, j)| variation_label(*i, *j)).collect();
+    let mut words: Vec<Inline> = vec![
+        "The diamond of a covector and a quantity is defined by ".into(),
+        Formula::equal(
+            Formula::pairing(
+                Formula::diamond(Formula::name("v"), Formula::name("a")),
+                Formula::name("ξ"),
+            ),
+            Formula::pairing(
+                Formula::name("v"),
+                Formula::apply(Formula::name("ξ"), vec![Formula::name("a")]),
+            ),
+        )
+        .into(),
+        ", where ξ(a) is the action of the Lie algebra on a, that is its variation along ξ".into(),
+    ];
+    if !labels.is_empty() {
+        words.push(
+            if labels.len() == 1 {
+                ", equation "
+            } else {
+                ", equations "
+            }
+            .into(),
+        );
+        words.extend(references(&labels));
+    }
+    words.push(if moved.is_empty() {
+        ".".into()
+    } else {
+        ":".into()
+    });
+    section.paragraph(words);
+    for (i, j) in moved {
+        let (Some(m), Some(a), Some(v)) = (
+            d.momenta.get(i).and_then(|m| m.diamonds.get(j)),
+            d.spec.advected.get(j),
+            d.letters.multiplier.get(j),
+        ) else {
+            continue;
+        };
+        let mut parts = vec![Formula::equal(
+            Formula::diamond(sheet.here(*v), sheet.here(a.quantity)),
+            sheet.derived(m),
+        )];
+        if let Some(c) = d.spec.configurations.get(i)
+            && d.spec.configurations.len() > 1
+        {
+            parts.push(Formula::text("for"));
+            parts.push(sheet.here(c.element));
+        }
+        section.equation(match <[Formula; 1]>::try_from(parts) {
+            Ok([only]) => only,
+            Err(several) => Formula::Sequence(several),
+        });
+    }
+}
+
+/// The momentum of the edge by the gradient in the velocity.
+fn edge(sheet: &Sheet, section: &mut Section, c: &Configuration, m: &Momentum, i: usize) {
+    let product = Formula::Product(vec![
+        sheet.gradient(0, c.velocity),
+        Formula::transpose(sheet.here(c.velocity)),
+    ]);
+    let by_gradient = if c.group.is_orthogonal() {
+        Formula::Product(vec![
+            Formula::Expr(expr::integer(2)),
+            Formula::operator(Operator::Skew, product),
+        ])
+    } else {
+        product
+    };
+    section.sourced(
+        Formula::Relation(
+            vec![
+                sheet.edge_momentum(i, Shift::HERE),
+                by_gradient,
+                sheet.derived(&m.reduced),
+            ],
+            Relation::Equal,
+        ),
+        sheet.thesis.momentum(),
+    );
+}
+
+/// The relation of the velocity, multiplied by the velocity on either side.
+fn elimination(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize) {
+    let (behind, before) = match c.side {
+        Side::Body => ("from the right", "from the left"),
+        Side::Spatial => ("from the left", "from the right"),
+    };
+    let half = if c.group.is_orthogonal() {
+        ", twice its skew part taken,"
+    } else {
+        ""
+    };
+    let turned: Inline = Formula::transpose(sheet.here(c.velocity)).into();
+    let mut others = vec![relation_label(c.element)];
+    let advected = sheet.d.spec.advected.iter().enumerate();
+    let advected = advected.filter(|(j, _)| sheet.moves(i, *j));
+    others.extend(advected.clone().map(|(_, a)| relation_label(a.quantity)));
+    let mut words: Vec<Inline> = vec![
+        "Equation ".into(),
+        Inline::reference(&relation_label(c.velocity)),
+        " multiplied by ".into(),
+        turned.clone(),
+        format!(" {behind}{half} is with ").into(),
+    ];
+    words.extend(references(&others));
+    words.push(" the momentum map at the start of the edge,".into());
+    section.paragraph(words);
+    let (start, end) = match c.side {
+        Side::Body => (
+            sheet.edge_momentum(i, Shift::HERE),
+            carried(sheet, c, i, Shift::HERE),
+        ),
+        Side::Spatial => (
+            carried(sheet, c, i, Shift::HERE),
+            sheet.edge_momentum(i, Shift::HERE),
+        ),
+    };
+    let mut terms = vec![sheet.lifted(i, 0)];
+    terms.extend(diamonds(sheet, i));
+    section.sourced(
+        Formula::equal(start, Formula::Sum(terms)),
+        sheet.thesis.at_start(),
+    );
+    section.labelled(&format!("start {i}"));
+    let mut words: Vec<Inline> = vec![
+        "and multiplied by ".into(),
+        turned,
+        format!(" {before} it is with the constraints that at its end:").into(),
+    ];
+    if advected.count() == 0 {
+        words = vec![
+            "and multiplied by ".into(),
+            Formula::transpose(sheet.here(c.velocity)).into(),
+            format!(" {before} it is with the reconstruction that at its end:").into(),
+        ];
+    }
+    section.paragraph(words);
+    section.sourced(
+        Formula::equal(end, sheet.lifted(i, 1)),
+        sheet.thesis.at_end(),
+    );
+    section.labelled(&format!("end {i}"));
+}
+
+/// The discrete Euler-Poincaré equations and their components.
+pub fn balance(sheet: &Sheet, doc: &mut Document) {
+    let d = sheet.d;
+    let section = doc.section("Discrete Euler-Poincaré equations");
+    for (i, (c, b)) in d.spec.configurations.iter().zip(&d.balances).enumerate() {
+        let mut words: Vec<Inline> = vec!["No multiplier is left in the difference of ".into()];
+        words.extend([
+            Inline::reference(&format!("start {i}")),
+            " and of ".into(),
+            Inline::reference(&format!("end {i}")),
+            " one step earlier:".into(),
+        ]);
+        section.paragraph(words);
+        let (left, first) = match c.side {
+            Side::Body => (
+                sheet.edge_momentum(i, Shift::HERE),
+                carried(sheet, c, i, Shift::PREVIOUS),
+            ),
+            Side::Spatial => (
+                carried(sheet, c, i, Shift::HERE),
+                sheet.edge_momentum(i, Shift::PREVIOUS),
+            ),
+        };
+        let terms: Vec<Formula> = [first].into_iter().chain(diamonds(sheet, i)).collect();
+        section.sourced(
+            Formula::equal(left, Formula::Sum(terms)),
+            sheet.thesis.balance(),
+        );
+        section.labelled(&format!("balance {i}"));
+        gradients(sheet, section, i);
+        let with: Vec<String> = (0..d.spec.advected.len()).map(transport_label).collect();
+        if !with.is_empty() {
+            let mut words: Vec<Inline> = vec!["Together with ".into()];
+            words.extend(references(&with));
+            words.push(" it determines the motion.".into());
+            section.paragraph(words);
+        }
+        let mu = sheet.here(d.letters.node_momentum[i]);
+        let frame = match c.side {
+            Side::Body => "in the body",
+            Side::Spatial => "in space",
+        };
+        section.paragraph([
+            "By components, with ".into(),
+            mu.clone().into(),
+            format!(" the momentum at the node, {frame}: the first equation is solved for the velocity, the second carries the momentum to the next node.").into(),
+        ]);
+        section.equation(Formula::equal(mu, sheet.derived(&b.outgoing)));
+        section.labelled(&format!("outgoing {i}"));
+        let next = sheet.at(d.letters.node_momentum[i], Shift::NEXT);
+        section.equation(Formula::equal(next, sheet.derived(&b.incoming)));
+        section.labelled(&format!("incoming {i}"));
+    }
+}
+
+/// The gradients in the diamonds, written out.
+fn gradients(sheet: &Sheet, section: &mut Section, i: usize) {
+    let d = sheet.d;
+    let s = sheet.symbols();
+    for (x, start, end) in forces(sheet, i) {
+        let back = expr::shift_time(s, &d.action.total, Shift::PREVIOUS.time);
+        let wrt = Letter {
+            symbol: x,
+            shift: Shift::HERE,
+        };
+        let structure = s.get(x).structure;
+        let own = |l: &Expr| expr::projected(s, structure, &expr::gradient(s, l, wrt));
+        let incoming = end.then(|| sheet.gradient(-1, x));
+        let outgoing = start.then(|| sheet.gradient(0, x));
+        let names: Vec<Formula> = incoming.into_iter().chain(outgoing).collect();
+        let total = expr::add(own(&back), own(&d.action.total));
+        section.equation(Formula::equal(Formula::Sum(names), sheet.derived(&total)));
+    }
+}

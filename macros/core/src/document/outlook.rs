@@ -1,0 +1,203 @@
+//! What follows from the equations: conserved quantities, the continuous equations of motion in the
+//! limit of small steps, and the list of identities that prove the derivation.
+
+use super::sheet::{Sheet, references};
+use crate::check::spec::{Configuration, Side};
+use crate::derive::invariants::{Invariant, Kind};
+use crate::expr::{self, Expr, Letter, Shift};
+use crate::print::document::{Document, Inline, Section};
+use crate::print::formula::{Formula, Relation};
+
+/// Conserved quantities and time reversal.
+pub fn invariants(sheet: &Sheet, doc: &mut Document) {
+    let d = sheet.d;
+    let section = doc.section("Invariants");
+    let items: Vec<Vec<Inline>> = d.invariants.iter().map(|v| invariant(sheet, v)).collect();
+    if items.is_empty() {
+        section.text("None was found among the candidates.");
+    } else {
+        section.list(items);
+    }
+    section.text(if d.reversible {
+        "The action of one step changes sign when its ends change places and the step changes sign: the scheme is symmetric under time reversal, of even order, and may be composed."
+    } else {
+        "The action of one step is not symmetric under time reversal: the scheme is of first order and must not be composed."
+    });
+}
+
+fn invariant(sheet: &Sheet, v: &Invariant) -> Vec<Inline> {
+    let mut line: Vec<Inline> = vec![format!("{}: ", v.name.replace('_', " ")).into()];
+    match (&v.value, &v.kind) {
+        (Some(e), Kind::SpatialMomentum(i)) => {
+            let c = sheet.d.spec.configurations.get(*i);
+            let value = c.map_or_else(|| e.clone(), |c| in_space(sheet, c, e));
+            line.push(sheet.derived(&value).into());
+        }
+        (Some(e), _) => line.push(sheet.derived(e).into()),
+        (None, _) => line.push("kinetic plus potential energy of the limit".into()),
+    }
+    let how = if v.exact { "exact" } else { "bounded" };
+    line.push(format!(" ({how}: {})", v.reason).into());
+    line
+}
+
+/// A momentum at a node, carried to space: on the body side the element turns it.
+fn in_space(sheet: &Sheet, c: &Configuration, momentum: &Expr) -> Expr {
+    let s = sheet.symbols();
+    let g = expr::here(s, c.element);
+    match c.side {
+        Side::Spatial => momentum.clone(),
+        Side::Body if momentum.shape().is_vector() => expr::mul(g, momentum.clone()),
+        Side::Body => {
+            let back = expr::transpose(s, expr::inverse(s, g.clone()));
+            expr::product([back, momentum.clone(), expr::transpose(s, g)])
+        }
+    }
+}
+
+/// The limit of small steps.
+pub fn limit(sheet: &Sheet, doc: &mut Document) {
+    let d = sheet.d;
+    let section = doc.section("Limit of small steps");
+    let (Ok(_), Some(x)) = (&d.limit, &d.continuous) else {
+        if let Err(why) = &d.limit {
+            section.text(&format!("There is none: {why}."));
+        }
+        return;
+    };
+    let mut words: Vec<Inline> = vec!["With ".into()];
+    let velocities = d.spec.configurations.iter().zip(&d.letters.rate);
+    let velocities = velocities.map(|(c, zeta)| {
+        let hat = crate::derive::continuous::velocity(&d.letters, c.group, *zeta);
+        let h = sheet.here(d.spec.step);
+        let turn = Formula::operator(
+            crate::print::formula::Operator::Exp,
+            Formula::Product(vec![h, Formula::Expr(hat)]),
+        );
+        vec![Inline::from(Formula::equal(sheet.here(c.velocity), turn))]
+    });
+    words.extend(super::sheet::listed(velocities.collect()));
+    words.push(" the action of a step, divided by the step, tends to the Lagrangian".into());
+    section.paragraph(words);
+    let lagrangian = sheet.symbols().fresh_name("L");
+    let l = Formula::name(&lagrangian);
+    section.equation(steady(Formula::equal(l, sheet.math(&x.lagrangian))));
+    for (i, c) in d.spec.configurations.iter().enumerate() {
+        equations(sheet, section, c, i, &lagrangian);
+    }
+    for (a, rate) in d.spec.advected.iter().zip(&x.rates) {
+        section.equation(steady(Formula::equal(
+            Formula::rate(sheet.here(a.quantity)),
+            sheet.derived(rate),
+        )));
+    }
+    let labels: Vec<String> = (0..d.spec.configurations.len())
+        .map(|i| format!("balance {i}"))
+        .collect();
+    let mut words: Vec<Inline> =
+        vec!["This is the limit of the discrete Euler-Poincaré equations ".into()];
+    words.extend(references(&labels));
+    words.push(" over the step.".into());
+    section.paragraph(words);
+}
+
+/// Momentum, Euler-Poincaré equation and reconstruction of one configuration.
+fn equations(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize, l: &str) {
+    let d = sheet.d;
+    let Some(x) = &d.continuous else { return };
+    let (Some(mu), Some(zeta)) = (d.letters.node_momentum.get(i), d.letters.rate.get(i)) else {
+        return;
+    };
+    let zeta_letter = Letter {
+        symbol: *zeta,
+        shift: Shift::HERE,
+    };
+    let (Some(momentum), Some(coadjoint), Some(force)) =
+        (x.momenta.get(i), x.coadjoint.get(i), x.forces.get(i))
+    else {
+        return;
+    };
+    let gradient = |letter: Letter| Formula::Gradient {
+        of: l.to_owned(),
+        wrt: letter,
+    };
+    let derivative = if sheet.has_vectors(c) || !c.group.is_orthogonal() {
+        gradient(zeta_letter)
+    } else {
+        Formula::Product(vec![Formula::Expr(expr::integer(2)), gradient(zeta_letter)])
+    };
+    let mu = sheet.here(*mu);
+    section.paragraph([
+        "The momentum and the Euler-Poincaré equation with advected quantities, ".into(),
+        steady(Formula::equal(
+            Formula::pairing(
+                Formula::lie_ad_star(sheet.here(*zeta), mu.clone()),
+                Formula::name("ξ"),
+            ),
+            Formula::pairing(
+                mu.clone(),
+                Formula::Bracket(Box::new(sheet.here(*zeta)), Box::new(Formula::name("ξ"))),
+            ),
+        ))
+        .into(),
+        ":".into(),
+    ]);
+    section.equation(steady(Formula::Relation(
+        vec![mu.clone(), derivative, sheet.derived(momentum)],
+        Relation::Equal,
+    )));
+    let ad_star = Formula::lie_ad_star(sheet.here(*zeta), mu.clone());
+    let ad_star = match c.side {
+        Side::Body => ad_star,
+        Side::Spatial => Formula::neg(ad_star),
+    };
+    let mut named = vec![ad_star];
+    for (j, (a, g)) in d.spec.advected.iter().zip(&x.gradients).enumerate() {
+        if !g.is_zero() && sheet.moves(i, j) {
+            let wrt = Letter {
+                symbol: a.quantity,
+                shift: Shift::HERE,
+            };
+            named.push(Formula::diamond(gradient(wrt), sheet.here(a.quantity)));
+        }
+    }
+    let element = Letter {
+        symbol: c.element,
+        shift: Shift::HERE,
+    };
+    if expr::contains(&x.lagrangian, element) {
+        named.push(Formula::diamond(gradient(element), sheet.here(c.element)));
+    }
+    let explicit = Formula::Sum(vec![sheet.derived(coadjoint), sheet.derived(force)]);
+    section.sourced(
+        steady(Formula::Relation(
+            vec![Formula::rate(mu), Formula::Sum(named), explicit],
+            Relation::Equal,
+        )),
+        sheet.thesis.continuous(),
+    );
+    section.labelled(&format!("continuous {i}"));
+    if let Some(turn) = x.reconstruction.get(i) {
+        section.equation(steady(Formula::equal(
+            Formula::rate(sheet.here(c.element)),
+            sheet.derived(turn),
+        )));
+    }
+}
+
+fn steady(f: Formula) -> Formula {
+    Formula::continuous(f)
+}
+
+/// The identities that prove the derivation.
+pub fn certificate(sheet: &Sheet, doc: &mut Document) {
+    let d = sheet.d;
+    let section = doc.section("Certificate");
+    section.text(&format!("{}:", d.certificate.summary()));
+    let items = d.certificate.steps.iter();
+    section.list(
+        items
+            .map(|step| vec![Inline::from(format!("{}.", step.name))])
+            .collect(),
+    );
+}

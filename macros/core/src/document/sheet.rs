@@ -1,0 +1,155 @@
+//! What every section of a derivation needs: the derivation, its citations, letters that no symbol
+//! of the model bears, and the small formulas that recur.
+
+use super::thesis::Thesis;
+use crate::check::spec::{Configuration, Side};
+use crate::derive::Derivation;
+use crate::expr::shape::Dim;
+use crate::expr::symbol::{SymbolId, Symbols};
+use crate::expr::{self, Expr, Letter, Shift};
+use crate::print::document::Inline;
+use crate::print::formula::Formula;
+
+/// A derivation being written down.
+pub struct Sheet<'a> {
+    /// The derivation.
+    pub d: &'a Derivation,
+    /// Its citations.
+    pub thesis: Thesis<'a>,
+}
+
+impl<'a> Sheet<'a> {
+    /// Opens a derivation.
+    pub fn new(d: &'a Derivation) -> Sheet<'a> {
+        Sheet {
+            d,
+            thesis: Thesis::new(d),
+        }
+    }
+
+    /// The symbols.
+    pub fn symbols(&self) -> &'a Symbols {
+        &self.d.letters.symbols
+    }
+
+    /// An expression, like terms collected.
+    pub fn math(&self, e: &Expr) -> Formula {
+        Formula::Expr(expr::collect(self.symbols(), e))
+    }
+
+    /// A derived expression: like terms collected, a term that is added in front.
+    pub fn derived(&self, e: &Expr) -> Formula {
+        Formula::Expr(expr::positive_first(&expr::collect(self.symbols(), e)))
+    }
+
+    /// A symbol at an offset.
+    pub fn at(&self, symbol: SymbolId, shift: Shift) -> Formula {
+        Formula::Expr(expr::letter(self.symbols(), symbol, shift))
+    }
+
+    /// A symbol where the equation stands.
+    pub fn here(&self, symbol: SymbolId) -> Formula {
+        self.at(symbol, Shift::HERE)
+    }
+
+    /// The name of the time index with an offset, `k-1`.
+    pub fn index(&self, by: i8) -> String {
+        let k = &self.d.spec.time_index;
+        match by {
+            0 => k.clone(),
+            n if n > 0 => format!("{k}+{n}"),
+            n => format!("{k}{n}"),
+        }
+    }
+
+    /// A name that no symbol of the model bears, with the number of the configuration where there
+    /// are several.
+    pub fn name(&self, base: &str, i: usize) -> Formula {
+        let many = self.d.spec.configurations.len() > 1;
+        let wanted = if many {
+            format!("{base}{}", i + 1)
+        } else {
+            base.to_owned()
+        };
+        Formula::name(&self.symbols().fresh_name(&wanted))
+    }
+
+    /// The momentum map of the multipliers at node k: `J^R` of the right translation on the body
+    /// side, `J^L` of the left one on the spatial side.
+    pub fn lifted(&self, i: usize, by: i8) -> Formula {
+        let many = self.d.spec.configurations.len() > 1;
+        let number = if many {
+            format!("{},", i + 1)
+        } else {
+            String::new()
+        };
+        let side = match self.d.spec.configurations.get(i).map(|c| c.side) {
+            Some(Side::Spatial) => "L",
+            Some(Side::Body) | None => "R",
+        };
+        Formula::name(&format!("J^{side}_{{{number}{}}}", self.index(by)))
+    }
+
+    /// The edge momentum at an offset.
+    pub fn edge_momentum(&self, i: usize, shift: Shift) -> Formula {
+        match self.d.letters.edge_momentum.get(i) {
+            Some(symbol) => self.at(*symbol, shift),
+            None => Formula::name("M"),
+        }
+    }
+
+    /// Gradient of the action of the edge that starts `by` nodes later, at node k.
+    pub fn gradient(&self, by: i8, symbol: SymbolId) -> Formula {
+        let of = format!("ℓ_{{{}}}", self.index(by));
+        Formula::gradient(
+            &of,
+            Letter {
+                symbol,
+                shift: Shift::HERE,
+            },
+        )
+    }
+
+    /// `SO(3)`, `GL(n)`.
+    pub fn group(&self, c: &Configuration) -> String {
+        let size = self.symbols().dim_text(c.group.size());
+        if c.group.is_orthogonal() {
+            format!("SO({size})")
+        } else {
+            format!("GL({size})")
+        }
+    }
+
+    /// Whether elements of the Lie algebra are written as vectors.
+    pub fn has_vectors(&self, c: &Configuration) -> bool {
+        c.group.is_orthogonal() && c.group.size() == Dim::Fixed(3)
+    }
+
+    /// Whether the variation of a configuration moves an advected quantity.
+    pub fn moves(&self, i: usize, j: usize) -> bool {
+        let change = self.d.variations.get(i).and_then(|v| v.advected.get(j));
+        change.is_some_and(|(_, e)| !e.is_zero())
+    }
+}
+
+/// A list of parts of a sentence with commas and `and`.
+pub fn listed(parts: Vec<Vec<Inline>>) -> Vec<Inline> {
+    let last = parts.len().saturating_sub(1);
+    let mut out = Vec::new();
+    for (i, part) in parts.into_iter().enumerate() {
+        if i > 0 {
+            out.push(if i == last {
+                " and ".into()
+            } else {
+                ", ".into()
+            });
+        }
+        out.extend(part);
+    }
+    out
+}
+
+/// Equations by their labels: `(7) and (8)`.
+pub fn references(labels: &[String]) -> Vec<Inline> {
+    listed(labels.iter().map(|l| vec![Inline::reference(l)]).collect())
+}

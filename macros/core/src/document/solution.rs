@@ -1,0 +1,316 @@
+//! What each step solves: the Moser-Veselov equation, the matrix Riccati equation it is equivalent
+//! to, the Hamiltonian matrix and the invariant subspace that solve that, and what the stepper does.
+
+use super::sheet::{Sheet, listed};
+use crate::check::spec::Configuration;
+use crate::derive::recognise::{Method, MoserVeselov, Riccati};
+use crate::emit;
+use crate::expr::symbol::Role;
+use crate::expr::{self, Expr, Node};
+use crate::print::document::{Document, Inline, Section};
+use crate::print::formula::{Formula, Relation};
+
+/// The section.
+pub fn moser_veselov(sheet: &Sheet, doc: &mut Document) {
+    let d = sheet.d;
+    let section = doc.section("Moser-Veselov and Riccati form");
+    let mut explained = false;
+    for (i, (c, r)) in d
+        .spec
+        .configurations
+        .iter()
+        .zip(&d.solve.riccati)
+        .enumerate()
+    {
+        let (mv, coupled) = match r {
+            Riccati::None(why) => {
+                section.paragraph([
+                    "There is no Riccati form for ".into(),
+                    sheet.here(c.velocity).into(),
+                    format!(": {why}.").into(),
+                ]);
+                continue;
+            }
+            Riccati::Exact(mv) => (mv, false),
+            Riccati::Coupled(mv) => (mv, true),
+        };
+        equation(sheet, section, c, mv, i, coupled);
+        if !explained {
+            riccati(sheet, section, c, mv, i);
+            explained = true;
+        } else {
+            section.text("Its Riccati form is the same, with these letters.");
+        }
+    }
+    method(sheet, section);
+}
+
+/// The letter that stands for the factor: the factor itself where that is one letter.
+fn factor(sheet: &Sheet, mv: &MoserVeselov, i: usize) -> (Formula, bool) {
+    match mv.factor.node() {
+        Node::Letter(_) => (Formula::Expr(mv.factor.clone()), false),
+        _ => (sheet.name("C", i), true),
+    }
+}
+
+/// `C^T`, which is `C` where it is symmetric.
+fn transposed(mv: &MoserVeselov, c: &Formula) -> Formula {
+    if mv.symmetric {
+        c.clone()
+    } else {
+        Formula::transpose(c.clone())
+    }
+}
+
+/// The letter of the edge momentum, which is that of the node where nothing is taken off it.
+fn edge(sheet: &Sheet, mv: &MoserVeselov, i: usize) -> Formula {
+    match sheet.d.letters.node_momentum.get(i) {
+        Some(mu) if mv.rest.is_zero() => sheet.here(*mu),
+        _ => sheet.name("N", i),
+    }
+}
+
+/// `h N` as a matrix.
+fn momentum(sheet: &Sheet, c: &Configuration, mv: &MoserVeselov, i: usize) -> Formula {
+    let n = edge(sheet, mv, i);
+    let n = if sheet.has_vectors(c) {
+        Formula::hat(n)
+    } else {
+        n
+    };
+    Formula::Product(vec![sheet.here(sheet.d.spec.step), n])
+}
+
+fn equation(
+    sheet: &Sheet,
+    section: &mut Section,
+    c: &Configuration,
+    mv: &MoserVeselov,
+    i: usize,
+    coupled: bool,
+) {
+    let d = sheet.d;
+    let w = sheet.here(c.velocity);
+    let (letter, named) = factor(sheet, mv, i);
+    let n = edge(sheet, mv, i);
+    let mu = expr::here(sheet.symbols(), d.letters.node_momentum[i]);
+    section.paragraph([
+        "Equation ".into(),
+        Inline::reference(&format!("outgoing {i}")),
+        " is linear in ".into(),
+        w.clone().into(),
+        ", a Moser-Veselov equation:".into(),
+    ]);
+    let product = Formula::Product(vec![w.clone(), transposed(mv, &letter)]);
+    let mirrored = Formula::Product(vec![letter.clone(), Formula::transpose(w.clone())]);
+    section.sourced(
+        Formula::equal(Formula::minus(product, mirrored), momentum(sheet, c, mv, i)),
+        sheet.thesis.riccati(),
+    );
+    let mut with = Vec::new();
+    if named {
+        with.push(Formula::equal(letter.clone(), sheet.math(&mv.factor)));
+    }
+    if !mv.rest.is_zero() {
+        let rest = sheet.derived(&expr::sub(mu, mv.rest.clone()));
+        with.push(Formula::equal(n.clone(), rest));
+    }
+    if !with.is_empty() {
+        section.equation(match <[Formula; 1]>::try_from(with) {
+            Ok([only]) => only,
+            Err(several) => Formula::List(several),
+        });
+    }
+    reason(sheet, section, c, mv, i, coupled);
+}
+
+/// Why the equation is closed, or by what it is coupled to the others.
+fn reason(
+    sheet: &Sheet,
+    section: &mut Section,
+    c: &Configuration,
+    mv: &MoserVeselov,
+    i: usize,
+    coupled: bool,
+) {
+    let s = sheet.symbols();
+    let (letter, named) = factor(sheet, mv, i);
+    let n = edge(sheet, mv, i);
+    if !coupled {
+        let constant = expr::letters(&mv.factor)
+            .iter()
+            .all(|l| matches!(s.get(l.symbol).role, Role::Parameter | Role::Step));
+        let known = if constant {
+            " is constant and "
+        } else {
+            " is known at the node and so is "
+        };
+        let end = if constant { " known at the node." } else { "." };
+        section.paragraph([
+            "It is exact: ".into(),
+            letter.into(),
+            known.into(),
+            n.into(),
+            end.into(),
+        ]);
+        return;
+    }
+    let holders = |e: &Expr| -> Vec<Vec<Inline>> {
+        let others = sheet.d.spec.configurations.iter();
+        let others = others.filter(|o| o.velocity != c.velocity);
+        others
+            .filter(|o| expr::letters(e).iter().any(|l| l.symbol == o.velocity))
+            .map(|o| vec![Inline::from(sheet.here(o.velocity))])
+            .collect()
+    };
+    let mut clauses = Vec::new();
+    for (name, e) in [(letter, &mv.factor), (n, &mv.rest)] {
+        let found = holders(e);
+        if !found.is_empty() {
+            let mut clause: Vec<Inline> = vec![name.into(), " contains ".into()];
+            clause.extend(listed(found));
+            clauses.push(clause);
+        }
+    }
+    debug_assert!(named || !clauses.is_empty());
+    let mut words: Vec<Inline> = vec!["It is coupled: ".into()];
+    words.extend(listed(clauses));
+    words.push(".".into());
+    section.paragraph(words);
+}
+
+fn riccati(sheet: &Sheet, section: &mut Section, c: &Configuration, mv: &MoserVeselov, i: usize) {
+    let (letter, _) = factor(sheet, mv, i);
+    let name = |base: &str| sheet.name(base, i);
+    let (a, sym, x, ham) = (name("A"), name("S"), name("X"), name("H"));
+    let w = sheet.here(c.velocity);
+    let ct = transposed(mv, &letter);
+    let square = |f: &Formula| Formula::Product(vec![f.clone(), f.clone()]);
+    let zero = || Formula::Expr(expr::integer(0));
+    let two = || Formula::Expr(expr::integer(2));
+    section.paragraph([
+        "With ".into(),
+        Formula::Relation(
+            vec![
+                x.clone(),
+                Formula::Product(vec![w.clone(), ct.clone()]),
+                Formula::Sum(vec![sym.clone(), a.clone()]),
+            ],
+            Relation::Equal,
+        )
+        .into(),
+        ", ".into(),
+        sym.clone().into(),
+        " symmetric and ".into(),
+        Formula::equal(
+            a.clone(),
+            Formula::Quotient(Box::new(momentum(sheet, c, mv, i)), Box::new(two())),
+        )
+        .into(),
+        " skew, orthogonality of ".into(),
+        w.clone().into(),
+        " is a matrix Riccati equation:".into(),
+    ]);
+    let own = if mv.symmetric {
+        square(&letter)
+    } else {
+        Formula::Product(vec![letter.clone(), ct.clone()])
+    };
+    section.equation(Formula::equal(
+        Formula::Sum(vec![
+            square(&sym),
+            Formula::Product(vec![sym.clone(), a.clone()]),
+            Formula::neg(Formula::Product(vec![a.clone(), sym.clone()])),
+            Formula::neg(square(&a)),
+            Formula::neg(own.clone()),
+        ]),
+        zero(),
+    ));
+    let id = Formula::Expr(expr::identity(c.group.size()));
+    let column = |rows: Vec<Formula>| Formula::Matrix(rows.into_iter().map(|f| vec![f]).collect());
+    section.text("Its Hamiltonian matrix is");
+    section.equation(Formula::List(vec![
+        Formula::equal(
+            ham.clone(),
+            Formula::Matrix(vec![
+                vec![a.clone(), id.clone()],
+                vec![Formula::Sum(vec![square(&a), own]), a.clone()],
+            ]),
+        ),
+        Formula::equal(
+            Formula::Product(vec![ham, column(vec![id.clone(), sym.clone()])]),
+            Formula::Product(vec![column(vec![id, sym.clone()]), x.clone()]),
+        ),
+    ]));
+    let (u1, u2) = (Formula::name("U_1"), Formula::name("U_2"));
+    let wanted = if mv.symmetric {
+        "The velocity that tends to the identity with the step"
+    } else {
+        "The principal solution"
+    };
+    section.paragraph([
+        format!("{wanted} belongs to the invariant subspace of the eigenvalues with positive real part; of a basis ").into(),
+        column(vec![u1.clone(), u2.clone()]).into(),
+        " of it,".into(),
+    ]);
+    let solved = Formula::Product(vec![
+        Formula::Sum(vec![sym.clone(), a]),
+        Formula::Inverse(Box::new(ct)),
+    ]);
+    section.equation(Formula::List(vec![
+        Formula::equal(
+            sym,
+            Formula::Product(vec![u2, Formula::Inverse(Box::new(u1))]),
+        ),
+        Formula::equal(w.clone(), solved),
+    ]));
+    section.paragraph([
+        "The last needs an invertible ".into(),
+        letter.clone().into(),
+        "; where ".into(),
+        letter.into(),
+        " is singular (for a body, when it is flat) the Moser-Veselov equation still determines "
+            .into(),
+        w.into(),
+        ", and has to be solved as it stands.".into(),
+    ]);
+}
+
+/// What the emitted stepper does, or why there is none.
+fn method(sheet: &Sheet, section: &mut Section) {
+    let d = sheet.d;
+    if let Some(refused) = emit::refusal(d) {
+        section.text(&format!("No stepper is emitted: {}.", refused.message));
+        return;
+    }
+    let why = d.solve.reason.as_str();
+    let why = why.split(": Newton on").next().unwrap_or(why);
+    let letter = d.solve.riccati.first().and_then(|r| match r {
+        Riccati::Exact(mv) | Riccati::Coupled(mv) => Some(factor(sheet, mv, 0).0),
+        Riccati::None(_) => None,
+    });
+    let words = match (d.solve.method.clone(), letter) {
+        (Method::FreeMoserVeselov, Some(letter)) => vec![
+            "The stepper solves it explicitly, by the root of one quartic for the whole trajectory: ".into(),
+            letter.into(),
+            " is constant, and nothing but the velocity changes the momentum.".into(),
+        ],
+        (Method::ForcedMoserVeselov, Some(letter)) => vec![
+            "The stepper solves it explicitly, by the root of one quartic a step: ".into(),
+            letter.into(),
+            " is constant and symmetric.".into(),
+        ],
+        (_, letter) => {
+            let mut words: Vec<Inline> =
+                vec!["The stepper iterates with Newton's method on the group: ".into()];
+            match (why.strip_prefix("C "), letter) {
+                (Some(rest), Some(letter)) => {
+                    words.extend([letter.into(), format!(" {rest}.").into()]);
+                }
+                _ => words.push(format!("{why}.").into()),
+            }
+            words
+        }
+    };
+    section.paragraph(words);
+}
