@@ -13,9 +13,9 @@ pub mod body_in_quadratic_field {
     /// Parameters of [`BodyInQuadraticField`](struct@BodyInQuadraticField), as given.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct BodyInQuadraticFieldParameters<T = f64> {
-        ///`J`: a 3 x 3 matrix, symmetric.
+        /// `J`: a 3 x 3 matrix, symmetric.
         pub J: SMatrix<T, 3, 3>,
-        ///`K`: a 3 x 3 matrix, symmetric.
+        /// `K`: a 3 x 3 matrix, symmetric.
         pub K: SMatrix<T, 3, 3>,
     }
     /// Rigid body in a quadratic field.
@@ -385,7 +385,7 @@ pub mod body_in_quadratic_field {
             doc: "Rigid body in a quadratic field.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   -tr(J Ω_k)/h - ¼ h Γ_k·(K Γ_k) - ¼ h Γ_{k+1}·(K Γ_{k+1})\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          15 identities proved by normal form",
+            summary: "action of one step   -tr(J Ω_k)/h - ¼ h Γ_k·(K Γ_k) - ¼ h Γ_{k+1}·(K Γ_{k+1})\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
             solver: "Moser-Veselov: C is constant and symmetric: explicit after one quartic a step",
             order: 2u32,
             reversible: true,

@@ -13,15 +13,15 @@ pub mod body_in_two_fields {
     /// Parameters of [`BodyInTwoFields`](struct@BodyInTwoFields), as given.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct BodyInTwoFieldsParameters<T = f64> {
-        ///`J`: a 3 x 3 matrix, symmetric.
+        /// `J`: a 3 x 3 matrix, symmetric.
         pub J: SMatrix<T, 3, 3>,
-        ///`gU`: a vector of 3 components.
+        /// `gU`: a vector of 3 components.
         pub gU: SVector<T, 3>,
-        ///`p`: a vector of 3 components.
+        /// `p`: a vector of 3 components.
         pub p: SVector<T, 3>,
-        ///`z`: a vector of 3 components.
+        /// `z`: a vector of 3 components.
         pub z: SVector<T, 3>,
-        ///`b`: a vector of 3 components.
+        /// `b`: a vector of 3 components.
         pub b: SVector<T, 3>,
     }
     /// Rigid body about a fixed point in two uniform fields.
@@ -401,7 +401,7 @@ pub mod body_in_two_fields {
             doc: "Rigid body about a fixed point in two uniform fields.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   -tr(J Ω_k)/h - ½ h gU·Γ_k + ½ h p·B_k - ½ h gU·Γ_{k+1} + ½ h p·B_{k+1}\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, Gamma_squared, Gamma_B, B_squared\ntime reversal        symmetric: second order\ncertificate          19 identities proved by normal form",
+            summary: "action of one step   -tr(J Ω_k)/h - ½ h gU·Γ_k + ½ h p·B_k - ½ h gU·Γ_{k+1} + ½ h p·B_{k+1}\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, Gamma_squared, Gamma_B, B_squared\ntime reversal        symmetric: second order\ncertificate          22 identities proved by normal form",
             solver: "Moser-Veselov: C is constant and symmetric: explicit after one quartic a step",
             order: 2u32,
             reversible: true,

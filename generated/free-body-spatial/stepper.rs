@@ -388,7 +388,7 @@ pub mod free_body_spatial {
             doc: "Free rigid body, spatial representation.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   -tr(ω_k J_k)/h\nmomentum of Λ        -ω_kᵀ J_k/h + J_k ω_k/h\nRiccati form         exact, C = J_k\ninvariants           energy, spatial_momentum, momentum_squared, trace_J1, trace_J2, trace_J3\ntime reversal        symmetric: second order\ncertificate          14 identities proved by normal form",
+            summary: "action of one step   -tr(ω_k J_k)/h\nmomentum of Λ        ω_k J_k/h - J_k ω_kᵀ/h\nRiccati form         exact, C = J_k\ninvariants           energy, spatial_momentum, momentum_squared, trace_J1, trace_J2, trace_J3\ntime reversal        symmetric: second order\ncertificate          16 identities proved by normal form",
             solver: "Newton: C depends on the step or changes along the motion: Newton on the derived residual",
             order: 2u32,
             reversible: true,

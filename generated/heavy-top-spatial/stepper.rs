@@ -13,9 +13,9 @@ pub mod heavy_top_spatial {
     /// Parameters of [`HeavyTopSpatial`](struct@HeavyTopSpatial), as given.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct HeavyTopSpatialParameters<T = f64> {
-        ///`w`: a number.
+        /// `w`: a number.
         pub w: T,
-        ///`z`: a vector of 3 components.
+        /// `z`: a vector of 3 components.
         pub z: SVector<T, 3>,
     }
     /// Heavy top, spatial representation.
@@ -465,7 +465,7 @@ pub mod heavy_top_spatial {
             doc: "Heavy top, spatial representation.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   -tr(ω_k J_k)/h - ½ h w χ_k·z - ½ h w χ_{k+1}·z\nmomentum of Λ        -ω_kᵀ J_k/h + J_k ω_k/h\nRiccati form         exact, C = J_k\ninvariants           energy, momentum_z, chi_squared, trace_J1, trace_J2, trace_J3, chi_J_chi\ntime reversal        symmetric: second order\ncertificate          19 identities proved by normal form",
+            summary: "action of one step   -tr(ω_k J_k)/h - ½ h w χ_k·z - ½ h w χ_{k+1}·z\nmomentum of Λ        ω_k J_k/h - J_k ω_kᵀ/h\nRiccati form         exact, C = J_k\ninvariants           energy, momentum_z, chi_squared, trace_J1, trace_J2, trace_J3, chi_J_chi\ntime reversal        symmetric: second order\ncertificate          22 identities proved by normal form",
             solver: "Newton: C depends on the step or changes along the motion: Newton on the derived residual",
             order: 2u32,
             reversible: true,

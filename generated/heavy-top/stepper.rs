@@ -13,11 +13,11 @@ pub mod heavy_top {
     /// Parameters of [`HeavyTop`](struct@HeavyTop), as given.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct HeavyTopParameters<T = f64> {
-        ///`J`: a 3 x 3 matrix, symmetric.
+        /// `J`: a 3 x 3 matrix, symmetric.
         pub J: SMatrix<T, 3, 3>,
-        ///`gU`: a vector of 3 components.
+        /// `gU`: a vector of 3 components.
         pub gU: SVector<T, 3>,
-        ///`z`: a vector of 3 components.
+        /// `z`: a vector of 3 components.
         pub z: SVector<T, 3>,
     }
     /// Heavy top, body representation.
@@ -358,7 +358,7 @@ pub mod heavy_top {
             doc: "Heavy top, body representation.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   -tr(J Ω_k)/h - ½ h gU·Γ_k - ½ h gU·Γ_{k+1}\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          15 identities proved by normal form",
+            summary: "action of one step   -tr(J Ω_k)/h - ½ h gU·Γ_k - ½ h gU·Γ_{k+1}\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
             solver: "Moser-Veselov: C is constant and symmetric: explicit after one quartic a step",
             order: 2u32,
             reversible: true,
