@@ -77,6 +77,15 @@ fn planned(command: Command, every: &'static str, out: &'static str) -> Command 
             )
             .value_parser(positive_number),
         )
+        .arg(
+            option(
+                "order",
+                "N",
+                "Order of accuracy of a step, where the model offers more than one: 2 to 10 for a \
+                 free body, 2 to 8 for other reversible steps",
+            )
+            .value_parser(value_parser!(u32)),
+        )
         .arg(option("every", "N", every).value_parser(positive_count))
         .arg(option("out", "DIR", out).value_parser(value_parser!(std::path::PathBuf)))
         .arg(flag("force", "Replace DIR when it holds an earlier run").requires("out"))

@@ -5,7 +5,7 @@ use crate::case_file::{self, Located};
 use crate::failure::Failure;
 use crate::gallery::{self, Case, Entry};
 use clap::ArgMatches;
-use clebsch::card::{Card, Field, OpenError, Trajectory};
+use clebsch::card::{Card, Field, OpenError, Settings, Trajectory};
 use clebsch::{ParameterError, StartError};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -18,6 +18,8 @@ const SAMPLES: u64 = 10_000;
 pub struct Plan {
     /// The case, options applied.
     pub case: Case,
+    /// The order of a step, where one was asked for.
+    pub order: Option<u32>,
     /// Every how many nodes the trajectory is written.
     pub every: u64,
     /// The options that determine the results, as given; `null` where not given.
@@ -36,6 +38,7 @@ impl Plan {
         let steps = matches.get_one::<u64>("steps").copied();
         let h = matches.get_one::<f64>("h").copied();
         let every = matches.get_one::<u64>("every").copied();
+        let order = matches.get_one::<u32>("order").copied();
         let (mut case, origin) = match asked.filter(|name| is_file(name)) {
             Some(file) => {
                 let Located { case, file, lines } = read(file, &entry.card)?;
@@ -48,11 +51,13 @@ impl Plan {
         Ok(Self {
             every: every.unwrap_or_else(|| case.steps.div_ceil(SAMPLES).max(1)),
             case,
+            order,
             arguments: json!({
                 "model": entry.card.kebab,
                 "case": asked,
                 "steps": steps,
                 "h": h,
+                "order": order,
                 "every": every,
             }),
             origin,
@@ -71,7 +76,11 @@ impl Plan {
             h,
             ..
         } = &self.case;
-        (card.open)(parameters, initial, *h).map_err(|error| match error {
+        let settings = Settings {
+            h: *h,
+            order: self.order,
+        };
+        (card.open)(parameters, initial, settings).map_err(|error| match error {
             OpenError::Parameter(wrong) | OpenError::Start(StartError::Initial(wrong)) => {
                 let place = self.place(card, &wrong);
                 Failure::Usage(format!("{place}: {}; {}", wrong.problem, wrong.remedy))
@@ -79,7 +88,7 @@ impl Plan {
             OpenError::Start(StartError::Refused(cause)) => {
                 Failure::Failed(format!("cannot take the first step: {cause}"))
             }
-            OpenError::Count { .. } => Failure::Usage(error.to_string()),
+            OpenError::Count { .. } | OpenError::Order { .. } => Failure::Usage(error.to_string()),
         })
     }
 

@@ -137,11 +137,11 @@ fn introduce(out: &mut dyn Write, card: &Card, plan: &Plan) -> Result<(), Failur
     } else {
         "not reversible"
     };
-    writeln!(
-        out,
-        "solver: {}; order {}, {reversible}",
-        card.solver, card.order
-    )?;
+    let order = plan.order.unwrap_or(card.order);
+    writeln!(out, "solver: {}; order {order}, {reversible}", card.solver)?;
+    if order > card.order {
+        writeln!(out, "{}", card.method_of_order(order))?;
+    }
     let doc = first_line(&case.doc);
     let colon = if doc.is_empty() { "" } else { ": " };
     writeln!(out, "case {}{colon}{doc}", case.name)?;

@@ -108,6 +108,14 @@ pub mod body_in_quadratic_field {
             StartError,
         > {
             validate::positive_step(h)?;
+            let state = self.at_node_0(initial)?;
+            Ok((state, self.workspace(&state, h)?))
+        }
+        /// The state at node 0.
+        fn at_node_0(
+            &self,
+            initial: BodyInQuadraticFieldInitial<T>,
+        ) -> Result<BodyInQuadraticFieldState<T>, StartError> {
             validate::finite("Λ", &initial.Λ.quaternion())?;
             validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
             validate::finite("Γ", initial.Γ.as_slice())?;
@@ -116,21 +124,32 @@ pub mod body_in_quadratic_field {
                 let Γ_start = initial.Γ;
                 Λ * Γ_start
             };
-            let state = BodyInQuadraticFieldState {
+            Ok(BodyInQuadraticFieldState {
                 Λ: initial.Λ,
                 momentum: initial.body_momentum.to_space(&initial.Λ),
                 Γ,
                 node: 0,
-            };
+            })
+        }
+        /// A workspace for steps of `h`, of either sign, from any state.
+        ///
+        /// # Errors
+        /// When the first step cannot be solved.
+        pub fn workspace(
+            &self,
+            state: &BodyInQuadraticFieldState<T>,
+            h: T,
+        ) -> Result<BodyInQuadraticFieldWorkspace<T>, StartError> {
+            let state = *state;
             let work = BodyInQuadraticFieldWorkspace {
                 h,
-                edge: self.edge(state, h),
+                edge: self.edge(&state, h),
                 here: state,
             };
             let (mut trial, mut scratch) = (state, work);
             self.step(&mut trial, &mut scratch)
                 .map_err(|e| StartError::Refused(e.cause))?;
-            Ok((state, work))
+            Ok(work)
         }
         /// One step, in place. Solved thus: C is constant and symmetric: explicit after one quartic a step.
         ///
@@ -144,7 +163,7 @@ pub mod body_in_quadratic_field {
         ) -> Result<(), StepError> {
             let h = work.h;
             if work.here != *state {
-                work.edge = self.edge(*state, h);
+                work.edge = self.edge(state, h);
                 work.here = *state;
             }
             let edge = &work.edge;
@@ -179,24 +198,15 @@ pub mod body_in_quadratic_field {
             work.here = *state;
             Ok(())
         }
-        /// The momentum of the edge that starts at this node, for a step `h`.
-        #[inline]
-        fn edge_momentum(
-            &self,
-            state: &BodyInQuadraticFieldState<T>,
-            h: T,
-        ) -> SVector<T, 3> {
+        /// The edge that begins at this state, for a step `h`.
+        #[inline(never)]
+        fn edge(&self, state: &BodyInQuadraticFieldState<T>, h: T) -> Edge<T> {
             let BodyInQuadraticFieldParameters { K, .. } = self.parameters;
             let Λ = state.Λ.matrix();
             let Γ_reference = state.Γ;
             let Γ = Λ.tr_mul(&Γ_reference);
-            Λ.tr_mul(&state.momentum.0) - ((K * Γ).cross(&Γ) * T::from_f64(0.5) * h)
-        }
-        /// The edge that begins at this state.
-        #[cold]
-        #[inline(never)]
-        fn edge(&self, state: BodyInQuadraticFieldState<T>, h: T) -> Edge<T> {
-            Edge::begin(&state.Λ, self.edge_momentum(&state, h))
+            let kick = (K * Γ).cross(&Γ) * T::from_f64(0.5) * h;
+            Edge::new(Λ.tr_mul(&state.momentum.0) - kick, state.momentum.0 - Λ * kick)
         }
         /// Says how far the step is beyond the bound, and which step could be solved.
         #[cold]
@@ -210,7 +220,7 @@ pub mod body_in_quadratic_field {
                 .with_searched_step(
                     &self.factor,
                     h,
-                    |trial| self.edge_momentum(&state, trial),
+                    |trial| self.edge(&state, trial).body(),
                 );
             StepCause::from(e).at_node(state.node)
         }
@@ -223,6 +233,36 @@ pub mod body_in_quadratic_field {
             Γ
         }
     }
+    impl<T: Real> Stepper for BodyInQuadraticField<T> {
+        type Scalar = T;
+        type State = BodyInQuadraticFieldState<T>;
+        type Workspace = BodyInQuadraticFieldWorkspace<T>;
+        fn workspace(
+            &self,
+            state: &Self::State,
+            h: T,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h)
+        }
+        #[inline(always)]
+        fn advance(
+            &self,
+            state: &mut Self::State,
+            work: &mut Self::Workspace,
+        ) -> Result<(), StepError> {
+            self.step(state, work)
+        }
+        fn node(state: &Self::State) -> u64 {
+            state.node
+        }
+        fn at_node(state: Self::State, node: u64) -> Self::State {
+            BodyInQuadraticFieldState {
+                node: node,
+                ..state
+            }
+        }
+    }
+    impl<T: Real> Reversible for BodyInQuadraticField<T> {}
     /// A configuration at one node, solution or not.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct BodyInQuadraticFieldConfiguration<T = f64> {
@@ -311,7 +351,8 @@ pub mod body_in_quadratic_field {
     struct BodyInQuadraticFieldTrajectory {
         model: BodyInQuadraticField<f64>,
         state: BodyInQuadraticFieldState<f64>,
-        work: BodyInQuadraticFieldWorkspace<f64>,
+        steps: Steps<BodyInQuadraticField<f64>>,
+        h: f64,
         start: BodyInQuadraticFieldState<f64>,
     }
     impl Trajectory for BodyInQuadraticFieldTrajectory {
@@ -319,10 +360,10 @@ pub mod body_in_quadratic_field {
             self.state.node()
         }
         fn time(&self) -> f64 {
-            self.work.h * self.state.node() as f64
+            self.h * self.state.node() as f64
         }
         fn step(&mut self) -> Result<(), StepError> {
-            self.model.step(&mut self.state, &mut self.work)
+            self.steps.step(&self.model, &mut self.state)
         }
         fn card(&self) -> &'static Card {
             &BodyInQuadraticField::<f64>::CARD
@@ -388,6 +429,8 @@ pub mod body_in_quadratic_field {
             summary: "action of one step   -tr(J Ω_k)/h - ¼ h Γ_k·(K Γ_k) - ¼ h Γ_{k+1}·(K Γ_{k+1})\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
             solver: "Moser-Veselov: C is constant and symmetric: explicit after one quartic a step",
             order: 2u32,
+            orders: &[2, 4, 6, 8],
+            preprocessed: false,
             reversible: true,
             parameters: &[
                 Field {
@@ -501,7 +544,7 @@ pub mod body_in_quadratic_field {
         fn open(
             parameters: &[Vec<f64>],
             initial: &[Vec<f64>],
-            h: f64,
+            settings: Settings,
         ) -> Result<Box<dyn Trajectory>, OpenError> {
             for (field, expected, found) in [
                 ("parameters", 2usize, parameters.len()),
@@ -526,12 +569,14 @@ pub mod body_in_quadratic_field {
                 ),
                 Γ: matrix_of("Γ", initial.get(2usize))?,
             };
-            let (state, work) = model.start(initial, h)?;
+            let state = model.at_node_0(initial)?;
+            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)?;
             Ok(
                 Box::new(BodyInQuadraticFieldTrajectory {
                     model,
                     state,
-                    work,
+                    steps,
+                    h: settings.h,
                     start: state,
                 }),
             )

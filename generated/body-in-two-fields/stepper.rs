@@ -110,22 +110,41 @@ pub mod body_in_two_fields {
             h: T,
         ) -> Result<(BodyInTwoFieldsState<T>, BodyInTwoFieldsWorkspace<T>), StartError> {
             validate::positive_step(h)?;
+            let state = self.at_node_0(initial)?;
+            Ok((state, self.workspace(&state, h)?))
+        }
+        /// The state at node 0.
+        fn at_node_0(
+            &self,
+            initial: BodyInTwoFieldsInitial<T>,
+        ) -> Result<BodyInTwoFieldsState<T>, StartError> {
             validate::finite("Λ", &initial.Λ.quaternion())?;
             validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
-            let state = BodyInTwoFieldsState {
+            Ok(BodyInTwoFieldsState {
                 Λ: initial.Λ,
                 momentum: initial.body_momentum.to_space(&initial.Λ),
                 node: 0,
-            };
+            })
+        }
+        /// A workspace for steps of `h`, of either sign, from any state.
+        ///
+        /// # Errors
+        /// When the first step cannot be solved.
+        pub fn workspace(
+            &self,
+            state: &BodyInTwoFieldsState<T>,
+            h: T,
+        ) -> Result<BodyInTwoFieldsWorkspace<T>, StartError> {
+            let state = *state;
             let work = BodyInTwoFieldsWorkspace {
                 h,
-                edge: self.edge(state, h),
+                edge: self.edge(&state, h),
                 here: state,
             };
             let (mut trial, mut scratch) = (state, work);
             self.step(&mut trial, &mut scratch)
                 .map_err(|e| StartError::Refused(e.cause))?;
-            Ok((state, work))
+            Ok(work)
         }
         /// One step, in place. Solved thus: C is constant and symmetric: explicit after one quartic a step.
         ///
@@ -139,7 +158,7 @@ pub mod body_in_two_fields {
         ) -> Result<(), StepError> {
             let h = work.h;
             if work.here != *state {
-                work.edge = self.edge(*state, h);
+                work.edge = self.edge(state, h);
                 work.here = *state;
             }
             let edge = &work.edge;
@@ -173,22 +192,16 @@ pub mod body_in_two_fields {
             work.here = *state;
             Ok(())
         }
-        /// The momentum of the edge that starts at this node, for a step `h`.
-        #[inline]
-        fn edge_momentum(&self, state: &BodyInTwoFieldsState<T>, h: T) -> SVector<T, 3> {
+        /// The edge that begins at this state, for a step `h`.
+        #[inline(never)]
+        fn edge(&self, state: &BodyInTwoFieldsState<T>, h: T) -> Edge<T> {
             let BodyInTwoFieldsParameters { gU, p, z, b, .. } = self.parameters;
             let Λ = state.Λ.matrix();
             let Γ = Λ.tr_mul(&z);
             let B = Λ.tr_mul(&b);
-            Λ.tr_mul(&state.momentum.0)
-                - (gU.cross(&Γ) * T::from_f64(0.5) * h
-                    - p.cross(&B) * T::from_f64(0.5) * h)
-        }
-        /// The edge that begins at this state.
-        #[cold]
-        #[inline(never)]
-        fn edge(&self, state: BodyInTwoFieldsState<T>, h: T) -> Edge<T> {
-            Edge::begin(&state.Λ, self.edge_momentum(&state, h))
+            let kick = gU.cross(&Γ) * T::from_f64(0.5) * h
+                - p.cross(&B) * T::from_f64(0.5) * h;
+            Edge::new(Λ.tr_mul(&state.momentum.0) - kick, state.momentum.0 - Λ * kick)
         }
         /// Says how far the step is beyond the bound, and which step could be solved.
         #[cold]
@@ -202,7 +215,7 @@ pub mod body_in_two_fields {
                 .with_searched_step(
                     &self.factor,
                     h,
-                    |trial| self.edge_momentum(&state, trial),
+                    |trial| self.edge(&state, trial).body(),
                 );
             StepCause::from(e).at_node(state.node)
         }
@@ -223,6 +236,36 @@ pub mod body_in_two_fields {
             B
         }
     }
+    impl<T: Real> Stepper for BodyInTwoFields<T> {
+        type Scalar = T;
+        type State = BodyInTwoFieldsState<T>;
+        type Workspace = BodyInTwoFieldsWorkspace<T>;
+        fn workspace(
+            &self,
+            state: &Self::State,
+            h: T,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h)
+        }
+        #[inline(always)]
+        fn advance(
+            &self,
+            state: &mut Self::State,
+            work: &mut Self::Workspace,
+        ) -> Result<(), StepError> {
+            self.step(state, work)
+        }
+        fn node(state: &Self::State) -> u64 {
+            state.node
+        }
+        fn at_node(state: Self::State, node: u64) -> Self::State {
+            BodyInTwoFieldsState {
+                node: node,
+                ..state
+            }
+        }
+    }
+    impl<T: Real> Reversible for BodyInTwoFields<T> {}
     /// A configuration at one node, solution or not.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct BodyInTwoFieldsConfiguration<T = f64> {
@@ -314,7 +357,8 @@ pub mod body_in_two_fields {
     struct BodyInTwoFieldsTrajectory {
         model: BodyInTwoFields<f64>,
         state: BodyInTwoFieldsState<f64>,
-        work: BodyInTwoFieldsWorkspace<f64>,
+        steps: Steps<BodyInTwoFields<f64>>,
+        h: f64,
         start: BodyInTwoFieldsState<f64>,
     }
     impl Trajectory for BodyInTwoFieldsTrajectory {
@@ -322,10 +366,10 @@ pub mod body_in_two_fields {
             self.state.node()
         }
         fn time(&self) -> f64 {
-            self.work.h * self.state.node() as f64
+            self.h * self.state.node() as f64
         }
         fn step(&mut self) -> Result<(), StepError> {
-            self.model.step(&mut self.state, &mut self.work)
+            self.steps.step(&self.model, &mut self.state)
         }
         fn card(&self) -> &'static Card {
             &BodyInTwoFields::<f64>::CARD
@@ -404,6 +448,8 @@ pub mod body_in_two_fields {
             summary: "action of one step   -tr(J Ω_k)/h - ½ h gU·Γ_k + ½ h p·B_k - ½ h gU·Γ_{k+1} + ½ h p·B_{k+1}\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, Gamma_squared, Gamma_B, B_squared\ntime reversal        symmetric: second order\ncertificate          22 identities proved by normal form",
             solver: "Moser-Veselov: C is constant and symmetric: explicit after one quartic a step",
             order: 2u32,
+            orders: &[2, 4, 6, 8],
+            preprocessed: false,
             reversible: true,
             parameters: &[
                 Field {
@@ -547,7 +593,7 @@ pub mod body_in_two_fields {
         fn open(
             parameters: &[Vec<f64>],
             initial: &[Vec<f64>],
-            h: f64,
+            settings: Settings,
         ) -> Result<Box<dyn Trajectory>, OpenError> {
             for (field, expected, found) in [
                 ("parameters", 5usize, parameters.len()),
@@ -574,12 +620,14 @@ pub mod body_in_two_fields {
                     matrix_of("body_momentum", initial.get(1usize))?,
                 ),
             };
-            let (state, work) = model.start(initial, h)?;
+            let state = model.at_node_0(initial)?;
+            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)?;
             Ok(
                 Box::new(BodyInTwoFieldsTrajectory {
                     model,
                     state,
-                    work,
+                    steps,
+                    h: settings.h,
                     start: state,
                 }),
             )

@@ -125,6 +125,14 @@ pub mod coupled_bodies {
             h: T,
         ) -> Result<(CoupledBodiesState<T>, CoupledBodiesWorkspace<T>), StartError> {
             validate::positive_step(h)?;
+            let state = self.at_node_0(initial)?;
+            Ok((state, self.workspace(&state, h)?))
+        }
+        /// The state at node 0.
+        fn at_node_0(
+            &self,
+            initial: CoupledBodiesInitial<T>,
+        ) -> Result<CoupledBodiesState<T>, StartError> {
             validate::finite("Λ1", &initial.Λ1.quaternion())?;
             validate::finite(
                 "body_momentum_Λ1",
@@ -135,13 +143,24 @@ pub mod coupled_bodies {
                 "body_momentum_Λ2",
                 initial.body_momentum_Λ2.0.as_slice(),
             )?;
-            let state = CoupledBodiesState {
+            Ok(CoupledBodiesState {
                 Λ1: initial.Λ1,
                 momentum_Λ1: initial.body_momentum_Λ1.to_space(&initial.Λ1),
                 Λ2: initial.Λ2,
                 momentum_Λ2: initial.body_momentum_Λ2.to_space(&initial.Λ2),
                 node: 0,
-            };
+            })
+        }
+        /// A workspace for steps of `h`, of either sign, from any state.
+        ///
+        /// # Errors
+        /// When the first step cannot be solved.
+        pub fn workspace(
+            &self,
+            state: &CoupledBodiesState<T>,
+            h: T,
+        ) -> Result<CoupledBodiesWorkspace<T>, StartError> {
+            let state = *state;
             let work = CoupledBodiesWorkspace {
                 h,
                 guess: [Rotation::identity(); 2],
@@ -149,7 +168,7 @@ pub mod coupled_bodies {
             let (mut trial, mut scratch) = (state, work);
             self.step(&mut trial, &mut scratch)
                 .map_err(|e| StartError::Refused(e.cause))?;
-            Ok((state, work))
+            Ok(work)
         }
         /// One step, in place. Solved thus: several velocities are solved together: Newton on the derived residuals.
         ///
@@ -287,6 +306,36 @@ pub mod coupled_bodies {
             R
         }
     }
+    impl<T: Real> Stepper for CoupledBodies<T> {
+        type Scalar = T;
+        type State = CoupledBodiesState<T>;
+        type Workspace = CoupledBodiesWorkspace<T>;
+        fn workspace(
+            &self,
+            state: &Self::State,
+            h: T,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h)
+        }
+        #[inline(always)]
+        fn advance(
+            &self,
+            state: &mut Self::State,
+            work: &mut Self::Workspace,
+        ) -> Result<(), StepError> {
+            self.step(state, work)
+        }
+        fn node(state: &Self::State) -> u64 {
+            state.node
+        }
+        fn at_node(state: Self::State, node: u64) -> Self::State {
+            CoupledBodiesState {
+                node: node,
+                ..state
+            }
+        }
+    }
+    impl<T: Real> Reversible for CoupledBodies<T> {}
     /// A configuration at one node, solution or not.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct CoupledBodiesConfiguration<T = f64> {
@@ -417,7 +466,8 @@ pub mod coupled_bodies {
     struct CoupledBodiesTrajectory {
         model: CoupledBodies<f64>,
         state: CoupledBodiesState<f64>,
-        work: CoupledBodiesWorkspace<f64>,
+        steps: Steps<CoupledBodies<f64>>,
+        h: f64,
         start: CoupledBodiesState<f64>,
     }
     impl Trajectory for CoupledBodiesTrajectory {
@@ -425,10 +475,10 @@ pub mod coupled_bodies {
             self.state.node()
         }
         fn time(&self) -> f64 {
-            self.work.h * self.state.node() as f64
+            self.h * self.state.node() as f64
         }
         fn step(&mut self) -> Result<(), StepError> {
-            self.model.step(&mut self.state, &mut self.work)
+            self.steps.step(&self.model, &mut self.state)
         }
         fn card(&self) -> &'static Card {
             &CoupledBodies::<f64>::CARD
@@ -472,6 +522,8 @@ pub mod coupled_bodies {
             summary: "action of one step   -tr(J₁ Ω_{1,k})/h - tr(J₂ Ω_{2,k})/h - eps ((Ω_{1,k} - Id) d₁)·(R_k (Ω_{2,k} - Id) d₂)/h\nmomentum of Λ1       -(J₁/h + eps R_k (Ω_{2,k} - Id) d₂ d₁ᵀ/h) Ω_{1,k}ᵀ + Ω_{1,k} (J₁/h + eps d₁ d₂ᵀ (Ω_{2,k}ᵀ - Id) R_kᵀ/h)\nmomentum of Λ2       -(J₂/h + eps R_kᵀ (Ω_{1,k} - Id) d₁ d₂ᵀ/h) Ω_{2,k}ᵀ + Ω_{2,k} (J₂/h + eps d₂ d₁ᵀ (Ω_{1,k}ᵀ - Id) R_k/h)\nRiccati form         coupled, C = J₁; coupled, C = J₂\ninvariants           energy\ntime reversal        symmetric: second order\ncertificate          36 identities proved by normal form",
             solver: "Newton: several velocities are solved together: Newton on the derived residuals",
             order: 2u32,
+            orders: &[2, 4, 6, 8],
+            preprocessed: false,
             reversible: true,
             parameters: &[
                 Field {
@@ -629,7 +681,7 @@ pub mod coupled_bodies {
         fn open(
             parameters: &[Vec<f64>],
             initial: &[Vec<f64>],
-            h: f64,
+            settings: Settings,
         ) -> Result<Box<dyn Trajectory>, OpenError> {
             for (field, expected, found) in [
                 ("parameters", 5usize, parameters.len()),
@@ -660,12 +712,14 @@ pub mod coupled_bodies {
                     matrix_of("body_momentum_Λ2", initial.get(3usize))?,
                 ),
             };
-            let (state, work) = model.start(initial, h)?;
+            let state = model.at_node_0(initial)?;
+            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)?;
             Ok(
                 Box::new(CoupledBodiesTrajectory {
                     model,
                     state,
-                    work,
+                    steps,
+                    h: settings.h,
                     start: state,
                 }),
             )

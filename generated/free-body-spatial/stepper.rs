@@ -95,6 +95,14 @@ pub mod free_body_spatial {
             h: T,
         ) -> Result<(FreeBodySpatialState<T>, FreeBodySpatialWorkspace<T>), StartError> {
             validate::positive_step(h)?;
+            let state = self.at_node_0(initial)?;
+            Ok((state, self.workspace(&state, h)?))
+        }
+        /// The state at node 0.
+        fn at_node_0(
+            &self,
+            initial: FreeBodySpatialInitial<T>,
+        ) -> Result<FreeBodySpatialState<T>, StartError> {
             validate::finite("Λ", &initial.Λ.quaternion())?;
             validate::finite("spatial_momentum", initial.spatial_momentum.0.as_slice())?;
             validate::finite_entries("J", &initial.J)?;
@@ -103,12 +111,23 @@ pub mod free_body_spatial {
                 let J_start = initial.J;
                 Λ.tr_mul(&(J_start * Λ))
             };
-            let state = FreeBodySpatialState {
+            Ok(FreeBodySpatialState {
                 Λ: initial.Λ,
                 momentum: initial.spatial_momentum,
                 J,
                 node: 0,
-            };
+            })
+        }
+        /// A workspace for steps of `h`, of either sign, from any state.
+        ///
+        /// # Errors
+        /// When the first step cannot be solved.
+        pub fn workspace(
+            &self,
+            state: &FreeBodySpatialState<T>,
+            h: T,
+        ) -> Result<FreeBodySpatialWorkspace<T>, StartError> {
+            let state = *state;
             let work = FreeBodySpatialWorkspace {
                 h,
                 guess: [Rotation::identity(); 1],
@@ -116,7 +135,7 @@ pub mod free_body_spatial {
             let (mut trial, mut scratch) = (state, work);
             self.step(&mut trial, &mut scratch)
                 .map_err(|e| StartError::Refused(e.cause))?;
-            Ok((state, work))
+            Ok(work)
         }
         /// One step, in place. Solved thus: C depends on the step or changes along the motion: Newton on the derived residual.
         ///
@@ -190,6 +209,36 @@ pub mod free_body_spatial {
             J
         }
     }
+    impl<T: Real> Stepper for FreeBodySpatial<T> {
+        type Scalar = T;
+        type State = FreeBodySpatialState<T>;
+        type Workspace = FreeBodySpatialWorkspace<T>;
+        fn workspace(
+            &self,
+            state: &Self::State,
+            h: T,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h)
+        }
+        #[inline(always)]
+        fn advance(
+            &self,
+            state: &mut Self::State,
+            work: &mut Self::Workspace,
+        ) -> Result<(), StepError> {
+            self.step(state, work)
+        }
+        fn node(state: &Self::State) -> u64 {
+            state.node
+        }
+        fn at_node(state: Self::State, node: u64) -> Self::State {
+            FreeBodySpatialState {
+                node: node,
+                ..state
+            }
+        }
+    }
+    impl<T: Real> Reversible for FreeBodySpatial<T> {}
     /// A configuration at one node, solution or not.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct FreeBodySpatialConfiguration<T = f64> {
@@ -283,7 +332,8 @@ pub mod free_body_spatial {
     struct FreeBodySpatialTrajectory {
         model: FreeBodySpatial<f64>,
         state: FreeBodySpatialState<f64>,
-        work: FreeBodySpatialWorkspace<f64>,
+        steps: Steps<FreeBodySpatial<f64>>,
+        h: f64,
         start: FreeBodySpatialState<f64>,
     }
     impl Trajectory for FreeBodySpatialTrajectory {
@@ -291,10 +341,10 @@ pub mod free_body_spatial {
             self.state.node()
         }
         fn time(&self) -> f64 {
-            self.work.h * self.state.node() as f64
+            self.h * self.state.node() as f64
         }
         fn step(&mut self) -> Result<(), StepError> {
-            self.model.step(&mut self.state, &mut self.work)
+            self.steps.step(&self.model, &mut self.state)
         }
         fn card(&self) -> &'static Card {
             &FreeBodySpatial::<f64>::CARD
@@ -391,6 +441,8 @@ pub mod free_body_spatial {
             summary: "action of one step   -tr(ω_k J_k)/h\nmomentum of Λ        ω_k J_k/h - J_k ω_kᵀ/h\nRiccati form         exact, C = J_k\ninvariants           energy, spatial_momentum, momentum_squared, trace_J1, trace_J2, trace_J3\ntime reversal        symmetric: second order\ncertificate          16 identities proved by normal form",
             solver: "Newton: C depends on the step or changes along the motion: Newton on the derived residual",
             order: 2u32,
+            orders: &[2, 4, 6, 8],
+            preprocessed: false,
             reversible: true,
             parameters: &[],
             initial: &[
@@ -505,7 +557,7 @@ pub mod free_body_spatial {
         fn open(
             parameters: &[Vec<f64>],
             initial: &[Vec<f64>],
-            h: f64,
+            settings: Settings,
         ) -> Result<Box<dyn Trajectory>, OpenError> {
             for (field, expected, found) in [
                 ("parameters", 0usize, parameters.len()),
@@ -529,12 +581,14 @@ pub mod free_body_spatial {
                 ),
                 J: matrix_of("J", initial.get(2usize))?,
             };
-            let (state, work) = model.start(initial, h)?;
+            let state = model.at_node_0(initial)?;
+            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)?;
             Ok(
                 Box::new(FreeBodySpatialTrajectory {
                     model,
                     state,
-                    work,
+                    steps,
+                    h: settings.h,
                     start: state,
                 }),
             )

@@ -84,7 +84,7 @@ pub mod free_body {
         solver: Free<T>,
     }
     impl<T: Real> FreeBody<T> {
-        /// Starts a trajectory with step `h` from data at node 0.
+        /// Starts a trajectory with step `h` from data at node 0; of order two, symplectic.
         ///
         /// # Errors
         /// Names the value that is not finite, or says why the first step cannot be solved and
@@ -94,22 +94,62 @@ pub mod free_body {
             initial: FreeBodyInitial<T>,
             h: T,
         ) -> Result<(FreeBodyState<T>, FreeBodyWorkspace<T>), StartError> {
+            self.start_of_order(initial, h, Order::Two)
+        }
+        /// As `start`, with steps of the given order: the moments are modified once, a step
+        /// costs the same. Above two the step is Poisson in the momentum, but symplectic with
+        /// the attitude only up to its error.
+        ///
+        /// # Errors
+        /// As `start`.
+        pub fn start_of_order(
+            &self,
+            initial: FreeBodyInitial<T>,
+            h: T,
+            order: Order,
+        ) -> Result<(FreeBodyState<T>, FreeBodyWorkspace<T>), StartError> {
             validate::positive_step(h)?;
+            let state = self.at_node_0(initial)?;
+            Ok((state, self.workspace(&state, h, order)?))
+        }
+        /// The state at node 0.
+        fn at_node_0(
+            &self,
+            initial: FreeBodyInitial<T>,
+        ) -> Result<FreeBodyState<T>, StartError> {
             validate::finite("Λ", &initial.Λ.quaternion())?;
             validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
-            let state = FreeBodyState {
+            Ok(FreeBodyState {
                 Λ: initial.Λ,
                 momentum: initial.body_momentum.to_space(&initial.Λ),
                 node: 0,
-            };
+            })
+        }
+        /// A workspace for steps of `h`, of either sign, from any state.
+        ///
+        /// # Errors
+        /// When the first step cannot be solved.
+        pub fn workspace(
+            &self,
+            state: &FreeBodyState<T>,
+            h: T,
+            order: Order,
+        ) -> Result<FreeBodyWorkspace<T>, StartError> {
+            let state = *state;
             let work = FreeBodyWorkspace {
                 h,
-                solver: Free::start(&self.factor, &state.Λ, &state.momentum, h)?,
+                solver: Free::start_of_order(
+                    &self.factor,
+                    &state.Λ,
+                    &state.momentum,
+                    h,
+                    order,
+                )?,
             };
             let (mut trial, mut scratch) = (state, work);
             self.step(&mut trial, &mut scratch)
                 .map_err(|e| StartError::Refused(e.cause))?;
-            Ok((state, work))
+            Ok(work)
         }
         /// One step, in place. Solved thus: C is constant and no node term acts, so κ is conserved: solved once, every step explicit.
         ///
@@ -128,6 +168,52 @@ pub mod free_body {
             Ok(())
         }
     }
+    impl<T: Real> Stepper for FreeBody<T> {
+        type Scalar = T;
+        type State = FreeBodyState<T>;
+        type Workspace = FreeBodyWorkspace<T>;
+        fn workspace(
+            &self,
+            state: &Self::State,
+            h: T,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h, Order::Two)
+        }
+        #[inline(always)]
+        fn advance(
+            &self,
+            state: &mut Self::State,
+            work: &mut Self::Workspace,
+        ) -> Result<(), StepError> {
+            self.step(state, work)
+        }
+        #[inline(always)]
+        fn advance_many(
+            &self,
+            state: &mut Self::State,
+            work: &mut Self::Workspace,
+            count: u64,
+        ) -> Result<(), StepError> {
+            if let Err(e) = work
+                .solver
+                .follow_many(&mut state.Λ, &state.momentum, count)
+            {
+                return Err(StepCause::from(e).at_node(state.node));
+            }
+            state.node += count;
+            Ok(())
+        }
+        fn node(state: &Self::State) -> u64 {
+            state.node
+        }
+        fn at_node(state: Self::State, node: u64) -> Self::State {
+            FreeBodyState {
+                node: node,
+                ..state
+            }
+        }
+    }
+    impl<T: Real> Reversible for FreeBody<T> {}
     /// A configuration at one node, solution or not.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct FreeBodyConfiguration<T = f64> {
@@ -283,6 +369,8 @@ pub mod free_body {
             summary: "action of one step   -tr(J Ω_k)/h\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, spatial_momentum, momentum_squared, momentum_quadratic\ntime reversal        symmetric: second order\ncertificate          10 identities proved by normal form",
             solver: "Moser-Veselov: C is constant and no node term acts, so κ is conserved: solved once, every step explicit",
             order: 2u32,
+            orders: &[2, 4, 6, 8, 10],
+            preprocessed: true,
             reversible: true,
             parameters: &[
                 Field {
@@ -378,7 +466,7 @@ pub mod free_body {
         fn open(
             parameters: &[Vec<f64>],
             initial: &[Vec<f64>],
-            h: f64,
+            settings: Settings,
         ) -> Result<Box<dyn Trajectory>, OpenError> {
             for (field, expected, found) in [
                 ("parameters", 1usize, parameters.len()),
@@ -401,7 +489,8 @@ pub mod free_body {
                     matrix_of("body_momentum", initial.get(1usize))?,
                 ),
             };
-            let (state, work) = model.start(initial, h)?;
+            let order = preprocessing_order(settings, Self::CARD.orders)?;
+            let (state, work) = model.start_of_order(initial, settings.h, order)?;
             Ok(
                 Box::new(FreeBodyTrajectory {
                     model,

@@ -102,6 +102,14 @@ pub mod heavy_top_spatial {
             h: T,
         ) -> Result<(HeavyTopSpatialState<T>, HeavyTopSpatialWorkspace<T>), StartError> {
             validate::positive_step(h)?;
+            let state = self.at_node_0(initial)?;
+            Ok((state, self.workspace(&state, h)?))
+        }
+        /// The state at node 0.
+        fn at_node_0(
+            &self,
+            initial: HeavyTopSpatialInitial<T>,
+        ) -> Result<HeavyTopSpatialState<T>, StartError> {
             validate::finite("Λ", &initial.Λ.quaternion())?;
             validate::finite("spatial_momentum", initial.spatial_momentum.0.as_slice())?;
             validate::finite_entries("J", &initial.J)?;
@@ -116,13 +124,24 @@ pub mod heavy_top_spatial {
                 let χ_start = initial.χ;
                 Λ.tr_mul(&χ_start)
             };
-            let state = HeavyTopSpatialState {
+            Ok(HeavyTopSpatialState {
                 Λ: initial.Λ,
                 momentum: initial.spatial_momentum,
                 J,
                 χ,
                 node: 0,
-            };
+            })
+        }
+        /// A workspace for steps of `h`, of either sign, from any state.
+        ///
+        /// # Errors
+        /// When the first step cannot be solved.
+        pub fn workspace(
+            &self,
+            state: &HeavyTopSpatialState<T>,
+            h: T,
+        ) -> Result<HeavyTopSpatialWorkspace<T>, StartError> {
+            let state = *state;
             let work = HeavyTopSpatialWorkspace {
                 h,
                 guess: [Rotation::identity(); 1],
@@ -130,7 +149,7 @@ pub mod heavy_top_spatial {
             let (mut trial, mut scratch) = (state, work);
             self.step(&mut trial, &mut scratch)
                 .map_err(|e| StartError::Refused(e.cause))?;
-            Ok((state, work))
+            Ok(work)
         }
         /// One step, in place. Solved thus: C depends on the step or changes along the motion: Newton on the derived residual.
         ///
@@ -221,6 +240,36 @@ pub mod heavy_top_spatial {
             χ
         }
     }
+    impl<T: Real> Stepper for HeavyTopSpatial<T> {
+        type Scalar = T;
+        type State = HeavyTopSpatialState<T>;
+        type Workspace = HeavyTopSpatialWorkspace<T>;
+        fn workspace(
+            &self,
+            state: &Self::State,
+            h: T,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h)
+        }
+        #[inline(always)]
+        fn advance(
+            &self,
+            state: &mut Self::State,
+            work: &mut Self::Workspace,
+        ) -> Result<(), StepError> {
+            self.step(state, work)
+        }
+        fn node(state: &Self::State) -> u64 {
+            state.node
+        }
+        fn at_node(state: Self::State, node: u64) -> Self::State {
+            HeavyTopSpatialState {
+                node: node,
+                ..state
+            }
+        }
+    }
+    impl<T: Real> Reversible for HeavyTopSpatial<T> {}
     /// A configuration at one node, solution or not.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct HeavyTopSpatialConfiguration<T = f64> {
@@ -341,7 +390,8 @@ pub mod heavy_top_spatial {
     struct HeavyTopSpatialTrajectory {
         model: HeavyTopSpatial<f64>,
         state: HeavyTopSpatialState<f64>,
-        work: HeavyTopSpatialWorkspace<f64>,
+        steps: Steps<HeavyTopSpatial<f64>>,
+        h: f64,
         start: HeavyTopSpatialState<f64>,
     }
     impl Trajectory for HeavyTopSpatialTrajectory {
@@ -349,10 +399,10 @@ pub mod heavy_top_spatial {
             self.state.node()
         }
         fn time(&self) -> f64 {
-            self.work.h * self.state.node() as f64
+            self.h * self.state.node() as f64
         }
         fn step(&mut self) -> Result<(), StepError> {
-            self.model.step(&mut self.state, &mut self.work)
+            self.steps.step(&self.model, &mut self.state)
         }
         fn card(&self) -> &'static Card {
             &HeavyTopSpatial::<f64>::CARD
@@ -468,6 +518,8 @@ pub mod heavy_top_spatial {
             summary: "action of one step   -tr(ω_k J_k)/h - ½ h w χ_k·z - ½ h w χ_{k+1}·z\nmomentum of Λ        ω_k J_k/h - J_k ω_kᵀ/h\nRiccati form         exact, C = J_k\ninvariants           energy, momentum_z, chi_squared, trace_J1, trace_J2, trace_J3, chi_J_chi\ntime reversal        symmetric: second order\ncertificate          22 identities proved by normal form",
             solver: "Newton: C depends on the step or changes along the motion: Newton on the derived residual",
             order: 2u32,
+            orders: &[2, 4, 6, 8],
+            preprocessed: false,
             reversible: true,
             parameters: &[
                 Field {
@@ -621,7 +673,7 @@ pub mod heavy_top_spatial {
         fn open(
             parameters: &[Vec<f64>],
             initial: &[Vec<f64>],
-            h: f64,
+            settings: Settings,
         ) -> Result<Box<dyn Trajectory>, OpenError> {
             for (field, expected, found) in [
                 ("parameters", 2usize, parameters.len()),
@@ -647,12 +699,14 @@ pub mod heavy_top_spatial {
                 J: matrix_of("J", initial.get(2usize))?,
                 χ: matrix_of("χ", initial.get(3usize))?,
             };
-            let (state, work) = model.start(initial, h)?;
+            let state = model.at_node_0(initial)?;
+            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)?;
             Ok(
                 Box::new(HeavyTopSpatialTrajectory {
                     model,
                     state,
-                    work,
+                    steps,
+                    h: settings.h,
                     start: state,
                 }),
             )

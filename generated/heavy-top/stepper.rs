@@ -102,22 +102,41 @@ pub mod heavy_top {
             h: T,
         ) -> Result<(HeavyTopState<T>, HeavyTopWorkspace<T>), StartError> {
             validate::positive_step(h)?;
+            let state = self.at_node_0(initial)?;
+            Ok((state, self.workspace(&state, h)?))
+        }
+        /// The state at node 0.
+        fn at_node_0(
+            &self,
+            initial: HeavyTopInitial<T>,
+        ) -> Result<HeavyTopState<T>, StartError> {
             validate::finite("Λ", &initial.Λ.quaternion())?;
             validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
-            let state = HeavyTopState {
+            Ok(HeavyTopState {
                 Λ: initial.Λ,
                 momentum: initial.body_momentum.to_space(&initial.Λ),
                 node: 0,
-            };
+            })
+        }
+        /// A workspace for steps of `h`, of either sign, from any state.
+        ///
+        /// # Errors
+        /// When the first step cannot be solved.
+        pub fn workspace(
+            &self,
+            state: &HeavyTopState<T>,
+            h: T,
+        ) -> Result<HeavyTopWorkspace<T>, StartError> {
+            let state = *state;
             let work = HeavyTopWorkspace {
                 h,
-                edge: self.edge(state, h),
+                edge: self.edge(&state, h),
                 here: state,
             };
             let (mut trial, mut scratch) = (state, work);
             self.step(&mut trial, &mut scratch)
                 .map_err(|e| StartError::Refused(e.cause))?;
-            Ok((state, work))
+            Ok(work)
         }
         /// One step, in place. Solved thus: C is constant and symmetric: explicit after one quartic a step.
         ///
@@ -131,7 +150,7 @@ pub mod heavy_top {
         ) -> Result<(), StepError> {
             let h = work.h;
             if work.here != *state {
-                work.edge = self.edge(*state, h);
+                work.edge = self.edge(state, h);
                 work.here = *state;
             }
             let edge = &work.edge;
@@ -164,19 +183,14 @@ pub mod heavy_top {
             work.here = *state;
             Ok(())
         }
-        /// The momentum of the edge that starts at this node, for a step `h`.
-        #[inline]
-        fn edge_momentum(&self, state: &HeavyTopState<T>, h: T) -> SVector<T, 3> {
+        /// The edge that begins at this state, for a step `h`.
+        #[inline(never)]
+        fn edge(&self, state: &HeavyTopState<T>, h: T) -> Edge<T> {
             let HeavyTopParameters { gU, z, .. } = self.parameters;
             let Λ = state.Λ.matrix();
             let Γ = Λ.tr_mul(&z);
-            Λ.tr_mul(&state.momentum.0) - (gU.cross(&Γ) * T::from_f64(0.5) * h)
-        }
-        /// The edge that begins at this state.
-        #[cold]
-        #[inline(never)]
-        fn edge(&self, state: HeavyTopState<T>, h: T) -> Edge<T> {
-            Edge::begin(&state.Λ, self.edge_momentum(&state, h))
+            let kick = gU.cross(&Γ) * T::from_f64(0.5) * h;
+            Edge::new(Λ.tr_mul(&state.momentum.0) - kick, state.momentum.0 - Λ * kick)
         }
         /// Says how far the step is beyond the bound, and which step could be solved.
         #[cold]
@@ -190,7 +204,7 @@ pub mod heavy_top {
                 .with_searched_step(
                     &self.factor,
                     h,
-                    |trial| self.edge_momentum(&state, trial),
+                    |trial| self.edge(&state, trial).body(),
                 );
             StepCause::from(e).at_node(state.node)
         }
@@ -203,6 +217,36 @@ pub mod heavy_top {
             Γ
         }
     }
+    impl<T: Real> Stepper for HeavyTop<T> {
+        type Scalar = T;
+        type State = HeavyTopState<T>;
+        type Workspace = HeavyTopWorkspace<T>;
+        fn workspace(
+            &self,
+            state: &Self::State,
+            h: T,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h)
+        }
+        #[inline(always)]
+        fn advance(
+            &self,
+            state: &mut Self::State,
+            work: &mut Self::Workspace,
+        ) -> Result<(), StepError> {
+            self.step(state, work)
+        }
+        fn node(state: &Self::State) -> u64 {
+            state.node
+        }
+        fn at_node(state: Self::State, node: u64) -> Self::State {
+            HeavyTopState {
+                node: node,
+                ..state
+            }
+        }
+    }
+    impl<T: Real> Reversible for HeavyTop<T> {}
     /// A configuration at one node, solution or not.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct HeavyTopConfiguration<T = f64> {
@@ -284,7 +328,8 @@ pub mod heavy_top {
     struct HeavyTopTrajectory {
         model: HeavyTop<f64>,
         state: HeavyTopState<f64>,
-        work: HeavyTopWorkspace<f64>,
+        steps: Steps<HeavyTop<f64>>,
+        h: f64,
         start: HeavyTopState<f64>,
     }
     impl Trajectory for HeavyTopTrajectory {
@@ -292,10 +337,10 @@ pub mod heavy_top {
             self.state.node()
         }
         fn time(&self) -> f64 {
-            self.work.h * self.state.node() as f64
+            self.h * self.state.node() as f64
         }
         fn step(&mut self) -> Result<(), StepError> {
-            self.model.step(&mut self.state, &mut self.work)
+            self.steps.step(&self.model, &mut self.state)
         }
         fn card(&self) -> &'static Card {
             &HeavyTop::<f64>::CARD
@@ -361,6 +406,8 @@ pub mod heavy_top {
             summary: "action of one step   -tr(J Ω_k)/h - ½ h gU·Γ_k - ½ h gU·Γ_{k+1}\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
             solver: "Moser-Veselov: C is constant and symmetric: explicit after one quartic a step",
             order: 2u32,
+            orders: &[2, 4, 6, 8],
+            preprocessed: false,
             reversible: true,
             parameters: &[
                 Field {
@@ -474,7 +521,7 @@ pub mod heavy_top {
         fn open(
             parameters: &[Vec<f64>],
             initial: &[Vec<f64>],
-            h: f64,
+            settings: Settings,
         ) -> Result<Box<dyn Trajectory>, OpenError> {
             for (field, expected, found) in [
                 ("parameters", 3usize, parameters.len()),
@@ -499,12 +546,14 @@ pub mod heavy_top {
                     matrix_of("body_momentum", initial.get(1usize))?,
                 ),
             };
-            let (state, work) = model.start(initial, h)?;
+            let state = model.at_node_0(initial)?;
+            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)?;
             Ok(
                 Box::new(HeavyTopTrajectory {
                     model,
                     state,
-                    work,
+                    steps,
+                    h: settings.h,
                     start: state,
                 }),
             )

@@ -1,6 +1,7 @@
 //! A model as data: what a command line, a test or a binding needs to know of it.
 //! Emitted code gives one [`Card`] per model; it is read by whatever lists, starts and observes.
 
+use crate::integrate::CompositionOrder;
 use crate::{ParameterError, StartError, StepError};
 use core::fmt;
 
@@ -87,12 +88,39 @@ pub struct Dimension {
     pub value: usize,
 }
 
-/// Starts a trajectory from parameters, initial values (each field one vector, row-major) and step
-/// size.
+/// How a trajectory is stepped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// The step size, in the unit of time of the model.
+    pub h: f64,
+    /// The order of a step, one of [`Card::orders`]; that of the plain step where none is given.
+    pub order: Option<u32>,
+}
+
+impl Settings {
+    /// Plain steps of `h`.
+    #[must_use]
+    pub fn step(h: f64) -> Self {
+        Self { h, order: None }
+    }
+
+    /// The same steps, of the given order.
+    #[must_use]
+    pub fn of_order(self, order: u32) -> Self {
+        Self {
+            order: Some(order),
+            ..self
+        }
+    }
+}
+
+/// Starts a trajectory from parameters, initial values (each field one vector, row-major) and the
+/// way to step it.
 ///
 /// # Errors
-/// [`OpenError`] for a wrong number of values, bad parameters, or a refused start.
-pub type Open = fn(&[Vec<f64>], &[Vec<f64>], f64) -> Result<Box<dyn Trajectory>, OpenError>;
+/// [`OpenError`] for a wrong number of values, bad parameters, an order that is not offered, or a
+/// refused start.
+pub type Open = fn(&[Vec<f64>], &[Vec<f64>], Settings) -> Result<Box<dyn Trajectory>, OpenError>;
 
 /// Everything there is to know about a model without knowing its type.
 #[derive(Clone, Copy, Debug)]
@@ -113,6 +141,10 @@ pub struct Card {
     pub solver: &'static str,
     /// Order of accuracy in the step size.
     pub order: u32,
+    /// The orders that can be asked for, the plain step's first.
+    pub orders: &'static [u32],
+    /// Whether orders above the plain one come from modified moments; else from composition.
+    pub preprocessed: bool,
     /// Whether a step with `-h` undoes a step with `h`.
     pub reversible: bool,
     /// The parameters, in the order [`Card::open`] takes them.
@@ -133,6 +165,23 @@ pub struct Card {
 }
 
 impl Card {
+    /// How steps of an order above the plain one are made, and what that costs in structure.
+    #[must_use]
+    pub fn method_of_order(&self, order: u32) -> String {
+        if self.preprocessed {
+            format!(
+                "order {order} by modified moments: Poisson in the momentum; symplectic with the \
+                 attitude only up to the error of a step"
+            )
+        } else {
+            let stages = CompositionOrder::of_number(order).map_or(1, |o| o.factors().len());
+            format!(
+                "order {order} by composing {stages} plain steps: symplectic, with the same \
+                 invariants"
+            )
+        }
+    }
+
     /// How many numbers one sample of all observables has.
     #[must_use]
     pub fn observable_count(&self) -> usize {
@@ -191,6 +240,13 @@ pub enum OpenError {
         /// How many were given.
         found: usize,
     },
+    /// The model has no steps of this order.
+    Order {
+        /// What was asked for.
+        asked: u32,
+        /// What there is.
+        offered: &'static [u32],
+    },
 }
 
 impl fmt::Display for OpenError {
@@ -203,6 +259,22 @@ impl fmt::Display for OpenError {
                 expected,
                 found,
             } => write!(f, "`{field}` takes {expected} numbers, found {found}"),
+            Self::Order { asked, offered } => {
+                let list: Vec<String> = offered.iter().map(u32::to_string).collect();
+                write!(
+                    f,
+                    "order {asked} is not offered; this model has order {}",
+                    list.join(", ")
+                )?;
+                match offered {
+                    [1] => write!(
+                        f,
+                        ": its step is not symmetric under time reversal, so a composition of it \
+                         would gain nothing; write `node symmetric;`"
+                    ),
+                    _ => Ok(()),
+                }
+            }
         }
     }
 }
@@ -212,7 +284,7 @@ impl std::error::Error for OpenError {
         match self {
             Self::Parameter(error) => Some(error),
             Self::Start(error) => Some(error),
-            Self::Count { .. } => None,
+            Self::Count { .. } | Self::Order { .. } => None,
         }
     }
 }

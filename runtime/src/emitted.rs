@@ -1,14 +1,17 @@
 //! The names that emitted code uses, in one place: linear algebra, groups, solvers, errors and the
 //! description of a model. Not meant to be written by hand; steppers import it whole.
 
-pub use crate::card::{Card, Conserved, Dimension, Field, Invariant, Kind, OpenError, Trajectory};
+pub use crate::card::{
+    Card, Conserved, Dimension, Field, Invariant, Kind, OpenError, Settings, Trajectory,
+};
 pub use crate::groups::{
     BodyMomentum, BodyMomentumMatrix, Coadjoint, Group, Linear, Orthogonal, Rotation,
     SpatialMomentum, SpatialMomentumMatrix,
 };
+pub use crate::integrate::{Reversible, Stepper, Steps, preprocessing_order};
 pub use crate::linalg::{axial_of_difference, determinant, hat, skew_coordinates, solve, vee};
 pub use crate::scalar::Real;
-pub use crate::solvers::moser_veselov::{Edge, Free, MoserVeselovError, Poinsot, forced};
+pub use crate::solvers::moser_veselov::{Edge, Free, MoserVeselovError, Order, Poinsot, forced};
 pub use crate::solvers::newton;
 pub use crate::validate;
 pub use crate::{ParameterError, StartError, StepCause, StepError};

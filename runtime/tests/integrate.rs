@@ -1,6 +1,6 @@
 //! The loop: samples where they belong, drift at every step, errors where they happen.
 
-use clebsch::card::{Card, Conserved, Field, Invariant, Kind, OpenError, Trajectory};
+use clebsch::card::{Card, Conserved, Field, Invariant, Kind, OpenError, Settings, Trajectory};
 use clebsch::integrate::{Observer, run};
 use clebsch::{StepCause, StepError};
 
@@ -13,6 +13,8 @@ static CARD: Card = Card {
     summary: "",
     solver: "none",
     order: 1,
+    orders: &[1],
+    preprocessed: false,
     reversible: false,
     parameters: &[],
     initial: &[],
@@ -103,7 +105,7 @@ impl Observer for Notes {
 
 #[test]
 fn samples_start_stride_and_end_and_drift_between_samples() {
-    let mut counter = (CARD.open)(&[], &[], 0.5).expect("opens");
+    let mut counter = (CARD.open)(&[], &[], Settings::step(0.5)).expect("opens");
     let mut notes = Notes::default();
     let summary = run(counter.as_mut(), 10, 4, &mut notes).expect("runs");
     assert_eq!(notes.nodes, [0, 4, 8, 10]);

@@ -5,7 +5,7 @@
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables)]
 
-use clebsch::card::{Card, Conserved, OpenError, Trajectory};
+use clebsch::card::{Card, Conserved, OpenError, Settings, Trajectory};
 use clebsch_models::Case;
 use clebsch_tests::physics::measure::worse;
 use clebsch_tests::physics::order::orders;
@@ -36,7 +36,7 @@ enum Fault {
 type Opened = Result<Box<dyn Trajectory>, OpenError>;
 
 fn open(card: &Card, case: &Case, h: f64) -> Box<dyn Trajectory> {
-    let opened: Opened = (card.open)(&case.parameters, &case.initial, h);
+    let opened: Opened = (card.open)(&case.parameters, &case.initial, Settings::step(h));
     opened.unwrap_or_else(|why| panic!("{} {}: {why}", card.kebab, case.name))
 }
 

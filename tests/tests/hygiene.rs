@@ -5,6 +5,7 @@
 #![deny(warnings, missing_docs, missing_debug_implementations)]
 #![deny(unreachable_pub, unused_qualifications, single_use_lifetimes)]
 
+use clebsch::card::Settings;
 use clebsch::nalgebra::{Matrix3, Matrix3x2, Vector3};
 use clebsch::{BodyMomentum, Rotation, SpatialMomentum};
 
@@ -460,7 +461,11 @@ fn models_stand_in_functions_and_next_to_each_other() {
             attitude().matrix().transpose().as_slice().to_vec(),
             vec![0.1, 0.2, 0.3],
         ];
-        assert!((card.open)(&values, &start, 0.1).is_ok(), "{}", card.name);
+        assert!(
+            (card.open)(&values, &start, Settings::step(0.1)).is_ok(),
+            "{}",
+            card.name
+        );
     }
     assert_eq!(Exported::CARD.kebab, "exported");
     assert_eq!(WithoutDocumentation::CARD.kebab, "without-documentation");

@@ -5,7 +5,7 @@
 use crate::failure::Failure;
 use crate::plan::Plan;
 use crate::record::{Record, Recorder, Table};
-use clebsch::card::{Card, Trajectory};
+use clebsch::card::{Card, Settings, Trajectory};
 use clebsch::integrate;
 use clebsch_comparisons::gallery::{Offer, Problem};
 
@@ -74,7 +74,7 @@ fn follow(
         }
         if node.is_multiple_of(plan.every.max(1)) || node == case.steps {
             // The model itself says what it would observe there.
-            let here = (card.open)(&case.parameters, &method.shown(), case.h)
+            let here = (card.open)(&case.parameters, &method.shown(), Settings::step(case.h))
                 .map_err(|error| (node, format!("no state of the model: {error}")))?;
             push(record, node, case.h, here.as_ref());
         }

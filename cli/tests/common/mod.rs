@@ -2,7 +2,7 @@
 //! restoring torque, whose steps, failures and invariants are known. No engine, no solver.
 #![allow(dead_code, missing_docs)]
 
-use clebsch::card::{Card, Conserved, Field, Invariant, Kind, OpenError, Trajectory};
+use clebsch::card::{Card, Conserved, Field, Invariant, Kind, OpenError, Settings, Trajectory};
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{Poinsot, Rotation, StartError, StepCause, StepError, validate};
 use clebsch_cli::gallery::{Case, Entry, Gallery};
@@ -36,6 +36,8 @@ pub static CARD: Card = Card {
     summary: "p' = p - h κ sin θ\nθ' = θ + h p / I",
     solver: "explicit",
     order: 2,
+    orders: &[2],
+    preprocessed: false,
     reversible: true,
     parameters: &[
         field("J", "J", (3, 3), Kind::Symmetric, "Poinsot matrix"),
@@ -110,8 +112,9 @@ struct Rotor {
 fn open(
     parameters: &[Vec<f64>],
     initial: &[Vec<f64>],
-    h: f64,
+    settings: Settings,
 ) -> Result<Box<dyn Trajectory>, OpenError> {
+    let h = settings.h;
     let [j, kappa, z] = parameters else {
         panic!("three parameters");
     };

@@ -130,7 +130,9 @@ impl<S: Reversible> Composition<S> {
             stages: stages.collect::<Result<_, StartError>>()?,
         })
     }
+}
 
+impl<S: Stepper> Composition<S> {
     /// One composed step, in place; it is counted as one node.
     ///
     /// # Errors

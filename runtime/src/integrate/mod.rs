@@ -7,9 +7,11 @@ mod drift;
 mod ensemble;
 mod run;
 mod stepper;
+mod steps;
 
 pub use composition::{Composition, CompositionOrder};
 pub use drift::Drift;
 pub use ensemble::{Ensemble, EnsembleError, Member};
 pub use run::{Observer, Summary, run};
 pub use stepper::{Reversible, Stepper};
+pub use steps::{Steps, preprocessing_order};

@@ -93,6 +93,7 @@ fn momentum_field(d: &Derivation, i: usize, body: bool) -> FieldOf {
 /// `CARD` and the trajectory behind it.
 pub fn card(d: &Derivation, names: &Names) -> TokenStream {
     let (name, state, work) = (item(d, ""), item(d, "State"), item(d, "Workspace"));
+    let preprocessed = super::stepper::preprocessed(d);
     let trajectory = item(d, "Trajectory");
     let count = d.spec.configurations.len();
     let parameters: Vec<FieldOf> = d
@@ -217,20 +218,52 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
     let (bound, used, plain) = (g.sizes_bound(), g.sizes_used(), g.plain());
     let turbofish = (!used.is_empty()).then(|| quote!(:: #used));
     let (dimensions, sized) = (dimensions(d), sized(d));
+    let orders = match (preprocessed, d.reversible) {
+        (true, _) => quote!(&[2, 4, 6, 8, 10]),
+        (false, true) => quote!(&[2, 4, 6, 8]),
+        (false, false) => quote!(&[1]),
+    };
+    let (work, time, step, begin) = if preprocessed {
+        (
+            quote!(work: #work #plain),
+            quote!(self.work.h),
+            quote!(self.model.step(&mut self.state, &mut self.work)),
+            quote! {
+                let order = preprocessing_order(settings, Self::CARD.orders)?;
+                let (state, work) = model.start_of_order(initial, settings.h, order)?;
+                Ok(Box::new(#trajectory #turbofish { model, state, work, start: state }))
+            },
+        )
+    } else {
+        let of_order = match d.reversible {
+            true => quote!(of_order),
+            false => quote!(plain),
+        };
+        (
+            quote!(steps: Steps<#name #plain>, h: f64),
+            quote!(self.h),
+            quote!(self.steps.step(&self.model, &mut self.state)),
+            quote! {
+                let state = model.at_node_0(initial)?;
+                let steps = Steps::#of_order(&model, &state, settings, Self::CARD.orders)?;
+                Ok(Box::new(#trajectory #turbofish { model, state, steps, h: settings.h, start: state }))
+            },
+        )
+    };
     quote! {
         /// One trajectory of the model, its type hidden.
         struct #trajectory #bound {
             model: #name #plain,
             state: #state #plain,
-            work: #work #plain,
+            #work,
             start: #state #plain,
         }
 
         impl #bound Trajectory for #trajectory #used {
             fn node(&self) -> u64 { self.state.node() }
-            fn time(&self) -> f64 { self.work.h * self.state.node() as f64 }
+            fn time(&self) -> f64 { #time * self.state.node() as f64 }
             fn step(&mut self) -> Result<(), StepError> {
-                self.model.step(&mut self.state, &mut self.work)
+                #step
             }
             fn card(&self) -> &'static Card { &#name::#plain::CARD }
             fn observe(&self, out: &mut [f64]) {
@@ -261,6 +294,8 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                 summary: #summary,
                 solver: #solver,
                 order: #order,
+                orders: #orders,
+                preprocessed: #preprocessed,
                 reversible: #reversible,
                 parameters: &[#(#p),*],
                 initial: &[#(#i),*],
@@ -273,10 +308,9 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
 
             #sized
 
-            fn open(parameters: &[Vec<f64>], initial: &[Vec<f64>], h: f64) -> Result<Box<dyn Trajectory>, OpenError> {
+            fn open(parameters: &[Vec<f64>], initial: &[Vec<f64>], settings: Settings) -> Result<Box<dyn Trajectory>, OpenError> {
                 #constructor
-                let (state, work) = model.start(initial, h)?;
-                Ok(Box::new(#trajectory #turbofish { model, state, work, start: state }))
+                #begin
             }
         }
     }

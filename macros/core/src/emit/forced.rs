@@ -47,28 +47,31 @@ pub(super) fn keeps_edge(d: &Derivation) -> bool {
 pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
     let state = item(d, "State");
     let node = names.local("node");
-    let momentum = edge_momentum(d, names, mv);
+    let begin = begin(d, names, mv);
     let used = Generics::of(d).used();
-    let (step, edge) = match torques(d) {
-        Some((leave, arrive)) => (kept(d, names, &leave, &arrive), edge(d)),
-        None => (plain(d, names), TokenStream::new()),
+    let (step, momentum) = match torques(d) {
+        Some((leave, arrive)) => (
+            kept(d, names, &leave, &arrive),
+            quote!(self.edge(&state, trial).body()),
+        ),
+        None => (plain(d, names), quote!(self.edge_momentum(&state, trial))),
     };
     quote! {
         #step
-        #momentum
-        #edge
+        #begin
 
         /// Says how far the step is beyond the bound, and which step could be solved.
         #[cold]
         fn refused(&self, state: #state #used, h: T, e: MoserVeselovError) -> StepError {
-            let e = e.with_searched_step(&self.factor, h, |trial| self.edge_momentum(&state, trial));
+            let e = e.with_searched_step(&self.factor, h, |trial| #momentum);
             StepCause::from(e).at_node(state.#node)
         }
     }
 }
 
-/// The momentum of the edge at a given step, for the solve and for the search of a step.
-fn edge_momentum(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
+/// The edge that starts at a node, or its momentum where nothing else is kept: for the solve at a
+/// given step, and for the search of a step.
+fn begin(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
     let s = &d.letters.symbols;
     let state = item(d, "State");
     let c = &d.spec.configurations[0];
@@ -90,6 +93,22 @@ fn edge_momentum(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStrea
     };
     let rest = (!mv.rest.is_zero()).then(|| quote!(- (#(#values)*)));
     let used = Generics::of(d).used();
+    if keeps_edge(d) {
+        let kick = names.local("kick");
+        // The spatial momentum is not taken through the body frame and back: each way would leave
+        // its rounding in what is conserved.
+        return quote! {
+            /// The edge that begins at this state, for a step `h`.
+            #[inline(never)]
+            fn edge(&self, state: &#state #used, #step: T) -> Edge<T> {
+                #parameters
+                #locals
+                #lets
+                let #kick = #(#values)*;
+                Edge::new(#node_momentum - #kick, state.#momentum.0 - #element * #kick)
+            }
+        };
+    }
     quote! {
         /// The momentum of the edge that starts at this node, for a step `h`.
         #[inline]
@@ -98,20 +117,6 @@ fn edge_momentum(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStrea
             #locals
             #lets
             #node_momentum #rest
-        }
-    }
-}
-
-fn edge(d: &Derivation) -> TokenStream {
-    let state = item(d, "State");
-    let element = own(d, d.spec.configurations[0].element);
-    let used = Generics::of(d).used();
-    quote! {
-        /// The edge that begins at this state.
-        #[cold]
-        #[inline(never)]
-        fn edge(&self, state: #state #used, h: T) -> Edge<T> {
-            Edge::begin(&state.#element, self.edge_momentum(&state, h))
         }
     }
 }
@@ -186,7 +191,7 @@ fn kept(d: &Derivation, names: &Names, leave: &Expr, arrive: &Expr) -> TokenStre
         quote! {
             let #step = work.h;
             if work.here != *state {
-                work.edge = self.edge(*state, #step);
+                work.edge = self.edge(state, #step);
                 work.here = *state;
             }
             let #edge = &work.edge;

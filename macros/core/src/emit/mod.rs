@@ -14,6 +14,7 @@ mod newton;
 mod residual;
 mod sizes;
 mod step;
+mod stepper;
 
 use crate::derive::Derivation;
 use crate::diagnostic::{Diagnostic, Errors};
@@ -77,6 +78,7 @@ pub fn emit(d: &Derivation, documented: bool) -> TokenStream {
         items::model(d, documented),
         items::state(d, &names),
         step::start_and_step(d, &names),
+        stepper::traits(d, &names),
         residual::balance(d, &names),
         invariants::invariants(d, &names),
         card::card(d, &names),

@@ -44,7 +44,7 @@ pub fn own(d: &Derivation, id: SymbolId) -> Ident {
 }
 
 /// Types, traits and variants that emitted code calls by a plain name: no model can bear one.
-const TYPES: [&str; 35] = [
+const TYPES: [&str; 40] = [
     "BodyMomentum",
     "BodyMomentumMatrix",
     "Box",
@@ -63,32 +63,42 @@ const TYPES: [&str; 35] = [
     "Ok",
     "OpenError",
     "Option",
+    "Order",
     "Orthogonal",
     "ParameterError",
     "Poinsot",
     "Real",
     "Result",
+    "Reversible",
     "Rotation",
     "SMatrix",
     "SVector",
+    "Settings",
     "Some",
     "SpatialMomentum",
     "SpatialMomentumMatrix",
     "StartError",
     "StepCause",
     "StepError",
+    "Stepper",
+    "Steps",
     "T",
     "Trajectory",
     "Vec",
 ];
 
 /// Methods and constants that every model has.
-const MEMBERS: [&str; 16] = [
+const MEMBERS: [&str; 23] = [
     "ADMITTED",
     "CARD",
     "FINGERPRINT",
     "SOURCE",
+    "advance",
+    "advance_many",
+    "at_node",
+    "at_node_0",
     "balance",
+    "edge",
     "edge_momentum",
     "energies",
     "energy",
@@ -99,7 +109,9 @@ const MEMBERS: [&str; 16] = [
     "refused",
     "sized",
     "start",
+    "start_of_order",
     "step",
+    "workspace",
 ];
 
 /// The model, a configuration or an advected quantity whose name emitted items need for
@@ -142,17 +154,17 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
 
 /// What emitted functions call by a plain name, and what they name themselves: a local of the
 /// model under such a name would hide it. The test of hygiene states a model with all of them.
-const INSIDE: [&str; 70] = [
-    "Err",
-    "None",
-    "Ok",
-    "Some",
+const INSIDE: [&str; 74] = [
     "BodyMomentum",
     "BodyMomentumMatrix",
+    "Err",
     "Linear",
+    "None",
+    "Ok",
     "Orthogonal",
     "Poinsot",
     "Rotation",
+    "Some",
     "SpatialMomentum",
     "SpatialMomentumMatrix",
     "all",
@@ -161,6 +173,7 @@ const INSIDE: [&str; 70] = [
     "axis",
     "basis",
     "body",
+    "count",
     "determinant",
     "diagonal_part",
     "e",
@@ -183,6 +196,7 @@ const INSIDE: [&str; 70] = [
     "momentum",
     "n",
     "number_of",
+    "order",
     "orthogonal_of",
     "out",
     "parameters",
@@ -197,6 +211,7 @@ const INSIDE: [&str; 70] = [
     "rotation_of",
     "rows",
     "scratch",
+    "settings",
     "sizes",
     "skew_basis",
     "skew_coordinates",
@@ -206,6 +221,7 @@ const INSIDE: [&str; 70] = [
     "solve_or_nan",
     "solver",
     "state",
+    "steps",
     "symmetric_part",
     "total",
     "trial",

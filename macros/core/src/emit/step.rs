@@ -67,7 +67,7 @@ pub fn start_and_step(d: &Derivation, names: &Names) -> TokenStream {
 
 fn start(d: &Derivation, names: &Names) -> TokenStream {
     let s = &d.letters.symbols;
-    let (initial, state, work) = (item(d, "Initial"), item(d, "State"), item(d, "Workspace"));
+    let state = item(d, "State");
     let node = names.local("node");
     let (mut checks, mut fields) = (Vec::new(), Vec::new());
     for (i, c) in d.spec.configurations.iter().enumerate() {
@@ -157,37 +157,24 @@ fn start(d: &Derivation, names: &Names) -> TokenStream {
         [first] if element::only_rotations(d) => quote!([#first; 1]),
         _ => guess,
     };
-    let used = Generics::of(d).used();
     let work_init = match d.solve.method {
         Method::FreeMoserVeselov => {
             let element = own(d, d.spec.configurations[0].element);
             let momentum = per_configuration(d, "momentum", 0);
-            quote!(solver: Free::start(&self.factor, &state.#element, &state.#momentum, h)?,)
+            quote!(solver: Free::start_of_order(&self.factor, &state.#element, &state.#momentum, h, order)?,)
         }
         Method::ForcedMoserVeselov if super::forced::keeps_edge(d) => {
-            quote!(edge: self.edge(state, h), here: state)
+            quote!(edge: self.edge(&state, h), here: state)
         }
         Method::ForcedMoserVeselov => TokenStream::new(),
         Method::Newton => quote!(guess: #guess,),
     };
-    quote! {
-        /// Starts a trajectory with step `h` from data at node 0.
-        ///
-        /// # Errors
-        /// Names the value that is not finite, or says why the first step cannot be solved and
-        /// which step could.
-        pub fn start(&self, initial: #initial #used, h: T) -> Result<(#state #used, #work #used), StartError> {
-            validate::positive_step(h)?;
-            #(#checks)*
-            #references
-            let state = #state { #(#fields,)* #node: 0 };
-            let work = #work { h, #work_init };
-            // The first step is tried on a copy: what cannot run is refused here.
-            let (mut trial, mut scratch) = (state, work);
-            self.step(&mut trial, &mut scratch).map_err(|e| StartError::Refused(e.cause))?;
-            Ok((state, work))
-        }
-    }
+    let state_of = quote! {
+        #(#checks)*
+        #references
+        Ok(#state { #(#fields,)* #node: 0 })
+    };
+    super::stepper::start(d, state_of, work_init)
 }
 
 pub(super) fn step_signature(d: &Derivation, body: TokenStream) -> TokenStream {

@@ -43,10 +43,11 @@ impl<T: Real> Edge<T> {
         Self { body, space }
     }
 
-    /// The edge that begins at `attitude` with momentum `body`, in the frame there.
-    #[inline]
-    pub fn begin(attitude: &Rotation<T>, body: Vector3<T>) -> Self {
-        Self::new(body, attitude.rotate(&body))
+    /// The momentum of the edge, in the frame at its first node.
+    #[inline(always)]
+    pub fn body(&self) -> Vector3<T> {
+        let Apart { x, y, z, .. } = self.body;
+        Vector3::new(x, y, z)
     }
 
     /// The momentum of the edge, in space.

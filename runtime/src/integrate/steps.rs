@@ -1,0 +1,82 @@
+//! The steps of one trajectory, plain or composed, chosen when it is started.
+//! Takes a model, a state and the settings; advances the state.
+
+use super::{Composition, CompositionOrder, Reversible, Stepper};
+use crate::card::{OpenError, Settings};
+use crate::solvers::moser_veselov::Order;
+use crate::{StepError, validate};
+
+/// The order of modified moments that the settings ask for.
+///
+/// # Errors
+/// When there is none.
+pub fn preprocessing_order(settings: Settings, orders: &'static [u32]) -> Result<Order, OpenError> {
+    let asked = settings.order.unwrap_or(2);
+    Order::of_number(asked).ok_or(OpenError::Order {
+        asked,
+        offered: orders,
+    })
+}
+
+/// What makes the steps of one trajectory.
+#[derive(Clone, Debug)]
+pub enum Steps<S: Stepper> {
+    /// One step of the model each.
+    Plain(S::Workspace),
+    /// Several.
+    Composed(Composition<S>),
+}
+
+impl<S: Stepper<Scalar = f64>> Steps<S> {
+    /// Plain steps, whatever the model; no other order is offered.
+    ///
+    /// # Errors
+    /// For another order, a step that is not positive, or a first step that cannot be made.
+    pub fn plain(
+        model: &S,
+        state: &S::State,
+        settings: Settings,
+        orders: &'static [u32],
+    ) -> Result<Self, OpenError> {
+        if let Some(asked) = settings.order.filter(|o| orders.first() != Some(o)) {
+            return Err(OpenError::Order {
+                asked,
+                offered: orders,
+            });
+        }
+        validate::positive_step(settings.h)?;
+        Ok(Self::Plain(model.workspace(state, settings.h)?))
+    }
+
+    /// One step, in place.
+    ///
+    /// # Errors
+    /// When it cannot be solved; the state is then unchanged.
+    pub fn step(&mut self, model: &S, state: &mut S::State) -> Result<(), StepError> {
+        match self {
+            Self::Plain(workspace) => model.advance(state, workspace),
+            Self::Composed(composition) => composition.step(model, state),
+        }
+    }
+}
+
+impl<S: Reversible<Scalar = f64>> Steps<S> {
+    /// Steps of the order asked for.
+    ///
+    /// # Errors
+    /// As [`Steps::plain`].
+    pub fn of_order(
+        model: &S,
+        state: &S::State,
+        settings: Settings,
+        orders: &'static [u32],
+    ) -> Result<Self, OpenError> {
+        let composed = settings.order.and_then(CompositionOrder::of_number);
+        let Some(order) = composed else {
+            return Self::plain(model, state, settings, orders);
+        };
+        validate::positive_step(settings.h)?;
+        let composition = Composition::start(model, state, settings.h, order)?;
+        Ok(Self::Composed(composition))
+    }
+}
