@@ -6,12 +6,19 @@
 
 mod blocks;
 mod steppers;
+mod systems;
 
 use blocks::{Comparison, compare};
 use clebsch_tests::physics::cases::{
     Start, asymmetric_body, generic_top, lagrange_top, symmetric_body,
 };
+use clebsch_tests::physics::systems::{generic_pair, reference_pair};
 use steppers::{generated_body, generated_top, written_body, written_top};
+use systems::{
+    generated_free_body_spatial, generated_heavy_top_spatial, generated_pair,
+    generated_quadratic_field, generated_two_fields, written_free_body_spatial,
+    written_heavy_top_spatial, written_pair, written_quadratic_field, written_two_fields,
+};
 
 fn main() {
     println!("{}; {}", machine(), env!("RUSTC_VERSION"));
@@ -44,6 +51,31 @@ fn main() {
         print(
             name,
             &compare(|| generated_top(&start), || written_top(&start)),
+        );
+    }
+    print(
+        "free body in space",
+        &compare(generated_free_body_spatial, written_free_body_spatial),
+    );
+    print(
+        "heavy top in space, Lagrange",
+        &compare(generated_heavy_top_spatial, written_heavy_top_spatial),
+    );
+    print(
+        "body in a quadratic field",
+        &compare(generated_quadratic_field, written_quadratic_field),
+    );
+    print(
+        "body in two fields",
+        &compare(generated_two_fields, written_two_fields),
+    );
+    for (name, start) in [
+        ("coupled bodies, symmetric", reference_pair()),
+        ("coupled bodies, general", generic_pair()),
+    ] {
+        print(
+            name,
+            &compare(|| generated_pair(&start), || written_pair(&start)),
         );
     }
 }

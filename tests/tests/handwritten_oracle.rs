@@ -12,13 +12,14 @@ use clebsch_tests::handwritten::cayley_klein::CayleyKlein;
 use clebsch_tests::handwritten::coupled_bodies::{CoupledBodies, Pair};
 use clebsch_tests::handwritten::free_body_spatial::FreeBodySpatial;
 use clebsch_tests::handwritten::heavy_top_spatial::{HeavyTopSpatial, SpatialTop};
+use clebsch_tests::handwritten::kirchhoff_body::{KirchhoffBody, Momentum, Submerged};
 use clebsch_tests::oracle::action::{
     DiscreteAction, NodeRule, Variation, bodies, coupled, momentum_in, momentum_out, rotations,
     spatial, stationarity,
 };
 use clebsch_tests::oracle::dual::Number;
 use clebsch_tests::oracle::points::Source;
-use clebsch_tests::oracle::square::{Square, constant_column, dot};
+use clebsch_tests::oracle::square::{Square, constant_column, dot, vee};
 use std::array::from_fn;
 
 /// Random states of every system.
@@ -408,4 +409,92 @@ fn bodies_in_four_and_eight_dimensions() {
     ] {
         assert!(off < ROUNDING, "{off:e}");
     }
+}
+
+/// A body in a fluid, homogeneous matrices: everything is written with attitudes and positions at both ends.
+struct InFluid {
+    h: f64,
+    body: Submerged,
+}
+
+impl DiscreteAction<4, 1> for InFluid {
+    fn edge<T: Number>(&self, tail: &[Square<T, 4>; 1], head: &[Square<T, 4>; 1]) -> Vec<T> {
+        let body = &self.body;
+        let (h, half) = (T::constant(self.h), T::constant(0.5));
+        let attitude = |g: &Square<T, 4>| Square::<T, 3>::from_entries(|i, j| g.0[i][j]);
+        let position = |g: &Square<T, 4>| -> [T; 3] { from_fn(|i| g.0[i][3]) };
+        let (from, to) = (attitude(&tail[0]), attitude(&head[0]));
+        let turn = from.transpose() * to;
+        let moved: [T; 3] = from_fn(|i| head[0].0[i][3] - tail[0].0[i][3]);
+        let (near, far) = (from.transpose().apply(&moved), to.transpose().apply(&moved));
+        let u: [T; 3] = from_fn(|i| half * (near[i] + far[i]));
+        let masses = Square::constant(&Square(body.masses));
+        let coupling = Square::constant(&Square(body.coupling));
+        let potential = |g: &Square<T, 4>| {
+            let up = constant_column(&body.up);
+            let moment = attitude(g).apply(&constant_column(&body.moment));
+            -h * (dot(&moment, &up) + T::constant(body.weight) * dot(&position(g), &up))
+        };
+        vec![
+            -(Square::constant(&Square(body.poinsot)) * turn).trace() / h,
+            half * dot(&u, &masses.apply(&u)) / h,
+            dot(&vee(&turn), &coupling.apply(&u)) / h,
+            NodeRule::Symmetric.split(potential(&tail[0]), potential(&head[0])),
+        ]
+    }
+}
+
+#[test]
+fn kirchhoff_body() {
+    // Rotations about the axes of the body, then translations along them.
+    let basis: Vec<Square<f64, 4>> = (0..6)
+        .map(|n| {
+            let turn = rotations();
+            Square::from_entries(|i, j| match (n < 3, i < 3, j < 3) {
+                (true, true, true) => turn[n].0[i][j],
+                (false, true, false) if i + 3 == n => 1.0,
+                _ => 0.0,
+            })
+        })
+        .collect();
+    let rigid = |q: &Quaternion, x: &Vector| {
+        let r = q.matrix();
+        Square::<f64, 4>::from_entries(|i, j| match (i < 3, j < 3) {
+            (true, true) => r[i][j],
+            (true, false) => x[i],
+            (false, true) => 0.0,
+            (false, false) => 1.0,
+        })
+    };
+    let off = worst("Kirchhoff", |source| {
+        let action = InFluid {
+            h: source.between(0.02, 0.1),
+            body: Submerged {
+                poinsot: source.positive::<3>().0,
+                masses: source.positive::<3>().0,
+                coupling: source.matrix::<3>().scaled(0.1).0,
+                moment: source.vector(),
+                weight: source.between(-1.0, 1.0),
+                up: source.vector(),
+            },
+        };
+        let (q, x) = (rotation(source), source.vector());
+        let mu = Momentum {
+            angular: source.vector(),
+            linear: source.vector(),
+        };
+        let mut motion = KirchhoffBody::start(&action.body, &q, &x, &mu, action.h).ok()?;
+        let listed = |m: &Momentum| [m.angular, m.linear].concat();
+        let mut nodes = [[rigid(&q, &x)]; 3];
+        let mut momenta = [listed(&mu), Vec::new()];
+        for n in 1..3 {
+            motion.step().ok()?;
+            nodes[n] = [rigid(&motion.attitude(), &motion.position())];
+            if n == 1 {
+                momenta[1] = listed(&motion.body_momentum());
+            }
+        }
+        Some(violation(&action, &basis, &Steps { nodes, momenta }))
+    });
+    assert!(off < ROUNDING, "{off:e}");
 }

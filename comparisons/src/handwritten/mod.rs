@@ -12,6 +12,7 @@ pub mod free_body;
 pub mod free_body_spatial;
 pub mod heavy_top;
 pub mod heavy_top_spatial;
+pub mod kirchhoff_body;
 pub mod one_sided_top;
 pub mod principal_axes;
 pub mod principal_root;

@@ -11,6 +11,7 @@ use crate::handwritten::body_n::{BodyN, identity, product, transposed};
 use crate::handwritten::coupled_bodies::{CoupledBodies, Pair};
 use crate::handwritten::free_body_spatial::FreeBodySpatial;
 use crate::handwritten::heavy_top_spatial::{HeavyTopSpatial, SpatialTop};
+use crate::handwritten::kirchhoff_body::{KirchhoffBody, Momentum, Submerged};
 use crate::reference::{coupled_sym, spatial};
 
 /// The diagonal of J for principal moments I.
@@ -139,4 +140,28 @@ pub fn body_in<F: Field>(field: &F, h: f64) -> BodyInField<F> {
 /// The generic body in the quadratic field.
 pub fn quadratic_body(h: f64) -> BodyInField<QuadraticField> {
     body_in(&quadratic_field(), h)
+}
+
+/// A body in a fluid without symmetry; `weight` is what buoyancy leaves, with a moment of the same size.
+pub fn submerged(weight: f64) -> (Submerged, Quaternion, Vector, Momentum) {
+    let body = Submerged {
+        poinsot: [[0.9, 0.1, -0.15], [0.1, 0.6, 0.05], [-0.15, 0.05, 1.2]],
+        masses: [[1.5, 0.1, 0.0], [0.1, 2.0, -0.2], [0.0, -0.2, 3.0]],
+        coupling: [[0.1, 0.02, 0.0], [-0.03, -0.05, 0.04], [0.01, 0.0, 0.15]],
+        moment: [0.3, 0.1, -0.7].map(|c| weight * c),
+        weight,
+        up: [0.0, 0.0, 1.0],
+    };
+    let momentum = Momentum {
+        angular: [0.3, -0.2, 0.8],
+        linear: [0.9, 0.2, 0.4],
+    };
+    let attitude = Quaternion([0.5, 0.1, -0.7, 0.5]).normalised();
+    (body, attitude, [0.3, -0.1, 0.2], momentum)
+}
+
+/// That body on its way.
+pub fn submerged_body(weight: f64, h: f64) -> KirchhoffBody {
+    let (body, attitude, position, momentum) = submerged(weight);
+    KirchhoffBody::start(&body, &attitude, &position, &momentum, h).expect("solvable")
 }

@@ -1,0 +1,309 @@
+//! Rigid body in an ideal fluid on SE(3): rotation as in Moser and Veselov, the linear velocity of a step the mean of
+//! its translation seen from both ends. Takes J, added masses M, coupling D, weight, position, body momentum and h;
+//! gives positions and momenta at the nodes. State: attitude, position, spatial momentum about the origin.
+
+use super::Unsolvable;
+use super::attitude::{
+    Matrix, Quaternion, Vector, add_scaled, apply, apply_transposed, cross, dot,
+};
+
+/// What a body and its fluid are made of; all but the vertical in body axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Submerged {
+    /// Poinsot matrix of the rotational inertia, fluid included.
+    pub poinsot: Matrix,
+    /// Mass and added masses M, symmetric.
+    pub masses: Matrix,
+    /// Coupling D: omega . D u is part of the kinetic energy.
+    pub coupling: Matrix,
+    /// Moment of weight less buoyancy.
+    pub moment: Vector,
+    /// Weight less buoyancy.
+    pub weight: f64,
+    /// Vertical z, space axes.
+    pub up: Vector,
+}
+
+/// Angular and linear momentum.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Momentum {
+    /// About the body's point in body axes, about the origin in space axes.
+    pub angular: Vector,
+    /// Linear momentum.
+    pub linear: Vector,
+}
+
+/// Most Newton iterations of one step, of two corrections each.
+const MOST_ITERATIONS: usize = 10;
+
+/// Residual of an accepted solution over the largest of one and the terms that make it up.
+const RESIDUAL: f64 = 1e-15;
+
+/// What belongs to one trial rotation, given by its Rodrigues vector c, alpha = 1 + |c|^2.
+#[derive(Clone, Copy, Debug)]
+struct Trial {
+    c: Vector,
+    inverse: f64,
+    /// Force conjugate to the velocity, p - c x p.
+    force: Vector,
+    /// h times the linear velocity.
+    u: Vector,
+    /// D u.
+    carried: Vector,
+    /// Translation of the step seen from its tail, u + c x u.
+    y: Vector,
+    /// The part of the angular momentum over alpha.
+    spin: Vector,
+    residual: Vector,
+}
+
+/// A body on its way.
+#[derive(Clone, Copy, Debug)]
+pub struct KirchhoffBody {
+    q: Quaternion,
+    x: Vector,
+    m: Momentum,
+    past: [Vector; 4],
+    known: u32,
+    body: Submerged,
+    inertia: Matrix,
+    inverse_masses: Matrix,
+    h: f64,
+}
+
+#[inline(always)]
+fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j]))
+}
+
+#[inline(always)]
+fn sum(a: &Matrix, s: f64, b: &Matrix) -> Matrix {
+    [0, 1, 2].map(|i| add_scaled(&a[i], s, &b[i]))
+}
+
+#[inline(always)]
+fn hat([x, y, z]: &Vector) -> Matrix {
+    [[0.0, -z, *y], [*z, 0.0, -x], [-y, *x, 0.0]]
+}
+
+/// d x (columns of m).
+#[inline(always)]
+fn crossed([x, y, z]: &Vector, m: &Matrix) -> Matrix {
+    [
+        [0, 1, 2].map(|j| y * m[2][j] - z * m[1][j]),
+        [0, 1, 2].map(|j| z * m[0][j] - x * m[2][j]),
+        [0, 1, 2].map(|j| x * m[1][j] - y * m[0][j]),
+    ]
+}
+
+#[inline(always)]
+fn outer(a: &Vector, b: &Vector) -> Matrix {
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| a[i] * b[j]))
+}
+
+/// Inverse by cofactors; not finite when there is none, which the residual shows.
+#[inline(always)]
+fn inverse(m: &Matrix) -> Matrix {
+    let rows = [
+        cross(&m[1], &m[2]),
+        cross(&m[2], &m[0]),
+        cross(&m[0], &m[1]),
+    ];
+    let scale = 1.0 / dot(&m[0], &rows[0]);
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| scale * rows[j][i]))
+}
+
+impl KirchhoffBody {
+    /// Starts a trajectory; the momentum is that of node 0 in body axes.
+    pub fn start(
+        body: &Submerged,
+        attitude: &Quaternion,
+        position: &Vector,
+        momentum: &Momentum,
+        h: f64,
+    ) -> Result<KirchhoffBody, Unsolvable> {
+        let trace = body.poinsot[0][0] + body.poinsot[1][1] + body.poinsot[2][2];
+        let inertia = [0, 1, 2]
+            .map(|i| [0, 1, 2].map(|j| if i == j { trace } else { 0.0 } - body.poinsot[i][j]));
+        let inverse_masses = inverse(&body.masses);
+        if !inverse_masses.iter().flatten().all(|x| x.is_finite()) {
+            return Err(Unsolvable);
+        }
+        let rotation = attitude.matrix();
+        let linear = apply(&rotation, &momentum.linear);
+        let angular = add_scaled(
+            &apply(&rotation, &momentum.angular),
+            1.0,
+            &cross(position, &linear),
+        );
+        Ok(KirchhoffBody {
+            q: *attitude,
+            x: *position,
+            m: Momentum { angular, linear },
+            past: [[0.0; 3]; 4],
+            known: 0,
+            body: *body,
+            inertia,
+            inverse_masses,
+            h,
+        })
+    }
+
+    /// Half the change of the spatial momentum that belongs to a node: -(h/2) of the weight at x, and its moment.
+    #[inline(always)]
+    fn kick(&self, rotation: &Matrix, x: &Vector) -> Momentum {
+        let half = 0.5 * self.h;
+        let body = &self.body;
+        let moment = cross(&body.up, &apply(rotation, &body.moment));
+        let lever = cross(x, &body.up);
+        Momentum {
+            angular: add_scaled(&moment, -body.weight, &lever).map(|c| half * c),
+            linear: body.up.map(|c| -half * body.weight * c),
+        }
+    }
+
+    /// The equation of angular momentum for c, that of linear momentum solved: with f = p - c x p,
+    /// u = M^-1 (h f - 2 D^T c / alpha), y = u + c x u and k = D u it reads
+    /// (2 I c + 2 c x I c + k + c x k - c (c . k)) / alpha + (h/2) y x f = h pi.
+    #[inline(always)]
+    fn trial(&self, c: &Vector, p: &Vector, pi: &Vector) -> Trial {
+        let inverse = 1.0 / (1.0 + dot(c, c));
+        let force = add_scaled(p, -1.0, &cross(c, p));
+        let turning = apply_transposed(&self.body.coupling, c);
+        let pushed = [0, 1, 2].map(|i| self.h * force[i] - 2.0 * inverse * turning[i]);
+        let u = apply(&self.inverse_masses, &pushed);
+        let carried = apply(&self.body.coupling, &u);
+        let y = add_scaled(&u, 1.0, &cross(c, &u));
+        let b = add_scaled(&carried, 2.0, &apply(&self.inertia, c));
+        let spin = add_scaled(&b, 1.0, &cross(c, &b));
+        let spin = add_scaled(&spin, -dot(c, &carried), c).map(|x| inverse * x);
+        let drag = cross(&y, &force);
+        Trial {
+            c: *c,
+            inverse,
+            force,
+            u,
+            carried,
+            y,
+            spin,
+            residual: [0, 1, 2].map(|i| (spin[i] - self.h * pi[i]) + 0.5 * self.h * drag[i]),
+        }
+    }
+
+    /// Derivative of the residual with respect to c, inverted.
+    #[inline(always)]
+    fn tangent(&self, t: &Trial, p: &Vector) -> Matrix {
+        let c = &t.c;
+        let d = &self.body.coupling;
+        // d(2 D^T c / alpha) = (2/alpha) D^T (Id - 2 c c^T / alpha).
+        let along = apply_transposed(d, c).map(|x| 2.0 * t.inverse * x);
+        let hat_p = hat(p);
+        let pushed = [0, 1, 2].map(|i| {
+            [0, 1, 2].map(|j| self.h * hat_p[i][j] - 2.0 * t.inverse * (d[j][i] - along[i] * c[j]))
+        });
+        let du = product(&self.inverse_masses, &pushed);
+        let dk = product(d, &du);
+        let db = sum(&dk, 2.0, &self.inertia);
+        let b = add_scaled(&t.carried, 2.0, &apply(&self.inertia, c));
+        let mut spin = sum(&db, 1.0, &crossed(c, &db));
+        spin = sum(&spin, -1.0, &hat(&b));
+        // -d(c (c . k)) = -(c . k) Id - c k^T - c (c^T dk).
+        let row = add_scaled(&t.carried, 1.0, &apply_transposed(&dk, c));
+        spin = sum(&spin, -1.0, &outer(c, &row));
+        let ck = dot(c, &t.carried);
+        for (i, line) in spin.iter_mut().enumerate() {
+            line[i] -= ck;
+        }
+        let dy = sum(&sum(&du, 1.0, &crossed(c, &du)), -1.0, &hat(&t.u));
+        let drag = sum(&crossed(&t.y, &hat_p), -1.0, &crossed(&t.force, &dy));
+        let double = t.c.map(|x| 2.0 * x);
+        let total = [0, 1, 2].map(|i| {
+            [0, 1, 2].map(|j| {
+                t.inverse * (spin[i][j] - t.spin[i] * double[j]) + 0.5 * self.h * drag[i][j]
+            })
+        });
+        inverse(&total)
+    }
+
+    /// One step of the motion; unchanged when Newton does not converge.
+    #[inline(always)]
+    pub fn step(&mut self) -> Result<(), Unsolvable> {
+        let rotation = self.q.matrix();
+        let kick = self.kick(&rotation, &self.x);
+        let linear = add_scaled(&self.m.linear, 1.0, &kick.linear);
+        let angular = add_scaled(&self.m.angular, 1.0, &kick.angular);
+        let p = apply_transposed(&rotation, &linear);
+        let pi = apply_transposed(
+            &rotation,
+            &add_scaled(&angular, -1.0, &cross(&self.x, &linear)),
+        );
+        let [a, b, c, d] = &self.past;
+        let guess = if self.known < 4 {
+            [0.0; 3]
+        } else {
+            [0, 1, 2].map(|i| 4.0 * (a[i] + c[i]) - (6.0 * b[i] + d[i]))
+        };
+        let scale = pi.iter().fold(1.0_f64, |m, x| m.max(self.h * x.abs()));
+        let mut trial = self.trial(&guess, &p, &pi);
+        let mut iterations = 0;
+        loop {
+            let tangent = self.tangent(&trial, &p);
+            // A second correction with the same matrix costs a residual instead of a matrix; together the two are of
+            // third order.
+            for _ in 0..2 {
+                let change = apply(&tangent, &trial.residual);
+                trial = self.trial(&add_scaled(&trial.c, -1.0, &change), &p, &pi);
+            }
+            let size = trial.residual.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            if size <= RESIDUAL * scale {
+                break;
+            }
+            iterations += 1;
+            // Also taken by a NaN.
+            if iterations == MOST_ITERATIONS || trial.c.iter().any(|x| !x.is_finite()) {
+                return Err(Unsolvable);
+            }
+        }
+        self.past = [trial.c, self.past[0], self.past[1], self.past[2]];
+        self.known += u32::from(self.known < 4);
+        let [cx, cy, cz] = trial.c;
+        // |q|^2 = 1 up to rounding; the factor takes that out again, to first order.
+        let correction = 1.5 - 0.5 * self.q.norm_squared();
+        self.q = self
+            .q
+            .times(&Quaternion([1.0, cx, cy, cz]))
+            .scaled(correction * trial.inverse.sqrt());
+        self.x = add_scaled(&self.x, 1.0, &apply(&rotation, &trial.y));
+        let kick = self.kick(&self.q.matrix(), &self.x);
+        self.m = Momentum {
+            linear: add_scaled(&linear, 1.0, &kick.linear),
+            angular: add_scaled(&angular, 1.0, &kick.angular),
+        };
+        Ok(())
+    }
+
+    /// Attitude body -> space at the present node.
+    pub fn attitude(&self) -> Quaternion {
+        self.q
+    }
+
+    /// Position of the body's point.
+    pub fn position(&self) -> Vector {
+        self.x
+    }
+
+    /// Momentum about the origin, space axes.
+    pub fn spatial_momentum(&self) -> Momentum {
+        self.m
+    }
+
+    /// Momentum about the body's point, body axes.
+    pub fn body_momentum(&self) -> Momentum {
+        let rotation = self.q.matrix();
+        let about = add_scaled(&self.m.angular, -1.0, &cross(&self.x, &self.m.linear));
+        Momentum {
+            angular: apply_transposed(&rotation, &about),
+            linear: apply_transposed(&rotation, &self.m.linear),
+        }
+    }
+}
