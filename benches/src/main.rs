@@ -1,5 +1,5 @@
 //! Time per step of generated steppers beside hand-written ones, called as a user calls them: one step at a time.
-//! Takes no arguments; prints a table. `cargo run --release --manifest-path benches/Cargo.toml`, some ten seconds.
+//! Takes no arguments; prints a table. `cargo run --release --manifest-path benches/Cargo.toml`, some twenty seconds.
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables)]
@@ -23,7 +23,7 @@ use systems::{
 fn main() {
     println!("{}; {}", machine(), env!("RUSTC_VERSION"));
     println!(
-        "{} blocks of {} steps each way, in the order generated, hand, hand, generated; ns per step",
+        "{} blocks of {} steps each way, in the order generated, hand, hand, generated; ns of computing per step",
         2 * blocks::QUADRUPLES,
         blocks::STEPS
     );

@@ -143,3 +143,106 @@ pub fn apply_transposed(m: &Matrix, v: &Vector) -> Vector {
         m[0][2] * v[0] + m[1][2] * v[1] + m[2][2] * v[2],
     ]
 }
+
+// Written out: loops over rows and columns are unrolled too late by the compiler, which then keeps matrices in memory.
+
+/// s v.
+#[inline(always)]
+pub fn scaled(s: f64, v: &Vector) -> Vector {
+    [s * v[0], s * v[1], s * v[2]]
+}
+
+/// Row vector times matrix.
+#[inline(always)]
+fn row_times(r: &Vector, m: &Matrix) -> Vector {
+    [
+        r[0] * m[0][0] + r[1] * m[1][0] + r[2] * m[2][0],
+        r[0] * m[0][1] + r[1] * m[1][1] + r[2] * m[2][1],
+        r[0] * m[0][2] + r[1] * m[1][2] + r[2] * m[2][2],
+    ]
+}
+
+/// A B.
+#[inline(always)]
+pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    [
+        row_times(&a[0], b),
+        row_times(&a[1], b),
+        row_times(&a[2], b),
+    ]
+}
+
+/// A^T B.
+#[inline(always)]
+pub fn transposed_product(a: &Matrix, b: &Matrix) -> Matrix {
+    product(&transposed(a), b)
+}
+
+/// A^T.
+#[inline(always)]
+pub fn transposed(a: &Matrix) -> Matrix {
+    [
+        [a[0][0], a[1][0], a[2][0]],
+        [a[0][1], a[1][1], a[2][1]],
+        [a[0][2], a[1][2], a[2][2]],
+    ]
+}
+
+/// A + s B.
+#[inline(always)]
+pub fn sum(a: &Matrix, s: f64, b: &Matrix) -> Matrix {
+    [
+        add_scaled(&a[0], s, &b[0]),
+        add_scaled(&a[1], s, &b[1]),
+        add_scaled(&a[2], s, &b[2]),
+    ]
+}
+
+/// The matrix of v -> d x v.
+#[inline(always)]
+pub fn hat(d: &Vector) -> Matrix {
+    [[0.0, -d[2], d[1]], [d[2], 0.0, -d[0]], [-d[1], d[0], 0.0]]
+}
+
+/// hat(d) M.
+#[inline(always)]
+pub fn crossed(d: &Vector, m: &Matrix) -> Matrix {
+    [
+        add_scaled(&scaled(d[1], &m[2]), -d[2], &m[1]),
+        add_scaled(&scaled(d[2], &m[0]), -d[0], &m[2]),
+        add_scaled(&scaled(d[0], &m[1]), -d[1], &m[0]),
+    ]
+}
+
+/// M + a b^T.
+#[inline(always)]
+pub fn add_outer(m: &Matrix, a: &Vector, b: &Vector) -> Matrix {
+    [
+        add_scaled(&m[0], a[0], b),
+        add_scaled(&m[1], a[1], b),
+        add_scaled(&m[2], a[2], b),
+    ]
+}
+
+/// s M.
+#[inline(always)]
+pub fn scaled_matrix(s: f64, m: &Matrix) -> Matrix {
+    [scaled(s, &m[0]), scaled(s, &m[1]), scaled(s, &m[2])]
+}
+
+/// Inverse by cofactors; not finite when there is none.
+#[inline(always)]
+pub fn inverse(m: &Matrix) -> Matrix {
+    let columns = [
+        cross(&m[1], &m[2]),
+        cross(&m[2], &m[0]),
+        cross(&m[0], &m[1]),
+    ];
+    scaled_matrix(1.0 / dot(&m[0], &columns[0]), &transposed(&columns))
+}
+
+/// Largest size of a component; NaN when one is not finite, which `max` alone would pass over.
+#[inline(always)]
+pub fn largest(v: &Vector) -> f64 {
+    v[0].abs().max(v[1].abs()).max(v[2].abs()) + 0.0 * (v[0] + v[1] + v[2])
+}

@@ -10,16 +10,45 @@ use super::principal_axes::PrincipalAxes;
 use super::principal_root::Quartic;
 use super::spaced::{SpacedQuaternion, SpacedVector};
 
+/// A rotation as Id + scale E, so that products with E need not wait for the division that gives the scale.
+#[derive(Clone, Copy, Debug)]
+pub struct Turned {
+    deviation: Matrix,
+    scale: f64,
+}
+
+impl Turned {
+    /// The rotation of a unit quaternion.
+    fn of(q: &Quaternion) -> Turned {
+        Turned {
+            deviation: q.deviation(),
+            scale: 2.0,
+        }
+    }
+
+    /// A body vector in space.
+    #[inline(always)]
+    pub fn forth(&self, v: &Vector) -> Vector {
+        add_scaled(v, self.scale, &apply(&self.deviation, v))
+    }
+
+    /// A space vector in the body.
+    #[inline(always)]
+    pub fn back(&self, v: &Vector) -> Vector {
+        add_scaled(v, self.scale, &apply_transposed(&self.deviation, v))
+    }
+}
+
 /// A potential of the attitude.
 pub trait Field: Copy {
     /// The same field with body quantities in principal axes and energies times `factor`.
     fn entered(&self, axes: &PrincipalAxes, factor: f64) -> Self;
 
     /// Force on the momentum at an attitude: its spatial and its body components.
-    fn force(&self, rotation: &Matrix) -> (Vector, Vector);
+    fn force(&self, rotation: &Turned) -> (Vector, Vector);
 
     /// Energy at an attitude.
-    fn energy(&self, rotation: &Matrix) -> f64;
+    fn energy(&self, rotation: &Turned) -> f64;
 }
 
 /// Energy Gamma . K Gamma / 2 with Gamma = Lambda^T z.
@@ -44,16 +73,16 @@ impl Field for QuadraticField {
     }
 
     #[inline(always)]
-    fn force(&self, rotation: &Matrix) -> (Vector, Vector) {
-        let gamma = apply_transposed(rotation, &self.axis);
+    fn force(&self, rotation: &Turned) -> (Vector, Vector) {
+        let gamma = rotation.back(&self.axis);
         let gradient = apply(&self.stiffness, &gamma);
         // The spatial force is normal to z by construction, so that m . z stays.
-        let spatial = cross(&self.axis, &apply(rotation, &gradient));
+        let spatial = cross(&self.axis, &rotation.forth(&gradient));
         (spatial, cross(&gamma, &gradient))
     }
 
-    fn energy(&self, rotation: &Matrix) -> f64 {
-        let gamma = apply_transposed(rotation, &self.axis);
+    fn energy(&self, rotation: &Turned) -> f64 {
+        let gamma = rotation.back(&self.axis);
         0.5 * dot(&gamma, &apply(&self.stiffness, &gamma))
     }
 }
@@ -81,24 +110,18 @@ impl Field for TwoFields {
     }
 
     #[inline(always)]
-    fn force(&self, rotation: &Matrix) -> (Vector, Vector) {
-        let spatial = [
-            cross(&self.up, &apply(rotation, &self.weight)),
-            cross(&self.field, &apply(rotation, &self.dipole)),
-        ];
-        let body = [
-            cross(&apply_transposed(rotation, &self.up), &self.weight),
-            cross(&apply_transposed(rotation, &self.field), &self.dipole),
-        ];
-        (
-            add_scaled(&spatial[0], -1.0, &spatial[1]),
-            add_scaled(&body[0], -1.0, &body[1]),
-        )
+    fn force(&self, rotation: &Turned) -> (Vector, Vector) {
+        // Two fields leave no direction in space along which a momentum would stay: one product less than in space.
+        let force = add_scaled(
+            &cross(&rotation.back(&self.up), &self.weight),
+            -1.0,
+            &cross(&rotation.back(&self.field), &self.dipole),
+        );
+        (rotation.forth(&force), force)
     }
 
-    fn energy(&self, rotation: &Matrix) -> f64 {
-        dot(&self.weight, &apply_transposed(rotation, &self.up))
-            - dot(&self.dipole, &apply_transposed(rotation, &self.field))
+    fn energy(&self, rotation: &Turned) -> f64 {
+        dot(&self.weight, &rotation.back(&self.up)) - dot(&self.dipole, &rotation.back(&self.field))
     }
 }
 
@@ -132,13 +155,13 @@ impl<F: Field> BodyInField<F> {
         let axes = PrincipalAxes::new(poinsot)?;
         let i = axes.moments;
         let q = axes.enter_attitude(attitude);
-        let rotation = q.matrix();
+        let rotation = Turned::of(&q);
         let field = field.entered(&axes, 0.25 * h * h);
         let momentum = axes.enter(body_momentum).map(|c| 0.5 * h * c);
         let (kick, body_kick) = field.force(&rotation);
         Ok(BodyInField {
             q: SpacedQuaternion::new(q),
-            n: SpacedVector::new(add_scaled(&apply(&rotation, &momentum), 1.0, &kick)),
+            n: SpacedVector::new(add_scaled(&rotation.forth(&momentum), 1.0, &kick)),
             u: SpacedVector::new(add_scaled(&momentum, 1.0, &body_kick)),
             kick: SpacedVector::new(kick),
             field,
@@ -171,12 +194,13 @@ impl<F: Field> BodyInField<F> {
         // |q|^2 is one up to rounding; the numerator takes that rounding out again, to first order.
         let correction = 2.0 - q.norm_squared();
         let scale = (correction + correction) / turn.norm_squared();
-        let e = unscaled.deviation();
-        let rotation =
-            [0, 1, 2].map(|r| [0, 1, 2].map(|c| scale * e[r][c] + if r == c { 1.0 } else { 0.0 }));
+        let rotation = Turned {
+            deviation: unscaled.deviation(),
+            scale,
+        };
         let n = self.n.get();
         let (kick, body_kick) = self.field.force(&rotation);
-        let carried = apply_transposed(&rotation, &n);
+        let carried = rotation.back(&n);
         self.u.set(add_scaled(&carried, 2.0, &body_kick));
         self.n.set(add_scaled(&n, 2.0, &kick));
         self.kick.set(kick);
@@ -201,8 +225,8 @@ impl<F: Field> BodyInField<F> {
 
     /// Energy mu . I^-1 mu / 2 and that of the field: oscillates within O(h^2).
     pub fn energy(&self) -> f64 {
-        let rotation = self.q.get().matrix();
-        let mu = apply_transposed(&rotation, &self.spatial_momentum());
+        let rotation = Turned::of(&self.q.get());
+        let mu = rotation.back(&self.spatial_momentum());
         let [x, y, z] = [0, 1, 2].map(|i| mu[i] * mu[i] / self.moments[i]);
         0.5 * (x + y + z) + self.field.energy(&rotation) * 4.0 / (self.h * self.h)
     }

@@ -4,7 +4,8 @@
 
 use super::Unsolvable;
 use super::attitude::{
-    Matrix, Quaternion, Vector, add_scaled, apply, apply_transposed, cross, dot,
+    Matrix, Quaternion, Vector, add_outer, add_scaled, apply, apply_transposed, cross, crossed,
+    dot, inverse, largest, product, scaled, scaled_matrix, sum, transposed_product,
 };
 use super::principal_axes::PrincipalAxes;
 
@@ -46,10 +47,11 @@ impl Half {
     #[inline(always)]
     fn turn(&self, c: &Vector) -> Turn {
         let inverse = 1.0 / (1.0 + dot(c, c));
-        let b = [0, 1, 2].map(|i| self.moments[i] * c[i]);
-        let momentum = add_scaled(&b, 1.0, &cross(c, &b)).map(|x| inverse * x);
+        let [i1, i2, i3] = self.moments;
+        let b = [i1 * c[0], i2 * c[1], i3 * c[2]];
+        let momentum = scaled(inverse, &add_scaled(&b, 1.0, &cross(c, &b)));
         let side = cross(c, &self.arm);
-        let moved = add_scaled(&side, 1.0, &cross(c, &side)).map(|x| inverse * x);
+        let moved = scaled(inverse, &add_scaled(&side, 1.0, &cross(c, &side)));
         Turn {
             c: *c,
             inverse,
@@ -81,8 +83,7 @@ impl Half {
             [-d[2], along, d[0]],
             [d[1], -d[0], along],
         ];
-        let base = [0, 1, 2]
-            .map(|i| [0, 1, 2].map(|j| skew[i][j] + (t.c[i] * d[j] - 2.0 * (d[i] * t.c[j]))));
+        let base = add_outer(&add_outer(&skew, &t.c, &d), &d, &scaled(-2.0, &t.c));
         rate(&base, t.inverse, &t.moved, &t.c)
     }
 }
@@ -90,41 +91,7 @@ impl Half {
 /// (base - 2 v c^T)/alpha.
 #[inline(always)]
 fn rate(base: &Matrix, inverse: f64, v: &Vector, c: &Vector) -> Matrix {
-    let double = c.map(|x| 2.0 * x);
-    [0, 1, 2].map(|i| [0, 1, 2].map(|j| inverse * (base[i][j] - v[i] * double[j])))
-}
-
-#[inline(always)]
-fn product(a: &Matrix, b: &Matrix) -> Matrix {
-    [0, 1, 2].map(|i| [0, 1, 2].map(|j| a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j]))
-}
-
-#[inline(always)]
-fn transposed(a: &Matrix) -> Matrix {
-    [0, 1, 2].map(|i| [0, 1, 2].map(|j| a[j][i]))
-}
-
-/// d x (columns of m), times `s`.
-#[inline(always)]
-fn crossed(d: &Vector, m: &Matrix, s: f64) -> Matrix {
-    let [x, y, z] = d.map(|c| s * c);
-    [
-        [0, 1, 2].map(|j| y * m[2][j] - z * m[1][j]),
-        [0, 1, 2].map(|j| z * m[0][j] - x * m[2][j]),
-        [0, 1, 2].map(|j| x * m[1][j] - y * m[0][j]),
-    ]
-}
-
-/// Inverse by cofactors; not finite when there is none, which the solvability test sees.
-#[inline(always)]
-fn inverse(m: &Matrix) -> Matrix {
-    let rows = [
-        cross(&m[1], &m[2]),
-        cross(&m[2], &m[0]),
-        cross(&m[0], &m[1]),
-    ];
-    let scale = 1.0 / dot(&m[0], &rows[0]);
-    [0, 1, 2].map(|i| [0, 1, 2].map(|j| scale * rows[j][i]))
+    scaled_matrix(inverse, &add_outer(base, v, &scaled(-2.0, c)))
 }
 
 /// Newton's matrix by blocks, factored: A11^-1, A21, A11^-1 A12 and the inverse of the Schur complement.
@@ -216,13 +183,17 @@ impl CoupledBodies {
         let [one, two] = &self.halves;
         let a11 = one.momentum_rate(&t[0]);
         let a22 = two.momentum_rate(&t[1]);
-        let a12 = crossed(&one.arm, &product(r, &two.moved_rate(&t[1])), -self.eps);
-        let back = transposed(r);
-        let a21 = crossed(&two.arm, &product(&back, &one.moved_rate(&t[0])), -self.eps);
+        let a12 = crossed(
+            &scaled(-self.eps, &one.arm),
+            &product(r, &two.moved_rate(&t[1])),
+        );
+        let a21 = crossed(
+            &scaled(-self.eps, &two.arm),
+            &transposed_product(r, &one.moved_rate(&t[0])),
+        );
         let first = inverse(&a11);
         let upper = product(&first, &a12);
-        let correction = product(&a21, &upper);
-        let schur = [0, 1, 2].map(|i| [0, 1, 2].map(|j| a22[i][j] - correction[i][j]));
+        let schur = sum(&a22, -1.0, &product(&a21, &upper));
         Factors {
             first,
             lower: a21,
@@ -243,20 +214,27 @@ impl CoupledBodies {
             _ => [4.0, -6.0, 4.0, -1.0],
         };
         let [p, q, r, s] = weights;
-        [0, 1].map(|i| [0, 1, 2].map(|j| (p * a[i][j] + q * b[i][j]) + (r * c[i][j] + s * d[i][j])))
+        let along = |i: usize| {
+            let older = add_scaled(&scaled(r, &c[i]), s, &d[i]);
+            add_scaled(&add_scaled(&older, q, &b[i]), p, &a[i])
+        };
+        [along(0), along(1)]
     }
 
     /// One step of the motion; unchanged when Newton does not converge in [`MOST_ITERATIONS`].
     #[inline(always)]
     pub fn step(&mut self) -> Result<(), Unsolvable> {
         let rotations = [self.q[0].matrix(), self.q[1].matrix()];
-        let u = [0, 1].map(|i| apply_transposed(&rotations[i], &self.m[i]));
-        let r = product(&transposed(&rotations[0]), &rotations[1]);
-        let [halves0, halves1] = &self.halves;
+        let u = [
+            apply_transposed(&rotations[0], &self.m[0]),
+            apply_transposed(&rotations[1], &self.m[1]),
+        ];
+        let r = transposed_product(&rotations[0], &rotations[1]);
+        let [one, two] = &self.halves;
         let mut c = self.guess();
-        let mut t = [halves0.turn(&c[0]), halves1.turn(&c[1])];
+        let mut t = [one.turn(&c[0]), two.turn(&c[1])];
         let mut f = self.residuals(&t, &r, &u);
-        let scale = u.iter().flatten().fold(1.0_f64, |m, x| m.max(x.abs()));
+        let scale = largest(&u[0]).max(largest(&u[1])).max(1.0);
         let mut iterations = 0;
         loop {
             iterations += 1;
@@ -265,16 +243,20 @@ impl CoupledBodies {
             // are of third order.
             for _ in 0..2 {
                 let change = factors.solve(&f);
-                c = [0, 1].map(|i| add_scaled(&c[i], -1.0, &change[i]));
-                t = [halves0.turn(&c[0]), halves1.turn(&c[1])];
+                c = [
+                    add_scaled(&c[0], -1.0, &change[0]),
+                    add_scaled(&c[1], -1.0, &change[1]),
+                ];
+                t = [one.turn(&c[0]), two.turn(&c[1])];
                 f = self.residuals(&t, &r, &u);
             }
-            let size = f.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+            let (first, second) = (largest(&f[0]), largest(&f[1]));
+            // Written so that a NaN stays.
+            let size = first.max(second) + 0.0 * (first + second);
             if size <= RESIDUAL * scale {
                 self.residual = size;
                 break;
             }
-            // Also taken by a NaN.
             if iterations == MOST_ITERATIONS || !size.is_finite() {
                 return Err(Unsolvable);
             }
@@ -283,8 +265,11 @@ impl CoupledBodies {
         self.past = [c, self.past[0], self.past[1], self.past[2]];
         self.known += u32::from(self.known < 4);
         // The joint hands over eps (Om_1 - Id) d_1 x (Om_2 - Id) d_2 in space, so that the sum of momenta stays.
-        let moved = [0, 1].map(|i| apply(&rotations[i], &t[i].moved));
-        let handed = cross(&moved[0], &moved[1]).map(|x| 2.0 * self.eps * x);
+        let moved = [
+            apply(&rotations[0], &t[0].moved),
+            apply(&rotations[1], &t[1].moved),
+        ];
+        let handed = scaled(2.0 * self.eps, &cross(&moved[0], &moved[1]));
         self.m = [
             add_scaled(&self.m[0], -1.0, &handed),
             add_scaled(&self.m[1], 1.0, &handed),
@@ -331,7 +316,7 @@ impl CoupledBodies {
     pub fn energy(&self) -> f64 {
         let rotations = [self.q[0].matrix(), self.q[1].matrix()];
         let u = [0, 1].map(|i| apply_transposed(&rotations[i], &self.m[i]));
-        let r = product(&transposed(&rotations[0]), &rotations[1]);
+        let r = transposed_product(&rotations[0], &rotations[1]);
         let rest = [
             self.halves[0].turn(&[0.0; 3]),
             self.halves[1].turn(&[0.0; 3]),

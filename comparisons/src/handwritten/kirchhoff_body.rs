@@ -4,7 +4,8 @@
 
 use super::Unsolvable;
 use super::attitude::{
-    Matrix, Quaternion, Vector, add_scaled, apply, apply_transposed, cross, dot,
+    Matrix, Quaternion, Vector, add_outer, add_scaled, apply, apply_transposed, cross, crossed,
+    dot, hat, inverse, largest, product, scaled, scaled_matrix, sum, transposed,
 };
 
 /// What a body and its fluid are made of; all but the vertical in body axes.
@@ -71,48 +72,6 @@ pub struct KirchhoffBody {
     h: f64,
 }
 
-#[inline(always)]
-fn product(a: &Matrix, b: &Matrix) -> Matrix {
-    [0, 1, 2].map(|i| [0, 1, 2].map(|j| a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j]))
-}
-
-#[inline(always)]
-fn sum(a: &Matrix, s: f64, b: &Matrix) -> Matrix {
-    [0, 1, 2].map(|i| add_scaled(&a[i], s, &b[i]))
-}
-
-#[inline(always)]
-fn hat([x, y, z]: &Vector) -> Matrix {
-    [[0.0, -z, *y], [*z, 0.0, -x], [-y, *x, 0.0]]
-}
-
-/// d x (columns of m).
-#[inline(always)]
-fn crossed([x, y, z]: &Vector, m: &Matrix) -> Matrix {
-    [
-        [0, 1, 2].map(|j| y * m[2][j] - z * m[1][j]),
-        [0, 1, 2].map(|j| z * m[0][j] - x * m[2][j]),
-        [0, 1, 2].map(|j| x * m[1][j] - y * m[0][j]),
-    ]
-}
-
-#[inline(always)]
-fn outer(a: &Vector, b: &Vector) -> Matrix {
-    [0, 1, 2].map(|i| [0, 1, 2].map(|j| a[i] * b[j]))
-}
-
-/// Inverse by cofactors; not finite when there is none, which the residual shows.
-#[inline(always)]
-fn inverse(m: &Matrix) -> Matrix {
-    let rows = [
-        cross(&m[1], &m[2]),
-        cross(&m[2], &m[0]),
-        cross(&m[0], &m[1]),
-    ];
-    let scale = 1.0 / dot(&m[0], &rows[0]);
-    [0, 1, 2].map(|i| [0, 1, 2].map(|j| scale * rows[j][i]))
-}
-
 impl KirchhoffBody {
     /// Starts a trajectory; the momentum is that of node 0 in body axes.
     pub fn start(
@@ -170,13 +129,13 @@ impl KirchhoffBody {
         let inverse = 1.0 / (1.0 + dot(c, c));
         let force = add_scaled(p, -1.0, &cross(c, p));
         let turning = apply_transposed(&self.body.coupling, c);
-        let pushed = [0, 1, 2].map(|i| self.h * force[i] - 2.0 * inverse * turning[i]);
+        let pushed = add_scaled(&scaled(self.h, &force), -2.0 * inverse, &turning);
         let u = apply(&self.inverse_masses, &pushed);
         let carried = apply(&self.body.coupling, &u);
         let y = add_scaled(&u, 1.0, &cross(c, &u));
         let b = add_scaled(&carried, 2.0, &apply(&self.inertia, c));
         let spin = add_scaled(&b, 1.0, &cross(c, &b));
-        let spin = add_scaled(&spin, -dot(c, &carried), c).map(|x| inverse * x);
+        let spin = scaled(inverse, &add_scaled(&spin, -dot(c, &carried), c));
         let drag = cross(&y, &force);
         Trial {
             c: *c,
@@ -186,7 +145,7 @@ impl KirchhoffBody {
             carried,
             y,
             spin,
-            residual: [0, 1, 2].map(|i| (spin[i] - self.h * pi[i]) + 0.5 * self.h * drag[i]),
+            residual: add_scaled(&add_scaled(&spin, -self.h, pi), 0.5 * self.h, &drag),
         }
     }
 
@@ -196,11 +155,10 @@ impl KirchhoffBody {
         let c = &t.c;
         let d = &self.body.coupling;
         // d(2 D^T c / alpha) = (2/alpha) D^T (Id - 2 c c^T / alpha).
-        let along = apply_transposed(d, c).map(|x| 2.0 * t.inverse * x);
+        let along = scaled(2.0 * t.inverse, &apply_transposed(d, c));
         let hat_p = hat(p);
-        let pushed = [0, 1, 2].map(|i| {
-            [0, 1, 2].map(|j| self.h * hat_p[i][j] - 2.0 * t.inverse * (d[j][i] - along[i] * c[j]))
-        });
+        let turning = add_outer(&transposed(d), &scaled(-1.0, &along), c);
+        let pushed = sum(&scaled_matrix(self.h, &hat_p), -2.0 * t.inverse, &turning);
         let du = product(&self.inverse_masses, &pushed);
         let dk = product(d, &du);
         let db = sum(&dk, 2.0, &self.inertia);
@@ -209,19 +167,15 @@ impl KirchhoffBody {
         spin = sum(&spin, -1.0, &hat(&b));
         // -d(c (c . k)) = -(c . k) Id - c k^T - c (c^T dk).
         let row = add_scaled(&t.carried, 1.0, &apply_transposed(&dk, c));
-        spin = sum(&spin, -1.0, &outer(c, &row));
+        spin = add_outer(&spin, &scaled(-1.0, c), &row);
         let ck = dot(c, &t.carried);
-        for (i, line) in spin.iter_mut().enumerate() {
-            line[i] -= ck;
-        }
+        spin[0][0] -= ck;
+        spin[1][1] -= ck;
+        spin[2][2] -= ck;
         let dy = sum(&sum(&du, 1.0, &crossed(c, &du)), -1.0, &hat(&t.u));
         let drag = sum(&crossed(&t.y, &hat_p), -1.0, &crossed(&t.force, &dy));
-        let double = t.c.map(|x| 2.0 * x);
-        let total = [0, 1, 2].map(|i| {
-            [0, 1, 2].map(|j| {
-                t.inverse * (spin[i][j] - t.spin[i] * double[j]) + 0.5 * self.h * drag[i][j]
-            })
-        });
+        let spin = scaled_matrix(t.inverse, &add_outer(&spin, &t.spin, &scaled(-2.0, c)));
+        let total = sum(&spin, 0.5 * self.h, &drag);
         inverse(&total)
     }
 
@@ -241,9 +195,10 @@ impl KirchhoffBody {
         let guess = if self.known < 4 {
             [0.0; 3]
         } else {
-            [0, 1, 2].map(|i| 4.0 * (a[i] + c[i]) - (6.0 * b[i] + d[i]))
+            let near = add_scaled(&scaled(4.0, a), -6.0, b);
+            add_scaled(&add_scaled(&near, 4.0, c), -1.0, d)
         };
-        let scale = pi.iter().fold(1.0_f64, |m, x| m.max(self.h * x.abs()));
+        let scale = (self.h * largest(&pi)).max(1.0);
         let mut trial = self.trial(&guess, &p, &pi);
         let mut iterations = 0;
         loop {
@@ -254,13 +209,12 @@ impl KirchhoffBody {
                 let change = apply(&tangent, &trial.residual);
                 trial = self.trial(&add_scaled(&trial.c, -1.0, &change), &p, &pi);
             }
-            let size = trial.residual.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            let size = largest(&trial.residual);
             if size <= RESIDUAL * scale {
                 break;
             }
             iterations += 1;
-            // Also taken by a NaN.
-            if iterations == MOST_ITERATIONS || trial.c.iter().any(|x| !x.is_finite()) {
+            if iterations == MOST_ITERATIONS || !size.is_finite() {
                 return Err(Unsolvable);
             }
         }
