@@ -34,6 +34,7 @@ pub fn command() -> Command {
         )
         .subcommand(run())
         .subcommand(compare())
+        .subcommand(figures())
         .subcommand(derive())
 }
 
@@ -54,6 +55,22 @@ fn compare() -> Command {
         "Compare at every N-th node; by default such that at most 10000 are compared",
         "Write comparison.csv, comparison.json and comparison.svg into this new folder",
     )
+}
+
+fn figures() -> Command {
+    Command::new("figures")
+        .about("Draw the figures of the thesis's second chapter from the cases of the gallery")
+        .arg(
+            option(
+                "out",
+                "DIR",
+                "Write one SVG per figure into this new folder",
+            )
+            .required(true)
+            .value_parser(value_parser!(std::path::PathBuf)),
+        )
+        .arg(flag("force", "Replace DIR when it holds earlier figures"))
+        .arg(json())
 }
 
 /// What every command that runs a case takes.

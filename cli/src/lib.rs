@@ -1,5 +1,5 @@
-//! The commands of `clebsch`: list the gallery, print a case, run it, compare methods, derive
-//! equations.
+//! The commands of `clebsch`: list the gallery, print a case, run it, compare methods, draw
+//! the figures, derive equations.
 //!
 //! The binary only calls [`run_process`]; everything else takes its arguments, its gallery and its
 //! output streams from outside, so that tests run the very same code on models of their own.
@@ -11,6 +11,7 @@ mod columns;
 pub mod compare;
 pub mod derive;
 pub mod failure;
+mod figures;
 pub mod gallery;
 mod list;
 mod output;
@@ -64,7 +65,7 @@ pub fn execute(
         Err(error) => return answer_clap(&error, streams),
     };
     let as_json = matches.subcommand().is_some_and(|(name, matches)| {
-        ["run", "compare"].contains(&name) && matches.get_flag("json")
+        ["run", "compare", "figures"].contains(&name) && matches.get_flag("json")
     });
     let done = dispatch(&matches, gallery, streams);
     let done = done.and_then(|code| {
@@ -103,6 +104,7 @@ fn dispatch(
         }
         Some(("run", matches)) => run::run(gallery, matches, streams),
         Some(("compare", matches)) => compare::compare(gallery, matches, streams),
+        Some(("figures", matches)) => figures::figures(gallery, matches, streams),
         Some(("derive", matches)) => {
             derive::derive(gallery, matches, streams.out)?;
             Ok(DONE)

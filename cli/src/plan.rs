@@ -64,6 +64,17 @@ impl Plan {
         })
     }
 
+    /// The case as it is, every `every`-th node kept.
+    #[must_use]
+    pub fn of(case: &Case, every: u64) -> Self {
+        Self {
+            case: case.clone(),
+            every: every.max(1),
+            arguments: Value::Null,
+            origin: None,
+        }
+    }
+
     /// Starts the trajectory.
     ///
     /// # Errors

@@ -37,6 +37,7 @@ fn case(name: &str, doc: &str, moments: [f64; 3], momentum: [f64; 3], steps: u64
 pub fn entry() -> Entry {
     let symmetric = [2.0, 2.0, 1.0];
     let general = [3.5, 2.5, 2.0];
+    let flat = [1.0, 2.0, 3.0];
     Entry {
         card: FreeBody::CARD,
         cases: vec![
@@ -55,6 +56,13 @@ pub fn entry() -> Entry {
                 1_000,
             ),
             case(
+                "figure-2-7",
+                "symmetric body over 10000 steps, drift of energy and momentum: thesis figure 2.7",
+                symmetric,
+                [0.1, 0.0, 1.0],
+                10_000,
+            ),
+            case(
                 "figure-2-8",
                 "asymmetric body over 10000 steps, drift of energy and momentum: thesis figure 2.8",
                 general,
@@ -62,9 +70,33 @@ pub fn entry() -> Entry {
                 10_000,
             ),
             case(
+                "figure-2-15",
+                "moments (1, 2, 3), energy for many steps: thesis figure 2.15, whose body is not stated",
+                flat,
+                [-0.5, 0.0, 1.0],
+                1_000,
+            ),
+            case(
+                "figure-2-16",
+                "the same body, a million steps: thesis figure 2.16, time of computation",
+                flat,
+                [-0.5, 0.0, 1.0],
+                1_000_000,
+            ),
+            Case {
+                h: 0.01,
+                ..case(
+                    "figure-2-17",
+                    "the same body with h = 0.01: thesis figure 2.17, drift beside a splitting method",
+                    flat,
+                    [-0.5, 0.0, 1.0],
+                    10_000,
+                )
+            },
+            case(
                 "flat-body",
                 "moments (1, 2, 3), whose Poinsot matrix is singular: the inertia of thesis figure 2.17",
-                [1.0, 2.0, 3.0],
+                flat,
                 [0.5, 0.3, 1.0],
                 10_000,
             ),

@@ -1,6 +1,6 @@
 //! The heavy top in the body representation (thesis 2.7.1, with the corrected (2.155)).
 
-use crate::case::{Case, Entry, diagonal, poinsot};
+use crate::case::{Case, Entry, diagonal, identity, poinsot};
 
 clebsch::model! {
     /// Heavy top, body representation.
@@ -66,15 +66,18 @@ pub fn entry() -> Entry {
                 [0.1, 0.0, 1.0],
                 2e-2,
             ),
-            case(
-                "figure-2-11",
-                "hanging top of thesis figure 2.11; m g χ, which the thesis omits, is chosen as -e₃",
-                symmetric,
-                [0.0, 0.0, -1.0],
-                tilted(0.8, 0.6),
-                [0.1, 0.0, 1.0],
-                2e-2,
-            ),
+            Case {
+                steps: 1_000,
+                ..case(
+                    "figure-2-11",
+                    "hanging top of thesis figure 2.11; m g χ, which the thesis omits, is chosen as -e₃",
+                    symmetric,
+                    [0.0, 0.0, -1.0],
+                    identity(),
+                    [0.1, 0.0, 1.0],
+                    2e-2,
+                )
+            },
             case(
                 "general",
                 "asymmetric top (3.5, 2.5, 2) with its centre of mass off the axes: chaotic",

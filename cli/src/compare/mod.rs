@@ -2,7 +2,7 @@
 //! model and a case; gives errors against a reference, drifts and times, as table, JSON, CSV and plot.
 
 mod clock;
-mod course;
+pub(crate) mod course;
 mod score;
 
 pub(crate) use score::{Curve, Score};

@@ -7,11 +7,11 @@ use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, Value
 use std::ops::Range;
 
 /// Drifts below are drawn here: a tenth of the unit roundoff, so that rounding stays visible above.
-pub(super) const FLOOR: f64 = 1e-17;
+pub(crate) const FLOOR: f64 = 1e-17;
 
 /// A linear axis, or one of decimal logarithms.
 #[derive(Clone, Debug)]
-pub(super) struct Axis {
+pub(crate) struct Axis {
     low: f64,
     high: f64,
     ticks: Vec<(f64, String)>,
@@ -77,6 +77,31 @@ impl Axis {
         Self::linear(low - margin, high + margin, 5)
     }
 
+    /// Decimal logarithms around these positive places, with a tick at each of them.
+    pub fn logarithmic(places: &[f64]) -> Self {
+        let logarithms = || places.iter().map(|place| place.log10());
+        let low = logarithms().fold(f64::INFINITY, f64::min);
+        let high = logarithms().fold(f64::NEG_INFINITY, f64::max);
+        let margin = 0.04 * (high - low).max(0.1);
+        let label = |place: f64| {
+            let exponent = place.log10();
+            if place >= 1000.0 && exponent == exponent.round() {
+                power_of_ten(exponent as i32)
+            } else {
+                plain(place)
+            }
+        };
+        Self {
+            low: low - margin,
+            high: high + margin,
+            ticks: places
+                .iter()
+                .map(|place| (place.log10(), label(*place)))
+                .collect(),
+            factor: None,
+        }
+    }
+
     /// Whole decades around the logarithms in `curves`, not below the floor.
     pub fn decades(curves: &[Curve]) -> Self {
         let values = curves
@@ -125,7 +150,7 @@ fn round_step(step: f64) -> f64 {
 }
 
 /// `⁻¹²`.
-pub(super) fn superscript(number: i32) -> String {
+pub(crate) fn superscript(number: i32) -> String {
     let raised = |letter: char| match letter {
         '-' => '⁻',
         '1' => '¹',
@@ -140,7 +165,7 @@ pub(super) fn superscript(number: i32) -> String {
 }
 
 /// A number for a caption, without the noise of its last digits.
-pub(super) fn plain(number: f64) -> String {
+pub(crate) fn plain(number: f64) -> String {
     let rounded: f64 = format!("{number:.11e}").parse().unwrap_or(number);
     rounded.to_string()
 }

@@ -17,7 +17,7 @@ const PALETTE: [RGBColor; 7] = [
 
 /// Points to be joined, with an entry in the legend unless the label is empty.
 #[derive(Clone, Debug)]
-pub(super) struct Curve {
+pub(crate) struct Curve {
     pub label: String,
     /// A second, fainter line under the label.
     pub note: Option<String>,
@@ -28,7 +28,7 @@ pub(super) struct Curve {
 
 /// Colour and dashes of a curve.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Stroke {
+pub(crate) struct Stroke {
     pub color: RGBColor,
     /// Lengths of dash and gap in pixels; `None` for a full line.
     pub dash: Option<(u32, u32)>,

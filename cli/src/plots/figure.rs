@@ -23,7 +23,7 @@ const EDGE: u32 = 4;
 
 /// Panels that share the axis of time.
 #[derive(Clone, Debug)]
-pub(super) struct Figure {
+pub(crate) struct Figure {
     pub title: String,
     pub subtitle: String,
     pub x: Axis,
@@ -33,7 +33,7 @@ pub(super) struct Figure {
 
 /// One chart.
 #[derive(Clone, Debug)]
-pub(super) struct Panel {
+pub(crate) struct Panel {
     pub caption: String,
     pub y_label: String,
     pub y: Axis,

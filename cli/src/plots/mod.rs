@@ -1,11 +1,11 @@
 //! Plots of a run as SVG: momenta, drift of the invariants, advected vectors.
 //! Takes a finished run and its samples; gives SVG text, or nothing when there is nothing to show.
 
-mod axis;
+pub(crate) mod axis;
 mod comparison;
-mod curve;
-mod figure;
-mod reduce;
+pub(crate) mod curve;
+pub(crate) mod figure;
+pub(crate) mod reduce;
 mod window;
 
 pub(crate) use comparison::comparison;

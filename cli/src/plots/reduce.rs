@@ -12,7 +12,7 @@ const STRETCHES: usize = 1000;
 const ENVELOPE: usize = 150;
 
 /// Least and greatest value of each stretch, in the order in which they occur.
-pub(super) fn extremes(times: &[f64], values: impl Iterator<Item = f64>) -> Vec<(f64, f64)> {
+pub(crate) fn extremes(times: &[f64], values: impl Iterator<Item = f64>) -> Vec<(f64, f64)> {
     let points: Vec<(f64, f64)> = times.iter().copied().zip(values).collect();
     let stretch = points.len().div_ceil(STRETCHES);
     if stretch <= 2 {
@@ -63,7 +63,7 @@ pub(super) fn group(samples: usize) -> usize {
 
 /// The largest value of each group of samples, at the time where it occurs. Groups are of equal size
 /// up to one: a last one of few samples would look like a fall.
-pub(super) fn envelope(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+pub(crate) fn envelope(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let count = points.len().div_ceil(group(points.len()));
     let groups = (0..count).filter_map(|index| {
         points.get(index * points.len() / count..(index + 1) * points.len() / count)

@@ -75,6 +75,11 @@ fn runge_kutta<R: Scheme<14> + 'static>(
     Ok(Box::new(Moving(motion)))
 }
 
+/// Dormand and Prince 5(4) at its smallest tolerance.
+pub(super) fn ode45(problem: &Problem<'_>) -> Result<Box<dyn Method>, Unsolvable> {
+    runge_kutta::<Method54<14>>(problem, Accuracy::of(super::SMALLEST))
+}
+
 /// The methods.
 pub(super) fn bodies() -> Vec<Offer> {
     vec![

@@ -62,6 +62,9 @@ pub type Start = fn(&Problem<'_>) -> Result<Box<dyn Method>, Unsolvable>;
 const TIGHT: f64 = 1e-12;
 const LOOSE: f64 = 1e-9;
 
+/// The smallest tolerance that Matlab's ode45 takes, 100 units of rounding: what it makes of 1e-15.
+const SMALLEST: f64 = 2.3e-14;
+
 fn reference(start: Start) -> Offer {
     Offer {
         name: "verner-98",
@@ -97,6 +100,23 @@ fn eighth(start: Start) -> Offer {
         role: Role::Published,
         start,
     }
+}
+
+/// Dormand and Prince 5(4) at the smallest tolerance that Matlab's ode45 takes, for the models that
+/// the thesis compares with it.
+pub fn ode45(model: &str) -> Option<Offer> {
+    let start: Start = match model {
+        "free-body" => rigid::ode45::<rigid::FreeBody>,
+        "heavy-top" => rigid::ode45::<rigid::HeavyTop>,
+        "coupled-bodies" => coupled::ode45,
+        _ => return None,
+    };
+    Some(Offer {
+        name: "ode45",
+        doc: "Dormand and Prince 5(4), tolerance 2.3e-14",
+        role: Role::Published,
+        start,
+    })
 }
 
 fn fifth(start: Start) -> Offer {

@@ -377,6 +377,11 @@ impl<B: Read> Families<B> {
     }
 }
 
+/// Dormand and Prince 5(4) at its smallest tolerance.
+pub(super) fn ode45<B: Read>(problem: &Problem<'_>) -> Started {
+    runge_kutta::<B, Method54<7>>(problem, Accuracy::of(super::SMALLEST))
+}
+
 /// The free body.
 pub(super) fn free<B: Read>() -> Vec<Offer> {
     let published = |name, doc, start| Offer {
