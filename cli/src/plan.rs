@@ -69,6 +69,7 @@ impl Plan {
     pub fn of(case: &Case, every: u64) -> Self {
         Self {
             case: case.clone(),
+            order: None,
             every: every.max(1),
             arguments: Value::Null,
             origin: None,
