@@ -242,10 +242,8 @@ impl Point<'_> {
                 let a = go(a)?;
                 Matrix::number(a.inverted().map_or(0, |(_, det)| det))
             }
-            Node::Adjugate(a) => {
-                let (inverse, det) = go(a)?.inverted()?;
-                inverse.scaled(det)
-            }
+            // A polynomial: it has a value where the matrix is singular.
+            Node::Adjugate(a) => go(&crate::expr::adjugate_polynomial(a))?,
             Node::Dot(a, b) => go(a)?.transposed().times(&go(b)?),
             Node::Cross(a, b) => hat(&go(a)?).times(&go(b)?),
             Node::Hat(a) => hat(&go(a)?),
@@ -330,6 +328,24 @@ mod tests {
     use super::*;
     use crate::expr;
     use crate::expr::symbol::Role;
+
+    #[test]
+    fn adjugates_have_values_where_determinants_vanish() {
+        let mut s = Symbols::default();
+        let v = s.add(
+            "V",
+            Shape::vector(Dim::Fixed(3)),
+            Structure::General,
+            Role::Parameter,
+        );
+        let v = expr::here(&s, v);
+        let skew = expr::hat(v.clone());
+        let outer = expr::mul(v.clone(), expr::transpose(&s, v));
+        let adjugate = expr::adjugate(&s, &skew);
+        assert!(vanishes(&s, &expr::det(skew)));
+        assert!(vanishes(&s, &expr::sub(adjugate.clone(), outer.clone())));
+        assert!(!vanishes(&s, &expr::add(adjugate, outer)));
+    }
 
     #[test]
     fn identities_of_three_dimensions_vanish() {

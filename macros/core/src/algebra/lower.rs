@@ -71,6 +71,11 @@ impl Algebra<'_> {
             Node::Inverse(a) => self.inverse(&self.lower(a), a),
             Node::Trace(a) => self.trace_poly(&self.lower(a)),
             Node::Det(a) => self.det(&self.lower(a), a),
+            // Of a letter by its inverse, which cancels against the letter. Sums have too many
+            // forms for that, and skew matrices no inverse: their polynomial is decided.
+            Node::Adjugate(a) if !self.is_plain_letter(a) => {
+                self.lower(&expr::adjugate_polynomial(a))
+            }
             Node::Adjugate(a) => {
                 let lowered = self.lower(a);
                 let det = self.det(&lowered, a);
@@ -90,6 +95,15 @@ impl Algebra<'_> {
             Node::Vee(a) => self.linear(&self.lower(a), shape, |w| self.vee_word(w)),
             Node::Part(part, a) => self.part(*part, &self.lower(a), a),
             Node::Call(function, a) => self.call(*function, self.lower(a), a),
+        }
+    }
+
+    /// Whether it is one letter, transposed or not, that may have an inverse.
+    fn is_plain_letter(&self, a: &Expr) -> bool {
+        match a.node() {
+            Node::Letter(at) => self.symbols.get(at.symbol).structure != Structure::Skew,
+            Node::Transpose(inner) => self.is_plain_letter(inner),
+            _ => false,
         }
     }
 
