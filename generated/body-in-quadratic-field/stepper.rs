@@ -169,7 +169,7 @@ pub mod body_in_quadratic_field {
             let edge = &work.edge;
             let Λ_moved = match edge.turn(&self.factor, h, &state.Λ) {
                 Ok(turned) => turned,
-                Err(e) => return Err(self.refused(*state, h, e)),
+                Err(e) => return Err(self.refused(*state, &self.factor, h, e)),
             };
             let BodyInQuadraticFieldParameters { K, .. } = self.parameters;
             let Λ_next = Λ_moved.matrix();
@@ -213,15 +213,12 @@ pub mod body_in_quadratic_field {
         fn refused(
             &self,
             state: BodyInQuadraticFieldState<T>,
+            factor: &Poinsot<T>,
             h: T,
             e: MoserVeselovError,
         ) -> StepError {
             let e = e
-                .with_searched_step(
-                    &self.factor,
-                    h,
-                    |trial| self.edge(&state, trial).body(),
-                );
+                .with_searched_step(factor, h, |trial| self.edge(&state, trial).body());
             StepCause::from(e).at_node(state.node)
         }
         /// `Γ` at the node of this state.

@@ -77,14 +77,15 @@ pub mod free_body_spatial {
             self.node
         }
     }
-    /// The step and the last velocities, from which the next solve starts.
+    /// The step and the constants of the trajectory. Made anew for a state of another body.
     #[derive(Clone, Copy, Debug)]
     pub struct FreeBodySpatialWorkspace<T = f64> {
         h: T,
-        guess: [Rotation<T>; 1],
+        solver: Free<T>,
+        J: SMatrix<T, 3, 3>,
     }
     impl<T: Real> FreeBodySpatial<T> {
-        /// Starts a trajectory with step `h` from data at node 0.
+        /// Starts a trajectory with step `h` from data at node 0; of order two, symplectic.
         ///
         /// # Errors
         /// Names the value that is not finite, or says why the first step cannot be solved and
@@ -94,9 +95,23 @@ pub mod free_body_spatial {
             initial: FreeBodySpatialInitial<T>,
             h: T,
         ) -> Result<(FreeBodySpatialState<T>, FreeBodySpatialWorkspace<T>), StartError> {
+            self.start_of_order(initial, h, Order::Two)
+        }
+        /// As `start`, with steps of the given order: the moments are modified once, a step
+        /// costs the same. Above two the step is Poisson in the momentum, but symplectic with
+        /// the attitude only up to its error.
+        ///
+        /// # Errors
+        /// As `start`.
+        pub fn start_of_order(
+            &self,
+            initial: FreeBodySpatialInitial<T>,
+            h: T,
+            order: Order,
+        ) -> Result<(FreeBodySpatialState<T>, FreeBodySpatialWorkspace<T>), StartError> {
             validate::positive_step(h)?;
             let state = self.at_node_0(initial)?;
-            Ok((state, self.workspace(&state, h)?))
+            Ok((state, self.workspace(&state, h, order)?))
         }
         /// The state at node 0.
         fn at_node_0(
@@ -126,78 +141,70 @@ pub mod free_body_spatial {
             &self,
             state: &FreeBodySpatialState<T>,
             h: T,
+            order: Order,
         ) -> Result<FreeBodySpatialWorkspace<T>, StartError> {
             let state = *state;
             let work = FreeBodySpatialWorkspace {
                 h,
-                guess: [Rotation::identity(); 1],
+                solver: Free::start_of_order(
+                    &self.factor(&state)?,
+                    &state.Λ,
+                    &state.momentum,
+                    h,
+                    order,
+                )?,
+                J: state.J,
             };
             let (mut trial, mut scratch) = (state, work);
             self.step(&mut trial, &mut scratch)
                 .map_err(|e| StartError::Refused(e.cause))?;
             Ok(work)
         }
-        /// One step, in place. Solved thus: C depends on the step or changes along the motion: Newton on the derived residual.
+        /// The body behind the quantities of a state.
+        #[inline(never)]
+        fn factor(
+            &self,
+            state: &FreeBodySpatialState<T>,
+        ) -> Result<Poinsot<T>, ParameterError> {
+            let J = state.J;
+            Poinsot::new(J).map_err(|e| e.in_field("J_k"))
+        }
+        /// One step, in place. Solved thus: C is carried by the motion, constant in the body, and no node term acts, so κ is conserved: solved once, every step explicit.
         ///
         /// # Errors
-        /// When the iteration does not converge, with its residual; the state is then unchanged.
+        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
         #[inline]
         pub fn step(
             &self,
             state: &mut FreeBodySpatialState<T>,
             work: &mut FreeBodySpatialWorkspace<T>,
         ) -> Result<(), StepError> {
-            let h = work.h;
-            let Λ = state.Λ.matrix();
-            let J_reference = state.J;
-            let J = Λ * (J_reference * Λ.transpose());
-            let momenta: [SVector<T, 3>; 1] = [state.momentum.0];
-            let residual = |trial: &[Rotation<T>; 1]| {
-                let ω = trial[0].matrix();
-                let parts: [SVector<T, 3>; 1] = [
-                    (axial_of_difference(&(ω * J)) / h) - momenta[0],
-                ];
-                parts[0]
-            };
-            let tangent = |trial: &[Rotation<T>; 1]| {
-                let ω = trial[0].matrix();
-                let mut matrix = SMatrix::<T, 3, 3>::zeros();
-                for axis in 0..3 {
-                    let η = basis::<T>(axis);
-                    let parts: [SVector<T, 3>; 1] = [
-                        axial_of_difference(&(ω * (η * J))) / h,
-                    ];
-                    matrix.set_column(axis, &parts[0]);
+            if work.J != state.J {
+                let Ok(factor) = self.factor(state) else {
+                    return Err(
+                        StepCause::NotFinite {
+                            what: "body",
+                        }
+                            .at_node(state.node),
+                    );
+                };
+                let order = work.solver.order();
+                match Free::start_of_order(
+                    &factor,
+                    &state.Λ,
+                    &state.momentum,
+                    work.h,
+                    order,
+                ) {
+                    Ok(solver) => work.solver = solver,
+                    Err(e) => return Err(StepCause::from(e).at_node(state.node)),
                 }
-                matrix
-            };
-            let scale = {
-                let trial = &work.guess;
-                let ω = trial[0].matrix();
-                let mut total = 0.0;
-                total += length(&momenta[0]).magnitude();
-                total += length(&(-(J / h))).magnitude();
-                total
-            };
-            let solved = match newton::solve(work.guess, scale, residual, tangent) {
-                Ok(found) => found.element,
-                Err(e) => return Err(StepCause::from(e).at_node(state.node)),
-            };
-            let ω_matrix = solved[0].matrix();
-            let Λ_moved = solved[0] * state.Λ;
-            let momentum_next = state.momentum.0;
-            if !(all_finite(&momentum_next)) {
-                return Err(
-                    StepCause::NotFinite {
-                        what: "momentum",
-                    }
-                        .at_node(state.node),
-                );
+                work.J = state.J;
             }
-            state.Λ = Λ_moved;
-            state.momentum = SpatialMomentum(momentum_next);
+            if let Err(e) = work.solver.follow(&mut state.Λ, &state.momentum) {
+                return Err(StepCause::from(e).at_node(state.node));
+            }
             state.node += 1;
-            work.guess = solved;
             Ok(())
         }
         /// `J` at the node of this state.
@@ -218,7 +225,7 @@ pub mod free_body_spatial {
             state: &Self::State,
             h: T,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h)
+            self.workspace(state, h, Order::Two)
         }
         #[inline(always)]
         fn advance(
@@ -227,6 +234,22 @@ pub mod free_body_spatial {
             work: &mut Self::Workspace,
         ) -> Result<(), StepError> {
             self.step(state, work)
+        }
+        #[inline(always)]
+        fn advance_many(
+            &self,
+            state: &mut Self::State,
+            work: &mut Self::Workspace,
+            count: u64,
+        ) -> Result<(), StepError> {
+            if let Err(e) = work
+                .solver
+                .follow_many(&mut state.Λ, &state.momentum, count)
+            {
+                return Err(StepCause::from(e).at_node(state.node));
+            }
+            state.node += count;
+            Ok(())
         }
         fn node(state: &Self::State) -> u64 {
             state.node
@@ -332,8 +355,7 @@ pub mod free_body_spatial {
     struct FreeBodySpatialTrajectory {
         model: FreeBodySpatial<f64>,
         state: FreeBodySpatialState<f64>,
-        steps: Steps<FreeBodySpatial<f64>>,
-        h: f64,
+        work: FreeBodySpatialWorkspace<f64>,
         start: FreeBodySpatialState<f64>,
     }
     impl Trajectory for FreeBodySpatialTrajectory {
@@ -341,10 +363,10 @@ pub mod free_body_spatial {
             self.state.node()
         }
         fn time(&self) -> f64 {
-            self.h * self.state.node() as f64
+            self.work.h * self.state.node() as f64
         }
         fn step(&mut self) -> Result<(), StepError> {
-            self.steps.step(&self.model, &mut self.state)
+            self.model.step(&mut self.state, &mut self.work)
         }
         fn card(&self) -> &'static Card {
             &FreeBodySpatial::<f64>::CARD
@@ -360,7 +382,8 @@ pub mod free_body_spatial {
         fn invariants(&self, out: &mut [f64]) {
             let state = &self.state;
             let out = put(out, [self.model.energy(state)]);
-            let out = put(out, rows(state.spatial_momentum().0));
+            let momentum = self.work.solver.body_momentum().to_space(&state.Λ());
+            let out = put(out, rows(momentum.0));
             let out = put(out, [self.model.momentum_squared(state)]);
             let out = put(out, [self.model.trace_J1(state)]);
             let out = put(out, [self.model.trace_J2(state)]);
@@ -439,10 +462,10 @@ pub mod free_body_spatial {
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
             summary: "action of one step   -tr(ω_k J_k)/h\nmomentum of Λ        ω_k J_k/h - J_k ω_kᵀ/h\nRiccati form         exact, C = J_k\ninvariants           energy, spatial_momentum, momentum_squared, trace_J1, trace_J2, trace_J3\ntime reversal        symmetric: second order\ncertificate          16 identities proved by normal form",
-            solver: "Newton: C depends on the step or changes along the motion: Newton on the derived residual",
+            solver: "Moser-Veselov: C is carried by the motion, constant in the body, and no node term acts, so κ is conserved: solved once, every step explicit",
             order: 2u32,
-            orders: &[2, 4, 6, 8],
-            preprocessed: false,
+            orders: &[2, 4, 6, 8, 10],
+            preprocessed: true,
             reversible: true,
             parameters: &[],
             initial: &[
@@ -581,14 +604,13 @@ pub mod free_body_spatial {
                 ),
                 J: matrix_of("J", initial.get(2usize))?,
             };
-            let state = model.at_node_0(initial)?;
-            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)?;
+            let order = preprocessing_order(settings, Self::CARD.orders)?;
+            let (state, work) = model.start_of_order(initial, settings.h, order)?;
             Ok(
                 Box::new(FreeBodySpatialTrajectory {
                     model,
                     state,
-                    steps,
-                    h: settings.h,
+                    work,
                     start: state,
                 }),
             )

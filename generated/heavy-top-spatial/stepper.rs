@@ -84,11 +84,13 @@ pub mod heavy_top_spatial {
             self.node
         }
     }
-    /// The step and the last velocities, from which the next solve starts.
+    /// The step, the body, and the momentum of the edge that begins at the state `here`. Made anew for any other state.
     #[derive(Clone, Copy, Debug)]
     pub struct HeavyTopSpatialWorkspace<T = f64> {
         h: T,
-        guess: [Rotation<T>; 1],
+        factor: Poinsot<T>,
+        edge: Edge<T>,
+        here: HeavyTopSpatialState<T>,
     }
     impl<T: Real> HeavyTopSpatial<T> {
         /// Starts a trajectory with step `h` from data at node 0.
@@ -144,17 +146,28 @@ pub mod heavy_top_spatial {
             let state = *state;
             let work = HeavyTopSpatialWorkspace {
                 h,
-                guess: [Rotation::identity(); 1],
+                factor: self.factor(&state)?,
+                edge: self.edge(&state, h),
+                here: state,
             };
             let (mut trial, mut scratch) = (state, work);
             self.step(&mut trial, &mut scratch)
                 .map_err(|e| StartError::Refused(e.cause))?;
             Ok(work)
         }
-        /// One step, in place. Solved thus: C depends on the step or changes along the motion: Newton on the derived residual.
+        /// The body behind the quantities of a state.
+        #[inline(never)]
+        fn factor(
+            &self,
+            state: &HeavyTopSpatialState<T>,
+        ) -> Result<Poinsot<T>, ParameterError> {
+            let J = state.J;
+            Poinsot::new(J).map_err(|e| e.in_field("J_k"))
+        }
+        /// One step, in place. Solved thus: C is carried by the motion, constant in the body, and symmetric: explicit after one quartic a step.
         ///
         /// # Errors
-        /// When the iteration does not converge, with its residual; the state is then unchanged.
+        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
         #[inline]
         pub fn step(
             &self,
@@ -162,54 +175,36 @@ pub mod heavy_top_spatial {
             work: &mut HeavyTopSpatialWorkspace<T>,
         ) -> Result<(), StepError> {
             let h = work.h;
+            if work.here != *state {
+                work.factor = match self.factor(state) {
+                    Ok(factor) => factor,
+                    Err(_) => {
+                        return Err(
+                            StepCause::NotFinite {
+                                what: "body",
+                            }
+                                .at_node(state.node),
+                        );
+                    }
+                };
+                work.edge = self.edge(state, h);
+                work.here = *state;
+            }
+            let edge = &work.edge;
+            let Λ_moved = match edge.turn(&work.factor, h, &state.Λ) {
+                Ok(turned) => turned,
+                Err(e) => return Err(self.refused(*state, &work.factor, h, e)),
+            };
             let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
-            let Λ = state.Λ.matrix();
-            let J_reference = state.J;
-            let J = Λ * (J_reference * Λ.transpose());
-            let χ_reference = state.χ;
-            let χ = Λ * χ_reference;
-            let momenta: [SVector<T, 3>; 1] = [state.momentum.0];
-            let residual = |trial: &[Rotation<T>; 1]| {
-                let ω = trial[0].matrix();
-                let parts: [SVector<T, 3>; 1] = [
-                    (axial_of_difference(&(ω * J)) / h
-                        - z.cross(&χ) * T::from_f64(0.5) * h * w) - momenta[0],
-                ];
-                parts[0]
-            };
-            let tangent = |trial: &[Rotation<T>; 1]| {
-                let ω = trial[0].matrix();
-                let mut matrix = SMatrix::<T, 3, 3>::zeros();
-                for axis in 0..3 {
-                    let η = basis::<T>(axis);
-                    let parts: [SVector<T, 3>; 1] = [
-                        axial_of_difference(&(ω * (η * J))) / h,
-                    ];
-                    matrix.set_column(axis, &parts[0]);
-                }
-                matrix
-            };
-            let scale = {
-                let trial = &work.guess;
-                let ω = trial[0].matrix();
-                let mut total = 0.0;
-                total += length(&momenta[0]).magnitude();
-                total += length(&(-(J / h))).magnitude();
-                total
-            };
-            let solved = match newton::solve(work.guess, scale, residual, tangent) {
-                Ok(found) => found.element,
-                Err(e) => return Err(StepCause::from(e).at_node(state.node)),
-            };
-            let ω_matrix = solved[0].matrix();
-            let Λ_moved = solved[0] * state.Λ;
             let Λ_next = Λ_moved.matrix();
             let χ_reference = state.χ;
             let χ_next = Λ_next * χ_reference;
-            let momentum_next = state.momentum.0
-                + z.cross(&χ) * T::from_f64(0.5) * h * w
-                + z.cross(&χ_next) * T::from_f64(0.5) * h * w;
-            if !(all_finite(&momentum_next)) {
+            let space = edge.space();
+            let kick = (z * h * w).cross(&χ_next);
+            let momentum_next = space + kick * T::from_f64(0.5);
+            let left = space + kick;
+            let edge_next = Edge::new(Λ_next.tr_mul(&left), left);
+            if !all_finite(&momentum_next) {
                 return Err(
                     StepCause::NotFinite {
                         what: "momentum",
@@ -217,11 +212,39 @@ pub mod heavy_top_spatial {
                         .at_node(state.node),
                 );
             }
-            state.Λ = Λ_moved;
-            state.momentum = SpatialMomentum(momentum_next);
-            state.node += 1;
-            work.guess = solved;
+            *state = HeavyTopSpatialState {
+                Λ: Λ_moved.rotation(),
+                momentum: SpatialMomentum(momentum_next),
+                J: state.J,
+                χ: state.χ,
+                node: state.node + 1,
+            };
+            work.edge = edge_next;
+            work.here = *state;
             Ok(())
+        }
+        /// The edge that begins at this state, for a step `h`.
+        #[inline(never)]
+        fn edge(&self, state: &HeavyTopSpatialState<T>, h: T) -> Edge<T> {
+            let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
+            let Λ = state.Λ.matrix();
+            let χ_reference = state.χ;
+            let χ = Λ * χ_reference;
+            let space = state.momentum.0 - (-(z.cross(&χ) * T::from_f64(0.5) * h * w));
+            Edge::new(state.Λ.matrix().tr_mul(&space), space)
+        }
+        /// Says how far the step is beyond the bound, and which step could be solved.
+        #[cold]
+        fn refused(
+            &self,
+            state: HeavyTopSpatialState<T>,
+            factor: &Poinsot<T>,
+            h: T,
+            e: MoserVeselovError,
+        ) -> StepError {
+            let e = e
+                .with_searched_step(factor, h, |trial| self.edge(&state, trial).body());
+            StepCause::from(e).at_node(state.node)
         }
         /// `J` at the node of this state.
         #[inline]
@@ -516,7 +539,7 @@ pub mod heavy_top_spatial {
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
             summary: "action of one step   -tr(ω_k J_k)/h - ½ h w χ_k·z - ½ h w χ_{k+1}·z\nmomentum of Λ        ω_k J_k/h - J_k ω_kᵀ/h\nRiccati form         exact, C = J_k\ninvariants           energy, momentum_z, chi_squared, trace_J1, trace_J2, trace_J3, chi_J_chi\ntime reversal        symmetric: second order\ncertificate          22 identities proved by normal form",
-            solver: "Newton: C depends on the step or changes along the motion: Newton on the derived residual",
+            solver: "Moser-Veselov: C is carried by the motion, constant in the body, and symmetric: explicit after one quartic a step",
             order: 2u32,
             orders: &[2, 4, 6, 8],
             preprocessed: false,

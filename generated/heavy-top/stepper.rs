@@ -156,7 +156,7 @@ pub mod heavy_top {
             let edge = &work.edge;
             let Λ_moved = match edge.turn(&self.factor, h, &state.Λ) {
                 Ok(turned) => turned,
-                Err(e) => return Err(self.refused(*state, h, e)),
+                Err(e) => return Err(self.refused(*state, &self.factor, h, e)),
             };
             let HeavyTopParameters { gU, z, .. } = self.parameters;
             let Λ_next = Λ_moved.matrix();
@@ -197,15 +197,12 @@ pub mod heavy_top {
         fn refused(
             &self,
             state: HeavyTopState<T>,
+            factor: &Poinsot<T>,
             h: T,
             e: MoserVeselovError,
         ) -> StepError {
             let e = e
-                .with_searched_step(
-                    &self.factor,
-                    h,
-                    |trial| self.edge(&state, trial).body(),
-                );
+                .with_searched_step(factor, h, |trial| self.edge(&state, trial).body());
             StepCause::from(e).at_node(state.node)
         }
         /// `Γ` at the node of this state.

@@ -221,7 +221,7 @@ pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
     });
     bounded(&algebra)?;
     let certificate = certificate?;
-    let solve = recognise::recognise(&spec, &letters, &balances, &algebra);
+    let solve = recognise::recognise(&spec, &letters, &balances, &transports, &algebra);
     let reversible = reversal::is_reversible(&spec, &action, &algebra);
     let limit = limit::limit(&spec, &letters, &action, &variations, &algebra);
     let continuous = limit

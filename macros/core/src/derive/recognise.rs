@@ -4,6 +4,7 @@
 
 use super::Letters;
 use super::balance::{Balance, shorter};
+use super::transport::Transport;
 use super::variation::at;
 use crate::algebra::{Algebra, Factor, Monomial, Poly, Source};
 use crate::check::spec::{Side, Spec};
@@ -32,6 +33,12 @@ pub struct MoserVeselov {
     /// The part of the node momentum that does not depend on the velocity, as a covector: the
     /// edge momentum is `N = μ - rest`.
     pub rest: Expr,
+    /// `C` as the body sees it, where it is constant there: made of parameters and of advected
+    /// quantities by their constant values at the identity, for which their letters stand.
+    pub in_body: Option<Expr>,
+    /// What the momentum receives at the end of the edge, taken at the node there, on the side of
+    /// the configuration; where that is all the node does: then the next edge can be made there.
+    pub arrive: Option<Expr>,
 }
 
 /// How the step is solved.
@@ -58,35 +65,46 @@ pub struct Solve {
 }
 
 /// Recognises.
-pub fn recognise(spec: &Spec, letters: &Letters, balances: &[Balance], algebra: &Algebra) -> Solve {
+pub fn recognise(
+    spec: &Spec,
+    letters: &Letters,
+    balances: &[Balance],
+    transports: &[Transport],
+    algebra: &Algebra,
+) -> Solve {
     let riccati: Vec<Riccati> = balances
         .iter()
         .enumerate()
-        .map(|(i, b)| riccati(spec, letters, b, i, algebra))
+        .map(|(i, b)| riccati(spec, letters, b, i, transports, algebra))
         .collect();
     let three = |i: usize| {
         let size = spec.configurations[i].group.size();
         size == Dim::Fixed(3) && spec.configurations[i].group.is_orthogonal()
     };
     let (method, reason) = match riccati.as_slice() {
-        [Riccati::Exact(mv)] if three(0) && mv.symmetric && !is_constant(letters, mv) => (
+        [Riccati::Exact(mv)] if three(0) && mv.symmetric && is_free(mv) => (
+            Method::FreeMoserVeselov,
+            format!(
+                "C is {} and no node term acts, so κ is conserved: solved once, every step explicit",
+                constancy(letters, mv)
+            ),
+        ),
+        [Riccati::Exact(mv)]
+            if three(0) && mv.symmetric && (is_constant(letters, mv) || keeps_edge(mv)) =>
+        {
+            (
+                Method::ForcedMoserVeselov,
+                format!(
+                    "C is {} and symmetric: explicit after one quartic a step",
+                    constancy(letters, mv)
+                ),
+            )
+        }
+        [Riccati::Exact(mv)] if three(0) && mv.symmetric => (
             Method::Newton,
             "C depends on the step or changes along the motion: Newton on the derived residual"
                 .to_owned(),
         ),
-        [Riccati::Exact(mv)] if three(0) && mv.symmetric => {
-            if is_free(spec, balances, mv) {
-                (
-                    Method::FreeMoserVeselov,
-                    "C is constant and no node term acts, so κ is conserved: solved once, every step explicit".to_owned(),
-                )
-            } else {
-                (
-                    Method::ForcedMoserVeselov,
-                    "C is constant and symmetric: explicit after one quartic a step".to_owned(),
-                )
-            }
-        }
         [Riccati::Exact(mv)] if three(0) && !mv.symmetric => (
             Method::Newton,
             "C is not symmetric: Newton on the derived residual".to_owned(),
@@ -121,13 +139,109 @@ fn is_constant(letters: &Letters, mv: &MoserVeselov) -> bool {
         .all(|l| s.get(l.symbol).role == Role::Parameter)
 }
 
-/// Whether the motion is free: nothing but the velocity moves the momentum.
-fn is_free(spec: &Spec, balances: &[Balance], mv: &MoserVeselov) -> bool {
-    let body = spec.configurations[0].side == Side::Body;
-    body && mv.rest.is_zero() && balances[0].node_out.is_zero() && balances[0].node_in.is_zero()
+/// How `C` is constant.
+fn constancy(letters: &Letters, mv: &MoserVeselov) -> &'static str {
+    match is_constant(letters, mv) {
+        true => "constant",
+        false => "carried by the motion, constant in the body,",
+    }
 }
 
-fn riccati(spec: &Spec, letters: &Letters, b: &Balance, i: usize, algebra: &Algebra) -> Riccati {
+/// Whether the motion is free: nothing but the velocity moves the momentum.
+fn is_free(mv: &MoserVeselov) -> bool {
+    let arrive = mv.arrive.as_ref();
+    mv.in_body.is_some() && mv.rest.is_zero() && arrive.is_some_and(Expr::is_zero)
+}
+
+/// Whether the momentum of the next edge can be made at the end of a step and kept.
+pub fn keeps_edge(mv: &MoserVeselov) -> bool {
+    mv.in_body.is_some() && mv.arrive.is_some()
+}
+
+/// `C` in the frame of the body, if it is constant there.
+fn in_body(
+    spec: &Spec,
+    letters: &Letters,
+    i: usize,
+    factor: &Expr,
+    transports: &[Transport],
+    algebra: &Algebra,
+) -> Option<Expr> {
+    let s = &letters.symbols;
+    let c = &spec.configurations[i];
+    let values: Vec<(Letter, Expr)> = spec
+        .advected
+        .iter()
+        .zip(transports)
+        .filter_map(|(a, t)| match t {
+            Transport::Defined(value) | Transport::Carried { value, .. } => {
+                Some((at(a.quantity, Shift::HERE), value.clone()))
+            }
+            Transport::Advanced => None,
+        })
+        .collect();
+    let known = |l: &Letter| {
+        s.get(l.symbol).role == Role::Parameter || values.iter().any(|(letter, _)| letter == l)
+    };
+    if !expr::letters(factor).iter().all(known) {
+        return None;
+    }
+    let carried = expr::substitute(s, factor, &values);
+    if c.side == Side::Body && !expr::contains_role(s, &carried, Role::Element) {
+        return Some(carried);
+    }
+    let seen = match c.side {
+        Side::Body => carried,
+        Side::Spatial => {
+            let element = expr::here(s, c.element);
+            expr::product([expr::transpose(s, element.clone()), carried, element])
+        }
+    };
+    let reduced = shorter(algebra, algebra.raise(&algebra.lower(&seen)));
+    (!expr::contains_role(s, &reduced, Role::Element)).then_some(reduced)
+}
+
+/// What arrives at the node at the end of the edge; see [`MoserVeselov::arrive`].
+fn arrive(
+    spec: &Spec,
+    letters: &Letters,
+    i: usize,
+    b: &Balance,
+    rest: &Expr,
+    transports: &[Transport],
+    algebra: &Algebra,
+) -> Option<Expr> {
+    let s = &letters.symbols;
+    if transports.iter().any(|t| matches!(t, Transport::Advanced)) {
+        return None;
+    }
+    let value = match spec.configurations[i].side {
+        Side::Body => (*rest == b.node_out).then(|| b.node_in.clone())?,
+        Side::Spatial => {
+            let total = expr::add(b.increment.clone()?, rest.clone());
+            let short = match total.shape().is_vector() {
+                true => expr::vee(algebra.raise(&algebra.lower(&expr::hat(total.clone())))),
+                false => algebra.raise(&algebra.lower(&total)),
+            };
+            shorter(algebra, short)
+        }
+    };
+    let here = |l: &Letter| {
+        let constant = matches!(s.get(l.symbol).role, Role::Parameter | Role::Step);
+        !constant && l.shift == Shift::HERE
+    };
+    let moving = |e: &Expr| expr::contains_role(s, e, Role::Velocity);
+    (!moving(&value) && !moving(rest) && !expr::letters(&value).iter().any(here)).then_some(value)
+}
+
+fn riccati(
+    spec: &Spec,
+    letters: &Letters,
+    b: &Balance,
+    i: usize,
+    transports: &[Transport],
+    algebra: &Algebra,
+) -> Riccati {
     let s = &letters.symbols;
     let c = &spec.configurations[i];
     if !c.group.is_orthogonal() {
@@ -179,6 +293,8 @@ fn riccati(spec: &Spec, letters: &Letters, b: &Balance, i: usize, algebra: &Alge
         rest
     };
     let mv = MoserVeselov {
+        in_body: in_body(spec, letters, i, &factor, transports, algebra),
+        arrive: arrive(spec, letters, i, b, &rest, transports, algebra),
         factor: factor.clone(),
         symmetric,
         rest: rest.clone(),

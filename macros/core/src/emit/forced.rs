@@ -2,45 +2,43 @@
 //! Takes the derivation; gives `step`, the edge momentum and the words of a refusal.
 
 use super::expression::{Bindings, program};
-use super::items::{letters_of, node_locals, parameter_locals, with_transports};
+use super::items::{self, letters_of, node_locals, parameter_locals, with_transports};
 use super::names::{Names, item, own, per_configuration, tagged, variable};
 use super::sizes::Generics;
 use super::step::{Update, at, finish, here, step_signature, update};
 use crate::algebra::Rational;
 use crate::check::spec::Side;
 use crate::derive::Derivation;
-use crate::derive::recognise::{Method, MoserVeselov, Riccati};
-use crate::derive::transport::Transport;
+use crate::derive::recognise::{self, Method, MoserVeselov, Riccati};
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Node, Shift};
 use crate::schedule;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-/// What acts at the two nodes of an edge, where the momentum of the next edge can be made with the
-/// new node and kept: on the body side, when nothing but the node's own torques stands between
-/// momentum and edge momentum, and these follow from the state's group element.
+/// What leaves the first node of an edge and what arrives at its second, where the momentum of the
+/// next edge can be made with the new node and kept.
 fn torques(d: &Derivation) -> Option<(Expr, Expr)> {
-    let (Method::ForcedMoserVeselov, Some(Riccati::Exact(mv))) =
-        (&d.solve.method, d.solve.riccati.first())
-    else {
-        return None;
-    };
-    let s = &d.letters.symbols;
-    let advanced = |t: &Transport| matches!(t, Transport::Advanced);
-    let Update::Acted { leave, arrive } = update(d, 0) else {
-        return None;
-    };
-    let own = mv.rest == d.balances.first()?.node_out;
-    let moving = [&leave, &arrive]
-        .iter()
-        .any(|e| expr::contains_role(s, e, Role::Velocity));
-    (own && !moving && !d.transports.iter().any(advanced)).then_some((leave, arrive))
+    match (&d.solve.method, d.solve.riccati.first()) {
+        (Method::ForcedMoserVeselov, Some(Riccati::Exact(mv))) if recognise::keeps_edge(mv) => {
+            let arrive = mv.arrive.clone()?;
+            Some((expr::neg(mv.rest.clone()), arrive))
+        }
+        _ => None,
+    }
 }
 
 /// Whether the workspace keeps the edge that begins at the state.
 pub(super) fn keeps_edge(d: &Derivation) -> bool {
     torques(d).is_some()
+}
+
+/// The body to solve with.
+fn body(d: &Derivation) -> TokenStream {
+    match items::factor_references(d).is_empty() {
+        true => quote!(&self.factor),
+        false => quote!(&work.factor),
+    }
 }
 
 /// The functions of the stepper that make a step.
@@ -62,8 +60,8 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
 
         /// Says how far the step is beyond the bound, and which step could be solved.
         #[cold]
-        fn refused(&self, state: #state #used, h: T, e: MoserVeselovError) -> StepError {
-            let e = e.with_searched_step(&self.factor, h, |trial| #momentum);
+        fn refused(&self, state: #state #used, factor: &Poinsot<T>, h: T, e: MoserVeselovError) -> StepError {
+            let e = e.with_searched_step(factor, h, |trial| #momentum);
             StepCause::from(e).at_node(state.#node)
         }
     }
@@ -76,7 +74,7 @@ fn begin(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
     let state = item(d, "State");
     let c = &d.spec.configurations[0];
     let momentum = per_configuration(d, "momentum", 0);
-    let element = variable(s, c.element);
+    let (element, own) = (variable(s, c.element), own(d, c.element));
     let mut bindings = Bindings::new();
     let mut needed = letters_of([&mv.rest]);
     if c.side == Side::Body {
@@ -93,6 +91,20 @@ fn begin(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
     };
     let rest = (!mv.rest.is_zero()).then(|| quote!(- (#(#values)*)));
     let used = Generics::of(d).used();
+    if keeps_edge(d) && c.side == Side::Spatial {
+        let space = names.local("space");
+        return quote! {
+            /// The edge that begins at this state, for a step `h`.
+            #[inline(never)]
+            fn edge(&self, state: &#state #used, #step: T) -> Edge<T> {
+                #parameters
+                #locals
+                #lets
+                let #space = #node_momentum #rest;
+                Edge::new(state.#own.matrix().tr_mul(&#space), #space)
+            }
+        };
+    }
     if keeps_edge(d) {
         let kick = names.local("kick");
         // The spatial momentum is not taken through the body frame and back: each way would leave
@@ -154,13 +166,30 @@ fn kept(d: &Derivation, names: &Names, leave: &Expr, arrive: &Expr) -> TokenStre
     let p = schedule::program(s, &wanted, "t");
     let (lets, values) = program(&p, &bindings);
     let act = match values.as_slice() {
-        [both] => {
+        [both] if c.side == Side::Body => {
             let [torque, kick] = ["torque", "kick"].map(|base| names.local(base));
             quote! {
                 let #torque = #both;
                 let #kick = #next * #torque;
                 let #momentum_next = #space + #kick * T::from_f64(0.5);
                 let #following = Edge::new(#next.tr_mul(&#space) + #torque, #space + #kick);
+            }
+        }
+        [both] => {
+            let [kick, left] = ["kick", "left"].map(|base| names.local(base));
+            quote! {
+                let #kick = #both;
+                let #momentum_next = #space + #kick * T::from_f64(0.5);
+                let #left = #space + #kick;
+                let #following = Edge::new(#next.tr_mul(&#left), #left);
+            }
+        }
+        [arrived, kick] if c.side == Side::Spatial => {
+            let left = names.local("left");
+            quote! {
+                let #momentum_next = #space + #arrived;
+                let #left = #momentum_next + #kick;
+                let #following = Edge::new(#next.tr_mul(&#left), #left);
             }
         }
         _ => {
@@ -185,19 +214,29 @@ fn kept(d: &Derivation, names: &Names, leave: &Expr, arrive: &Expr) -> TokenStre
             }
         }
     };
+    let factor = body(d);
+    let another = (!items::factor_references(d).is_empty()).then(|| {
+        quote! {
+            work.factor = match self.factor(state) {
+                Ok(factor) => factor,
+                Err(_) => return Err(StepCause::NotFinite { what: "body" }.at_node(state.#node)),
+            };
+        }
+    });
     let references = super::items::kept(d).into_iter().map(|id| own(d, id));
     step_signature(
         d,
         quote! {
             let #step = work.h;
             if work.here != *state {
+                #another
                 work.edge = self.edge(state, #step);
                 work.here = *state;
             }
             let #edge = &work.edge;
-            let #moved = match #edge.turn(&self.factor, #step, &state.#element) {
+            let #moved = match #edge.turn(#factor, #step, &state.#element) {
                 Ok(turned) => turned,
-                Err(e) => return Err(self.refused(*state, #step, e)),
+                Err(e) => return Err(self.refused(*state, #factor, #step, e)),
             };
             #parameters
             #locals
@@ -291,14 +330,15 @@ fn plain(d: &Derivation, names: &Names) -> TokenStream {
         &|_| quote!(#omega),
         TokenStream::new(),
     );
+    let factor = body(d);
     step_signature(
         d,
         quote! {
             let #step = work.h;
             let #edge = self.edge_momentum(state, #step);
-            let #omega = match forced(&self.factor, &(#edge * #step)) {
+            let #omega = match forced(#factor, &(#edge * #step)) {
                 Ok(solved) => solved,
-                Err(e) => return Err(self.refused(*state, #step, e)),
+                Err(e) => return Err(self.refused(*state, #factor, #step, e)),
             };
             #matrix
             #parameters

@@ -23,13 +23,55 @@ pub fn text(d: &Derivation, e: &Expr) -> String {
     expression(e, &d.letters.symbols, &style, Format::Text)
 }
 
-/// The Moser-Veselov factor, if the stepper solves that equation.
+/// The Moser-Veselov factor, if the stepper solves that equation: in the body where it is constant
+/// there.
 pub fn factor(d: &Derivation) -> Option<&Expr> {
     match (&d.solve.method, d.solve.riccati.first()) {
         (Method::FreeMoserVeselov | Method::ForcedMoserVeselov, Some(Riccati::Exact(mv))) => {
-            Some(&mv.factor)
+            Some(mv.in_body.as_ref().unwrap_or(&mv.factor))
         }
         _ => None,
+    }
+}
+
+/// The quantities whose values at the identity make the factor: it belongs to a trajectory then,
+/// else to the model.
+pub fn factor_references(d: &Derivation) -> Vec<SymbolId> {
+    let letters = factor(d).map(expr::letters).unwrap_or_default();
+    let list = kept(d).into_iter();
+    list.filter(|id| letters.iter().any(|l| l.symbol == *id))
+        .collect()
+}
+
+/// `factor`, as a function of the state, where it belongs to a trajectory.
+pub fn factor_of_state(d: &Derivation) -> TokenStream {
+    let references = factor_references(d);
+    let (Some(e), false) = (factor(d), references.is_empty()) else {
+        return TokenStream::new();
+    };
+    let s = &d.letters.symbols;
+    let state = item(d, "State");
+    let none = Bindings::new();
+    let value = Writer {
+        symbols: s,
+        bindings: &none,
+    }
+    .write(e);
+    let parameters = parameter_locals(d, quote!(self.parameters), &letters_of([e]));
+    let locals = references.iter().map(|id| {
+        let (own, local) = (own(d, *id), variable(s, *id));
+        quote!(let #local = state.#own;)
+    });
+    let label = text(d, e);
+    let used = Generics::of(d).used();
+    quote! {
+        /// The body behind the quantities of a state.
+        #[inline(never)]
+        fn factor(&self, state: &#state #used) -> Result<Poinsot<T>, ParameterError> {
+            #parameters
+            #(#locals)*
+            Poinsot::new(#value).map_err(|e| e.in_field(#label))
+        }
     }
 }
 
@@ -277,7 +319,7 @@ pub fn model(d: &Derivation, documented: bool) -> TokenStream {
         };
         quote!(#finite #structure)
     });
-    let constant = factor(d);
+    let constant = factor(d).filter(|_| factor_references(d).is_empty());
     let assumed: Vec<&Expr> = d
         .spec
         .assumptions
@@ -423,10 +465,28 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
         .collect();
     let guess = element::Bundle::of(d).ty(&types);
     let (work_field, work_doc) = match d.solve.method {
+        Method::FreeMoserVeselov if !factor_references(d).is_empty() => {
+            let kept = factor_references(d).into_iter().map(|id| {
+                let (field, t) = (own(d, id), ty(s, s.get(id).shape));
+                quote!(#field: #t)
+            });
+            (
+                quote!(solver: Free<T>, #(#kept,)*),
+                " The step and the constants of the trajectory. Made anew for a state of another body.",
+            )
+        }
         Method::FreeMoserVeselov => (
             quote!(solver: Free<T>,),
             " The step and the constants of the trajectory. Belongs to the state it was started with.",
         ),
+        Method::ForcedMoserVeselov
+            if super::forced::keeps_edge(d) && !factor_references(d).is_empty() =>
+        {
+            (
+                quote!(factor: Poinsot<T>, edge: Edge<T>, here: #state #used,),
+                " The step, the body, and the momentum of the edge that begins at the state `here`. Made anew for any other state.",
+            )
+        }
         Method::ForcedMoserVeselov if super::forced::keeps_edge(d) => (
             quote!(edge: Edge<T>, here: #state #used,),
             " The step, and the momentum of the edge that begins at the state `here`. Made anew for any other state.",

@@ -3,7 +3,7 @@
 
 use super::element::{self, Bundle, Family, family};
 use super::expression::{Bindings, Writer, program};
-use super::items::{kept, letters_of, node_locals, parameter_locals, with_transports};
+use super::items::{self, kept, letters_of, node_locals, parameter_locals, with_transports};
 use super::names::{Names, field, item, own, per_configuration, tagged, variable};
 use super::sizes::Generics;
 use crate::check::spec::Side;
@@ -48,6 +48,7 @@ pub(super) fn update(d: &Derivation, i: usize) -> Update {
 pub fn start_and_step(d: &Derivation, names: &Names) -> TokenStream {
     let name = item(d, "");
     let start = start(d, names);
+    let factor = items::factor_of_state(d);
     let access = advected_access(d, names);
     let step = match (&d.solve.method, d.solve.riccati.first()) {
         (Method::FreeMoserVeselov, _) => free_step(d, names),
@@ -59,6 +60,7 @@ pub fn start_and_step(d: &Derivation, names: &Names) -> TokenStream {
     quote! {
         impl #bound #name #used {
             #start
+            #factor
             #step
             #access
         }
@@ -161,10 +163,23 @@ fn start(d: &Derivation, names: &Names) -> TokenStream {
         Method::FreeMoserVeselov => {
             let element = own(d, d.spec.configurations[0].element);
             let momentum = per_configuration(d, "momentum", 0);
-            quote!(solver: Free::start_of_order(&self.factor, &state.#element, &state.#momentum, h, order)?,)
+            let references: Vec<_> = items::factor_references(d)
+                .into_iter()
+                .map(|id| own(d, id))
+                .collect();
+            let factor = match references.is_empty() {
+                true => quote!(&self.factor),
+                false => quote!(&self.factor(&state)?),
+            };
+            quote! {
+                solver: Free::start_of_order(#factor, &state.#element, &state.#momentum, h, order)?,
+                #(#references: state.#references,)*
+            }
         }
         Method::ForcedMoserVeselov if super::forced::keeps_edge(d) => {
-            quote!(edge: self.edge(&state, h), here: state)
+            let factor = (!items::factor_references(d).is_empty())
+                .then(|| quote!(factor: self.factor(&state)?,));
+            quote!(#factor edge: self.edge(&state, h), here: state)
         }
         Method::ForcedMoserVeselov => TokenStream::new(),
         Method::Newton => quote!(guess: #guess,),
@@ -198,9 +213,30 @@ fn free_step(d: &Derivation, names: &Names) -> TokenStream {
     let element = own(d, d.spec.configurations[0].element);
     let momentum = per_configuration(d, "momentum", 0);
     let node = names.local("node");
+    let references: Vec<_> = items::factor_references(d)
+        .into_iter()
+        .map(|id| own(d, id))
+        .collect();
+    // A state of another trajectory, hence perhaps of another body.
+    let another = (!references.is_empty()).then(|| {
+        quote! {
+            if #(work.#references != state.#references)||* {
+                let Ok(factor) = self.factor(state) else {
+                    return Err(StepCause::NotFinite { what: "body" }.at_node(state.#node));
+                };
+                let order = work.solver.order();
+                match Free::start_of_order(&factor, &state.#element, &state.#momentum, work.h, order) {
+                    Ok(solver) => work.solver = solver,
+                    Err(e) => return Err(StepCause::from(e).at_node(state.#node)),
+                }
+                #(work.#references = state.#references;)*
+            }
+        }
+    });
     step_signature(
         d,
         quote! {
+            #another
             if let Err(e) = work.solver.follow(&mut state.#element, &state.#momentum) {
                 return Err(StepCause::from(e).at_node(state.#node));
             }

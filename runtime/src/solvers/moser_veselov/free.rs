@@ -188,6 +188,12 @@ impl<T: Real> Free<T> {
         BodyMomentum(self.frame * Vector3::from(self.u().map(|x| x * self.per_scale)))
     }
 
+    /// The order of its steps.
+    #[inline]
+    pub fn order(&self) -> Order {
+        self.order
+    }
+
     /// As [`Free::step`], for a state that may have been replaced: it is followed where it is, with
     /// the momentum it has.
     ///
