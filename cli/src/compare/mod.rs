@@ -130,8 +130,8 @@ pub(crate) fn against_all(card: &Card, plan: &Plan, progress: bool) -> Result<Co
             (course, said, ("extrapolated", doc.to_owned(), None))
         }
     };
-    let score = |name, doc: String, role, nanoseconds, course: Course| Score {
-        name,
+    let score = |name: &str, doc: String, role, nanoseconds, course: Course| Score {
+        name: name.to_owned(),
         doc,
         role,
         errors: score::errors(card, &course.record, &truth.record),
@@ -139,23 +139,32 @@ pub(crate) fn against_all(card: &Card, plan: &Plan, progress: bool) -> Result<Co
         nanoseconds,
         stopped: course.stopped,
     };
-    let doc = format!("the stepper derived from the model, order {}", card.order);
-    let mut scores = vec![score(
-        "generated",
-        doc,
-        None,
-        clock::generated(card, plan),
-        own,
-    )];
-    for (offer, course) in others {
-        let time = clock::other(plan, &offer);
+    let order = plan.order.unwrap_or(card.order);
+    let doc = format!("the stepper derived from the model, order {order}");
+    let time = clock::generated(card, plan);
+    let mut scores = vec![score("generated", doc, None, time, own)];
+    for &higher in card.orders.iter().filter(|higher| **higher > order) {
+        let mut plan = plan.clone();
+        plan.order = Some(higher);
+        // A case may be too stiff for the longest steps of a composition: then this line says so.
+        let course = course::generated(card, &plan, false).unwrap_or_else(|why| Course {
+            record: Record::default(),
+            stopped: Some((0, why.to_string())),
+        });
+        let time = clock::generated(card, &plan);
+        let doc = format!("the same, {}", card.method_of_order(higher));
         scores.push(score(
-            offer.name,
-            offer.doc.to_owned(),
-            Some(offer.role),
+            &format!("generated-{higher}"),
+            doc,
+            None,
             time,
             course,
         ));
+    }
+    for (offer, course) in others {
+        let time = clock::other(plan, &offer);
+        let doc = offer.doc.to_owned();
+        scores.push(score(offer.name, doc, Some(offer.role), time, course));
     }
     let (name, doc, time) = last;
     let course = truth.clone();

@@ -33,7 +33,7 @@ impl Curve {
 #[derive(Clone, Debug)]
 pub(crate) struct Score {
     /// Name for tables and files.
-    pub name: &'static str,
+    pub name: String,
     /// What it is.
     pub doc: String,
     /// What it is for; `None` for the generated stepper.
@@ -178,7 +178,7 @@ pub(crate) fn table(scores: &[Score]) -> String {
         let time = score
             .nanoseconds
             .map_or_else(|| "-".to_owned(), |t| format!("{t:.0}"));
-        let mut row = vec![score.name.to_owned(), time];
+        let mut row = vec![score.name.clone(), time];
         let curves = score.errors.iter().chain(&score.drifts);
         row.extend(curves.map(|curve| match (score.role, &score.stopped) {
             (_, Some(_)) => "-".to_owned(),
