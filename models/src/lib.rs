@@ -4,11 +4,14 @@
 pub mod body_in_quadratic_field;
 pub mod body_in_two_fields;
 pub mod case;
+pub mod cayley_klein;
+pub mod cayley_klein_spatial;
 pub mod coupled_bodies;
 pub mod free_body;
 pub mod free_body_spatial;
 pub mod heavy_top;
 pub mod heavy_top_spatial;
+pub mod kirchhoff_body;
 
 pub use case::{Case, Entry};
 
@@ -17,11 +20,14 @@ pub fn gallery() -> Vec<Entry> {
     vec![
         body_in_quadratic_field::entry(),
         body_in_two_fields::entry(),
+        cayley_klein::entry(),
+        cayley_klein_spatial::entry(),
         coupled_bodies::entry(),
         free_body::entry(),
         free_body_spatial::entry(),
         heavy_top::entry(),
         heavy_top_spatial::entry(),
+        kirchhoff_body::entry(),
     ]
 }
 

@@ -22,9 +22,13 @@ pub enum Kind {
     Matrix,
     /// A rotation body -> space, given by its matrix.
     Rotation,
-    /// Angular momentum in body axes.
+    /// A unit quaternion body -> space, given as its components `(w, x, y, z)`.
+    UnitQuaternion,
+    /// A rigid motion body -> space, given as its homogeneous matrix of sixteen numbers.
+    RigidMotion,
+    /// Momentum in body axes: angular; for a rigid motion angular, then linear.
     BodyMomentum,
-    /// Angular momentum in spatial axes.
+    /// Momentum in spatial axes: angular; for a rigid motion angular, then linear.
     SpatialMomentum,
 }
 

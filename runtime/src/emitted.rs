@@ -5,11 +5,15 @@ pub use crate::card::{
     Card, Conserved, Dimension, Field, Invariant, Kind, OpenError, Settings, Trajectory,
 };
 pub use crate::groups::{
-    BodyMomentum, BodyMomentumMatrix, Coadjoint, Group, Linear, Orthogonal, Rotation,
-    SpatialMomentum, SpatialMomentumMatrix,
+    BodyImpulse, BodyMomentum, BodyMomentumMatrix, Coadjoint, Group, Linear, Orthogonal,
+    RigidMotion, Rotation, SpatialImpulse, SpatialMomentum, SpatialMomentumMatrix, UnitQuaternion,
 };
 pub use crate::integrate::{Reversible, Stepper, Steps, preprocessing_order};
-pub use crate::linalg::{axial_of_difference, determinant, hat, skew_coordinates, solve, vee};
+pub use crate::linalg::{
+    axial_of_difference, columns_from, determinant, hat, inclusion, into_columns, into_rows,
+    motion_rotation, motion_translation, pure_quaternion, quaternion_imaginary, quaternion_real,
+    quaternion_rotation, rows_from, skew_coordinates, solve, twist, vee,
+};
 pub use crate::scalar::Real;
 pub use crate::solvers::moser_veselov::{Edge, Free, MoserVeselovError, Order, Poinsot, forced};
 pub use crate::solvers::newton;
@@ -229,6 +233,32 @@ pub fn linear_of<const N: usize>(
 ) -> Result<Linear<N, f64>, OpenError> {
     let matrix = matrix_of::<N, N>(field, values)?;
     Linear::from_matrix(&matrix)
+        .map_err(|e| OpenError::Start(StartError::Initial(e.in_field(field))))
+}
+
+/// The values of one field as a unit quaternion `(w, x, y, z)`.
+///
+/// # Errors
+/// When they are not four, or not of length 1.
+pub fn quaternion_of(
+    field: &'static str,
+    values: Option<&Vec<f64>>,
+) -> Result<UnitQuaternion<f64>, OpenError> {
+    let [components] = matrix_of::<4, 1>(field, values)?.data.0;
+    UnitQuaternion::from_components(components)
+        .map_err(|e| OpenError::Start(StartError::Initial(e.in_field(field))))
+}
+
+/// The values of one field as a rigid motion, given by its homogeneous matrix.
+///
+/// # Errors
+/// When they are not sixteen, or not a rigid motion.
+pub fn motion_of(
+    field: &'static str,
+    values: Option<&Vec<f64>>,
+) -> Result<RigidMotion<f64>, OpenError> {
+    let matrix = matrix_of::<4, 4>(field, values)?;
+    RigidMotion::from_matrix(&matrix)
         .map_err(|e| OpenError::Start(StartError::Initial(e.in_field(field))))
 }
 

@@ -1,7 +1,7 @@
 //! What can go wrong: with parameters, at the start of a trajectory, during a step.
 //! Takes the numbers of the failure; gives messages that say what to change.
 
-use crate::groups::{NotARotation, NotInvertible};
+use crate::groups::{NotARigidMotion, NotARotation, NotInvertible};
 use crate::solvers::moser_veselov::{MoserVeselovError, PoinsotError};
 use crate::solvers::newton::NewtonError;
 use core::fmt;
@@ -75,6 +75,13 @@ pub enum Problem {
         /// Its determinant.
         determinant: f64,
     },
+    /// The matrix must be an element of a group and is not.
+    NotInGroup {
+        /// What its elements are.
+        elements: &'static str,
+        /// Largest difference to the element that is nearest.
+        deviation: f64,
+    },
     /// The matrix must be invertible and is not, to working precision.
     NotInvertible,
     /// The number must be positive and is not.
@@ -128,6 +135,10 @@ impl fmt::Display for Problem {
                 f,
                 "no rotation: A^T A differs from 1 by {deviation}, and the determinant is {determinant}"
             ),
+            Self::NotInGroup {
+                elements,
+                deviation,
+            } => write!(f, "not {elements}, off by {deviation:e}"),
             Self::NotInvertible => write!(f, "not invertible"),
             Self::NotPositive { value } => write!(f, "{value} is not positive"),
             Self::AssumptionFails { text } => write!(f, "the assumption `{text}` does not hold"),
@@ -165,6 +176,24 @@ impl NotARotation {
             field,
             problem: Problem::Rotation(self),
             remedy: "give all numbers of a matrix with orthonormal columns and determinant +1",
+        }
+    }
+}
+
+impl NotARigidMotion {
+    /// The same error, said of the initial value `field`.
+    #[cold]
+    pub fn in_field(self, field: &'static str) -> ParameterError {
+        match self {
+            NotARigidMotion::Rotation(why) => why.in_field(field),
+            NotARigidMotion::LastRow { defect } => ParameterError {
+                field,
+                problem: Problem::NotInGroup {
+                    elements: "the homogeneous matrix of a rigid motion",
+                    deviation: defect,
+                },
+                remedy: "give a finite matrix whose last row is 0, 0, 0, 1",
+            },
         }
     }
 }

@@ -23,8 +23,9 @@ pub mod validate;
 
 pub use error::{ParameterError, Problem, StartError, StepCause, StepError};
 pub use groups::{
-    BodyMomentum, BodyMomentumMatrix, Coadjoint, Group, Linear, NotARotation, NotInvertible,
-    Orthogonal, Rotation, SpatialMomentum, SpatialMomentumMatrix, TurnedRotation,
+    BodyImpulse, BodyMomentum, BodyMomentumMatrix, Coadjoint, Group, Linear, NotARigidMotion,
+    NotARotation, NotInvertible, Orthogonal, RigidMotion, Rotation, SpatialImpulse,
+    SpatialMomentum, SpatialMomentumMatrix, TurnedRotation, UnitQuaternion,
 };
 pub use scalar::{DoubleDouble, Dual, Lanes, Real};
 pub use solvers::moser_veselov::{MoserVeselovError, Order, Poinsot, PoinsotError};

@@ -1,7 +1,10 @@
 //! Checks of parameters and initial values, as emitted constructors call them.
 //! Takes a name and a value; gives nothing, or a [`ParameterError`] with the offending numbers.
 
-use crate::linalg::{determinant, inverse};
+use crate::linalg::{
+    columns_from, determinant, inverse, left_multiplication, quaternion_imaginary, quaternion_real,
+    rows_from,
+};
 use crate::{ParameterError, Problem, Real};
 use nalgebra::SMatrix;
 
@@ -158,6 +161,69 @@ pub fn orthogonal<T: Real, const N: usize>(
     })
 }
 
+/// The matrix is the left multiplication by a unit quaternion, up to rounding.
+///
+/// # Errors
+/// Carries the deviation from the nearest such matrix, or of the length from 1.
+pub fn unit_quaternion<T: Real>(
+    field: &'static str,
+    matrix: &SMatrix<T, 4, 4>,
+) -> Result<(), ParameterError> {
+    let real = quaternion_real(matrix);
+    let [[x, y, z]] = quaternion_imaginary(matrix).data.0;
+    let nearest = left_multiplication([real, x, y, z]);
+    let length = real * real + x * x + y * y + z * z - T::one();
+    in_group(
+        field,
+        matrix - nearest,
+        length,
+        "left multiplication by a unit quaternion",
+    )
+}
+
+/// The matrix is a homogeneous one `[R x; 0 1]` with a rotation `R`, up to rounding.
+///
+/// # Errors
+/// Carries the deviation of the last row or of `R^T R` from those of the identity.
+pub fn rigid_motion<T: Real>(
+    field: &'static str,
+    matrix: &SMatrix<T, 4, 4>,
+) -> Result<(), ParameterError> {
+    let block = rows_from::<T, 4, 3, 3>(&columns_from::<T, 4, 3, 4>(matrix, 0), 0);
+    orthogonal(field, &block)?;
+    let row = matrix.row(3) - SMatrix::<T, 4, 4>::identity().row(3);
+    in_group(
+        field,
+        row,
+        T::zero(),
+        "the homogeneous matrix of a rigid motion",
+    )
+}
+
+/// Refuses a matrix whose difference to an element of its group is more than rounding.
+fn in_group<T: Real, const R: usize, const C: usize>(
+    field: &'static str,
+    difference: SMatrix<T, R, C>,
+    length: T,
+    elements: &'static str,
+) -> Result<(), ParameterError> {
+    let deviation = difference
+        .iter()
+        .fold(length.magnitude(), |m: f64, x| m.max(x.magnitude()));
+    // Written so that NaN is refused.
+    if deviation <= ROUNDINGS * T::EPSILON {
+        return Ok(());
+    }
+    Err(ParameterError {
+        field,
+        problem: Problem::NotInGroup {
+            elements,
+            deviation,
+        },
+        remedy: "give an element with all its digits",
+    })
+}
+
 /// The matrix has an inverse, to working precision.
 ///
 /// # Errors
@@ -267,6 +333,20 @@ mod tests {
         assert!(orthogonal("R", &Matrix2::new(0.6, 0.8, 0.8, -0.6)).is_err());
         assert!(orthogonal("R", &Matrix2::new(0.6, -0.8, 0.8, 0.600_001)).is_err());
         assert!(orthogonal("R", &Matrix2::new(f64::NAN, 0.0, 0.0, 1.0)).is_err());
+        let q = left_multiplication([0.1, -0.7, 0.5, 0.5]);
+        assert!(unit_quaternion("q", &q).is_ok());
+        assert!(unit_quaternion("q", &q.transpose()).is_ok());
+        assert!(unit_quaternion("q", &(q * 1.001)).is_err());
+        assert!(unit_quaternion("q", &(q * f64::NAN)).is_err());
+        let mut other = q;
+        other.swap_rows(0, 1);
+        assert!(unit_quaternion("q", &other).is_err());
+        let mut motion = SMatrix::<f64, 4, 4>::identity();
+        motion.m14 = 7.0;
+        assert!(rigid_motion("G", &motion).is_ok());
+        assert!(rigid_motion("G", &motion.transpose()).is_err());
+        motion.m12 = 1e-3;
+        assert!(rigid_motion("G", &motion).is_err());
         assert!(invertible("A", &Matrix2::new(1.0, 2.0, 3.0, 4.0)).is_ok());
         assert!(invertible("A", &Matrix2::new(1.0, 2.0, 2.0, 4.0)).is_err());
         assert!(positive_step(0.1).is_ok());

@@ -86,6 +86,10 @@ fn about(field: &Field) -> String {
         Kind::Rotation => {
             "rotation body -> space: 3x3 matrix, or unit quaternion [w, x, y, z]".to_owned()
         }
+        Kind::UnitQuaternion => "unit quaternion body -> space: [w, x, y, z]".to_owned(),
+        Kind::RigidMotion => {
+            "rigid motion body -> space: homogeneous 4x4 matrix, row by row".to_owned()
+        }
         Kind::BodyMomentum => "momentum at the first node, body frame".to_owned(),
         Kind::SpatialMomentum => "momentum at the first node, space frame".to_owned(),
     };

@@ -6,7 +6,7 @@ use crate::derive::Derivation;
 use crate::derive::transport::Transport;
 use crate::expr::shape::Dim;
 use crate::expr::symbol::Symbols;
-use crate::expr::{self, Expr, Function, Letter, Node, Part, Shift};
+use crate::expr::{self, Expr, Function, Letter, Map, Node, Part, Shift};
 use crate::schedule::{Program, program};
 
 /// A matrix with its rows and columns.
@@ -210,6 +210,10 @@ pub fn evaluate(symbols: &Symbols, e: &Expr, values: &Assignment) -> Result<Matr
         Node::Unit(_, axis) => {
             Matrix::from_fn(rows, 1, |i, _| f64::from(u8::from(i == *axis as usize)))
         }
+        Node::Inclusion(_, at) => {
+            let at = *at as usize;
+            Matrix::from_fn(rows, cols, |i, j| f64::from(u8::from(i == at + j)))
+        }
         Node::Sum(list) => {
             let mut total = Matrix::zeros(rows, cols);
             for x in list {
@@ -271,7 +275,61 @@ pub fn evaluate(symbols: &Symbols, e: &Expr, values: &Assignment) -> Result<Matr
                 Function::Log => x.ln(),
             })
         }
+        Node::Map(map, a) => mapped(symbols, *map, a, &go(a)?),
     })
+}
+
+/// A map of quaternions or rigid motions.
+fn mapped(symbols: &Symbols, map: Map, argument: &Expr, a: &Matrix) -> Matrix {
+    let column = |data: Vec<f64>| Matrix {
+        rows: data.len(),
+        cols: 1,
+        data,
+    };
+    let pure = |v: &[f64]| {
+        let [x, y, z] = [0, 1, 2].map(|i| v.get(i).copied().unwrap_or(0.0));
+        let rows = [
+            [0.0, -x, -y, -z],
+            [x, 0.0, -z, y],
+            [y, z, 0.0, -x],
+            [z, -y, x, 0.0],
+        ];
+        Matrix::from_fn(4, 4, |i, j| rows[i][j])
+    };
+    let real = (0..4).map(|i| a.get(i, i)).sum::<f64>() / 4.0;
+    let imaginary = || {
+        let unit = |k: usize| pure(&[0, 1, 2].map(|i| f64::from(u8::from(i == k))));
+        [0, 1, 2].map(|k| {
+            let entries = a.data.iter().zip(unit(k).data);
+            entries.map(|(x, y)| x * y).sum::<f64>() / 4.0
+        })
+    };
+    match map {
+        Map::Real => Matrix::scalar(real),
+        Map::Imaginary => column(imaginary().to_vec()),
+        Map::Pure => pure(&a.data),
+        Map::Rotation if expr::is_motion(symbols, argument) => {
+            Matrix::from_fn(3, 3, |i, j| a.get(i, j))
+        }
+        Map::Translation => Matrix::from_fn(3, 1, |i, _| a.get(i, 3)),
+        Map::Twist => {
+            let turn = hat(a);
+            Matrix::from_fn(4, 4, |i, j| match (i, j) {
+                (3, _) => 0.0,
+                (i, 3) => a.get(i + 3, 0),
+                (i, j) => turn.get(i, j),
+            })
+        }
+        Map::Rotation => {
+            let v = imaginary();
+            let turn = hat(&column(v.to_vec()));
+            let square: f64 = v.iter().map(|x| x * x).sum();
+            Matrix::from_fn(3, 3, |i, j| {
+                let diagonal = if i == j { real * real - square } else { 0.0 };
+                diagonal + 2.0 * v[i] * v[j] + 2.0 * real * turn.get(i, j)
+            })
+        }
+    }
 }
 
 fn hat(v: &Matrix) -> Matrix {
@@ -299,10 +357,14 @@ pub fn run(program: &Program, values: &Assignment) -> Result<Vec<Matrix>, EvalEr
 
 /// The numbers of a covector in the basis of its Lie algebra. SO(3): the vector. SO(n): for
 /// `i < j`, row by row, the pairing with the element that has -1 at (i, j) and +1 at (j, i).
-/// GL(n): all entries, row by row (the variation being the matrix unit).
+/// GL(n): all entries, row by row (the variation being the matrix unit). SU(2): the vector, whose
+/// variation is half the imaginary unit. SE(3): three angular, then three linear components.
 fn coordinates(group: Group, m: &Matrix) -> Vec<f64> {
     match group {
-        Group::SpecialOrthogonal(Dim::Fixed(3)) | Group::GeneralLinear(_) => m.data.clone(),
+        Group::SpecialOrthogonal(Dim::Fixed(3))
+        | Group::GeneralLinear(_)
+        | Group::UnitQuaternions
+        | Group::RigidMotions => m.data.clone(),
         Group::SpecialOrthogonal(_) => {
             let pairs = (0..m.rows).flat_map(|i| (i + 1..m.rows).map(move |j| (i, j)));
             pairs.map(|(i, j)| m.get(j, i)).collect()

@@ -5,13 +5,17 @@ mod linear;
 mod matrix_momentum;
 mod orthogonal;
 mod product;
+pub mod se3;
 pub mod so3;
+mod su2;
 mod turned;
 
 pub use linear::{Linear, NotInvertible};
 pub use matrix_momentum::{BodyMomentumMatrix, SpatialMomentumMatrix};
 pub use orthogonal::Orthogonal;
+pub use se3::{BodyImpulse, NotARigidMotion, RigidMotion, SpatialImpulse};
 pub use so3::{BodyMomentum, NotARotation, Rotation, SpatialMomentum};
+pub use su2::UnitQuaternion;
 pub use turned::TurnedRotation;
 
 /// A Lie group with the operations an iteration on it needs.

@@ -1,7 +1,7 @@
 //! Rotations of space, kept as unit quaternions, and the momenta they carry.
 //! Takes quaternions, matrices or rotation vectors; gives rotations body -> space.
 
-use super::Group;
+use super::{Coadjoint, Group};
 use crate::Real;
 use core::fmt;
 use core::ops::Mul;
@@ -349,6 +349,22 @@ impl<T: Real> Group<T> for Rotation<T> {
     }
 }
 
+impl<T: Real> Coadjoint<T> for Rotation<T> {
+    type Covector = Vector3<T>;
+
+    /// `R mu`.
+    #[inline]
+    fn covector_to_space(&self, body: &Vector3<T>) -> Vector3<T> {
+        self.rotate(body)
+    }
+
+    /// `R^T m`.
+    #[inline]
+    fn covector_to_body(&self, spatial: &Vector3<T>) -> Vector3<T> {
+        self.inverse_rotate(spatial)
+    }
+}
+
 /// Angular momentum in body axes, at a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyMomentum<T = f64>(pub Vector3<T>);
@@ -366,17 +382,23 @@ impl<T: PartialEq> PartialEq for SpatialMomentum<T> {
 }
 
 impl<T: Real> BodyMomentum<T> {
-    /// `m = R mu`.
+    /// `m = R mu`, for a rotation or a unit quaternion.
     #[inline]
-    pub fn to_space(&self, attitude: &Rotation<T>) -> SpatialMomentum<T> {
-        SpatialMomentum(attitude.rotate(&self.0))
+    pub fn to_space<G>(&self, attitude: &G) -> SpatialMomentum<T>
+    where
+        G: Coadjoint<T, Covector = Vector3<T>>,
+    {
+        SpatialMomentum(attitude.covector_to_space(&self.0))
     }
 }
 
 impl<T: Real> SpatialMomentum<T> {
-    /// `mu = R^T m`.
+    /// `mu = R^T m`, for a rotation or a unit quaternion.
     #[inline]
-    pub fn to_body(&self, attitude: &Rotation<T>) -> BodyMomentum<T> {
-        BodyMomentum(attitude.inverse_rotate(&self.0))
+    pub fn to_body<G>(&self, attitude: &G) -> BodyMomentum<T>
+    where
+        G: Coadjoint<T, Covector = Vector3<T>>,
+    {
+        BodyMomentum(attitude.covector_to_body(&self.0))
     }
 }

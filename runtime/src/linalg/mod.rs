@@ -4,8 +4,17 @@
 
 mod eigenvalues;
 mod elimination;
+mod inclusion;
+mod motion;
+mod quaternion;
 mod skew;
 
 pub use eigenvalues::symmetric_eigenvalues;
 pub use elimination::{determinant, inverse, solve, solve_leading, solve_many};
+pub use inclusion::{columns_from, inclusion, into_columns, into_rows, rows_from};
+pub use motion::{motion_rotation, motion_translation, twist};
+pub use quaternion::{
+    left_multiplication, pure_quaternion, quaternion_imaginary, quaternion_real,
+    quaternion_rotation,
+};
 pub use skew::{axial_of_difference, hat, skew_coordinates, skew_from, vee};

@@ -5,6 +5,8 @@
 pub mod bodies;
 pub mod coupled;
 pub mod elastic;
+pub mod motions;
+pub mod quaternions;
 pub mod spatial;
 
 use super::dual::{Dual, Number};

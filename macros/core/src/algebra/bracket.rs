@@ -207,6 +207,13 @@ impl Algebra<'_> {
         if let [Factor::Hat(_)] = word.as_slice() {
             return zero;
         }
+        // Vectors of quaternions at both ends are neighbours on the circle.
+        if let [Factor::Pure(_), .., Factor::Pure(_)] = word.as_slice() {
+            word.rotate_right(1);
+            let mut out = Poly::zero(Shape::square(Dim::Fixed(4)));
+            self.push_reduced(&mut out, Rational::ONE, &Monomial::new(), word);
+            return self.trace_poly(&out);
+        }
         let (minus, back) = self.transposed_word(&word);
         let mut best: Option<(bool, Word)> = None;
         let mut both = false;

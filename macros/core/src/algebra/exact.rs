@@ -5,7 +5,7 @@
 use super::rational::Rational;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
-use crate::expr::{Expr, Function, Letter, Node, Part};
+use crate::expr::{self, Expr, Function, Letter, Map, Node, Part};
 
 const PRIME: u64 = (1 << 61) - 1;
 
@@ -189,12 +189,19 @@ impl Point<'_> {
             Structure::Diagonal => {
                 Matrix::from_fn(rows, cols, |i, j| if i == j { raw(i, i) } else { 0 })
             }
-            // Cayley's transform of a skew matrix.
-            Structure::Orthogonal => {
-                let a = Matrix::from_fn(rows, cols, skew);
-                let id = Matrix::identity(rows);
-                let (below, _) = id.plus(&a.scaled(negate(1))).inverted()?;
-                below.times(&id.plus(&a))
+            Structure::Orthogonal => cayley(&Matrix::from_fn(rows, cols, skew))?,
+            // The same transform of a vector read as a quaternion.
+            Structure::UnitQuaternion => {
+                let v = [raw(1, 0), raw(2, 0), raw(3, 0)];
+                cayley(&pure(&v))?
+            }
+            Structure::RigidMotion => {
+                let r = cayley(&Matrix::from_fn(3, 3, skew))?;
+                Matrix::from_fn(4, 4, |i, j| match (i, j) {
+                    (3, j) => u64::from(j == 3),
+                    (i, 3) => raw(i, 3),
+                    (i, j) => r.at(i, j),
+                })
             }
         })
     }
@@ -212,6 +219,10 @@ impl Point<'_> {
             Node::Identity(_) => Matrix::identity(rows),
             Node::Zero(_) => Matrix::from_fn(rows, cols, |_, _| 0),
             Node::Unit(_, axis) => Matrix::from_fn(rows, 1, |i, _| u64::from(i == *axis as usize)),
+            Node::Inclusion(_, at) => {
+                let at = *at as usize;
+                Matrix::from_fn(rows, cols, |i, j| u64::from(i == at + j))
+            }
             Node::Sum(list) => {
                 let mut total = Matrix::from_fn(rows, cols, |_, _| 0);
                 for x in list {
@@ -266,6 +277,35 @@ impl Point<'_> {
                     }
                 }
             }
+            Node::Map(map, argument) => {
+                let a = go(argument)?;
+                let quarter = of_rational(Rational::QUARTER)?;
+                match map {
+                    Map::Real => Matrix::number(mul(quarter, quaternion(&a)[0])),
+                    Map::Imaginary => {
+                        let [_, v @ ..] = quaternion(&a);
+                        Matrix {
+                            rows: 3,
+                            cols: 1,
+                            data: v.iter().map(|x| mul(quarter, *x)).collect(),
+                        }
+                    }
+                    Map::Pure => pure(&a.data),
+                    Map::Rotation if expr::is_motion(self.symbols, argument) => {
+                        Matrix::from_fn(3, 3, |i, j| a.at(i, j))
+                    }
+                    Map::Rotation => rotation(&quaternion(&a).map(|x| mul(quarter, x))),
+                    Map::Translation => Matrix::from_fn(3, 1, |i, _| a.at(i, 3)),
+                    Map::Twist => {
+                        let turn = hat(&a);
+                        Matrix::from_fn(4, 4, |i, j| match (i, j) {
+                            (3, _) => 0,
+                            (i, 3) => a.at(i + 3, 0),
+                            (i, j) => turn.at(i, j),
+                        })
+                    }
+                }
+            }
             // A function of which nothing but its being one is used.
             Node::Call(function, a) => {
                 let tag = match function {
@@ -288,6 +328,58 @@ impl Point<'_> {
         let base = if num < 0 { inverse(base)? } else { base };
         Some(power(base, num.unsigned_abs()))
     }
+}
+
+/// Cayley's transform `(1 - A)^-1 (1 + A)` of a skew matrix: a rotation.
+fn cayley(a: &Matrix) -> Option<Matrix> {
+    let id = Matrix::identity(a.rows);
+    let (below, _) = id.plus(&a.scaled(negate(1))).inverted()?;
+    Some(below.times(&id.plus(a)))
+}
+
+/// The left multiplication by a vector, read as a quaternion.
+fn pure(v: &[u64]) -> Matrix {
+    let [x, y, z] = [0, 1, 2].map(|i| v.get(i).copied().unwrap_or(0));
+    let [a, b, c] = [x, y, z].map(negate);
+    Matrix {
+        rows: 4,
+        cols: 4,
+        data: vec![0, a, b, c, x, 0, c, y, y, z, 0, a, z, b, x, 0],
+    }
+}
+
+/// Four times the quaternion nearest to a 4 x 4 matrix: its pairings with the four units.
+fn quaternion(a: &Matrix) -> [u64; 4] {
+    let sum = |list: [(u64, bool); 4]| {
+        list.iter().fold(0, |s, (x, minus)| {
+            add(s, if *minus { negate(*x) } else { *x })
+        })
+    };
+    let pair = |m: &Matrix| {
+        let entries = a.data.iter().zip(&m.data);
+        entries.fold(0, |s, (x, y)| add(s, mul(*x, *y)))
+    };
+    let diagonal = [0, 1, 2, 3].map(|i| (a.at(i, i), false));
+    [
+        sum(diagonal),
+        pair(&pure(&[1, 0, 0])),
+        pair(&pure(&[0, 1, 0])),
+        pair(&pure(&[0, 0, 1])),
+    ]
+}
+
+/// The rotation of a unit quaternion `(w, v)`: `(w^2 - v.v) Id + 2 v v^T + 2 w hat(v)`.
+fn rotation([w, x, y, z]: &[u64; 4]) -> Matrix {
+    let v = Matrix {
+        rows: 3,
+        cols: 1,
+        data: vec![*x, *y, *z],
+    };
+    let square = v.transposed().times(&v).at(0, 0);
+    let trace = add(mul(*w, *w), negate(square));
+    let outer = v.times(&v.transposed()).scaled(2);
+    let turn = hat(&v).scaled(mul(2, *w));
+    Matrix::identity(3).scaled(trace).plus(&outer).plus(&turn)
 }
 
 fn hat(v: &Matrix) -> Matrix {
@@ -326,7 +418,6 @@ pub fn vanishes(symbols: &Symbols, e: &Expr) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::expr;
     use crate::expr::symbol::Role;
 
     #[test]

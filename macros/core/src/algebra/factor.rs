@@ -12,6 +12,10 @@ pub enum Source {
     Letter(Letter),
     /// An interned sub-expression.
     Opaque(u32),
+    /// The rotation of a letter of SU(2) or SE(3).
+    Rotation(Letter),
+    /// The translation of a letter of SE(3).
+    Translation(Letter),
 }
 
 /// One factor of a word.
@@ -43,8 +47,26 @@ pub enum Factor {
         /// Whether it is a row.
         transposed: bool,
     },
+    /// The matrix that puts a vector into a longer one.
+    Inclusion {
+        /// Its shape as it stands when not transposed: more rows than columns.
+        shape: Shape,
+        /// The first of the rows that it fills, counted from 0.
+        at: u8,
+        /// Whether it takes the vector out instead.
+        transposed: bool,
+    },
     /// The skew matrix of a vector word.
     Hat(Word),
+    /// The left multiplication by a vector word, 4 x 4 and skew.
+    Pure(Word),
+    /// The imaginary part of a 4 x 4 word.
+    Imaginary {
+        /// The matrix word.
+        word: Word,
+        /// Whether it is a row.
+        transposed: bool,
+    },
     /// The axial vector of a matrix word.
     Vee {
         /// The matrix word.
@@ -67,10 +89,14 @@ impl Algebra<'_> {
             Factor::Unit {
                 dim, transposed, ..
             } => (Shape::vector(*dim), *transposed),
+            Factor::Inclusion {
+                shape, transposed, ..
+            } => (*shape, *transposed),
             Factor::Hat(_) => return Shape::square(Dim::Fixed(3)),
-            Factor::Axial { transposed, .. } | Factor::Vee { transposed, .. } => {
-                (Shape::vector(Dim::Fixed(3)), *transposed)
-            }
+            Factor::Pure(_) => return Shape::square(Dim::Fixed(4)),
+            Factor::Axial { transposed, .. }
+            | Factor::Vee { transposed, .. }
+            | Factor::Imaginary { transposed, .. } => (Shape::vector(Dim::Fixed(3)), *transposed),
         };
         if transposed {
             shape.transposed()
@@ -83,6 +109,8 @@ impl Algebra<'_> {
         match source {
             Source::Letter(at) => self.symbols.get(at.symbol).shape,
             Source::Opaque(i) => self.matrices.borrow()[i as usize].meaning.shape(),
+            Source::Rotation(_) => Shape::square(Dim::Fixed(3)),
+            Source::Translation(_) => Shape::vector(Dim::Fixed(3)),
         }
     }
 
@@ -90,6 +118,8 @@ impl Algebra<'_> {
     pub(super) fn structure(&self, source: Source) -> Structure {
         match source {
             Source::Letter(at) => self.symbols.get(at.symbol).structure,
+            Source::Rotation(_) => Structure::Orthogonal,
+            Source::Translation(_) => Structure::General,
             Source::Opaque(i) => {
                 let table = self.matrices.borrow();
                 let key = &table[i as usize].key;
@@ -104,7 +134,7 @@ impl Algebra<'_> {
 
     /// Whether the factor is an element of an orthogonal group.
     pub(super) fn is_orthogonal(&self, f: &Factor) -> bool {
-        matches!(f, Factor::Letter { source, .. } if self.structure(*source) == Structure::Orthogonal)
+        matches!(f, Factor::Letter { source, .. } if self.structure(*source).is_orthogonal())
     }
 
     /// The transpose of a factor, with the sign that skew ones give.
@@ -118,7 +148,11 @@ impl Algebra<'_> {
                 let structure = self.structure(*source);
                 let flip = match structure {
                     Structure::Symmetric | Structure::Diagonal | Structure::Skew => false,
-                    Structure::General | Structure::Orthogonal | Structure::Invertible => true,
+                    Structure::General
+                    | Structure::Orthogonal
+                    | Structure::Invertible
+                    | Structure::UnitQuaternion
+                    | Structure::RigidMotion => true,
                 };
                 let factor = Factor::Letter {
                     source: *source,
@@ -139,11 +173,30 @@ impl Algebra<'_> {
                     transposed: !transposed,
                 },
             ),
-            Factor::Hat(_) => (true, f.clone()),
+            Factor::Inclusion {
+                shape,
+                at,
+                transposed,
+            } => (
+                false,
+                Factor::Inclusion {
+                    shape: *shape,
+                    at: *at,
+                    transposed: !transposed,
+                },
+            ),
+            Factor::Hat(_) | Factor::Pure(_) => (true, f.clone()),
             Factor::Axial { source, transposed } => (
                 false,
                 Factor::Axial {
                     source: *source,
+                    transposed: !transposed,
+                },
+            ),
+            Factor::Imaginary { word, transposed } => (
+                false,
+                Factor::Imaginary {
+                    word: word.clone(),
                     transposed: !transposed,
                 },
             ),
@@ -191,8 +244,9 @@ impl Algebra<'_> {
         };
         s == s2
             && match self.structure(*s) {
-                Structure::Orthogonal => t != t2,
+                Structure::Orthogonal | Structure::UnitQuaternion => t != t2,
                 Structure::Invertible
+                | Structure::RigidMotion
                 | Structure::General
                 | Structure::Symmetric
                 | Structure::Diagonal

@@ -4,10 +4,12 @@ use super::Algebra;
 use super::factor::{Factor, Source, Word};
 use super::monomial::{self, Atom, Monomial};
 use super::poly::{Poly, Term};
+use super::quaternion::rotation_of;
 use super::rational::Rational;
+use super::rigid::translation_of;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Role;
-use crate::expr::{self, Expr, Function, Node, Part};
+use crate::expr::{self, Expr, Function, Map, Node, Part};
 
 impl Algebra<'_> {
     /// The normal form of an expression.
@@ -31,6 +33,7 @@ impl Algebra<'_> {
                 };
                 self.one_factor(shape, Factor::Hat(vec![axial]))
             }
+            Node::Letter(at) if self.in_blocks(*at) => self.rigid_motion(*at, false),
             Node::Letter(at) => self.one_factor(
                 shape,
                 Factor::Letter {
@@ -44,6 +47,14 @@ impl Algebra<'_> {
                 Factor::Unit {
                     dim: *dim,
                     axis: *axis,
+                    transposed: false,
+                },
+            ),
+            Node::Inclusion(whole, row) => self.one_factor(
+                shape,
+                Factor::Inclusion {
+                    shape: *whole,
+                    at: *row,
                     transposed: false,
                 },
             ),
@@ -68,7 +79,10 @@ impl Algebra<'_> {
             }
             Node::Power(a, q) => self.lower_power(a, *q),
             Node::Transpose(a) => self.transpose(&self.lower(a)),
-            Node::Inverse(a) => self.inverse(&self.lower(a), a),
+            Node::Inverse(a) => match a.node() {
+                Node::Letter(at) if self.in_blocks(*at) => self.rigid_motion(*at, true),
+                _ => self.inverse(&self.lower(a), a),
+            },
             Node::Trace(a) => self.trace_poly(&self.lower(a)),
             Node::Det(a) => self.det(&self.lower(a), a),
             // Of a letter by its inverse, which cancels against the letter. Sums have too many
@@ -95,6 +109,27 @@ impl Algebra<'_> {
             Node::Vee(a) => self.linear(&self.lower(a), shape, |w| self.vee_word(w)),
             Node::Part(part, a) => self.part(*part, &self.lower(a), a),
             Node::Call(function, a) => self.call(*function, self.lower(a), a),
+            Node::Map(map, a) => match map {
+                Map::Real => self.scaled(&self.trace_poly(&self.lower(a)), Rational::QUARTER),
+                Map::Imaginary => self.linear(&self.lower(a), shape, |w| self.imaginary_word(w)),
+                Map::Pure => self.linear(&self.lower(a), shape, |w| self.pure_word(w)),
+                Map::Twist => self.twist(&self.lower(a)),
+                Map::Translation => match a.node() {
+                    Node::Letter(at) => self.one_factor(shape, translation_of(*at)),
+                    _ => {
+                        self.exhaust();
+                        Poly::zero(shape)
+                    }
+                },
+                Map::Rotation => match a.node() {
+                    Node::Letter(at) => self.one_factor(shape, rotation_of(*at, false)),
+                    // Rotations are taken of letters only.
+                    _ => {
+                        self.exhaust();
+                        Poly::zero(shape)
+                    }
+                },
+            },
         }
     }
 
@@ -290,9 +325,9 @@ impl Algebra<'_> {
                 c.inverse(),
                 monomial::power(&t.monomial, Rational::MINUS_ONE),
             )
-            && t.word
-                .iter()
-                .all(|f| self.shape_of(f).is_square() && !matches!(f, Factor::Hat(_)))
+            && t.word.iter().all(|f| {
+                self.shape_of(f).is_square() && !matches!(f, Factor::Hat(_) | Factor::Pure(_))
+            })
         {
             let word = t
                 .word
@@ -324,16 +359,20 @@ impl Algebra<'_> {
                 transposed,
                 inverted,
             } => {
-                let orthogonal = self.structure(*source) == Structure::Orthogonal;
+                let orthogonal = self.structure(*source).is_orthogonal();
                 Factor::Letter {
                     source: *source,
                     transposed: *transposed ^ orthogonal,
                     inverted: *inverted ^ !orthogonal,
                 }
             }
-            Factor::Unit { .. } | Factor::Axial { .. } | Factor::Hat(_) | Factor::Vee { .. } => {
-                f.clone()
-            }
+            Factor::Unit { .. }
+            | Factor::Inclusion { .. }
+            | Factor::Axial { .. }
+            | Factor::Hat(_)
+            | Factor::Pure(_)
+            | Factor::Imaginary { .. }
+            | Factor::Vee { .. } => f.clone(),
         }
     }
 
@@ -356,11 +395,13 @@ impl Algebra<'_> {
                 else {
                     continue;
                 };
-                if self.structure(*source) == Structure::Orthogonal {
+                if self.structure(*source).is_unimodular() {
                     continue;
                 }
                 let atom = match source {
-                    Source::Letter(_) => Atom::Det(*source),
+                    Source::Letter(_) | Source::Rotation(_) | Source::Translation(_) => {
+                        Atom::Det(*source)
+                    }
                     Source::Opaque(i) => Atom::OpaqueDet(*i),
                 };
                 let e = if *inverted {

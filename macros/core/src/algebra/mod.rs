@@ -8,9 +8,13 @@ mod factor;
 mod lower;
 mod monomial;
 mod poly;
+mod quaternion;
 mod raise;
 mod rational;
 mod reduce;
+mod rigid;
+#[cfg(test)]
+mod tests;
 
 pub use factor::{Factor, Source, Word};
 pub use monomial::{Atom, Monomial};
@@ -39,6 +43,8 @@ pub struct Algebra<'a> {
     numbers: RefCell<Vec<Opaque>>,
     work: Cell<u64>,
     evaluated: Cell<u64>,
+    /// Whether letters of SE(3) are written by their rotations and translations.
+    blocks: Cell<bool>,
 }
 
 /// How an identity was decided.
@@ -66,6 +72,7 @@ impl<'a> Algebra<'a> {
             numbers: RefCell::default(),
             work: Cell::new(0),
             evaluated: Cell::new(0),
+            blocks: Cell::new(false),
         }
     }
 
@@ -90,6 +97,10 @@ impl<'a> Algebra<'a> {
             return None;
         }
         if normal.is_zero() {
+            return Some(Known::NormalForm);
+        }
+        let in_blocks = self.lower_in_blocks(e);
+        if !self.exhausted() && in_blocks.is_some_and(|p| p.is_zero()) {
             return Some(Known::NormalForm);
         }
         self.vanishes_at_points(e).then_some(Known::ExactEvaluation)

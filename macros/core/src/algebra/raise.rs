@@ -49,7 +49,9 @@ impl Algebra<'_> {
                 continue;
             };
             let wanted = match source {
-                Source::Letter(_) => Atom::Det(*source),
+                Source::Letter(_) | Source::Rotation(_) | Source::Translation(_) => {
+                    Atom::Det(*source)
+                }
                 Source::Opaque(n) => Atom::OpaqueDet(*n),
             };
             let Some(at) = t
@@ -143,6 +145,15 @@ impl Algebra<'_> {
                 axis,
                 transposed,
             } => (expr::unit(*dim, *axis), *transposed),
+            Factor::Inclusion {
+                shape,
+                at,
+                transposed,
+            } => (expr::inclusion(shape.rows, shape.cols, *at), *transposed),
+            Factor::Pure(v) => (expr::pure(self.raise_word(v)), false),
+            Factor::Imaginary { word, transposed } => {
+                (expr::imaginary(self.raise_word(word)), *transposed)
+            }
             Factor::Hat(v) => match v.as_slice() {
                 [Factor::Axial { source, .. }] => (self.raise_source(*source), false),
                 _ => (expr::hat(self.raise_word(v)), false),
@@ -170,6 +181,14 @@ impl Algebra<'_> {
         match source {
             Source::Letter(at) => expr::letter(self.symbols, at.symbol, at.shift),
             Source::Opaque(i) => self.matrices.borrow()[i as usize].meaning.clone(),
+            Source::Rotation(at) => {
+                let letter = expr::letter(self.symbols, at.symbol, at.shift);
+                expr::rotation(self.symbols, letter)
+            }
+            Source::Translation(at) => {
+                let letter = expr::letter(self.symbols, at.symbol, at.shift);
+                expr::column(self.symbols, &letter)
+            }
         }
     }
 

@@ -26,6 +26,8 @@ impl Rational {
     pub const MINUS_ONE: Rational = Rational { num: -1, den: 1 };
     /// One half.
     pub const HALF: Rational = Rational { num: 1, den: 2 };
+    /// A quarter.
+    pub const QUARTER: Rational = Rational { num: 1, den: 4 };
 
     /// The fraction `num/den` in lowest terms; `None` for a zero denominator or on overflow.
     pub fn new(num: i128, den: i128) -> Option<Rational> {

@@ -19,7 +19,16 @@ impl Algebra<'_> {
                 out.push(f);
             }
         }
-        out
+        // Constant factors shrink to shorter ones, which may free others to cancel.
+        let shorter = out.windows(2).enumerate().find_map(|(i, pair)| {
+            let [a, b] = pair else { return None };
+            let new = self.constant_pair(a, b)??;
+            Some([&out[..i], &new, &out[i + 2..]].concat())
+        });
+        match shorter {
+            Some(word) => self.cancelled(word),
+            None => out,
+        }
     }
 
     /// Adds `coefficient * monomial * word`, with the word brought to canonical form, to `out`.
@@ -37,6 +46,25 @@ impl Algebra<'_> {
             return self.exhaust();
         }
         let word = self.cancelled(word);
+        let vanishes = |pair: &[Factor]| match pair {
+            [a, b] => self.constant_pair(a, b) == Some(None),
+            _ => false,
+        };
+        if word.windows(2).any(vanishes) {
+            return;
+        }
+        if let Some(moved) = self.pure_in_front(&word) {
+            return self.push_reduced(out, coefficient, monomial, moved);
+        }
+        if let Some(terms) = self.pure_product(&word) {
+            for (c, m, w) in terms {
+                match (monomial::times(monomial, &m), coefficient.times(c)) {
+                    (Some(m), Some(c)) => self.push_reduced(out, c, &m, w),
+                    _ => self.exhaust(),
+                }
+            }
+            return;
+        }
         if let Some((a, b)) = self.number_inside(&word) {
             let value = self.bracket(&word[a..b]);
             let mut rest = word;

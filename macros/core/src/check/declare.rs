@@ -8,8 +8,8 @@ use crate::diagnostic::{Diagnostic, Errors, Place, closest};
 use crate::expr::Expr;
 use crate::expr::shape::{Shape, Structure};
 use crate::expr::symbol::{Role, SymbolId, Symbols, ascii};
-use crate::syntax::FUNCTIONS;
 use crate::syntax::ast::{Model, Name, Statement};
+use crate::syntax::{FUNCTIONS, HIDEABLE};
 
 /// A declared configuration and its constraint, once stated.
 #[derive(Clone)]
@@ -66,7 +66,8 @@ pub fn is_rust_word(name: &str) -> bool {
 /// What is wrong with a name whatever else is declared.
 fn unusable(name: &Name) -> Option<Diagnostic> {
     let text = name.text.as_str();
-    let message = if RESERVED.contains(&text) || FUNCTIONS.contains(&text) {
+    let function = FUNCTIONS.contains(&text) && !HIDEABLE.contains(&text);
+    let message = if RESERVED.contains(&text) || function {
         format!("`{text}` has a fixed meaning in the language")
     } else if RUST.contains(&text) {
         format!(
@@ -179,11 +180,7 @@ impl Declared {
                     return;
                 }
                 let shape = Shape::square(kind.size());
-                let structure = if kind.is_orthogonal() {
-                    Structure::Orthogonal
-                } else {
-                    Structure::Invertible
-                };
+                let structure = kind.structure();
                 let element = self
                     .symbols
                     .add(&name.text, shape, structure, Role::Element);

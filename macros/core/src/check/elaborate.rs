@@ -5,11 +5,24 @@ use super::declare::Declared;
 use super::messages::{self, shape_text};
 use crate::algebra::{Algebra, Rational};
 use crate::diagnostic::{Diagnostic, Errors, Place, closest};
-use crate::expr::shape::{Dim, Shape};
-use crate::expr::symbol::Role;
-use crate::expr::{self, Expr, Function, Part, Shift};
-use crate::syntax::FUNCTIONS;
+use crate::expr::shape::{Dim, Shape, Structure};
+use crate::expr::symbol::{Role, Symbols};
+use crate::expr::{self, Expr, Function, Node, Part, Shift};
 use crate::syntax::ast::{Expression, Kind, Name};
+use crate::syntax::{FUNCTIONS, HIDEABLE};
+
+/// Whether an expression is an element of the group of this structure whatever its letters are.
+fn is_element(symbols: &Symbols, e: &Expr, structure: Structure) -> bool {
+    let go = |x: &Expr| is_element(symbols, x, structure);
+    match e.node() {
+        Node::Letter(at) => symbols.get(at.symbol).structure == structure,
+        Node::Identity(_) => true,
+        Node::Product(factors) => factors.iter().all(go),
+        Node::Inverse(a) => go(a),
+        Node::Transpose(a) => structure.is_orthogonal() && go(a),
+        _ => false,
+    }
+}
 
 /// Elaborates the expressions of one model.
 pub struct Elaborator<'a> {
@@ -163,10 +176,16 @@ impl<'a> Elaborator<'a> {
                 }
             }
             Kind::Call(name, args) => {
+                if let Some(product) = self.hidden(name, args) {
+                    return self.hint(&product);
+                }
                 let first = || args.first().and_then(|a| self.hint(a));
                 match name.text.as_str() {
                     "hat" => first().map(|s| Shape::square(s.rows)),
                     "vee" => first().map(|s| Shape::vector(s.rows)),
+                    "im" | "pos" => Some(Shape::vector(Dim::Fixed(3))),
+                    "rot" => Some(Shape::square(Dim::Fixed(3))),
+                    "quat" => Some(Shape::square(Dim::Fixed(4))),
                     "inv" | "sym" | "skew" | "diag" | "cross" | "next" | "prev" => first(),
                     _ => Some(Shape::SCALAR),
                 }
@@ -399,6 +418,55 @@ impl<'a> Elaborator<'a> {
         )
     }
 
+    /// A word that is declared is no function: `rot (a)` is then a product.
+    fn hidden(&self, name: &Name, args: &[Expression]) -> Option<Expression> {
+        let n = name.text.as_str();
+        let declared = self.names.symbols.find(n).is_some()
+            || self.bindings.iter().any(|(bound, _)| bound == n);
+        let [argument] = args else { return None };
+        if !HIDEABLE.contains(&n) || !declared {
+            return None;
+        }
+        let factor = Expression {
+            kind: Kind::Name(n.to_owned()),
+            place: name.place,
+        };
+        Some(Expression {
+            place: name.place.to(argument.place),
+            kind: Kind::Product(vec![factor, argument.clone()]),
+        })
+    }
+
+    /// Parts of elements of SU(2) and SE(3).
+    fn of_group(&self, f: &str, a: Expr, place: Place) -> Elaborated {
+        let symbols = &self.names.symbols;
+        if a.shape() != Shape::square(Dim::Fixed(4)) {
+            let what = shape_text(symbols, a.shape());
+            let d = Diagnostic::new(
+                place,
+                format!("`{f}` needs a 4 x 4 matrix, and this is {what}"),
+            );
+            return fail(d.help("elements of SU<2> and of SE<3> are 4 x 4 matrices"));
+        }
+        let quaternion = is_element(symbols, &a, Structure::UnitQuaternion);
+        let motion = is_element(symbols, &a, Structure::RigidMotion);
+        match f {
+            "re" => return Ok(expr::real(a)),
+            "im" => return Ok(expr::imaginary(a)),
+            "rot" if quaternion => return Ok(expr::rotation(symbols, a)),
+            "rot" if motion => return Ok(expr::block(symbols, &a)),
+            "pos" if motion => return Ok(expr::column(symbols, &a)),
+            _ => {}
+        }
+        let (what, example) = match f {
+            "rot" => ("SU<2> or SE<3>", "rot(g)"),
+            _ => ("SE<3>", "pos(G)"),
+        };
+        let message =
+            format!("`{f}` needs an element of {what}: products and inverses of such letters");
+        fail(Diagnostic::new(place, message).help(format!("write for example `{example}`")))
+    }
+
     fn call(
         &self,
         name: &Name,
@@ -406,6 +474,9 @@ impl<'a> Elaborator<'a> {
         place: Place,
         expected: Option<Shape>,
     ) -> Elaborated {
+        if let Some(product) = self.hidden(name, args) {
+            return self.elaborate(&product, expected);
+        }
         let symbols = &self.names.symbols;
         let f = name.text.as_str();
         let count = if matches!(f, "dot" | "cross") { 2 } else { 1 };
@@ -463,10 +534,13 @@ impl<'a> Elaborator<'a> {
                     _ => expr::power(a, Rational::HALF),
                 })
             }
-            "hat" => {
-                let a = argument(expected.map(|s| Shape::vector(s.rows)))?;
+            "hat" | "quat" => {
+                let a = argument(Some(Shape::vector(Dim::Fixed(3))))?;
                 three(&a, first.place)?;
-                Ok(expr::hat(a))
+                Ok(match f {
+                    "hat" => expr::hat(a),
+                    _ => expr::pure(a),
+                })
             }
             "vee" => {
                 let a = argument(expected.map(|s| Shape::square(s.rows)))?;
@@ -529,13 +603,17 @@ impl<'a> Elaborator<'a> {
                 }
                 Ok(shifted)
             }
+            "re" | "im" | "rot" | "pos" => {
+                let a = argument(Some(Shape::square(Dim::Fixed(4))))?;
+                self.of_group(f, a, first.place)
+            }
             _ => fail(
                 Diagnostic::new(
                     name.place,
                     format!("`{f}` belongs to models that this version does not derive yet"),
                 )
                 .help(
-                    "available: tr det log exp sqrt inv sym skew diag hat vee dot cross I1 I2 next",
+                    "available: tr det log exp sqrt inv sym skew diag hat vee dot cross re im quat rot pos I1 I2 next",
                 ),
             ),
         }

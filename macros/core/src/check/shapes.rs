@@ -12,7 +12,7 @@ use crate::syntax::ast::{Kindred, Size};
 const LARGEST: u64 = 32;
 
 const SHAPES: [&str; 6] = ["Real", "Vec", "Sym", "Skew", "Diag", "Mat"];
-const GROUPS: [&str; 2] = ["SO", "GL"];
+const GROUPS: [&str; 4] = ["SO", "GL", "SU", "SE"];
 
 fn size(symbols: &Symbols, s: &Size, errors: &mut Errors) -> Option<Dim> {
     match s {
@@ -95,6 +95,7 @@ pub fn shape(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<(Sha
         "Mat" => one(errors).map(square(Structure::General)),
         "SO" => one(errors).map(square(Structure::Orthogonal)),
         "GL" => one(errors).map(square(Structure::Invertible)),
+        "SU" | "SE" => group(symbols, k, errors).map(|g| (Shape::square(g.size()), g.structure())),
         other => {
             let mut e = Diagnostic::new(k.name.place, format!("`{other}` is not a shape"));
             e = match closest(other, SHAPES.into_iter().chain(GROUPS)) {
@@ -140,17 +141,23 @@ pub fn group(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<Grou
         "SO" => sizes(symbols, k, 1, errors).map(|d| Group::SpecialOrthogonal(d[0])),
         "GL" => sizes(symbols, k, 1, errors).map(|d| Group::GeneralLinear(d[0])),
         "SU" | "SE" => {
+            let (wanted, found) = match k.name.text.as_str() {
+                "SU" => (2, Group::UnitQuaternions),
+                _ => (3, Group::RigidMotions),
+            };
+            let given = sizes(symbols, k, 1, errors)?;
+            if given == [Dim::Fixed(wanted)] {
+                return Some(found);
+            }
+            let name = &k.name.text;
             errors.push(
                 Diagnostic::new(
                     k.place,
                     format!("`{}` is not in this version's table of groups", written(k)),
                 )
-                .help(match k.name.text.as_str() {
-                    "SU" => {
-                        "the groups are SO<n> and GL<n>; SU<2> covers SO<3>, which takes its place"
-                    }
-                    _ => "the groups are SO<n> and GL<n>",
-                }),
+                .help(format!(
+                    "of this family there is `{name}<{wanted}>`; the groups are SO<n>, GL<n>, SU<2> and SE<3>"
+                )),
             );
             None
         }
@@ -158,7 +165,7 @@ pub fn group(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<Grou
             let mut e = Diagnostic::new(k.name.place, format!("`{other}` is not a group"));
             e = match closest(other, GROUPS) {
                 Some(near) => e.help(format!("did you mean `{near}<3>`?")),
-                None => e.help("the groups are SO<n> and GL<n>"),
+                None => e.help("the groups are SO<n>, GL<n>, SU<2> and SE<3>"),
             };
             errors.push(e);
             None

@@ -3,7 +3,7 @@
 
 use crate::diagnostic::Place;
 use crate::expr::Expr;
-use crate::expr::shape::{Dim, Shape};
+use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::{SymbolId, Symbols};
 use crate::syntax::ast::{Comparison, NodeRule};
 
@@ -14,6 +14,10 @@ pub enum Group {
     SpecialOrthogonal(Dim),
     /// Invertible matrices, GL(n).
     GeneralLinear(Dim),
+    /// Unit quaternions, SU(2), as 4 x 4 matrices of left multiplication.
+    UnitQuaternions,
+    /// Rigid motions of space, SE(3), as 4 x 4 homogeneous matrices.
+    RigidMotions,
 }
 
 impl Group {
@@ -21,12 +25,33 @@ impl Group {
     pub fn size(self) -> Dim {
         match self {
             Group::SpecialOrthogonal(n) | Group::GeneralLinear(n) => n,
+            Group::UnitQuaternions | Group::RigidMotions => Dim::Fixed(4),
         }
     }
 
     /// Whether its Lie algebra is the skew matrices.
     pub fn is_orthogonal(self) -> bool {
         matches!(self, Group::SpecialOrthogonal(_))
+    }
+
+    /// What its elements obey.
+    pub fn structure(self) -> Structure {
+        match self {
+            Group::SpecialOrthogonal(_) => Structure::Orthogonal,
+            Group::GeneralLinear(_) => Structure::Invertible,
+            Group::UnitQuaternions => Structure::UnitQuaternion,
+            Group::RigidMotions => Structure::RigidMotion,
+        }
+    }
+
+    /// The number of coordinates of its Lie algebra, where its elements are written by them; the
+    /// Lie algebras of SO(n) and GL(n) are matrices of one structure.
+    pub fn coordinates(self) -> Option<Dim> {
+        match self {
+            Group::SpecialOrthogonal(_) | Group::GeneralLinear(_) => None,
+            Group::UnitQuaternions => Some(Dim::Fixed(3)),
+            Group::RigidMotions => Some(Dim::Fixed(6)),
+        }
     }
 }
 

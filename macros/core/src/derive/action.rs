@@ -17,6 +17,8 @@ pub struct Action {
     pub edge: Expr,
     /// Purely nodal terms at node k, before they are distributed.
     pub nodal: Expr,
+    /// The same, distributed over the two ends of the edge.
+    pub distributed: Expr,
 }
 
 /// Splits and distributes.
@@ -47,9 +49,10 @@ pub fn action(spec: &Spec) -> Action {
         }
     };
     Action {
-        total: expr::add(edge.clone(), distributed),
+        total: expr::add(edge.clone(), distributed.clone()),
         edge,
         nodal,
+        distributed,
     }
 }
 

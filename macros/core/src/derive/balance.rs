@@ -4,15 +4,17 @@
 
 use super::Letters;
 use super::action::Action;
+use super::lie;
 use super::variation::{Variation, at};
-use crate::algebra::{Algebra, Rational};
-use crate::check::spec::{Configuration, Group, Side, Spec};
-use crate::expr::shape::Dim;
+use crate::algebra::Algebra;
+use crate::check::spec::{Configuration, Side, Spec};
+use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
 
 /// The balance of one configuration. Every part is a covector of the Lie algebra in the form of
-/// [`covector`]: a vector for SO(3), a skew matrix for SO(n), a matrix for GL(n).
+/// [`lie::covector`]: a vector for SO(3) and SU(2), a skew matrix for SO(n), a matrix for GL(n), an angular
+/// and a linear vector on top of each other for SE(3).
 #[derive(Clone, Debug)]
 pub struct Balance {
     /// Gradient of the action of the outgoing edge with respect to its velocity.
@@ -41,30 +43,6 @@ pub struct Balance {
     pub variation_out: Expr,
     /// The same for the incoming edge of node k.
     pub variation_in: Expr,
-}
-
-/// The covector whose pairing with `ξ` is `<y, ξ>`: `2 vee(y)` for SO(3) (pairing with the axial
-/// vector of `ξ`), `y - y^T` for SO(n), `y` for GL(n).
-pub fn covector(letters: &Letters, group: Group, y: Expr) -> Expr {
-    let s = &letters.symbols;
-    match group {
-        Group::SpecialOrthogonal(Dim::Fixed(3)) => expr::scale(Rational::integer(2), expr::vee(y)),
-        Group::SpecialOrthogonal(_) => expr::sub(y.clone(), expr::transpose(s, y)),
-        Group::GeneralLinear(_) => y,
-    }
-}
-
-/// The number that a covector gives on `ξ`.
-pub fn pair_with_variation(letters: &Letters, group: Group, covector: Expr, xi: Expr) -> Expr {
-    let s = &letters.symbols;
-    match group {
-        Group::SpecialOrthogonal(Dim::Fixed(3)) => expr::dot(covector, expr::vee(xi)),
-        Group::SpecialOrthogonal(_) => expr::scale(
-            Rational::HALF,
-            expr::trace(expr::mul(expr::transpose(s, covector), xi)),
-        ),
-        Group::GeneralLinear(_) => expr::trace(expr::mul(expr::transpose(s, covector), xi)),
-    }
 }
 
 /// The balances of all configurations.
@@ -97,12 +75,12 @@ fn balance(
     let velocity_next = expr::shift_time(s, &v.incoming.1, Shift::NEXT.time);
     let dual = |pairing: Expr| {
         let y = expr::gradient(s, &pairing, xi);
-        covector(letters, c.group, y)
+        lie::of_gradient(letters, c.group, y)
     };
     let edge_out = dual(expr::neg(pairing(letters, &gradient, &v.outgoing.1)));
     let edge_in = dual(pairing(letters, &gradient, &velocity_next));
     // Quantities at a node: short forms come from the algebra.
-    let nodes = |shift: Shift| {
+    let nodes_of = |l: &Expr, shift: Shift| {
         let mut terms = Vec::new();
         for (letter, change) in v.advected.iter().chain([&v.element]) {
             let wrt = Letter {
@@ -115,10 +93,11 @@ fn balance(
                 terms.push(pairing(letters, &g, &change));
             }
         }
-        let total = expr::sum(terms, crate::expr::shape::Shape::SCALAR);
+        let total = expr::sum(terms, Shape::SCALAR);
         let value = dual(total);
         shorter(algebra, value)
     };
+    let nodes = |shift| nodes_of(l, shift);
     let advected_gradients = spec
         .advected
         .iter()
@@ -135,8 +114,17 @@ fn balance(
         without_zeros(algebra, whole)
     };
     let (outgoing, incoming) = (total(&edge_out, &node_out), total(&edge_in, &node_in));
+    // What potentials add, if that is all that the step adds.
+    let acting = || {
+        let at = |shift| nodes_of(&action.distributed, shift);
+        let added = shorter(algebra, expr::add(at(Shift::HERE), at(Shift::NEXT)));
+        let step = expr::sub(incoming.clone(), outgoing.clone());
+        let rest = forward(spec, s, &expr::sub(step, added.clone()));
+        let moving = expr::contains_role(s, &added, Role::Velocity);
+        (c.side == Side::Spatial && !moving && algebra.is_zero(&rest)).then_some(added)
+    };
     Balance {
-        increment: increment(s, c, &outgoing, &incoming, algebra),
+        increment: increment(s, c, &outgoing, &incoming, algebra).or_else(acting),
         outgoing,
         incoming,
         edge_out,
@@ -150,6 +138,17 @@ fn balance(
     }
 }
 
+/// Everything at the end of the edge written by its start and the velocities.
+fn forward(spec: &Spec, s: &Symbols, e: &Expr) -> Expr {
+    let groups = spec.configurations.iter().map(|c| (c.element, &c.update));
+    let advected = spec.advected.iter().map(|a| (a.quantity, &a.update));
+    let list: Vec<(Letter, Expr)> = groups
+        .chain(advected)
+        .map(|(x, update)| (at(x, Shift::NEXT), update.clone()))
+        .collect();
+    expr::substitute(s, e, &list)
+}
+
 fn increment(
     s: &Symbols,
     c: &Configuration,
@@ -161,7 +160,7 @@ fn increment(
         return None;
     }
     let difference = expr::sub(incoming.clone(), outgoing.clone());
-    let reduced = if difference.shape().is_vector() {
+    let reduced = if difference.shape() == Shape::vector(Dim::Fixed(3)) {
         // Axial vectors cancel as skew matrices.
         expr::vee(algebra.raise(&algebra.lower(&expr::hat(difference))))
     } else {
@@ -201,7 +200,12 @@ fn without_zeros(algebra: &Algebra, mut e: Expr) -> Expr {
 
 /// The reduced form of the algebra if it is smaller than the expression itself.
 pub fn shorter(algebra: &Algebra, e: Expr) -> Expr {
-    let reduced = algebra.raise(&algebra.lower(&e));
+    if e.shape() == lie::IMPULSE && !e.is_zero() {
+        // The angular and the linear part, each by itself.
+        let part = |row| algebra.shortest(&expr::part_of_six(algebra.symbols(), &e, row));
+        return expr::stacked(part(0), part(3));
+    }
+    let reduced = algebra.shortest(&e);
     if !algebra.exhausted() && reduced.size() <= e.size() {
         reduced
     } else {

@@ -5,8 +5,9 @@
 
 use super::Letters;
 use super::action::Action;
-use super::balance::{self, Balance, pairing};
+use super::balance::{Balance, pairing};
 use super::clebsch::{self, Relation, constraint_terms};
+use super::lie;
 use super::momentum::Momentum;
 use super::variation::{Variation, at, on_shell, substitute_previous_elements};
 use crate::algebra::{Algebra, Known, Rational};
@@ -288,7 +289,7 @@ fn named_form(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
         Rational::ONE
     };
     let matrix = |e: &Expr| expr::scale(weight, pairing(x.letters, e, &xi));
-    let node = |e: Expr| balance::pair_with_variation(x.letters, c.group, e, xi.clone());
+    let node = |e: Expr| lie::pairing(x.letters, c.group, e, xi.clone());
     let v = &x.variations[i];
     let l = &x.action.total;
     let before = back(l);

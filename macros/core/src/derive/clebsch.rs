@@ -20,8 +20,8 @@ pub struct Relation {
     pub variable: Letter,
     /// The gradient of the Clebsch action with respect to it.
     pub gradient: Expr,
-    /// For a velocity of SO(n): the relation holds up to `Θ Ω` with `Θ` symmetric, the multiplier
-    /// of the group itself.
+    /// For a velocity of a group within the matrices: the relation holds up to `Θ Ω^-T` with `Θ`
+    /// normal to the Lie algebra (symmetric for SO(n)), the multiplier of the group itself.
     pub up_to_group_multiplier: bool,
 }
 
@@ -92,7 +92,7 @@ pub fn relations(
         out.push(Relation {
             variable,
             gradient: expr::collect(s, &expr::gradient(s, &edge, variable)),
-            up_to_group_multiplier: c.group.is_orthogonal(),
+            up_to_group_multiplier: !matches!(c.group, Group::GeneralLinear(_)),
         });
     }
     out

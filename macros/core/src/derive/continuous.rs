@@ -4,7 +4,8 @@
 //! ones as in the thesis's tables A.2 to A.5. Time is continuous here: no letter has a node.
 
 use super::Letters;
-use super::balance::{covector, pairing, shorter};
+use super::balance::{pairing, shorter};
+use super::lie;
 use super::limit::Limit;
 use super::variation::{Variation, at};
 use crate::algebra::{Algebra, Rational};
@@ -14,7 +15,8 @@ use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr, Letter, Node, Shift};
 
 /// The equations of motion in continuous time, per configuration. Momenta and forces are covectors
-/// as in [`covector`]: vectors for SO(3), skew matrices for SO(n), matrices for GL(n).
+/// as in [`lie::covector`]: vectors for SO(3), SU(2) and SE(3), skew matrices for SO(n), matrices
+/// for GL(n).
 #[derive(Clone, Debug)]
 pub struct Continuous {
     /// The Lagrangian per unit time in the velocities `ζ` of [`Letters::rate`].
@@ -37,12 +39,15 @@ pub struct Continuous {
     pub balances: Vec<Expr>,
 }
 
-/// The velocity `ζ` as an element of the Lie algebra.
+/// The velocity `ζ` in place of a letter of variation.
 pub fn velocity(letters: &Letters, group: Group, symbol: SymbolId) -> Expr {
     let zeta = expr::here(&letters.symbols, symbol);
     match group {
         Group::SpecialOrthogonal(Dim::Fixed(3)) => expr::hat(zeta),
-        Group::SpecialOrthogonal(_) | Group::GeneralLinear(_) => zeta,
+        Group::SpecialOrthogonal(_)
+        | Group::GeneralLinear(_)
+        | Group::UnitQuaternions
+        | Group::RigidMotions => zeta,
     }
 }
 
@@ -109,9 +114,11 @@ pub fn continuous(
         let gradient = expr::gradient(s, &lagrangian, zeta);
         let momentum = match c.group {
             // The velocity is a vector here, and so is the gradient.
-            Group::SpecialOrthogonal(Dim::Fixed(3)) => gradient,
+            Group::SpecialOrthogonal(Dim::Fixed(3))
+            | Group::UnitQuaternions
+            | Group::RigidMotions => gradient,
             Group::SpecialOrthogonal(_) | Group::GeneralLinear(_) => {
-                covector(letters, c.group, gradient)
+                lie::covector(letters, c.group, gradient)
             }
         };
         let momentum = short(momentum);
@@ -161,7 +168,7 @@ fn forces(
     });
     let total = expr::sum(terms.collect::<Vec<_>>(), Shape::SCALAR);
     let xi = at(letters.variation[i], Shift::HERE);
-    covector(letters, c.group, expr::gradient(s, &total, xi))
+    lie::of_gradient(letters, c.group, expr::gradient(s, &total, xi))
 }
 
 /// `ad*_ζ μ` with `<ad*_ζ μ, ξ> = <μ, [ζ, ξ]>`, with the sign of the side: velocities vary as
@@ -171,7 +178,17 @@ fn coadjoint(letters: &Letters, c: &Configuration, i: usize) -> Expr {
     let mu = expr::here(s, letters.node_momentum[i]);
     let zeta = expr::here(s, letters.rate[i]);
     let body = match c.group {
-        Group::SpecialOrthogonal(Dim::Fixed(3)) => expr::cross(mu, zeta),
+        Group::SpecialOrthogonal(Dim::Fixed(3)) | Group::UnitQuaternions => expr::cross(mu, zeta),
+        // (a × ω + l × v, l × ω) of the momentum (a, l) and the velocity (ω, v).
+        Group::RigidMotions => {
+            let part = |e: &Expr, row| expr::part_of_six(s, e, row);
+            let turn = part(&zeta, 0);
+            let angular = expr::add(
+                expr::cross(part(&mu, 0), turn.clone()),
+                expr::cross(part(&mu, 3), part(&zeta, 3)),
+            );
+            expr::stacked(angular, expr::cross(part(&mu, 3), turn))
+        }
         Group::SpecialOrthogonal(_) | Group::GeneralLinear(_) => {
             let turned = expr::transpose(s, zeta);
             expr::sub(expr::mul(turned.clone(), mu.clone()), expr::mul(mu, turned))

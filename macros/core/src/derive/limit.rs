@@ -4,6 +4,7 @@
 
 use super::Letters;
 use super::action::Action;
+use super::lie;
 use super::variation::{Variation, at};
 use crate::algebra::{Algebra, Atom, Monomial, Poly, Rational, Term};
 use crate::check::spec::Spec;
@@ -40,7 +41,7 @@ pub fn limit(
     let mut forward: Vec<(Letter, Expr)> = Vec::new();
     let (mut identity, mut first, mut second) = (Vec::new(), Vec::new(), Vec::new());
     for (i, c) in spec.configurations.iter().enumerate() {
-        let xi = expr::here(s, letters.variation[i]);
+        let xi = lie::element(s, c.group, letters.variation[i]);
         let w = at(c.velocity, Shift::HERE);
         forward.push((at(c.element, Shift::NEXT), c.update.clone()));
         identity.push((w, expr::identity(c.group.size())));

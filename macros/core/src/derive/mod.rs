@@ -8,6 +8,7 @@ pub mod certificate;
 pub mod clebsch;
 pub mod continuous;
 pub mod invariants;
+pub mod lie;
 pub mod limit;
 pub mod momentum;
 pub mod recognise;
@@ -96,19 +97,13 @@ fn letters(spec: &Spec) -> Letters {
         let name = symbols.fresh_name(&name);
         symbols.add(&name, shape, structure, role)
     };
-    let algebra = |c: &crate::check::spec::Configuration| {
-        if c.group.is_orthogonal() {
-            Structure::Skew
-        } else {
-            Structure::General
-        }
-    };
     let (mut variation, mut direction, mut momentum, mut edge, mut node) =
         (Vec::new(), Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (i, c) in spec.configurations.iter().enumerate() {
         let shape = Shape::square(c.group.size());
-        variation.push(numbered("ξ", i, shape, algebra(c), Role::Variation));
-        direction.push(numbered("η", i, shape, algebra(c), Role::Variation));
+        let (algebra, structure) = lie::variation(c.group);
+        variation.push(numbered("ξ", i, algebra, structure, Role::Variation));
+        direction.push(numbered("η", i, algebra, structure, Role::Variation));
         momentum.push(numbered(
             "P",
             i,
@@ -116,8 +111,9 @@ fn letters(spec: &Spec) -> Letters {
             Structure::General,
             Role::Multiplier,
         ));
-        edge.push(numbered("M", i, shape, algebra(c), Role::Derived));
+        edge.push(numbered("M", i, algebra, structure, Role::Derived));
         let (covector, structure) = match c.group {
+            Group::UnitQuaternions | Group::RigidMotions => (algebra, structure),
             Group::SpecialOrthogonal(n @ Dim::Fixed(3)) => (Shape::vector(n), Structure::General),
             Group::SpecialOrthogonal(_) => (shape, Structure::Skew),
             Group::GeneralLinear(_) => (shape, Structure::General),
@@ -135,9 +131,11 @@ fn letters(spec: &Spec) -> Letters {
         let name = symbols.fresh_name(&format!("V_{}", s.name));
         let dual = match s.structure {
             Structure::Symmetric | Structure::Diagonal | Structure::Skew => s.structure,
-            Structure::General | Structure::Orthogonal | Structure::Invertible => {
-                Structure::General
-            }
+            Structure::General
+            | Structure::Orthogonal
+            | Structure::Invertible
+            | Structure::UnitQuaternion
+            | Structure::RigidMotion => Structure::General,
         };
         multiplier.push(symbols.add(&name, s.shape, dual, Role::Multiplier));
         let name = symbols.fresh_name(&format!("d{}", s.name));
@@ -156,6 +154,7 @@ fn letters(spec: &Spec) -> Letters {
             Group::SpecialOrthogonal(Dim::Fixed(3)) => (Shape::vector(size), Structure::General),
             Group::SpecialOrthogonal(_) => (Shape::square(size), Structure::Skew),
             Group::GeneralLinear(_) => (Shape::square(size), Structure::General),
+            Group::UnitQuaternions | Group::RigidMotions => lie::variation(c.group),
         };
         let number = if many {
             (i + 1).to_string()

@@ -4,7 +4,8 @@
 //! `<v ◇ a, ξ> = <v, δa>` along `ξ` (thesis 2.82, 2.85, 2.120, 2.155).
 
 use super::Letters;
-use super::balance::{Balance, covector, pairing, shorter};
+use super::balance::{Balance, pairing, shorter};
+use super::lie;
 use super::variation::{Variation, at};
 use crate::algebra::Algebra;
 use crate::check::spec::{Configuration, Group, Side, Spec};
@@ -14,8 +15,9 @@ use crate::expr::{self, Expr, Shift};
 /// The momentum map of one configuration.
 #[derive(Clone, Debug)]
 pub struct Momentum {
-    /// The edge momentum as a matrix: `2 skew(∇ℓ Ω^T)` for SO(n), `∇ℓ Ω^T` for GL(n). It stands at
-    /// the start of the edge on the body side, at its end on the spatial side.
+    /// The edge momentum as a matrix: `2 skew(∇ℓ Ω^T)` for SO(n), `∇ℓ Ω^T` for GL(n); for SU(2)
+    /// and SE(3) its pairings with the coordinates. It stands at the start of the edge on the body
+    /// side, at its end on the spatial side.
     pub edge: Expr,
     /// The same, reduced.
     pub reduced: Expr,
@@ -58,13 +60,18 @@ fn momentum(
     let w = expr::here(s, c.velocity);
     let wt = expr::transpose(s, w);
     let raw = expr::mul(expr::collect(s, &b.gradient), wt.clone());
-    let edge = if c.group.is_orthogonal() {
-        expr::sub(raw.clone(), expr::transpose(s, raw))
-    } else {
-        raw
+    // As a matrix, or by coordinates where the Lie algebra has them.
+    let matrix = |y: Expr| match c.group.coordinates() {
+        Some(_) => lie::covector(letters, c.group, y),
+        None if c.group.is_orthogonal() => expr::sub(y.clone(), expr::transpose(s, y)),
+        None => y,
     };
+    let edge = matrix(raw.clone());
     let back = expr::inverse(s, wt.clone());
-    let carried = expr::product([wt, edge.clone(), back]);
+    let carried = match c.group.coordinates() {
+        Some(_) => matrix(expr::product([wt, raw, back])),
+        None => expr::product([wt, edge.clone(), back]),
+    };
     let (start, end) = match c.side {
         Side::Body => (edge.clone(), carried),
         Side::Spatial => (carried, edge.clone()),
@@ -77,6 +84,8 @@ fn momentum(
     };
     let cotangent = if c.group.is_orthogonal() {
         expr::part(expr::Part::Skew, product)
+    } else if c.group.coordinates().is_some() {
+        matrix(product)
     } else {
         product
     };
@@ -87,9 +96,12 @@ fn momentum(
             return expr::zero(edge.shape());
         };
         let y = expr::gradient(s, &pairing(letters, &multiplier, change), xi);
+        if c.group.coordinates().is_some() {
+            return shorter(algebra, y);
+        }
         // For a vector the map is a vector too, and reads best as one.
         if multiplier.shape().is_vector() && c.group == Group::SpecialOrthogonal(Dim::Fixed(3)) {
-            return expr::hat(shorter(algebra, covector(letters, c.group, y)));
+            return expr::hat(shorter(algebra, lie::covector(letters, c.group, y)));
         }
         let matrix = if c.group.is_orthogonal() {
             expr::sub(y.clone(), expr::transpose(s, y))

@@ -245,7 +245,7 @@ fn riccati(
     let s = &letters.symbols;
     let c = &spec.configurations[i];
     if !c.group.is_orthogonal() {
-        return Riccati::None("the group is not orthogonal".to_owned());
+        return Riccati::None("the group is not SO(n)".to_owned());
     }
     let n = c.group.size();
     // What stands at the end of the edge depends on the velocity: written so, it shows.
@@ -374,10 +374,14 @@ fn split(
 
 fn word_mentions(f: &Factor, wanted: &impl Fn(&Factor) -> bool) -> bool {
     match f {
-        Factor::Hat(word) | Factor::Vee { word, .. } => {
-            word.iter().any(|g| word_mentions(g, wanted))
-        }
-        Factor::Letter { .. } | Factor::Unit { .. } | Factor::Axial { .. } => wanted(f),
+        Factor::Hat(word)
+        | Factor::Vee { word, .. }
+        | Factor::Pure(word)
+        | Factor::Imaginary { word, .. } => word.iter().any(|g| word_mentions(g, wanted)),
+        Factor::Letter { .. }
+        | Factor::Unit { .. }
+        | Factor::Inclusion { .. }
+        | Factor::Axial { .. } => wanted(f),
     }
 }
 

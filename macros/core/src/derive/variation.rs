@@ -3,6 +3,7 @@
 //! follows. That it can is exactly "advected by a group action of the right side".
 
 use super::Letters;
+use super::lie;
 use crate::algebra::{Algebra, Factor, Poly, Rational, Source};
 use crate::check::spec::{Advected, Configuration, Side, Spec};
 use crate::diagnostic::{Diagnostic, Errors};
@@ -74,7 +75,7 @@ pub fn variations(
 fn of_configuration(c: &Configuration, letters: &Letters, i: usize) -> Variation {
     let s = &letters.symbols;
     let g = expr::here(s, c.element);
-    let xi = expr::here(s, letters.variation[i]);
+    let xi = lie::element(s, c.group, letters.variation[i]);
     let out = expr::here(s, c.velocity);
     let back = expr::letter(s, c.velocity, Shift::PREVIOUS);
     let (dg, d_out, d_in) = match c.side {
@@ -115,13 +116,15 @@ fn of_advected(
     let marker = expr::here(s, letters.placeholder[j]);
     let own = expr::directional(s, &a.update, &[(here, marker)]);
     let marker = at(letters.placeholder[j], Shift::HERE);
-    let Some((left, right)) = sandwich(algebra, &algebra.lower(&own), marker) else {
+    let read = sandwich(algebra, &algebra.lower(&own), marker);
+    let in_blocks = || sandwich(algebra, &algebra.lower_in_blocks(&own)?, marker);
+    let Some((left, right)) = read.or_else(in_blocks) else {
         return Err(Box::new(
             Diagnostic::new(
                 a.place,
                 format!("the constraint of `{name}` cannot be inverted for `{name}`: it must multiply `{name}` once, between invertible factors"),
             )
-            .help("actions read like `Ω^T * Γ` or `Ω^T * S * Ω`; the velocity and parameters of SO<n> or GL<n> are invertible"),
+            .help("actions read like `Ω^T * Γ` or `Ω^T * S * Ω`; the velocity and parameters of a group are invertible"),
         ));
     };
     let solved = expr::neg(expr::product([
@@ -129,7 +132,7 @@ fn of_advected(
         rest,
         expr::inverse(s, right),
     ]));
-    let solved = algebra.raise(&algebra.lower(&solved));
+    let solved = algebra.shortest(&solved);
     // The incoming constraint a = f(-1), on shell.
     let backward = expr::shift_time(s, &a.update, Shift::PREVIOUS.time);
     let wanted = expr::directional(s, &backward, &v.on_incoming());
@@ -216,10 +219,17 @@ fn sandwich(algebra: &Algebra, poly: &Poly, x: Letter) -> Option<(Expr, Expr)> {
             source: Source::Letter(l),
             ..
         } => algebra.symbols().get(l.symbol).structure.is_invertible(),
+        Factor::Letter {
+            source: Source::Rotation(_),
+            ..
+        } => true,
         Factor::Letter { .. }
         | Factor::Unit { .. }
+        | Factor::Inclusion { .. }
         | Factor::Axial { .. }
         | Factor::Hat(_)
+        | Factor::Pure(_)
+        | Factor::Imaginary { .. }
         | Factor::Vee { .. } => false,
     };
     if !plain || !before.iter().chain(after).all(invertible) || after.iter().any(is_x) {

@@ -6,7 +6,7 @@ use super::{motion, outlook, solution, source};
 use crate::check::spec::{Group, Side};
 use crate::derive::Derivation;
 use crate::derive::clebsch::constraint_terms;
-use crate::expr::shape::Shape;
+use crate::expr::shape::{Shape, Structure};
 use crate::expr::{self, Expr, Node, Shift};
 use crate::print::document::{Document, Inline, Section};
 use crate::print::formula::{Formula, Relation};
@@ -51,19 +51,21 @@ fn constraints(sheet: &Sheet, doc: &mut Document) {
     let spec = &sheet.d.spec;
     let section = doc.section("Constraints");
     for (i, c) in spec.configurations.iter().enumerate() {
-        let (frame, product) = match (c.group.is_orthogonal(), c.side) {
+        // Bodies have a frame of their own, deformable ones a reference shape.
+        let rigid = !matches!(c.group, Group::GeneralLinear(_));
+        let (frame, product) = match (rigid, c.side) {
             (true, Side::Body) => ("; its velocity in the body is ", true),
             (true, Side::Spatial) => ("; its velocity in space is ", false),
             (false, Side::Body) => ("; its convective velocity is ", true),
             (false, Side::Spatial) => ("; its velocity in space is ", false),
         };
-        let from = if c.group.is_orthogonal() {
+        let from = if rigid {
             "the body"
         } else {
             "the reference shape"
         };
         let (element, next) = (sheet.here(c.element), sheet.at(c.element, Shift::NEXT));
-        let back = if c.group.is_orthogonal() {
+        let back = if c.group.structure().is_orthogonal() {
             Formula::transpose(element.clone())
         } else {
             Formula::Inverse(Box::new(element.clone()))
@@ -201,6 +203,12 @@ fn variations(sheet: &Sheet, doc: &mut Document) {
         let algebra = match d.spec.configurations.get(i).map(|c| c.group) {
             Some(Group::GeneralLinear(_)) | None => " is an arbitrary matrix.",
             Some(Group::SpecialOrthogonal(_)) => " is an arbitrary skew matrix.",
+            Some(Group::UnitQuaternions) => {
+                " is an arbitrary vector, an angular displacement; quat(v) is the left multiplication by the quaternion v."
+            }
+            Some(Group::RigidMotions) => {
+                " is an arbitrary angular and a linear displacement on top of each other; twist of it is the matrix of the Lie algebra, and ι puts a vector into a longer one, from the row that its second index tells."
+            }
         };
         section.paragraph(["Here ".into(), sheet.here(*xi).into(), algebra.into()]);
     }
@@ -218,7 +226,12 @@ fn relations(sheet: &Sheet, doc: &mut Document) {
     for r in &d.relations {
         let x = sheet.at(r.variable.symbol, r.variable.shift);
         let right = if r.up_to_group_multiplier {
-            Formula::Product(vec![theta(sheet, r.variable.symbol), x])
+            // For orthogonal matrices the inverse transpose is the matrix itself.
+            let back = match sheet.symbols().get(r.variable.symbol).structure {
+                Structure::RigidMotion => Formula::transpose(Formula::Inverse(Box::new(x))),
+                _ => x,
+            };
+            Formula::Product(vec![theta(sheet, r.variable.symbol), back])
         } else {
             Formula::Expr(expr::integer(0))
         };
@@ -256,7 +269,11 @@ fn theta_explained(sheet: &Sheet, section: &mut Section) {
         .iter()
         .map(|r| relation_label(r.variable.symbol))
         .collect();
-    let words = if rotations.len() == 1 {
+    let normal = sheet.d.spec.configurations.iter();
+    let normal = normal.map(|c| c.group.coordinates().is_some());
+    let words = if normal.fold(false, |any, one| any | one) {
+        " is normal to the Lie algebra: the multiplier of the constraint that velocities are elements of the group."
+    } else if rotations.len() == 1 {
         " is a symmetric matrix, the multiplier of the constraint that velocities are rotations."
     } else {
         " are symmetric matrices, the multipliers of the constraint that velocities are rotations."

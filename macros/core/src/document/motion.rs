@@ -201,20 +201,21 @@ fn edge(sheet: &Sheet, section: &mut Section, c: &Configuration, m: &Momentum, i
         Formula::transpose(sheet.here(c.velocity)),
     ]);
     let by_gradient = if c.group.is_orthogonal() {
-        Formula::Product(vec![
+        Some(Formula::Product(vec![
             Formula::Expr(expr::integer(2)),
             Formula::operator(Operator::Skew, product),
-        ])
+        ]))
     } else {
-        product
+        // By coordinates the pairing with the gradient is the reduced form itself.
+        c.group.coordinates().is_none().then_some(product)
     };
     section.sourced(
         Formula::Relation(
-            vec![
-                sheet.edge_momentum(i, Shift::HERE),
-                by_gradient,
-                sheet.derived(&m.reduced),
-            ],
+            [Some(sheet.edge_momentum(i, Shift::HERE)), by_gradient]
+                .into_iter()
+                .flatten()
+                .chain([sheet.derived(&m.reduced)])
+                .collect(),
             Relation::Equal,
         ),
         sheet.thesis.momentum(),
@@ -229,6 +230,8 @@ fn elimination(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize
     };
     let half = if c.group.is_orthogonal() {
         ", twice its skew part taken,"
+    } else if c.group.coordinates().is_some() {
+        ", paired with the Lie algebra,"
     } else {
         ""
     };

@@ -68,7 +68,8 @@ pub fn limit(sheet: &Sheet, doc: &mut Document) {
     let mut words: Vec<Inline> = vec!["With ".into()];
     let velocities = d.spec.configurations.iter().zip(&d.letters.rate);
     let velocities = velocities.map(|(c, zeta)| {
-        let hat = crate::derive::continuous::velocity(&d.letters, c.group, *zeta);
+        let zeta = crate::derive::continuous::velocity(&d.letters, c.group, *zeta);
+        let hat = crate::derive::lie::of_letter(c.group, zeta);
         let h = sheet.here(d.spec.step);
         let turn = Formula::operator(
             crate::print::formula::Operator::Exp,

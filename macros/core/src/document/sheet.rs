@@ -2,7 +2,7 @@
 //! of the model bears, and the small formulas that recur.
 
 use super::thesis::Thesis;
-use crate::check::spec::{Configuration, Side};
+use crate::check::spec::{Configuration, Group, Side};
 use crate::derive::Derivation;
 use crate::expr::shape::Dim;
 use crate::expr::symbol::{SymbolId, Symbols};
@@ -110,13 +110,14 @@ impl<'a> Sheet<'a> {
         )
     }
 
-    /// `SO(3)`, `GL(n)`.
+    /// `SO(3)`, `GL(n)`, `SU(2)`, `SE(3)`.
     pub fn group(&self, c: &Configuration) -> String {
         let size = self.symbols().dim_text(c.group.size());
-        if c.group.is_orthogonal() {
-            format!("SO({size})")
-        } else {
-            format!("GL({size})")
+        match c.group {
+            Group::SpecialOrthogonal(_) => format!("SO({size})"),
+            Group::GeneralLinear(_) => format!("GL({size})"),
+            Group::UnitQuaternions => "SU(2)".to_owned(),
+            Group::RigidMotions => "SE(3)".to_owned(),
         }
     }
 

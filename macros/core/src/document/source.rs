@@ -50,6 +50,8 @@ pub fn source(d: &Derivation) -> String {
         let group = match c.group {
             Group::SpecialOrthogonal(n) => format!("SO<{}>", spec.symbols.dim_text(n)),
             Group::GeneralLinear(n) => format!("GL<{}>", spec.symbols.dim_text(n)),
+            Group::UnitQuaternions => "SU<2>".to_owned(),
+            Group::RigidMotions => "SE<3>".to_owned(),
         };
         line(format!(
             "group {}: {group} velocity {}",
@@ -106,6 +108,8 @@ fn shape(spec: &Spec, id: SymbolId) -> String {
         Structure::Diagonal => format!("Diag<{rows}>"),
         Structure::Orthogonal => format!("SO<{rows}>"),
         Structure::Invertible => format!("GL<{rows}>"),
+        Structure::UnitQuaternion => "SU<2>".to_owned(),
+        Structure::RigidMotion => "SE<3>".to_owned(),
         Structure::General if symbol.shape.is_square() => format!("Mat<{rows}>"),
         Structure::General => format!("Mat<{rows}, {cols}>"),
     }

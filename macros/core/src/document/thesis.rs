@@ -89,7 +89,10 @@ impl<'a> Thesis<'a> {
 
     /// Of the reconstruction of one configuration.
     pub fn reconstruction(&self, i: usize) -> Option<String> {
-        let c = self.configuration(i)?;
+        // The thesis writes neither quaternions nor rigid motions so.
+        let c = self
+            .configuration(i)
+            .filter(|c| c.group.coordinates().is_none())?;
         cite(match (c.group.is_orthogonal(), c.side) {
             (true, Side::Body) => "(2.62)",
             (true, Side::Spatial) => "(2.106)",
@@ -154,7 +157,7 @@ impl<'a> Thesis<'a> {
             |c: &Configuration| c.velocity == variable.symbol,
         );
         if let Some(c) = spec.configurations.iter().find(|c| is_element(c)) {
-            if self.holds_elements() {
+            if self.holds_elements() || c.group.coordinates().is_some() {
                 return None;
             }
             return cite(match (self.system, c.group.is_orthogonal(), c.side) {

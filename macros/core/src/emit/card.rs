@@ -46,7 +46,11 @@ fn of_symbol(d: &Derivation, id: SymbolId, when: &str) -> FieldOf {
             Structure::Symmetric => "Symmetric",
             Structure::Skew => "Skew",
             Structure::Diagonal => "Diagonal",
-            Structure::General | Structure::Orthogonal | Structure::Invertible => "Matrix",
+            Structure::General
+            | Structure::Orthogonal
+            | Structure::Invertible
+            | Structure::UnitQuaternion
+            | Structure::RigidMotion => "Matrix",
         }
     };
     FieldOf {
@@ -61,6 +65,8 @@ fn element_field(d: &Derivation, i: usize) -> FieldOf {
     let c = &d.spec.configurations[i];
     let (kind, doc) = match family(c) {
         Family::Rotation | Family::Orthogonal(_) => ("Rotation", "attitude, body to space"),
+        Family::Quaternion => ("UnitQuaternion", "attitude (w, x, y, z), body to space"),
+        Family::Motion => ("RigidMotion", "position, body to space"),
         Family::Linear(_) => ("Matrix", "configuration, reference to space"),
     };
     FieldOf {
@@ -70,7 +76,11 @@ fn element_field(d: &Derivation, i: usize) -> FieldOf {
             .get(d.spec.configurations[i].element)
             .name
             .clone(),
-        shape: Shape::square(c.group.size()),
+        shape: match family(c) {
+            // Four components say the same as the matrix.
+            Family::Quaternion => Shape::vector(c.group.size()),
+            _ => Shape::square(c.group.size()),
+        },
         kind,
         doc: doc.to_owned(),
     }
@@ -118,8 +128,12 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
             per_configuration(d, "body_momentum", i),
             per_configuration(d, "spatial_momentum", i),
         );
+        let numbers = match family(c) {
+            Family::Quaternion => quote!(state.#element().components()),
+            _ => quote!(rows(state.#element().matrix())),
+        };
         observed.push(quote! {
-            let out = put(out, rows(state.#element().matrix()));
+            let out = put(out, #numbers);
             let out = put(out, rows(state.#b().0));
             let out = put(out, rows(state.#s().0));
         });
@@ -147,6 +161,8 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
             let rows = match v.kind {
                 Kind::SpatialMomentum(i) => match family(&d.spec.configurations[i]) {
                     Family::Rotation => quote!(3usize),
+                    Family::Quaternion => quote!(3usize),
+                    Family::Motion => quote!(6usize),
                     Family::Orthogonal(_) | Family::Linear(_) => element::coordinates(d, i),
                 },
                 Kind::Number | Kind::Energy => quote!(1usize),
@@ -166,7 +182,10 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                         },
                         Method::ForcedMoserVeselov | Method::Newton => {
                             match family(&d.spec.configurations[*i]) {
-                                Family::Rotation | Family::Linear(_) => {
+                                Family::Rotation
+                                | Family::Linear(_)
+                                | Family::Quaternion
+                                | Family::Motion => {
                                     quote!(let out = put(out, rows(state.#m().0));)
                                 }
                                 Family::Orthogonal(_) => {
@@ -346,6 +365,8 @@ fn constructor(d: &Derivation) -> TokenStream {
             Family::Rotation => quote!(rotation_of),
             Family::Orthogonal(_) => quote!(orthogonal_of),
             Family::Linear(_) => quote!(linear_of),
+            Family::Quaternion => quote!(quaternion_of),
+            Family::Motion => quote!(motion_of),
         };
         initial.push(quote!(#element: #read(#label, initial.get(#index))?));
         let body = c.side == Side::Body;

@@ -17,6 +17,10 @@ pub enum Family {
     Orthogonal(Dim),
     /// GL(n), by matrices; covectors are matrices.
     Linear(Dim),
+    /// SU(2), by unit quaternions; covectors are vectors.
+    Quaternion,
+    /// SE(3), by rotations and translations; covectors are vectors of six components.
+    Motion,
 }
 
 /// The family of a configuration.
@@ -25,6 +29,8 @@ pub fn family(c: &Configuration) -> Family {
         Group::SpecialOrthogonal(Dim::Fixed(3)) => Family::Rotation,
         Group::SpecialOrthogonal(n) => Family::Orthogonal(n),
         Group::GeneralLinear(n) => Family::Linear(n),
+        Group::UnitQuaternions => Family::Quaternion,
+        Group::RigidMotions => Family::Motion,
     }
 }
 
@@ -50,7 +56,8 @@ pub fn largest(d: &Derivation, n: Dim) -> u64 {
 /// How many coordinates the Lie algebra has, at most, over the sizes the model allows.
 pub fn most_coordinates(d: &Derivation, i: usize) -> u64 {
     match of(d, i) {
-        Family::Rotation => 3,
+        Family::Rotation | Family::Quaternion => 3,
+        Family::Motion => 6,
         Family::Orthogonal(n) => {
             let n = largest(d, n);
             n.saturating_mul(n.saturating_sub(1)) / 2
@@ -74,7 +81,8 @@ pub fn total(d: &Derivation) -> Literal {
 pub fn coordinates(d: &Derivation, i: usize) -> TokenStream {
     let s = &d.letters.symbols;
     match of(d, i) {
-        Family::Rotation => quote!(3),
+        Family::Rotation | Family::Quaternion => quote!(3),
+        Family::Motion => quote!(6),
         Family::Orthogonal(Dim::Fixed(_)) | Family::Linear(Dim::Fixed(_)) => {
             let n = Literal::usize_unsuffixed(most_coordinates(d, i) as usize);
             quote!(#n)
@@ -113,6 +121,8 @@ pub fn ty(d: &Derivation, i: usize) -> TokenStream {
             let n = size(s, n);
             quote!(Linear<#n, T>)
         }
+        Family::Quaternion => quote!(UnitQuaternion<T>),
+        Family::Motion => quote!(RigidMotion<T>),
     }
 }
 
@@ -122,6 +132,8 @@ pub fn identity(d: &Derivation, i: usize) -> TokenStream {
         Family::Rotation => quote!(Rotation::identity()),
         Family::Orthogonal(_) => quote!(Orthogonal::identity()),
         Family::Linear(_) => quote!(Linear::identity()),
+        Family::Quaternion => quote!(UnitQuaternion::identity()),
+        Family::Motion => quote!(RigidMotion::identity()),
     }
 }
 
@@ -129,7 +141,10 @@ pub fn identity(d: &Derivation, i: usize) -> TokenStream {
 pub fn numbers(d: &Derivation, i: usize, element: TokenStream) -> TokenStream {
     match of(d, i) {
         Family::Rotation => quote!(&#element.quaternion()),
-        Family::Orthogonal(_) | Family::Linear(_) => quote!(#element.matrix().as_slice()),
+        Family::Orthogonal(_) | Family::Linear(_) | Family::Motion => {
+            quote!(#element.matrix().as_slice())
+        }
+        Family::Quaternion => quote!(&#element.components()),
     }
 }
 
@@ -137,7 +152,8 @@ pub fn numbers(d: &Derivation, i: usize, element: TokenStream) -> TokenStream {
 pub fn covector(d: &Derivation, i: usize) -> TokenStream {
     let s = &d.letters.symbols;
     match of(d, i) {
-        Family::Rotation => quote!(SVector<T, 3>),
+        Family::Rotation | Family::Quaternion => quote!(SVector<T, 3>),
+        Family::Motion => quote!(SVector<T, 6>),
         Family::Orthogonal(n) | Family::Linear(n) => {
             let n = size(s, n);
             quote!(SMatrix<T, #n, #n>)
@@ -152,7 +168,8 @@ pub fn momentum_name(d: &Derivation, i: usize, side: Side) -> TokenStream {
         Side::Spatial => "Spatial",
     };
     let name = match of(d, i) {
-        Family::Rotation => format_ident!("{frame}Momentum"),
+        Family::Rotation | Family::Quaternion => format_ident!("{frame}Momentum"),
+        Family::Motion => format_ident!("{frame}Impulse"),
         Family::Orthogonal(_) | Family::Linear(_) => format_ident!("{frame}MomentumMatrix"),
     };
     quote!(#name)
@@ -163,7 +180,7 @@ pub fn momentum(d: &Derivation, i: usize, side: Side) -> TokenStream {
     let s = &d.letters.symbols;
     let name = momentum_name(d, i, side);
     match of(d, i) {
-        Family::Rotation => quote!(#name<T>),
+        Family::Rotation | Family::Quaternion | Family::Motion => quote!(#name<T>),
         Family::Orthogonal(n) | Family::Linear(n) => {
             let n = size(s, n);
             quote!(#name<#n, T>)
@@ -184,6 +201,8 @@ pub fn basis(d: &Derivation, i: usize, index: TokenStream) -> TokenStream {
             let n = size(s, n);
             quote!(matrix_basis::<T, #n>(#index))
         }
+        Family::Quaternion => quote!(unit::<T, 3>(#index)),
+        Family::Motion => quote!(unit::<T, 6>(#index)),
     }
 }
 
@@ -255,7 +274,7 @@ pub fn stack(d: &Derivation, parts: TokenStream) -> TokenStream {
     let puts = (0..count).map(|i| {
         let part = bundle.part(parts.clone(), i);
         let put = match of(d, i) {
-            Family::Rotation => quote!(put_vector),
+            Family::Rotation | Family::Quaternion | Family::Motion => quote!(put_vector),
             Family::Orthogonal(_) => quote!(put_skew),
             Family::Linear(_) => quote!(put_matrix),
         };

@@ -9,7 +9,7 @@ use super::sizes::Generics;
 use super::step::{at, here};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
-use crate::derive::balance::covector;
+use crate::derive::lie;
 use crate::derive::limit::Limit;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::schedule;
@@ -51,7 +51,7 @@ fn of_matrices(d: &Derivation, names: &Names, limit: &Limit) -> TokenStream {
         let list = d.spec.configurations.iter().zip(&d.letters.variation);
         list.map(|(c, xi)| {
             let y = expr::gradient(s, e, at(*xi, Shift::HERE));
-            covector(&d.letters, c.group, y)
+            lie::of_gradient(&d.letters, c.group, y)
         })
         .collect()
     };

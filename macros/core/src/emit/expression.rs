@@ -4,9 +4,9 @@
 use super::names::variable;
 use super::sizes::size;
 use crate::algebra::Rational;
-use crate::expr::shape::Shape;
+use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::Symbols;
-use crate::expr::{self, Expr, Function, Letter, Node, Part};
+use crate::expr::{self, Expr, Function, Letter, Map, Node, Part};
 use crate::schedule::{Bracketed, Program, associate};
 use proc_macro2::{Delimiter, Ident, Literal, TokenStream, TokenTree};
 use quote::{format_ident, quote};
@@ -90,6 +90,7 @@ impl Writer<'_> {
             | Node::Identity(_)
             | Node::Zero(_)
             | Node::Unit(..)
+            | Node::Inclusion(..)
             | Node::Transpose(_)
             | Node::Inverse(_)
             | Node::Trace(_)
@@ -100,7 +101,8 @@ impl Writer<'_> {
             | Node::Hat(_)
             | Node::Vee(_)
             | Node::Part(..)
-            | Node::Call(..) => true,
+            | Node::Call(..)
+            | Node::Map(..) => true,
         };
         if atomic { tokens } else { quote!((#tokens)) }
     }
@@ -120,6 +122,10 @@ impl Writer<'_> {
             Node::Unit(_, axis) => {
                 let axis = Literal::usize_unsuffixed(*axis as usize);
                 quote!(unit::<T, #rows>(#axis))
+            }
+            Node::Inclusion(_, at) => {
+                let at = Literal::usize_unsuffixed(*at as usize);
+                quote!(inclusion::<T, #rows, #cols>(#at))
             }
             Node::Sum(terms) => self.sum(terms),
             Node::Neg(a) => {
@@ -171,6 +177,18 @@ impl Writer<'_> {
                     Function::Log => quote!(#a.ln()),
                 }
             }
+            Node::Map(map, a) => self.function(
+                match map {
+                    Map::Rotation if expr::is_motion(self.symbols, a) => "motion_rotation",
+                    Map::Translation => "motion_translation",
+                    Map::Twist => "twist",
+                    Map::Real => "quaternion_real",
+                    Map::Imaginary => "quaternion_imaginary",
+                    Map::Pure => "pure_quaternion",
+                    Map::Rotation => "quaternion_rotation",
+                },
+                a,
+            ),
         }
     }
 
@@ -299,11 +317,12 @@ impl Writer<'_> {
 
     fn chain(&self, factors: &[Expr]) -> TokenStream {
         fn write(w: &Writer, b: &Bracketed, f: &[Expr]) -> (TokenStream, Shape, Option<Expr>) {
+            let number = |n: Dim| super::sizes::size(w.symbols, n);
             match b {
                 Bracketed::Factor(i) => (w.operand(&f[*i]), f[*i].shape(), Some(f[*i].clone())),
                 Bracketed::Pair(a, b) => {
                     let (x, left, x_expr) = write(w, a, f);
-                    let (y, right, _) = write(w, b, f);
+                    let (y, right, y_expr) = write(w, b, f);
                     let shape = Shape {
                         rows: left.rows,
                         cols: right.cols,
@@ -312,7 +331,28 @@ impl Writer<'_> {
                         Node::Transpose(inner) => Some(w.operand(inner)),
                         _ => None,
                     });
+                    let (n, m) = (number(left.rows), number(right.cols));
+                    let constant = match (x_expr.as_ref(), y_expr.as_ref()) {
+                        (Some(e), _) if is_inclusion(e).is_some() => {
+                            is_inclusion(e).map(|(whole, at, taken)| {
+                                let (r, c) = (number(whole.rows), number(whole.cols));
+                                match taken {
+                                    true => quote!(rows_from::<T, #r, #c, #m>(&#y, #at)),
+                                    false => quote!(into_rows::<T, #r, #c, #m>(&#y, #at)),
+                                }
+                            })
+                        }
+                        (_, Some(e)) => is_inclusion(e).map(|(whole, at, put)| {
+                            let (r, c) = (number(whole.rows), number(whole.cols));
+                            match put {
+                                true => quote!(into_columns::<T, #r, #c, #n>(&#x, #at)),
+                                false => quote!(columns_from::<T, #r, #c, #n>(&#x, #at)),
+                            }
+                        }),
+                        _ => None,
+                    };
                     let tokens = match transposed {
+                        _ if constant.is_some() => constant.unwrap_or_default(),
                         // nalgebra multiplies by a number on the right.
                         _ if left.is_scalar() => quote!((#y * #x)),
                         // A row times a column, and A^T B without forming the transpose.
@@ -326,7 +366,26 @@ impl Writer<'_> {
             }
         }
         let (tokens, ..) = write(self, &associate(factors), factors);
-        unwrapped(tokens)
+        match factors {
+            // A sum keeps its parentheses: numbers may stand behind it.
+            [_] => tokens,
+            _ => unwrapped(tokens),
+        }
+    }
+}
+
+/// The shape and the row of an inclusion, and whether it is transposed.
+fn is_inclusion(e: &Expr) -> Option<(Shape, Literal, bool)> {
+    let (e, transposed) = match e.node() {
+        Node::Transpose(inner) => (inner, true),
+        _ => (e, false),
+    };
+    match e.node() {
+        Node::Inclusion(whole, at) => {
+            let at = Literal::usize_unsuffixed(*at as usize);
+            Some((*whole, at, transposed))
+        }
+        _ => None,
     }
 }
 

@@ -91,6 +91,8 @@ pub fn structure_text(structure: Structure) -> &'static str {
         Structure::Skew => ", skew",
         Structure::Diagonal => ", diagonal",
         Structure::Orthogonal => ", a rotation",
+        Structure::UnitQuaternion => ", left multiplication by a unit quaternion",
+        Structure::RigidMotion => ", the homogeneous matrix of a rigid motion",
     }
 }
 
@@ -315,6 +317,10 @@ pub fn model(d: &Derivation, documented: bool) -> TokenStream {
             Structure::Diagonal => quote!(validate::diagonal(#label, &parameters.#field)?;),
             Structure::Orthogonal => quote!(validate::orthogonal(#label, &parameters.#field)?;),
             Structure::Invertible => quote!(validate::invertible(#label, &parameters.#field)?;),
+            Structure::UnitQuaternion => {
+                quote!(validate::unit_quaternion(#label, &parameters.#field)?;)
+            }
+            Structure::RigidMotion => quote!(validate::rigid_motion(#label, &parameters.#field)?;),
             Structure::General => TokenStream::new(),
         };
         quote!(#finite #structure)

@@ -8,7 +8,7 @@ use super::names::{Names, item, own, per_configuration, tagged, variable};
 use super::sizes::Generics;
 use super::step::{at, finish, here, update};
 use crate::check::spec::Side;
-use crate::derive::Derivation;
+use crate::derive::{Derivation, lie};
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::schedule;
 use proc_macro2::TokenStream;
@@ -131,7 +131,8 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
     for j in 0..bodies {
         let w = d.spec.configurations[j].velocity;
         let eta = d.letters.direction[j];
-        let change = expr::mul(expr::here(s, w), expr::here(s, eta));
+        let group = d.spec.configurations[j].group;
+        let change = expr::mul(expr::here(s, w), lie::element(s, group, eta));
         let derivatives: Vec<Expr> = momenta
             .iter()
             .map(|m| expr::directional(s, m, &[(at(w, Shift::HERE), change.clone())]))

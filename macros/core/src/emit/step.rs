@@ -345,7 +345,10 @@ pub(super) fn finish(
                               covector: &Option<TokenStream>| {
                     match family(c) {
                         Family::Rotation => quote!(+ #matrix * (#covector)),
-                        Family::Orthogonal(_) | Family::Linear(_) => {
+                        Family::Orthogonal(_)
+                        | Family::Linear(_)
+                        | Family::Quaternion
+                        | Family::Motion => {
                             quote!(+ #element.covector_to_space(&(#covector)))
                         }
                     }

@@ -4,7 +4,7 @@
 
 use super::shape::{Dim, Shape, Structure};
 use super::symbol::{SymbolId, Symbols};
-use super::{Expr, Function, Inner, Letter, Node, Part, Shift};
+use super::{Expr, Function, Inner, Letter, Map, Node, Part, Shift};
 use crate::algebra::Rational;
 use core::hash::{Hash, Hasher};
 use std::sync::Arc;
@@ -23,7 +23,7 @@ impl Hasher for Fnv {
     }
 }
 
-fn make(node: Node, shape: Shape) -> Expr {
+pub(super) fn make(node: Node, shape: Shape) -> Expr {
     let mut hasher = Fnv(0xcbf2_9ce4_8422_2325);
     node.hash(&mut hasher);
     let size = node
@@ -287,9 +287,11 @@ pub fn transpose(symbols: &Symbols, a: Expr) -> Expr {
         Node::Letter(at) => match symbols.get(at.symbol).structure {
             Structure::Symmetric | Structure::Diagonal => a,
             Structure::Skew => neg(a),
-            Structure::General | Structure::Orthogonal | Structure::Invertible => {
-                make(Node::Transpose(a), shape.transposed())
-            }
+            Structure::General
+            | Structure::Orthogonal
+            | Structure::Invertible
+            | Structure::UnitQuaternion
+            | Structure::RigidMotion => make(Node::Transpose(a), shape.transposed()),
         },
         Node::Identity(_) => a,
         Node::Zero(_) => zero(shape.transposed()),
@@ -303,7 +305,7 @@ pub fn transpose(symbols: &Symbols, a: Expr) -> Expr {
         }
         Node::Quotient(x, y) => quotient(transpose(symbols, x.clone()), y.clone()),
         Node::Transpose(inner) => inner.clone(),
-        Node::Hat(_) => neg(a),
+        Node::Hat(_) | Node::Map(Map::Pure, _) => neg(a),
         Node::Part(part, _) => match part {
             Part::Symmetric | Part::Diagonal => a,
             Part::Skew => neg(a),
@@ -315,6 +317,7 @@ pub fn transpose(symbols: &Symbols, a: Expr) -> Expr {
         }
         Node::Number(_)
         | Node::Unit(..)
+        | Node::Inclusion(..)
         | Node::Power(..)
         | Node::Inverse(_)
         | Node::Trace(_)
@@ -322,26 +325,29 @@ pub fn transpose(symbols: &Symbols, a: Expr) -> Expr {
         | Node::Dot(..)
         | Node::Cross(..)
         | Node::Vee(_)
-        | Node::Call(..) => make(Node::Transpose(a), shape.transposed()),
+        | Node::Call(..)
+        | Node::Map(..) => make(Node::Transpose(a), shape.transposed()),
     }
 }
 
-/// The inverse; for a group element of SO(n) its transpose.
+/// Whether this is a letter, or the rotation of a letter, whose inverse is its transpose.
+fn is_rotation(symbols: &Symbols, a: &Expr) -> bool {
+    match a.node() {
+        Node::Letter(at) => symbols.get(at.symbol).structure.is_orthogonal(),
+        Node::Map(Map::Rotation, _) => true,
+        _ => false,
+    }
+}
+
+/// The inverse; for a group element of SO(n) or SU(2) its transpose.
 pub fn inverse(symbols: &Symbols, a: Expr) -> Expr {
     let shape = a.shape();
     if shape.is_scalar() {
         return power(a, Rational::MINUS_ONE);
     }
     match a.node() {
-        Node::Letter(at) if symbols.get(at.symbol).structure == Structure::Orthogonal => {
-            transpose(symbols, a)
-        }
-        Node::Transpose(inner)
-            if matches!(inner.node(), Node::Letter(at)
-                if symbols.get(at.symbol).structure == Structure::Orthogonal) =>
-        {
-            inner.clone()
-        }
+        _ if is_rotation(symbols, &a) => transpose(symbols, a),
+        Node::Transpose(inner) if is_rotation(symbols, inner) => inner.clone(),
         Node::Identity(_) => a,
         Node::Inverse(inner) => inner.clone(),
         Node::Product(factors)

@@ -10,7 +10,11 @@ pub fn directional(symbols: &Symbols, e: &Expr, changes: &[(Letter, Expr)]) -> E
     let d = |x: &Expr| directional(symbols, x, changes);
     let shape = e.shape();
     match e.node() {
-        Node::Number(_) | Node::Identity(_) | Node::Zero(_) | Node::Unit(..) => zero(shape),
+        Node::Number(_)
+        | Node::Identity(_)
+        | Node::Zero(_)
+        | Node::Unit(..)
+        | Node::Inclusion(..) => zero(shape),
         Node::Letter(at) => changes
             .iter()
             .find(|(l, _)| l == at)
@@ -91,5 +95,21 @@ pub fn directional(symbols: &Symbols, e: &Expr, changes: &[(Letter, Expr)]) -> E
                 Function::Log => quotient(da, a.clone()),
             }
         }
+        Node::Map(map, a) => match map {
+            Map::Real => real(d(a)),
+            Map::Imaginary => imaginary(d(a)),
+            Map::Pure => pure(d(a)),
+            Map::Rotation if is_motion(symbols, a) => block(symbols, &d(a)),
+            Map::Translation => column(symbols, &d(a)),
+            Map::Twist => twist(d(a)),
+            // Right along the group, which is all that a letter of SU(2) moves along.
+            Map::Rotation => {
+                let da = d(a);
+                if da.is_zero() {
+                    return zero(shape);
+                }
+                mul(e.clone(), hat(quaternion::angular(symbols, a, da)))
+            }
+        },
     }
 }

@@ -4,6 +4,8 @@
 use super::*;
 use crate::expr::symbol::Symbols;
 
+const QUARTER: Rational = Rational::QUARTER;
+
 /// The gradient of the number `e` with respect to `wrt`; its shape is the letter's.
 pub fn gradient(symbols: &Symbols, e: &Expr, wrt: Letter) -> Expr {
     let shape = symbols.get(wrt.symbol).shape;
@@ -20,7 +22,11 @@ fn pull_back(symbols: &Symbols, e: &Expr, seed: Expr, wrt: Letter, out: &mut Vec
     let t = |x: &Expr| transpose(symbols, x.clone());
     let mut go = |x: &Expr, s: Expr| pull_back(symbols, x, s, wrt, out);
     match e.node() {
-        Node::Number(_) | Node::Identity(_) | Node::Zero(_) | Node::Unit(..) => {}
+        Node::Number(_)
+        | Node::Identity(_)
+        | Node::Zero(_)
+        | Node::Unit(..)
+        | Node::Inclusion(..) => {}
         Node::Letter(at) => {
             if *at == wrt {
                 out.push(seed);
@@ -97,6 +103,27 @@ fn pull_back(symbols: &Symbols, e: &Expr, seed: Expr, wrt: Letter, out: &mut Vec
         Node::Call(function, a) => match function {
             Function::Exp => go(a, mul(seed, e.clone())),
             Function::Log => go(a, quotient(seed, a.clone())),
+        },
+        Node::Map(map, a) => match map {
+            Map::Real => go(
+                a,
+                product([number(QUARTER), seed, identity(a.shape().rows)]),
+            ),
+            // s . im(A) = <pure(s)/4, A>
+            Map::Imaginary => go(a, scale(QUARTER, pure(seed))),
+            Map::Pure => go(a, scale(Rational::integer(4), imaginary(seed))),
+            Map::Rotation if is_motion(symbols, a) => go(a, rigid::in_block(symbols, seed)),
+            Map::Translation => go(a, rigid::in_column(symbols, seed)),
+            // <S, twist(x)> = 2 vee(block(S)) . ω + column(S) . v
+            Map::Twist => {
+                let turn = vee(block(symbols, &seed));
+                go(
+                    a,
+                    stacked(scale(Rational::integer(2), turn), column(symbols, &seed)),
+                );
+            }
+            // <S, R hat(2 im(W^T D))> = <W pure(vee(R^T S)), D>
+            Map::Rotation => go(a, mul(a.clone(), pure(vee(mul(t(e), seed))))),
         },
     }
 }

@@ -6,6 +6,8 @@ mod collect;
 mod directional;
 mod gradient;
 mod projection;
+mod quaternion;
+mod rigid;
 pub mod shape;
 mod substitute;
 pub mod symbol;
@@ -21,6 +23,8 @@ pub use collect::{collect, positive_first};
 pub use directional::directional;
 pub use gradient::gradient;
 pub use projection::projected;
+pub use quaternion::{imaginary, pure, real, rotation};
+pub use rigid::{block, column, inclusion, is_motion, part_of_six, stacked, twist};
 pub use substitute::{contains, contains_role, letters, rebuild, shift_time, substitute};
 pub use terms::{Change, changes};
 
@@ -80,6 +84,24 @@ pub enum Part {
     Diagonal,
 }
 
+/// Maps of quaternions, as 4 x 4 matrices of left multiplication, and of rigid motions, as 4 x 4
+/// homogeneous matrices.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub enum Map {
+    /// The real part, `tr(A)/4`.
+    Real,
+    /// The imaginary part: the vector `v` for which `pure(v)` is nearest to `A`.
+    Imaginary,
+    /// The left multiplication by a vector, read as a quaternion without real part.
+    Pure,
+    /// The rotation of a letter: that which one of SU(2) covers, the block of one of SE(3).
+    Rotation,
+    /// The translation of a letter of SE(3).
+    Translation,
+    /// The element `[hat(ω) v; 0 0]` of the Lie algebra of SE(3) of a vector `(ω, v)`.
+    Twist,
+}
+
 /// One node of an expression. Shapes of children are checked by the constructors in `build`.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub enum Node {
@@ -93,6 +115,8 @@ pub enum Node {
     Zero(Shape),
     /// The unit vector along an axis (counted from 0).
     Unit(Dim, u8),
+    /// The matrix of the given shape that puts a vector into a longer one, from this row on.
+    Inclusion(Shape, u8),
     /// A sum of terms of one shape.
     Sum(Vec<Expr>),
     /// The opposite.
@@ -126,6 +150,8 @@ pub enum Node {
     Part(Part, Expr),
     /// A function of a number.
     Call(Function, Expr),
+    /// A map of quaternions or rigid motions.
+    Map(Map, Expr),
 }
 
 /// A shaped expression; cloning shares it.
@@ -178,7 +204,8 @@ impl Node {
             | Node::Letter(_)
             | Node::Identity(_)
             | Node::Zero(_)
-            | Node::Unit(..) => Vec::new(),
+            | Node::Unit(..)
+            | Node::Inclusion(..) => Vec::new(),
             Node::Sum(list) | Node::Product(list) => list.iter().collect(),
             Node::Neg(a)
             | Node::Power(a, _)
@@ -190,7 +217,8 @@ impl Node {
             | Node::Hat(a)
             | Node::Vee(a)
             | Node::Part(_, a)
-            | Node::Call(_, a) => vec![a],
+            | Node::Call(_, a)
+            | Node::Map(_, a) => vec![a],
             Node::Quotient(a, b) | Node::Dot(a, b) | Node::Cross(a, b) => vec![a, b],
         }
     }

@@ -14,7 +14,11 @@ pub fn projected(symbols: &Symbols, structure: Structure, e: &Expr) -> Expr {
         Structure::Diagonal => Part::Diagonal,
         // Tangent spaces of these groups are no linear spaces of matrices: the multiplier of the
         // group takes the rest.
-        Structure::General | Structure::Orthogonal | Structure::Invertible => return e.clone(),
+        Structure::General
+        | Structure::Orthogonal
+        | Structure::Invertible
+        | Structure::UnitQuaternion
+        | Structure::RigidMotion => return e.clone(),
     };
     of_term(symbols, which, e)
 }

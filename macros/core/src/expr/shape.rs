@@ -77,6 +77,10 @@ pub enum Structure {
     Orthogonal,
     /// Has an inverse: an element of GL(n).
     Invertible,
+    /// Left multiplication by a unit quaternion, 4 x 4: an element of SU(2). Orthogonal.
+    UnitQuaternion,
+    /// A homogeneous matrix `[R x; 0 1]`, 4 x 4: an element of SE(3).
+    RigidMotion,
 }
 
 impl Structure {
@@ -87,6 +91,24 @@ impl Structure {
 
     /// Whether the inverse exists for every admissible value.
     pub fn is_invertible(self) -> bool {
-        matches!(self, Structure::Orthogonal | Structure::Invertible)
+        match self {
+            Structure::Orthogonal
+            | Structure::Invertible
+            | Structure::UnitQuaternion
+            | Structure::RigidMotion => true,
+            Structure::General | Structure::Symmetric | Structure::Skew | Structure::Diagonal => {
+                false
+            }
+        }
+    }
+
+    /// Whether the inverse is the transpose.
+    pub fn is_orthogonal(self) -> bool {
+        matches!(self, Structure::Orthogonal | Structure::UnitQuaternion)
+    }
+
+    /// Whether the determinant is 1.
+    pub fn is_unimodular(self) -> bool {
+        self.is_orthogonal() || self == Structure::RigidMotion
     }
 }

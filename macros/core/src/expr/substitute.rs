@@ -72,9 +72,12 @@ fn map_letters(symbols: &Symbols, e: &Expr, f: &dyn Fn(Letter, shape::Shape) -> 
 /// The same node with every child replaced; leaves stay.
 pub fn rebuild(symbols: &Symbols, e: &Expr, go: &mut dyn FnMut(&Expr) -> Expr) -> Expr {
     match e.node() {
-        Node::Number(_) | Node::Letter(_) | Node::Identity(_) | Node::Zero(_) | Node::Unit(..) => {
-            e.clone()
-        }
+        Node::Number(_)
+        | Node::Letter(_)
+        | Node::Identity(_)
+        | Node::Zero(_)
+        | Node::Unit(..)
+        | Node::Inclusion(..) => e.clone(),
         Node::Sum(list) => sum(list.iter().map(go).collect::<Vec<_>>(), e.shape()),
         Node::Neg(a) => neg(go(a)),
         Node::Product(list) => product(list.iter().map(go).collect::<Vec<_>>()),
@@ -100,5 +103,13 @@ pub fn rebuild(symbols: &Symbols, e: &Expr, go: &mut dyn FnMut(&Expr) -> Expr) -
         Node::Vee(a) => vee(go(a)),
         Node::Part(which, a) => part(*which, go(a)),
         Node::Call(function, a) => call(*function, go(a)),
+        Node::Map(map, a) => match map {
+            Map::Real => real(go(a)),
+            Map::Imaginary => imaginary(go(a)),
+            Map::Pure => pure(go(a)),
+            Map::Rotation => rotation(symbols, go(a)),
+            Map::Translation => column(symbols, &go(a)),
+            Map::Twist => twist(go(a)),
+        },
     }
 }

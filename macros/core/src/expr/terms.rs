@@ -2,7 +2,7 @@
 //! one shows whether it matters; flipping one is the smallest wrong sign.
 
 use super::symbol::Symbols;
-use super::{Expr, Node, neg, rebuild, sum, zero};
+use super::{Expr, Map, Node, neg, rebuild, sum, zero};
 
 /// An expression that differs from another by one term.
 pub struct Change {
@@ -71,17 +71,20 @@ fn is_linear(e: &Expr, child: usize) -> bool {
         | Node::Cross(..)
         | Node::Hat(_)
         | Node::Vee(_)
-        | Node::Part(..) => true,
+        | Node::Part(..)
+        | Node::Map(Map::Real | Map::Imaginary | Map::Pure | Map::Twist, _) => true,
         Node::Quotient(..) => child == 0,
         Node::Number(_)
         | Node::Letter(_)
         | Node::Identity(_)
         | Node::Zero(_)
         | Node::Unit(..)
+        | Node::Inclusion(..)
         | Node::Power(..)
         | Node::Inverse(_)
         | Node::Det(_)
         | Node::Adjugate(_)
-        | Node::Call(..) => false,
+        | Node::Call(..)
+        | Node::Map(Map::Rotation | Map::Translation, _) => false,
     }
 }

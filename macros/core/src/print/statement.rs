@@ -6,7 +6,7 @@ use super::Style;
 use crate::algebra::Rational;
 use crate::expr::shape::Dim;
 use crate::expr::symbol::Symbols;
-use crate::expr::{Expr, Function, Node, Part};
+use crate::expr::{Expr, Function, Map, Node, Part};
 
 /// An expression as model text, e.g. `-(tr(J*Ω)/h) - h*dot(gU, Γ)`. Time offsets are written
 /// `next(...)` and `prev(...)`, label offsets with the name of the label from `style`. `Id`, `0`
@@ -76,6 +76,8 @@ impl Writer<'_> {
             Node::Identity(_) => operand("Id".to_owned()),
             Node::Zero(_) => operand("0".to_owned()),
             Node::Unit(_, axis) => operand(format!("E{}", u32::from(*axis) + 1)),
+            // Derived expressions hold them, statements do not.
+            Node::Inclusion(..) => operand("ι".to_owned()),
             Node::Sum(terms) => Written::new(self.sum(terms), Sum),
             Node::Neg(a) => Written::new(self.negated(a), Minus),
             Node::Product(factors) => Written::new(self.product(factors), Product),
@@ -105,6 +107,17 @@ impl Writer<'_> {
                 match function {
                     Function::Exp => "exp",
                     Function::Log => "log",
+                },
+                &[a],
+            )),
+            Node::Map(map, a) => operand(self.call(
+                match map {
+                    Map::Real => "re",
+                    Map::Imaginary => "im",
+                    Map::Pure => "quat",
+                    Map::Rotation => "rot",
+                    Map::Translation => "pos",
+                    Map::Twist => "twist",
                 },
                 &[a],
             )),

@@ -28,6 +28,8 @@ fn expanded(e: &Expr) -> usize {
         | Node::Identity(_)
         | Node::Zero(_)
         | Node::Unit(..)
+        | Node::Inclusion(..)
+        | Node::Map(..)
         | Node::Inverse(_)
         | Node::Det(_)
         | Node::Adjugate(_)

@@ -1,8 +1,8 @@
 //! The cheapest way to bracket a chain of matrix products, by the classical dynamic program:
 //! `A B v` is computed as `A (B v)`.
 
-use crate::expr::Expr;
 use crate::expr::shape::Dim;
+use crate::expr::{Expr, Node};
 
 /// A bracketed product.
 #[derive(Clone, Debug)]
@@ -22,6 +22,11 @@ pub fn associate(factors: &[Expr]) -> Bracketed {
     };
     let mut dims: Vec<u64> = factors.iter().map(|f| size(f.shape().rows)).collect();
     dims.push(factors.last().map_or(1, |f| size(f.shape().cols)));
+    let constant = |f: &Expr| match f.node() {
+        Node::Inclusion(..) => true,
+        Node::Transpose(a) => matches!(a.node(), Node::Inclusion(..)),
+        _ => false,
+    };
     // cost[i][j], split[i][j] for the product of factors i..=j.
     let mut cost = vec![vec![0u64; n]; n];
     let mut split = vec![vec![0usize; n]; n];
@@ -29,7 +34,14 @@ pub fn associate(factors: &[Expr]) -> Bracketed {
         for i in 0..=n - length {
             let j = i + length - 1;
             let candidates = (i..j).map(|m| {
-                let work = dims[i] * dims[m + 1] * dims[j + 1];
+                // Rows are picked, not multiplied.
+                let picked =
+                    (m == i && constant(&factors[i])) || (m + 1 == j && constant(&factors[j]));
+                let work = if picked {
+                    0
+                } else {
+                    dims[i] * dims[m + 1] * dims[j + 1]
+                };
                 (cost[i][m] + cost[m + 1][j] + work, m)
             });
             if let Some((best, m)) = candidates.min() {

@@ -59,6 +59,7 @@ fn is_work(e: &Expr) -> bool {
         | Node::Identity(_)
         | Node::Zero(_)
         | Node::Unit(..)
+        | Node::Inclusion(..)
         | Node::Hat(_) => false,
         Node::Neg(a) | Node::Transpose(a) => is_work(a),
         Node::Power(a, q) => q.as_integer() != Some(2) || is_work(a),
@@ -73,7 +74,8 @@ fn is_work(e: &Expr) -> bool {
         | Node::Cross(..)
         | Node::Vee(_)
         | Node::Part(..)
-        | Node::Call(..) => true,
+        | Node::Call(..)
+        | Node::Map(..) => true,
     }
 }
 

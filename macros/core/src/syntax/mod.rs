@@ -12,10 +12,13 @@ use proc_macro2::TokenStream;
 use token::Cursor;
 
 /// Functions of the language: the only names that a parenthesis turns into a call.
-pub const FUNCTIONS: [&str; 23] = [
+pub const FUNCTIONS: [&str; 26] = [
     "tr", "det", "log", "exp", "sqrt", "inv", "sym", "skew", "diag", "hat", "vee", "dot", "cross",
-    "perp", "re", "im", "I1", "I2", "next", "prev", "rate", "sum", "Tr",
+    "perp", "re", "im", "I1", "I2", "next", "prev", "rate", "sum", "Tr", "quat", "rot", "pos",
 ];
+
+/// Functions that a declared name hides: models without these groups use the words freely.
+pub const HIDEABLE: [&str; 3] = ["quat", "rot", "pos"];
 
 /// Parses one model: `[pub] model NAME { ... }`, documentation before it.
 pub fn parse(tokens: TokenStream) -> Result<Model, Errors> {

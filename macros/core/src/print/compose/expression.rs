@@ -2,7 +2,7 @@
 
 use super::{Composer, transposition};
 use crate::algebra::Rational;
-use crate::expr::{self, Expr, Function, Node, Part};
+use crate::expr::{self, Expr, Function, Map, Node, Part};
 use crate::print::layout::{Layout, Sign};
 use crate::print::level::{Laid, Level};
 
@@ -61,6 +61,11 @@ impl Composer<'_> {
                 let axis = (u32::from(*axis) + 1).to_string();
                 Laid::atom(self.name("E", Some(&axis), None))
             }
+            Node::Inclusion(shape, at) => {
+                let rows = self.symbols.dim_text(shape.rows);
+                let script = format!("{rows}{}", u32::from(*at) + 1);
+                Laid::atom(self.name("ι", Some(&script), None))
+            }
             Node::Sum(_) | Node::Neg(_) => self.expression(e),
             Node::Product(factors) => {
                 let (q, rest) = split(factors).unwrap_or((Rational::ONE, factors));
@@ -115,6 +120,17 @@ impl Composer<'_> {
                 let word = match function {
                     Function::Exp => "exp",
                     Function::Log => "log",
+                };
+                self.call(word, self.expression(a))
+            }
+            Node::Map(map, a) => {
+                let word = match map {
+                    Map::Real => "re",
+                    Map::Imaginary => "im",
+                    Map::Pure => "quat",
+                    Map::Rotation => "rot",
+                    Map::Translation => "pos",
+                    Map::Twist => "twist",
                 };
                 self.call(word, self.expression(a))
             }

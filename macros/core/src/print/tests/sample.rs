@@ -41,6 +41,9 @@ impl Sample {
         s.add("M", matrix, Structure::Skew, Role::Derived);
         s.add("P", matrix, Structure::General, Role::Multiplier);
         s.add("ξ", vector, Structure::General, Role::Variation);
+        let four = Shape::square(Dim::Fixed(4));
+        s.add("q", four, Structure::UnitQuaternion, Role::Element);
+        s.add("G", four, Structure::RigidMotion, Role::Element);
         Sample { symbols: s }
     }
 
@@ -159,6 +162,14 @@ impl Sample {
             expr::product([v("z"), row(), v("gU"), row()]),
             expr::mul(self.t(v("Q")), expr::mul(v("C0"), v("Q"))),
             expr::add(expr::mul(v("h"), v("h")), expr::integer(-1)),
+            expr::real(v("q")),
+            expr::imaginary(expr::mul(v("q"), expr::pure(v("z")))),
+            self.t(expr::rotation(&self.symbols, v("q"))),
+            expr::mul(v("J"), expr::block(&self.symbols, &v("G"))),
+            self.t(expr::block(&self.symbols, &expr::mul(v("G"), v("G")))),
+            expr::column(&self.symbols, &v("G")),
+            self.t(expr::column(&self.symbols, &inverse(v("G")))),
+            expr::twist(expr::mul(expr::inclusion(Dim::Fixed(6), THREE, 3), v("z"))),
         ]
     }
 
@@ -267,17 +278,19 @@ fn kind(node: &Node) -> usize {
         Node::Part(..) => 18,
         Node::Call(..) => 19,
         Node::Adjugate(_) => 20,
+        Node::Inclusion(..) => 21,
+        Node::Map(..) => 22,
     }
 }
 
 #[test]
 fn the_sample_holds_every_kind_of_node() {
-    fn walk(e: &Expr, seen: &mut [bool; 21]) {
+    fn walk(e: &Expr, seen: &mut [bool; 23]) {
         seen[kind(e.node())] = true;
         e.children().into_iter().for_each(|c| walk(c, seen));
     }
-    let mut seen = [false; 21];
+    let mut seen = [false; 23];
     let sample = Sample::new();
     sample.expressions().iter().for_each(|e| walk(e, &mut seen));
-    assert_eq!(seen, [true; 21]);
+    assert_eq!(seen, [true; 23]);
 }

@@ -89,6 +89,14 @@ fn brackets_are_minimal_in_text() {
         "z zᵀ gU zᵀ",
         "Q_kᵀ C₀ Q_k",
         "h² - 1",
+        "re(q_k)",
+        "im(q_k quat(z))",
+        "rot(q_k)ᵀ",
+        "J rot(G_k)",
+        "rot(G_k)ᵀ rot(G_k)ᵀ",
+        "pos(G_k)",
+        "-pos(G_k)ᵀ rot(G_k)",
+        "twist(ι₆₄ z)",
     ];
     let printed: Vec<String> = s.expressions().iter().map(|e| text(&s, e)).collect();
     assert_eq!(printed, wanted);

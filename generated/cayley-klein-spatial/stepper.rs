@@ -1,0 +1,573 @@
+// Written by `clebsch derive --write`. Do not edit.
+
+/// The model [`CayleyKleinSpatial`](struct@CayleyKleinSpatial) and what belongs to it.
+#[allow(
+    non_snake_case,
+    uncommon_codepoints,
+    mixed_script_confusables,
+    confusable_idents,
+    clippy::all
+)]
+pub mod cayley_klein_spatial {
+    use ::clebsch::emitted::*;
+    /// Parameters of [`CayleyKleinSpatial`](struct@CayleyKleinSpatial), as given.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct CayleyKleinSpatialParameters<T = f64> {
+        /// `c`: a number.
+        pub c: T,
+    }
+    /// Free rigid body in unit quaternions, spatial representation.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct CayleyKleinSpatial<T = f64> {
+        parameters: CayleyKleinSpatialParameters<T>,
+    }
+    impl<T: Real> CayleyKleinSpatial<T> {
+        /// The model as it was stated.
+        pub const SOURCE: &'static str = "/// Free rigid body in unit quaternions, spatial representation.\npub model CayleyKleinSpatial {\n    param c: Real;\n    group q: SU<2> velocity w;\n    advected I: Sym<3>;\n    constraint next(q) = w*q;\n    constraint next(I) = rot(w)*I*rot(w)^T;\n    lagrangian = -4*c*re(w)/h + 2*dot(im(w), (I - c*Id)*im(w))/h;\n}";
+        /// A number that changes when the model or its derivation does.
+        pub const FINGERPRINT: u64 = 1248640724265325111u64;
+        /// Checks the parameters.
+        ///
+        /// # Errors
+        /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
+        /// assumption, or is no admissible factor of the equation to solve.
+        pub fn new(
+            parameters: CayleyKleinSpatialParameters<T>,
+        ) -> Result<Self, ParameterError> {
+            validate::finite("c", &[parameters.c])?;
+            Ok(Self { parameters })
+        }
+        /// The parameters.
+        pub fn parameters(&self) -> &CayleyKleinSpatialParameters<T> {
+            &self.parameters
+        }
+    }
+    /// Initial data.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct CayleyKleinSpatialInitial<T = f64> {
+        /// `q` at node 0: body -> space.
+        pub q: UnitQuaternion<T>,
+        /// Momentum at node 0, in the space frame.
+        pub spatial_momentum: SpatialMomentum<T>,
+        /// `I` at node 0.
+        pub I: SMatrix<T, 3, 3>,
+    }
+    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct CayleyKleinSpatialState<T = f64> {
+        q: UnitQuaternion<T>,
+        momentum: SpatialMomentum<T>,
+        I: SMatrix<T, 3, 3>,
+        node: u64,
+    }
+    impl<T: Real> CayleyKleinSpatialState<T> {
+        /// `q` at this node: body -> space.
+        pub fn q(&self) -> UnitQuaternion<T> {
+            self.q
+        }
+        /// The momentum at this node, in the space frame.
+        pub fn spatial_momentum(&self) -> SpatialMomentum<T> {
+            self.momentum
+        }
+        /// The momentum at this node, in the body frame.
+        pub fn body_momentum(&self) -> BodyMomentum<T> {
+            self.momentum.to_body(&self.q)
+        }
+        /// The number of the node.
+        pub fn node(&self) -> u64 {
+            self.node
+        }
+    }
+    /// The step and the last velocities, from which the next solve starts.
+    #[derive(Clone, Copy, Debug)]
+    pub struct CayleyKleinSpatialWorkspace<T = f64> {
+        h: T,
+        guess: [UnitQuaternion<T>; 1],
+    }
+    impl<T: Real> CayleyKleinSpatial<T> {
+        /// Starts a trajectory with step `h` from data at node 0.
+        ///
+        /// # Errors
+        /// Names the value that is not finite, or says why the first step cannot be solved and
+        /// which step could.
+        pub fn start(
+            &self,
+            initial: CayleyKleinSpatialInitial<T>,
+            h: T,
+        ) -> Result<
+            (CayleyKleinSpatialState<T>, CayleyKleinSpatialWorkspace<T>),
+            StartError,
+        > {
+            validate::positive_step(h)?;
+            let state = self.at_node_0(initial)?;
+            Ok((state, self.workspace(&state, h)?))
+        }
+        /// The state at node 0.
+        fn at_node_0(
+            &self,
+            initial: CayleyKleinSpatialInitial<T>,
+        ) -> Result<CayleyKleinSpatialState<T>, StartError> {
+            validate::finite("q", &initial.q.components())?;
+            validate::finite("spatial_momentum", initial.spatial_momentum.0.as_slice())?;
+            validate::finite_entries("I", &initial.I)?;
+            let I = {
+                let q = initial.q.matrix();
+                let I_start = initial.I;
+                quaternion_rotation(&q).tr_mul(&(I_start * quaternion_rotation(&q)))
+            };
+            Ok(CayleyKleinSpatialState {
+                q: initial.q,
+                momentum: initial.spatial_momentum,
+                I,
+                node: 0,
+            })
+        }
+        /// A workspace for steps of `h`, of either sign, from any state.
+        ///
+        /// # Errors
+        /// When the first step cannot be solved.
+        pub fn workspace(
+            &self,
+            state: &CayleyKleinSpatialState<T>,
+            h: T,
+        ) -> Result<CayleyKleinSpatialWorkspace<T>, StartError> {
+            let state = *state;
+            let work = CayleyKleinSpatialWorkspace {
+                h,
+                guess: [UnitQuaternion::identity()],
+            };
+            let (mut trial, mut scratch) = (state, work);
+            self.step(&mut trial, &mut scratch)
+                .map_err(|e| StartError::Refused(e.cause))?;
+            Ok(work)
+        }
+        /// One step, in place. Solved thus: the group is not SO(n): Newton on the derived residual.
+        ///
+        /// # Errors
+        /// When the iteration does not converge, with its residual; the state is then unchanged.
+        #[inline]
+        pub fn step(
+            &self,
+            state: &mut CayleyKleinSpatialState<T>,
+            work: &mut CayleyKleinSpatialWorkspace<T>,
+        ) -> Result<(), StepError> {
+            let h = work.h;
+            let CayleyKleinSpatialParameters { c, .. } = self.parameters;
+            let q = state.q.matrix();
+            let I_reference = state.I;
+            let I = quaternion_rotation(&q)
+                * (I_reference * quaternion_rotation(&q).transpose());
+            let momenta: [SVector<T, 3>; 1] = [state.momentum.0];
+            let residual = |trial: &[UnitQuaternion<T>; 1]| {
+                let w = trial[0].matrix();
+                let t1 = h.powi(-1);
+                let t2 = quaternion_imaginary(&w);
+                let t3 = I * t2;
+                let parts: [SVector<T, 3>; 1] = [
+                    (quaternion_imaginary(&(w.tr_mul(&pure_quaternion(&t3))))
+                        * T::from_f64(2.0) * t1 - t3.cross(&t2) * T::from_f64(4.0) * t1
+                        + t2 * T::from_f64(2.0) * t1 * c
+                        - quaternion_imaginary(&(w * w)) * t1 * c) - momenta[0],
+                ];
+                {
+                    let mut all = SVector::<T, 3>::zeros();
+                    let rest = all.as_mut_slice();
+                    let rest = put_vector(rest, &parts[0]);
+                    let _ = rest;
+                    all
+                }
+            };
+            let tangent = |trial: &[UnitQuaternion<T>; 1]| {
+                let w = trial[0].matrix();
+                let mut matrix = SMatrix::<T, 3, 3>::zeros();
+                for axis in 0..3 {
+                    let η = unit::<T, 3>(axis);
+                    let t1 = h.powi(-1);
+                    let t2 = pure_quaternion(&η);
+                    let t3 = quaternion_imaginary(&(w * t2 * T::from_f64(0.5)));
+                    let t4 = I * t3;
+                    let t5 = quaternion_imaginary(&w);
+                    let t6 = I * t5;
+                    let parts: [SVector<T, 3>; 1] = [
+                        quaternion_imaginary(
+                            &(w.tr_mul(&pure_quaternion(&t4))
+                                - t2 * w.tr_mul(&pure_quaternion(&t6)) * T::from_f64(0.5)),
+                        ) * T::from_f64(2.0) * t1
+                            - (t4.cross(&t5) + t6.cross(&t3)) * T::from_f64(4.0) * t1
+                            + t3 * T::from_f64(2.0) * t1 * c
+                            - quaternion_imaginary(
+                                &(w * (t2 * w) * T::from_f64(0.5)
+                                    + w * (w * t2) * T::from_f64(0.5)),
+                            ) * t1 * c,
+                    ];
+                    matrix
+                        .set_column(
+                            axis,
+                            &{
+                                let mut all = SVector::<T, 3>::zeros();
+                                let rest = all.as_mut_slice();
+                                let rest = put_vector(rest, &parts[0]);
+                                let _ = rest;
+                                all
+                            },
+                        );
+                }
+                matrix
+            };
+            let scale = {
+                let trial = &work.guess;
+                let w = trial[0].matrix();
+                let t1 = pure_quaternion(
+                    &(((I - SMatrix::<T, 3, 3>::identity() * c)
+                        * quaternion_imaginary(&w) * T::from_f64(2.0)) / h),
+                ) * T::from_f64(0.25);
+                let mut total = 0.0;
+                total += length(&momenta[0]).magnitude();
+                total
+                    += length(&(t1 - (SMatrix::<T, 4, 4>::identity() * c) / h + t1))
+                        .magnitude();
+                total
+            };
+            let solved = match newton::solve(work.guess, scale, residual, tangent) {
+                Ok(found) => found.element,
+                Err(e) => return Err(StepCause::from(e).at_node(state.node)),
+            };
+            let w_matrix = solved[0].matrix();
+            let q_moved = solved[0] * state.q;
+            let momentum_next = state.momentum.0;
+            if !(all_finite(&momentum_next)) {
+                return Err(
+                    StepCause::NotFinite {
+                        what: "momentum",
+                    }
+                        .at_node(state.node),
+                );
+            }
+            state.q = q_moved;
+            state.momentum = SpatialMomentum(momentum_next);
+            state.node += 1;
+            work.guess = solved;
+            Ok(())
+        }
+        /// `I` at the node of this state.
+        #[inline]
+        pub fn I(&self, state: &CayleyKleinSpatialState<T>) -> SMatrix<T, 3, 3> {
+            let q = state.q.matrix();
+            let I_reference = state.I;
+            let I = quaternion_rotation(&q)
+                * (I_reference * quaternion_rotation(&q).transpose());
+            I
+        }
+    }
+    impl<T: Real> Stepper for CayleyKleinSpatial<T> {
+        type Scalar = T;
+        type State = CayleyKleinSpatialState<T>;
+        type Workspace = CayleyKleinSpatialWorkspace<T>;
+        fn workspace(
+            &self,
+            state: &Self::State,
+            h: T,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h)
+        }
+        #[inline(always)]
+        fn advance(
+            &self,
+            state: &mut Self::State,
+            work: &mut Self::Workspace,
+        ) -> Result<(), StepError> {
+            self.step(state, work)
+        }
+        fn node(state: &Self::State) -> u64 {
+            state.node
+        }
+        fn at_node(state: Self::State, node: u64) -> Self::State {
+            CayleyKleinSpatialState {
+                node: node,
+                ..state
+            }
+        }
+    }
+    /// A configuration at one node, solution or not.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct CayleyKleinSpatialConfiguration<T = f64> {
+        /// `q` at the node: body -> space.
+        pub q: UnitQuaternion<T>,
+        /// `I` at the node, as its constraint carries it.
+        pub I: SMatrix<T, 3, 3>,
+    }
+    impl<T: Real> CayleyKleinSpatial<T> {
+        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+        /// consecutive configurations: components are derivatives of the action of the two edges
+        /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
+        /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix
+        /// units, row by row. Components beyond the coordinates are zero. Zero on solutions.
+        pub fn balance(
+            &self,
+            h: T,
+            before: &CayleyKleinSpatialConfiguration<T>,
+            here: &CayleyKleinSpatialConfiguration<T>,
+            after: &CayleyKleinSpatialConfiguration<T>,
+        ) -> SVector<T, 3> {
+            let CayleyKleinSpatialParameters { c, .. } = self.parameters;
+            let I_before = before.I;
+            let I = here.I;
+            let I_next = after.I;
+            let w_before = (here.q * before.q.inverse()).matrix();
+            let w = (after.q * here.q.inverse()).matrix();
+            let t1 = h.powi(-1);
+            let t2 = quaternion_imaginary(&w_before);
+            let t3 = quaternion_imaginary(&w);
+            let t4 = I * t3;
+            let parts: [SVector<T, 3>; 1] = [
+                quaternion_imaginary(&(w_before * pure_quaternion(&(I_before * t2))))
+                    * T::from_f64(2.0) * t1 + t2 * T::from_f64(2.0) * t1 * c
+                    - quaternion_imaginary(&(w_before * w_before)) * t1 * c
+                    + t4.cross(&t3) * T::from_f64(4.0) * t1
+                    - quaternion_imaginary(&(w.tr_mul(&pure_quaternion(&t4))))
+                        * T::from_f64(2.0) * t1 - t3 * T::from_f64(2.0) * t1 * c
+                    + quaternion_imaginary(&(w * w)) * t1 * c,
+            ];
+            {
+                let mut all = SVector::<T, 3>::zeros();
+                let rest = all.as_mut_slice();
+                let rest = put_vector(rest, &parts[0]);
+                let _ = rest;
+                all
+            }
+        }
+    }
+    impl<T: Real> CayleyKleinSpatial<T> {
+        /// The kinetic and the potential energy at this node: those of the limit of small steps,
+        /// at the node's momentum.
+        pub fn energies(&self, state: &CayleyKleinSpatialState<T>) -> (T, T) {
+            let q = state.q.matrix();
+            let I_reference = state.I;
+            let I = quaternion_rotation(&q)
+                * (I_reference * quaternion_rotation(&q).transpose());
+            let parts: [SVector<T, 3>; 1] = [state.spatial_momentum().0];
+            let momentum = {
+                let mut all = SVector::<T, 3>::zeros();
+                let rest = all.as_mut_slice();
+                let rest = put_vector(rest, &parts[0]);
+                let _ = rest;
+                all
+            };
+            let mut inertia = SMatrix::<T, 3, 3>::zeros();
+            for axis in 0..3 {
+                let ξ: SVector<T, 3> = unit::<T, 3>(axis);
+                let t1 = I * ξ * T::from_f64(0.5);
+                let parts: [SVector<T, 3>; 1] = [t1 + t1];
+                inertia
+                    .set_column(
+                        axis,
+                        &{
+                            let mut all = SVector::<T, 3>::zeros();
+                            let rest = all.as_mut_slice();
+                            let rest = put_vector(rest, &parts[0]);
+                            let _ = rest;
+                            all
+                        },
+                    );
+            }
+            let velocity = solve_leading_or_nan(&inertia, &momentum, 0 + 3);
+            (momentum.dot(&velocity) * T::from_f64(0.5), T::zero())
+        }
+        /// The physical energy at this node.
+        pub fn energy(&self, state: &CayleyKleinSpatialState<T>) -> T {
+            let (kinetic, potential) = self.energies(state);
+            kinetic + potential
+        }
+    }
+    /// One trajectory of the model, its type hidden.
+    struct CayleyKleinSpatialTrajectory {
+        model: CayleyKleinSpatial<f64>,
+        state: CayleyKleinSpatialState<f64>,
+        steps: Steps<CayleyKleinSpatial<f64>>,
+        h: f64,
+        start: CayleyKleinSpatialState<f64>,
+    }
+    impl Trajectory for CayleyKleinSpatialTrajectory {
+        fn node(&self) -> u64 {
+            self.state.node()
+        }
+        fn time(&self) -> f64 {
+            self.h * self.state.node() as f64
+        }
+        fn step(&mut self) -> Result<(), StepError> {
+            self.steps.step(&self.model, &mut self.state)
+        }
+        fn card(&self) -> &'static Card {
+            &CayleyKleinSpatial::<f64>::CARD
+        }
+        fn observe(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(out, state.q().components());
+            let out = put(out, rows(state.body_momentum().0));
+            let out = put(out, rows(state.spatial_momentum().0));
+            let out = put(out, rows(self.model.I(state)));
+            let _ = out;
+        }
+        fn invariants(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(out, [self.model.energy(state)]);
+            let _ = out;
+        }
+        fn scales(&self, out: &mut [f64]) {
+            let state = &self.start;
+            let out = put(
+                out,
+                [{
+                    let (kinetic, potential) = self.model.energies(state);
+                    kinetic.abs() + potential.abs()
+                }; 1usize],
+            );
+            let _ = out;
+        }
+    }
+    impl CayleyKleinSpatial<f64> {
+        /// The model as data.
+        pub const CARD: Card = Card {
+            name: "CayleyKleinSpatial",
+            kebab: "cayley-klein-spatial",
+            doc: "Free rigid body in unit quaternions, spatial representation.",
+            source: Self::SOURCE,
+            fingerprint: Self::FINGERPRINT,
+            summary: "action of one step   -4 c re(w_k)/h + 2 im(w_k)·((I_k - c Id) im(w_k))/h\nmomentum of q        2 im((-c Id/h + ½ quat(2 (I_k - c Id) im(w_k)/h)) w_kᵀ)\nRiccati form         none: the group is not SO(n)\ninvariants           energy\ntime reversal        not symmetric: first order\ncertificate          10 identities proved by normal form, 6 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
+            solver: "Newton: the group is not SO(n): Newton on the derived residual",
+            order: 1u32,
+            orders: &[1],
+            preprocessed: false,
+            reversible: false,
+            parameters: &[
+                Field {
+                    name: "c",
+                    ascii: "c",
+                    rows: 1,
+                    cols: 1,
+                    kind: Kind::Scalar,
+                    doc: "",
+                },
+            ],
+            initial: &[
+                Field {
+                    name: "q",
+                    ascii: "q",
+                    rows: 4,
+                    cols: 1,
+                    kind: Kind::UnitQuaternion,
+                    doc: "attitude (w, x, y, z), body to space",
+                },
+                Field {
+                    name: "spatial_momentum",
+                    ascii: "spatial_momentum",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::SpatialMomentum,
+                    doc: "momentum, space frame",
+                },
+                Field {
+                    name: "I",
+                    ascii: "I",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Symmetric,
+                    doc: "value at node 0",
+                },
+            ],
+            observables: &[
+                Field {
+                    name: "q",
+                    ascii: "q",
+                    rows: 4,
+                    cols: 1,
+                    kind: Kind::UnitQuaternion,
+                    doc: "attitude (w, x, y, z), body to space",
+                },
+                Field {
+                    name: "body_momentum",
+                    ascii: "body_momentum",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::BodyMomentum,
+                    doc: "momentum, body frame",
+                },
+                Field {
+                    name: "spatial_momentum",
+                    ascii: "spatial_momentum",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::SpatialMomentum,
+                    doc: "momentum, space frame",
+                },
+                Field {
+                    name: "I",
+                    ascii: "I",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Symmetric,
+                    doc: "",
+                },
+            ],
+            invariants: &[
+                Invariant {
+                    name: "energy",
+                    formula: "½ μ·I⁻¹μ",
+                    rows: 1usize,
+                    conserved: Conserved::Boundedly,
+                },
+            ],
+            open: Self::open,
+            dimensions: &[],
+            sized: Self::sized,
+        };
+        /// The card of the model at the given sizes, in the order of their declaration.
+        fn sized(sizes: &[usize]) -> Option<Card> {
+            match sizes {
+                [] => Some(CayleyKleinSpatial::<f64>::CARD),
+                _ => None,
+            }
+        }
+        fn open(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+            settings: Settings,
+        ) -> Result<Box<dyn Trajectory>, OpenError> {
+            for (field, expected, found) in [
+                ("parameters", 1usize, parameters.len()),
+                ("initial values", 3usize, initial.len()),
+            ] {
+                if expected != found {
+                    return Err(OpenError::Count {
+                        field,
+                        expected,
+                        found,
+                    });
+                }
+            }
+            let model = CayleyKleinSpatial::new(CayleyKleinSpatialParameters {
+                c: number_of("c", parameters.get(0usize))?,
+            })?;
+            let initial = CayleyKleinSpatialInitial {
+                q: quaternion_of("q", initial.get(0usize))?,
+                spatial_momentum: SpatialMomentum(
+                    matrix_of("spatial_momentum", initial.get(1usize))?,
+                ),
+                I: matrix_of("I", initial.get(2usize))?,
+            };
+            let state = model.at_node_0(initial)?;
+            let steps = Steps::plain(&model, &state, settings, Self::CARD.orders)?;
+            Ok(
+                Box::new(CayleyKleinSpatialTrajectory {
+                    model,
+                    state,
+                    steps,
+                    h: settings.h,
+                    start: state,
+                }),
+            )
+        }
+    }
+}
+#[allow(unused_imports)]
+pub use cayley_klein_spatial::*;

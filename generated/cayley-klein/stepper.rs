@@ -1,0 +1,527 @@
+// Written by `clebsch derive --write`. Do not edit.
+
+/// The model [`CayleyKlein`](struct@CayleyKlein) and what belongs to it.
+#[allow(
+    non_snake_case,
+    uncommon_codepoints,
+    mixed_script_confusables,
+    confusable_idents,
+    clippy::all
+)]
+pub mod cayley_klein {
+    use ::clebsch::emitted::*;
+    /// Parameters of [`CayleyKlein`](struct@CayleyKlein), as given.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct CayleyKleinParameters<T = f64> {
+        /// `I`: a 3 x 3 matrix, diagonal.
+        pub I: SMatrix<T, 3, 3>,
+        /// `c`: a number.
+        pub c: T,
+    }
+    /// Free rigid body in unit quaternions. The body momentum is the map q -> q* m q of Hopf: its
+    /// fibres over the sphere of body momenta are circles.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct CayleyKlein<T = f64> {
+        parameters: CayleyKleinParameters<T>,
+    }
+    impl<T: Real> CayleyKlein<T> {
+        /// The model as it was stated.
+        pub const SOURCE: &'static str = "/// Free rigid body in unit quaternions. The body momentum is the map q -> q* m q of Hopf: its\n/// fibres over the sphere of body momenta are circles.\npub model CayleyKlein {\n    param I: Diag<3>;\n    param c: Real;\n    group q: SU<2> velocity W;\n    constraint next(q) = q*W;\n    lagrangian = -4*c*re(W)/h + 2*dot(im(W), (I - c*Id)*im(W))/h;\n}";
+        /// A number that changes when the model or its derivation does.
+        pub const FINGERPRINT: u64 = 3803721495529054158u64;
+        /// Checks the parameters.
+        ///
+        /// # Errors
+        /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
+        /// assumption, or is no admissible factor of the equation to solve.
+        pub fn new(
+            parameters: CayleyKleinParameters<T>,
+        ) -> Result<Self, ParameterError> {
+            validate::finite_entries("I", &parameters.I)?;
+            validate::diagonal("I", &parameters.I)?;
+            validate::finite("c", &[parameters.c])?;
+            Ok(Self { parameters })
+        }
+        /// The parameters.
+        pub fn parameters(&self) -> &CayleyKleinParameters<T> {
+            &self.parameters
+        }
+    }
+    /// Initial data.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct CayleyKleinInitial<T = f64> {
+        /// `q` at node 0: body -> space.
+        pub q: UnitQuaternion<T>,
+        /// Momentum at node 0, in the body frame.
+        pub body_momentum: BodyMomentum<T>,
+    }
+    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct CayleyKleinState<T = f64> {
+        q: UnitQuaternion<T>,
+        momentum: SpatialMomentum<T>,
+        node: u64,
+    }
+    impl<T: Real> CayleyKleinState<T> {
+        /// `q` at this node: body -> space.
+        pub fn q(&self) -> UnitQuaternion<T> {
+            self.q
+        }
+        /// The momentum at this node, in the space frame.
+        pub fn spatial_momentum(&self) -> SpatialMomentum<T> {
+            self.momentum
+        }
+        /// The momentum at this node, in the body frame.
+        pub fn body_momentum(&self) -> BodyMomentum<T> {
+            self.momentum.to_body(&self.q)
+        }
+        /// The number of the node.
+        pub fn node(&self) -> u64 {
+            self.node
+        }
+    }
+    /// The step and the last velocities, from which the next solve starts.
+    #[derive(Clone, Copy, Debug)]
+    pub struct CayleyKleinWorkspace<T = f64> {
+        h: T,
+        guess: [UnitQuaternion<T>; 1],
+    }
+    impl<T: Real> CayleyKlein<T> {
+        /// Starts a trajectory with step `h` from data at node 0.
+        ///
+        /// # Errors
+        /// Names the value that is not finite, or says why the first step cannot be solved and
+        /// which step could.
+        pub fn start(
+            &self,
+            initial: CayleyKleinInitial<T>,
+            h: T,
+        ) -> Result<(CayleyKleinState<T>, CayleyKleinWorkspace<T>), StartError> {
+            validate::positive_step(h)?;
+            let state = self.at_node_0(initial)?;
+            Ok((state, self.workspace(&state, h)?))
+        }
+        /// The state at node 0.
+        fn at_node_0(
+            &self,
+            initial: CayleyKleinInitial<T>,
+        ) -> Result<CayleyKleinState<T>, StartError> {
+            validate::finite("q", &initial.q.components())?;
+            validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
+            Ok(CayleyKleinState {
+                q: initial.q,
+                momentum: initial.body_momentum.to_space(&initial.q),
+                node: 0,
+            })
+        }
+        /// A workspace for steps of `h`, of either sign, from any state.
+        ///
+        /// # Errors
+        /// When the first step cannot be solved.
+        pub fn workspace(
+            &self,
+            state: &CayleyKleinState<T>,
+            h: T,
+        ) -> Result<CayleyKleinWorkspace<T>, StartError> {
+            let state = *state;
+            let work = CayleyKleinWorkspace {
+                h,
+                guess: [UnitQuaternion::identity()],
+            };
+            let (mut trial, mut scratch) = (state, work);
+            self.step(&mut trial, &mut scratch)
+                .map_err(|e| StartError::Refused(e.cause))?;
+            Ok(work)
+        }
+        /// One step, in place. Solved thus: the group is not SO(n): Newton on the derived residual.
+        ///
+        /// # Errors
+        /// When the iteration does not converge, with its residual; the state is then unchanged.
+        #[inline]
+        pub fn step(
+            &self,
+            state: &mut CayleyKleinState<T>,
+            work: &mut CayleyKleinWorkspace<T>,
+        ) -> Result<(), StepError> {
+            let h = work.h;
+            let CayleyKleinParameters { I, c, .. } = self.parameters;
+            let momenta: [SVector<T, 3>; 1] = [state.momentum.to_body(&state.q).0];
+            let residual = |trial: &[UnitQuaternion<T>; 1]| {
+                let W = trial[0].matrix();
+                let t1 = h.powi(-1);
+                let t2 = quaternion_imaginary(&W);
+                let parts: [SVector<T, 3>; 1] = [
+                    (quaternion_imaginary(&(W * pure_quaternion(&(I * t2))))
+                        * T::from_f64(2.0) * t1 + t2 * T::from_f64(2.0) * t1 * c
+                        - quaternion_imaginary(&(W * W)) * t1 * c) - momenta[0],
+                ];
+                {
+                    let mut all = SVector::<T, 3>::zeros();
+                    let rest = all.as_mut_slice();
+                    let rest = put_vector(rest, &parts[0]);
+                    let _ = rest;
+                    all
+                }
+            };
+            let tangent = |trial: &[UnitQuaternion<T>; 1]| {
+                let W = trial[0].matrix();
+                let mut matrix = SMatrix::<T, 3, 3>::zeros();
+                for axis in 0..3 {
+                    let η = unit::<T, 3>(axis);
+                    let t1 = h.powi(-1);
+                    let t2 = pure_quaternion(&η);
+                    let t3 = quaternion_imaginary(&(W * t2 * T::from_f64(0.5)));
+                    let parts: [SVector<T, 3>; 1] = [
+                        quaternion_imaginary(
+                            &(W * (t2 * pure_quaternion(&(I * quaternion_imaginary(&W))))
+                                * T::from_f64(0.5) + W * pure_quaternion(&(I * t3))),
+                        ) * T::from_f64(2.0) * t1 + t3 * T::from_f64(2.0) * t1 * c
+                            - quaternion_imaginary(
+                                &(W * (t2 * W) * T::from_f64(0.5)
+                                    + W * (W * t2) * T::from_f64(0.5)),
+                            ) * t1 * c,
+                    ];
+                    matrix
+                        .set_column(
+                            axis,
+                            &{
+                                let mut all = SVector::<T, 3>::zeros();
+                                let rest = all.as_mut_slice();
+                                let rest = put_vector(rest, &parts[0]);
+                                let _ = rest;
+                                all
+                            },
+                        );
+                }
+                matrix
+            };
+            let scale = {
+                let trial = &work.guess;
+                let W = trial[0].matrix();
+                let t1 = pure_quaternion(
+                    &(((I - SMatrix::<T, 3, 3>::identity() * c)
+                        * quaternion_imaginary(&W) * T::from_f64(2.0)) / h),
+                ) * T::from_f64(0.25);
+                let mut total = 0.0;
+                total += length(&momenta[0]).magnitude();
+                total
+                    += length(&(t1 - (SMatrix::<T, 4, 4>::identity() * c) / h + t1))
+                        .magnitude();
+                total
+            };
+            let solved = match newton::solve(work.guess, scale, residual, tangent) {
+                Ok(found) => found.element,
+                Err(e) => return Err(StepCause::from(e).at_node(state.node)),
+            };
+            let W_matrix = solved[0].matrix();
+            let q_moved = state.q * solved[0];
+            let momentum_next = state.momentum.0;
+            if !(all_finite(&momentum_next)) {
+                return Err(
+                    StepCause::NotFinite {
+                        what: "momentum",
+                    }
+                        .at_node(state.node),
+                );
+            }
+            state.q = q_moved;
+            state.momentum = SpatialMomentum(momentum_next);
+            state.node += 1;
+            work.guess = solved;
+            Ok(())
+        }
+    }
+    impl<T: Real> Stepper for CayleyKlein<T> {
+        type Scalar = T;
+        type State = CayleyKleinState<T>;
+        type Workspace = CayleyKleinWorkspace<T>;
+        fn workspace(
+            &self,
+            state: &Self::State,
+            h: T,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h)
+        }
+        #[inline(always)]
+        fn advance(
+            &self,
+            state: &mut Self::State,
+            work: &mut Self::Workspace,
+        ) -> Result<(), StepError> {
+            self.step(state, work)
+        }
+        fn node(state: &Self::State) -> u64 {
+            state.node
+        }
+        fn at_node(state: Self::State, node: u64) -> Self::State {
+            CayleyKleinState {
+                node: node,
+                ..state
+            }
+        }
+    }
+    impl<T: Real> Reversible for CayleyKlein<T> {}
+    /// A configuration at one node, solution or not.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct CayleyKleinConfiguration<T = f64> {
+        /// `q` at the node: body -> space.
+        pub q: UnitQuaternion<T>,
+    }
+    impl<T: Real> CayleyKlein<T> {
+        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+        /// consecutive configurations: components are derivatives of the action of the two edges
+        /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
+        /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix
+        /// units, row by row. Components beyond the coordinates are zero. Zero on solutions.
+        pub fn balance(
+            &self,
+            h: T,
+            before: &CayleyKleinConfiguration<T>,
+            here: &CayleyKleinConfiguration<T>,
+            after: &CayleyKleinConfiguration<T>,
+        ) -> SVector<T, 3> {
+            let CayleyKleinParameters { I, c, .. } = self.parameters;
+            let W_before = (before.q.inverse() * here.q).matrix();
+            let W = (here.q.inverse() * after.q).matrix();
+            let t1 = h.powi(-1);
+            let t2 = quaternion_imaginary(&W_before);
+            let t3 = quaternion_imaginary(&W);
+            let parts: [SVector<T, 3>; 1] = [
+                quaternion_imaginary(&(W_before.tr_mul(&pure_quaternion(&(I * t2)))))
+                    * T::from_f64(2.0) * t1 + t2 * T::from_f64(2.0) * t1 * c
+                    - quaternion_imaginary(&(W_before * W_before)) * t1 * c
+                    - quaternion_imaginary(&(W * pure_quaternion(&(I * t3))))
+                        * T::from_f64(2.0) * t1 - t3 * T::from_f64(2.0) * t1 * c
+                    + quaternion_imaginary(&(W * W)) * t1 * c,
+            ];
+            {
+                let mut all = SVector::<T, 3>::zeros();
+                let rest = all.as_mut_slice();
+                let rest = put_vector(rest, &parts[0]);
+                let _ = rest;
+                all
+            }
+        }
+    }
+    impl<T: Real> CayleyKlein<T> {
+        /// The kinetic and the potential energy at this node: those of the limit of small steps,
+        /// at the node's momentum.
+        pub fn energies(&self, state: &CayleyKleinState<T>) -> (T, T) {
+            let CayleyKleinParameters { I, .. } = self.parameters;
+            let parts: [SVector<T, 3>; 1] = [state.body_momentum().0];
+            let momentum = {
+                let mut all = SVector::<T, 3>::zeros();
+                let rest = all.as_mut_slice();
+                let rest = put_vector(rest, &parts[0]);
+                let _ = rest;
+                all
+            };
+            let mut inertia = SMatrix::<T, 3, 3>::zeros();
+            for axis in 0..3 {
+                let ξ: SVector<T, 3> = unit::<T, 3>(axis);
+                let t1 = I * ξ * T::from_f64(0.5);
+                let parts: [SVector<T, 3>; 1] = [t1 + t1];
+                inertia
+                    .set_column(
+                        axis,
+                        &{
+                            let mut all = SVector::<T, 3>::zeros();
+                            let rest = all.as_mut_slice();
+                            let rest = put_vector(rest, &parts[0]);
+                            let _ = rest;
+                            all
+                        },
+                    );
+            }
+            let velocity = solve_leading_or_nan(&inertia, &momentum, 0 + 3);
+            (momentum.dot(&velocity) * T::from_f64(0.5), T::zero())
+        }
+        /// The physical energy at this node.
+        pub fn energy(&self, state: &CayleyKleinState<T>) -> T {
+            let (kinetic, potential) = self.energies(state);
+            kinetic + potential
+        }
+    }
+    /// One trajectory of the model, its type hidden.
+    struct CayleyKleinTrajectory {
+        model: CayleyKlein<f64>,
+        state: CayleyKleinState<f64>,
+        steps: Steps<CayleyKlein<f64>>,
+        h: f64,
+        start: CayleyKleinState<f64>,
+    }
+    impl Trajectory for CayleyKleinTrajectory {
+        fn node(&self) -> u64 {
+            self.state.node()
+        }
+        fn time(&self) -> f64 {
+            self.h * self.state.node() as f64
+        }
+        fn step(&mut self) -> Result<(), StepError> {
+            self.steps.step(&self.model, &mut self.state)
+        }
+        fn card(&self) -> &'static Card {
+            &CayleyKlein::<f64>::CARD
+        }
+        fn observe(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(out, state.q().components());
+            let out = put(out, rows(state.body_momentum().0));
+            let out = put(out, rows(state.spatial_momentum().0));
+            let _ = out;
+        }
+        fn invariants(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(out, [self.model.energy(state)]);
+            let _ = out;
+        }
+        fn scales(&self, out: &mut [f64]) {
+            let state = &self.start;
+            let out = put(
+                out,
+                [{
+                    let (kinetic, potential) = self.model.energies(state);
+                    kinetic.abs() + potential.abs()
+                }; 1usize],
+            );
+            let _ = out;
+        }
+    }
+    impl CayleyKlein<f64> {
+        /// The model as data.
+        pub const CARD: Card = Card {
+            name: "CayleyKlein",
+            kebab: "cayley-klein",
+            doc: "Free rigid body in unit quaternions. The body momentum is the map q -> q* m q of Hopf: its fibres over the sphere of body momenta are circles.",
+            source: Self::SOURCE,
+            fingerprint: Self::FINGERPRINT,
+            summary: "action of one step   -4 c re(W_k)/h + 2 im(W_k)·((I - c Id) im(W_k))/h\nmomentum of q        2 im((-c Id/h + ½ quat(2 (I - c Id) im(W_k)/h)) W_kᵀ)\nRiccati form         none: the group is not SO(n)\ninvariants           energy\ntime reversal        symmetric: second order\ncertificate          4 identities proved by normal form, 6 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
+            solver: "Newton: the group is not SO(n): Newton on the derived residual",
+            order: 2u32,
+            orders: &[2, 4, 6, 8],
+            preprocessed: false,
+            reversible: true,
+            parameters: &[
+                Field {
+                    name: "I",
+                    ascii: "I",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Diagonal,
+                    doc: "",
+                },
+                Field {
+                    name: "c",
+                    ascii: "c",
+                    rows: 1,
+                    cols: 1,
+                    kind: Kind::Scalar,
+                    doc: "",
+                },
+            ],
+            initial: &[
+                Field {
+                    name: "q",
+                    ascii: "q",
+                    rows: 4,
+                    cols: 1,
+                    kind: Kind::UnitQuaternion,
+                    doc: "attitude (w, x, y, z), body to space",
+                },
+                Field {
+                    name: "body_momentum",
+                    ascii: "body_momentum",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::BodyMomentum,
+                    doc: "momentum, body frame",
+                },
+            ],
+            observables: &[
+                Field {
+                    name: "q",
+                    ascii: "q",
+                    rows: 4,
+                    cols: 1,
+                    kind: Kind::UnitQuaternion,
+                    doc: "attitude (w, x, y, z), body to space",
+                },
+                Field {
+                    name: "body_momentum",
+                    ascii: "body_momentum",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::BodyMomentum,
+                    doc: "momentum, body frame",
+                },
+                Field {
+                    name: "spatial_momentum",
+                    ascii: "spatial_momentum",
+                    rows: 3,
+                    cols: 1,
+                    kind: Kind::SpatialMomentum,
+                    doc: "momentum, space frame",
+                },
+            ],
+            invariants: &[
+                Invariant {
+                    name: "energy",
+                    formula: "½ μ·I⁻¹μ",
+                    rows: 1usize,
+                    conserved: Conserved::Boundedly,
+                },
+            ],
+            open: Self::open,
+            dimensions: &[],
+            sized: Self::sized,
+        };
+        /// The card of the model at the given sizes, in the order of their declaration.
+        fn sized(sizes: &[usize]) -> Option<Card> {
+            match sizes {
+                [] => Some(CayleyKlein::<f64>::CARD),
+                _ => None,
+            }
+        }
+        fn open(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+            settings: Settings,
+        ) -> Result<Box<dyn Trajectory>, OpenError> {
+            for (field, expected, found) in [
+                ("parameters", 2usize, parameters.len()),
+                ("initial values", 2usize, initial.len()),
+            ] {
+                if expected != found {
+                    return Err(OpenError::Count {
+                        field,
+                        expected,
+                        found,
+                    });
+                }
+            }
+            let model = CayleyKlein::new(CayleyKleinParameters {
+                I: matrix_of("I", parameters.get(0usize))?,
+                c: number_of("c", parameters.get(1usize))?,
+            })?;
+            let initial = CayleyKleinInitial {
+                q: quaternion_of("q", initial.get(0usize))?,
+                body_momentum: BodyMomentum(
+                    matrix_of("body_momentum", initial.get(1usize))?,
+                ),
+            };
+            let state = model.at_node_0(initial)?;
+            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)?;
+            Ok(
+                Box::new(CayleyKleinTrajectory {
+                    model,
+                    state,
+                    steps,
+                    h: settings.h,
+                    start: state,
+                }),
+            )
+        }
+    }
+}
+#[allow(unused_imports)]
+pub use cayley_klein::*;

@@ -1,0 +1,876 @@
+// Written by `clebsch derive --write`. Do not edit.
+
+/// The model [`KirchhoffBody`](struct@KirchhoffBody) and what belongs to it.
+#[allow(
+    non_snake_case,
+    uncommon_codepoints,
+    mixed_script_confusables,
+    confusable_idents,
+    clippy::all
+)]
+pub mod kirchhoff_body {
+    use ::clebsch::emitted::*;
+    /// Parameters of [`KirchhoffBody`](struct@KirchhoffBody), as given.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct KirchhoffBodyParameters<T = f64> {
+        /// `J`: a 3 x 3 matrix, symmetric.
+        pub J: SMatrix<T, 3, 3>,
+        /// `M`: a 3 x 3 matrix, symmetric.
+        pub M: SMatrix<T, 3, 3>,
+        /// `D`: a 3 x 3 matrix.
+        pub D: SMatrix<T, 3, 3>,
+        /// `b`: a vector of 4 components.
+        pub b: SVector<T, 4>,
+        /// `Z`: a vector of 4 components.
+        pub Z: SVector<T, 4>,
+    }
+    /// Rigid body in an ideal fluid, with added masses, coupling, and net weight.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct KirchhoffBody<T = f64> {
+        parameters: KirchhoffBodyParameters<T>,
+    }
+    impl<T: Real> KirchhoffBody<T> {
+        /// The model as it was stated.
+        pub const SOURCE: &'static str = "/// Rigid body in an ideal fluid, with added masses, coupling, and net weight.\npub model KirchhoffBody {\n    param J: Sym<3>;\n    param M: Sym<3>;\n    param D: Mat<3>;\n    param b: Vec<4>;\n    param Z: Vec<4>;\n    group G: SE<3> velocity V;\n    advected P: Vec<4> = G^T*Z;\n    constraint next(G) = G*V;\n    constraint next(P) = V^T*P;\n    lagrangian = -tr(J*rot(V))/h + dot((1/2)*(pos(V) + rot(V)^T*pos(V)), (1/2)*M*(pos(V) + rot(V)^T*pos(V)))/(2*h) + dot(vee(rot(V)), (1/2)*D*(pos(V) + rot(V)^T*pos(V)))/h - h*dot(b, P);\n}";
+        /// A number that changes when the model or its derivation does.
+        pub const FINGERPRINT: u64 = 6439501924344387072u64;
+        /// Checks the parameters.
+        ///
+        /// # Errors
+        /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
+        /// assumption, or is no admissible factor of the equation to solve.
+        pub fn new(
+            parameters: KirchhoffBodyParameters<T>,
+        ) -> Result<Self, ParameterError> {
+            validate::finite_entries("J", &parameters.J)?;
+            validate::symmetric("J", &parameters.J)?;
+            validate::finite_entries("M", &parameters.M)?;
+            validate::symmetric("M", &parameters.M)?;
+            validate::finite_entries("D", &parameters.D)?;
+            validate::finite("b", parameters.b.as_slice())?;
+            validate::finite("Z", parameters.Z.as_slice())?;
+            Ok(Self { parameters })
+        }
+        /// The parameters.
+        pub fn parameters(&self) -> &KirchhoffBodyParameters<T> {
+            &self.parameters
+        }
+    }
+    /// Initial data.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct KirchhoffBodyInitial<T = f64> {
+        /// `G` at node 0: body -> space.
+        pub G: RigidMotion<T>,
+        /// Momentum at node 0, in the body frame.
+        pub body_momentum: BodyImpulse<T>,
+    }
+    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct KirchhoffBodyState<T = f64> {
+        G: RigidMotion<T>,
+        momentum: SpatialImpulse<T>,
+        node: u64,
+    }
+    impl<T: Real> KirchhoffBodyState<T> {
+        /// `G` at this node: body -> space.
+        pub fn G(&self) -> RigidMotion<T> {
+            self.G
+        }
+        /// The momentum at this node, in the space frame.
+        pub fn spatial_momentum(&self) -> SpatialImpulse<T> {
+            self.momentum
+        }
+        /// The momentum at this node, in the body frame.
+        pub fn body_momentum(&self) -> BodyImpulse<T> {
+            self.momentum.to_body(&self.G)
+        }
+        /// The number of the node.
+        pub fn node(&self) -> u64 {
+            self.node
+        }
+    }
+    /// The step and the last velocities, from which the next solve starts.
+    #[derive(Clone, Copy, Debug)]
+    pub struct KirchhoffBodyWorkspace<T = f64> {
+        h: T,
+        guess: [RigidMotion<T>; 1],
+    }
+    impl<T: Real> KirchhoffBody<T> {
+        /// Starts a trajectory with step `h` from data at node 0.
+        ///
+        /// # Errors
+        /// Names the value that is not finite, or says why the first step cannot be solved and
+        /// which step could.
+        pub fn start(
+            &self,
+            initial: KirchhoffBodyInitial<T>,
+            h: T,
+        ) -> Result<(KirchhoffBodyState<T>, KirchhoffBodyWorkspace<T>), StartError> {
+            validate::positive_step(h)?;
+            let state = self.at_node_0(initial)?;
+            Ok((state, self.workspace(&state, h)?))
+        }
+        /// The state at node 0.
+        fn at_node_0(
+            &self,
+            initial: KirchhoffBodyInitial<T>,
+        ) -> Result<KirchhoffBodyState<T>, StartError> {
+            validate::finite("G", initial.G.matrix().as_slice())?;
+            validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
+            Ok(KirchhoffBodyState {
+                G: initial.G,
+                momentum: initial.body_momentum.to_space(&initial.G),
+                node: 0,
+            })
+        }
+        /// A workspace for steps of `h`, of either sign, from any state.
+        ///
+        /// # Errors
+        /// When the first step cannot be solved.
+        pub fn workspace(
+            &self,
+            state: &KirchhoffBodyState<T>,
+            h: T,
+        ) -> Result<KirchhoffBodyWorkspace<T>, StartError> {
+            let state = *state;
+            let work = KirchhoffBodyWorkspace {
+                h,
+                guess: [RigidMotion::identity()],
+            };
+            let (mut trial, mut scratch) = (state, work);
+            self.step(&mut trial, &mut scratch)
+                .map_err(|e| StartError::Refused(e.cause))?;
+            Ok(work)
+        }
+        /// One step, in place. Solved thus: the group is not SO(n): Newton on the derived residual.
+        ///
+        /// # Errors
+        /// When the iteration does not converge, with its residual; the state is then unchanged.
+        #[inline]
+        pub fn step(
+            &self,
+            state: &mut KirchhoffBodyState<T>,
+            work: &mut KirchhoffBodyWorkspace<T>,
+        ) -> Result<(), StepError> {
+            let h = work.h;
+            let KirchhoffBodyParameters { J, M, D, b, Z, .. } = self.parameters;
+            let G = state.G.matrix();
+            let P = G.tr_mul(&Z);
+            let momenta: [SVector<T, 6>; 1] = [state.momentum.to_body(&state.G).0];
+            let residual = |trial: &[RigidMotion<T>; 1]| {
+                let V = trial[0].matrix();
+                let t1 = h.powi(-1);
+                let t2 = motion_rotation(&V);
+                let t3 = t2.transpose();
+                let t4 = motion_translation(&V);
+                let t5 = vee(&t2);
+                let parts: [SVector<T, 6>; 1] = [
+                    (into_rows::<
+                        T,
+                        6,
+                        3,
+                        1,
+                    >(
+                        &(axial_of_difference(&(t2 * hat(&(D * (t3 * t4)))))
+                            * T::from_f64(0.25) * t1
+                            - (M * (t3 * t4)).cross(&t4) * T::from_f64(0.25) * t1
+                            - (M * t4).cross(&t4) * T::from_f64(0.25) * t1
+                            - (D.tr_mul(&t5)).cross(&t4) * T::from_f64(0.5) * t1
+                            - axial_of_difference(&(J * t3)) * t1
+                            + axial_of_difference(&(t2 * hat(&(D * t4))))
+                                * T::from_f64(0.25) * t1
+                            + (rows_from::<T, 4, 3, 1>(&b, 0))
+                                .cross(&(rows_from::<T, 4, 3, 1>(&P, 0))) * T::from_f64(0.5)
+                                * h),
+                        0,
+                    )
+                        + into_rows::<
+                            T,
+                            6,
+                            3,
+                            1,
+                        >(
+                            &(M * (t3 * t4) * T::from_f64(0.25) * t1
+                                + M * t4 * T::from_f64(0.25) * t1
+                                + D.tr_mul(&t5) * T::from_f64(0.5) * t1
+                                + t2 * (M * (t3 * t4)) * T::from_f64(0.25) * t1
+                                + t2 * (M * t4) * T::from_f64(0.25) * t1
+                                + t2 * D.tr_mul(&t5) * T::from_f64(0.5) * t1
+                                + rows_from::<T, 4, 3, 1>(&P, 0) * T::from_f64(0.5) * h
+                                    * b.dot(&unit::<T, 4>(3))),
+                            3,
+                        )) - momenta[0],
+                ];
+                {
+                    let mut all = SVector::<T, 6>::zeros();
+                    let rest = all.as_mut_slice();
+                    let rest = put_vector(rest, &parts[0]);
+                    let _ = rest;
+                    all
+                }
+            };
+            let tangent = |trial: &[RigidMotion<T>; 1]| {
+                let V = trial[0].matrix();
+                let mut matrix = SMatrix::<T, 6, 6>::zeros();
+                for axis in 0..6 {
+                    let η = unit::<T, 6>(axis);
+                    let t1 = h.powi(-1);
+                    let t2 = motion_rotation(&V);
+                    let t3 = t2.transpose();
+                    let t4 = motion_translation(&V);
+                    let t5 = t2 * rows_from::<T, 6, 3, 1>(&η, 3);
+                    let t6 = vee(&(t2 * hat(&(rows_from::<T, 6, 3, 1>(&η, 0)))));
+                    let t7 = vee(&t2);
+                    let parts: [SVector<T, 6>; 1] = [
+                        into_rows::<
+                            T,
+                            6,
+                            3,
+                            1,
+                        >(
+                            &(axial_of_difference(
+                                &(J * (hat(&(rows_from::<T, 6, 3, 1>(&η, 0))) * t3)),
+                            ) * t1
+                                - ((M * (t3 * (t2 * rows_from::<T, 6, 3, 1>(&η, 3)))
+                                    - M * (hat(&(rows_from::<T, 6, 3, 1>(&η, 0))) * (t3 * t4)))
+                                    .cross(&t4) + (M * (t3 * t4)).cross(&t5))
+                                    * T::from_f64(0.25) * t1
+                                - ((M * (t2 * rows_from::<T, 6, 3, 1>(&η, 3))).cross(&t4)
+                                    + (M * t4).cross(&t5)) * T::from_f64(0.25) * t1
+                                - ((D.tr_mul(&t6)).cross(&t4) + (D.tr_mul(&t7)).cross(&t5))
+                                    * T::from_f64(0.5) * t1
+                                + axial_of_difference(
+                                    &(t2
+                                        * (hat(&(rows_from::<T, 6, 3, 1>(&η, 0)))
+                                            * hat(&(D * (t3 * t4))))
+                                        + t2
+                                            * hat(
+                                                &(D * (t3 * (t2 * rows_from::<T, 6, 3, 1>(&η, 3)))
+                                                    - D * (hat(&(rows_from::<T, 6, 3, 1>(&η, 0))) * (t3 * t4))),
+                                            )),
+                                ) * T::from_f64(0.25) * t1
+                                + axial_of_difference(
+                                    &(t2
+                                        * (hat(&(rows_from::<T, 6, 3, 1>(&η, 0))) * hat(&(D * t4)))
+                                        + t2 * hat(&(D * (t2 * rows_from::<T, 6, 3, 1>(&η, 3))))),
+                                ) * T::from_f64(0.25) * t1),
+                            0,
+                        )
+                            + into_rows::<
+                                T,
+                                6,
+                                3,
+                                1,
+                            >(
+                                &(M * (t3 * (t2 * rows_from::<T, 6, 3, 1>(&η, 3)))
+                                    * T::from_f64(0.25) * t1
+                                    - M * (hat(&(rows_from::<T, 6, 3, 1>(&η, 0))) * (t3 * t4))
+                                        * T::from_f64(0.25) * t1
+                                    + M * (t2 * rows_from::<T, 6, 3, 1>(&η, 3))
+                                        * T::from_f64(0.25) * t1
+                                    + D.tr_mul(&t6) * T::from_f64(0.5) * t1
+                                    + t2
+                                        * (hat(&(rows_from::<T, 6, 3, 1>(&η, 0)))
+                                            * (M * (t3 * t4))) * T::from_f64(0.25) * t1
+                                    - t2
+                                        * (M
+                                            * (hat(&(rows_from::<T, 6, 3, 1>(&η, 0))) * (t3 * t4)))
+                                        * T::from_f64(0.25) * t1
+                                    + t2 * (M * (t3 * (t2 * rows_from::<T, 6, 3, 1>(&η, 3))))
+                                        * T::from_f64(0.25) * t1
+                                    + t2 * (hat(&(rows_from::<T, 6, 3, 1>(&η, 0))) * (M * t4))
+                                        * T::from_f64(0.25) * t1
+                                    + t2 * (M * (t2 * rows_from::<T, 6, 3, 1>(&η, 3)))
+                                        * T::from_f64(0.25) * t1
+                                    + t2
+                                        * (hat(&(rows_from::<T, 6, 3, 1>(&η, 0))) * D.tr_mul(&t7))
+                                        * T::from_f64(0.5) * t1
+                                    + t2 * D.tr_mul(&t6) * T::from_f64(0.5) * t1),
+                                3,
+                            ),
+                    ];
+                    matrix
+                        .set_column(
+                            axis,
+                            &{
+                                let mut all = SVector::<T, 6>::zeros();
+                                let rest = all.as_mut_slice();
+                                let rest = put_vector(rest, &parts[0]);
+                                let _ = rest;
+                                all
+                            },
+                        );
+                }
+                matrix
+            };
+            let scale = {
+                let trial = &work.guess;
+                let V = trial[0].matrix();
+                let t1 = motion_translation(&V);
+                let t2 = motion_rotation(&V);
+                let t3 = t1 + t2.tr_mul(&t1);
+                let t4 = T::from_f64(2.0) * h;
+                let t5 = (into_rows::<
+                    T,
+                    4,
+                    3,
+                    4,
+                >(&((M * t3) * unit::<T, 4>(3).transpose()), 0) * T::from_f64(0.25))
+                    / t4;
+                let t6 = t1.transpose();
+                let t7 = (into_rows::<
+                    T,
+                    4,
+                    3,
+                    4,
+                >(&into_columns::<T, 4, 3, 3>(&(t1 * ((t6 + t6 * t2) * M)), 0), 0)
+                    * T::from_f64(0.25)) / t4;
+                let t8 = (into_rows::<
+                    T,
+                    4,
+                    3,
+                    4,
+                >(&((t2 * (M * t3)) * unit::<T, 4>(3).transpose()), 0)
+                    * T::from_f64(0.25)) / t4;
+                let t9 = vee(&t2);
+                let mut total = 0.0;
+                total += length(&momenta[0]).magnitude();
+                total
+                    += length(
+                            &(t5
+                                - (into_rows::<
+                                    T,
+                                    4,
+                                    3,
+                                    4,
+                                >(&into_columns::<T, 4, 3, 3>(&J, 0), 0)) / h + t7 + t8 + t5
+                                + t7 + t8
+                                + into_rows::<
+                                    T,
+                                    4,
+                                    3,
+                                    4,
+                                >(
+                                    &into_columns::<
+                                        T,
+                                        4,
+                                        3,
+                                        3,
+                                    >(&hat(&((D * t3 * T::from_f64(0.5)) / h)), 0),
+                                    0,
+                                ) * T::from_f64(0.5)
+                                + (into_rows::<
+                                    T,
+                                    4,
+                                    3,
+                                    4,
+                                >(&(D.tr_mul(&t9) * unit::<T, 4>(3).transpose()), 0)
+                                    * T::from_f64(0.5)) / h
+                                + (into_rows::<
+                                    T,
+                                    4,
+                                    3,
+                                    4,
+                                >(&into_columns::<T, 4, 3, 3>(&(t1 * t9.tr_mul(&D)), 0), 0)
+                                    * T::from_f64(0.5)) / h
+                                + (into_rows::<
+                                    T,
+                                    4,
+                                    3,
+                                    4,
+                                >(&((t2 * D.tr_mul(&t9)) * unit::<T, 4>(3).transpose()), 0)
+                                    * T::from_f64(0.5)) / h),
+                        )
+                        .magnitude();
+                total
+            };
+            let solved = match newton::solve(work.guess, scale, residual, tangent) {
+                Ok(found) => found.element,
+                Err(e) => return Err(StepCause::from(e).at_node(state.node)),
+            };
+            let V_matrix = solved[0].matrix();
+            let G_moved = state.G * solved[0];
+            let G_next = G_moved.matrix();
+            let P_next = G_next.tr_mul(&Z);
+            let t1 = rows_from::<T, 4, 3, 1>(&b, 0);
+            let t2 = b.dot(&unit::<T, 4>(3));
+            let momentum_next = state.momentum.0
+                + state
+                    .G
+                    .covector_to_space(
+                        &((-(into_rows::<
+                            T,
+                            6,
+                            3,
+                            1,
+                        >(&t1.cross(&(rows_from::<T, 4, 3, 1>(&P, 0))), 0)
+                            * T::from_f64(0.5) * h))
+                            - into_rows::<T, 6, 3, 1>(&rows_from::<T, 4, 3, 1>(&P, 0), 3)
+                                * T::from_f64(0.5) * h * t2),
+                    )
+                + G_moved
+                    .covector_to_space(
+                        &((-(into_rows::<
+                            T,
+                            6,
+                            3,
+                            1,
+                        >(&t1.cross(&(rows_from::<T, 4, 3, 1>(&P_next, 0))), 0)
+                            * T::from_f64(0.5) * h))
+                            - into_rows::<
+                                T,
+                                6,
+                                3,
+                                1,
+                            >(&rows_from::<T, 4, 3, 1>(&P_next, 0), 3) * T::from_f64(0.5)
+                                * h * t2),
+                    );
+            if !(all_finite(&momentum_next)) {
+                return Err(
+                    StepCause::NotFinite {
+                        what: "momentum",
+                    }
+                        .at_node(state.node),
+                );
+            }
+            state.G = G_moved;
+            state.momentum = SpatialImpulse(momentum_next);
+            state.node += 1;
+            work.guess = solved;
+            Ok(())
+        }
+        /// `P` at the node of this state.
+        #[inline]
+        pub fn P(&self, state: &KirchhoffBodyState<T>) -> SVector<T, 4> {
+            let KirchhoffBodyParameters { Z, .. } = self.parameters;
+            let G = state.G.matrix();
+            let P = G.tr_mul(&Z);
+            P
+        }
+    }
+    impl<T: Real> Stepper for KirchhoffBody<T> {
+        type Scalar = T;
+        type State = KirchhoffBodyState<T>;
+        type Workspace = KirchhoffBodyWorkspace<T>;
+        fn workspace(
+            &self,
+            state: &Self::State,
+            h: T,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h)
+        }
+        #[inline(always)]
+        fn advance(
+            &self,
+            state: &mut Self::State,
+            work: &mut Self::Workspace,
+        ) -> Result<(), StepError> {
+            self.step(state, work)
+        }
+        fn node(state: &Self::State) -> u64 {
+            state.node
+        }
+        fn at_node(state: Self::State, node: u64) -> Self::State {
+            KirchhoffBodyState {
+                node: node,
+                ..state
+            }
+        }
+    }
+    impl<T: Real> Reversible for KirchhoffBody<T> {}
+    /// A configuration at one node, solution or not.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct KirchhoffBodyConfiguration<T = f64> {
+        /// `G` at the node: body -> space.
+        pub G: RigidMotion<T>,
+    }
+    impl<T: Real> KirchhoffBody<T> {
+        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+        /// consecutive configurations: components are derivatives of the action of the two edges
+        /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
+        /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix
+        /// units, row by row. Components beyond the coordinates are zero. Zero on solutions.
+        pub fn balance(
+            &self,
+            h: T,
+            before: &KirchhoffBodyConfiguration<T>,
+            here: &KirchhoffBodyConfiguration<T>,
+            after: &KirchhoffBodyConfiguration<T>,
+        ) -> SVector<T, 6> {
+            let KirchhoffBodyParameters { J, M, D, b, Z, .. } = self.parameters;
+            let G = here.G.matrix();
+            let P = G.tr_mul(&Z);
+            let V_before = (before.G.inverse() * here.G).matrix();
+            let V = (here.G.inverse() * after.G).matrix();
+            let t1 = h.powi(-1);
+            let t2 = motion_rotation(&V_before);
+            let t3 = t2.transpose();
+            let t4 = motion_translation(&V_before);
+            let t5 = t3 * t4;
+            let t6 = vee(&t2);
+            let t7 = (rows_from::<T, 4, 3, 1>(&b, 0))
+                .cross(&(rows_from::<T, 4, 3, 1>(&P, 0))) * T::from_f64(0.5) * h;
+            let t8 = rows_from::<T, 4, 3, 1>(&P, 0) * T::from_f64(0.5) * h
+                * b.dot(&unit::<T, 4>(3));
+            let t9 = motion_rotation(&V);
+            let t10 = t9.transpose();
+            let t11 = motion_translation(&V);
+            let t12 = vee(&t9);
+            let parts: [SVector<T, 6>; 1] = [
+                into_rows::<
+                    T,
+                    6,
+                    3,
+                    1,
+                >(
+                    &((M * (t3 * t4)).cross(&t5) * T::from_f64(0.25) * t1
+                        + (M * t4).cross(&t5) * T::from_f64(0.25) * t1
+                        + (D.tr_mul(&t6)).cross(&t5) * T::from_f64(0.5) * t1
+                        + axial_of_difference(&(J * t2)) * t1
+                        + axial_of_difference(&(t3 * hat(&(D * (t3 * t4)))))
+                            * T::from_f64(0.25) * t1
+                        + axial_of_difference(&(t3 * hat(&(D * t4)))) * T::from_f64(0.25)
+                            * t1 - t7),
+                    0,
+                )
+                    + into_rows::<
+                        T,
+                        6,
+                        3,
+                        1,
+                    >(
+                        &(M * (t3 * t4) * T::from_f64(0.25) * t1
+                            + M * t4 * T::from_f64(0.25) * t1
+                            + D.tr_mul(&t6) * T::from_f64(0.5) * t1
+                            + t3 * (M * (t3 * t4)) * T::from_f64(0.25) * t1
+                            + t3 * (M * t4) * T::from_f64(0.25) * t1
+                            + t3 * D.tr_mul(&t6) * T::from_f64(0.5) * t1 - t8),
+                        3,
+                    )
+                    - into_rows::<
+                        T,
+                        6,
+                        3,
+                        1,
+                    >(
+                        &(axial_of_difference(&(t9 * hat(&(D * (t10 * t11)))))
+                            * T::from_f64(0.25) * t1
+                            - (M * (t10 * t11)).cross(&t11) * T::from_f64(0.25) * t1
+                            - (M * t11).cross(&t11) * T::from_f64(0.25) * t1
+                            - (D.tr_mul(&t12)).cross(&t11) * T::from_f64(0.5) * t1
+                            - axial_of_difference(&(J * t10)) * t1
+                            + axial_of_difference(&(t9 * hat(&(D * t11))))
+                                * T::from_f64(0.25) * t1 + t7),
+                        0,
+                    )
+                    - into_rows::<
+                        T,
+                        6,
+                        3,
+                        1,
+                    >(
+                        &(M * (t10 * t11) * T::from_f64(0.25) * t1
+                            + M * t11 * T::from_f64(0.25) * t1
+                            + D.tr_mul(&t12) * T::from_f64(0.5) * t1
+                            + t9 * (M * (t10 * t11)) * T::from_f64(0.25) * t1
+                            + t9 * (M * t11) * T::from_f64(0.25) * t1
+                            + t9 * D.tr_mul(&t12) * T::from_f64(0.5) * t1 + t8),
+                        3,
+                    ),
+            ];
+            {
+                let mut all = SVector::<T, 6>::zeros();
+                let rest = all.as_mut_slice();
+                let rest = put_vector(rest, &parts[0]);
+                let _ = rest;
+                all
+            }
+        }
+    }
+    impl<T: Real> KirchhoffBody<T> {
+        /// The kinetic and the potential energy at this node: those of the limit of small steps,
+        /// at the node's momentum.
+        pub fn energies(&self, state: &KirchhoffBodyState<T>) -> (T, T) {
+            let KirchhoffBodyParameters { J, M, D, b, Z, .. } = self.parameters;
+            let G = state.G.matrix();
+            let P = G.tr_mul(&Z);
+            let parts: [SVector<T, 6>; 1] = [state.body_momentum().0];
+            let momentum = {
+                let mut all = SVector::<T, 6>::zeros();
+                let rest = all.as_mut_slice();
+                let rest = put_vector(rest, &parts[0]);
+                let _ = rest;
+                all
+            };
+            let mut inertia = SMatrix::<T, 6, 6>::zeros();
+            for axis in 0..6 {
+                let ξ: SVector<T, 6> = unit::<T, 6>(axis);
+                let t1 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ, 0), 0)
+                    * T::from_f64(0.5) * J.trace();
+                let t2 = -(into_rows::<
+                    T,
+                    6,
+                    3,
+                    1,
+                >(&(J * rows_from::<T, 6, 3, 1>(&ξ, 0)), 0) * T::from_f64(0.5));
+                let t3 = into_rows::<
+                    T,
+                    6,
+                    3,
+                    1,
+                >(&(M * rows_from::<T, 6, 3, 1>(&ξ, 3)), 3) * T::from_f64(0.5);
+                let parts: [SVector<T, 6>; 1] = [
+                    t1 + t1 + t2 + t2
+                        + into_rows::<
+                            T,
+                            6,
+                            3,
+                            1,
+                        >(&(D * rows_from::<T, 6, 3, 1>(&ξ, 3)), 0)
+                        + into_rows::<
+                            T,
+                            6,
+                            3,
+                            1,
+                        >(&D.tr_mul(&rows_from::<T, 6, 3, 1>(&ξ, 0)), 3) + t3 + t3,
+                ];
+                inertia
+                    .set_column(
+                        axis,
+                        &{
+                            let mut all = SVector::<T, 6>::zeros();
+                            let rest = all.as_mut_slice();
+                            let rest = put_vector(rest, &parts[0]);
+                            let _ = rest;
+                            all
+                        },
+                    );
+            }
+            let velocity = solve_leading_or_nan(&inertia, &momentum, 0 + 6);
+            (momentum.dot(&velocity) * T::from_f64(0.5), b.dot(&P))
+        }
+        /// The physical energy at this node.
+        pub fn energy(&self, state: &KirchhoffBodyState<T>) -> T {
+            let (kinetic, potential) = self.energies(state);
+            kinetic + potential
+        }
+    }
+    /// One trajectory of the model, its type hidden.
+    struct KirchhoffBodyTrajectory {
+        model: KirchhoffBody<f64>,
+        state: KirchhoffBodyState<f64>,
+        steps: Steps<KirchhoffBody<f64>>,
+        h: f64,
+        start: KirchhoffBodyState<f64>,
+    }
+    impl Trajectory for KirchhoffBodyTrajectory {
+        fn node(&self) -> u64 {
+            self.state.node()
+        }
+        fn time(&self) -> f64 {
+            self.h * self.state.node() as f64
+        }
+        fn step(&mut self) -> Result<(), StepError> {
+            self.steps.step(&self.model, &mut self.state)
+        }
+        fn card(&self) -> &'static Card {
+            &KirchhoffBody::<f64>::CARD
+        }
+        fn observe(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(out, rows(state.G().matrix()));
+            let out = put(out, rows(state.body_momentum().0));
+            let out = put(out, rows(state.spatial_momentum().0));
+            let out = put(out, rows(self.model.P(state)));
+            let _ = out;
+        }
+        fn invariants(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(out, [self.model.energy(state)]);
+            let _ = out;
+        }
+        fn scales(&self, out: &mut [f64]) {
+            let state = &self.start;
+            let out = put(
+                out,
+                [{
+                    let (kinetic, potential) = self.model.energies(state);
+                    kinetic.abs() + potential.abs()
+                }; 1usize],
+            );
+            let _ = out;
+        }
+    }
+    impl KirchhoffBody<f64> {
+        /// The model as data.
+        pub const CARD: Card = Card {
+            name: "KirchhoffBody",
+            kebab: "kirchhoff-body",
+            doc: "Rigid body in an ideal fluid, with added masses, coupling, and net weight.",
+            source: Self::SOURCE,
+            fingerprint: Self::FINGERPRINT,
+            summary: "action of one step   -tr(J rot(V_k))/h + ((½ (pos(V_k) + rot(V_k)ᵀ pos(V_k)))·(½ M (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/(2 h) + (vee(rot(V_k))·(½ D (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/h - ½ h b·P_k - ½ h b·P_{k+1}\nmomentum of G        ι₆₁ ((pos(V_k) × (M rot(V_k)ᵀ pos(V_k)))/(4 h) + (pos(V_k) × (M pos(V_k)))/(4 h) + (pos(V_k) × (Dᵀ vee(rot(V_k))))/(2 h) - 2 vee(J rot(V_k)ᵀ)/h + vee(rot(V_k) hat(D rot(V_k)ᵀ pos(V_k)))/(2 h) + vee(rot(V_k) hat(D pos(V_k)))/(2 h)) + ι₆₄ (M rot(V_k)ᵀ pos(V_k)/(4 h) + M pos(V_k)/(4 h) + Dᵀ vee(rot(V_k))/(2 h) + rot(V_k) M rot(V_k)ᵀ pos(V_k)/(4 h) + rot(V_k) M pos(V_k)/(4 h) + rot(V_k) Dᵀ vee(rot(V_k))/(2 h))\nRiccati form         none: the group is not SO(n)\ninvariants           energy\ntime reversal        symmetric: second order\ncertificate          12 identities proved by normal form, 5 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
+            solver: "Newton: the group is not SO(n): Newton on the derived residual",
+            order: 2u32,
+            orders: &[2, 4, 6, 8],
+            preprocessed: false,
+            reversible: true,
+            parameters: &[
+                Field {
+                    name: "J",
+                    ascii: "J",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Symmetric,
+                    doc: "",
+                },
+                Field {
+                    name: "M",
+                    ascii: "M",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Symmetric,
+                    doc: "",
+                },
+                Field {
+                    name: "D",
+                    ascii: "D",
+                    rows: 3,
+                    cols: 3,
+                    kind: Kind::Matrix,
+                    doc: "",
+                },
+                Field {
+                    name: "b",
+                    ascii: "b",
+                    rows: 4,
+                    cols: 1,
+                    kind: Kind::Vector,
+                    doc: "",
+                },
+                Field {
+                    name: "Z",
+                    ascii: "Z",
+                    rows: 4,
+                    cols: 1,
+                    kind: Kind::Vector,
+                    doc: "",
+                },
+            ],
+            initial: &[
+                Field {
+                    name: "G",
+                    ascii: "G",
+                    rows: 4,
+                    cols: 4,
+                    kind: Kind::RigidMotion,
+                    doc: "position, body to space",
+                },
+                Field {
+                    name: "body_momentum",
+                    ascii: "body_momentum",
+                    rows: 6,
+                    cols: 1,
+                    kind: Kind::BodyMomentum,
+                    doc: "momentum, body frame",
+                },
+            ],
+            observables: &[
+                Field {
+                    name: "G",
+                    ascii: "G",
+                    rows: 4,
+                    cols: 4,
+                    kind: Kind::RigidMotion,
+                    doc: "position, body to space",
+                },
+                Field {
+                    name: "body_momentum",
+                    ascii: "body_momentum",
+                    rows: 6,
+                    cols: 1,
+                    kind: Kind::BodyMomentum,
+                    doc: "momentum, body frame",
+                },
+                Field {
+                    name: "spatial_momentum",
+                    ascii: "spatial_momentum",
+                    rows: 6,
+                    cols: 1,
+                    kind: Kind::SpatialMomentum,
+                    doc: "momentum, space frame",
+                },
+                Field {
+                    name: "P",
+                    ascii: "P",
+                    rows: 4,
+                    cols: 1,
+                    kind: Kind::Vector,
+                    doc: "",
+                },
+            ],
+            invariants: &[
+                Invariant {
+                    name: "energy",
+                    formula: "½ μ·I⁻¹μ + b·P_k",
+                    rows: 1usize,
+                    conserved: Conserved::Boundedly,
+                },
+            ],
+            open: Self::open,
+            dimensions: &[],
+            sized: Self::sized,
+        };
+        /// The card of the model at the given sizes, in the order of their declaration.
+        fn sized(sizes: &[usize]) -> Option<Card> {
+            match sizes {
+                [] => Some(KirchhoffBody::<f64>::CARD),
+                _ => None,
+            }
+        }
+        fn open(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+            settings: Settings,
+        ) -> Result<Box<dyn Trajectory>, OpenError> {
+            for (field, expected, found) in [
+                ("parameters", 5usize, parameters.len()),
+                ("initial values", 2usize, initial.len()),
+            ] {
+                if expected != found {
+                    return Err(OpenError::Count {
+                        field,
+                        expected,
+                        found,
+                    });
+                }
+            }
+            let model = KirchhoffBody::new(KirchhoffBodyParameters {
+                J: matrix_of("J", parameters.get(0usize))?,
+                M: matrix_of("M", parameters.get(1usize))?,
+                D: matrix_of("D", parameters.get(2usize))?,
+                b: matrix_of("b", parameters.get(3usize))?,
+                Z: matrix_of("Z", parameters.get(4usize))?,
+            })?;
+            let initial = KirchhoffBodyInitial {
+                G: motion_of("G", initial.get(0usize))?,
+                body_momentum: BodyImpulse(
+                    matrix_of("body_momentum", initial.get(1usize))?,
+                ),
+            };
+            let state = model.at_node_0(initial)?;
+            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)?;
+            Ok(
+                Box::new(KirchhoffBodyTrajectory {
+                    model,
+                    state,
+                    steps,
+                    h: settings.h,
+                    start: state,
+                }),
+            )
+        }
+    }
+}
+#[allow(unused_imports)]
+pub use kirchhoff_body::*;

@@ -1,0 +1,152 @@
+//! Quaternions and rigid motions: identities that hold, and neighbours of them that do not.
+
+use super::{Algebra, Known};
+use crate::expr::shape::{Dim, Shape, Structure};
+use crate::expr::symbol::{Role, Symbols};
+use crate::expr::{self, Expr};
+
+struct Letters {
+    symbols: Symbols,
+}
+
+impl Letters {
+    fn new() -> Letters {
+        let mut symbols = Symbols::default();
+        let (four, three) = (Shape::square(Dim::Fixed(4)), Dim::Fixed(3));
+        let mut add = |name: &str, shape, structure| {
+            symbols.add(name, shape, structure, Role::Parameter);
+        };
+        for name in ["p", "q"] {
+            add(name, four, Structure::UnitQuaternion);
+        }
+        for name in ["G", "F"] {
+            add(name, four, Structure::RigidMotion);
+        }
+        for name in ["u", "v"] {
+            add(name, Shape::vector(three), Structure::General);
+        }
+        add("K", four, Structure::General);
+        add("J", Shape::square(three), Structure::Symmetric);
+        Letters { symbols }
+    }
+
+    fn at(&self, name: &str) -> Expr {
+        expr::here(&self.symbols, self.symbols.find(name).unwrap())
+    }
+
+    fn t(&self, e: Expr) -> Expr {
+        expr::transpose(&self.symbols, e)
+    }
+
+    fn inverse(&self, e: Expr) -> Expr {
+        expr::inverse(&self.symbols, e)
+    }
+
+    fn known(&self, left: Expr, right: Expr) -> Option<Known> {
+        Algebra::new(&self.symbols).zero(&expr::sub(left, right))
+    }
+}
+
+#[test]
+fn quaternions_turn_vectors() {
+    let l = Letters::new();
+    let (q, p, v) = (l.at("q"), l.at("p"), l.at("v"));
+    let rot = |e: Expr| expr::rotation(&l.symbols, e);
+    let conjugated = expr::product([q.clone(), expr::pure(v.clone()), l.t(q.clone())]);
+    let turned = expr::mul(rot(q.clone()), v.clone());
+    let found = l.known(expr::imaginary(conjugated.clone()), turned.clone());
+    assert_eq!(found, Some(Known::NormalForm));
+    let backward = expr::mul(l.t(rot(q.clone())), v.clone());
+    assert_eq!(l.known(expr::imaginary(conjugated), backward), None);
+    // A homomorphism, and one that orthogonality alone would not give.
+    let both = expr::mul(q.clone(), p.clone());
+    let product = expr::mul(rot(q.clone()), rot(p.clone()));
+    assert_eq!(l.known(rot(both), product), Some(Known::NormalForm));
+    // R v = (w^2 - |x|^2) v + 2 (x.v) x + 2 w x × v, only by |q| = 1.
+    let (w, x) = (expr::real(q.clone()), expr::imaginary(q.clone()));
+    let two = || expr::integer(2);
+    let square = |e: Expr| expr::mul(e.clone(), e);
+    let rodrigues = |sign: i64| {
+        expr::sum(
+            [
+                expr::mul(
+                    expr::sub(square(w.clone()), expr::dot(x.clone(), x.clone())),
+                    v.clone(),
+                ),
+                expr::product([two(), expr::dot(x.clone(), v.clone()), x.clone()]),
+                expr::product([
+                    expr::integer(2 * sign),
+                    w.clone(),
+                    expr::cross(x.clone(), v.clone()),
+                ]),
+            ],
+            v.shape(),
+        )
+    };
+    let found = l.known(turned.clone(), rodrigues(1));
+    assert_eq!(found, Some(Known::ExactEvaluation));
+    assert_eq!(l.known(turned, rodrigues(-1)), None);
+}
+
+#[test]
+fn imaginary_parts_are_projections_and_products_those_of_hamilton() {
+    let l = Letters::new();
+    let (q, u, v, k) = (l.at("q"), l.at("u"), l.at("v"), l.at("K"));
+    let hamilton = expr::mul(expr::pure(u.clone()), expr::pure(v.clone()));
+    let cross = expr::pure(expr::cross(u.clone(), v.clone()));
+    let dot = expr::mul(
+        expr::dot(u.clone(), v.clone()),
+        expr::identity(Dim::Fixed(4)),
+    );
+    let product = expr::sub(cross, dot);
+    assert_eq!(l.known(hamilton.clone(), product), Some(Known::NormalForm));
+    let swapped = expr::mul(expr::pure(v.clone()), expr::pure(u.clone()));
+    assert_eq!(l.known(hamilton, swapped), None);
+    // im(g X g^T) = R im(X) and im(X^T) = -im(X) for any 4 x 4 matrix.
+    let conjugated = expr::product([q.clone(), k.clone(), l.t(q.clone())]);
+    let turned = expr::mul(
+        expr::rotation(&l.symbols, q.clone()),
+        expr::imaginary(k.clone()),
+    );
+    let found = l.known(expr::imaginary(conjugated), turned);
+    assert_eq!(found, Some(Known::NormalForm));
+    let minus = |e: Expr| expr::neg(expr::imaginary(e));
+    let back = expr::imaginary(l.t(q.clone()));
+    assert_eq!(l.known(back, minus(q.clone())), Some(Known::NormalForm));
+    let back = expr::imaginary(l.t(k.clone()));
+    assert_eq!(l.known(back, minus(k.clone())), Some(Known::NormalForm));
+    // The skew part of a quaternion is made of its imaginary part, that of a matrix is not.
+    let skew = |e: &Expr| expr::part(expr::Part::Skew, e.clone());
+    let pure = |e: &Expr| expr::pure(expr::imaginary(e.clone()));
+    assert_eq!(l.known(skew(&q), pure(&q)), Some(Known::NormalForm));
+    assert_eq!(l.known(skew(&k), pure(&k)), None);
+}
+
+#[test]
+fn rigid_motions_are_decided_in_blocks() {
+    let l = Letters::new();
+    let (g, f, j) = (l.at("G"), l.at("F"), l.at("J"));
+    let s = &l.symbols;
+    let (rot, pos) = (|e: &Expr| expr::block(s, e), |e: &Expr| expr::column(s, e));
+    let both = expr::mul(g.clone(), f.clone());
+    let product = expr::mul(rot(&g), rot(&f));
+    assert_eq!(l.known(rot(&both), product), Some(Known::NormalForm));
+    let moved = expr::add(expr::mul(rot(&g), pos(&f)), pos(&g));
+    assert_eq!(l.known(pos(&both), moved.clone()), Some(Known::NormalForm));
+    assert_eq!(l.known(pos(&expr::mul(f, g.clone())), moved), None);
+    // The inverse: R^T and -R^T x.
+    let back = l.inverse(g.clone());
+    assert_eq!(l.known(rot(&back), l.t(rot(&g))), Some(Known::NormalForm));
+    let opposite = expr::neg(expr::mul(l.t(rot(&g)), pos(&g)));
+    assert_eq!(l.known(pos(&back), opposite), Some(Known::NormalForm));
+    // Not orthogonal as a whole, orthogonal in its block.
+    let one = expr::identity(Dim::Fixed(4));
+    assert_eq!(l.known(expr::mul(l.t(g.clone()), g.clone()), one), None);
+    let energy = |r: Expr| expr::trace(expr::product([r.clone(), j.clone(), l.t(r)]));
+    let found = l.known(energy(rot(&g)), expr::trace(j.clone()));
+    assert_eq!(found, Some(Known::NormalForm));
+    assert_eq!(
+        l.known(expr::det(g), expr::integer(1)),
+        Some(Known::NormalForm)
+    );
+}

@@ -1,0 +1,74 @@
+//! The free rigid body in unit quaternions (thesis 2.8, the Cayley-Klein form): a family of
+//! discretisations, of which the member `c = 0` is the Moser-Veselov system seen from SU(2).
+
+use crate::case::{Case, Entry, bounds, diagonal};
+
+clebsch::model! {
+    /// Free rigid body in unit quaternions. The body momentum is the map q -> q* m q of Hopf: its
+    /// fibres over the sphere of body momenta are circles.
+    pub model CayleyKlein {
+        param I: Diag<3>;                // principal moments of inertia
+        param c: Real;                   // 0: Moser-Veselov; 1: as in the thesis
+        group q: SU<2> velocity W;       // attitude, body to space
+        constraint next(q) = q*W;
+        lagrangian = -(4*c/h)*re(W) + (2/h)*dot(im(W), (I - c*Id)*im(W));
+    }
+}
+
+/// Moments of inertia of the figures.
+pub(crate) const SYMMETRIC: [f64; 3] = [1.0, 1.0, 0.5];
+
+/// Momentum of the figures at node 0.
+pub(crate) const MOMENTUM: [f64; 3] = [-0.5, 0.1, 0.5];
+
+fn case(name: &str, doc: &str, moments: [f64; 3], c: f64, energy: f64, steps: u64) -> Case {
+    Case {
+        name: name.to_owned(),
+        doc: doc.to_owned(),
+        h: 0.1,
+        steps,
+        parameters: vec![diagonal(moments), vec![c]],
+        initial: vec![vec![1.0, 0.0, 0.0, 0.0], MOMENTUM.to_vec()],
+        // The spatial momentum is the state itself. Its length in the body is turned by the
+        // quaternion, which one rounding a step lets wander; the square doubles that.
+        bounds: bounds(&[
+            ("energy", energy),
+            ("spatial_momentum", 1e-15),
+            ("momentum_squared", 4e-15),
+        ]),
+    }
+}
+
+/// The model and its cases.
+pub fn entry() -> Entry {
+    let rounding = 1e-12;
+    Entry {
+        card: CayleyKlein::CARD,
+        cases: vec![
+            case(
+                "figure-2-9",
+                "symmetric body, moments (1, 1, 0.5), with c = 0, 1000 steps: thesis figures 2.9 and 2.10",
+                SYMMETRIC,
+                0.0,
+                rounding,
+                1_000,
+            ),
+            case(
+                "figure-2-9-thesis",
+                "the same body with the discretisation of the thesis's type, c = 1",
+                SYMMETRIC,
+                1.0,
+                1e-3,
+                1_000,
+            ),
+            case(
+                "asymmetric",
+                "moments (3.5, 2.5, 2) with c = 1: the energy oscillates",
+                [3.5, 2.5, 2.0],
+                1.0,
+                1e-3,
+                10_000,
+            ),
+        ],
+    }
+}

@@ -1,0 +1,212 @@
+//! Rigid motions of space, the group SE(3), and the momenta they carry.
+//! Takes rotations and translations or homogeneous matrices; gives motions body -> space.
+
+use super::{Coadjoint, Group, NotARotation, Rotation};
+use crate::Real;
+use core::fmt;
+use core::ops::Mul;
+use nalgebra::{Matrix4, SVector, Vector3};
+
+/// A rigid motion, by convention from body to space: `p_space = R p_body + x`.
+///
+/// The coordinates of its Lie algebra are `(ω, v)`, three angular and three linear ones, and stand
+/// for the matrix `[hat(ω) v; 0 0]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigidMotion<T = f64> {
+    /// `R`, body -> space.
+    pub rotation: Rotation<T>,
+    /// `x`, where the body's origin is in space.
+    pub translation: Vector3<T>,
+}
+
+/// A matrix that is no rigid motion, with the number that shows it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NotARigidMotion {
+    /// Its upper left block.
+    Rotation(NotARotation),
+    /// Its last row is not `(0, 0, 0, 1)`, or its last column is not finite.
+    LastRow {
+        /// By how much an entry differs at most.
+        defect: f64,
+    },
+}
+
+impl fmt::Display for NotARigidMotion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Rotation(why) => write!(f, "no rigid motion: upper left block: {why}"),
+            Self::LastRow { defect } => write!(
+                f,
+                "no rigid motion: the last row is not (0, 0, 0, 1) or the last column is not finite, \
+                 off by {defect:.3e}"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for NotARigidMotion {}
+
+impl<T: Real> RigidMotion<T> {
+    /// The motion that leaves everything where it is.
+    #[inline]
+    pub fn identity() -> Self {
+        Self {
+            rotation: Rotation::identity(),
+            translation: Vector3::repeat(T::zero()),
+        }
+    }
+
+    /// The motion of a homogeneous matrix `[R x; 0 1]`.
+    ///
+    /// # Errors
+    /// [`NotARigidMotion`] when the block is no rotation to 1e-9, or the last row is not exactly
+    /// `(0, 0, 0, 1)`.
+    pub fn from_matrix(a: &Matrix4<T>) -> Result<Self, NotARigidMotion> {
+        let translation = Vector3::new(a.m14, a.m24, a.m34);
+        let row = [a.m41, a.m42, a.m43, a.m44 - T::one()];
+        let defect = row.iter().fold(0.0_f64, |m, x| m.max(x.magnitude()));
+        let finite = translation.iter().chain(&row).all(|x| x.is_finite());
+        if defect != 0.0 || !finite {
+            return Err(NotARigidMotion::LastRow {
+                defect: if finite { defect } else { f64::NAN },
+            });
+        }
+        let block = a.fixed_view::<3, 3>(0, 0).into_owned();
+        let rotation = Rotation::from_matrix(&block).map_err(NotARigidMotion::Rotation)?;
+        Ok(Self {
+            rotation,
+            translation,
+        })
+    }
+
+    /// The homogeneous matrix `[R x; 0 1]`.
+    #[inline]
+    pub fn matrix(&self) -> Matrix4<T> {
+        let (r, x) = (self.rotation.matrix(), self.translation);
+        let (o, i) = (T::zero(), T::one());
+        #[rustfmt::skip]
+        let matrix = Matrix4::new(
+            r.m11, r.m12, r.m13, x.x,
+            r.m21, r.m22, r.m23, x.y,
+            r.m31, r.m32, r.m33, x.z,
+            o, o, o, i,
+        );
+        matrix
+    }
+
+    /// The inverse motion, space -> body.
+    #[inline]
+    pub fn inverse(&self) -> Self {
+        Self {
+            rotation: self.rotation.inverse(),
+            translation: -self.rotation.inverse_rotate(&self.translation),
+        }
+    }
+}
+
+#[inline(always)]
+fn stacked<T: Real>(angular: Vector3<T>, linear: Vector3<T>) -> SVector<T, 6> {
+    let ([[a, b, c]], [[d, e, f]]) = (angular.data.0, linear.data.0);
+    SVector::<T, 6>::new(a, b, c, d, e, f)
+}
+
+impl<T: Real> Mul for RigidMotion<T> {
+    type Output = Self;
+
+    /// The composition: first `other`, then `self`.
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        Self {
+            rotation: self.rotation * other.rotation,
+            translation: self.translation + self.rotation.rotate(&other.translation),
+        }
+    }
+}
+
+impl<T: Real> Group<T> for RigidMotion<T> {
+    const DIMENSION: usize = 6;
+
+    #[inline]
+    fn identity() -> Self {
+        Self::identity()
+    }
+
+    #[inline]
+    fn compose(&self, other: &Self) -> Self {
+        *self * *other
+    }
+
+    #[inline]
+    fn inverse(&self) -> Self {
+        self.inverse()
+    }
+
+    /// `self . [cay(ω) v; 0 1]`: it agrees with the exponential to first order and needs no
+    /// trigonometry.
+    #[inline]
+    fn retract(&self, xi: &[T]) -> Self {
+        let at = |i: usize| xi.get(i).copied().unwrap_or_else(T::zero);
+        let (angular, linear) = ([at(0), at(1), at(2)], Vector3::new(at(3), at(4), at(5)));
+        *self
+            * Self {
+                rotation: Rotation::identity().retract(&angular),
+                translation: linear,
+            }
+    }
+
+    #[inline]
+    fn distance_from_group(&self) -> f64 {
+        Group::<T>::distance_from_group(&self.rotation)
+    }
+}
+
+impl<T: Real> Coadjoint<T> for RigidMotion<T> {
+    type Covector = SVector<T, 6>;
+
+    /// `(R a + x × R l, R l)` of the covector `(a, l)`.
+    #[inline]
+    fn covector_to_space(&self, body: &SVector<T, 6>) -> SVector<T, 6> {
+        let [[a0, a1, a2, l0, l1, l2]] = body.data.0;
+        let linear = self.rotation.rotate(&Vector3::new(l0, l1, l2));
+        let angular = self.rotation.rotate(&Vector3::new(a0, a1, a2));
+        stacked(angular + self.translation.cross(&linear), linear)
+    }
+
+    /// `(R^T (a - x × l), R^T l)` of the covector `(a, l)`.
+    #[inline]
+    fn covector_to_body(&self, spatial: &SVector<T, 6>) -> SVector<T, 6> {
+        let [[a0, a1, a2, l0, l1, l2]] = spatial.data.0;
+        let linear = Vector3::new(l0, l1, l2);
+        let angular = Vector3::new(a0, a1, a2) - self.translation.cross(&linear);
+        stacked(
+            self.rotation.inverse_rotate(&angular),
+            self.rotation.inverse_rotate(&linear),
+        )
+    }
+}
+
+/// Angular and linear momentum in body axes, about the body's origin, at a node: the impulse of
+/// Kirchhoff and Lamb, three angular and then three linear components.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyImpulse<T = f64>(pub SVector<T, 6>);
+
+/// Angular and linear momentum in space axes, about the origin of space, at a node; a free motion
+/// keeps both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpatialImpulse<T = f64>(pub SVector<T, 6>);
+
+impl<T: Real> BodyImpulse<T> {
+    /// The same impulse in space axes.
+    #[inline]
+    pub fn to_space(&self, motion: &RigidMotion<T>) -> SpatialImpulse<T> {
+        SpatialImpulse(motion.covector_to_space(&self.0))
+    }
+}
+
+impl<T: Real> SpatialImpulse<T> {
+    /// The same impulse in body axes.
+    #[inline]
+    pub fn to_body(&self, motion: &RigidMotion<T>) -> BodyImpulse<T> {
+        BodyImpulse(motion.covector_to_body(&self.0))
+    }
+}

@@ -1,0 +1,113 @@
+//! Unit quaternions, the group SU(2): rotations that remember by which way round they came.
+//! Takes four numbers; gives elements that multiply, and the rotations they cover.
+
+use super::{Coadjoint, Group, NotARotation, Rotation};
+use crate::Real;
+use crate::linalg::left_multiplication;
+use core::ops::Mul;
+use nalgebra::{Matrix4, Vector3};
+
+/// A unit quaternion `(w, x, y, z)`, from body to space: it turns a body vector `v`, read as a
+/// quaternion, into `q v q*`. Unlike a [`Rotation`] it is not the same element as its opposite.
+///
+/// The coordinates of its Lie algebra are those of the angular velocity: `ξ` stands for half the
+/// quaternion without real part (thesis section 2.5, the Cayley-Klein form).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnitQuaternion<T = f64>(Rotation<T>);
+
+impl<T: Real> UnitQuaternion<T> {
+    /// The neutral element, `1`.
+    #[inline]
+    pub fn identity() -> Self {
+        Self(Rotation::identity())
+    }
+
+    /// The element with these components.
+    ///
+    /// # Errors
+    /// [`NotARotation`] when `|q|^2` differs from 1 by more than 1e-9 or is not finite; within
+    /// that it is normalised.
+    pub fn from_components(q: [T; 4]) -> Result<Self, NotARotation> {
+        Rotation::from_quaternion(q).map(Self)
+    }
+
+    /// The components `(w, x, y, z)`.
+    #[inline]
+    pub fn components(&self) -> [T; 4] {
+        self.0.quaternion()
+    }
+
+    /// The matrix of the left multiplication by it, 4 x 4 and orthogonal.
+    #[inline]
+    pub fn matrix(&self) -> Matrix4<T> {
+        left_multiplication(self.components())
+    }
+
+    /// The rotation it covers, body -> space; its opposite covers the same one.
+    #[inline]
+    pub fn rotation(&self) -> Rotation<T> {
+        self.0
+    }
+
+    /// The inverse, which is the conjugate.
+    #[inline]
+    pub fn inverse(&self) -> Self {
+        Self(self.0.inverse())
+    }
+}
+
+impl<T: Real> Mul for UnitQuaternion<T> {
+    type Output = Self;
+
+    /// Hamilton's product; unit to rounding however long the chain of products.
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self(self.0 * other.0)
+    }
+}
+
+impl<T: Real> Group<T> for UnitQuaternion<T> {
+    const DIMENSION: usize = 3;
+
+    #[inline]
+    fn identity() -> Self {
+        Self::identity()
+    }
+
+    #[inline]
+    fn compose(&self, other: &Self) -> Self {
+        *self * *other
+    }
+
+    #[inline]
+    fn inverse(&self) -> Self {
+        self.inverse()
+    }
+
+    /// `self . (1 + ξ/2)/|1 + ξ/2|`, the Cayley map: it covers that of the rotations.
+    #[inline]
+    fn retract(&self, xi: &[T]) -> Self {
+        Self(self.0.retract(xi))
+    }
+
+    #[inline]
+    fn distance_from_group(&self) -> f64 {
+        Group::<T>::distance_from_group(&self.0)
+    }
+}
+
+impl<T: Real> Coadjoint<T> for UnitQuaternion<T> {
+    type Covector = Vector3<T>;
+
+    /// `q mu q*`: for one spatial momentum the fibres of `q -> q* m q` are those of Hopf.
+    #[inline]
+    fn covector_to_space(&self, body: &Vector3<T>) -> Vector3<T> {
+        self.0.rotate(body)
+    }
+
+    /// `q* m q`.
+    #[inline]
+    fn covector_to_body(&self, spatial: &Vector3<T>) -> Vector3<T> {
+        self.0.inverse_rotate(spatial)
+    }
+}
