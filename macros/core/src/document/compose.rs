@@ -135,7 +135,9 @@ fn action(sheet: &Sheet, doc: &mut Document) {
         section.text("physical:");
         section.equation(Formula::equal(Formula::name("ℓ"), physical(sheet)));
     }
-    if !d.action.nodal.is_zero() {
+    if d.action.nodal.is_zero() {
+        section.text("The action of one step, from a node to the next:");
+    } else {
         section.text(match d.spec.node_rule {
             NodeRule::Symmetric => {
                 "Terms at one node are split evenly between the two adjacent edges, which makes the action of a step:"
@@ -155,17 +157,21 @@ fn action(sheet: &Sheet, doc: &mut Document) {
         ),
         sheet.thesis.action(),
     );
-    let pairing = if d
+    let weight = if d
         .spec
         .configurations
         .iter()
         .any(|c| c.group.is_orthogonal())
     {
-        "Matrices are paired by ⟨A, B⟩ = tr(Aᵀ B), and gradients are taken in this pairing. The Clebsch action adds one multiplier for each constraint, that of a rotation with weight 1/2:"
+        ", and gradients are taken in this pairing. The Clebsch action adds one multiplier for each constraint, that of a rotation with weight 1/2:"
     } else {
-        "Matrices are paired by ⟨A, B⟩ = tr(Aᵀ B), and gradients are taken in this pairing. The Clebsch action adds one multiplier for each constraint:"
+        ", and gradients are taken in this pairing. The Clebsch action adds one multiplier for each constraint:"
     };
-    section.text(pairing);
+    section.paragraph([
+        "Matrices are paired by ".into(),
+        pairing("A", "B", false).into(),
+        weight.into(),
+    ]);
     let terms = constraint_terms(&d.spec, &d.letters);
     let total = expr::sum(
         [d.action.total.clone()].into_iter().chain(terms),
@@ -175,6 +181,22 @@ fn action(sheet: &Sheet, doc: &mut Document) {
         Formula::defined(Formula::name(&format!("ℓ^c_{k}")), sheet.math(&total)),
         sheet.thesis.clebsch_action(),
     );
+}
+
+/// `⟨A, B⟩ = tr(Aᵀ B)`, or half of it.
+pub fn pairing(a: &str, b: &str, half: bool) -> Formula {
+    let (a, b) = (Formula::name(a), Formula::name(b));
+    let product = Formula::Product(vec![Formula::transpose(a.clone()), b.clone()]);
+    let trace = Formula::operator(crate::print::formula::Operator::Trace, product);
+    let value = if half {
+        Formula::Product(vec![
+            Formula::Expr(expr::number(crate::algebra::Rational::HALF)),
+            trace,
+        ])
+    } else {
+        trace
+    };
+    Formula::equal(Formula::pairing(a, b), value)
 }
 
 /// The Lagrangian divided by the scale it was typed with, term by term.

@@ -1,7 +1,7 @@
 //! Elimination of the multipliers: the momentum map at both ends of an edge, from it the discrete
 //! Euler-Poincaré equations with their coadjoint transport and diamonds, defined where they stand.
 
-use super::compose::{relation_label, transport_label, variation_label};
+use super::compose::{pairing, relation_label, transport_label, variation_label};
 use super::sheet::{Sheet, references};
 use crate::check::spec::{Configuration, Side};
 use crate::derive::momentum::Momentum;
@@ -97,7 +97,11 @@ fn definitions(sheet: &Sheet, section: &mut Section) {
         .iter()
         .any(|c| c.group.is_orthogonal());
     if orthogonal {
-        section.text("Skew matrices are paired with half the trace, ⟨M, ξ⟩ = tr(Mᵀ ξ)/2, which in three dimensions is the scalar product of their axial vectors.");
+        section.paragraph([
+            "Skew matrices are paired with half the trace, ".into(),
+            pairing("M", "ξ", true).into(),
+            ", which in three dimensions is the scalar product of their axial vectors.".into(),
+        ]);
     }
     let star = Formula::ad_star(Formula::name("g"), Formula::name("M"));
     let turned = Formula::Product(vec![
@@ -150,7 +154,10 @@ fn definitions(sheet: &Sheet, section: &mut Section) {
             ),
         )
         .into(),
-        ", where ξ(a) is the action of the Lie algebra on a, that is its variation along ξ".into(),
+        ", where ".into(),
+        Formula::apply(Formula::name("ξ"), vec![Formula::name("a")]).into(),
+        " is the action of the Lie algebra on the quantity, that is its variation along ".into(),
+        Formula::name("ξ").into(),
     ];
     if !labels.is_empty() {
         words.push(
