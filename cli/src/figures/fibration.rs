@@ -12,9 +12,9 @@ use std::fmt::Write;
 
 /// Circles of latitude on the sphere, by the cosine of their angle from the spatial momentum, with
 /// the colour of the points and of the fibres over them.
-const LATITUDES: [(f64, &str); 3] = [(0.35, "#0072b2"), (-0.2, "#009e73"), (-0.7, "#d55e00")];
+const LATITUDES: [(f64, &str); 3] = [(0.35, "#0072b2"), (-0.2, "#009e73"), (-0.75, "#d55e00")];
 /// Fibres over each circle of latitude.
-const FIBRES: usize = 14;
+const FIBRES: usize = 12;
 /// Pieces of a fibre, drawn from the farthest to the nearest.
 const PIECES: usize = 90;
 
@@ -22,12 +22,13 @@ const WIDTH: f64 = 1000.0;
 const HEIGHT: f64 = 560.0;
 
 /// Direction from which both pictures are seen.
-const VIEW: [f64; 2] = [0.55, 0.5];
+const VIEW: [f64; 2] = [0.55, 0.95];
 
-/// Right, up, and towards the reader.
-fn seen(v: &Vector) -> Vector {
+/// Right, up, and towards the reader, with the spatial momentum upward.
+fn seen(v: &Vector, m: &Vector) -> Vector {
     let [turn, tilt] = VIEW;
-    let [x, y, z] = *v;
+    let [e, f] = frame(m);
+    let [x, y, z] = [dot(&e, v), dot(&f, v), dot(m, v)];
     let right = turn.cos() * y - turn.sin() * x;
     let forward = turn.cos() * x + turn.sin() * y;
     [
@@ -148,7 +149,7 @@ fn sphere(svg: &mut String, m: &Vector, course: impl Iterator<Item = Vector>) {
     const CENTRE: [f64; 2] = [200.0, 310.0];
     const RADIUS: f64 = 160.0;
     let place = |v: &Vector| {
-        let [x, y, depth] = seen(v);
+        let [x, y, depth] = seen(v, m);
         ([CENTRE[0] + RADIUS * x, CENTRE[1] - RADIUS * y], depth)
     };
     let _ = writeln!(
@@ -174,8 +175,8 @@ fn sphere(svg: &mut String, m: &Vector, course: impl Iterator<Item = Vector>) {
     }
     let _ = writeln!(
         svg,
-        "<text x=\"{}\" y=\"{}\" font-size=\"12\" fill=\"#1e1e1e\" text-anchor=\"middle\">black: \
-         course of M in the case</text>",
+        "<text x=\"{}\" y=\"{}\" font-size=\"12\" fill=\"#1e1e1e\" text-anchor=\"middle\">m \
+         points upward; black: course of M in the case</text>",
         CENTRE[0],
         CENTRE[1] + RADIUS + 28.0
     );
@@ -184,12 +185,15 @@ fn sphere(svg: &mut String, m: &Vector, course: impl Iterator<Item = Vector>) {
 /// The fibres: circles, linked pairwise; nearer pieces hide farther ones.
 fn fibres(svg: &mut String, m: &Vector) {
     const CENTRE: [f64; 2] = [700.0, 325.0];
-    const SCALE: f64 = 74.0;
+    const SCALE: f64 = 66.0;
     let mut pieces = Vec::new();
     for (point, color) in base(m) {
         let one = taking(&point, m);
         let points: Vec<Vector> = (0..=PIECES)
-            .map(|k| seen(&projected(&turned(&one, m, TAU * k as f64 / PIECES as f64))))
+            .map(|k| {
+                let angle = TAU * k as f64 / PIECES as f64;
+                seen(&projected(&turned(&one, m, angle)), m)
+            })
             .collect();
         for pair in points.windows(2) {
             if let [a, b] = pair {
@@ -205,8 +209,8 @@ fn fibres(svg: &mut String, m: &Vector) {
     pieces.sort_by(|a, b| a.depth.total_cmp(&b.depth));
     for piece in &pieces {
         // A white rim parts a line from those behind it.
-        stroke(svg, piece.ends, "white", 4.0);
-        stroke(svg, piece.ends, piece.color, 1.8);
+        stroke(svg, piece.ends, "white", 5.0);
+        stroke(svg, piece.ends, piece.color, 2.2);
     }
 }
 
