@@ -289,16 +289,28 @@ fn method(sheet: &Sheet, section: &mut Section) {
         Riccati::Exact(mv) | Riccati::Coupled(mv) => Some(factor(sheet, mv, 0).0),
         Riccati::None(_) => None,
     });
+    // What the motion carries stands still in the body.
+    let carried = d.solve.riccati.iter().any(|r| match r {
+        Riccati::Exact(mv) | Riccati::Coupled(mv) => {
+            expr::contains_role(sheet.symbols(), &mv.factor, Role::Advected)
+        }
+        Riccati::None(_) => false,
+    });
+    let constant = if carried {
+        " is constant in the body, where it is solved"
+    } else {
+        " is constant"
+    };
     let words = match (d.solve.method.clone(), letter) {
         (Method::FreeMoserVeselov, Some(letter)) => vec![
             "The stepper solves it explicitly, by the root of one quartic for the whole trajectory: ".into(),
             letter.into(),
-            " is constant, and nothing but the velocity changes the momentum.".into(),
+            format!("{constant}, and nothing but the velocity changes the momentum.").into(),
         ],
         (Method::ForcedMoserVeselov, Some(letter)) => vec![
             "The stepper solves it explicitly, by the root of one quartic a step: ".into(),
             letter.into(),
-            " is constant and symmetric.".into(),
+            format!("{constant}, and symmetric.").into(),
         ],
         (_, letter) => {
             let mut words: Vec<Inline> =
