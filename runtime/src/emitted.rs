@@ -10,9 +10,10 @@ pub use crate::groups::{
 };
 pub use crate::integrate::{Reversible, Stepper, Steps, preprocessing_order};
 pub use crate::linalg::{
-    axial_of_difference, columns_from, determinant, hat, inclusion, into_columns, into_rows,
-    motion_rotation, motion_translation, pure_quaternion, quaternion_imaginary, quaternion_real,
-    quaternion_rotation, rows_from, skew_coordinates, solve, twist, vee,
+    axial_of_difference, columns_from, determinant, even_count, hat, inclusion, into_columns,
+    into_rows, motion_rotation, motion_translation, pencil_coefficients, pure_quaternion,
+    quaternion_imaginary, quaternion_real, quaternion_rotation, rows_from, skew_coordinates, solve,
+    twist, vee,
 };
 pub use crate::scalar::Real;
 pub use crate::solvers::moser_veselov::{Edge, Free, MoserVeselovError, Order, Poinsot, forced};
@@ -36,6 +37,18 @@ pub fn solve_or_nan<T: Real, const N: usize>(
     b: &SVector<T, N>,
 ) -> SVector<T, N> {
     solve(a, b).unwrap_or_else(|| SVector::repeat(T::from_f64(f64::NAN)))
+}
+
+/// The coefficients of a pencil that do not vanish, row by row.
+pub fn spectrum<const N: usize>(coefficients: SMatrix<f64, N, N>) -> impl Iterator<Item = f64> {
+    crate::linalg::even_degrees(N).map(move |at| coefficients[at])
+}
+
+/// Scales of [`spectrum`]: the lengths of `M` and `S` to the degree of each coefficient.
+pub fn spectrum_scales<const N: usize>(m: f64, s: f64) -> impl Iterator<Item = f64> {
+    let power = |x: f64, n: usize| (0..n).fold(1.0, |p, _| p * x);
+    crate::linalg::even_degrees(N)
+        .map(move |(row, i)| power(m, row + 1) * power(s, N.saturating_sub(row + 1 + i)))
 }
 
 /// The unit vector along `axis`, counted from 0.

@@ -9,6 +9,7 @@ mod proof;
 mod sheet;
 mod solution;
 mod source;
+mod structure;
 pub mod thesis;
 
 pub use compose::document;

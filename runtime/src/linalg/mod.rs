@@ -1,11 +1,12 @@
 //! Small dense linear algebra for any [`Real`](crate::Real): hat and vee, determinants, inverses,
-//! linear solves, eigenvalues of a symmetric 3x3 matrix.
+//! linear solves, eigenvalues of a symmetric 3x3 matrix, coefficients of pencils.
 //! Takes and gives nalgebra matrices of fixed size; nothing allocates.
 
 mod eigenvalues;
 mod elimination;
 mod inclusion;
 mod motion;
+mod pencil;
 mod quaternion;
 mod skew;
 
@@ -13,6 +14,7 @@ pub use eigenvalues::symmetric_eigenvalues;
 pub use elimination::{determinant, inverse, solve, solve_leading, solve_many};
 pub use inclusion::{columns_from, inclusion, into_columns, into_rows, rows_from};
 pub use motion::{motion_rotation, motion_translation, twist};
+pub use pencil::{even_count, even_degrees, pencil_coefficients};
 pub use quaternion::{
     left_multiplication, pure_quaternion, quaternion_imaginary, quaternion_real,
     quaternion_rotation,

@@ -6,28 +6,32 @@ use super::rational::Rational;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr, Function, Letter, Map, Node, Part};
+use std::collections::BTreeMap;
 
 const PRIME: u64 = (1 << 61) - 1;
 
 /// Points at which an identity must hold.
-const POINTS: u64 = 6;
+pub(crate) const POINTS: u64 = 6;
 
 /// Attempts to find a point where every root exists and every divisor is non-zero.
-const ATTEMPTS: u64 = 100;
+pub(crate) const ATTEMPTS: u64 = 100;
 
 /// Size taken for a named dimension, by turns.
 const SIZES: [usize; 2] = [3, 4];
 
-fn add(a: u64, b: u64) -> u64 {
-    (a + b) % PRIME
+pub(crate) fn add(a: u64, b: u64) -> u64 {
+    let sum = a + b;
+    if sum >= PRIME { sum - PRIME } else { sum }
 }
 
-fn negate(a: u64) -> u64 {
-    (PRIME - a) % PRIME
+pub(crate) fn negate(a: u64) -> u64 {
+    if a == 0 { 0 } else { PRIME - a }
 }
 
-fn mul(a: u64, b: u64) -> u64 {
-    (u128::from(a) * u128::from(b) % u128::from(PRIME)) as u64
+pub(crate) fn mul(a: u64, b: u64) -> u64 {
+    let wide = u128::from(a) * u128::from(b);
+    // 2^61 is 1 modulo the prime: the high part is added to the low one.
+    add((wide as u64) & PRIME, (wide >> 61) as u64)
 }
 
 fn power(mut a: u64, mut n: u64) -> u64 {
@@ -42,12 +46,12 @@ fn power(mut a: u64, mut n: u64) -> u64 {
     out
 }
 
-fn inverse(a: u64) -> Option<u64> {
+pub(crate) fn inverse(a: u64) -> Option<u64> {
     (a != 0).then(|| power(a, PRIME - 2))
 }
 
 /// The square root with the convention that a root of a square is found, if there is one.
-fn root(a: u64) -> Option<u64> {
+pub(super) fn root(a: u64) -> Option<u64> {
     // The prime is 3 modulo 4.
     let r = power(a, PRIME.div_ceil(4));
     (mul(r, r) == a).then_some(r)
@@ -60,7 +64,7 @@ fn of_rational(q: Rational) -> Option<u64> {
 }
 
 /// A fixed mixing of bits (SplitMix64): the same points in every run.
-fn mix(mut x: u64) -> u64 {
+pub(super) fn mix(mut x: u64) -> u64 {
     x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
     x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -68,20 +72,20 @@ fn mix(mut x: u64) -> u64 {
 }
 
 /// A matrix over the field, row by row.
-#[derive(Clone, PartialEq)]
-struct Matrix {
-    rows: usize,
-    cols: usize,
-    data: Vec<u64>,
+#[derive(Clone, PartialEq, Debug)]
+pub(crate) struct Matrix {
+    pub(crate) rows: usize,
+    pub(crate) cols: usize,
+    pub(crate) data: Vec<u64>,
 }
 
 impl Matrix {
-    fn from_fn(rows: usize, cols: usize, f: impl Fn(usize, usize) -> u64) -> Matrix {
+    pub(crate) fn from_fn(rows: usize, cols: usize, f: impl Fn(usize, usize) -> u64) -> Matrix {
         let data = (0..rows * cols).map(|k| f(k / cols, k % cols)).collect();
         Matrix { rows, cols, data }
     }
 
-    fn number(x: u64) -> Matrix {
+    pub(crate) fn number(x: u64) -> Matrix {
         Matrix {
             rows: 1,
             cols: 1,
@@ -89,23 +93,23 @@ impl Matrix {
         }
     }
 
-    fn identity(n: usize) -> Matrix {
+    pub(crate) fn identity(n: usize) -> Matrix {
         Matrix::from_fn(n, n, |i, j| u64::from(i == j))
     }
 
-    fn at(&self, i: usize, j: usize) -> u64 {
+    pub(crate) fn at(&self, i: usize, j: usize) -> u64 {
         self.data.get(i * self.cols + j).copied().unwrap_or(0)
     }
 
-    fn plus(&self, b: &Matrix) -> Matrix {
+    pub(crate) fn plus(&self, b: &Matrix) -> Matrix {
         Matrix::from_fn(self.rows, self.cols, |i, j| add(self.at(i, j), b.at(i, j)))
     }
 
-    fn scaled(&self, x: u64) -> Matrix {
+    pub(crate) fn scaled(&self, x: u64) -> Matrix {
         Matrix::from_fn(self.rows, self.cols, |i, j| mul(x, self.at(i, j)))
     }
 
-    fn times(&self, b: &Matrix) -> Matrix {
+    pub(crate) fn times(&self, b: &Matrix) -> Matrix {
         if self.data.len() == 1 {
             return b.scaled(self.data[0]);
         }
@@ -117,12 +121,12 @@ impl Matrix {
         })
     }
 
-    fn transposed(&self) -> Matrix {
+    pub(crate) fn transposed(&self) -> Matrix {
         Matrix::from_fn(self.cols, self.rows, |i, j| self.at(j, i))
     }
 
     /// Inverse and determinant; `None` for a singular matrix.
-    fn inverted(&self) -> Option<(Matrix, u64)> {
+    pub(crate) fn inverted(&self) -> Option<(Matrix, u64)> {
         let n = self.rows;
         let (mut a, mut b, mut det) = (self.clone(), Matrix::identity(n), 1);
         for c in 0..n {
@@ -151,24 +155,67 @@ impl Matrix {
         }
         Some((b, det))
     }
+
+    pub(crate) fn zeros(rows: usize, cols: usize) -> Matrix {
+        Matrix::from_fn(rows, cols, |_, _| 0)
+    }
+
+    /// Whether every entry is zero.
+    pub(crate) fn vanishes(&self) -> bool {
+        self.data.iter().all(|x| *x == 0)
+    }
+
+    /// `tr(self^T b)`, for matrices of one shape.
+    pub(crate) fn pairing(&self, b: &Matrix) -> u64 {
+        let pairs = self.data.iter().zip(&b.data);
+        pairs.fold(0, |s, (x, y)| add(s, mul(*x, *y)))
+    }
 }
 
-/// One point: every letter has a value made from the seed and the letter itself.
-struct Point<'a> {
+/// One point: every letter has the value it was given, or one made from the seed and the letter
+/// itself.
+#[derive(Clone)]
+pub(crate) struct Point<'a> {
     symbols: &'a Symbols,
-    seed: u64,
+    pub(super) seed: u64,
     size: usize,
+    given: BTreeMap<Letter, Matrix>,
 }
 
-impl Point<'_> {
-    fn dim(&self, d: Dim) -> usize {
+impl<'a> Point<'a> {
+    /// The point of an attempt. Named dimensions take the sizes of [`SIZES`] by turns.
+    pub(crate) fn new(symbols: &'a Symbols, attempt: u64) -> Point<'a> {
+        Point {
+            symbols,
+            seed: mix(attempt.wrapping_mul(0x5851_f42d_4c95_7f2d)),
+            size: SIZES[(attempt % 2) as usize],
+            given: BTreeMap::new(),
+        }
+    }
+
+    /// Gives a letter its value.
+    pub(crate) fn set(&mut self, letter: Letter, value: Matrix) {
+        self.given.insert(letter, value);
+    }
+
+    /// The symbols of the letters.
+    pub(crate) fn symbols(&self) -> &'a Symbols {
+        self.symbols
+    }
+
+    /// The number that a dimension stands for here.
+    pub(crate) fn dim(&self, d: Dim) -> usize {
         match d {
             Dim::Fixed(n) => n as usize,
             Dim::Named(_) => self.size,
         }
     }
 
-    fn letter(&self, l: Letter) -> Option<Matrix> {
+    /// The value of a letter.
+    pub(crate) fn letter(&self, l: Letter) -> Option<Matrix> {
+        if let Some(value) = self.given.get(&l) {
+            return Some(value.clone());
+        }
         let s = self.symbols.get(l.symbol);
         let (rows, cols) = (self.dim(s.shape.rows), self.dim(s.shape.cols));
         let label = (l.shift.label[0] as u64) << 8 | (l.shift.label[1] as u64 & 0xff);
@@ -207,7 +254,7 @@ impl Point<'_> {
     }
 
     /// The value, or nothing where a divisor vanishes or a root does not exist.
-    fn value(&self, e: &Expr) -> Option<Matrix> {
+    pub(crate) fn value(&self, e: &Expr) -> Option<Matrix> {
         let go = |x: &Expr| self.value(x);
         let number = |x: &Expr| self.value(x).map(|m| m.at(0, 0));
         let Shape { rows, cols } = e.shape();
@@ -338,7 +385,7 @@ fn cayley(a: &Matrix) -> Option<Matrix> {
 }
 
 /// The left multiplication by a vector, read as a quaternion.
-fn pure(v: &[u64]) -> Matrix {
+pub(crate) fn pure(v: &[u64]) -> Matrix {
     let [x, y, z] = [0, 1, 2].map(|i| v.get(i).copied().unwrap_or(0));
     let [a, b, c] = [x, y, z].map(negate);
     Matrix {
@@ -396,15 +443,10 @@ fn hat(v: &Matrix) -> Matrix {
 pub fn vanishes(symbols: &Symbols, e: &Expr) -> bool {
     let mut found = 0;
     for attempt in 0..ATTEMPTS {
-        let point = Point {
-            symbols,
-            seed: mix(attempt.wrapping_mul(0x5851_f42d_4c95_7f2d)),
-            size: SIZES[(attempt % 2) as usize],
-        };
-        let Some(value) = point.value(e) else {
+        let Some(value) = Point::new(symbols, attempt).value(e) else {
             continue;
         };
-        if value.data.iter().any(|x| *x != 0) {
+        if !value.vanishes() {
             return false;
         }
         found += 1;

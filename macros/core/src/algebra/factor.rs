@@ -254,3 +254,41 @@ impl Algebra<'_> {
             }
     }
 }
+
+/// What the reduction of a model asks of words.
+impl Algebra<'_> {
+    /// The shape of a factor as it stands.
+    pub(crate) fn factor_shape(&self, f: &Factor) -> Shape {
+        self.shape_of(f)
+    }
+
+    /// The transpose of a factor; `true` for a minus sign.
+    pub(crate) fn transposed_factor(&self, f: &Factor) -> (bool, Factor) {
+        self.transposed(f)
+    }
+
+    /// The transpose of a word; `true` for a minus sign.
+    pub(crate) fn transposed_of(&self, word: &[Factor]) -> (bool, Word) {
+        self.transposed_word(word)
+    }
+
+    /// The word without `g g^-1`.
+    pub(crate) fn cancelled_word(&self, word: Word) -> Word {
+        self.cancelled(word)
+    }
+
+    /// Whether the factor is an element of an orthogonal group.
+    pub(crate) fn is_rotation(&self, f: &Factor) -> bool {
+        self.is_orthogonal(f)
+    }
+
+    /// What an interned number stands for.
+    pub(crate) fn opaque_number(&self, i: u32) -> crate::expr::Expr {
+        self.numbers.borrow()[i as usize].meaning.clone()
+    }
+
+    /// What an interned matrix stands for.
+    pub(crate) fn opaque_matrix(&self, i: u32) -> crate::expr::Expr {
+        self.matrices.borrow()[i as usize].meaning.clone()
+    }
+}

@@ -2,8 +2,9 @@
 //! expressions to polynomials in words of letters ([`Poly`]), where equal things are identical.
 //! No search; work is bounded, and running out of bounds is reported, never guessed.
 
+pub(crate) mod assumed;
 mod bracket;
-mod exact;
+pub(crate) mod exact;
 mod factor;
 mod lower;
 mod monomial;

@@ -47,6 +47,20 @@ const OTHERWISE: [(&str, &str); 8] = [
     ("previous", "prev(a)"),
 ];
 
+/// The terms of a number, each with its place: summands at the top, through signs and divisors.
+pub fn terms(e: &Expression) -> Vec<&Expression> {
+    match &e.kind {
+        Kind::Sum(list) => list.iter().flat_map(|(_, t)| terms(t)).collect(),
+        Kind::Neg(a) | Kind::Quotient(a, _) => terms(a),
+        Kind::Number(_)
+        | Kind::Name(_)
+        | Kind::Product(_)
+        | Kind::Transpose(_)
+        | Kind::Power(..)
+        | Kind::Call(..) => vec![e],
+    }
+}
+
 /// Unit vectors along the first axes.
 const UNITS: [&str; 3] = ["E1", "E2", "E3"];
 

@@ -35,6 +35,7 @@ pub fn check(model: &Model) -> Result<Spec, Errors> {
     let mut scale = None;
     let mut assumptions = Vec::new();
     let mut node_rule = NodeRule::Symmetric;
+    let mut terms = Vec::new();
     for statement in &model.statements {
         match statement {
             Statement::Let { name, value } => match elaborator.any(value) {
@@ -104,7 +105,12 @@ pub fn check(model: &Model) -> Result<Spec, Errors> {
             Statement::Lagrangian(value) => match elaborator.number(value) {
                 Ok(_) if typed.is_some() => errors.push(messages::second_lagrangian(value.place)),
                 Ok(e) if e.size() > LARGEST => errors.push(messages::too_large(value.place)),
-                Ok(e) => typed = Some((e, value.place)),
+                Ok(e) => {
+                    let parts = elaborate::terms(value).into_iter();
+                    let parts = parts.filter_map(|t| Some((elaborator.number(t).ok()?, t.place)));
+                    terms = parts.collect();
+                    typed = Some((e, value.place));
+                }
                 Err(e) => {
                     errors.push(*e);
                     typed = Some((expr::integer(0), value.place));
@@ -136,6 +142,7 @@ pub fn check(model: &Model) -> Result<Spec, Errors> {
         scale,
         lagrangian,
         place,
+        terms,
         node_rule,
     )?;
     usage(&spec)?;
@@ -160,6 +167,7 @@ fn finish(
     scale: Option<Expr>,
     lagrangian: Expr,
     lagrangian_place: crate::diagnostic::Place,
+    terms: Vec<(Expr, crate::diagnostic::Place)>,
     node_rule: NodeRule,
 ) -> Result<Spec, Errors> {
     let mut errors = Errors::new();
@@ -194,6 +202,7 @@ fn finish(
                 update,
                 place,
                 name_place: a.place,
+                found: false,
             })
         })
         .collect();
@@ -215,7 +224,9 @@ fn finish(
         scale,
         lagrangian,
         lagrangian_place,
+        terms,
         node_rule,
+        reduction: None,
     })
 }
 
@@ -228,7 +239,12 @@ fn usage(spec: &Spec) -> Result<(), Errors> {
             symbol: c.velocity,
             shift: Shift::HERE,
         };
-        if !used.contains(&velocity) {
+        let next = Letter {
+            symbol: c.element,
+            shift: Shift::NEXT,
+        };
+        // Stated by the elements at both ends of the step: the reduction brings the velocity in.
+        if !used.contains(&velocity) && !used.contains(&next) {
             errors.push(messages::unused_velocity(spec, c));
         }
     }

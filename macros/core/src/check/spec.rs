@@ -100,6 +100,20 @@ pub struct Advected {
     pub place: Place,
     /// Where its name stands in its declaration.
     pub name_place: Place,
+    /// Whether the reduction of an unreduced statement found it.
+    pub found: bool,
+}
+
+/// What the reduction of a model that was stated by `Λ` and `next(Λ)` gave.
+#[derive(Clone, Debug)]
+pub struct Reduction {
+    /// Terms on the edge, in velocities and advected quantities.
+    pub edge: Expr,
+    /// Terms at one node.
+    pub nodal: Expr,
+    /// How the invariance was decided: the Lagrangian as stated is the reduced one, with every
+    /// advected quantity put in by its definition.
+    pub known: crate::algebra::Known,
 }
 
 /// A condition on the parameters, checked when they are given.
@@ -159,8 +173,12 @@ pub struct Spec {
     pub lagrangian: Expr,
     /// Where the Lagrangian stands.
     pub lagrangian_place: Place,
+    /// Its terms as they were typed, with their places.
+    pub terms: Vec<(Expr, Place)>,
     /// The rule for nodal terms.
     pub node_rule: NodeRule,
+    /// The reduction, for a model that was stated unreduced.
+    pub reduction: Option<Reduction>,
 }
 
 impl Spec {

@@ -24,16 +24,11 @@ pub struct Action {
 /// Splits and distributes.
 pub fn action(spec: &Spec) -> Action {
     let symbols = &spec.symbols;
-    let (mut edge, mut nodal) = (Vec::new(), Vec::new());
-    for term in summands(&spec.lagrangian) {
-        match place(symbols, &term) {
-            Place::Constant => {}
-            Place::Node(level) => nodal.push(expr::shift_time(symbols, &term, -level)),
-            Place::Edge => edge.push(term),
-        }
-    }
-    let edge = expr::sum(edge, Shape::SCALAR);
-    let nodal = expr::sum(nodal, Shape::SCALAR);
+    let (edge, nodal) = match &spec.reduction {
+        // Where a term lives was decided on the term as it was stated.
+        Some(r) => (r.edge.clone(), r.nodal.clone()),
+        None => split(symbols, &spec.lagrangian),
+    };
     let next = expr::shift_time(symbols, &nodal, Shift::NEXT.time);
     let distributed = match spec.node_rule {
         NodeRule::Outgoing => nodal.clone(),
@@ -54,6 +49,20 @@ pub fn action(spec: &Spec) -> Action {
         nodal,
         distributed,
     }
+}
+
+/// The terms of the edge and those at one node, moved to node k; constants are dropped.
+pub fn split(symbols: &Symbols, lagrangian: &Expr) -> (Expr, Expr) {
+    let (mut edge, mut nodal) = (Vec::new(), Vec::new());
+    for term in summands(lagrangian) {
+        match place(symbols, &term) {
+            Place::Constant => {}
+            Place::Node(level) => nodal.push(expr::shift_time(symbols, &term, -level)),
+            Place::Edge => edge.push(term),
+        }
+    }
+    let sum = |terms: Vec<Expr>| expr::sum(terms, Shape::SCALAR);
+    (sum(edge), sum(nodal))
 }
 
 /// Where a term lives.

@@ -4,6 +4,7 @@
 
 pub mod action;
 pub mod balance;
+pub mod bracket;
 pub mod certificate;
 pub mod clebsch;
 pub mod continuous;
@@ -12,6 +13,7 @@ pub mod lie;
 pub mod limit;
 pub mod momentum;
 pub mod recognise;
+pub mod reduction;
 pub mod reversal;
 pub mod transport;
 pub mod variation;
@@ -48,6 +50,8 @@ pub struct Letters {
     pub edge_momentum: Vec<SymbolId>,
     /// For each configuration: the name of its node momentum, a covector (a vector for SO(3)).
     pub node_momentum: Vec<SymbolId>,
+    /// The spectral parameter of a Lax form.
+    pub spectral: SymbolId,
 }
 
 /// Everything derived from one model.
@@ -79,8 +83,12 @@ pub struct Derivation {
     pub limit: Result<limit::Limit, String>,
     /// The equations of motion of that limit, where there is one.
     pub continuous: Option<continuous::Continuous>,
+    /// The Lie-Poisson bracket of the reduced space.
+    pub bracket: bracket::Bracket,
     /// Conserved quantities.
     pub invariants: Vec<invariants::Invariant>,
+    /// How many there are, and the Lax form.
+    pub integrability: invariants::Integrability,
     /// The scheduled residual, once it has been asked for.
     pub(crate) residual: OnceLock<Program>,
 }
@@ -166,7 +174,10 @@ fn letters(spec: &Spec) -> Letters {
         let name = symbols.fresh_name(&format!("dζ{number}"));
         acceleration.push(symbols.add(&name, shape, structure, Role::Variation));
     }
+    let name = symbols.fresh_name("λ");
+    let spectral = symbols.add(&name, Shape::SCALAR, Structure::General, Role::Variation);
     Letters {
+        spectral,
         symbols,
         rate,
         acceleration,
@@ -182,6 +193,7 @@ fn letters(spec: &Spec) -> Letters {
 
 /// Derives a checked model, in the order in which each result needs those before it.
 pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
+    let spec = reduction::reduce(spec)?;
     let letters = letters(&spec);
     let algebra = Algebra::new(&letters.symbols);
     let whole = spec.lagrangian_place;
@@ -227,10 +239,13 @@ pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
         .as_ref()
         .ok()
         .map(|l| continuous::continuous(&spec, &letters, &variations, l, &algebra));
-    let invariants = invariants::invariants(&invariants::Inputs {
+    let bracket = bracket::bracket(&spec, &letters, &variations);
+    let (invariants, integrability) = invariants::invariants(&invariants::Inputs {
         spec: &spec,
         letters: &letters,
+        action: &action,
         balances: &balances,
+        bracket: &bracket,
         solve: &solve,
         limit: limit.as_ref().ok(),
         algebra: &algebra,
@@ -250,7 +265,9 @@ pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
         reversible,
         limit,
         continuous,
+        bracket,
         invariants,
+        integrability,
         residual: OnceLock::new(),
     })
 }

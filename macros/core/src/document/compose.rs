@@ -2,7 +2,7 @@
 //! relations; motion, solution and what follows from them in files of their own.
 
 use super::sheet::{Sheet, references};
-use super::{motion, outlook, solution, source};
+use super::{motion, outlook, solution, source, structure};
 use crate::check::spec::{Group, Side};
 use crate::derive::Derivation;
 use crate::derive::clebsch::constraint_terms;
@@ -17,6 +17,7 @@ pub fn document(d: &Derivation) -> Document {
     let sheet = Sheet::new(d);
     let mut doc = Document::titled(format!("{}: discrete equations of motion", d.spec.name));
     model(&sheet, &mut doc);
+    structure::reduction(&sheet, &mut doc);
     constraints(&sheet, &mut doc);
     action(&sheet, &mut doc);
     variations(&sheet, &mut doc);
@@ -24,7 +25,9 @@ pub fn document(d: &Derivation) -> Document {
     motion::momentum_maps(&sheet, &mut doc);
     motion::balance(&sheet, &mut doc);
     solution::moser_veselov(&sheet, &mut doc);
+    structure::bracket(&sheet, &mut doc);
     outlook::invariants(&sheet, &mut doc);
+    structure::lax(&sheet, &mut doc);
     outlook::limit(&sheet, &mut doc);
     outlook::certificate(&sheet, &mut doc);
     doc

@@ -4,7 +4,7 @@
 use super::sheet::{Sheet, references};
 use crate::check::spec::{Configuration, Side};
 use crate::derive::invariants::{Invariant, Kind};
-use crate::expr::{self, Expr, Letter, Shift};
+use crate::expr::{self, Letter, Shift};
 use crate::print::document::{Document, Inline, Section};
 use crate::print::formula::{Formula, Relation};
 
@@ -18,6 +18,13 @@ pub fn invariants(sheet: &Sheet, doc: &mut Document) {
     } else {
         section.list(items);
     }
+    let energy = &d.integrability.discrete_energy;
+    let how = if energy.exact { "constant" } else { "bounded" };
+    section.paragraph([
+        "The discrete energy of an edge, ".into(),
+        sheet.derived(&energy.value).into(),
+        format!(", is {how}: {}.", energy.reason).into(),
+    ]);
     section.text(if d.reversible {
         "The action of one step changes sign when its ends change places and the step changes sign: the scheme is symmetric under time reversal, of even order, and may be composed."
     } else {
@@ -28,31 +35,16 @@ pub fn invariants(sheet: &Sheet, doc: &mut Document) {
 fn invariant(sheet: &Sheet, v: &Invariant) -> Vec<Inline> {
     let mut line: Vec<Inline> = vec![format!("{}: ", v.name.replace('_', " ")).into()];
     match (&v.value, &v.kind) {
-        (Some(e), Kind::SpatialMomentum(i)) => {
-            let c = sheet.d.spec.configurations.get(*i);
-            let value = c.map_or_else(|| e.clone(), |c| in_space(sheet, c, e));
-            line.push(sheet.derived(&value).into());
-        }
         (Some(e), _) => line.push(sheet.derived(e).into()),
+        (None, Kind::Spectrum) => {
+            line.push("the coefficients of det(ν + μ + λ C²) that hold μ, C that of ".into());
+            line.push(Inline::reference("Lax"));
+        }
         (None, _) => line.push("kinetic plus potential energy of the limit".into()),
     }
     let how = if v.exact { "exact" } else { "bounded" };
     line.push(format!(" ({how}: {})", v.reason).into());
     line
-}
-
-/// A momentum at a node, carried to space: on the body side the element turns it.
-fn in_space(sheet: &Sheet, c: &Configuration, momentum: &Expr) -> Expr {
-    let s = sheet.symbols();
-    let g = expr::here(s, c.element);
-    match c.side {
-        Side::Spatial => momentum.clone(),
-        Side::Body if momentum.shape().is_vector() => expr::mul(g, momentum.clone()),
-        Side::Body => {
-            let back = expr::transpose(s, expr::inverse(s, g.clone()));
-            expr::product([back, momentum.clone(), expr::transpose(s, g)])
-        }
-    }
 }
 
 /// The limit of small steps.

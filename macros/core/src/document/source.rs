@@ -59,7 +59,7 @@ pub fn source(d: &Derivation) -> String {
             name(c.velocity)
         ));
     }
-    for a in &spec.advected {
+    for a in spec.advected.iter().filter(|a| !a.found) {
         let definition = a.definition.as_ref().map(|e| format!(" = {}", show(e)));
         let definition = definition.unwrap_or_default();
         line(format!(
@@ -69,7 +69,8 @@ pub fn source(d: &Derivation) -> String {
         ));
     }
     let configurations = spec.configurations.iter().map(|c| (c.element, &c.update));
-    let advected = spec.advected.iter().map(|a| (a.quantity, &a.update));
+    let stated = spec.advected.iter().filter(|a| !a.found);
+    let advected = stated.map(|a| (a.quantity, &a.update));
     for (quantity, update) in configurations.chain(advected) {
         line(format!(
             "constraint next({}) = {}",

@@ -2,7 +2,7 @@
 //! way to run it without knowing its type. What the command line and the generic tests use.
 
 use super::element::{self, Family, family};
-use super::invariants::{formula, scale};
+use super::invariants::{Form, formula, scale};
 use super::items::kept;
 use super::names::{Names, item, kebab, own, per_configuration};
 use super::sizes::{Generics, size};
@@ -158,15 +158,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
         .iter()
         .map(|v| {
             let (label, text) = (&v.name, formula(d, v));
-            let rows = match v.kind {
-                Kind::SpatialMomentum(i) => match family(&d.spec.configurations[i]) {
-                    Family::Rotation => quote!(3usize),
-                    Family::Quaternion => quote!(3usize),
-                    Family::Motion => quote!(6usize),
-                    Family::Orthogonal(_) | Family::Linear(_) => element::coordinates(d, i),
-                },
-                Kind::Number | Kind::Energy => quote!(1usize),
-            };
+            let rows = super::invariants::rows(d, v);
             let conserved = format_ident!("{}", if v.exact { "Exactly" } else { "Boundedly" });
             let method = format_ident!("{}", v.name);
             values.extend(match &v.kind {
@@ -195,10 +187,27 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                         }
                     }
                 }
-                Kind::Number | Kind::Energy => quote!(let out = put(out, [self.model.#method(state)]);),
+                Kind::Value | Kind::Energy | Kind::TotalMomentum(_) | Kind::Spectrum => {
+                    let value = quote!(self.model.#method(state));
+                    match super::invariants::form(d, v) {
+                        Form::Number => quote!(let out = put(out, [#value]);),
+                        Form::Entries => quote!(let out = put(out, rows(#value));),
+                        Form::Skew => quote!(let out = put(out, skew_coordinates(&#value));),
+                        Form::Spectrum => quote!(let out = put(out, spectrum(#value));),
+                    }
+                }
             });
-            let size = scale(d, names, v);
-            scales.extend(quote!(let out = put(out, [#size; #rows]);));
+            if matches!(v.kind, Kind::Spectrum) {
+                let sizes = super::invariants::spectrum_scales(d, names);
+                scales.extend(quote!(let out = put(out, #sizes);));
+            } else {
+                let size = scale(d, names, v);
+                // Arrays of a length that is computed from a named size are not stable Rust.
+                scales.extend(match d.spec.dimensions.is_empty() {
+                    true => quote!(let out = put(out, [#size; #rows]);),
+                    false => quote!(let out = put(out, ::core::iter::repeat_n(#size, #rows));),
+                });
+            }
             quote! {
                 Invariant { name: #label, formula: #text, rows: #rows, conserved: Conserved::#conserved }
             }

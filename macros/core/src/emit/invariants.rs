@@ -1,9 +1,10 @@
 //! The derived invariants as functions of the state, with their natural scales.
 
-use super::expression::{Bindings, Writer, program};
+use super::element::{self, Family};
+use super::expression::{Bindings, Writer, dims, program, ty};
 use super::items::{letters_of, parameter_locals, text, with_transports};
 use super::names::{Names, item, per_configuration, variable};
-use super::sizes::Generics;
+use super::sizes::{Generics, size};
 use super::step::{at, here};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
@@ -24,10 +25,26 @@ pub fn formula(d: &Derivation, v: &Invariant) -> String {
                 Side::Spatial => "m".to_owned(),
             }
         }
+        (Kind::TotalMomentum(set), _, _) => {
+            let parts = set.iter().map(|i| {
+                let c = &d.spec.configurations[*i];
+                let momentum = &d.letters.symbols.get(d.letters.node_momentum[*i]).name;
+                match c.side {
+                    Side::Body => format!("{} {momentum}", d.letters.symbols.get(c.element).name),
+                    Side::Spatial => momentum.clone(),
+                }
+            });
+            parts.collect::<Vec<_>>().join(" + ")
+        }
+        (Kind::Spectrum, _, _) => {
+            let factor = d.integrability.lax.as_ref();
+            let factor = factor.map_or_else(String::new, |lax| text(d, &lax.factor));
+            format!("coefficients of det(ν + μ + λ ({factor})²) that hold μ")
+        }
         (Kind::Energy, _, Ok(limit)) if limit.potential.is_zero() => "½ μ·I⁻¹μ".to_owned(),
         (Kind::Energy, _, Ok(limit)) => format!("½ μ·I⁻¹μ + {}", text(d, &limit.potential)),
         (_, Some(value), _) => text(d, value),
-        (Kind::Number | Kind::Energy, _, _) => v.name.clone(),
+        (Kind::Value | Kind::Energy, _, _) => v.name.clone(),
     }
 }
 
@@ -60,7 +77,128 @@ fn momenta(d: &Derivation, needed: &[Letter], bindings: &mut Bindings) -> TokenS
     out
 }
 
-/// One function for every number, the energy, and all values and scales together.
+/// How the numbers of an invariant lie in what its function gives.
+pub enum Form {
+    /// It is one.
+    Number,
+    /// The entries of a vector or matrix.
+    Entries,
+    /// The coordinates of a skew matrix.
+    Skew,
+    /// The coefficients of a pencil that do not vanish.
+    Spectrum,
+}
+
+/// The form of an invariant.
+pub fn form(d: &Derivation, v: &Invariant) -> Form {
+    let skew = |i: usize| {
+        let family = element::family(&d.spec.configurations[i]);
+        matches!(family, Family::Orthogonal(_))
+    };
+    match (&v.kind, &v.value) {
+        (Kind::Spectrum, _) => Form::Spectrum,
+        (Kind::TotalMomentum(set), _) if set.first().is_some_and(|i| skew(*i)) => Form::Skew,
+        (Kind::TotalMomentum(_) | Kind::SpatialMomentum(_), _) => Form::Entries,
+        (Kind::Value, Some(e)) if !e.shape().is_scalar() => Form::Entries,
+        (Kind::Value | Kind::Energy, _) => Form::Number,
+    }
+}
+
+/// How many numbers an invariant is, as tokens.
+pub fn rows(d: &Derivation, v: &Invariant) -> TokenStream {
+    let s = &d.letters.symbols;
+    match (&v.kind, &v.value) {
+        (Kind::SpatialMomentum(i), _) => momentum_rows(d, *i),
+        (Kind::TotalMomentum(set), _) => momentum_rows(d, set.first().copied().unwrap_or(0)),
+        (Kind::Value, Some(value)) if !value.shape().is_scalar() => {
+            let (rows, cols) = dims(s, value.shape());
+            quote!(#rows * #cols)
+        }
+        (Kind::Spectrum, _) => {
+            let n = spectrum_size(d);
+            quote!(even_count(#n))
+        }
+        (Kind::Value | Kind::Energy, _) => quote!(1usize),
+    }
+}
+
+/// The size of the matrices of a spectrum.
+fn spectrum_size(d: &Derivation) -> TokenStream {
+    let group = d.spec.configurations.first().map(|c| c.group.size());
+    group.map_or_else(|| quote!(0), |n| size(&d.letters.symbols, n))
+}
+
+/// The momentum and the square of the factor of a Lax form, with the locals they need; the model's
+/// parameters are found at `source`.
+fn lax_parts(d: &Derivation, names: &Names, source: TokenStream) -> [TokenStream; 3] {
+    let (Some(lax), Some(c)) = (&d.integrability.lax, d.spec.configurations.first()) else {
+        return Default::default();
+    };
+    let needed = letters_of([&lax.factor]);
+    let all = with_transports(d, &needed, 0);
+    let parameters = parameter_locals(d, source, &all);
+    let mut bindings = Bindings::new();
+    let locals = here(d, names, &needed, &mut bindings);
+    let writer = Writer {
+        symbols: &d.letters.symbols,
+        bindings: &bindings,
+    };
+    let factor = writer.operand(&lax.factor);
+    let momentum = per_configuration(
+        d,
+        match c.side {
+            Side::Body => "body_momentum",
+            Side::Spatial => "spatial_momentum",
+        },
+        0,
+    );
+    [
+        quote!(#parameters #locals),
+        quote!(state.#momentum().0),
+        quote!(#factor * #factor),
+    ]
+}
+
+/// The coefficients as one matrix: their number depends on the size, which may have only a name.
+fn spectrum(d: &Derivation, names: &Names, v: &Invariant) -> TokenStream {
+    let state = item(d, "State");
+    let used = Generics::of(d).used();
+    let n = spectrum_size(d);
+    let method = format_ident!("{}", v.name);
+    let [locals, momentum, square] = lax_parts(d, names, quote!(self.parameters));
+    let doc = format!(
+        " {}: entry `(j - 1, i)` is the coefficient of `ν^i` and of degree `j` in the momentum.",
+        v.reason
+    );
+    quote! {
+        #[doc = #doc]
+        pub fn #method(&self, state: &#state #used) -> SMatrix<T, #n, #n> {
+            #locals
+            pencil_coefficients(&#momentum, &(#square))
+        }
+    }
+}
+
+/// The scales of the coefficients.
+pub fn spectrum_scales(d: &Derivation, names: &Names) -> TokenStream {
+    let n = spectrum_size(d);
+    let [locals, momentum, square] = lax_parts(d, names, quote!(self.model.parameters));
+    quote!({
+        type T = f64;
+        #locals
+        spectrum_scales::<#n>(length(&#momentum), length::<T, #n, #n>(&(#square)))
+    })
+}
+
+fn momentum_rows(d: &Derivation, i: usize) -> TokenStream {
+    match element::family(&d.spec.configurations[i]) {
+        Family::Rotation | Family::Quaternion => quote!(3usize),
+        Family::Motion => quote!(6usize),
+        Family::Orthogonal(_) | Family::Linear(_) => element::coordinates(d, i),
+    }
+}
+
+/// One function for every invariant.
 pub fn invariants(d: &Derivation, names: &Names) -> TokenStream {
     let s = &d.letters.symbols;
     let (name, state) = (item(d, ""), item(d, "State"));
@@ -72,6 +210,20 @@ pub fn invariants(d: &Derivation, names: &Names) -> TokenStream {
         let doc = format!(" `{}`: {}.", formula(d, v), v.reason);
         match (&v.kind, &v.value, d.limit.as_ref()) {
             (Kind::SpatialMomentum(_), _, _) => {}
+            (Kind::Spectrum, _, _) => functions.extend(spectrum(d, names, v)),
+            (Kind::TotalMomentum(set), _, _) => {
+                let parts = set.iter().map(|i| {
+                    let momentum = per_configuration(d, "spatial_momentum", *i);
+                    quote!(state.#momentum().0)
+                });
+                let t = element::covector(d, set.first().copied().unwrap_or(0));
+                functions.extend(quote! {
+                    #[doc = #doc]
+                    pub fn #method(&self, state: &#state #used) -> #t {
+                        #(#parts)+*
+                    }
+                });
+            }
             (Kind::Energy, _, Ok(limit)) => {
                 functions.extend(super::energy::energy(d, names, limit))
             }
@@ -84,10 +236,10 @@ pub fn invariants(d: &Derivation, names: &Names) -> TokenStream {
                 let mu = momenta(d, &needed, &mut bindings);
                 let p = schedule::program(s, std::slice::from_ref(value), "t");
                 let (lets, values) = program(&p, &bindings);
-                let value = &values[0];
+                let (value, t) = (&values[0], ty(s, value.shape()));
                 functions.extend(quote! {
                     #[doc = #doc]
-                    pub fn #method(&self, state: &#state #used) -> T {
+                    pub fn #method(&self, state: &#state #used) -> #t {
                         #parameters
                         #locals
                         #mu
@@ -96,7 +248,7 @@ pub fn invariants(d: &Derivation, names: &Names) -> TokenStream {
                     }
                 });
             }
-            (Kind::Number | Kind::Energy, None, _) => {}
+            (Kind::Value | Kind::Energy, None, _) => {}
         }
     }
     quote!(impl #bound #name #used { #functions })

@@ -5,13 +5,14 @@ use super::element;
 use super::expression::{Bindings, Writer, ty};
 use super::names::{Names, field, item, own, per_configuration, tagged, variable};
 use super::sizes::Generics;
+use crate::algebra::Rational;
 use crate::check::spec::{Assumption, Side};
 use crate::derive::Derivation;
 use crate::derive::recognise::{Method, Riccati};
 use crate::derive::transport::Transport;
-use crate::expr::shape::Structure;
-use crate::expr::symbol::SymbolId;
-use crate::expr::{self, Expr, Letter, Shift};
+use crate::expr::shape::{Shape, Structure};
+use crate::expr::symbol::{SymbolId, Symbols};
+use crate::expr::{self, Expr, Letter, Node, Shift};
 use crate::print::{Format, Style, expression};
 use crate::syntax::ast::Comparison;
 use proc_macro2::{Literal, TokenStream};
@@ -269,6 +270,41 @@ pub fn node_locals(
     out
 }
 
+/// A number that no value of the expression exceeds, from the lengths of its letters: what its
+/// rounding is measured by.
+fn size(s: &Symbols, e: &Expr) -> Expr {
+    let of = |x: &Expr| size(s, x);
+    let own = |x: &Expr| {
+        let square = if x.shape().is_scalar() {
+            expr::mul(x.clone(), x.clone())
+        } else if x.shape().is_vector() {
+            expr::dot(x.clone(), x.clone())
+        } else {
+            expr::trace(expr::mul(expr::transpose(s, x.clone()), x.clone()))
+        };
+        expr::power(square, Rational::HALF)
+    };
+    match e.node() {
+        Node::Number(q) if q.is_negative() => expr::number(q.negated()),
+        Node::Number(_) => e.clone(),
+        Node::Zero(_) => expr::integer(0),
+        Node::Identity(_) | Node::Unit(..) | Node::Inclusion(..) => expr::integer(1),
+        Node::Sum(list) => expr::sum(list.iter().map(of).collect::<Vec<_>>(), Shape::SCALAR),
+        Node::Product(list) => expr::product(list.iter().map(of).collect::<Vec<_>>()),
+        Node::Dot(a, b) | Node::Cross(a, b) => expr::mul(of(a), of(b)),
+        Node::Neg(a) | Node::Transpose(a) | Node::Part(_, a) | Node::Vee(a) => of(a),
+        Node::Hat(a) | Node::Trace(a) => expr::scale(Rational::integer(2), of(a)),
+        Node::Letter(_)
+        | Node::Quotient(..)
+        | Node::Power(..)
+        | Node::Inverse(_)
+        | Node::Det(_)
+        | Node::Adjugate(_)
+        | Node::Map(..)
+        | Node::Call(..) => own(e),
+    }
+}
+
 fn assumption(d: &Derivation, a: &Assumption) -> TokenStream {
     let s = &d.letters.symbols;
     let none = Bindings::new();
@@ -285,13 +321,15 @@ fn assumption(d: &Derivation, a: &Assumption) -> TokenStream {
         Comparison::AtMost => ("≤", Some(quote!(#difference.greatest() <= 0.0))),
     };
     let holds = shown.unwrap_or_else(|| {
-        // Equal to rounding: a few operations on numbers of this size.
-        let (l, r) = (w.operand(&a.left), w.operand(&a.right));
-        if a.left.shape().is_scalar() {
-            quote!(#difference.magnitude() <= 64.0 * T::EPSILON * (#l.magnitude() + #r.magnitude()))
+        // Equal to the rounding of a few operations on numbers of the size of the terms, which may
+        // cancel: a difference of large terms is no small number.
+        let bound = w.operand(&size(s, &expr::sub(a.left.clone(), a.right.clone())));
+        let gap = if a.left.shape().is_scalar() {
+            quote!(#difference.magnitude())
         } else {
-            quote!(length(&#difference).magnitude() <= 64.0 * T::EPSILON * (length(&#l).magnitude() + length(&#r).magnitude()))
-        }
+            quote!(length(&#difference).magnitude())
+        };
+        quote!(#gap <= 64.0 * T::EPSILON * #bound.magnitude())
     });
     let message = format!("{} {sign} {}", text(d, &a.left), text(d, &a.right));
     quote!(validate::assumption(#holds, #message)?;)

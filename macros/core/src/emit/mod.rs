@@ -3,6 +3,7 @@
 //! this version has no stepper for is refused before, in [`refusal`].
 
 mod card;
+mod discrete_energy;
 mod element;
 mod energy;
 mod expression;
@@ -81,6 +82,7 @@ pub fn emit(d: &Derivation, documented: bool) -> TokenStream {
         stepper::traits(d, &names),
         residual::balance(d, &names),
         invariants::invariants(d, &names),
+        discrete_energy::discrete_energy(d, &names),
         card::card(d, &names),
     ];
     let about = format!(

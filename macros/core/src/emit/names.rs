@@ -92,7 +92,7 @@ const TYPES: [&str; 44] = [
 ];
 
 /// Methods and constants that every model has.
-const MEMBERS: [&str; 23] = [
+const MEMBERS: [&str; 24] = [
     "ADMITTED",
     "CARD",
     "FINGERPRINT",
@@ -102,6 +102,7 @@ const MEMBERS: [&str; 23] = [
     "at_node",
     "at_node_0",
     "balance",
+    "discrete_energy",
     "edge",
     "edge_momentum",
     "energies",
@@ -158,7 +159,7 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
 
 /// What emitted functions call by a plain name, and what they name themselves: a local of the
 /// model under such a name would hide it. The test of hygiene states a model with all of them.
-const INSIDE: [&str; 92] = [
+const INSIDE: [&str; 96] = [
     "BodyImpulse",
     "BodyMomentum",
     "BodyMomentumMatrix",
@@ -186,13 +187,14 @@ const INSIDE: [&str; 92] = [
     "determinant",
     "diagonal_part",
     "e",
+    "even_count",
     "forced",
     "found",
     "guess",
     "h",
     "i",
-    "inertia",
     "inclusion",
+    "inertia",
     "initial",
     "into_columns",
     "into_rows",
@@ -216,6 +218,7 @@ const INSIDE: [&str; 92] = [
     "out",
     "parameters",
     "parts",
+    "pencil_coefficients",
     "potential",
     "pure_quaternion",
     "put",
@@ -241,6 +244,8 @@ const INSIDE: [&str; 92] = [
     "solve_leading_or_nan",
     "solve_or_nan",
     "solver",
+    "spectrum",
+    "spectrum_scales",
     "state",
     "steps",
     "symmetric_part",

@@ -1,0 +1,415 @@
+//! The Lie-Poisson bracket of the reduced space, from the action that the constraints state:
+//! momenta among themselves by the commutator, `{a, ⟨μ, ξ⟩}` by how `a` moves when the
+//! configuration moves along `ξ`. Takes the variations; gives rows to print and the matrix of the
+//! bracket at any point.
+
+use super::Letters;
+use super::lie;
+use super::variation::{Variation, at};
+use crate::check::spec::{Group, Side, Spec};
+use crate::derive::Derivation;
+use crate::expr::shape::{Dim, Structure};
+use crate::expr::symbol::{SymbolId, Symbols};
+use crate::expr::{self, Expr, Letter, Shift};
+use crate::interpret::{Assignment, EvalError, Matrix, evaluate};
+
+/// `{first, second} = value`, with free elements `ξ`, `η` of the Lie algebra.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// A quantity.
+    pub first: Expr,
+    /// A momentum along a free element.
+    pub second: Expr,
+    /// Their bracket.
+    pub value: Expr,
+}
+
+/// How one quantity at a node moves along one configuration.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    /// Which configuration.
+    pub configuration: usize,
+    /// The change of the quantity, linear in the `ξ` of that configuration.
+    pub change: Expr,
+    /// The same in the frame in which [`Coordinates`] are read.
+    local: Expr,
+}
+
+/// A quantity of the bracket that is not a momentum, and how it moves.
+#[derive(Clone, Debug)]
+pub struct Moved {
+    /// The quantity.
+    pub quantity: SymbolId,
+    /// Its motions, configurations that leave it alone left out.
+    pub motions: Vec<Motion>,
+}
+
+/// The bracket, in the sign with which a body momentum of SO(3) has `{μ_i, μ_j} = -ε_ijk μ_k` and
+/// a spatial one `{m_i, m_j} = ε_ijk m_k`; `{a, μ_j} = E_j·a` is the motion of `a` along `E_j`.
+#[derive(Clone, Debug)]
+pub struct Bracket {
+    /// For each configuration: `⟨μ, [ξ, η]⟩` with its sign.
+    pub momenta: Vec<Expr>,
+    /// Advected quantities.
+    pub advected: Vec<Moved>,
+    /// Group elements: with them it is the bracket of the phase space.
+    pub elements: Vec<Moved>,
+    /// What is printed: momenta, then advected quantities; zero brackets left out.
+    pub rows: Vec<Row>,
+}
+
+/// Which space a matrix of the bracket is of.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Space {
+    /// Momenta and advected quantities.
+    Reduced,
+    /// Momenta, group elements, and the advected quantities that are not defined by them.
+    Phase,
+}
+
+/// The independent coordinates of one quantity, as entries (row, column). Vectors, numbers and
+/// general matrices: all entries, row by row. Symmetric: on and above the diagonal. Skew: see
+/// [`skew_entries`]. Elements of SO(n): the skew matrix `X^T dX`; of SU(2)
+/// and SE(3): the element `X^-1 dX` of the Lie algebra.
+pub type Coordinates = Vec<(usize, usize)>;
+
+/// The angular part of a vector of six components.
+pub(crate) fn angular(s: &Symbols, x: &Expr) -> Expr {
+    part(s, x, 0)
+}
+
+/// Its linear part.
+pub(crate) fn linear(s: &Symbols, x: &Expr) -> Expr {
+    part(s, x, 3)
+}
+
+fn part(s: &Symbols, x: &Expr, from: u8) -> Expr {
+    let taken = expr::inclusion(Dim::Fixed(6), Dim::Fixed(3), from);
+    expr::mul(expr::transpose(s, taken), x.clone())
+}
+
+/// An element of a basis of a Lie algebra: its entries (row, column, value) that are not zero.
+pub type Element = Vec<(usize, usize, i64)>;
+
+/// The derived bracket.
+pub fn bracket(spec: &Spec, letters: &Letters, variations: &[Variation]) -> Bracket {
+    let s = &letters.symbols;
+    let mut rows = Vec::new();
+    let mut momenta = Vec::new();
+    for (i, c) in spec.configurations.iter().enumerate() {
+        let mu = expr::here(s, letters.node_momentum[i]);
+        let (xi, eta) = (
+            expr::here(s, letters.variation[i]),
+            expr::here(s, letters.direction[i]),
+        );
+        let along = |e: Expr| lie::pairing(letters, c.group, mu.clone(), e);
+        let value = match c.group {
+            Group::SpecialOrthogonal(Dim::Fixed(3)) => expr::dot(
+                mu.clone(),
+                expr::cross(expr::vee(xi.clone()), expr::vee(eta.clone())),
+            ),
+            Group::SpecialOrthogonal(_) | Group::GeneralLinear(_) => along(expr::sub(
+                expr::mul(xi.clone(), eta.clone()),
+                expr::mul(eta.clone(), xi.clone()),
+            )),
+            Group::UnitQuaternions => along(expr::cross(xi.clone(), eta.clone())),
+            // [(ω, v), (ω', v')] = (ω × ω', ω × v' - ω' × v)
+            Group::RigidMotions => {
+                let (a, b) = (angular(s, &xi), angular(s, &eta));
+                let moved = expr::sub(
+                    expr::cross(a.clone(), linear(s, &eta)),
+                    expr::cross(b.clone(), linear(s, &xi)),
+                );
+                along(expr::stacked(expr::cross(a, b), moved))
+            }
+        };
+        let value = match c.side {
+            Side::Body => expr::neg(value),
+            Side::Spatial => value,
+        };
+        rows.push(Row {
+            first: along(xi),
+            second: along(eta),
+            value: value.clone(),
+        });
+        momenta.push(value);
+    }
+    let moved = |quantity: SymbolId, of: &dyn Fn(&Variation) -> Option<Expr>| {
+        let all = variations.iter().enumerate().filter_map(|(i, v)| {
+            let change = of(v).filter(|e| !e.is_zero())?;
+            let local = match s.get(quantity).structure {
+                Structure::Orthogonal | Structure::UnitQuaternion | Structure::RigidMotion => {
+                    let own = expr::here(s, quantity);
+                    expr::mul(expr::inverse(s, own), change.clone())
+                }
+                Structure::General
+                | Structure::Symmetric
+                | Structure::Skew
+                | Structure::Diagonal
+                | Structure::Invertible => change.clone(),
+            };
+            Some(Motion {
+                configuration: i,
+                change,
+                local,
+            })
+        });
+        Moved {
+            quantity,
+            motions: all.collect(),
+        }
+    };
+    let advected: Vec<Moved> = spec
+        .advected
+        .iter()
+        .map(|a| {
+            let own = at(a.quantity, Shift::HERE);
+            moved(a.quantity, &|v| {
+                let found = v.advected.iter().find(|(l, _)| *l == own);
+                found.map(|(_, e)| e.clone())
+            })
+        })
+        .collect();
+    let elements = spec
+        .configurations
+        .iter()
+        .map(|c| {
+            let own = at(c.element, Shift::HERE);
+            moved(c.element, &|v| {
+                (v.element.0 == own).then(|| v.element.1.clone())
+            })
+        })
+        .collect();
+    for m in &advected {
+        for motion in &m.motions {
+            let c = &spec.configurations[motion.configuration];
+            let mu = expr::here(s, letters.node_momentum[motion.configuration]);
+            let xi = expr::here(s, letters.variation[motion.configuration]);
+            rows.push(Row {
+                first: expr::here(s, m.quantity),
+                second: lie::pairing(letters, c.group, mu, xi),
+                value: motion.change.clone(),
+            });
+        }
+    }
+    Bracket {
+        momenta,
+        advected,
+        elements,
+        rows,
+    }
+}
+
+/// The entries that determine a skew matrix: for three dimensions those of the axial vector in
+/// order, (2,1), (0,2), (1,0); else (j, i) for `i < j`, row by row.
+pub fn skew_entries(n: usize) -> Coordinates {
+    if n == 3 {
+        return vec![(2, 1), (0, 2), (1, 0)];
+    }
+    let pairs = (0..n).flat_map(|i| (i + 1..n).map(move |j| (j, i)));
+    pairs.collect()
+}
+
+/// A basis of the Lie algebra in the order of the momentum's coordinates.
+pub fn basis(group: Group, n: usize) -> Vec<Element> {
+    match group {
+        Group::SpecialOrthogonal(_) => skew_entries(n)
+            .into_iter()
+            .map(|(i, j)| vec![(i, j, 1), (j, i, -1)])
+            .collect(),
+        Group::GeneralLinear(_) => (0..n * n).map(|k| vec![(k / n, k % n, 1)]).collect(),
+        // Their elements are written by coordinates.
+        Group::UnitQuaternions => (0..3).map(|i| vec![(i, 0, 1)]).collect(),
+        Group::RigidMotions => (0..6).map(|i| vec![(i, 0, 1)]).collect(),
+    }
+}
+
+/// The coordinates of a quantity of `rows x cols`.
+pub fn coordinates(structure: Structure, rows: usize, cols: usize) -> Coordinates {
+    let entries = (0..rows).flat_map(|i| (0..cols).map(move |j| (i, j)));
+    match structure {
+        Structure::General | Structure::Invertible => entries.collect(),
+        Structure::Symmetric => entries.filter(|(i, j)| i <= j).collect(),
+        Structure::Diagonal => entries.filter(|(i, j)| i == j).collect(),
+        Structure::Skew | Structure::Orthogonal => skew_entries(rows),
+        // X^-1 dX is the left multiplication by a vector, which its first column shows.
+        Structure::UnitQuaternion => vec![(1, 0), (2, 0), (3, 0)],
+        Structure::RigidMotion => [skew_entries(3), vec![(0, 3), (1, 3), (2, 3)]].concat(),
+    }
+}
+
+/// What a matrix of the bracket is made with: numbers of some kind.
+pub(crate) trait Numbers {
+    /// A number.
+    type Number: Copy;
+    /// Zero.
+    fn zero(&self) -> Self::Number;
+    /// The opposite.
+    fn opposite(&self, x: Self::Number) -> Self::Number;
+    /// The number that a dimension stands for.
+    fn dim(&self, d: Dim) -> usize;
+    /// The entries of an expression, row by row, with basis elements in place of some letters.
+    fn entries(&mut self, e: &Expr, with: &[(Letter, &Element)]) -> Option<Vec<Self::Number>>;
+}
+
+impl Bracket {
+    fn moved(&self, spec: &Spec, space: Space) -> Vec<&Moved> {
+        match space {
+            Space::Reduced => self.advected.iter().collect(),
+            Space::Phase => {
+                let free = self.advected.iter().zip(&spec.advected);
+                let free = free.filter(|(_, a)| a.definition.is_none()).map(|(m, _)| m);
+                self.elements.iter().chain(free).collect()
+            }
+        }
+    }
+
+    /// The matrix of the bracket, row by row: momenta in order of their configurations, then the
+    /// other quantities of the space.
+    pub(crate) fn assemble<N: Numbers>(
+        &self,
+        spec: &Spec,
+        letters: &Letters,
+        space: Space,
+        numbers: &mut N,
+    ) -> Option<Vec<Vec<N::Number>>> {
+        let s = &letters.symbols;
+        let bases: Vec<_> = spec
+            .configurations
+            .iter()
+            .map(|c| basis(c.group, numbers.dim(c.group.size())))
+            .collect();
+        let starts: Vec<usize> = bases
+            .iter()
+            .scan(0, |sum, b| {
+                let start = *sum;
+                *sum += b.len();
+                Some(start)
+            })
+            .collect();
+        let momenta: usize = bases.iter().map(Vec::len).sum();
+        let moved = self.moved(spec, space);
+        let places: Vec<Coordinates> = moved
+            .iter()
+            .map(|m| {
+                let x = s.get(m.quantity);
+                let (r, c) = (numbers.dim(x.shape.rows), numbers.dim(x.shape.cols));
+                coordinates(x.structure, r, c)
+            })
+            .collect();
+        let total = momenta + places.iter().map(Vec::len).sum::<usize>();
+        let mut out = vec![vec![numbers.zero(); total]; total];
+        for (k, own) in bases.iter().enumerate() {
+            let (xi, eta) = (
+                at(letters.variation[k], Shift::HERE),
+                at(letters.direction[k], Shift::HERE),
+            );
+            for (i, e) in own.iter().enumerate() {
+                for (j, f) in own.iter().enumerate().skip(i + 1) {
+                    let value = numbers.entries(&self.momenta[k], &[(xi, e), (eta, f)])?;
+                    let value = *value.first()?;
+                    out[starts[k] + i][starts[k] + j] = value;
+                    out[starts[k] + j][starts[k] + i] = numbers.opposite(value);
+                }
+            }
+        }
+        let mut row = momenta;
+        for (m, entries) in moved.iter().zip(&places) {
+            let cols = numbers.dim(s.get(m.quantity).shape.cols);
+            for motion in &m.motions {
+                let k = motion.configuration;
+                let xi = at(letters.variation[k], Shift::HERE);
+                for (j, e) in bases[k].iter().enumerate() {
+                    let change = numbers.entries(&motion.local, &[(xi, e)])?;
+                    for (r, (a, b)) in entries.iter().enumerate() {
+                        let value = *change.get(a * cols + b)?;
+                        out[row + r][starts[k] + j] = value;
+                        out[starts[k] + j][row + r] = numbers.opposite(value);
+                    }
+                }
+            }
+            row += entries.len();
+        }
+        Some(out)
+    }
+}
+
+/// Plain numbers at a point that an assignment gives.
+struct Plain<'a> {
+    symbols: &'a Symbols,
+    values: Assignment,
+    failure: Option<EvalError>,
+}
+
+impl Numbers for Plain<'_> {
+    type Number = f64;
+
+    fn zero(&self) -> f64 {
+        0.0
+    }
+
+    fn opposite(&self, x: f64) -> f64 {
+        -x
+    }
+
+    fn dim(&self, d: Dim) -> usize {
+        match d {
+            Dim::Fixed(n) => n as usize,
+            Dim::Named(_) => 0,
+        }
+    }
+
+    fn entries(&mut self, e: &Expr, with: &[(Letter, &Element)]) -> Option<Vec<f64>> {
+        for (l, entries) in with {
+            let symbol = self.symbols.get(l.symbol);
+            let (rows, cols) = (self.dim(symbol.shape.rows), self.dim(symbol.shape.cols));
+            let mut m = Matrix::zeros(rows, cols);
+            for (i, j, x) in entries.iter() {
+                if let Some(slot) = m.data.get_mut(i * cols + j) {
+                    *slot = *x as f64;
+                }
+            }
+            self.values
+                .set(&symbol.name, l.shift.time, rows, cols, &m.data);
+        }
+        match evaluate(self.symbols, e, &self.values) {
+            Ok(m) => Some(m.data),
+            Err(error) => {
+                self.failure = Some(error);
+                None
+            }
+        }
+    }
+}
+
+impl Derivation {
+    /// The matrix of the bracket at a point: momenta first (by configuration, in the basis
+    /// [`basis`]), then the quantities of the space in order of declaration, in [`Coordinates`].
+    /// Values are needed for momenta (under their names in [`Letters::node_momentum`]) and for
+    /// the quantities, at level 0.
+    ///
+    /// # Errors
+    /// When a value is missing or a dimension has only a name.
+    pub fn bracket_matrix(&self, space: Space, values: &Assignment) -> Result<Matrix, EvalError> {
+        if !self.spec.dimensions.is_empty() {
+            return Err(EvalError::NamedDimension);
+        }
+        let mut numbers = Plain {
+            symbols: &self.letters.symbols,
+            values: values.clone(),
+            failure: None,
+        };
+        let rows = self
+            .bracket
+            .assemble(&self.spec, &self.letters, space, &mut numbers);
+        match (rows, numbers.failure) {
+            (Some(rows), _) => Ok(Matrix {
+                rows: rows.len(),
+                cols: rows.len(),
+                data: rows.concat(),
+            }),
+            (None, Some(error)) => Err(error),
+            (None, None) => Err(EvalError::Shape("the bracket".to_owned())),
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! Casimirs of the bracket: candidates whose differential the bracket annihilates and which the
+//! step keeps, independent of one another, until there are as many as the corank. Takes the bracket
+//! and exact steps; gives invariants that hold for every Lagrangian.
+
+use super::noether::tangents;
+use super::passage::Passage;
+use super::{Family, Inputs, Invariant, Kind, here, is_conserved, words};
+use crate::algebra::assumed::{self, Independent, rank};
+use crate::algebra::exact::{ATTEMPTS, Matrix, Point, add, mul, negate};
+use crate::derive::bracket::{Element, Numbers, Space};
+use crate::expr::shape::Dim;
+use crate::expr::{self, Expr, Letter};
+
+/// What the search gave.
+#[derive(Default)]
+pub(super) struct Casimirs {
+    pub(super) list: Vec<Invariant>,
+    /// Dimension of the reduced space and rank of its bracket.
+    pub(super) rank: Option<(usize, usize)>,
+}
+
+/// Points at which a Casimir is tested.
+const POINTS: usize = 2;
+
+/// A general point of the reduced space with the matrix of the bracket.
+struct General<'a> {
+    point: Point<'a>,
+    matrix: Vec<Vec<u64>>,
+}
+
+/// The Casimirs.
+pub(super) fn casimirs(x: &Inputs, equations: &[Expr], passages: &[Passage]) -> Casimirs {
+    // Odd attempts take the larger size for a dimension that has only a name.
+    let attempts = (0..ATTEMPTS).filter(|a| a % 2 == 1);
+    let found = attempts.filter_map(|attempt| general(x, equations, attempt));
+    let points: Vec<General> = found.take(POINTS).collect();
+    let mut out = Casimirs::default();
+    let Some(first) = points.first() else {
+        return out;
+    };
+    let (dimension, size) = (first.matrix.len(), rank(&first.matrix));
+    if x.spec.dimensions.is_empty() {
+        out.rank = Some((dimension, size));
+    }
+    let mut differentials = Independent::default();
+    for c in words::candidates(x, passages) {
+        if differentials.len() == dimension - size {
+            break;
+        }
+        debug_assert!(words::is_reduced(x, &c.value));
+        // The cheapest test first: most candidates fail it.
+        if !passages.first().is_some_and(|p| p.keeps(&c.value)) {
+            continue;
+        }
+        let Some(own) = differential(x, &first.point, &c.value) else {
+            continue;
+        };
+        let annihilated = |g: &General, d: &[u64]| {
+            let rows = g.matrix.iter();
+            rows.into_iter()
+                .all(|r| r.iter().zip(d).fold(0, |t, (a, b)| add(t, mul(*a, *b))) == 0)
+        };
+        let Some(fresh) = differentials.reduced(&own) else {
+            continue;
+        };
+        let kept = annihilated(first, &own)
+            && is_conserved(passages, &c.value)
+            && points
+                .iter()
+                .skip(1)
+                .all(|g| differential(x, &g.point, &c.value).is_some_and(|d| annihilated(g, &d)));
+        if !kept {
+            continue;
+        }
+        differentials.push(fresh);
+        out.list.push(Invariant {
+            reason: reason(x, &c.value).to_owned(),
+            name: c.name,
+            kind: Kind::Value,
+            family: Family::Casimir,
+            value: Some(c.value),
+            scale: Some(c.scale),
+            exact: true,
+        });
+    }
+    out
+}
+
+fn reason(x: &Inputs, value: &Expr) -> &'static str {
+    let letters = expr::letters(value);
+    let momentum = letters
+        .iter()
+        .any(|l| x.letters.node_momentum.contains(&l.symbol));
+    let advected = letters
+        .iter()
+        .any(|l| x.spec.advected.iter().any(|a| a.quantity == l.symbol));
+    match (momentum, advected) {
+        (true, true) => "Casimir: the Kelvin-Noether quantity of what is advected",
+        (true, false) => "Casimir: constant on coadjoint orbits",
+        (false, _) => "Casimir: the group leaves it alone",
+    }
+}
+
+fn general<'a>(x: &Inputs<'a>, equations: &[Expr], attempt: u64) -> Option<General<'a>> {
+    let mut point = assumed::point(&x.letters.symbols, attempt, equations)?;
+    for id in words::letters(x) {
+        let value = point.letter(here(id))?;
+        point.set(here(id), value);
+    }
+    let mut exact = Exact {
+        point: point.clone(),
+    };
+    let matrix = x
+        .bracket
+        .assemble(x.spec, x.letters, Space::Reduced, &mut exact)?;
+    Some(General { point, matrix })
+}
+
+/// The differential in the coordinates of the bracket.
+fn differential(x: &Inputs, point: &Point, value: &Expr) -> Option<Vec<u64>> {
+    let s = &x.letters.symbols;
+    let mut out = Vec::new();
+    for id in words::letters(x) {
+        let tangents = tangents(point, here(id), s.get(id).structure)?;
+        let gradient = match expr::contains(value, here(id)) {
+            true => expr::gradient(s, value, here(id)),
+            false => expr::integer(0),
+        };
+        if gradient.is_zero() {
+            out.extend(tangents.iter().map(|_| 0));
+            continue;
+        }
+        let g = point.value(&gradient)?;
+        out.extend(tangents.iter().map(|t| g.pairing(t)));
+    }
+    Some(out)
+}
+
+/// Whether a function of the reduced space is independent of the Casimirs found.
+pub(super) fn is_new(x: &Inputs, passages: &[Passage], found: &[Invariant], v: &Invariant) -> bool {
+    let (Some(p), Some(value)) = (passages.first(), &v.value) else {
+        return true;
+    };
+    let known = found.iter().filter(|f| f.family == Family::Casimir);
+    let mut rows: Vec<Vec<u64>> = known
+        .filter_map(|f| differential(x, &p.before, f.value.as_ref()?))
+        .collect();
+    let before = rank(&rows);
+    rows.extend(differential(x, &p.before, value));
+    rank(&rows) > before
+}
+
+/// Numbers of the exact field at a point.
+struct Exact<'a> {
+    point: Point<'a>,
+}
+
+impl Numbers for Exact<'_> {
+    type Number = u64;
+
+    fn zero(&self) -> u64 {
+        0
+    }
+
+    fn opposite(&self, x: u64) -> u64 {
+        negate(x)
+    }
+
+    fn dim(&self, d: Dim) -> usize {
+        self.point.dim(d)
+    }
+
+    fn entries(&mut self, e: &Expr, with: &[(Letter, &Element)]) -> Option<Vec<u64>> {
+        for (l, entries) in with {
+            let shape = self.point.symbols().get(l.symbol).shape;
+            let (rows, cols) = (self.dim(shape.rows), self.dim(shape.cols));
+            let mut m = Matrix::zeros(rows, cols);
+            for (i, j, x) in entries.iter() {
+                m.data[i * cols + j] = if *x < 0 { negate(1) } else { 1 };
+            }
+            self.point.set(*l, m);
+        }
+        self.point.value(e).map(|m| m.data)
+    }
+}

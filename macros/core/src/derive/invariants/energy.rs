@@ -1,0 +1,184 @@
+//! Energies. The physical one at a node: kinetic energy of the limit of small steps, inverted for
+//! the momentum, plus the potential. The discrete one on an edge: how the action of the step falls
+//! when the step grows. Both are bounded, as for every symplectic step, or exact where that is proved.
+
+use super::passage::Passage;
+use super::{Family, Inputs, Invariant, Kind, Lax, here, is_conserved};
+use crate::algebra::Rational;
+use crate::algebra::assumed::eliminate;
+use crate::algebra::exact::{Matrix, Point, add, inverse, mul, negate};
+use crate::derive::balance::shorter;
+use crate::derive::bracket;
+use crate::expr::{self, Expr, Shift};
+
+/// The energy, if the limit of small steps exists.
+pub(super) fn energy(x: &Inputs, passages: &[Passage]) -> Option<Invariant> {
+    x.limit?;
+    let exact = !passages.is_empty()
+        && passages.iter().all(|p| {
+            let (a, b) = (value(x, &p.before), value(x, &p.after));
+            a.is_some() && a == b
+        });
+    Some(Invariant {
+        name: "energy".to_owned(),
+        kind: Kind::Energy,
+        family: Family::Energy,
+        value: None,
+        scale: None,
+        exact,
+        reason: if exact {
+            "a combination of the other invariants: equal at both ends of every step".to_owned()
+        } else {
+            "the stepper is symplectic".to_owned()
+        },
+    })
+}
+
+/// The discrete energy of an edge, `-∂L_d/∂h`, less its value at rest.
+#[derive(Clone, Debug)]
+pub struct DiscreteEnergy {
+    /// Its value by letters at both ends of the edge and the velocity.
+    pub value: Expr,
+    /// Whether every edge of a motion has the same.
+    pub exact: bool,
+    /// Why.
+    pub reason: String,
+}
+
+/// The discrete energy.
+pub(super) fn discrete(x: &Inputs, passages: &[Passage], lax: Option<&Lax>) -> DiscreteEnergy {
+    let s = &x.letters.symbols;
+    let h = here(x.spec.step);
+    // A constant of the action would weigh h^-2: what the edge has at rest is taken off if the
+    // motion keeps it.
+    let still: Vec<(expr::Letter, Expr)> = x
+        .spec
+        .configurations
+        .iter()
+        .map(|c| (here(c.velocity), expr::identity(c.group.size())))
+        .collect();
+    let rest = expr::substitute(s, &x.action.edge, &still);
+    let at_node = expr::letters(&rest).iter().all(|l| l.shift == Shift::HERE);
+    let action = if at_node && is_conserved(passages, &rest) {
+        expr::sub(x.action.total.clone(), rest)
+    } else {
+        x.action.total.clone()
+    };
+    let value = shorter(x.algebra, expr::neg(expr::gradient(s, &action, h)));
+    let exact = match (lax, x.spec.configurations.as_slice()) {
+        (Some(lax), [c]) => {
+            let c_w = expr::mul(lax.factor.clone(), expr::here(s, c.velocity));
+            let difference = expr::sub(expr::trace(lax.factor.clone()), expr::trace(c_w));
+            let square = expr::power(expr::here(s, x.spec.step), Rational::integer(2));
+            x.algebra.equal(&value, &expr::quotient(difference, square))
+        }
+        _ => false,
+    };
+    DiscreteEnergy {
+        value,
+        exact,
+        reason: if exact {
+            "tr(C Ω) is the sum of the eigenvalues of Ω C, the half of those of the Lax matrix that the principal solution takes".to_owned()
+        } else {
+            "the stepper is symplectic".to_owned()
+        },
+    }
+}
+
+/// The energy at a point: `½ (p - l)·K⁻¹(p - l) + V` in the basis of the Lie algebras.
+fn value(x: &Inputs, point: &Point) -> Option<u64> {
+    let limit = x.limit?;
+    let s = &x.letters.symbols;
+    let mut bases: Vec<(usize, Matrix)> = Vec::new();
+    let mut momentum: Vec<u64> = Vec::new();
+    for (i, c) in x.spec.configurations.iter().enumerate() {
+        let n = point.dim(c.group.size());
+        let mu = point.letter(here(x.letters.node_momentum[i]))?;
+        let shape = s.get(x.letters.variation[i]).shape;
+        let (rows, cols) = (point.dim(shape.rows), point.dim(shape.cols));
+        for e in bracket::basis(c.group, n) {
+            let m = element(&e, rows, cols);
+            momentum.push(coordinate(&mu, &m, &e));
+            bases.push((i, m));
+        }
+    }
+    // Gradients of the kinetic energy and of the linear part in each velocity.
+    let gradients = |e: &Expr| -> Vec<Expr> {
+        let list = x.letters.variation.iter();
+        list.map(|v| {
+            expr::gradient(
+                s,
+                e,
+                expr::Letter {
+                    symbol: *v,
+                    shift: Shift::HERE,
+                },
+            )
+        })
+        .collect()
+    };
+    let kinetic = gradients(&limit.kinetic);
+    let linear = gradients(&limit.linear);
+    let mut rest = point.clone();
+    let zero_velocity = |p: &mut Point| {
+        for v in &x.letters.variation {
+            let shape = s.get(*v).shape;
+            let (rows, cols) = (p.dim(shape.rows), p.dim(shape.cols));
+            p.set(here(*v), Matrix::zeros(rows, cols));
+        }
+    };
+    zero_velocity(&mut rest);
+    let mut rows: Vec<Vec<u64>> = Vec::new();
+    for (i, e) in &bases {
+        let mut p = rest.clone();
+        p.set(here(x.letters.variation[*i]), e.clone());
+        let values: Vec<Matrix> = kinetic.iter().map(|g| p.value(g)).collect::<Option<_>>()?;
+        rows.push(bases.iter().map(|(j, f)| values[*j].pairing(f)).collect());
+    }
+    let offsets: Vec<Matrix> = linear
+        .iter()
+        .map(|g| rest.value(g))
+        .collect::<Option<_>>()?;
+    let p: Vec<u64> = bases
+        .iter()
+        .zip(&momentum)
+        .map(|((j, f), m)| add(*m, negate(offsets[*j].pairing(f))))
+        .collect();
+    let n = rows.len();
+    for (row, m) in rows.iter_mut().zip(&p) {
+        row.push(*m);
+    }
+    if eliminate(&mut rows, n).len() < n {
+        return None;
+    }
+    let twice = rows
+        .iter()
+        .zip(&p)
+        .fold(0, |t, (r, m)| add(t, mul(r[n], *m)));
+    let potential = rest.value(&limit.potential)?.at(0, 0);
+    Some(add(mul(twice, inverse(2)?), potential))
+}
+
+fn element(entries: &[(usize, usize, i64)], rows: usize, cols: usize) -> Matrix {
+    let mut m = Matrix::zeros(rows, cols);
+    for (i, j, x) in entries {
+        m.data[i * cols + j] = if *x < 0 { negate(1) } else { 1 };
+    }
+    m
+}
+
+/// The coordinate of a covector along a basis element: a vector holds it at the axis, a matrix at
+/// the element's first entry.
+fn coordinate(mu: &Matrix, e: &Matrix, entries: &[(usize, usize, i64)]) -> u64 {
+    if mu.cols == 1 && e.cols > 1 {
+        // hat(axis) has its positive entry at the row after the next.
+        let axis = match entries.first() {
+            Some((2, 1, _)) => 0,
+            Some((0, 2, _)) => 1,
+            _ => 2,
+        };
+        return mu.at(axis, 0);
+    }
+    debug_assert_eq!(mu.rows, e.rows);
+    entries.first().map_or(0, |(i, j, _)| mu.at(*i, *j))
+}

@@ -1,0 +1,241 @@
+//! Conserved quantities: candidates built from momenta, advected quantities, group elements and
+//! parameters, each kept only if it is proved constant over one step. Casimirs are sought until
+//! there are as many as the bracket has; Noether momenta for every group, frame and axis; Manakov
+//! integrals where the step has a Lax form; the energy is exact where that is proved, else bounded.
+
+mod casimirs;
+mod energy;
+mod isospectral;
+mod noether;
+pub(crate) mod passage;
+#[cfg(test)]
+mod tests;
+mod words;
+
+use super::Letters;
+use super::action::Action;
+use super::balance::Balance;
+use super::bracket::Bracket;
+use super::limit::Limit;
+use super::recognise::Solve;
+use crate::algebra::{Algebra, Rational};
+use crate::check::spec::Spec;
+use crate::expr::shape::{Dim, Shape};
+use crate::expr::{self, Expr, Letter, Shift};
+use crate::syntax::ast::Comparison;
+use passage::Passage;
+
+pub use energy::DiscreteEnergy;
+pub use isospectral::Lax;
+
+/// Where an invariant comes from.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Family {
+    /// A symmetry of the action moves configurations: a momentum.
+    Noether,
+    /// A function that commutes with everything: constant whatever the Lagrangian.
+    Casimir,
+    /// Eigenvalues of a Lax matrix.
+    Manakov,
+    /// An energy.
+    Energy,
+}
+
+/// What an invariant is.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum Kind {
+    /// The spatial momentum of the only configuration, kept by a symmetry: the state holds it.
+    SpatialMomentum(usize),
+    /// The sum of the spatial momenta of several configurations.
+    TotalMomentum(Vec<usize>),
+    /// A number, vector or matrix made of node quantities.
+    Value,
+    /// The coefficients of `det(ν + M + λ C²)` in which the momentum occurs.
+    Spectrum,
+    /// The physical energy.
+    Energy,
+}
+
+/// One conserved quantity at a node.
+#[derive(Clone, Debug)]
+pub struct Invariant {
+    /// Its ASCII name.
+    pub name: String,
+    /// What it is.
+    pub kind: Kind,
+    /// Where it comes from.
+    pub family: Family,
+    /// Its value by node momenta, advected quantities, group elements and parameters. The energy
+    /// has none: it is evaluated from the limit.
+    pub value: Option<Expr>,
+    /// Its natural scale, as a number.
+    pub scale: Option<Expr>,
+    /// Whether it is conserved exactly, or only oscillates.
+    pub exact: bool,
+    /// Why it is conserved, in a few words.
+    pub reason: String,
+}
+
+/// What is known of the number of invariants, and the Lax form.
+#[derive(Clone, Debug)]
+pub struct Integrability {
+    /// The dimension of the reduced space and the rank of its bracket at a general point; nothing
+    /// when its size has only a name.
+    pub rank: Option<(usize, usize)>,
+    /// Independent Casimirs found; the dimension less the rank is how many there are.
+    pub casimirs: usize,
+    /// The Lax form of the step, if one was found.
+    pub lax: Option<Lax>,
+    /// The discrete energy of an edge.
+    pub discrete_energy: DiscreteEnergy,
+}
+
+/// What the search looks at.
+pub struct Inputs<'a> {
+    /// The model.
+    pub spec: &'a Spec,
+    /// All letters.
+    pub letters: &'a Letters,
+    /// The action of a step.
+    pub action: &'a Action,
+    /// The balances.
+    pub balances: &'a [Balance],
+    /// The bracket.
+    pub bracket: &'a Bracket,
+    /// What is solved.
+    pub solve: &'a Solve,
+    /// The continuous Lagrangian.
+    pub limit: Option<&'a Limit>,
+    /// The normal forms.
+    pub algebra: &'a Algebra<'a>,
+}
+
+/// A quantity that may be conserved.
+struct Candidate {
+    name: String,
+    value: Expr,
+    scale: Expr,
+}
+
+/// The invariants that can be proved.
+pub fn invariants(x: &Inputs) -> (Vec<Invariant>, Integrability) {
+    let assumed = assumed(x);
+    let passages = passage::passages(x, &assumed);
+    let mut out = Vec::new();
+    let small = is_small(x);
+    out.extend(energy::energy(x, if small { &passages } else { &[] }));
+    let momenta = noether::of_space(x, &passages);
+    let casimirs = match small {
+        true => casimirs::casimirs(x, &assumed, &passages),
+        false => casimirs::Casimirs::default(),
+    };
+    let found = casimirs.list.len();
+    let (vectors, about_axes): (Vec<_>, Vec<_>) = momenta
+        .into_iter()
+        .partition(|v| !matches!(v.kind, Kind::Value));
+    out.extend(vectors);
+    out.extend(casimirs.list);
+    let lax = isospectral::lax(x);
+    let spectrum = isospectral::integrals(x, lax.as_ref(), &passages);
+    let fresh = |v: &Invariant| casimirs::is_new(x, &passages, &out, v);
+    let spectrum: Vec<Invariant> = spectrum.into_iter().filter(fresh).collect();
+    out.extend(spectrum);
+    let body = noether::of_bodies(x, &passages);
+    // A momentum about an axis may be a Casimir already, written by advected quantities.
+    let mut linear: Vec<Invariant> = out.clone();
+    for v in about_axes.into_iter().chain(body) {
+        if noether::is_new(x, &passages, &linear, &v) {
+            linear.push(v.clone());
+            out.push(v);
+        }
+    }
+    distinguish(&mut out);
+    let known = Integrability {
+        rank: casimirs.rank,
+        casimirs: found,
+        discrete_energy: energy::discrete(x, &passages, lax.as_ref()),
+        lax,
+    };
+    (out, known)
+}
+
+/// The equations among the assumptions, as expressions that vanish. Those beyond the exact points
+/// are left out: what holds without an assumption holds with it.
+fn assumed(x: &Inputs) -> Vec<Expr> {
+    let s = &x.letters.symbols;
+    let mut out: Vec<Expr> = Vec::new();
+    for a in &x.spec.assumptions {
+        if a.relation != Comparison::Equal || out.len() == crate::algebra::assumed::MOST {
+            continue;
+        }
+        out.push(expr::sub(a.left.clone(), a.right.clone()));
+        if !crate::algebra::assumed::reachable(s, &out) {
+            out.pop();
+        }
+    }
+    out
+}
+
+/// Most products of numbers that one matrix of the bracket may take. Up to eight dimensions it is
+/// a tenth of that.
+const LARGEST: usize = 4_000_000;
+
+/// Whether the spaces of the model are small enough to be searched: what is not searched is not
+/// listed, and its count is not given.
+fn is_small(x: &Inputs) -> bool {
+    let s = &x.letters.symbols;
+    let number = |d: Dim| match d {
+        Dim::Fixed(n) => n as usize,
+        Dim::Named(_) => 4,
+    };
+    let sizes = x.spec.configurations.iter().map(|c| number(c.group.size()));
+    let work: usize = sizes.map(|n| n.saturating_pow(7)).sum();
+    let entries: usize = x
+        .spec
+        .advected
+        .iter()
+        .map(|a| {
+            let shape = s.get(a.quantity).shape;
+            number(shape.rows) * number(shape.cols)
+        })
+        .sum();
+    // Elimination of a matrix with this many rows.
+    work <= 4 * LARGEST && entries.saturating_pow(3) <= 16 * LARGEST
+}
+
+/// Two invariants of one name are told apart by a number.
+fn distinguish(list: &mut [Invariant]) {
+    for i in 0..list.len() {
+        let base = list[i].name.clone();
+        let mut n = 2;
+        while list[..i].iter().any(|v| v.name == list[i].name) {
+            list[i].name = format!("{base}_{n}");
+            n += 1;
+        }
+    }
+}
+
+fn here(symbol: crate::expr::symbol::SymbolId) -> Letter {
+    Letter {
+        symbol,
+        shift: Shift::HERE,
+    }
+}
+
+/// Whether a value is the same before and after every step.
+fn is_conserved(passages: &[Passage], value: &Expr) -> bool {
+    !passages.is_empty() && passages.iter().all(|p| p.keeps(value))
+}
+
+/// The length of a vector, or of all entries of a matrix.
+fn length(x: &Inputs, e: &Expr) -> Expr {
+    let square = if e.shape().is_vector() {
+        expr::dot(e.clone(), e.clone())
+    } else if e.shape() == Shape::SCALAR {
+        expr::power(e.clone(), Rational::integer(2))
+    } else {
+        let t = expr::transpose(&x.letters.symbols, e.clone());
+        expr::trace(expr::mul(t, e.clone()))
+    };
+    expr::power(square, Rational::HALF)
+}

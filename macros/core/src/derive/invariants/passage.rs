@@ -1,0 +1,88 @@
+//! One step in exact arithmetic: random parameters, elements and velocities, the momentum before
+//! by the outgoing edge and after by the incoming one. A quantity with the same value at both ends
+//! of a few such steps is conserved: anything else differs at one with probability above 1 - 1e-15.
+
+use super::{Inputs, here};
+use crate::algebra::assumed;
+use crate::algebra::exact::{ATTEMPTS, Matrix, Point};
+use crate::expr::{Expr, Letter, Shift};
+
+/// Steps at which an invariant must hold.
+const STEPS: usize = 4;
+
+/// With assumptions more: their branches take turns.
+const STEPS_ASSUMED: usize = 8;
+
+/// Both ends of one step.
+pub(crate) struct Passage<'a> {
+    /// Letters at the node where the step starts, the node momentum among them.
+    pub(crate) before: Point<'a>,
+    /// The same letters at the node where it ends.
+    pub(crate) after: Point<'a>,
+}
+
+impl Passage<'_> {
+    /// Whether the value is the same at both ends.
+    pub(crate) fn keeps(&self, value: &Expr) -> bool {
+        match (self.before.value(value), self.after.value(value)) {
+            (Some(a), Some(b)) => a == b,
+            _ => false,
+        }
+    }
+}
+
+/// A few steps, as far as there are points at which everything has a value.
+pub(crate) fn passages<'a>(x: &Inputs<'a>, assumed: &[Expr]) -> Vec<Passage<'a>> {
+    let wanted = if assumed.is_empty() {
+        STEPS
+    } else {
+        STEPS_ASSUMED
+    };
+    let found = (0..ATTEMPTS).filter_map(|attempt| passage(x, assumed, attempt));
+    found.take(wanted).collect()
+}
+
+fn passage<'a>(x: &Inputs<'a>, equations: &[Expr], attempt: u64) -> Option<Passage<'a>> {
+    let mut before = assumed::point(&x.letters.symbols, attempt, equations)?;
+    let next = |l: Letter| Letter {
+        symbol: l.symbol,
+        shift: Shift::NEXT,
+    };
+    // Computed once: elements of orthogonal groups cost an inversion.
+    for c in &x.spec.configurations {
+        for l in [here(c.element), here(c.velocity)] {
+            let value = before.letter(l)?;
+            before.set(l, value);
+        }
+    }
+    for a in &x.spec.advected {
+        let value = match &a.definition {
+            Some(d) => before.value(d)?,
+            None => before.letter(here(a.quantity))?,
+        };
+        before.set(here(a.quantity), value);
+    }
+    let mut moved: Vec<(Letter, Matrix)> = Vec::new();
+    for c in &x.spec.configurations {
+        moved.push((here(c.element), before.value(&c.update)?));
+    }
+    for a in &x.spec.advected {
+        moved.push((here(a.quantity), before.value(&a.update)?));
+    }
+    for (l, value) in &moved {
+        before.set(next(*l), value.clone());
+    }
+    let mut momenta: Vec<(Letter, Matrix)> = Vec::new();
+    for (b, id) in x.balances.iter().zip(&x.letters.node_momentum) {
+        momenta.push((here(*id), before.value(&b.outgoing)?));
+        moved.push((here(*id), before.value(&b.incoming)?));
+    }
+    for (l, value) in momenta {
+        before.set(l, value);
+    }
+    let mut after = before.clone();
+    for (l, value) in moved {
+        after.set(l, value);
+    }
+    Some(Passage { before, after })
+}

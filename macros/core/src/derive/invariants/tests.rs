@@ -1,0 +1,274 @@
+//! Which invariants are found, and which are refused. Takes models as text; compares the names of
+//! what is found.
+
+use super::Family;
+use crate::derive::Derivation;
+use crate::pipeline::derive_source;
+
+fn derive(text: &str) -> Derivation {
+    derive_source(text).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Names of the invariants, bounded ones with a mark.
+fn names(d: &Derivation) -> Vec<String> {
+    let list = d.invariants.iter();
+    list.map(|v| format!("{}{}", v.name, if v.exact { "" } else { "~" }))
+        .collect()
+}
+
+fn found(text: &str) -> Vec<String> {
+    names(&derive(text))
+}
+
+/// The heavy top with what is assumed of its parameters.
+fn top(assumed: &str) -> String {
+    format!(
+        "model Top {{
+            param J: Sym<3>; param gU, z: Vec<3>;
+            {assumed}
+            group Λ: SO<3> velocity Ω;
+            advected Γ: Vec<3> = Λ^T*z;
+            constraint next(Λ) = Λ*Ω;
+            constraint next(Γ) = Ω^T*Γ;
+            lagrangian = -tr(J*Ω)/h - h*dot(gU, Γ);
+        }}"
+    )
+}
+
+#[test]
+fn a_symmetric_top_keeps_the_momentum_about_its_axis_when_that_is_assumed() {
+    let general = ["energy~", "momentum_Gamma", "Gamma_squared"];
+    assert_eq!(found(&top("")), general);
+    let symmetric = [
+        "assume J*hat(E3) == hat(E3)*J; assume cross(gU, E3) == 0;",
+        "assume dot(E1, J*E1) == dot(E2, J*E2); assume dot(E1, J*E2) == 0; assume dot(E1, J*E3) == 0;
+         assume dot(E2, J*E3) == 0; assume dot(gU, E1) == 0; assume dot(gU, E2) == 0;",
+        "assume J*hat(E3) - hat(E3)*J == 0; assume gU == dot(gU, E3)*E3; assume dot(z, z) == 1;",
+    ];
+    for assumed in symmetric {
+        let all = [&general[..], &["momentum_E3"]].concat();
+        assert_eq!(found(&top(assumed)), all, "{assumed}");
+    }
+    // Half of it is not enough, nor is the wrong axis.
+    for assumed in [
+        "assume J*hat(E3) == hat(E3)*J;",
+        "assume cross(gU, E3) == 0;",
+        "assume J*hat(E3) == hat(E3)*J; assume cross(gU, E1) == 0;",
+        "assume dot(E1, J*E1) == dot(E2, J*E2); assume cross(gU, E3) == 0;",
+        "assume dot(gU, gU) > 1;",
+    ] {
+        assert_eq!(found(&top(assumed)), general, "{assumed}");
+    }
+    // An axis that is a parameter. It may be zero, and then nothing is said of gU: the momentum
+    // about n is conserved all the same, that about gU is not.
+    let axis = "param n: Vec<3>; assume J*hat(n) == hat(n)*J; assume cross(gU, n) == 0;";
+    let all = [&general[..], &["momentum_n"]].concat();
+    assert_eq!(found(&top(axis)), all);
+}
+
+#[test]
+fn an_assumption_with_two_branches_serves_neither() {
+    let text = |assumed: &str| {
+        format!(
+            "model Body {{
+                param J: Sym<3>; param a, b, c: Real; param g: Vec<3>; {assumed}
+                group Λ: SO<3> velocity Ω; constraint next(Λ) = Λ*Ω;
+                lagrangian = -tr(J*Ω)/h - (a - b)*h*dot(g, Λ*g);
+            }}"
+        )
+    };
+    let free = found(&text("assume a == b;"));
+    assert!(free.contains(&"spatial_momentum".to_owned()), "{free:?}");
+    let either = found(&text("assume (a - b)*(a - c) == 0;"));
+    assert!(
+        !either.contains(&"spatial_momentum".to_owned()),
+        "{either:?}"
+    );
+}
+
+#[test]
+fn coupled_bodies_keep_the_sum_of_their_momenta() {
+    let bodies = |more: &str| {
+        format!(
+            "model Bodies {{
+                param J1, J2: Sym<3>; param d1, d2, g, z: Vec<3>; param eps: Real;
+                group A: SO<3> velocity a; group B: SO<3> velocity b;
+                advected R: SO<3> = A^T*B; advected G: Vec<3> = A^T*z;
+                constraint next(A) = A*a; constraint next(B) = B*b;
+                constraint next(R) = a^T*R*b; constraint next(G) = a^T*G;
+                lagrangian = -(tr(J1*a) + tr(J2*b) + eps*dot((a - Id)*d1, R*(b - Id)*d2))/h{more};
+            }}"
+        )
+    };
+    let d = derive(&bodies(""));
+    assert!(names(&d).contains(&"total_momentum".to_owned()));
+    let d = derive(&bodies(" - h*dot(g, G)"));
+    assert_eq!(
+        names(&d),
+        ["energy~", "total_momentum_Gamma", "Gamma_squared"].map(|n| n.replace("Gamma", "G"))
+    );
+    assert_eq!(d.integrability.rank, Some((12, 10)));
+}
+
+#[test]
+fn bodies_that_do_not_meet_keep_their_own() {
+    let names = found(
+        "model Two {
+            param J1, J2: Sym<3>;
+            group A: SO<3> velocity a; group B: SO<3> velocity b;
+            constraint next(A) = A*a; constraint next(B) = B*b;
+            lagrangian = -(tr(J1*a) + tr(J2*b))/h;
+        }",
+    );
+    assert_eq!(
+        names,
+        [
+            "energy",
+            "spatial_momentum_A",
+            "spatial_momentum_B",
+            "momentum_A_squared",
+            "momentum_B_squared"
+        ]
+    );
+}
+
+#[test]
+fn the_spatial_side_has_the_eigenvalues_of_what_it_carries() {
+    let d = derive(
+        "model Top {
+            param w: Real; param z: Vec<3>;
+            group Λ: SO<3> velocity ω; advected J: Sym<3>; advected chi: Vec<3>;
+            constraint next(Λ) = ω*Λ; constraint next(J) = ω*J*ω^T;
+            constraint next(chi) = ω*chi;
+            lagrangian = -tr(ω*J)/h - h*w*dot(chi, z);
+        }",
+    );
+    let wanted = [
+        "energy~",
+        "chi_squared",
+        "trace_J1",
+        "trace_J2",
+        "trace_J3",
+        "chi_J_chi",
+        "chi_J2_chi",
+        "momentum_z",
+    ];
+    assert_eq!(names(&d), wanted);
+    assert_eq!(d.integrability.rank, Some((12, 6)));
+    assert_eq!(d.integrability.casimirs, 6);
+    let free = "model Body {
+        group Λ: SO<3> velocity ω; advected J: Sym<3>;
+        constraint next(Λ) = ω*Λ; constraint next(J) = ω*J*ω^T;
+        lagrangian = -tr(ω*J)/h;
+    }";
+    // The energy of the free body is exact, seen from space as well; |m| is no Casimir there.
+    let d = derive(free);
+    let wanted = [
+        "energy",
+        "spatial_momentum",
+        "trace_J1",
+        "trace_J2",
+        "trace_J3",
+        "momentum_quadratic",
+    ];
+    assert_eq!(names(&d), wanted);
+    assert!(d.integrability.lax.is_some() && d.integrability.discrete_energy.exact);
+}
+
+#[test]
+fn free_bodies_have_manakov_integrals_in_every_dimension() {
+    for (n, rank) in [(4, (6, 4)), (5, (10, 8))] {
+        let d = derive(&format!(
+            "model Body {{
+                param C: Sym<{n}>; group Λ: SO<{n}> velocity Ω;
+                constraint next(Λ) = Λ*Ω; lagrangian = -tr(C*Ω)/h;
+            }}"
+        ));
+        let wanted = [
+            "energy",
+            "spatial_momentum",
+            "momentum_squared",
+            "trace_momentum4",
+            "manakov",
+        ];
+        assert_eq!(names(&d), wanted, "{n}");
+        assert_eq!(d.integrability.rank, Some(rank));
+        assert!(d.integrability.lax.is_some());
+    }
+    // A factor without symmetry has no Lax form: the momentum and its Casimirs alone are left.
+    let d = derive(
+        "model Body {
+            param C: Mat<4>; group Λ: SO<4> velocity Ω;
+            constraint next(Λ) = Λ*Ω; lagrangian = -tr(C^T*Ω)/h;
+        }",
+    );
+    assert!(d.integrability.lax.is_none());
+    assert!(d.invariants.iter().all(|v| v.family != Family::Manakov));
+}
+
+#[test]
+fn affine_bodies_keep_circulation_and_angular_momentum() {
+    let wanted = [
+        "energy~",
+        "circulation_C_2",
+        "spatial_momentum_skew_C0_inverse",
+    ];
+    let names = found(
+        "model Ellipsoid {
+            param C0, I0: Sym<3>; param a: Real;
+            group Q: GL<3> velocity G; advected C: Sym<3> = Q^T*C0*Q;
+            constraint next(Q) = Q*G; constraint next(C) = G^T*C*G;
+            lagrangian = tr(C*(G - Id)*I0*(G - Id)^T)/(2*h) - h*a*tr(C*C);
+        }",
+    );
+    assert_eq!(names, wanted);
+}
+
+#[test]
+fn the_list_is_that_of_the_system_not_of_its_text() {
+    let renamed = "model Other {
+        scale -h;
+        param q, p: Vec<3>;
+        group g: SO<3> velocity W;
+        param A: Sym<3>;
+        advected y: Vec<3> = g^T*q;
+        constraint next(y) = W^T*y;
+        constraint next(g) = g*W;
+        lagrangian = tr(W*A) + h^2*dot(y, p);
+    }";
+    let wanted = found(&top("")).into_iter().map(|n| n.replace("Gamma", "y"));
+    assert_eq!(found(renamed), wanted.collect::<Vec<_>>());
+}
+
+#[test]
+fn the_bracket_of_body_and_space_differ_in_sign() {
+    use crate::derive::bracket::Space;
+    use crate::interpret::Assignment;
+    let body = derive(
+        "model Body { param J: Sym<3>; group L: SO<3> velocity W;
+        constraint next(L) = L*W; lagrangian = -tr(J*W)/h; }",
+    );
+    let space = derive(
+        "model Body { advected J: Sym<3>; group L: SO<3> velocity w;
+        constraint next(L) = w*L; constraint next(J) = w*J*w^T; lagrangian = -tr(J*w)/h; }",
+    );
+    let mut at = Assignment::new();
+    at.set("μ", 0, 3, 1, &[1.0, 2.0, 4.0]);
+    at.set("m", 0, 3, 1, &[1.0, 2.0, 4.0]);
+    at.set(
+        "J",
+        0,
+        3,
+        3,
+        &[1.0, 2.0, 3.0, 2.0, 5.0, 7.0, 3.0, 7.0, 11.0],
+    );
+    let entry = |d: &Derivation, i: usize, j: usize| {
+        d.bracket_matrix(Space::Reduced, &at).map(|m| m.get(i, j))
+    };
+    // {μ_1, μ_2} = -μ_3 and {m_1, m_2} = m_3.
+    assert_eq!(entry(&body, 0, 1), Ok(-4.0));
+    assert_eq!(entry(&space, 0, 1), Ok(4.0));
+    // {J, m_3} = [hat(e_3), J]: its entry (1, 1) is -2 J_12.
+    assert_eq!(entry(&space, 3, 2), Ok(-4.0));
+    assert_eq!(entry(&space, 2, 3), Ok(4.0));
+}

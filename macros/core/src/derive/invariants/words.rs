@@ -1,0 +1,498 @@
+//! Candidates for Casimirs: scalar products, traces and determinants of words in what the reduced
+//! space is made of, simple ones first. Takes the momenta and advected quantities of a model; gives
+//! numbers that may or may not be Casimirs.
+
+use super::noether::components;
+use super::passage::Passage;
+use super::{Candidate, Inputs, here, length};
+use crate::algebra::Rational;
+use crate::check::spec::{Group, Side};
+use crate::derive::bracket;
+use crate::expr::shape::{Dim, Shape, Structure};
+use crate::expr::symbol::SymbolId;
+use crate::expr::{self, Expr, Part};
+
+/// Most candidates that are looked at.
+const MOST: usize = 400;
+
+/// A part of a word, with its name and the length of what it is made of.
+#[derive(Clone)]
+struct Piece {
+    name: String,
+    value: Expr,
+    size: Expr,
+}
+
+/// All candidates, simple ones first.
+pub(super) fn candidates(x: &Inputs, passages: &[Passage]) -> Vec<Candidate> {
+    let vectors = vectors(x, passages);
+    let matrices = matrices(x);
+    let mut out: Vec<Candidate> = Vec::new();
+    let chain = |words: &[&Piece]| -> (String, Expr) {
+        let value = expr::product(words.iter().map(|w| w.value.clone()).collect::<Vec<_>>());
+        (joined(words), value)
+    };
+    let sizes =
+        |list: &[&Piece]| expr::product(list.iter().map(|p| p.size.clone()).collect::<Vec<_>>());
+    let bracket = |u: &Piece, middle: &[&Piece], v: &Piece| -> Option<Candidate> {
+        let (between, m) = chain(middle);
+        let right = if middle.is_empty() {
+            v.value.clone()
+        } else {
+            if m.shape().cols != v.value.shape().rows {
+                return None;
+            }
+            expr::mul(m, v.value.clone())
+        };
+        if right.shape() != u.value.shape() {
+            return None;
+        }
+        let name = match (middle.is_empty(), u.name == v.name) {
+            (true, true) => format!("{}_squared", u.name),
+            (true, false) => format!("{}_{}", u.name, v.name),
+            _ => format!("{}_{between}_{}", u.name, v.name),
+        };
+        let all: Vec<&Piece> = [u]
+            .into_iter()
+            .chain(middle.iter().copied())
+            .chain([v])
+            .collect();
+        Some(Candidate {
+            name,
+            value: expr::dot(u.value.clone(), right),
+            scale: sizes(&all),
+        })
+    };
+    let trace = |word: &[&Piece]| -> Option<Candidate> {
+        let (name, value) = chain(word);
+        value.shape().is_square().then(|| Candidate {
+            name: format!("trace_{name}"),
+            value: expr::trace(value),
+            scale: sizes(word),
+        })
+    };
+    let pairs = |out: &mut Vec<Candidate>, middle: &[&Piece]| {
+        for (i, u) in vectors.iter().enumerate() {
+            for v in &vectors[i..] {
+                if out.len() > MOST {
+                    return;
+                }
+                out.extend(bracket(u, middle, v));
+            }
+        }
+    };
+    pairs(&mut out, &[]);
+    for m in matrices.iter().filter(|m| is_skew(x, &m.value)) {
+        let t = expr::transpose(&x.letters.symbols, m.value.clone());
+        let square = expr::trace(expr::mul(t, m.value.clone()));
+        out.push(Candidate {
+            name: format!("{}_squared", m.name),
+            value: expr::scale(Rational::HALF, square),
+            scale: sizes(&[m, m]),
+        });
+    }
+    for m in &matrices {
+        let longest = match m.value.shape().rows {
+            Dim::Fixed(n) => n.clamp(3, 8) as usize,
+            Dim::Named(_) => 4,
+        };
+        let powers = (1..=longest).filter_map(|n| {
+            let mut c = trace(&vec![m; n])?;
+            if n == 1 {
+                // Eigenvalues are told by `trace_J1`, `trace_J2`, ...
+                c.name = format!("trace_{}", power(&m.name, 1));
+            }
+            Some(c)
+        });
+        out.extend(powers);
+    }
+    for m in &matrices {
+        pairs(&mut out, &[m]);
+    }
+    for length in 2..=4 {
+        for word in words(&matrices, length) {
+            if length <= 3 {
+                pairs(&mut out, &word);
+            }
+            if is_first(&matrices, &word) {
+                out.extend(trace(&word));
+            }
+        }
+        if out.len() > MOST {
+            break;
+        }
+    }
+    out.extend(products_in_three(&vectors));
+    out.extend(circulations(x));
+    out.extend(across(x, &vectors));
+    for m in matrices.iter().filter(|m| m.value.shape().is_square()) {
+        out.push(Candidate {
+            name: format!("det_{}", m.name),
+            value: expr::det(m.value.clone()),
+            scale: m.size.clone(),
+        });
+    }
+    out.truncate(MOST);
+    out
+}
+
+fn is_skew(x: &Inputs, e: &Expr) -> bool {
+    match e.node() {
+        expr::Node::Letter(l) => x.letters.symbols.get(l.symbol).structure == Structure::Skew,
+        _ => false,
+    }
+}
+
+/// Names in order, runs of one as powers: `J`, `J2`, `J_K`.
+fn joined(words: &[&Piece]) -> String {
+    let mut out: Vec<(String, usize)> = Vec::new();
+    for w in words {
+        match out.last_mut() {
+            Some((name, n)) if *name == w.name => *n += 1,
+            _ => out.push((w.name.clone(), 1)),
+        }
+    }
+    let runs = out.iter().map(|(name, n)| match n {
+        1 => name.clone(),
+        n => power(name, *n),
+    });
+    runs.collect::<Vec<_>>().join("_")
+}
+
+/// `J2` for the square of `J`, `J1_2` for that of `J1`.
+fn power(name: &str, n: usize) -> String {
+    match name.ends_with(|c: char| c.is_ascii_digit()) {
+        true => format!("{name}_{n}"),
+        false => format!("{name}{n}"),
+    }
+}
+
+/// Whether no rotation of the word or of its transpose comes before it: their traces are the same.
+fn is_first(letters: &[Piece], word: &[&Piece]) -> bool {
+    let index = |name: &str| letters.iter().position(|l| l.name == name).unwrap_or(0);
+    let own: Vec<usize> = word.iter().map(|w| index(&w.name)).collect();
+    let mirrored = word.iter().rev().map(|w| {
+        let other = match w.name.strip_suffix('t') {
+            Some(plain) if letters.iter().any(|l| l.name == plain) => plain.to_owned(),
+            _ => format!("{}t", w.name),
+        };
+        let found = letters.iter().position(|l| l.name == other);
+        found.unwrap_or_else(|| index(&w.name))
+    });
+    let mirrored: Vec<usize> = mirrored.collect();
+    (0..own.len()).all(|turn| {
+        let turned = |list: &[usize]| {
+            let mut t = list.to_vec();
+            t.rotate_left(turn);
+            t
+        };
+        own <= turned(&own) && own <= turned(&mirrored)
+    })
+}
+
+/// All words of a length that are no power of one letter, in order.
+fn words(letters: &[Piece], length: usize) -> Vec<Vec<&Piece>> {
+    let mut out: Vec<Vec<&Piece>> = vec![Vec::new()];
+    for _ in 0..length {
+        out = out
+            .iter()
+            .flat_map(|w| {
+                letters.iter().map(move |l| {
+                    let mut longer = w.clone();
+                    longer.push(l);
+                    longer
+                })
+            })
+            .collect();
+        if out.len() > MOST {
+            return Vec::new();
+        }
+    }
+    out
+}
+
+/// Vectors of the reduced space: momenta, their sums brought to one frame, advected vectors.
+fn vectors(x: &Inputs, passages: &[Passage]) -> Vec<Piece> {
+    let s = &x.letters.symbols;
+    let mut out = Vec::new();
+    let several = x.spec.configurations.len() > 1;
+    for (i, c) in x.spec.configurations.iter().enumerate() {
+        let mu = expr::here(s, x.letters.node_momentum[i]);
+        let name = match several {
+            true => format!("momentum_{}", s.get(c.element).ascii),
+            false => "momentum".to_owned(),
+        };
+        if c.group == Group::RigidMotions {
+            for (which, value) in [
+                ("angular", bracket::angular(s, &mu)),
+                ("linear", bracket::linear(s, &mu)),
+            ] {
+                out.push(Piece {
+                    name: format!("{name}_{which}"),
+                    size: length(x, &value),
+                    value,
+                });
+            }
+        } else if mu.shape().is_vector() {
+            let size = length(x, &mu);
+            out.push(Piece {
+                name,
+                value: mu,
+                size,
+            });
+        }
+    }
+    for set in components(x).iter().filter(|set| set.len() > 1) {
+        for frame in set {
+            if let Some(value) = total(x, passages, set, *frame) {
+                let size = expr::sum(
+                    set.iter().map(|i| {
+                        let mu = expr::here(s, x.letters.node_momentum[*i]);
+                        length(x, &mu)
+                    }),
+                    Shape::SCALAR,
+                );
+                let name = "total_momentum".to_owned();
+                out.push(Piece { name, value, size });
+            }
+        }
+    }
+    for a in &x.spec.advected {
+        let e = expr::here(s, a.quantity);
+        if e.shape().is_vector() {
+            let (name, size) = (s.get(a.quantity).ascii.clone(), length(x, &e));
+            out.push(Piece {
+                name,
+                value: e,
+                size,
+            });
+        }
+    }
+    out
+}
+
+/// The sum of the momenta of coupled bodies, in the frame of one of them: each is carried over by
+/// an advected element of the group that goes from its frame to that one.
+fn total(x: &Inputs, passages: &[Passage], set: &[usize], frame: usize) -> Option<Expr> {
+    let s = &x.letters.symbols;
+    let three = Group::SpecialOrthogonal(Dim::Fixed(3));
+    if set.iter().any(|i| x.spec.configurations[*i].group != three) {
+        return None;
+    }
+    let all_spatial = set
+        .iter()
+        .all(|i| x.spec.configurations[*i].side == Side::Spatial);
+    let mut reached: Vec<(usize, Vec<Expr>)> = vec![(frame, Vec::new())];
+    let mut k = 0;
+    while let Some((to, by)) = reached.get(k).cloned() {
+        k += 1;
+        for i in set {
+            if reached.iter().any(|(j, _)| j == i) {
+                continue;
+            }
+            if all_spatial {
+                reached.push((*i, Vec::new()));
+            } else if let Some(e) = carrier(x, passages, *i, to) {
+                let mut path = by.clone();
+                path.push(e);
+                reached.push((*i, path));
+            }
+        }
+    }
+    if reached.len() < set.len() {
+        return None;
+    }
+    reached.sort_by_key(|(i, _)| (*i != frame, *i));
+    let terms = reached.into_iter().map(|(i, by)| {
+        let mu = expr::here(s, x.letters.node_momentum[i]);
+        expr::product(by.into_iter().chain([mu]).collect::<Vec<_>>())
+    });
+    Some(expr::sum(
+        terms.collect::<Vec<_>>(),
+        Shape::vector(Dim::Fixed(3)),
+    ))
+}
+
+/// An advected rotation from one body's frame to another's.
+fn carrier(x: &Inputs, passages: &[Passage], from: usize, to: usize) -> Option<Expr> {
+    let s = &x.letters.symbols;
+    let list = x.spec.advected.iter().map(|a| a.quantity);
+    let rotations = list.filter(|q| s.get(*q).structure == Structure::Orthogonal);
+    let both = rotations.flat_map(|q| {
+        let e = expr::here(s, q);
+        [e.clone(), expr::transpose(s, e)]
+    });
+    let velocity = |i: usize| expr::here(s, x.spec.configurations[i].velocity);
+    let body = |i: usize| x.spec.configurations[i].side == Side::Body;
+    if !body(from) || !body(to) {
+        return None;
+    }
+    let mut both = both;
+    both.find(|e| {
+        e.shape() == Shape::square(Dim::Fixed(3))
+            && passages.iter().all(|p| {
+                let carried =
+                    expr::product([expr::transpose(s, velocity(to)), e.clone(), velocity(from)]);
+                p.before.value(&carried) == p.after.value(e)
+            })
+    })
+}
+
+/// Matrices of the reduced space and their transposes.
+fn matrices(x: &Inputs) -> Vec<Piece> {
+    let s = &x.letters.symbols;
+    let several = x.spec.configurations.len() > 1;
+    let mut out = Vec::new();
+    let momenta = x.spec.configurations.iter().zip(&x.letters.node_momentum);
+    let momenta = momenta.map(|(c, id)| {
+        let name = match several {
+            true => format!("momentum_{}", s.get(c.element).ascii),
+            false => "momentum".to_owned(),
+        };
+        (name, *id)
+    });
+    let advected = x.spec.advected.iter();
+    let advected = advected.map(|a| (s.get(a.quantity).ascii.clone(), a.quantity));
+    for (name, id) in momenta.chain(advected) {
+        let symbol = s.get(id);
+        if symbol.shape.is_vector() || symbol.shape.is_scalar() {
+            continue;
+        }
+        let e = expr::here(s, id);
+        let size = length(x, &e);
+        let t = match symbol.structure {
+            Structure::Symmetric | Structure::Diagonal | Structure::Skew => None,
+            Structure::General
+            | Structure::Orthogonal
+            | Structure::Invertible
+            | Structure::UnitQuaternion
+            | Structure::RigidMotion => Some(expr::transpose(s, e.clone())),
+        };
+        out.push(Piece {
+            name: name.clone(),
+            value: e,
+            size: size.clone(),
+        });
+        out.extend(t.map(|value| Piece {
+            name: format!("{name}t"),
+            value,
+            size,
+        }));
+    }
+    out
+}
+
+/// Products of three vectors.
+fn products_in_three(vectors: &[Piece]) -> Vec<Candidate> {
+    let three = |v: &&Piece| v.value.shape() == Shape::vector(Dim::Fixed(3));
+    // Of many vectors the first are enough: their scalar products are Casimirs already.
+    let list: Vec<&Piece> = vectors.iter().filter(three).take(8).collect();
+    let mut out = Vec::new();
+    for (i, u) in list.iter().enumerate() {
+        for (j, v) in list.iter().enumerate().skip(i + 1) {
+            for w in &list[j + 1..] {
+                out.push(Candidate {
+                    name: format!("{}_{}_{}", u.name, v.name, w.name),
+                    value: expr::dot(
+                        u.value.clone(),
+                        expr::cross(v.value.clone(), w.value.clone()),
+                    ),
+                    scale: expr::product([u.size.clone(), v.size.clone(), w.size.clone()]),
+                });
+            }
+        }
+    }
+    out
+}
+
+/// For SO(n): the part of a momentum that keeps an advected vector `a`, `|a|² μ - a a^T μ - μ a a^T`,
+/// by the squares of its entries and those of its powers.
+fn across(x: &Inputs, vectors: &[Piece]) -> Vec<Candidate> {
+    let s = &x.letters.symbols;
+    let mut out = Vec::new();
+    for id in &x.letters.node_momentum {
+        let mu = expr::here(s, *id);
+        for v in vectors {
+            let n = v.value.shape().rows;
+            if mu.shape() != Shape::square(n) || s.get(*id).structure != Structure::Skew {
+                continue;
+            }
+            let outer = expr::mul(v.value.clone(), expr::transpose(s, v.value.clone()));
+            let square = expr::dot(v.value.clone(), v.value.clone());
+            let part = expr::sum(
+                [
+                    expr::mul(square, mu.clone()),
+                    expr::neg(expr::mul(outer.clone(), mu.clone())),
+                    expr::neg(expr::mul(mu.clone(), outer)),
+                ],
+                mu.shape(),
+            );
+            let size = expr::product([v.size.clone(), v.size.clone(), length(x, &mu)]);
+            for power in [2i64, 4, 6] {
+                let word = (0..power).map(|_| part.clone()).collect::<Vec<_>>();
+                out.push(Candidate {
+                    name: format!("momentum_across_{}_{power}", v.name),
+                    value: expr::trace(expr::product(word)),
+                    scale: expr::power(size.clone(), Rational::integer(power)),
+                });
+            }
+        }
+    }
+    out
+}
+
+/// For GL(n) with an advected form `C`: traces of powers of `C skew(C⁻¹ μ)`, the circulation seen
+/// from the body, and of its mirror images.
+fn circulations(x: &Inputs) -> Vec<Candidate> {
+    let s = &x.letters.symbols;
+    let mut out = Vec::new();
+    for (i, c) in x.spec.configurations.iter().enumerate() {
+        let Group::GeneralLinear(n) = c.group else {
+            continue;
+        };
+        let mu = expr::here(s, x.letters.node_momentum[i]);
+        for a in &x.spec.advected {
+            let symbol = s.get(a.quantity);
+            if symbol.shape != Shape::square(n) || !symbol.structure.is_symmetric() {
+                continue;
+            }
+            let form = expr::here(s, a.quantity);
+            let inverse = expr::inverse(s, form.clone());
+            let skew = |e: Expr| expr::part(Part::Skew, e);
+            let images = [
+                expr::mul(form.clone(), skew(expr::mul(inverse.clone(), mu.clone()))),
+                expr::mul(skew(expr::mul(mu.clone(), inverse.clone())), form.clone()),
+                expr::mul(inverse.clone(), skew(expr::mul(form.clone(), mu.clone()))),
+                expr::mul(skew(expr::mul(mu.clone(), form.clone())), inverse),
+            ];
+            let size = length(x, &mu);
+            for power in [2i64, 4] {
+                for k in &images {
+                    let word = (0..power).map(|_| k.clone()).collect::<Vec<_>>();
+                    out.push(Candidate {
+                        name: format!("circulation_{}_{power}", symbol.ascii),
+                        value: expr::trace(expr::product(word)),
+                        scale: expr::power(size.clone(), Rational::integer(power)),
+                    });
+                }
+            }
+        }
+    }
+    out
+}
+
+/// The letters a candidate may depend on: node momenta and advected quantities.
+pub(super) fn letters(x: &Inputs) -> Vec<SymbolId> {
+    let momenta = x.letters.node_momentum.iter().copied();
+    momenta
+        .chain(x.spec.advected.iter().map(|a| a.quantity))
+        .collect()
+}
+
+/// Whether a value depends on nothing but momenta, advected quantities and parameters at the node.
+pub(super) fn is_reduced(x: &Inputs, e: &Expr) -> bool {
+    let own = letters(x);
+    expr::letters(e).iter().all(|l| {
+        *l == here(l.symbol) && (own.contains(&l.symbol) || x.spec.parameters.contains(&l.symbol))
+    })
+}
