@@ -162,7 +162,9 @@ pub mod body_in_quadratic_field {
             work: &mut BodyInQuadraticFieldWorkspace<T>,
         ) -> Result<(), StepError> {
             let h = work.h;
-            if work.here != *state {
+            if work.here.Λ != state.Λ || work.here.momentum != state.momentum
+                || !(same(&work.here.Γ, &state.Γ))
+            {
                 work.edge = self.edge(state, h);
                 work.here = *state;
             }
@@ -188,14 +190,14 @@ pub mod body_in_quadratic_field {
                         .at_node(state.node),
                 );
             }
-            *state = BodyInQuadraticFieldState {
-                Λ: Λ_moved.rotation(),
-                momentum: SpatialMomentum(momentum_next),
-                Γ: state.Γ,
-                node: state.node + 1,
-            };
+            let (Λ_arrived, momentum_next) = (
+                Λ_moved.rotation(),
+                SpatialMomentum(momentum_next),
+            );
+            (state.Λ, work.here.Λ) = (Λ_arrived, Λ_arrived);
+            (state.momentum, work.here.momentum) = (momentum_next, momentum_next);
+            state.node += 1;
             work.edge = edge_next;
-            work.here = *state;
             Ok(())
         }
         /// The edge that begins at this state, for a step `h`.

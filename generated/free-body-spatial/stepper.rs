@@ -179,7 +179,7 @@ pub mod free_body_spatial {
             state: &mut FreeBodySpatialState<T>,
             work: &mut FreeBodySpatialWorkspace<T>,
         ) -> Result<(), StepError> {
-            if work.J != state.J {
+            if !(same(&work.J, &state.J)) {
                 let Ok(factor) = self.factor(state) else {
                     return Err(
                         StepCause::NotFinite {

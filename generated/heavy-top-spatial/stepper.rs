@@ -175,7 +175,9 @@ pub mod heavy_top_spatial {
             work: &mut HeavyTopSpatialWorkspace<T>,
         ) -> Result<(), StepError> {
             let h = work.h;
-            if work.here != *state {
+            if work.here.Λ != state.Λ || work.here.momentum != state.momentum
+                || !(same(&work.here.J, &state.J) & same(&work.here.χ, &state.χ))
+            {
                 work.factor = match self.factor(state) {
                     Ok(factor) => factor,
                     Err(_) => {
@@ -212,15 +214,14 @@ pub mod heavy_top_spatial {
                         .at_node(state.node),
                 );
             }
-            *state = HeavyTopSpatialState {
-                Λ: Λ_moved.rotation(),
-                momentum: SpatialMomentum(momentum_next),
-                J: state.J,
-                χ: state.χ,
-                node: state.node + 1,
-            };
+            let (Λ_arrived, momentum_next) = (
+                Λ_moved.rotation(),
+                SpatialMomentum(momentum_next),
+            );
+            (state.Λ, work.here.Λ) = (Λ_arrived, Λ_arrived);
+            (state.momentum, work.here.momentum) = (momentum_next, momentum_next);
+            state.node += 1;
             work.edge = edge_next;
-            work.here = *state;
             Ok(())
         }
         /// The edge that begins at this state, for a step `h`.

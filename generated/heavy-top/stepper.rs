@@ -179,8 +179,8 @@ pub mod heavy_top {
                 momentum: SpatialMomentum(momentum_next),
                 node: state.node + 1,
             };
-            work.edge = edge_next;
             work.here = *state;
+            work.edge = edge_next;
             Ok(())
         }
         /// The edge that begins at this state, for a step `h`.

@@ -175,6 +175,19 @@ pub fn length<T: Real, const R: usize, const C: usize>(a: &SMatrix<T, R, C>) -> 
     a.iter().fold(T::zero(), |sum, x| sum + *x * *x).sqrt()
 }
 
+/// Whether two matrices are equal, entry by entry.
+#[inline(always)]
+#[must_use]
+pub fn same<T: Real, const R: usize, const C: usize>(
+    a: &SMatrix<T, R, C>,
+    b: &SMatrix<T, R, C>,
+) -> bool {
+    // They nearly always are: no branch before the end.
+    a.iter()
+        .zip(b.iter())
+        .fold(true, |all, (x, y)| all & (x == y))
+}
+
 /// Whether every entry is finite.
 #[inline]
 #[must_use]

@@ -223,12 +223,49 @@ fn kept(d: &Derivation, names: &Names, leave: &Expr, arrive: &Expr) -> TokenStre
             };
         }
     });
-    let references = super::items::kept(d).into_iter().map(|id| own(d, id));
+    let references: Vec<_> = items::kept(d).into_iter().map(|id| own(d, id)).collect();
+    let arrived_at = tagged(d, names, c.element, "arrived");
+    // References do not change: what moves is written where it is.
+    let (moved_away, arrived) = if references.is_empty() {
+        (
+            quote!(work.here != *state),
+            quote! {
+                *state = #state {
+                    #element: #moved.rotation(),
+                    #momentum: SpatialMomentum(#momentum_next),
+                    #node: state.#node + 1,
+                };
+                work.here = *state;
+            },
+        )
+    } else {
+        let equal = items::kept(d).into_iter().map(|id| {
+            let field = own(d, id);
+            match s.get(id).shape.is_scalar() {
+                true => quote!((work.here.#field == state.#field)),
+                false => quote!(same(&work.here.#field, &state.#field)),
+            }
+        });
+        (
+            quote! {
+                work.here.#element != state.#element
+                    || work.here.#momentum != state.#momentum
+                    || !(#(#equal)&*)
+            },
+            quote! {
+                let (#arrived_at, #momentum_next) =
+                    (#moved.rotation(), SpatialMomentum(#momentum_next));
+                (state.#element, work.here.#element) = (#arrived_at, #arrived_at);
+                (state.#momentum, work.here.#momentum) = (#momentum_next, #momentum_next);
+                state.#node += 1;
+            },
+        )
+    };
     step_signature(
         d,
         quote! {
             let #step = work.h;
-            if work.here != *state {
+            if #moved_away {
                 #another
                 work.edge = self.edge(state, #step);
                 work.here = *state;
@@ -246,14 +283,8 @@ fn kept(d: &Derivation, names: &Names, leave: &Expr, arrive: &Expr) -> TokenStre
             if !all_finite(&#momentum_next) {
                 return Err(StepCause::NotFinite { what: "momentum" }.at_node(state.#node));
             }
-            *state = #state {
-                #element: #moved.rotation(),
-                #momentum: SpatialMomentum(#momentum_next),
-                #(#references: state.#references,)*
-                #node: state.#node + 1,
-            };
+            #arrived
             work.edge = #following;
-            work.here = *state;
             Ok(())
         },
     )

@@ -159,7 +159,7 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
 
 /// What emitted functions call by a plain name, and what they name themselves: a local of the
 /// model under such a name would hide it. The test of hygiene states a model with all of them.
-const INSIDE: [&str; 96] = [
+const INSIDE: [&str; 97] = [
     "BodyImpulse",
     "BodyMomentum",
     "BodyMomentumMatrix",
@@ -234,6 +234,7 @@ const INSIDE: [&str; 96] = [
     "rotation_of",
     "rows",
     "rows_from",
+    "same",
     "scratch",
     "settings",
     "sizes",

@@ -220,7 +220,7 @@ fn free_step(d: &Derivation, names: &Names) -> TokenStream {
     // A state of another trajectory, hence perhaps of another body.
     let another = (!references.is_empty()).then(|| {
         quote! {
-            if #(work.#references != state.#references)||* {
+            if !(#(same(&work.#references, &state.#references))&*) {
                 let Ok(factor) = self.factor(state) else {
                     return Err(StepCause::NotFinite { what: "body" }.at_node(state.#node));
                 };
