@@ -330,7 +330,7 @@ pub mod body_in_quadratic_field {
             let (kinetic, potential) = self.energies(state);
             kinetic + potential
         }
-        /// `μ_k·Γ_k`: Casimir, and momentum about a fixed axis.
+        /// `μ_k·Γ_k`: Casimir: the Kelvin-Noether quantity of what is advected.
         pub fn momentum_Gamma(&self, state: &BodyInQuadraticFieldState<T>) -> T {
             let Λ = state.Λ.matrix();
             let Γ_reference = state.Γ;
@@ -338,12 +338,34 @@ pub mod body_in_quadratic_field {
             let μ = state.body_momentum().0;
             μ.dot(&Γ)
         }
-        /// `Γ_k·Γ_k`: Casimir.
+        /// `Γ_k·Γ_k`: Casimir: the group leaves it alone.
         pub fn Gamma_squared(&self, state: &BodyInQuadraticFieldState<T>) -> T {
             let Λ = state.Λ.matrix();
             let Γ_reference = state.Γ;
             let Γ = Λ.tr_mul(&Γ_reference);
             Γ.dot(&Γ)
+        }
+    }
+    impl<T: Real> BodyInQuadraticField<T> {
+        /// The discrete energy of the edge between two consecutive states, `tr(J)/h² - tr(J Ω_k)/h² + ¼ Γ_k·(K Γ_k) + ¼ Γ_{k+1}·(K Γ_{k+1})`: bounded, since the stepper is symplectic.
+        pub fn discrete_energy(
+            &self,
+            h: T,
+            before: &BodyInQuadraticFieldState<T>,
+            after: &BodyInQuadraticFieldState<T>,
+        ) -> T {
+            let BodyInQuadraticFieldParameters { J, K, .. } = self.parameters;
+            let Λ = before.Λ.matrix();
+            let Γ_reference = before.Γ;
+            let Γ = Λ.tr_mul(&Γ_reference);
+            let Ω = (before.Λ.inverse() * after.Λ).matrix();
+            let Λ_next = after.Λ.matrix();
+            let Γ_reference = after.Γ;
+            let Γ_next = Λ_next.tr_mul(&Γ_reference);
+            let t1 = h.powi(-2);
+            t1 * J.trace() - t1 * (J * Ω).trace()
+                + T::from_f64(0.25) * Γ.dot(&(K * Γ))
+                + T::from_f64(0.25) * Γ_next.dot(&(K * Γ_next))
         }
     }
     /// One trajectory of the model, its type hidden.

@@ -327,14 +327,14 @@ pub mod body_in_two_fields {
             let (kinetic, potential) = self.energies(state);
             kinetic + potential
         }
-        /// `Γ_k·Γ_k`: Casimir.
+        /// `Γ_k·Γ_k`: Casimir: the group leaves it alone.
         pub fn Gamma_squared(&self, state: &BodyInTwoFieldsState<T>) -> T {
             let BodyInTwoFieldsParameters { z, .. } = self.parameters;
             let Λ = state.Λ.matrix();
             let Γ = Λ.tr_mul(&z);
             Γ.dot(&Γ)
         }
-        /// `Γ_k·B_k`: Casimir.
+        /// `Γ_k·B_k`: Casimir: the group leaves it alone.
         pub fn Gamma_B(&self, state: &BodyInTwoFieldsState<T>) -> T {
             let BodyInTwoFieldsParameters { z, b, .. } = self.parameters;
             let Λ = state.Λ.matrix();
@@ -342,12 +342,34 @@ pub mod body_in_two_fields {
             let B = Λ.tr_mul(&b);
             Γ.dot(&B)
         }
-        /// `B_k·B_k`: Casimir.
+        /// `B_k·B_k`: Casimir: the group leaves it alone.
         pub fn B_squared(&self, state: &BodyInTwoFieldsState<T>) -> T {
             let BodyInTwoFieldsParameters { b, .. } = self.parameters;
             let Λ = state.Λ.matrix();
             let B = Λ.tr_mul(&b);
             B.dot(&B)
+        }
+    }
+    impl<T: Real> BodyInTwoFields<T> {
+        /// The discrete energy of the edge between two consecutive states, `tr(J)/h² - tr(J Ω_k)/h² + ½ gU·Γ_k + ½ gU·Γ_{k+1} - ½ p·B_k - ½ p·B_{k+1}`: bounded, since the stepper is symplectic.
+        pub fn discrete_energy(
+            &self,
+            h: T,
+            before: &BodyInTwoFieldsState<T>,
+            after: &BodyInTwoFieldsState<T>,
+        ) -> T {
+            let BodyInTwoFieldsParameters { J, gU, p, z, b, .. } = self.parameters;
+            let Λ = before.Λ.matrix();
+            let Γ = Λ.tr_mul(&z);
+            let B = Λ.tr_mul(&b);
+            let Ω = (before.Λ.inverse() * after.Λ).matrix();
+            let Λ_next = after.Λ.matrix();
+            let Γ_next = Λ_next.tr_mul(&z);
+            let B_next = Λ_next.tr_mul(&b);
+            let t1 = h.powi(-2);
+            t1 * J.trace() - t1 * (J * Ω).trace() + T::from_f64(0.5) * gU.dot(&Γ)
+                + T::from_f64(0.5) * gU.dot(&Γ_next) - T::from_f64(0.5) * p.dot(&B)
+                - T::from_f64(0.5) * p.dot(&B_next)
         }
     }
     /// One trajectory of the model, its type hidden.

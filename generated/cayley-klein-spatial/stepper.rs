@@ -378,6 +378,50 @@ pub mod cayley_klein_spatial {
             let (kinetic, potential) = self.energies(state);
             kinetic + potential
         }
+        /// `tr(I_k)`: Casimir: the group leaves it alone.
+        pub fn trace_I1(&self, state: &CayleyKleinSpatialState<T>) -> T {
+            let q = state.q.matrix();
+            let I_reference = state.I;
+            let I = quaternion_rotation(&q)
+                * (I_reference * quaternion_rotation(&q).transpose());
+            I.trace()
+        }
+        /// `tr(I_k²)`: Casimir: the group leaves it alone.
+        pub fn trace_I2(&self, state: &CayleyKleinSpatialState<T>) -> T {
+            let q = state.q.matrix();
+            let I_reference = state.I;
+            let I = quaternion_rotation(&q)
+                * (I_reference * quaternion_rotation(&q).transpose());
+            (I * I).trace()
+        }
+        /// `tr(I_k³)`: Casimir: the group leaves it alone.
+        pub fn trace_I3(&self, state: &CayleyKleinSpatialState<T>) -> T {
+            let q = state.q.matrix();
+            let I_reference = state.I;
+            let I = quaternion_rotation(&q)
+                * (I_reference * quaternion_rotation(&q).transpose());
+            (I * (I * I)).trace()
+        }
+    }
+    impl<T: Real> CayleyKleinSpatial<T> {
+        /// The discrete energy of the edge between two consecutive states, `-4 c re(w_k)/h² + 2 im(w_k)·((I_k - c Id) im(w_k))/h² + 4 c/h²`: bounded, since the stepper is symplectic.
+        pub fn discrete_energy(
+            &self,
+            h: T,
+            before: &CayleyKleinSpatialState<T>,
+            after: &CayleyKleinSpatialState<T>,
+        ) -> T {
+            let CayleyKleinSpatialParameters { c, .. } = self.parameters;
+            let q = before.q.matrix();
+            let I_reference = before.I;
+            let I = quaternion_rotation(&q)
+                * (I_reference * quaternion_rotation(&q).transpose());
+            let w = (after.q * before.q.inverse()).matrix();
+            let t1 = quaternion_imaginary(&w);
+            (T::from_f64(2.0) * t1.dot(&((I - SMatrix::<T, 3, 3>::identity() * c) * t1)))
+                / (h * h) - (T::from_f64(4.0) * c * quaternion_real(&w)) / (h * h)
+                + (T::from_f64(4.0) * c) / (h * h)
+        }
     }
     /// One trajectory of the model, its type hidden.
     struct CayleyKleinSpatialTrajectory {
@@ -411,6 +455,10 @@ pub mod cayley_klein_spatial {
         fn invariants(&self, out: &mut [f64]) {
             let state = &self.state;
             let out = put(out, [self.model.energy(state)]);
+            let out = put(out, rows(state.spatial_momentum().0));
+            let out = put(out, [self.model.trace_I1(state)]);
+            let out = put(out, [self.model.trace_I2(state)]);
+            let out = put(out, [self.model.trace_I3(state)]);
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
@@ -420,6 +468,52 @@ pub mod cayley_klein_spatial {
                 [{
                     let (kinetic, potential) = self.model.energies(state);
                     kinetic.abs() + potential.abs()
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let m = state.spatial_momentum().0;
+                    let value: T = m.dot(&m).sqrt();
+                    value
+                }; 3usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let q = state.q.matrix();
+                    let I_reference = state.I;
+                    let I = quaternion_rotation(&q)
+                        * (I_reference * quaternion_rotation(&q).transpose());
+                    let value: T = (I * I).trace().sqrt();
+                    value
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let q = state.q.matrix();
+                    let I_reference = state.I;
+                    let I = quaternion_rotation(&q)
+                        * (I_reference * quaternion_rotation(&q).transpose());
+                    let value: T = (I * I).trace().sqrt() * (I * I).trace().sqrt();
+                    value
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let q = state.q.matrix();
+                    let I_reference = state.I;
+                    let I = quaternion_rotation(&q)
+                        * (I_reference * quaternion_rotation(&q).transpose());
+                    let value: T = (I * I).trace().sqrt() * (I * I).trace().sqrt()
+                        * (I * I).trace().sqrt();
+                    value
                 }; 1usize],
             );
             let _ = out;
@@ -433,7 +527,7 @@ pub mod cayley_klein_spatial {
             doc: "Free rigid body in unit quaternions, spatial representation.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   -4 c re(w_k)/h + 2 im(w_k)·((I_k - c Id) im(w_k))/h\nmomentum of q        2 im((-c Id/h + ½ quat(2 (I_k - c Id) im(w_k)/h)) w_kᵀ)\nRiccati form         none: the group is not SO(n)\ninvariants           energy\ntime reversal        not symmetric: first order\ncertificate          10 identities proved by normal form, 6 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
+            summary: "action of one step   -4 c re(w_k)/h + 2 im(w_k)·((I_k - c Id) im(w_k))/h\nmomentum of q        2 im((-c Id/h + ½ quat(2 (I_k - c Id) im(w_k)/h)) w_kᵀ)\nRiccati form         none: the group is not SO(n)\ninvariants           energy, spatial_momentum, trace_I1, trace_I2, trace_I3\ntime reversal        not symmetric: first order\ncertificate          10 identities proved by normal form, 6 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
             solver: "Newton: the group is not SO(n): Newton on the derived residual",
             order: 1u32,
             orders: &[1],
@@ -515,6 +609,30 @@ pub mod cayley_klein_spatial {
                     formula: "½ μ·I⁻¹μ",
                     rows: 1usize,
                     conserved: Conserved::Boundedly,
+                },
+                Invariant {
+                    name: "spatial_momentum",
+                    formula: "m",
+                    rows: 3usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "trace_I1",
+                    formula: "tr(I_k)",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "trace_I2",
+                    formula: "tr(I_k²)",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "trace_I3",
+                    formula: "tr(I_k³)",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
                 },
             ],
             open: Self::open,

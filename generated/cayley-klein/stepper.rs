@@ -341,6 +341,27 @@ pub mod cayley_klein {
             let (kinetic, potential) = self.energies(state);
             kinetic + potential
         }
+        /// `μ_k·μ_k`: Casimir: constant on coadjoint orbits.
+        pub fn momentum_squared(&self, state: &CayleyKleinState<T>) -> T {
+            let μ = state.body_momentum().0;
+            μ.dot(&μ)
+        }
+    }
+    impl<T: Real> CayleyKlein<T> {
+        /// The discrete energy of the edge between two consecutive states, `-4 c re(W_k)/h² + 2 im(W_k)·((I - c Id) im(W_k))/h² + 4 c/h²`: bounded, since the stepper is symplectic.
+        pub fn discrete_energy(
+            &self,
+            h: T,
+            before: &CayleyKleinState<T>,
+            after: &CayleyKleinState<T>,
+        ) -> T {
+            let CayleyKleinParameters { I, c, .. } = self.parameters;
+            let W = (before.q.inverse() * after.q).matrix();
+            let t1 = quaternion_imaginary(&W);
+            (T::from_f64(2.0) * t1.dot(&((I - SMatrix::<T, 3, 3>::identity() * c) * t1)))
+                / (h * h) - (T::from_f64(4.0) * c * quaternion_real(&W)) / (h * h)
+                + (T::from_f64(4.0) * c) / (h * h)
+        }
     }
     /// One trajectory of the model, its type hidden.
     struct CayleyKleinTrajectory {
@@ -373,6 +394,8 @@ pub mod cayley_klein {
         fn invariants(&self, out: &mut [f64]) {
             let state = &self.state;
             let out = put(out, [self.model.energy(state)]);
+            let out = put(out, rows(state.spatial_momentum().0));
+            let out = put(out, [self.model.momentum_squared(state)]);
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
@@ -382,6 +405,27 @@ pub mod cayley_klein {
                 [{
                     let (kinetic, potential) = self.model.energies(state);
                     kinetic.abs() + potential.abs()
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let q = state.q.matrix();
+                    let μ = state.body_momentum().0;
+                    let value: T = (quaternion_rotation(&q) * μ)
+                        .dot(&(quaternion_rotation(&q) * μ))
+                        .sqrt();
+                    value
+                }; 3usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let μ = state.body_momentum().0;
+                    let value: T = μ.dot(&μ).sqrt() * μ.dot(&μ).sqrt();
+                    value
                 }; 1usize],
             );
             let _ = out;
@@ -395,7 +439,7 @@ pub mod cayley_klein {
             doc: "Free rigid body in unit quaternions. The body momentum is the map q -> q* m q of Hopf: its fibres over the sphere of body momenta are circles.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   -4 c re(W_k)/h + 2 im(W_k)·((I - c Id) im(W_k))/h\nmomentum of q        2 im((-c Id/h + ½ quat(2 (I - c Id) im(W_k)/h)) W_kᵀ)\nRiccati form         none: the group is not SO(n)\ninvariants           energy\ntime reversal        symmetric: second order\ncertificate          4 identities proved by normal form, 6 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
+            summary: "action of one step   -4 c re(W_k)/h + 2 im(W_k)·((I - c Id) im(W_k))/h\nmomentum of q        2 im((-c Id/h + ½ quat(2 (I - c Id) im(W_k)/h)) W_kᵀ)\nRiccati form         none: the group is not SO(n)\ninvariants           energy, spatial_momentum, momentum_squared\ntime reversal        symmetric: second order\ncertificate          4 identities proved by normal form, 6 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
             solver: "Newton: the group is not SO(n): Newton on the derived residual",
             order: 2u32,
             orders: &[2, 4, 6, 8],
@@ -469,6 +513,18 @@ pub mod cayley_klein {
                     formula: "½ μ·I⁻¹μ",
                     rows: 1usize,
                     conserved: Conserved::Boundedly,
+                },
+                Invariant {
+                    name: "spatial_momentum",
+                    formula: "q μ",
+                    rows: 3usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "momentum_squared",
+                    formula: "μ_k·μ_k",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
                 },
             ],
             open: Self::open,

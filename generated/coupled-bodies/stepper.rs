@@ -461,6 +461,44 @@ pub mod coupled_bodies {
             let (kinetic, potential) = self.energies(state);
             kinetic + potential
         }
+        /// `Λ1 μ1 + Λ2 μ2`: Noether: the action is invariant under rotations of space.
+        pub fn total_momentum(&self, state: &CoupledBodiesState<T>) -> SVector<T, 3> {
+            state.spatial_momentum_Λ1().0 + state.spatial_momentum_Λ2().0
+        }
+        /// `(μ_{1,k} + R_k μ_{2,k})·(μ_{1,k} + R_k μ_{2,k})`: Casimir: the Kelvin-Noether quantity of what is advected.
+        pub fn total_momentum_squared(&self, state: &CoupledBodiesState<T>) -> T {
+            let Λ1 = state.Λ1.matrix();
+            let Λ2 = state.Λ2.matrix();
+            let R = Λ1.tr_mul(&Λ2);
+            let μ1 = state.body_momentum_Λ1().0;
+            let μ2 = state.body_momentum_Λ2().0;
+            let t1 = μ1 + R * μ2;
+            t1.dot(&t1)
+        }
+    }
+    impl<T: Real> CoupledBodies<T> {
+        /// The discrete energy of the edge between two consecutive states, `-tr(J₁ Ω_{1,k})/h² - tr(J₂ Ω_{2,k})/h² - eps ((Ω_{1,k} - Id) d₁)·(R_k (Ω_{2,k} - Id) d₂)/h² + tr(J₁)/h² + tr(J₂)/h² + eps ((Id - Id) d₁)·(R_k (Id - Id) d₂)/h²`: bounded, since the stepper is symplectic.
+        pub fn discrete_energy(
+            &self,
+            h: T,
+            before: &CoupledBodiesState<T>,
+            after: &CoupledBodiesState<T>,
+        ) -> T {
+            let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
+            let Λ1 = before.Λ1.matrix();
+            let Λ2 = before.Λ2.matrix();
+            let R = Λ1.tr_mul(&Λ2);
+            let Ω1 = (before.Λ1.inverse() * after.Λ1).matrix();
+            let Ω2 = (before.Λ2.inverse() * after.Λ2).matrix();
+            let t1 = SMatrix::<T, 3, 3>::identity() - SMatrix::<T, 3, 3>::identity();
+            J1.trace() / (h * h) - (J1 * Ω1).trace() / (h * h)
+                - (J2 * Ω2).trace() / (h * h)
+                - (eps
+                    * ((Ω1 - SMatrix::<T, 3, 3>::identity()) * d1)
+                        .dot(&(R * ((Ω2 - SMatrix::<T, 3, 3>::identity()) * d2))))
+                    / (h * h) + J2.trace() / (h * h)
+                + (eps * (t1 * d1).dot(&(R * (t1 * d2)))) / (h * h)
+        }
     }
     /// One trajectory of the model, its type hidden.
     struct CoupledBodiesTrajectory {
@@ -497,6 +535,8 @@ pub mod coupled_bodies {
         fn invariants(&self, out: &mut [f64]) {
             let state = &self.state;
             let out = put(out, [self.model.energy(state)]);
+            let out = put(out, rows(self.model.total_momentum(state)));
+            let out = put(out, [self.model.total_momentum_squared(state)]);
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
@@ -506,6 +546,30 @@ pub mod coupled_bodies {
                 [{
                     let (kinetic, potential) = self.model.energies(state);
                     kinetic.abs() + potential.abs()
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let Λ1 = state.Λ1.matrix();
+                    let Λ2 = state.Λ2.matrix();
+                    let μ1 = state.body_momentum_Λ1().0;
+                    let μ2 = state.body_momentum_Λ2().0;
+                    let value: T = (Λ1 * μ1).dot(&(Λ1 * μ1)).sqrt()
+                        + (Λ2 * μ2).dot(&(Λ2 * μ2)).sqrt();
+                    value
+                }; 3usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let μ1 = state.body_momentum_Λ1().0;
+                    let μ2 = state.body_momentum_Λ2().0;
+                    let value: T = (μ1.dot(&μ1).sqrt() + μ2.dot(&μ2).sqrt())
+                        * (μ1.dot(&μ1).sqrt() + μ2.dot(&μ2).sqrt());
+                    value
                 }; 1usize],
             );
             let _ = out;
@@ -519,7 +583,7 @@ pub mod coupled_bodies {
             doc: "Two rigid bodies with a spherical joint.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   -tr(J₁ Ω_{1,k})/h - tr(J₂ Ω_{2,k})/h - eps ((Ω_{1,k} - Id) d₁)·(R_k (Ω_{2,k} - Id) d₂)/h\nmomentum of Λ1       -(J₁/h + eps R_k (Ω_{2,k} - Id) d₂ d₁ᵀ/h) Ω_{1,k}ᵀ + Ω_{1,k} (J₁/h + eps d₁ d₂ᵀ (Ω_{2,k}ᵀ - Id) R_kᵀ/h)\nmomentum of Λ2       -(J₂/h + eps R_kᵀ (Ω_{1,k} - Id) d₁ d₂ᵀ/h) Ω_{2,k}ᵀ + Ω_{2,k} (J₂/h + eps d₂ d₁ᵀ (Ω_{1,k}ᵀ - Id) R_k/h)\nRiccati form         coupled, C = J₁; coupled, C = J₂\ninvariants           energy\ntime reversal        symmetric: second order\ncertificate          36 identities proved by normal form",
+            summary: "action of one step   -tr(J₁ Ω_{1,k})/h - tr(J₂ Ω_{2,k})/h - eps ((Ω_{1,k} - Id) d₁)·(R_k (Ω_{2,k} - Id) d₂)/h\nmomentum of Λ1       -(J₁/h + eps R_k (Ω_{2,k} - Id) d₂ d₁ᵀ/h) Ω_{1,k}ᵀ + Ω_{1,k} (J₁/h + eps d₁ d₂ᵀ (Ω_{2,k}ᵀ - Id) R_kᵀ/h)\nmomentum of Λ2       -(J₂/h + eps R_kᵀ (Ω_{1,k} - Id) d₁ d₂ᵀ/h) Ω_{2,k}ᵀ + Ω_{2,k} (J₂/h + eps d₂ d₁ᵀ (Ω_{1,k}ᵀ - Id) R_k/h)\nRiccati form         coupled, C = J₁; coupled, C = J₂\ninvariants           energy, total_momentum, total_momentum_squared\ntime reversal        symmetric: second order\ncertificate          36 identities proved by normal form",
             solver: "Newton: several velocities are solved together: Newton on the derived residuals",
             order: 2u32,
             orders: &[2, 4, 6, 8],
@@ -665,6 +729,18 @@ pub mod coupled_bodies {
                     formula: "½ μ·I⁻¹μ",
                     rows: 1usize,
                     conserved: Conserved::Boundedly,
+                },
+                Invariant {
+                    name: "total_momentum",
+                    formula: "Λ1 μ1 + Λ2 μ2",
+                    rows: 3usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "total_momentum_squared",
+                    formula: "(μ_{1,k} + R_k μ_{2,k})·(μ_{1,k} + R_k μ_{2,k})",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
                 },
             ],
             open: Self::open,

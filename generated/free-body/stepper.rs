@@ -270,7 +270,7 @@ pub mod free_body {
             let (kinetic, potential) = self.energies(state);
             kinetic + potential
         }
-        /// `μ_k·μ_k`: Casimir.
+        /// `μ_k·μ_k`: Casimir: constant on coadjoint orbits.
         pub fn momentum_squared(&self, state: &FreeBodyState<T>) -> T {
             let μ = state.body_momentum().0;
             μ.dot(&μ)
@@ -280,6 +280,20 @@ pub mod free_body {
             let FreeBodyParameters { J, .. } = self.parameters;
             let μ = state.body_momentum().0;
             μ.dot(&(J * (J * μ)))
+        }
+    }
+    impl<T: Real> FreeBody<T> {
+        /// The discrete energy of the edge between two consecutive states, `tr(J)/h² - tr(J Ω_k)/h²`: constant, since tr(C Ω) is the sum of the eigenvalues of Ω C, the half of those of the Lax matrix that the principal solution takes.
+        pub fn discrete_energy(
+            &self,
+            h: T,
+            before: &FreeBodyState<T>,
+            after: &FreeBodyState<T>,
+        ) -> T {
+            let FreeBodyParameters { J, .. } = self.parameters;
+            let Ω = (before.Λ.inverse() * after.Λ).matrix();
+            let t1 = h.powi(-2);
+            t1 * J.trace() - t1 * (J * Ω).trace()
         }
     }
     /// One trajectory of the model, its type hidden.
@@ -331,8 +345,9 @@ pub mod free_body {
                 out,
                 [{
                     type T = f64;
+                    let Λ = state.Λ.matrix();
                     let μ = state.body_momentum().0;
-                    let value: T = μ.dot(&μ).sqrt();
+                    let value: T = (Λ * μ).dot(&(Λ * μ)).sqrt();
                     value
                 }; 3usize],
             );
@@ -341,7 +356,7 @@ pub mod free_body {
                 [{
                     type T = f64;
                     let μ = state.body_momentum().0;
-                    let value: T = μ.dot(&μ);
+                    let value: T = μ.dot(&μ).sqrt() * μ.dot(&μ).sqrt();
                     value
                 }; 1usize],
             );
@@ -351,7 +366,8 @@ pub mod free_body {
                     type T = f64;
                     let FreeBodyParameters { J, .. } = self.model.parameters;
                     let μ = state.body_momentum().0;
-                    let value: T = (J * J).trace() * μ.dot(&μ);
+                    let value: T = (J * J).trace()
+                        * (μ.dot(&μ).sqrt() * μ.dot(&μ).sqrt());
                     value
                 }; 1usize],
             );

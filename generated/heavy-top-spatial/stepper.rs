@@ -366,41 +366,35 @@ pub mod heavy_top_spatial {
             let (kinetic, potential) = self.energies(state);
             kinetic + potential
         }
-        /// `m_k·z`: Casimir, and momentum about a fixed axis.
-        pub fn momentum_z(&self, state: &HeavyTopSpatialState<T>) -> T {
-            let HeavyTopSpatialParameters { z, .. } = self.parameters;
-            let m = state.spatial_momentum().0;
-            m.dot(&z)
-        }
-        /// `χ_k·χ_k`: Casimir.
+        /// `χ_k·χ_k`: Casimir: the group leaves it alone.
         pub fn chi_squared(&self, state: &HeavyTopSpatialState<T>) -> T {
             let Λ = state.Λ.matrix();
             let χ_reference = state.χ;
             let χ = Λ * χ_reference;
             χ.dot(&χ)
         }
-        /// `tr(J_k)`: Casimir: eigenvalues.
+        /// `tr(J_k)`: Casimir: the group leaves it alone.
         pub fn trace_J1(&self, state: &HeavyTopSpatialState<T>) -> T {
             let Λ = state.Λ.matrix();
             let J_reference = state.J;
             let J = Λ * (J_reference * Λ.transpose());
             J.trace()
         }
-        /// `tr(J_k²)`: Casimir: eigenvalues.
+        /// `tr(J_k²)`: Casimir: the group leaves it alone.
         pub fn trace_J2(&self, state: &HeavyTopSpatialState<T>) -> T {
             let Λ = state.Λ.matrix();
             let J_reference = state.J;
             let J = Λ * (J_reference * Λ.transpose());
             (J * J).trace()
         }
-        /// `tr(J_k³)`: Casimir: eigenvalues.
+        /// `tr(J_k³)`: Casimir: the group leaves it alone.
         pub fn trace_J3(&self, state: &HeavyTopSpatialState<T>) -> T {
             let Λ = state.Λ.matrix();
             let J_reference = state.J;
             let J = Λ * (J_reference * Λ.transpose());
             (J * (J * J)).trace()
         }
-        /// `χ_k·(J_k χ_k)`: Casimir.
+        /// `χ_k·(J_k χ_k)`: Casimir: the group leaves it alone.
         pub fn chi_J_chi(&self, state: &HeavyTopSpatialState<T>) -> T {
             let Λ = state.Λ.matrix();
             let J_reference = state.J;
@@ -408,6 +402,44 @@ pub mod heavy_top_spatial {
             let χ_reference = state.χ;
             let χ = Λ * χ_reference;
             χ.dot(&(J * χ))
+        }
+        /// `χ_k·(J_k² χ_k)`: Casimir: the group leaves it alone.
+        pub fn chi_J2_chi(&self, state: &HeavyTopSpatialState<T>) -> T {
+            let Λ = state.Λ.matrix();
+            let J_reference = state.J;
+            let J = Λ * (J_reference * Λ.transpose());
+            let χ_reference = state.χ;
+            let χ = Λ * χ_reference;
+            χ.dot(&(J * (J * χ)))
+        }
+        /// `m_k·z`: Noether: the action is invariant under what keeps the axis in space.
+        pub fn momentum_z(&self, state: &HeavyTopSpatialState<T>) -> T {
+            let HeavyTopSpatialParameters { z, .. } = self.parameters;
+            let m = state.spatial_momentum().0;
+            m.dot(&z)
+        }
+    }
+    impl<T: Real> HeavyTopSpatial<T> {
+        /// The discrete energy of the edge between two consecutive states, `-tr(ω_k J_k)/h² + tr(J_k)/h² + ½ w z·χ_k + ½ w z·χ_{k+1}`: bounded, since the stepper is symplectic.
+        pub fn discrete_energy(
+            &self,
+            h: T,
+            before: &HeavyTopSpatialState<T>,
+            after: &HeavyTopSpatialState<T>,
+        ) -> T {
+            let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
+            let Λ = before.Λ.matrix();
+            let J_reference = before.J;
+            let J = Λ * (J_reference * Λ.transpose());
+            let χ_reference = before.χ;
+            let χ = Λ * χ_reference;
+            let ω = (after.Λ * before.Λ.inverse()).matrix();
+            let Λ_next = after.Λ.matrix();
+            let χ_reference = after.χ;
+            let χ_next = Λ_next * χ_reference;
+            let t1 = h.powi(-2);
+            t1 * J.trace() - t1 * (ω * J).trace() + T::from_f64(0.5) * w * z.dot(&χ)
+                + T::from_f64(0.5) * w * z.dot(&χ_next)
         }
     }
     /// One trajectory of the model, its type hidden.
@@ -443,12 +475,13 @@ pub mod heavy_top_spatial {
         fn invariants(&self, out: &mut [f64]) {
             let state = &self.state;
             let out = put(out, [self.model.energy(state)]);
-            let out = put(out, [self.model.momentum_z(state)]);
             let out = put(out, [self.model.chi_squared(state)]);
             let out = put(out, [self.model.trace_J1(state)]);
             let out = put(out, [self.model.trace_J2(state)]);
             let out = put(out, [self.model.trace_J3(state)]);
             let out = put(out, [self.model.chi_J_chi(state)]);
+            let out = put(out, [self.model.chi_J2_chi(state)]);
+            let out = put(out, [self.model.momentum_z(state)]);
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
@@ -458,16 +491,6 @@ pub mod heavy_top_spatial {
                 [{
                     let (kinetic, potential) = self.model.energies(state);
                     kinetic.abs() + potential.abs()
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let HeavyTopSpatialParameters { z, .. } = self.model.parameters;
-                    let m = state.spatial_momentum().0;
-                    let value: T = m.dot(&m).sqrt() * z.dot(&z).sqrt();
-                    value
                 }; 1usize],
             );
             let out = put(
@@ -510,7 +533,8 @@ pub mod heavy_top_spatial {
                     let Λ = state.Λ.matrix();
                     let J_reference = state.J;
                     let J = Λ * (J_reference * Λ.transpose());
-                    let value: T = (J * J).trace().sqrt().powi(3);
+                    let value: T = (J * J).trace().sqrt() * (J * J).trace().sqrt()
+                        * (J * J).trace().sqrt();
                     value
                 }; 1usize],
             );
@@ -528,6 +552,30 @@ pub mod heavy_top_spatial {
                     value
                 }; 1usize],
             );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let Λ = state.Λ.matrix();
+                    let J_reference = state.J;
+                    let J = Λ * (J_reference * Λ.transpose());
+                    let χ_reference = state.χ;
+                    let χ = Λ * χ_reference;
+                    let value: T = χ.dot(&χ).sqrt() * (J * J).trace().sqrt()
+                        * (J * J).trace().sqrt() * χ.dot(&χ).sqrt();
+                    value
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let HeavyTopSpatialParameters { z, .. } = self.model.parameters;
+                    let m = state.spatial_momentum().0;
+                    let value: T = m.dot(&m).sqrt() * z.dot(&z).sqrt();
+                    value
+                }; 1usize],
+            );
             let _ = out;
         }
     }
@@ -539,7 +587,7 @@ pub mod heavy_top_spatial {
             doc: "Heavy top, spatial representation.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   -tr(ω_k J_k)/h - ½ h w χ_k·z - ½ h w χ_{k+1}·z\nmomentum of Λ        ω_k J_k/h - J_k ω_kᵀ/h\nRiccati form         exact, C = J_k\ninvariants           energy, momentum_z, chi_squared, trace_J1, trace_J2, trace_J3, chi_J_chi\ntime reversal        symmetric: second order\ncertificate          22 identities proved by normal form",
+            summary: "action of one step   -tr(ω_k J_k)/h - ½ h w χ_k·z - ½ h w χ_{k+1}·z\nmomentum of Λ        ω_k J_k/h - J_k ω_kᵀ/h\nRiccati form         exact, C = J_k\ninvariants           energy, chi_squared, trace_J1, trace_J2, trace_J3, chi_J_chi, chi_J2_chi, momentum_z\ntime reversal        symmetric: second order\ncertificate          22 identities proved by normal form",
             solver: "Moser-Veselov: C is carried by the motion, constant in the body, and symmetric: explicit after one quartic a step",
             order: 2u32,
             orders: &[2, 4, 6, 8],
@@ -647,12 +695,6 @@ pub mod heavy_top_spatial {
                     conserved: Conserved::Boundedly,
                 },
                 Invariant {
-                    name: "momentum_z",
-                    formula: "m_k·z",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
                     name: "chi_squared",
                     formula: "χ_k·χ_k",
                     rows: 1usize,
@@ -679,6 +721,18 @@ pub mod heavy_top_spatial {
                 Invariant {
                     name: "chi_J_chi",
                     formula: "χ_k·(J_k χ_k)",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "chi_J2_chi",
+                    formula: "χ_k·(J_k² χ_k)",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "momentum_z",
+                    formula: "m_k·z",
                     rows: 1usize,
                     conserved: Conserved::Exactly,
                 },

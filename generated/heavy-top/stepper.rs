@@ -305,7 +305,7 @@ pub mod heavy_top {
             let (kinetic, potential) = self.energies(state);
             kinetic + potential
         }
-        /// `μ_k·Γ_k`: Casimir, and momentum about a fixed axis.
+        /// `μ_k·Γ_k`: Casimir: the Kelvin-Noether quantity of what is advected.
         pub fn momentum_Gamma(&self, state: &HeavyTopState<T>) -> T {
             let HeavyTopParameters { z, .. } = self.parameters;
             let Λ = state.Λ.matrix();
@@ -313,12 +313,31 @@ pub mod heavy_top {
             let μ = state.body_momentum().0;
             μ.dot(&Γ)
         }
-        /// `Γ_k·Γ_k`: Casimir.
+        /// `Γ_k·Γ_k`: Casimir: the group leaves it alone.
         pub fn Gamma_squared(&self, state: &HeavyTopState<T>) -> T {
             let HeavyTopParameters { z, .. } = self.parameters;
             let Λ = state.Λ.matrix();
             let Γ = Λ.tr_mul(&z);
             Γ.dot(&Γ)
+        }
+    }
+    impl<T: Real> HeavyTop<T> {
+        /// The discrete energy of the edge between two consecutive states, `tr(J)/h² - tr(J Ω_k)/h² + ½ gU·Γ_k + ½ gU·Γ_{k+1}`: bounded, since the stepper is symplectic.
+        pub fn discrete_energy(
+            &self,
+            h: T,
+            before: &HeavyTopState<T>,
+            after: &HeavyTopState<T>,
+        ) -> T {
+            let HeavyTopParameters { J, gU, z, .. } = self.parameters;
+            let Λ = before.Λ.matrix();
+            let Γ = Λ.tr_mul(&z);
+            let Ω = (before.Λ.inverse() * after.Λ).matrix();
+            let Λ_next = after.Λ.matrix();
+            let Γ_next = Λ_next.tr_mul(&z);
+            let t1 = h.powi(-2);
+            t1 * J.trace() - t1 * (J * Ω).trace() + T::from_f64(0.5) * gU.dot(&Γ)
+                + T::from_f64(0.5) * gU.dot(&Γ_next)
         }
     }
     /// One trajectory of the model, its type hidden.

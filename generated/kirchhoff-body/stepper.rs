@@ -655,6 +655,32 @@ pub mod kirchhoff_body {
             kinetic + potential
         }
     }
+    impl<T: Real> KirchhoffBody<T> {
+        /// The discrete energy of the edge between two consecutive states, `-tr(J rot(V_k))/h² + 2 (½ (pos(V_k) + rot(V_k)ᵀ pos(V_k)))·(½ M (pos(V_k) + rot(V_k)ᵀ pos(V_k)))/(2 h)² + (vee(rot(V_k))·(½ D (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/h² + ½ b·P_k + ½ b·P_{k+1} + tr(J)/h²`: bounded, since the stepper is symplectic.
+        pub fn discrete_energy(
+            &self,
+            h: T,
+            before: &KirchhoffBodyState<T>,
+            after: &KirchhoffBodyState<T>,
+        ) -> T {
+            let KirchhoffBodyParameters { J, M, D, b, Z, .. } = self.parameters;
+            let G = before.G.matrix();
+            let P = G.tr_mul(&Z);
+            let V = (before.G.inverse() * after.G).matrix();
+            let G_next = after.G.matrix();
+            let P_next = G_next.tr_mul(&Z);
+            let t1 = motion_rotation(&V);
+            let t2 = motion_translation(&V);
+            let t3 = t2 + t1.tr_mul(&t2);
+            (T::from_f64(2.0)
+                * (t3 * T::from_f64(0.5)).dot(&(M * t3 * T::from_f64(0.5))))
+                / ((T::from_f64(2.0) * h) * (T::from_f64(2.0) * h))
+                - (J * t1).trace() / (h * h)
+                + vee(&t1).dot(&(D * t3 * T::from_f64(0.5))) / (h * h)
+                + T::from_f64(0.5) * b.dot(&P) + T::from_f64(0.5) * b.dot(&P_next)
+                + J.trace() / (h * h)
+        }
+    }
     /// One trajectory of the model, its type hidden.
     struct KirchhoffBodyTrajectory {
         model: KirchhoffBody<f64>,
