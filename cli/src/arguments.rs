@@ -103,6 +103,20 @@ fn planned(command: Command, every: &'static str, out: &'static str) -> Command 
             )
             .value_parser(value_parser!(u32)),
         )
+        .arg(option(
+            "solver",
+            "NAME",
+            "Solver of the implicit step instead of the model's own, where it offers several",
+        ))
+        .arg(
+            option(
+                "dim",
+                "N",
+                "Size of the matrices, for a model of any size: its first case of that size, or the \
+                 size of the case file",
+            )
+            .value_parser(positive_count),
+        )
         .arg(option("every", "N", every).value_parser(positive_count))
         .arg(option("out", "DIR", out).value_parser(value_parser!(std::path::PathBuf)))
         .arg(flag("force", "Replace DIR when it holds an earlier run").requires("out"))

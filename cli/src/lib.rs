@@ -98,7 +98,7 @@ fn dispatch(
             let text = |key: &str| matches.get_one::<String>(key).map(String::as_str);
             let entry = gallery.find(text("model").unwrap_or_default())?;
             let case = gallery::case(entry, text("case"))?;
-            let toml = case_file::write(&entry.card, case);
+            let toml = case_file::write(&entry.card_of(case), case);
             streams.out.write_all(toml.as_bytes())?;
             Ok(DONE)
         }

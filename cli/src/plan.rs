@@ -6,6 +6,7 @@ use crate::failure::Failure;
 use crate::gallery::{self, Case, Entry};
 use clap::ArgMatches;
 use clebsch::card::{Card, Field, OpenError, Settings, Trajectory};
+use clebsch::solvers::Method;
 use clebsch::{ParameterError, StartError};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -24,6 +25,8 @@ pub struct Plan {
     pub every: u64,
     /// The options that determine the results, as given; `null` where not given.
     pub arguments: Value,
+    /// The solver asked for.
+    solver: Option<Method>,
     /// For a case read from a file: its name, and the line of each key.
     origin: Option<(String, BTreeMap<String, usize>)>,
 }
@@ -39,12 +42,21 @@ impl Plan {
         let h = matches.get_one::<f64>("h").copied();
         let every = matches.get_one::<u64>("every").copied();
         let order = matches.get_one::<u32>("order").copied();
+        let solver = match matches.get_one::<String>("solver") {
+            None => None,
+            Some(name) => match name.parse::<Method>() {
+                Ok(method) => Some(method),
+                Err(error) => return Err(Failure::Usage(format!("--solver {name}: {error}"))),
+            },
+        };
+        let size = matches.get_one::<u64>("dim").copied();
+        let cards = of_size(entry, size)?;
         let (mut case, origin) = match asked.filter(|name| is_file(name)) {
             Some(file) => {
-                let Located { case, file, lines } = read(file, &entry.card)?;
+                let Located { case, file, lines } = read(file, &cards)?;
                 (case, Some((file, lines)))
             }
-            None => (gallery::case(entry, asked)?.clone(), None),
+            None => (case_of_size(entry, asked, size)?.clone(), None),
         };
         case.steps = steps.unwrap_or(case.steps);
         case.h = h.unwrap_or(case.h);
@@ -59,7 +71,10 @@ impl Plan {
                 "h": h,
                 "order": order,
                 "every": every,
+                "solver": solver.map(Method::name),
+                "dim": size,
             }),
+            solver,
             origin,
         })
     }
@@ -72,6 +87,7 @@ impl Plan {
             order: None,
             every: every.max(1),
             arguments: Value::Null,
+            solver: None,
             origin: None,
         }
     }
@@ -91,6 +107,7 @@ impl Plan {
         let settings = Settings {
             h: *h,
             order: self.order,
+            solver: self.solver,
         };
         (card.open)(parameters, initial, settings).map_err(|error| match error {
             OpenError::Parameter(wrong) | OpenError::Start(StartError::Initial(wrong)) => {
@@ -100,6 +117,7 @@ impl Plan {
             OpenError::Start(StartError::Refused(cause)) => {
                 Failure::Failed(format!("cannot take the first step: {cause}"))
             }
+            OpenError::Solver { .. } => Failure::Usage(format!("--solver: {error}")),
             OpenError::Count { .. } | OpenError::Order { .. } => Failure::Usage(error.to_string()),
         })
     }
@@ -130,8 +148,62 @@ fn is_file(name: &str) -> bool {
     extension.is_some_and(|extension| extension == "toml")
 }
 
-fn read(file: &str, card: &Card) -> Result<Located, Failure> {
+/// The case of a file, by the first card whose fields it fits; the message is that of the first.
+fn read(file: &str, cards: &[Card]) -> Result<Located, Failure> {
     let text = std::fs::read_to_string(file)
         .map_err(|error| Failure::Usage(format!("cannot read the case file {file}: {error}")))?;
-    case_file::read(file, &text, card)
+    let mut first = None;
+    for card in cards {
+        match case_file::read(file, &text, card) {
+            Ok(located) => return Ok(located),
+            Err(error) => first = first.or(Some(error)),
+        }
+    }
+    Err(first.unwrap_or_else(|| Failure::Usage(format!("{file}: the model has no card"))))
+}
+
+/// The cards of the model, all or those of one size.
+fn of_size(entry: &Entry, size: Option<u64>) -> Result<Vec<Card>, Failure> {
+    let cards = entry.cards();
+    let Some(size) = size else { return Ok(cards) };
+    let has = |card: &&Card| card.dimensions.iter().any(|d| d.value as u64 == size);
+    let fitting: Vec<Card> = cards.iter().filter(has).copied().collect();
+    if fitting.is_empty() {
+        let model = entry.card.kebab;
+        let dimensions = entry.card.dimensions.iter();
+        let admitted: Vec<String> = dimensions
+            .map(|d| format!("{} from {} to {}", d.name, d.from, d.to))
+            .collect();
+        return Err(Failure::Usage(match admitted.is_empty() {
+            true => format!("--dim {size}: the matrices of `{model}` have a fixed size"),
+            false => format!("--dim {size}: `{model}` takes {}", admitted.join(", ")),
+        }));
+    }
+    Ok(fitting)
+}
+
+/// The case asked for; without a name the first one of the size asked for.
+fn case_of_size<'a>(
+    entry: &'a Entry,
+    asked: Option<&str>,
+    size: Option<u64>,
+) -> Result<&'a Case, Failure> {
+    let has = |case: &&Case| {
+        let card = entry.card_of(case);
+        size.is_none_or(|n| card.dimensions.iter().any(|d| d.value as u64 == n))
+    };
+    match (asked, size) {
+        (None, Some(n)) => entry.cases.iter().find(has).ok_or_else(|| {
+            Failure::Usage(format!(
+                "--dim {n}: no case of that size; give one: --case FILE.toml"
+            ))
+        }),
+        (Some(name), Some(n)) => match gallery::case(entry, asked)? {
+            case if has(&case) => Ok(case),
+            _ => Err(Failure::Usage(format!(
+                "--dim {n}: case `{name}` has another size"
+            ))),
+        },
+        (_, None) => gallery::case(entry, asked),
+    }
 }

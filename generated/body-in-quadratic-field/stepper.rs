@@ -552,6 +552,7 @@ pub mod body_in_quadratic_field {
                 },
             ],
             open: Self::open,
+            solvers: &[],
             dimensions: &[],
             sized: Self::sized,
         };
@@ -590,6 +591,7 @@ pub mod body_in_quadratic_field {
                 ),
                 Γ: matrix_of("Γ", initial.get(2usize))?,
             };
+            chosen_solver(settings, Self::CARD.solvers)?;
             let state = model.at_node_0(initial)?;
             let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)?;
             Ok(

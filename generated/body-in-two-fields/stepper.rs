@@ -599,6 +599,7 @@ pub mod body_in_two_fields {
                 },
             ],
             open: Self::open,
+            solvers: &[],
             dimensions: &[],
             sized: Self::sized,
         };
@@ -639,6 +640,7 @@ pub mod body_in_two_fields {
                     matrix_of("body_momentum", initial.get(1usize))?,
                 ),
             };
+            chosen_solver(settings, Self::CARD.solvers)?;
             let state = model.at_node_0(initial)?;
             let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)?;
             Ok(

@@ -636,6 +636,7 @@ pub mod cayley_klein_spatial {
                 },
             ],
             open: Self::open,
+            solvers: &[],
             dimensions: &[],
             sized: Self::sized,
         };
@@ -673,6 +674,7 @@ pub mod cayley_klein_spatial {
                 ),
                 I: matrix_of("I", initial.get(2usize))?,
             };
+            chosen_solver(settings, Self::CARD.solvers)?;
             let state = model.at_node_0(initial)?;
             let steps = Steps::plain(&model, &state, settings, Self::CARD.orders)?;
             Ok(

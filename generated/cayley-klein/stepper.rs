@@ -528,6 +528,7 @@ pub mod cayley_klein {
                 },
             ],
             open: Self::open,
+            solvers: &[],
             dimensions: &[],
             sized: Self::sized,
         };
@@ -565,6 +566,7 @@ pub mod cayley_klein {
                     matrix_of("body_momentum", initial.get(1usize))?,
                 ),
             };
+            chosen_solver(settings, Self::CARD.solvers)?;
             let state = model.at_node_0(initial)?;
             let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)?;
             Ok(

@@ -744,6 +744,7 @@ pub mod coupled_bodies {
                 },
             ],
             open: Self::open,
+            solvers: &[],
             dimensions: &[],
             sized: Self::sized,
         };
@@ -788,6 +789,7 @@ pub mod coupled_bodies {
                     matrix_of("body_momentum_Λ2", initial.get(3usize))?,
                 ),
             };
+            chosen_solver(settings, Self::CARD.solvers)?;
             let state = model.at_node_0(initial)?;
             let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)?;
             Ok(

@@ -591,6 +591,7 @@ pub mod free_body_spatial {
                 },
             ],
             open: Self::open,
+            solvers: &[],
             dimensions: &[],
             sized: Self::sized,
         };
@@ -628,6 +629,7 @@ pub mod free_body_spatial {
                 ),
                 J: matrix_of("J", initial.get(2usize))?,
             };
+            chosen_solver(settings, Self::CARD.solvers)?;
             let order = preprocessing_order(settings, Self::CARD.orders)?;
             let (state, work) = model.start_of_order(initial, settings.h, order)?;
             Ok(

@@ -469,6 +469,7 @@ pub mod free_body {
                 },
             ],
             open: Self::open,
+            solvers: &[],
             dimensions: &[],
             sized: Self::sized,
         };
@@ -505,6 +506,7 @@ pub mod free_body {
                     matrix_of("body_momentum", initial.get(1usize))?,
                 ),
             };
+            chosen_solver(settings, Self::CARD.solvers)?;
             let order = preprocessing_order(settings, Self::CARD.orders)?;
             let (state, work) = model.start_of_order(initial, settings.h, order)?;
             Ok(

@@ -738,6 +738,7 @@ pub mod heavy_top_spatial {
                 },
             ],
             open: Self::open,
+            solvers: &[],
             dimensions: &[],
             sized: Self::sized,
         };
@@ -777,6 +778,7 @@ pub mod heavy_top_spatial {
                 J: matrix_of("J", initial.get(2usize))?,
                 χ: matrix_of("χ", initial.get(3usize))?,
             };
+            chosen_solver(settings, Self::CARD.solvers)?;
             let state = model.at_node_0(initial)?;
             let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)?;
             Ok(

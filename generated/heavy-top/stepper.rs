@@ -524,6 +524,7 @@ pub mod heavy_top {
                 },
             ],
             open: Self::open,
+            solvers: &[],
             dimensions: &[],
             sized: Self::sized,
         };
@@ -562,6 +563,7 @@ pub mod heavy_top {
                     matrix_of("body_momentum", initial.get(1usize))?,
                 ),
             };
+            chosen_solver(settings, Self::CARD.solvers)?;
             let state = model.at_node_0(initial)?;
             let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)?;
             Ok(

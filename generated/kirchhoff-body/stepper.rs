@@ -844,6 +844,7 @@ pub mod kirchhoff_body {
                 },
             ],
             open: Self::open,
+            solvers: &[],
             dimensions: &[],
             sized: Self::sized,
         };
@@ -884,6 +885,7 @@ pub mod kirchhoff_body {
                     matrix_of("body_momentum", initial.get(1usize))?,
                 ),
             };
+            chosen_solver(settings, Self::CARD.solvers)?;
             let state = model.at_node_0(initial)?;
             let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)?;
             Ok(

@@ -31,6 +31,39 @@ pub struct Entry {
     pub cases: Vec<Case>,
 }
 
+impl Entry {
+    /// The cards of the model, one for each of its sizes, the default one first; one card for a
+    /// model without named sizes.
+    pub fn cards(&self) -> Vec<Card> {
+        let mut all: Vec<Vec<usize>> = vec![Vec::new()];
+        for d in self.card.dimensions {
+            let longer = |sizes: &Vec<usize>| {
+                let values = d.from..=d.to;
+                let list = values.map(|n| sizes.iter().copied().chain([n]).collect());
+                list.collect::<Vec<Vec<usize>>>()
+            };
+            all = all.iter().flat_map(longer).collect();
+        }
+        let own: Vec<usize> = self.card.dimensions.iter().map(|d| d.value).collect();
+        let others = all.iter().filter(|sizes| **sizes != own);
+        let others = others.filter_map(|sizes| (self.card.sized)(sizes));
+        [self.card].into_iter().chain(others).collect()
+    }
+
+    /// The card for the numbers of a case: the one whose fields are as long. The default one where
+    /// none is.
+    pub fn card_of(&self, case: &Case) -> Card {
+        let fits = |fields: &[clebsch::card::Field], values: &[Vec<f64>]| {
+            fields.len() == values.len()
+                && fields.iter().zip(values).all(|(f, v)| f.count() == v.len())
+        };
+        let mut cards = self.cards().into_iter();
+        cards
+            .find(|c| fits(c.parameters, &case.parameters) && fits(c.initial, &case.initial))
+            .unwrap_or(self.card)
+    }
+}
+
 /// The Poinsot matrix `J = tr(I)/2 - I` of principal moments of inertia, as its diagonal.
 pub fn poinsot(moments: [f64; 3]) -> [f64; 3] {
     let half = moments.iter().sum::<f64>() / 2.0;

@@ -3,6 +3,7 @@
 
 pub mod body_in_quadratic_field;
 pub mod body_in_two_fields;
+pub mod body_n;
 pub mod case;
 pub mod cayley_klein;
 pub mod cayley_klein_spatial;
@@ -20,6 +21,7 @@ pub fn gallery() -> Vec<Entry> {
     vec![
         body_in_quadratic_field::entry(),
         body_in_two_fields::entry(),
+        body_n::entry(),
         cayley_klein::entry(),
         cayley_klein_spatial::entry(),
         coupled_bodies::entry(),

@@ -2,6 +2,7 @@
 //! Emitted code gives one [`Card`] per model; it is read by whatever lists, starts and observes.
 
 use crate::integrate::CompositionOrder;
+use crate::solvers::Method;
 use crate::{ParameterError, StartError, StepError};
 use core::fmt;
 
@@ -99,13 +100,19 @@ pub struct Settings {
     pub h: f64,
     /// The order of a step, one of [`Card::orders`]; that of the plain step where none is given.
     pub order: Option<u32>,
+    /// The solver of the implicit step, one of [`Card::solvers`]; the model's own where none is given.
+    pub solver: Option<Method>,
 }
 
 impl Settings {
     /// Plain steps of `h`.
     #[must_use]
     pub fn step(h: f64) -> Self {
-        Self { h, order: None }
+        Self {
+            h,
+            order: None,
+            solver: None,
+        }
     }
 
     /// The same steps, of the given order.
@@ -115,6 +122,20 @@ impl Settings {
             order: Some(order),
             ..self
         }
+    }
+}
+
+/// The solver asked for, if one of those offered.
+///
+/// # Errors
+/// [`OpenError::Solver`] for any other.
+pub fn chosen_solver(
+    settings: Settings,
+    offered: &'static [&'static str],
+) -> Result<Option<Method>, OpenError> {
+    match settings.solver {
+        Some(method) if !offered.contains(&method.name()) => Err(OpenError::Solver { offered }),
+        other => Ok(other),
     }
 }
 
@@ -161,6 +182,8 @@ pub struct Card {
     pub invariants: &'static [Invariant],
     /// Starts a trajectory.
     pub open: Open,
+    /// Names of the solvers among which [`Settings::solver`] chooses; none where there is no choice.
+    pub solvers: &'static [&'static str],
     /// The named sizes of the model, with their values in this card; none for most models.
     pub dimensions: &'static [Dimension],
     /// The card of the same model at other sizes, one for each dimension; none where the model does
@@ -235,6 +258,11 @@ pub enum OpenError {
     Parameter(ParameterError),
     /// An initial value is unusable, or the first step is refused.
     Start(StartError),
+    /// The model does not offer the solver that was named.
+    Solver {
+        /// Those it offers.
+        offered: &'static [&'static str],
+    },
     /// Too few or too many numbers.
     Count {
         /// The field, or `parameters` / `initial values` for the number of fields itself.
@@ -258,6 +286,16 @@ impl fmt::Display for OpenError {
         match self {
             Self::Parameter(error) => write!(f, "{error}"),
             Self::Start(error) => write!(f, "{error}"),
+            Self::Solver { offered: [] } => {
+                write!(f, "this model has one solver only, nothing is to be chosen")
+            }
+            Self::Solver { offered } => {
+                write!(
+                    f,
+                    "no such solver; this model offers {}",
+                    offered.join(", ")
+                )
+            }
             Self::Count {
                 field,
                 expected,
@@ -288,7 +326,7 @@ impl std::error::Error for OpenError {
         match self {
             Self::Parameter(error) => Some(error),
             Self::Start(error) => Some(error),
-            Self::Count { .. } | Self::Order { .. } => None,
+            Self::Solver { .. } | Self::Count { .. } | Self::Order { .. } => None,
         }
     }
 }

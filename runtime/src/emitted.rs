@@ -3,6 +3,7 @@
 
 pub use crate::card::{
     Card, Conserved, Dimension, Field, Invariant, Kind, OpenError, Settings, Trajectory,
+    chosen_solver,
 };
 pub use crate::groups::{
     BodyImpulse, BodyMomentum, BodyMomentumMatrix, Coadjoint, Group, Linear, Orthogonal,
@@ -16,6 +17,10 @@ pub use crate::linalg::{
     twist, vee,
 };
 pub use crate::scalar::Real;
+pub use crate::solvers::Method;
+pub use crate::solvers::left_factor::{
+    LeftFactor, LeftFactorError, Unsolved, reach_of, rotation_at,
+};
 pub use crate::solvers::moser_veselov::{Edge, Free, MoserVeselovError, Order, Poinsot, forced};
 pub use crate::solvers::newton;
 pub use crate::validate;

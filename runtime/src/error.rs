@@ -2,6 +2,7 @@
 //! Takes the numbers of the failure; gives messages that say what to change.
 
 use crate::groups::{NotARigidMotion, NotARotation, NotInvertible};
+use crate::solvers::left_factor::{LeftFactorError, Unsolved};
 use crate::solvers::moser_veselov::{MoserVeselovError, PoinsotError};
 use crate::solvers::newton::NewtonError;
 use core::fmt;
@@ -96,6 +97,8 @@ pub enum Problem {
     },
     /// The matrix is no Poinsot matrix of a body.
     Poinsot(PoinsotError),
+    /// The matrix is no left factor of a Moser-Veselov equation.
+    LeftFactor(LeftFactorError),
     /// The matrix is no rotation.
     Rotation(NotARotation),
 }
@@ -143,6 +146,7 @@ impl fmt::Display for Problem {
             Self::NotPositive { value } => write!(f, "{value} is not positive"),
             Self::AssumptionFails { text } => write!(f, "the assumption `{text}` does not hold"),
             Self::Poinsot(error) => write!(f, "{error}"),
+            Self::LeftFactor(error) => write!(f, "{error}"),
             Self::Rotation(error) => write!(f, "{error}"),
         }
     }
@@ -279,6 +283,10 @@ pub struct StepError {
 pub enum StepCause {
     /// The Moser-Veselov equation has no principal solution: the step is too long.
     MoserVeselov(MoserVeselovError),
+    /// The solver of a left factor refuses: mostly the step is too long.
+    LeftFactor(Unsolved),
+    /// The left factor made of the state is none.
+    Factor(LeftFactorError),
     /// The Newton iteration failed.
     Newton(NewtonError),
     /// A quantity became NaN or infinite.
@@ -303,6 +311,13 @@ impl From<MoserVeselovError> for StepCause {
     }
 }
 
+impl From<Unsolved> for StepCause {
+    #[cold]
+    fn from(error: Unsolved) -> Self {
+        Self::LeftFactor(error)
+    }
+}
+
 impl From<NewtonError> for StepCause {
     #[cold]
     fn from(error: NewtonError) -> Self {
@@ -314,6 +329,8 @@ impl fmt::Display for StepCause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::MoserVeselov(error) => write!(f, "{error}"),
+            Self::LeftFactor(error) => write!(f, "{error}"),
+            Self::Factor(error) => write!(f, "the left factor of this state: {error}"),
             Self::Newton(error) => write!(f, "{error}"),
             Self::NotFinite { what } => write!(
                 f,
@@ -327,6 +344,8 @@ impl std::error::Error for StepCause {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             Self::MoserVeselov(error) => Some(error),
+            Self::LeftFactor(error) => Some(error),
+            Self::Factor(error) => Some(error),
             Self::Newton(error) => Some(error),
             Self::NotFinite { .. } => None,
         }

@@ -38,6 +38,7 @@ static CARD: Card = Card {
             stop: u64::MAX,
         }))
     },
+    solvers: &[],
     dimensions: &[],
     sized: |_| None,
 };

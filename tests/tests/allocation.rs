@@ -97,3 +97,38 @@ fn observing_allocates_nothing() {
     });
     assert_eq!(count, 0);
 }
+
+fn body_of_any_dimension<const N: usize>() {
+    use clebsch::nalgebra::SMatrix;
+    use clebsch::{BodyMomentumMatrix, Orthogonal};
+    use clebsch_models::body_n::{BodyN, BodyNInitial, BodyNParameters};
+    let c = SMatrix::<f64, N, N>::from_fn(|i, j| match i == j {
+        true => 1.0 + 0.2 * i as f64,
+        false => 0.05 * (i as f64 - 0.5 * j as f64),
+    });
+    let m = SMatrix::<f64, N, N>::from_fn(|i, j| 0.3 * (i as f64 - j as f64));
+    let model = BodyN::new(BodyNParameters { C: c }).expect("a factor");
+    for method in clebsch::solvers::Method::ALL {
+        let initial = BodyNInitial {
+            Λ: Orthogonal::identity(),
+            body_momentum: BodyMomentumMatrix(m),
+        };
+        // Some are for three dimensions only.
+        let Ok((mut state, mut work)) = model.start_with(initial, 0.1, method) else {
+            continue;
+        };
+        let made = allocations(|| {
+            for _ in 0..100 {
+                black_box(model.step(&mut state, &mut work)).expect("solvable");
+            }
+        });
+        assert_eq!(made, 0, "{N} {method}");
+    }
+}
+
+#[test]
+fn steps_in_any_dimension_allocate_nothing() {
+    body_of_any_dimension::<3>();
+    body_of_any_dimension::<4>();
+    body_of_any_dimension::<8>();
+}

@@ -131,7 +131,7 @@ fn failures(card: &Card, case: &Case, regular: bool, steps: u64, fault: Fault) -
 fn for_every_case(mut look: impl FnMut(&Card, &Case, bool)) {
     for entry in clebsch_models::gallery() {
         for (place, case) in entry.cases.iter().enumerate() {
-            look(&entry.card, case, place == 0);
+            look(&entry.card_of(case), case, place == 0);
         }
     }
 }

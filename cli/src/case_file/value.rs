@@ -16,7 +16,7 @@ pub(super) fn expected(field: &Field) -> String {
     let Field { rows, cols, .. } = *field;
     match field.kind {
         Kind::Scalar => "a number".to_owned(),
-        Kind::Rotation => {
+        Kind::Rotation if rows == 3 => {
             "a 3x3 matrix [[..], [..], [..]] or a unit quaternion [w, x, y, z]".to_owned()
         }
         Kind::Diagonal => format!("the {rows} diagonal entries [a, ..] or a {rows}x{cols} matrix"),
@@ -34,7 +34,7 @@ pub(super) fn numbers(field: &Field, value: &DeValue<'_>) -> Result<Vec<f64>, St
     match shape(value) {
         Shape::Number if field.kind == Kind::Scalar => Ok(vec![number(value)?]),
         Shape::Vector(n) if flat && field.kind != Kind::Scalar && n == rows => row(value),
-        Shape::Vector(4) if field.kind == Kind::Rotation => quaternion(&row(value)?),
+        Shape::Vector(4) if field.kind == Kind::Rotation && rows == 3 => quaternion(&row(value)?),
         Shape::Vector(n) if field.kind == Kind::Diagonal && n == rows => {
             Ok(on_diagonal(&row(value)?))
         }

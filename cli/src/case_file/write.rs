@@ -83,6 +83,9 @@ fn about(field: &Field) -> String {
         Kind::Skew => format!("skew {rows}x{cols} matrix, written in full"),
         Kind::Diagonal => format!("diagonal {rows}x{cols} matrix, or its {rows} entries"),
         Kind::Matrix => format!("{rows}x{cols} matrix, row by row"),
+        Kind::Rotation if rows != 3 => {
+            format!("rotation body -> space: {rows}x{cols} matrix, row by row")
+        }
         Kind::Rotation => {
             "rotation body -> space: 3x3 matrix, or unit quaternion [w, x, y, z]".to_owned()
         }

@@ -48,8 +48,8 @@ pub fn compare(
         .get_one::<String>("model")
         .map_or("", String::as_str);
     let entry = gallery.find(model)?;
-    let card = &entry.card;
     let plan = Plan::new(entry, matches)?;
+    let card = &entry.card_of(&plan.case);
     let as_json = matches.get_flag("json");
     let target = matches.get_one::<PathBuf>("out");
     let staging = target

@@ -93,6 +93,7 @@ pub static CARD: Card = Card {
         },
     ],
     open,
+    solvers: &[],
     dimensions: &[],
     sized: |_| None,
 };

@@ -64,6 +64,18 @@ impl<const N: usize, T: Real> Orthogonal<N, T> {
         }
     }
 
+    /// The rotation of space with this quaternion, where `N` is three; the identity otherwise.
+    #[inline]
+    pub(crate) fn of_rotation(r: &super::Rotation<T>) -> Self {
+        let matrix = r.matrix();
+        match N {
+            3 => Self {
+                matrix: SMatrix::from_fn(|i, j| matrix[(i, j)]),
+            },
+            _ => Self::identity(),
+        }
+    }
+
     /// The matrix, body -> space.
     #[inline]
     pub fn matrix(&self) -> SMatrix<T, N, N> {

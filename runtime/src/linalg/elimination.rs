@@ -61,6 +61,21 @@ pub fn solve_leading<T: Real, const N: usize>(
     eliminate_leading(a, b, size.min(N)).map(|(x, _)| x)
 }
 
+/// The inverse of the leading block of `size` rows and columns; the rest is that of the identity
+/// eliminated along.
+#[inline]
+pub fn inverse_leading<T: Real, const N: usize>(
+    a: &SMatrix<T, N, N>,
+    size: usize,
+) -> Option<SMatrix<T, N, N>> {
+    let size = size.min(N);
+    let one = SMatrix::from_fn(|i, j| match i == j && i < size {
+        true => T::one(),
+        false => T::zero(),
+    });
+    eliminate_leading(a, &one, size).map(|(x, _)| x)
+}
+
 /// Solves for `M` right sides at once and gives the determinant along.
 ///
 /// The pivot of a column is its entry whose smallest real part over the lanes is largest in

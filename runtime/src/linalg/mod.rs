@@ -4,6 +4,7 @@
 
 mod eigenvalues;
 mod elimination;
+mod frame;
 mod inclusion;
 mod motion;
 mod pencil;
@@ -11,7 +12,8 @@ mod quaternion;
 mod skew;
 
 pub use eigenvalues::symmetric_eigenvalues;
-pub use elimination::{determinant, inverse, solve, solve_leading, solve_many};
+pub use elimination::{determinant, inverse, inverse_leading, solve, solve_leading, solve_many};
+pub use frame::principal_frame;
 pub use inclusion::{columns_from, inclusion, into_columns, into_rows, rows_from};
 pub use motion::{motion_rotation, motion_translation, twist};
 pub use pencil::{even_count, even_degrees, pencil_coefficients};

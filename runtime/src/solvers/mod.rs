@@ -1,5 +1,9 @@
 //! Solvers of the implicit steps, one folder or file a solver; they know no models.
 //! Each takes numbers of one step and gives the discrete velocity, or a typed error with numbers.
 
+pub mod left_factor;
+mod method;
 pub mod moser_veselov;
 pub mod newton;
+
+pub use method::{Method, NoSuchMethod};

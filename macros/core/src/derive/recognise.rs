@@ -49,6 +49,11 @@ pub enum Method {
     FreeMoserVeselov,
     /// Explicitly, one quartic a step.
     ForcedMoserVeselov,
+    /// By a solver of left factors, to be chosen by name: `C` is constant, in the frame of the
+    /// velocity or, where [`Solve::turned`] has it, in the other one.
+    LeftFactor,
+    /// By Davenport's eigenvalue problem, which takes any `C` known at the node; SO(3).
+    Davenport,
     /// Newton on the group, residual and tangent derived.
     Newton,
 }
@@ -62,6 +67,9 @@ pub struct Solve {
     pub method: Method,
     /// Why this method, in one sentence.
     pub reason: String,
+    /// `C` seen from the other frame, where it is constant along the motion: made of parameters and
+    /// of advected quantities by their reference values.
+    pub turned: Option<Expr>,
 }
 
 /// Recognises.
@@ -81,6 +89,17 @@ pub fn recognise(
         let size = spec.configurations[i].group.size();
         size == Dim::Fixed(3) && spec.configurations[i].group.is_orthogonal()
     };
+    let turned = match riccati.as_slice() {
+        // Symmetric factors in three dimensions have steppers of their own.
+        [Riccati::Exact(mv)] if three(0) && mv.symmetric && keeps_edge(mv) => None,
+        [Riccati::Exact(mv)] if !is_constant(letters, mv) && balances[0].increment.is_some() => {
+            turned(spec, letters, transports, mv, algebra)
+        }
+        _ => None,
+    };
+    let kappa = "explicit after one quartic a step";
+    let iterated = "Newton's method on the Lie algebra";
+    let solver = if three(0) { kappa } else { iterated };
     let (method, reason) = match riccati.as_slice() {
         [Riccati::Exact(mv)] if three(0) && mv.symmetric && is_free(mv) => (
             Method::FreeMoserVeselov,
@@ -100,18 +119,24 @@ pub fn recognise(
                 ),
             )
         }
-        [Riccati::Exact(mv)] if three(0) && mv.symmetric => (
-            Method::Newton,
-            "C depends on the step or changes along the motion: Newton on the derived residual"
-                .to_owned(),
+        [Riccati::Exact(_)] if turned.is_some() => (
+            Method::LeftFactor,
+            format!("C is constant seen from the body, where the equation is solved: {solver}"),
+        ),
+        [Riccati::Exact(mv)] if three(0) && !is_constant(letters, mv) => (
+            Method::Davenport,
+            "C is known at each node: the largest real eigenvalue of a 4 x 4 matrix".to_owned(),
         ),
         [Riccati::Exact(mv)] if three(0) && !mv.symmetric => (
-            Method::Newton,
-            "C is not symmetric: Newton on the derived residual".to_owned(),
+            Method::LeftFactor,
+            format!("C is constant, a rotation times a symmetric matrix: {kappa}"),
         ),
+        [Riccati::Exact(mv)] if is_constant(letters, mv) => {
+            (Method::LeftFactor, format!("C is constant: {iterated}"))
+        }
         [Riccati::Exact(_)] => (
             Method::Newton,
-            "the explicit solution is known for SO(3) only: Newton on the derived residual"
+            "C depends on the step or changes along the motion: Newton on the derived residual"
                 .to_owned(),
         ),
         [Riccati::None(why)] => (
@@ -127,7 +152,49 @@ pub fn recognise(
         riccati,
         method,
         reason,
+        turned,
     }
+}
+
+/// The factor of a spatial velocity seen from the body, `Λ^T C Λ`, if it is constant there: then
+/// `Λ^T ω Λ` solves the equation of the body.
+fn turned(
+    spec: &Spec,
+    letters: &Letters,
+    transports: &[Transport],
+    mv: &MoserVeselov,
+    algebra: &Algebra,
+) -> Option<Expr> {
+    let s = &letters.symbols;
+    let c = &spec.configurations[0];
+    if c.side != Side::Spatial {
+        return None;
+    }
+    let values: Vec<(Letter, Expr)> = spec
+        .advected
+        .iter()
+        .zip(transports)
+        .filter_map(|(a, t)| match t {
+            Transport::Defined(e) | Transport::Carried { value: e, .. } => {
+                Some((at(a.quantity, Shift::HERE), e.clone()))
+            }
+            Transport::Advanced => None,
+        })
+        .collect();
+    let here = expr::substitute(s, &mv.factor, &values);
+    let element = expr::here(s, c.element);
+    let seen = expr::product([expr::transpose(s, element.clone()), here, element]);
+    let seen = algebra.raise(&algebra.lower(&seen));
+    let advanced = |q: SymbolId| {
+        let list = spec.advected.iter().zip(transports);
+        list.clone()
+            .any(|(a, t)| a.quantity == q && matches!(t, Transport::Advanced))
+    };
+    let constant = expr::letters(&seen).iter().all(|l| {
+        let role = s.get(l.symbol).role;
+        role == Role::Parameter || role == Role::Advected && !advanced(l.symbol)
+    });
+    constant.then_some(seen)
 }
 
 /// Whether `C` is made of parameters only: it is then validated once.

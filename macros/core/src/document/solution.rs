@@ -312,9 +312,17 @@ fn method(sheet: &Sheet, section: &mut Section) {
             letter.into(),
             format!("{constant}, and symmetric.").into(),
         ],
-        (_, letter) => {
-            let mut words: Vec<Inline> =
-                vec!["The stepper iterates with Newton's method on the group: ".into()];
+        (method, letter) => {
+            let how = match method {
+                Method::LeftFactor => {
+                    "The stepper solves it for any left factor, by a solver chosen by name: "
+                }
+                Method::Davenport => "The stepper solves it as an eigenvalue problem at each node: ",
+                Method::FreeMoserVeselov | Method::ForcedMoserVeselov | Method::Newton => {
+                    "The stepper iterates with Newton's method on the group: "
+                }
+            };
+            let mut words: Vec<Inline> = vec![how.into()];
             match (why.strip_prefix("C "), letter) {
                 (Some(rest), Some(letter)) => {
                     words.extend([letter.into(), format!(" {rest}.").into()]);

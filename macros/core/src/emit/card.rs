@@ -172,7 +172,10 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                             let momentum = self.work.solver.body_momentum().to_space(&state.#element());
                             let out = put(out, rows(momentum.0));
                         },
-                        Method::ForcedMoserVeselov | Method::Newton => {
+                        Method::ForcedMoserVeselov
+                        | Method::LeftFactor
+                        | Method::Davenport
+                        | Method::Newton => {
                             match family(&d.spec.configurations[*i]) {
                                 Family::Rotation
                                 | Family::Linear(_)
@@ -226,8 +229,10 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
     let solver = format!(
         "{}: {}",
         match d.solve.method {
-            Method::FreeMoserVeselov => "Moser-Veselov",
-            Method::ForcedMoserVeselov => "Moser-Veselov",
+            Method::FreeMoserVeselov
+            | Method::ForcedMoserVeselov
+            | Method::LeftFactor
+            | Method::Davenport => "Moser-Veselov",
             Method::Newton => "Newton",
         },
         d.solve.reason
@@ -244,6 +249,16 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
     let (p, i, o) = (fields(&parameters), fields(&initial), fields(&observables));
     let g = Generics::of(d);
     let (bound, used, plain) = (g.sizes_bound(), g.sizes_used(), g.plain());
+    let solvers = super::left_factor::offered(d);
+    let choose = match super::left_factor::default_solver(d).is_some() {
+        true => quote! {
+            let model = match chosen_solver(settings, Self::CARD.solvers)? {
+                Some(method) => model.with_solver(method),
+                None => model,
+            };
+        },
+        false => quote!(chosen_solver(settings, Self::CARD.solvers)?;),
+    };
     let turbofish = (!used.is_empty()).then(|| quote!(:: #used));
     let (dimensions, sized) = (dimensions(d), sized(d));
     let orders = match (preprocessed, d.reversible) {
@@ -330,6 +345,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                 observables: &[#(#o),*],
                 invariants: &[#(#invariants),*],
                 open: Self::open,
+                solvers: #solvers,
                 dimensions: &[#(#dimensions),*],
                 sized: Self::sized,
             };
@@ -338,6 +354,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
 
             fn open(parameters: &[Vec<f64>], initial: &[Vec<f64>], settings: Settings) -> Result<Box<dyn Trajectory>, OpenError> {
                 #constructor
+                #choose
                 #begin
             }
         }

@@ -31,6 +31,9 @@ pub fn factor(d: &Derivation) -> Option<&Expr> {
         (Method::FreeMoserVeselov | Method::ForcedMoserVeselov, Some(Riccati::Exact(mv))) => {
             Some(mv.in_body.as_ref().unwrap_or(&mv.factor))
         }
+        (Method::LeftFactor, Some(Riccati::Exact(mv))) if d.solve.turned.is_none() => {
+            Some(&mv.factor)
+        }
         _ => None,
     }
 }
@@ -382,14 +385,19 @@ pub fn model(d: &Derivation, documented: bool) -> TokenStream {
             }
             .write(e);
             let label = text(d, e);
+            let (kind, name) = match d.solve.method {
+                Method::LeftFactor => (super::left_factor::ty(d), quote!(LeftFactor)),
+                _ => (quote!(Poinsot<T>), quote!(Poinsot)),
+            };
             (
-                quote!(factor: Poinsot<T>,),
-                quote!(let factor = Poinsot::new(#value).map_err(|e| e.in_field(#label))?;),
+                quote!(factor: #kind,),
+                quote!(let factor = #name::new(#value).map_err(|e| e.in_field(#label))?;),
                 quote!(factor,),
             )
         }
         None => Default::default(),
     };
+    let (solver_field, solver_init, with_solver) = super::left_factor::of_model(d);
     let docs = crate::document::rustdoc(d, documented);
     let source = crate::document::source(d);
     let fingerprint = crate::document::fingerprint(d);
@@ -400,7 +408,7 @@ pub fn model(d: &Derivation, documented: bool) -> TokenStream {
     quote! {
         #(#[doc = #docs])*
         #[derive(Clone, Copy, Debug, PartialEq)]
-        pub struct #name #declared { parameters: #data #used, #field }
+        pub struct #name #declared { parameters: #data #used, #field #solver_field }
 
         impl #bound #name #used {
             #sizes
@@ -420,8 +428,10 @@ pub fn model(d: &Derivation, documented: bool) -> TokenStream {
                 #locals
                 #(#assumptions)*
                 #build
-                Ok(Self { parameters, #init })
+                Ok(Self { parameters, #init #solver_init })
             }
+
+            #with_solver
 
             /// The parameters.
             pub fn parameters(&self) -> &#data #used {
@@ -536,6 +546,7 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
             " The step, and the momentum of the edge that begins at the state `here`. Made anew for any other state.",
         ),
         Method::ForcedMoserVeselov => (TokenStream::new(), " The step."),
+        Method::LeftFactor | Method::Davenport => super::left_factor::work(d),
         Method::Newton => (
             quote!(guess: #guess,),
             " The step and the last velocities, from which the next solve starts.",

@@ -10,6 +10,7 @@ mod expression;
 mod forced;
 mod invariants;
 mod items;
+mod left_factor;
 mod names;
 mod newton;
 mod residual;

@@ -44,7 +44,7 @@ pub fn own(d: &Derivation, id: SymbolId) -> Ident {
 }
 
 /// Types, traits and variants that emitted code calls by a plain name: no model can bear one.
-const TYPES: [&str; 44] = [
+const TYPES: [&str; 48] = [
     "BodyImpulse",
     "BodyMomentum",
     "BodyMomentumMatrix",
@@ -58,7 +58,10 @@ const TYPES: [&str; 44] = [
     "Group",
     "Invariant",
     "Kind",
+    "LeftFactor",
+    "LeftFactorError",
     "Linear",
+    "Method",
     "MoserVeselovError",
     "None",
     "Ok",
@@ -88,11 +91,12 @@ const TYPES: [&str; 44] = [
     "T",
     "Trajectory",
     "UnitQuaternion",
+    "Unsolved",
     "Vec",
 ];
 
 /// Methods and constants that every model has.
-const MEMBERS: [&str; 24] = [
+const MEMBERS: [&str; 28] = [
     "ADMITTED",
     "CARD",
     "FINGERPRINT",
@@ -107,6 +111,7 @@ const MEMBERS: [&str; 24] = [
     "edge_momentum",
     "energies",
     "energy",
+    "factor_at",
     "new",
     "node",
     "open",
@@ -115,8 +120,11 @@ const MEMBERS: [&str; 24] = [
     "sized",
     "start",
     "start_of_order",
+    "start_with",
     "step",
+    "with_solver",
     "workspace",
+    "workspace_with",
 ];
 
 /// The model, a configuration or an advected quantity whose name emitted items need for
@@ -159,7 +167,7 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
 
 /// What emitted functions call by a plain name, and what they name themselves: a local of the
 /// model under such a name would hide it. The test of hygiene states a model with all of them.
-const INSIDE: [&str; 97] = [
+const INSIDE: [&str; 102] = [
     "BodyImpulse",
     "BodyMomentum",
     "BodyMomentumMatrix",
@@ -182,12 +190,14 @@ const INSIDE: [&str; 97] = [
     "axis",
     "basis",
     "body",
+    "chosen_solver",
     "columns_from",
     "count",
     "determinant",
     "diagonal_part",
     "e",
     "even_count",
+    "factor",
     "forced",
     "found",
     "guess",
@@ -207,6 +217,7 @@ const INSIDE: [&str; 97] = [
     "matrix",
     "matrix_basis",
     "matrix_of",
+    "method",
     "momentum",
     "motion_of",
     "motion_rotation",
@@ -230,7 +241,9 @@ const INSIDE: [&str; 97] = [
     "quaternion_real",
     "quaternion_rotation",
     "reach",
+    "reach_of",
     "rest",
+    "rotation_at",
     "rotation_of",
     "rows",
     "rows_from",

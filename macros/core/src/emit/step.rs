@@ -53,6 +53,9 @@ pub fn start_and_step(d: &Derivation, names: &Names) -> TokenStream {
     let step = match (&d.solve.method, d.solve.riccati.first()) {
         (Method::FreeMoserVeselov, _) => free_step(d, names),
         (Method::ForcedMoserVeselov, Some(Riccati::Exact(mv))) => super::forced::step(d, names, mv),
+        (Method::LeftFactor | Method::Davenport, Some(Riccati::Exact(mv))) => {
+            super::left_factor::step(d, names, mv)
+        }
         _ => super::newton::step(d, names),
     };
     let g = Generics::of(d);
@@ -182,6 +185,7 @@ fn start(d: &Derivation, names: &Names) -> TokenStream {
             quote!(#factor edge: self.edge(&state, h), here: state)
         }
         Method::ForcedMoserVeselov => TokenStream::new(),
+        Method::LeftFactor | Method::Davenport => super::left_factor::work_init(d),
         Method::Newton => quote!(guess: #guess,),
     };
     let state_of = quote! {
@@ -300,6 +304,10 @@ pub(super) fn finish(
         let omega = solved(i);
         out.extend(match c.side {
             Side::Body => quote!(let #moved = state.#element * #omega;),
+            // What was solved for is the velocity seen from the body.
+            Side::Spatial if d.solve.turned.is_some() => {
+                quote!(let #moved = state.#element * #omega;)
+            }
             Side::Spatial => quote!(let #moved = #omega * state.#element;),
         });
         assignments.extend(quote!(state.#element = #moved;));

@@ -35,7 +35,46 @@ pub(super) fn start(d: &Derivation, state_of: TokenStream, fields: TokenStream) 
         self.step(&mut trial, &mut scratch).map_err(|e| StartError::Refused(e.cause))?;
         Ok(work)
     };
-    if preprocessed(d) {
+    if super::left_factor::default_solver(d).is_some() {
+        quote! {
+            /// Starts a trajectory with step `h` from data at node 0, with the model's solver.
+            ///
+            /// # Errors
+            /// Names the value that is not finite, or says why the first step cannot be solved and
+            /// which step could.
+            pub fn start(&self, initial: #initial #used, h: T) -> Result<(#state, #work), StartError> {
+                self.start_with(initial, h, self.method)
+            }
+
+            /// As `start`, with the solver named.
+            ///
+            /// # Errors
+            /// As `start`; also when the solver does not serve this size or scalar.
+            pub fn start_with(&self, initial: #initial #used, h: T, method: Method) -> Result<(#state, #work), StartError> {
+                validate::positive_step(h)?;
+                let state = self.at_node_0(initial)?;
+                Ok((state, self.workspace_with(&state, h, method)?))
+            }
+
+            #at_node_0
+
+            /// A workspace for steps of `h`, of either sign, from any state.
+            ///
+            /// # Errors
+            /// When the first step cannot be solved.
+            pub fn workspace(&self, state: &#state, h: T) -> Result<#work, StartError> {
+                self.workspace_with(state, h, self.method)
+            }
+
+            /// The same with the solver named.
+            ///
+            /// # Errors
+            /// When the first step cannot be solved.
+            pub fn workspace_with(&self, state: &#state, h: T, method: Method) -> Result<#work, StartError> {
+                #tried
+            }
+        }
+    } else if preprocessed(d) {
         quote! {
             /// Starts a trajectory with step `h` from data at node 0; of order two, symplectic.
             ///

@@ -1,0 +1,460 @@
+// Written by `clebsch derive --write`. Do not edit.
+
+/// The model [`BodyN`](struct@BodyN) and what belongs to it.
+#[allow(
+    non_snake_case,
+    uncommon_codepoints,
+    mixed_script_confusables,
+    confusable_idents,
+    clippy::all
+)]
+pub mod body_n {
+    use ::clebsch::emitted::*;
+    /// Parameters of [`BodyN`](struct@BodyN), as given.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct BodyNParameters<const N: usize, T = f64> {
+        /// `C`: a n x n matrix.
+        pub C: SMatrix<T, N, N>,
+    }
+    /// Free rigid body in n dimensions.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct BodyN<const N: usize, T = f64> {
+        parameters: BodyNParameters<N, T>,
+        factor: LeftFactor<N, T>,
+        method: Method,
+    }
+    impl<const N: usize, T: Real> BodyN<N, T> {
+        /// Sizes the model does not admit do not build.
+        const ADMITTED: () = {
+            ::core::assert!(3 <= N && N <= 8, "`n` is from 3 to 8 in this model");
+        };
+        /// The model as it was stated.
+        pub const SOURCE: &'static str = "/// Free rigid body in n dimensions.\npub model BodyN {\n    dim n in 3..=8;\n    param C: Mat<n>;\n    group Λ: SO<n> velocity Ω;\n    constraint next(Λ) = Λ*Ω;\n    lagrangian = -tr(C^T*Ω)/h;\n}";
+        /// A number that changes when the model or its derivation does.
+        pub const FINGERPRINT: u64 = 1713821277233177237u64;
+        /// Checks the parameters.
+        ///
+        /// # Errors
+        /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
+        /// assumption, or is no admissible factor of the equation to solve.
+        pub fn new(parameters: BodyNParameters<N, T>) -> Result<Self, ParameterError> {
+            let () = Self::ADMITTED;
+            validate::finite_entries("C", &parameters.C)?;
+            let BodyNParameters { C, .. } = parameters;
+            let factor = LeftFactor::new(C).map_err(|e| e.in_field("C"))?;
+            Ok(Self {
+                parameters,
+                factor,
+                method: Method::of_size(N),
+            })
+        }
+        /// The same model, its steps solved by the solver named.
+        #[must_use]
+        pub fn with_solver(self, method: Method) -> Self {
+            Self { method, ..self }
+        }
+        /// The parameters.
+        pub fn parameters(&self) -> &BodyNParameters<N, T> {
+            &self.parameters
+        }
+    }
+    /// Initial data.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct BodyNInitial<const N: usize, T = f64> {
+        /// `Λ` at node 0: body -> space.
+        pub Λ: Orthogonal<N, T>,
+        /// Momentum at node 0, in the body frame.
+        pub body_momentum: BodyMomentumMatrix<N, T>,
+    }
+    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct BodyNState<const N: usize, T = f64> {
+        Λ: Orthogonal<N, T>,
+        momentum: SpatialMomentumMatrix<N, T>,
+        node: u64,
+    }
+    impl<const N: usize, T: Real> BodyNState<N, T> {
+        /// `Λ` at this node: body -> space.
+        pub fn Λ(&self) -> Orthogonal<N, T> {
+            self.Λ
+        }
+        /// The momentum at this node, in the space frame.
+        pub fn spatial_momentum(&self) -> SpatialMomentumMatrix<N, T> {
+            self.momentum
+        }
+        /// The momentum at this node, in the body frame.
+        pub fn body_momentum(&self) -> BodyMomentumMatrix<N, T> {
+            self.momentum.to_body(&self.Λ)
+        }
+        /// The number of the node.
+        pub fn node(&self) -> u64 {
+            self.node
+        }
+    }
+    /// The step and the solver's name.
+    #[derive(Clone, Copy, Debug)]
+    pub struct BodyNWorkspace<const N: usize, T = f64> {
+        h: T,
+        method: Method,
+    }
+    impl<const N: usize, T: Real> BodyN<N, T> {
+        /// Starts a trajectory with step `h` from data at node 0, with the model's solver.
+        ///
+        /// # Errors
+        /// Names the value that is not finite, or says why the first step cannot be solved and
+        /// which step could.
+        pub fn start(
+            &self,
+            initial: BodyNInitial<N, T>,
+            h: T,
+        ) -> Result<(BodyNState<N, T>, BodyNWorkspace<N, T>), StartError> {
+            self.start_with(initial, h, self.method)
+        }
+        /// As `start`, with the solver named.
+        ///
+        /// # Errors
+        /// As `start`; also when the solver does not serve this size or scalar.
+        pub fn start_with(
+            &self,
+            initial: BodyNInitial<N, T>,
+            h: T,
+            method: Method,
+        ) -> Result<(BodyNState<N, T>, BodyNWorkspace<N, T>), StartError> {
+            validate::positive_step(h)?;
+            let state = self.at_node_0(initial)?;
+            Ok((state, self.workspace_with(&state, h, method)?))
+        }
+        /// The state at node 0.
+        fn at_node_0(
+            &self,
+            initial: BodyNInitial<N, T>,
+        ) -> Result<BodyNState<N, T>, StartError> {
+            validate::finite("Λ", initial.Λ.matrix().as_slice())?;
+            validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
+            validate::skew("body_momentum", &initial.body_momentum.0)?;
+            Ok(BodyNState {
+                Λ: initial.Λ,
+                momentum: initial.body_momentum.to_space(&initial.Λ),
+                node: 0,
+            })
+        }
+        /// A workspace for steps of `h`, of either sign, from any state.
+        ///
+        /// # Errors
+        /// When the first step cannot be solved.
+        pub fn workspace(
+            &self,
+            state: &BodyNState<N, T>,
+            h: T,
+        ) -> Result<BodyNWorkspace<N, T>, StartError> {
+            self.workspace_with(state, h, self.method)
+        }
+        /// The same with the solver named.
+        ///
+        /// # Errors
+        /// When the first step cannot be solved.
+        pub fn workspace_with(
+            &self,
+            state: &BodyNState<N, T>,
+            h: T,
+            method: Method,
+        ) -> Result<BodyNWorkspace<N, T>, StartError> {
+            let state = *state;
+            let work = BodyNWorkspace { h, method };
+            let (mut trial, mut scratch) = (state, work);
+            self.step(&mut trial, &mut scratch)
+                .map_err(|e| StartError::Refused(e.cause))?;
+            Ok(work)
+        }
+        /// One step, in place. Solved thus: C is constant: Newton's method on the Lie algebra.
+        ///
+        /// # Errors
+        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+        #[inline]
+        pub fn step(
+            &self,
+            state: &mut BodyNState<N, T>,
+            work: &mut BodyNWorkspace<N, T>,
+        ) -> Result<(), StepError> {
+            let h = work.h;
+            let edge = self.edge_momentum(state, h);
+            let Ω = match self.factor.solve(&skew_part(&(edge * h)), work.method) {
+                Ok(solved) => solved,
+                Err(e) => return Err(self.refused(state, work, e)),
+            };
+            let Λ_moved = state.Λ * Ω;
+            let momentum_next = state.momentum.0;
+            if !(all_finite(&momentum_next)) {
+                return Err(
+                    StepCause::NotFinite {
+                        what: "momentum",
+                    }
+                        .at_node(state.node),
+                );
+            }
+            state.Λ = Λ_moved;
+            state.momentum = SpatialMomentumMatrix(momentum_next);
+            state.node += 1;
+            Ok(())
+        }
+        /// The momentum of the edge that starts at this node, for a step `h`.
+        #[inline]
+        fn edge_momentum(&self, state: &BodyNState<N, T>, h: T) -> SMatrix<T, N, N> {
+            state.momentum.to_body(&state.Λ).0
+        }
+        /// Says how far the step is beyond the bound, and which step could be solved.
+        #[cold]
+        fn refused(
+            &self,
+            state: &BodyNState<N, T>,
+            work: &BodyNWorkspace<N, T>,
+            e: Unsolved,
+        ) -> StepError {
+            let ratio = |trial: f64| {
+                let trial = T::from_f64(trial);
+                let momentum = self.edge_momentum(state, trial) * trial;
+                Some(self.factor.reach(&momentum))
+            };
+            StepCause::from(e.with_searched_step(work.h.value(), ratio))
+                .at_node(state.node)
+        }
+    }
+    impl<const N: usize, T: Real> Stepper for BodyN<N, T> {
+        type Scalar = T;
+        type State = BodyNState<N, T>;
+        type Workspace = BodyNWorkspace<N, T>;
+        fn workspace(
+            &self,
+            state: &Self::State,
+            h: T,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h)
+        }
+        #[inline(always)]
+        fn advance(
+            &self,
+            state: &mut Self::State,
+            work: &mut Self::Workspace,
+        ) -> Result<(), StepError> {
+            self.step(state, work)
+        }
+        fn node(state: &Self::State) -> u64 {
+            state.node
+        }
+        fn at_node(state: Self::State, node: u64) -> Self::State {
+            BodyNState { node: node, ..state }
+        }
+    }
+    /// A configuration at one node, solution or not.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct BodyNConfiguration<const N: usize, T = f64> {
+        /// `Λ` at the node: body -> space.
+        pub Λ: Orthogonal<N, T>,
+    }
+    impl<const N: usize, T: Real> BodyN<N, T> {
+        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+        /// consecutive configurations: components are derivatives of the action of the two edges
+        /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
+        /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix
+        /// units, row by row. Components beyond the coordinates are zero. Zero on solutions.
+        pub fn balance(
+            &self,
+            h: T,
+            before: &BodyNConfiguration<N, T>,
+            here: &BodyNConfiguration<N, T>,
+            after: &BodyNConfiguration<N, T>,
+        ) -> SVector<T, 28> {
+            let BodyNParameters { C, .. } = self.parameters;
+            let Ω_before = (before.Λ.inverse() * here.Λ).matrix();
+            let Ω = (here.Λ.inverse() * after.Λ).matrix();
+            let t1 = h.powi(-1);
+            let parts: [SMatrix<T, N, N>; 1] = [
+                C.tr_mul(&Ω_before) * t1 - Ω_before.tr_mul(&C) * t1
+                    + C * Ω.transpose() * t1 - Ω * C.transpose() * t1,
+            ];
+            {
+                let mut all = SVector::<T, 28>::zeros();
+                let rest = all.as_mut_slice();
+                let rest = put_skew(rest, &parts[0]);
+                let _ = rest;
+                all
+            }
+        }
+    }
+    impl<const N: usize, T: Real> BodyN<N, T> {}
+    /// One trajectory of the model, its type hidden.
+    struct BodyNTrajectory<const N: usize> {
+        model: BodyN<N, f64>,
+        state: BodyNState<N, f64>,
+        steps: Steps<BodyN<N, f64>>,
+        h: f64,
+        start: BodyNState<N, f64>,
+    }
+    impl<const N: usize> Trajectory for BodyNTrajectory<N> {
+        fn node(&self) -> u64 {
+            self.state.node()
+        }
+        fn time(&self) -> f64 {
+            self.h * self.state.node() as f64
+        }
+        fn step(&mut self) -> Result<(), StepError> {
+            self.steps.step(&self.model, &mut self.state)
+        }
+        fn card(&self) -> &'static Card {
+            &BodyN::<N, f64>::CARD
+        }
+        fn observe(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(out, rows(state.Λ().matrix()));
+            let out = put(out, rows(state.body_momentum().0));
+            let out = put(out, rows(state.spatial_momentum().0));
+            let _ = out;
+        }
+        fn invariants(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let _ = out;
+        }
+        fn scales(&self, out: &mut [f64]) {
+            let state = &self.start;
+            let _ = out;
+        }
+    }
+    impl<const N: usize> BodyN<N, f64> {
+        /// The model as data.
+        pub const CARD: Card = Card {
+            name: "BodyN",
+            kebab: "body-n",
+            doc: "Free rigid body in n dimensions.",
+            source: Self::SOURCE,
+            fingerprint: Self::FINGERPRINT,
+            summary: "action of one step   -tr(Cᵀ Ω_k)/h\nmomentum of Λ        -C Ω_kᵀ/h + Ω_k Cᵀ/h\nRiccati form         exact, C = C\ninvariants           \ntime reversal        not symmetric: first order\ncertificate          10 identities proved by normal form",
+            solver: "Moser-Veselov: C is constant: Newton's method on the Lie algebra",
+            order: 1u32,
+            orders: &[1],
+            preprocessed: false,
+            reversible: false,
+            parameters: &[
+                Field {
+                    name: "C",
+                    ascii: "C",
+                    rows: N,
+                    cols: N,
+                    kind: Kind::Matrix,
+                    doc: "",
+                },
+            ],
+            initial: &[
+                Field {
+                    name: "Λ",
+                    ascii: "Lambda",
+                    rows: N,
+                    cols: N,
+                    kind: Kind::Rotation,
+                    doc: "attitude, body to space",
+                },
+                Field {
+                    name: "body_momentum",
+                    ascii: "body_momentum",
+                    rows: N,
+                    cols: N,
+                    kind: Kind::BodyMomentum,
+                    doc: "momentum, body frame",
+                },
+            ],
+            observables: &[
+                Field {
+                    name: "Λ",
+                    ascii: "Lambda",
+                    rows: N,
+                    cols: N,
+                    kind: Kind::Rotation,
+                    doc: "attitude, body to space",
+                },
+                Field {
+                    name: "body_momentum",
+                    ascii: "body_momentum",
+                    rows: N,
+                    cols: N,
+                    kind: Kind::BodyMomentum,
+                    doc: "momentum, body frame",
+                },
+                Field {
+                    name: "spatial_momentum",
+                    ascii: "spatial_momentum",
+                    rows: N,
+                    cols: N,
+                    kind: Kind::SpatialMomentum,
+                    doc: "momentum, space frame",
+                },
+            ],
+            invariants: &[],
+            open: Self::open,
+            solvers: if N == 3 { &Method::NAMES } else { &Method::ANY_SIZE },
+            dimensions: &[
+                Dimension {
+                    name: "n",
+                    from: 3,
+                    to: 8,
+                    value: N,
+                },
+            ],
+            sized: Self::sized,
+        };
+        /// The card of the model at the given sizes, in the order of their declaration.
+        fn sized(sizes: &[usize]) -> Option<Card> {
+            match sizes {
+                [3] => Some(BodyN::<3, f64>::CARD),
+                [4] => Some(BodyN::<4, f64>::CARD),
+                [5] => Some(BodyN::<5, f64>::CARD),
+                [6] => Some(BodyN::<6, f64>::CARD),
+                [7] => Some(BodyN::<7, f64>::CARD),
+                [8] => Some(BodyN::<8, f64>::CARD),
+                _ => None,
+            }
+        }
+        fn open(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+            settings: Settings,
+        ) -> Result<Box<dyn Trajectory>, OpenError> {
+            for (field, expected, found) in [
+                ("parameters", 1usize, parameters.len()),
+                ("initial values", 2usize, initial.len()),
+            ] {
+                if expected != found {
+                    return Err(OpenError::Count {
+                        field,
+                        expected,
+                        found,
+                    });
+                }
+            }
+            let model = BodyN::new(BodyNParameters {
+                C: matrix_of("C", parameters.get(0usize))?,
+            })?;
+            let initial = BodyNInitial {
+                Λ: orthogonal_of("Λ", initial.get(0usize))?,
+                body_momentum: BodyMomentumMatrix(
+                    matrix_of("body_momentum", initial.get(1usize))?,
+                ),
+            };
+            let model = match chosen_solver(settings, Self::CARD.solvers)? {
+                Some(method) => model.with_solver(method),
+                None => model,
+            };
+            let state = model.at_node_0(initial)?;
+            let steps = Steps::plain(&model, &state, settings, Self::CARD.orders)?;
+            Ok(
+                Box::new(BodyNTrajectory::<N> {
+                    model,
+                    state,
+                    steps,
+                    h: settings.h,
+                    start: state,
+                }),
+            )
+        }
+    }
+}
+#[allow(unused_imports)]
+pub use body_n::*;

@@ -1,0 +1,332 @@
+//! The step of a Moser-Veselov equation whose left factor is constant, in either frame, or known at
+//! the node: the edge momentum, the solver named at the start, the node's torques. Takes the
+//! derivation; gives what the workspace keeps, `start_with`, `step` and the words of a refusal.
+
+use super::element::{self, Family, family};
+use super::expression::{Bindings, Writer, program, ty as quantity};
+use super::items::{letters_of, parameter_locals, text, with_transports};
+use super::names::{Names, item, own, per_configuration, tagged, variable};
+use super::sizes::{Generics, size};
+use super::step::{Update, at, finish, here, step_signature, update};
+use crate::check::spec::Side;
+use crate::derive::Derivation;
+use crate::derive::recognise::{Method, MoserVeselov};
+use crate::expr::symbol::{Role, SymbolId};
+use crate::expr::{self, Expr, Letter, Shift};
+use crate::schedule;
+use proc_macro2::TokenStream;
+use quote::quote;
+
+/// The type of the prepared factor.
+pub(super) fn ty(d: &Derivation) -> TokenStream {
+    let n = size(&d.letters.symbols, d.spec.configurations[0].group.size());
+    quote!(LeftFactor<#n, T>)
+}
+
+/// Whether the solver can be chosen.
+fn chooses(d: &Derivation) -> bool {
+    matches!(d.solve.method, Method::LeftFactor | Method::Davenport)
+}
+
+/// The solver that `start` takes.
+fn default(d: &Derivation) -> TokenStream {
+    let n = size(&d.letters.symbols, d.spec.configurations[0].group.size());
+    match d.solve.method {
+        Method::Davenport => quote!(Method::Davenport),
+        _ => quote!(Method::of_size(#n)),
+    }
+}
+
+/// The solver that `open` takes, where one can be chosen.
+pub(super) fn default_solver(d: &Derivation) -> Option<TokenStream> {
+    chooses(d).then(|| default(d))
+}
+
+/// What the model keeps of the solver: a field, its value, and the function that changes it.
+pub(super) fn of_model(d: &Derivation) -> (TokenStream, TokenStream, TokenStream) {
+    let Some(default) = default_solver(d) else {
+        return Default::default();
+    };
+    (
+        quote!(method: Method,),
+        quote!(method: #default,),
+        quote! {
+            /// The same model, its steps solved by the solver named.
+            #[must_use]
+            pub fn with_solver(self, method: Method) -> Self {
+                Self { method, ..self }
+            }
+        },
+    )
+}
+
+/// The names of the solvers that can be chosen.
+pub(super) fn offered(d: &Derivation) -> TokenStream {
+    match (chooses(d), family(&d.spec.configurations[0])) {
+        (false, _) => quote!(&[]),
+        (true, Family::Rotation) => quote!(&Method::NAMES),
+        (true, Family::Orthogonal(n)) => {
+            let n = size(&d.letters.symbols, n);
+            quote!(if #n == 3 { &Method::NAMES } else { &Method::ANY_SIZE })
+        }
+        (true, Family::Linear(_) | Family::Quaternion | Family::Motion) => quote!(&[]),
+    }
+}
+
+/// The advected quantities by whose references the factor is made.
+fn references(e: &Expr, d: &Derivation) -> Vec<SymbolId> {
+    let mut list: Vec<SymbolId> = expr::letters(e).iter().map(|l| l.symbol).collect();
+    list.retain(|id| d.letters.symbols.get(*id).role == Role::Advected);
+    list.sort();
+    list.dedup();
+    list
+}
+
+/// The values of those references in a state.
+fn made_of(d: &Derivation, turned: &Expr) -> TokenStream {
+    let list = references(turned, d).into_iter().map(|id| {
+        let field = own(d, id);
+        quote!(state.#field)
+    });
+    quote!((#(#list,)*))
+}
+
+/// The fields of the workspace and its documentation.
+pub(super) fn work(d: &Derivation) -> (TokenStream, &'static str) {
+    let Some(turned) = &d.solve.turned else {
+        return (quote!(method: Method,), " The step and the solver's name.");
+    };
+    let s = &d.letters.symbols;
+    let kind = ty(d);
+    let types = references(turned, d)
+        .into_iter()
+        .map(|id| quantity(s, s.get(id).shape));
+    (
+        quote!(method: Method, factor: #kind, made_of: (#(#types,)*),),
+        " The step, the solver's name, and the left factor seen from the body with the values it is made of: made anew for a state with others.",
+    )
+}
+
+/// The values of those fields at the start.
+pub(super) fn work_init(d: &Derivation) -> TokenStream {
+    let Some(turned) = &d.solve.turned else {
+        return quote!(method,);
+    };
+    let (made_of, label) = (made_of(d, turned), text(d, turned));
+    quote! {
+        method,
+        factor: self.factor_at(&state).map_err(|e| e.in_field(#label))?,
+        made_of: #made_of,
+    }
+}
+
+/// The factor at a node, or seen from the body.
+fn factor_at(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
+    let s = &d.letters.symbols;
+    let state = item(d, "State");
+    let used = Generics::of(d).used();
+    if let Some(turned) = &d.solve.turned {
+        let mut bindings = Bindings::new();
+        let locals: TokenStream = references(turned, d)
+            .into_iter()
+            .map(|id| {
+                let (name, field) = (variable(s, id), own(d, id));
+                bindings.bind(at(id, Shift::HERE), name.clone());
+                quote!(let #name = state.#field;)
+            })
+            .collect();
+        let needed = expr::letters(turned);
+        let parameters = parameter_locals(d, quote!(self.parameters), &needed);
+        let value = Writer {
+            symbols: s,
+            bindings: &bindings,
+        }
+        .write(turned);
+        let kind = ty(d);
+        return quote! {
+            /// The left factor seen from the body, where it is constant along the motion.
+            #[cold]
+            fn factor_at(&self, state: &#state #used) -> Result<#kind, LeftFactorError> {
+                #parameters
+                #locals
+                LeftFactor::new(#value)
+            }
+        };
+    }
+    if !matches!(d.solve.method, Method::Davenport) {
+        return TokenStream::new();
+    }
+    let mut bindings = Bindings::new();
+    let needed = letters_of([&mv.factor]);
+    let parameters = parameter_locals(d, quote!(self.parameters), &with_transports(d, &needed, 0));
+    let locals = here(d, names, &needed, &mut bindings);
+    let p = schedule::program(s, std::slice::from_ref(&mv.factor), "t");
+    let (lets, values) = program(&p, &bindings);
+    let step = variable(s, d.spec.step);
+    quote! {
+        /// The left factor at this node, for a step `h`.
+        #[inline]
+        fn factor_at(&self, state: &#state #used, #step: T) -> SMatrix<T, 3, 3> {
+            #parameters
+            #locals
+            #lets
+            #(#values)*
+        }
+    }
+}
+
+/// The momentum of the edge in the frame in which the equation is solved.
+fn edge_momentum(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
+    let s = &d.letters.symbols;
+    let (state, used) = (item(d, "State"), Generics::of(d).used());
+    let c = &d.spec.configurations[0];
+    let momentum = per_configuration(d, "momentum", 0);
+    let (element, own) = (variable(s, c.element), own(d, c.element));
+    let mut bindings = Bindings::new();
+    let mut needed = letters_of([&mv.rest]);
+    let matrix = c.side == Side::Body && family(c) == Family::Rotation;
+    if matrix {
+        needed.push(at(c.element, Shift::HERE));
+    }
+    let parameters = parameter_locals(d, quote!(self.parameters), &with_transports(d, &needed, 0));
+    let locals = here(d, names, &needed, &mut bindings);
+    let step = variable(s, d.spec.step);
+    let p = schedule::program(s, std::slice::from_ref(&mv.rest), "t");
+    let (lets, values) = program(&p, &bindings);
+    let node_momentum = match (c.side, matrix) {
+        (Side::Body, true) => quote!(#element.tr_mul(&state.#momentum.0)),
+        (Side::Body, false) => quote!(state.#momentum.to_body(&state.#own).0),
+        (Side::Spatial, _) => quote!(state.#momentum.0),
+    };
+    let rest = (!mv.rest.is_zero()).then(|| quote!(- (#(#values)*)));
+    let value = match (d.solve.turned.is_some(), family(c)) {
+        (false, _) => quote!(#node_momentum #rest),
+        (true, Family::Rotation) => quote!(state.#own.inverse_rotate(&(#node_momentum #rest))),
+        (true, _) => quote!(state.#own.covector_to_body(&(#node_momentum #rest))),
+    };
+    let covector = element::covector(d, 0);
+    let frame = match d.solve.turned.is_some() {
+        true => {
+            " The momentum of the edge that starts at this node, seen from the body, for a step `h`."
+        }
+        false => " The momentum of the edge that starts at this node, for a step `h`.",
+    };
+    quote! {
+        #[doc = #frame]
+        #[inline]
+        fn edge_momentum(&self, state: &#state #used, #step: T) -> #covector {
+            #parameters
+            #locals
+            #lets
+            #value
+        }
+    }
+}
+
+/// The functions of the stepper that make a step.
+pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
+    let s = &d.letters.symbols;
+    let (state, used) = (item(d, "State"), Generics::of(d).used());
+    let c = &d.spec.configurations[0];
+    let node = names.local("node");
+    let rotations = family(c) == Family::Rotation;
+    let (factor, momentum) = (factor_at(d, names, mv), edge_momentum(d, names, mv));
+    let step = variable(s, d.spec.step);
+    let edge = names.local("edge");
+    let omega = variable(s, c.velocity);
+    let prepared = match d.solve.turned.is_some() {
+        true => quote!(work.factor),
+        false => quote!(self.factor),
+    };
+    let scaled = match rotations {
+        true => quote!((#edge * #step)),
+        false => quote!(skew_part(&(#edge * #step))),
+    };
+    let solve = match (d.solve.method.clone(), rotations) {
+        (Method::Davenport, _) => {
+            quote!(rotation_at(&self.factor_at(state, #step), &#scaled, work.method))
+        }
+        (_, true) => quote!(#prepared.rotation(&#scaled, work.method)),
+        (_, false) => quote!(#prepared.solve(&#scaled, work.method)),
+    };
+    let ratio = match (d.solve.method.clone(), rotations) {
+        (Method::Davenport, _) => quote!(reach_of(&self.factor_at(state, trial), &hat(&momentum))),
+        (_, true) => quote!(#prepared.reach(&hat(&momentum))),
+        (_, false) => quote!(#prepared.reach(&momentum)),
+    };
+    let remake = d.solve.turned.as_ref().map(|turned| {
+        let made_of = made_of(d, turned);
+        quote! {
+            if work.made_of != #made_of {
+                match self.factor_at(state) {
+                    Ok(made) => work.factor = made,
+                    Err(e) => return Err(StepCause::Factor(e).at_node(state.#node)),
+                }
+                work.made_of = #made_of;
+            }
+        }
+    });
+    let mut bindings = Bindings::new();
+    let updates = update(d, 0);
+    let list = match &updates {
+        Update::Acted { leave, arrive } => vec![leave, arrive],
+        Update::Added(e) | Update::Brought(e) => vec![e],
+    };
+    let velocity = at(c.velocity, Shift::HERE);
+    let uses_velocity = list.iter().any(|e| expr::contains(e, velocity));
+    let mut needed: Vec<Letter> = letters_of(list.iter().copied());
+    if let (Update::Acted { leave, .. }, true) = (&updates, rotations)
+        && !leave.is_zero()
+    {
+        needed.push(at(c.element, Shift::HERE));
+    }
+    let mut all = with_transports(d, &needed, 0);
+    all.extend(with_transports(d, &needed, 1));
+    let parameters = parameter_locals(d, quote!(self.parameters), &all);
+    let locals = here(d, names, &needed, &mut bindings);
+    let matrix = uses_velocity.then(|| {
+        let name = tagged(d, names, c.velocity, "matrix");
+        bindings.bind(velocity, name.clone());
+        quote!(let #name = #omega.matrix();)
+    });
+    let rest = finish(
+        d,
+        names,
+        &mut bindings,
+        &|_| quote!(#omega),
+        TokenStream::new(),
+    );
+    let work = item(d, "Workspace");
+    let step_function = step_signature(
+        d,
+        quote! {
+            let #step = work.h;
+            #remake
+            let #edge = self.edge_momentum(state, #step);
+            let #omega = match #solve {
+                Ok(solved) => solved,
+                Err(e) => return Err(self.refused(state, work, e)),
+            };
+            #matrix
+            #parameters
+            #locals
+            #rest
+        },
+    );
+    quote! {
+        #step_function
+        #momentum
+        #factor
+
+        /// Says how far the step is beyond the bound, and which step could be solved.
+        #[cold]
+        fn refused(&self, state: &#state #used, work: &#work #used, e: Unsolved) -> StepError {
+            let ratio = |trial: f64| {
+                let trial = T::from_f64(trial);
+                let momentum = self.edge_momentum(state, trial) * trial;
+                Some(#ratio)
+            };
+            StepCause::from(e.with_searched_step(work.h.value(), ratio)).at_node(state.#node)
+        }
+    }
+}

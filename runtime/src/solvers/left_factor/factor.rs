@@ -1,0 +1,305 @@
+//! A left factor, validated and brought to its principal frames once.
+//! Takes the matrix `C`; gives what every solver needs of it.
+
+use super::{Refusal, Unsolved};
+use crate::groups::Orthogonal;
+use crate::linalg::{determinant, inverse, principal_frame};
+use crate::solvers::Method;
+use crate::solvers::moser_veselov::Poinsot;
+use crate::validate::mirrored_difference;
+use crate::{ParameterError, Problem, Real, Rotation};
+use core::fmt;
+use nalgebra::{SMatrix, SVector, Vector3};
+
+/// Largest size whose linear systems fit the work arrays.
+pub(super) const LARGEST: usize = 8;
+
+/// A left factor `C = P Q`, `P` symmetric and positive, `Q` a rotation, with the principal frame of
+/// `P`: there the equation is that of a diagonal factor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeftFactor<const N: usize, T = f64> {
+    /// `C` as given.
+    pub(super) given: SMatrix<T, N, N>,
+    /// `U`: principal components -> given ones, on the left.
+    left: SMatrix<T, N, N>,
+    /// `W = Q^T U`: the same on the right.
+    right: SMatrix<T, N, N>,
+    /// `U^T C W`, diagonal to rounding.
+    pub(super) framed: SMatrix<T, N, N>,
+    /// Whether both frames are the identity.
+    plain: bool,
+    /// In three dimensions, `P` as a Poinsot matrix and `Q`; `None` in others.
+    space: Option<(Poinsot<T>, Rotation<T>)>,
+    /// Whether `Q` is the identity.
+    symmetric: bool,
+}
+
+/// A matrix that is no left factor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LeftFactorError {
+    /// An entry is NaN or infinite.
+    NotFinite,
+    /// The determinant is not positive: the principal solution would turn left into right.
+    Reflected {
+        /// The determinant.
+        determinant: f64,
+    },
+    /// A symmetric factor with eigenvalues of which two have a sum that is not positive, or one is
+    /// negative.
+    NotPositive {
+        /// The smallest eigenvalue.
+        smallest: f64,
+        /// The next one.
+        second: f64,
+    },
+}
+
+impl fmt::Display for LeftFactorError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFinite => write!(f, "an entry is NaN or infinite"),
+            Self::Reflected { determinant } => write!(
+                f,
+                "the determinant is {determinant:e}, and a left factor needs a positive one"
+            ),
+            Self::NotPositive { smallest, second } => write!(
+                f,
+                "its smallest eigenvalues are {smallest:e} and {second:e}: none may be negative, \
+                 and at most one zero"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for LeftFactorError {}
+
+impl LeftFactorError {
+    /// The same error, said of the parameter `field`.
+    #[cold]
+    pub fn in_field(self, field: &'static str) -> ParameterError {
+        ParameterError {
+            field,
+            problem: Problem::LeftFactor(self),
+            remedy: "give the second moments of a real mass distribution, turned if need be",
+        }
+    }
+}
+
+/// Newton steps for the polar factor; scaled ones need fewer than ten.
+const POLAR_STEPS: usize = 20;
+
+/// The orthogonal factor `Q` of `C = P Q` (Higham, SIAM J. Sci. Stat. Comput. 7, 1986).
+fn polar<T: Real, const N: usize>(c: &SMatrix<T, N, N>) -> Option<SMatrix<T, N, N>> {
+    let half = T::from_f64(0.5);
+    let square = |a: &SMatrix<T, N, N>| a.iter().fold(T::zero(), |s, x| s + *x * *x);
+    let mut q = *c;
+    for _ in 0..POLAR_STEPS {
+        let back = inverse(&q)?.transpose();
+        let scale = (square(&back) / square(&q)).sqrt().sqrt();
+        q = (q * scale + back * (T::one() / scale)) * half;
+    }
+    // Unscaled: quadratic to the end, derivative parts included.
+    for _ in 0..2 {
+        q = (q + inverse(&q)?.transpose()) * half;
+    }
+    Some(q)
+}
+
+impl<const N: usize, T: Real> LeftFactor<N, T> {
+    /// The factor of a matrix.
+    ///
+    /// A symmetric one may have one eigenvalue zero, as a flat body has; any other must have a
+    /// positive determinant. Sizes beyond eight do not build.
+    ///
+    /// # Errors
+    /// [`LeftFactorError`] with the numbers that are wrong.
+    pub fn new(c: SMatrix<T, N, N>) -> Result<Self, LeftFactorError> {
+        const { assert!(2 <= N && N <= LARGEST, "left factors are of sizes 2 to 8") };
+        if !c.iter().all(|x| x.is_finite()) {
+            return Err(LeftFactorError::NotFinite);
+        }
+        let symmetric = mirrored_difference(&c).is_ok();
+        let q = if symmetric {
+            SMatrix::identity()
+        } else {
+            let determinant = determinant(&c).least();
+            let q = polar(&c).filter(|q| q.iter().all(|x| x.is_finite()));
+            match q {
+                Some(q) if determinant > 0.0 => q,
+                _ => return Err(LeftFactorError::Reflected { determinant }),
+            }
+        };
+        let p = c * q.transpose();
+        let p = (p + p.transpose()) * T::from_f64(0.5);
+        let diagonal = p == SMatrix::from_diagonal(&p.diagonal());
+        let left = if diagonal {
+            SMatrix::identity()
+        } else {
+            principal_frame(&p)
+        };
+        let right = q.tr_mul(&left);
+        let framed = left.tr_mul(&(c * right));
+        let factor = Self {
+            given: c,
+            left,
+            right,
+            framed,
+            plain: symmetric && diagonal,
+            space: (N == 3)
+                .then(|| {
+                    let body = Poinsot::new(nalgebra::Matrix3::from_fn(|i, j| p[(i, j)])).ok()?;
+                    let turn = nalgebra::Matrix3::from_fn(|i, j| q[(i, j)]);
+                    Some((body, Rotation::from_matrix(&turn).ok()?))
+                })
+                .flatten(),
+            symmetric,
+        };
+        for lane in 0..T::LANES {
+            let mut spectrum = factor.framed.diagonal().map(|x| x.lane(lane));
+            let list = spectrum.as_mut_slice();
+            list.sort_by(f64::total_cmp);
+            let (smallest, second) = (list[0], list[1]);
+            let largest = list[N - 1];
+            let noise = 64.0 * T::EPSILON * largest;
+            // Written so that NaN is refused.
+            let positive = smallest >= -noise && second > noise;
+            if !positive {
+                return Err(LeftFactorError::NotPositive { smallest, second });
+            }
+        }
+        Ok(factor)
+    }
+
+    /// The matrix `C` as given.
+    pub fn matrix(&self) -> SMatrix<T, N, N> {
+        self.given
+    }
+
+    /// The principal solution by the solver named.
+    ///
+    /// `h_n` is the step times the edge momentum, a skew matrix: `Omega C^T - C Omega^T = h_n`.
+    /// Equal arguments give equal results. Nothing is allocated.
+    ///
+    /// # Errors
+    /// [`Unsolved`] when there is no principal solution, with how far the momentum is beyond the
+    /// exact bound; when the solver named does not apply; never an unconverged result.
+    #[inline]
+    pub fn solve(
+        &self,
+        h_n: &SMatrix<T, N, N>,
+        method: Method,
+    ) -> Result<Orthogonal<N, T>, Unsolved> {
+        match method {
+            Method::LieNewton => super::lie_newton::solve(self, h_n),
+            Method::Sign => super::sign::solve(self, h_n),
+            Method::Schur => super::schur::solve(self, h_n),
+            Method::Davenport => match three(&self.given, h_n) {
+                Some((c, v)) => super::davenport(&c, &v).map(|q| Orthogonal::of_rotation(&q)),
+                None => Err(self.unsolved(method, h_n, Refusal::DoesNotApply)),
+            },
+            Method::Kappa => match three(&self.given, h_n) {
+                Some((_, v)) => self.by_kappa(&v).map(|r| Orthogonal::of_rotation(&r)),
+                None => Err(self.unsolved(method, h_n, Refusal::DoesNotApply)),
+            },
+        }
+    }
+
+    /// `Omega C^T = R P` with `R = Omega Q^T`: the quartic for the Poinsot matrix `P`.
+    #[inline]
+    fn by_kappa(&self, v: &Vector3<T>) -> Result<Rotation<T>, Unsolved> {
+        let refuse = |refusal| self.unsolved(Method::Kappa, &self.hat(v), refusal);
+        let Some((body, turn)) = &self.space else {
+            return Err(refuse(Refusal::DoesNotApply));
+        };
+        match crate::solvers::moser_veselov::forced(body, v) {
+            Ok(r) if self.symmetric => Ok(r),
+            Ok(r) => Ok(r * *turn),
+            Err(e) if e.ratio.is_nan() => Err(refuse(Refusal::NotFinite)),
+            Err(_) => Err(refuse(Refusal::NotConverged)),
+        }
+    }
+
+    /// The skew matrix of a vector, where `N` is three.
+    fn hat(&self, v: &Vector3<T>) -> SMatrix<T, N, N> {
+        let hat = crate::linalg::hat(v);
+        SMatrix::from_fn(|i, j| hat.get((i, j)).copied().unwrap_or_else(T::zero))
+    }
+
+    /// The principal solution in three dimensions, for a momentum vector.
+    ///
+    /// # Errors
+    /// As [`LeftFactor::solve`].
+    #[inline]
+    pub fn rotation(&self, h_n: &Vector3<T>, method: Method) -> Result<Rotation<T>, Unsolved> {
+        if method == Method::Kappa {
+            return self.by_kappa(h_n);
+        }
+        let h_n = self.hat(h_n);
+        let omega = self.solve(&h_n, method)?.matrix();
+        let omega =
+            nalgebra::Matrix3::from_fn(|i, j| omega.get((i, j)).copied().unwrap_or_else(T::zero));
+        Rotation::from_matrix(&omega)
+            .map_err(|_| self.unsolved(method, &h_n, Refusal::DoesNotApply))
+    }
+
+    /// A skew matrix of the given frame in the principal one.
+    #[inline]
+    pub(super) fn framed_momentum(&self, v: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+        // A frame that is the identity costs nothing.
+        match self.plain {
+            true => *v,
+            false => self.left.tr_mul(&(v * self.left)),
+        }
+    }
+
+    /// A rotation found in the principal frame in the given one.
+    #[inline]
+    pub(super) fn unframed(&self, r: &SMatrix<T, N, N>) -> Orthogonal<N, T> {
+        match self.plain {
+            true => Orthogonal::nearby(r),
+            false => Orthogonal::nearby(&(self.left * r * self.right.transpose())),
+        }
+    }
+
+    /// The eigenvalues of `P`.
+    #[inline]
+    pub(super) fn spectrum(&self) -> SVector<T, N> {
+        self.framed.diagonal()
+    }
+
+    /// The error of a momentum that was not solved for.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn unsolved(
+        &self,
+        method: Method,
+        h_n: &SMatrix<T, N, N>,
+        refusal: Refusal,
+    ) -> Unsolved {
+        let ratio = self.reach(h_n);
+        let refusal = match refusal {
+            Refusal::NotConverged if ratio > 1.0 || ratio.is_nan() => Refusal::BeyondBound,
+            other => other,
+        };
+        Unsolved {
+            method,
+            refusal,
+            ratio,
+            residual: f64::NAN,
+            h: None,
+            largest_step: None,
+        }
+    }
+}
+
+/// Factor and momentum in three dimensions.
+fn three<T: Real, const N: usize>(
+    c: &SMatrix<T, N, N>,
+    v: &SMatrix<T, N, N>,
+) -> Option<(nalgebra::Matrix3<T>, Vector3<T>)> {
+    if N != 3 {
+        return None;
+    }
+    let c = nalgebra::Matrix3::from_fn(|i, j| c[(i, j)]);
+    Some((c, Vector3::new(v[(2, 1)], v[(0, 2)], v[(1, 0)])))
+}

@@ -1,0 +1,95 @@
+//! Why the Moser-Veselov equation was not solved, with numbers.
+
+use crate::solvers::Method;
+use core::fmt;
+
+/// What went wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refusal {
+    /// There is no principal solution: the momentum is beyond the exact bound.
+    BeyondBound,
+    /// The iteration did not converge although the momentum is within the bound.
+    NotConverged,
+    /// A solution was found, but not the principal one.
+    NotPrincipal,
+    /// The solver named does not serve this size, factor or scalar.
+    DoesNotApply,
+    /// The momentum is NaN or infinite.
+    NotFinite,
+}
+
+/// The error of a step that the solver of a left factor refuses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unsolved {
+    /// The solver.
+    pub method: Method,
+    /// What went wrong.
+    pub refusal: Refusal,
+    /// The scaled momentum over its exact bound: above 1 there is no solution. Of several lanes,
+    /// the worst.
+    pub ratio: f64,
+    /// The largest entry of `Omega C^T - C Omega^T - h N` when the solver gave up; NaN where it
+    /// found none to try.
+    pub residual: f64,
+    /// The step size refused, where the caller knows it.
+    pub h: Option<f64>,
+    /// The largest step size that can be solved from the same state, where it is known.
+    pub largest_step: Option<f64>,
+}
+
+impl Unsolved {
+    /// The same error with the step size that was refused, and the largest that would do: the
+    /// largest trial whose bound ratio, as `ratio` gives it, is at most 1.
+    #[cold]
+    #[must_use]
+    pub fn with_searched_step(self, h: f64, ratio: impl Fn(f64) -> Option<f64>) -> Self {
+        Self {
+            h: Some(h),
+            largest_step: Some(crate::solvers::moser_veselov::largest_step(h, ratio)),
+            ..self
+        }
+    }
+}
+
+impl fmt::Display for Unsolved {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.refusal {
+            Refusal::BeyondBound => write!(
+                f,
+                "the body turns too far in one step: the momentum is {:.9} times what the \
+                 Moser-Veselov equation can take",
+                self.ratio
+            )?,
+            Refusal::NotConverged => write!(
+                f,
+                "solver {} did not converge: residual {:.3e}, momentum {:.9} of its bound",
+                self.method, self.residual, self.ratio
+            )?,
+            Refusal::NotPrincipal => write!(
+                f,
+                "solver {} found a solution that is not the principal one: momentum {:.9} of its \
+                 bound",
+                self.method, self.ratio
+            )?,
+            Refusal::DoesNotApply => {
+                return write!(
+                    f,
+                    "solver {} does not serve this size, factor or scalar; take lie-newton",
+                    self.method
+                );
+            }
+            Refusal::NotFinite => return write!(f, "the momentum is NaN or infinite"),
+        }
+        match (self.h, self.largest_step) {
+            (Some(h), Some(largest)) if largest < h => {
+                write!(
+                    f,
+                    "; reduce the step size from {h} to at most {largest:.6e}"
+                )
+            }
+            _ => write!(f, "; reduce the step size"),
+        }
+    }
+}
+
+impl std::error::Error for Unsolved {}

@@ -1,0 +1,245 @@
+//! Newton's method on the group, the default solver of any size.
+//! Takes a left factor and `h N`; gives the principal solution, to rounding.
+//!
+//! With `A = R C^T` and `F = A - A^T - V`, the perturbation `cay(X) R` changes `F` by
+//! `X A + A^T X`: the tangent of the method on the Lie algebra (Owren and Welfert, BIT 40, 2000). A
+//! factorised tangent serves several steps while they converge quickly. In the principal frame of
+//! the factor the first guess is `X_ij = V_ij / (c_i + c_j)`.
+
+use super::factor::LeftFactor;
+use super::principal::is_principal;
+use super::tangent::Tangent;
+use super::{Refusal, Unsolved};
+use crate::Real;
+use crate::groups::Orthogonal;
+use crate::linalg::solve_many;
+use crate::solvers::Method;
+use nalgebra::SMatrix;
+
+/// Steps after which an attempt gives up; at the bound itself each step only halves the error.
+const MOST_STEPS: usize = 50;
+
+/// Attempts on the way from no momentum to the whole, where the direct one fails.
+const MOST_ATTEMPTS: usize = 60;
+
+/// A residual of this many roundings of twice the factor's largest entry is zero. What is left of it
+/// acts in every step alike, so that it is driven down to where it no longer falls.
+const CONVERGED_ROUNDINGS: f64 = 1.0;
+
+/// Where the residual stops falling below this many roundings, rounding is the reason.
+const STAGNATED_ROUNDINGS: f64 = 100.0;
+
+/// A factorised tangent is kept while each step reduces the residual to this part.
+const QUICK: f64 = 0.1;
+
+/// Steps below this take the series of the Cayley map.
+const SMALL: f64 = 0.05;
+
+/// Steps by the factor alone that better the first guess; each costs a tenth of a factorisation.
+const FIRST_STEPS: usize = 2;
+
+/// Why an attempt failed.
+enum Failed {
+    /// The last residual.
+    NotConverged(f64),
+    /// A solution, but not the principal one.
+    NotPrincipal,
+}
+
+/// The largest real part of an entry, in absolute value, over the lanes.
+#[inline(always)]
+fn largest<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> f64 {
+    a.iter().fold(0.0, |m: f64, x| {
+        let size = x.greatest().max(-x.least());
+        // NaN must not hide.
+        if size.is_nan() { f64::NAN } else { m.max(size) }
+    })
+}
+
+/// The product, column by column: short loops of a length known to the compiler.
+#[inline(always)]
+fn product<T: Real, const N: usize>(
+    a: &SMatrix<T, N, N>,
+    b: &SMatrix<T, N, N>,
+) -> SMatrix<T, N, N> {
+    let (a, b) = (&a.data.0, &b.data.0);
+    let mut c = [[T::zero(); N]; N];
+    for (c, b) in c.iter_mut().zip(b) {
+        for (a, x) in a.iter().zip(b) {
+            for (c, a) in c.iter_mut().zip(a) {
+                *c += *a * *x;
+            }
+        }
+    }
+    SMatrix::from_data(nalgebra::ArrayStorage(c))
+}
+
+/// `cay(X) R`, or for small `X` its series to second order, made orthogonal by a Newton step: of
+/// the fourth power of `X` that the series is off, the square is left.
+#[inline]
+fn turned<T: Real, const N: usize>(
+    x: &SMatrix<T, N, N>,
+    r: &SMatrix<T, N, N>,
+    size: f64,
+) -> Option<SMatrix<T, N, N>> {
+    let half = T::from_f64(0.5);
+    if size < SMALL {
+        let first = product(x, r);
+        let near = r + first + product(x, &first) * half;
+        let excess = product(&near.transpose(), &near) - SMatrix::identity();
+        return Some(near - product(&near, &excess) * half);
+    }
+    let one = SMatrix::<T, N, N>::identity();
+    let back = solve_many(&(one - x * half), r)?;
+    Some(back + back - r)
+}
+
+/// The skew `X` of a right side by the part of the tangent that the factor alone makes:
+/// `X_ij = G_ij / (c_i + c_j)`.
+#[inline]
+fn by_factor<T: Real, const N: usize>(
+    reciprocals: &SMatrix<T, N, N>,
+    g: &SMatrix<T, N, N>,
+) -> SMatrix<T, N, N> {
+    g.component_mul(reciprocals)
+}
+
+/// One attempt from a guess, in the principal frame.
+#[inline]
+fn attempt<T: Real, const N: usize>(
+    factor: &LeftFactor<N, T>,
+    v: &SMatrix<T, N, N>,
+    guess: &SMatrix<T, N, N>,
+) -> Result<SMatrix<T, N, N>, Failed> {
+    let unit = T::EPSILON * (2.0 * largest(&factor.framed)).max(largest(v));
+    let turned_factor = factor.framed.transpose();
+    let mut r = *guess;
+    let mut linear = Tangent::<T, N>::blank();
+    let mut factorised = false;
+    let mut previous = f64::INFINITY;
+    let mut size = f64::NAN;
+    // Steps still to make once the real parts have converged: one an order of derivatives.
+    let mut rest = T::ORDER;
+    for _ in 0..MOST_STEPS {
+        let a = product(&r, &turned_factor);
+        let f = a - a.transpose() - v;
+        size = largest(&f);
+        if size.is_nan() {
+            return Err(Failed::NotConverged(size));
+        }
+        let done = size <= CONVERGED_ROUNDINGS * unit
+            || (size <= STAGNATED_ROUNDINGS * unit && size >= 0.5 * previous);
+        if done && rest == 0 {
+            return match is_principal(&a) {
+                true => Ok(r),
+                false => Err(Failed::NotPrincipal),
+            };
+        }
+        if done {
+            rest -= 1;
+        }
+        if !factorised || T::ORDER > 0 || size > QUICK * previous {
+            if !linear.factorise(&a) {
+                return Err(Failed::NotConverged(size));
+            }
+            factorised = true;
+        }
+        let mut x = linear.solve(&-f);
+        // A step of more than a radian says nothing about where the solution is.
+        let length = largest(&x);
+        if length > 1.0 {
+            x *= T::from_f64(1.0 / length);
+        }
+        r = turned(&x, &r, length).ok_or(Failed::NotConverged(size))?;
+        previous = size;
+    }
+    Err(Failed::NotConverged(size))
+}
+
+/// The principal solution.
+#[inline]
+pub(super) fn solve<T: Real, const N: usize>(
+    factor: &LeftFactor<N, T>,
+    h_n: &SMatrix<T, N, N>,
+) -> Result<Orthogonal<N, T>, Unsolved> {
+    let v = factor.framed_momentum(h_n);
+    let spectrum = factor.spectrum();
+    let mut reciprocals = SMatrix::<T, N, N>::zeros();
+    for i in 0..N {
+        for j in i + 1..N {
+            let x = T::one() / (spectrum[i] + spectrum[j]);
+            reciprocals[(i, j)] = x;
+            reciprocals[(j, i)] = x;
+        }
+    }
+    let one = SMatrix::identity();
+    let first = by_factor(&reciprocals, &v);
+    let mut guess = turned(&first, &one, largest(&first)).unwrap_or(one);
+    let transposed = factor.framed.transpose();
+    let mut previous = largest(&v);
+    for _ in 0..FIRST_STEPS {
+        let a = product(&guess, &transposed);
+        let f = a.transpose() - a + v;
+        let size = largest(&f);
+        // Near the bound these steps lead away.
+        if size > 0.5 * previous || size.is_nan() {
+            break;
+        }
+        previous = size;
+        let x = by_factor(&reciprocals, &f);
+        guess = turned(&x, &guess, largest(&x)).unwrap_or(guess);
+    }
+    match attempt(factor, &v, &guess) {
+        Ok(r) => Ok(factor.unframed(&r)),
+        Err(failed) => by_continuation(factor, h_n, &v, failed),
+    }
+}
+
+/// From the solution without momentum to that with the whole of it, in steps that succeed.
+#[cold]
+#[inline(never)]
+fn by_continuation<T: Real, const N: usize>(
+    factor: &LeftFactor<N, T>,
+    h_n: &SMatrix<T, N, N>,
+    v: &SMatrix<T, N, N>,
+    failed: Failed,
+) -> Result<Orthogonal<N, T>, Unsolved> {
+    let refuse = |failed: &Failed| {
+        let (refusal, residual) = match failed {
+            Failed::NotConverged(residual) => (Refusal::NotConverged, *residual),
+            Failed::NotPrincipal => (Refusal::NotPrincipal, f64::NAN),
+        };
+        Unsolved {
+            residual,
+            ..factor.unsolved(Method::LieNewton, h_n, refusal)
+        }
+    };
+    if !h_n.iter().all(|x| x.is_finite()) {
+        return Err(factor.unsolved(Method::LieNewton, h_n, Refusal::NotFinite));
+    }
+    let error = refuse(&failed);
+    if error.ratio > 1.0 || error.ratio.is_nan() {
+        return Err(Unsolved {
+            refusal: Refusal::BeyondBound,
+            ..error
+        });
+    }
+    let (mut r, mut reached, mut stride) = (SMatrix::identity(), 0.0_f64, 0.5_f64);
+    let mut last = failed;
+    for _ in 0..MOST_ATTEMPTS {
+        let trial = (reached + stride).min(1.0);
+        match attempt(factor, &(v * T::from_f64(trial)), &r) {
+            Ok(next) if trial >= 1.0 => return Ok(factor.unframed(&next)),
+            Ok(next) => {
+                r = next;
+                reached = trial;
+                stride *= 1.5;
+            }
+            Err(e) => {
+                last = e;
+                stride *= 0.5;
+            }
+        }
+    }
+    Err(refuse(&last))
+}
