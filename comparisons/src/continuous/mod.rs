@@ -4,6 +4,7 @@
 
 pub mod coupled;
 pub mod rigid;
+pub mod submerged;
 
 use crate::handwritten::attitude::{Matrix, Quaternion, Vector};
 

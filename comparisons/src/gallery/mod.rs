@@ -4,9 +4,11 @@
 
 mod coupled;
 mod rigid;
+mod submerged;
+mod unit_quaternion;
 
 use crate::handwritten::Unsolvable;
-use crate::handwritten::attitude::{Matrix, Quaternion, Vector};
+use crate::handwritten::attitude::{Matrix, Quaternion};
 
 /// The values of a case.
 #[derive(Clone, Copy, Debug)]
@@ -139,6 +141,9 @@ pub fn offers(model: &str) -> Vec<Offer> {
         "body-in-two-fields" => rigid::in_field::<rigid::BodyInTwoFields>(),
         "body-in-quadratic-field" => rigid::in_field::<rigid::BodyInQuadraticField>(),
         "coupled-bodies" => coupled::bodies(),
+        "cayley-klein" => unit_quaternion::body::<unit_quaternion::InBody>(),
+        "cayley-klein-spatial" => unit_quaternion::body::<unit_quaternion::InSpace>(),
+        "kirchhoff-body" => submerged::bodies(),
         _ => Vec::new(),
     }
 }
@@ -167,18 +172,22 @@ impl Value for f64 {
     }
 }
 
-impl Value for Vector {
+impl<const N: usize> Value for [f64; N] {
     fn read(numbers: &[f64]) -> Option<Self> {
         numbers.try_into().ok()
     }
 }
 
-impl Value for Matrix {
+/// Row by row.
+impl<const N: usize> Value for [[f64; N]; N] {
     fn read(numbers: &[f64]) -> Option<Self> {
-        match *numbers {
-            [a, b, c, d, e, f, g, h, i] => Some([[a, b, c], [d, e, f], [g, h, i]]),
-            _ => None,
+        let mut matrix = [[0.0; N]; N];
+        let places = matrix.as_flattened_mut();
+        if places.len() != numbers.len() {
+            return None;
         }
+        places.copy_from_slice(numbers);
+        Some(matrix)
     }
 }
 
