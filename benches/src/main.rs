@@ -1,10 +1,12 @@
 //! Time per step of generated steppers beside hand-written ones, called as a user calls them: one step at a time.
-//! Takes no arguments; prints a table. `cargo run --release --manifest-path benches/Cargo.toml`, some twenty seconds.
+//! Takes no arguments; prints a table. `cargo run --release --manifest-path benches/Cargo.toml`, about a minute.
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables)]
 
 mod blocks;
+mod groups;
+mod loops;
 mod steppers;
 mod systems;
 
@@ -13,6 +15,10 @@ use clebsch_tests::physics::cases::{
     Start, asymmetric_body, generic_top, lagrange_top, symmetric_body,
 };
 use clebsch_tests::physics::systems::{generic_pair, reference_pair};
+use groups::{
+    generated_cayley_klein, generated_cayley_klein_spatial, generated_kirchhoff_body,
+    written_cayley_klein, written_kirchhoff_body,
+};
 use steppers::{generated_body, generated_top, written_body, written_top};
 use systems::{
     generated_free_body_spatial, generated_heavy_top_spatial, generated_pair,
@@ -78,6 +84,26 @@ fn main() {
             &compare(|| generated_pair(&start), || written_pair(&start)),
         );
     }
+    for (name, c) in [
+        ("unit quaternions, c = 0", 0.0),
+        ("unit quaternions, c = 1", 1.0),
+    ] {
+        print(
+            name,
+            &compare(|| generated_cayley_klein(c), || written_cayley_klein(c)),
+        );
+    }
+    print(
+        "unit quaternions in space, c = 1",
+        &compare(
+            || generated_cayley_klein_spatial(1.0),
+            || written_cayley_klein(1.0),
+        ),
+    );
+    print(
+        "body in a fluid",
+        &compare(generated_kirchhoff_body, written_kirchhoff_body),
+    );
 }
 
 fn print(name: &str, times: &Comparison) {

@@ -2,6 +2,7 @@
 //! step a call that may refuse. Takes nothing; gives closures for the clock. Everything is started outside them.
 
 use crate::blocks::STEPS;
+use crate::loops::{generated, written};
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{BodyMomentum, Rotation, SpatialMomentum};
 use clebsch_models::body_in_quadratic_field::{
@@ -35,35 +36,6 @@ fn matrix(rows: &Matrix) -> Matrix3<f64> {
 
 fn rotation(q: &Quaternion) -> Rotation<f64> {
     Rotation::from_quaternion(q.0).expect("a unit quaternion")
-}
-
-/// Steps a generated model.
-macro_rules! generated {
-    ($model:expr, $initial:expr) => {{
-        let model = $model.expect("parameters");
-        let (state, workspace) = model.start($initial, H).expect("solvable");
-        move || {
-            let (model, mut state, mut workspace) = black_box((model, state, workspace));
-            for _ in 0..STEPS {
-                model.step(&mut state, &mut workspace).expect("solvable");
-            }
-            black_box((&state, &workspace));
-        }
-    }};
-}
-
-/// Steps a hand-written motion.
-macro_rules! written {
-    ($motion:expr) => {{
-        let motion = $motion;
-        move || {
-            let mut motion = black_box(motion);
-            for _ in 0..STEPS {
-                motion.step().expect("solvable");
-            }
-            black_box(&motion);
-        }
-    }};
 }
 
 /// A block of the generated free body in space.
