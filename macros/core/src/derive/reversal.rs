@@ -33,11 +33,27 @@ pub fn is_reversible(spec: &Spec, action: &Action, algebra: &Algebra) -> bool {
     }
     let reversed = expr::substitute(s, &action.total, &swap);
     let sum = expr::add(action.total.clone(), reversed);
-    let rest = algebra.lower(&expr::substitute(s, &sum, &forward));
-    !algebra.exhausted() && {
-        let rest = algebra.raise(&rest);
-        expr::letters(&rest)
+    let sum = expr::substitute(s, &sum, &forward);
+    let constant = |e: &Expr| {
+        expr::letters(e)
             .iter()
             .all(|l| matches!(s.get(l.symbol).role, Role::Parameter | Role::Step))
+    };
+    let rest = algebra.raise(&algebra.lower(&sum));
+    if algebra.exhausted() {
+        return false;
     }
+    if constant(&rest) {
+        return true;
+    }
+    // A sum that is constant has the value that it has at rest, which identities beyond the normal
+    // form may prove: that a rotation keeps its axis, for one.
+    let still: Vec<(Letter, Expr)> = spec
+        .configurations
+        .iter()
+        .map(|c| (at(c.velocity, Shift::HERE), expr::identity(c.group.size())))
+        .collect();
+    let at_rest = expr::substitute(s, &rest, &still);
+    let at_rest = algebra.raise(&algebra.lower(&at_rest));
+    constant(&at_rest) && algebra.equal(&rest, &at_rest)
 }

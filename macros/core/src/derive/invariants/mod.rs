@@ -5,6 +5,7 @@
 
 mod casimirs;
 mod energy;
+mod homogeneous;
 mod isospectral;
 mod noether;
 pub(crate) mod passage;

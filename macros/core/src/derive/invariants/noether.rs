@@ -2,6 +2,7 @@
 //! body frame; whole, or about an axis that the parameters or the basis give. A symmetry of the
 //! action is not asked for: that the momentum is conserved is proved itself.
 
+use super::homogeneous;
 use super::passage::Passage;
 use super::{Candidate, Family, Inputs, Invariant, Kind, here, is_conserved, length};
 use crate::algebra::Rational;
@@ -230,6 +231,17 @@ fn about_axes(x: &Inputs, group: Group, m: &Expr, size: &Expr) -> Vec<Candidate>
     let mut out = Vec::new();
     match group {
         Group::RigidMotions => {
+            // Homogeneous vectors, planes and points, have a part in space.
+            for p in parameters(Shape::vector(Dim::Fixed(4))).take(AXES) {
+                let whole = expr::here(s, p);
+                out.push(Candidate {
+                    name: format!("moment_about_{}", ascii(x, p)),
+                    value: homogeneous::moment(s, m, &whole),
+                    scale: expr::mul(size.clone(), length(x, &whole)),
+                });
+                let v = homogeneous::spatial_part(s, &whole);
+                axes.push((ascii(x, p), v.clone(), length(x, &v)));
+            }
             for (which, part) in [
                 ("linear", bracket::linear(s, m)),
                 ("angular", bracket::angular(s, m)),
@@ -243,6 +255,14 @@ fn about_axes(x: &Inputs, group: Group, m: &Expr, size: &Expr) -> Vec<Candidate>
                     out.push(Candidate {
                         name: format!("{which}_{name}"),
                         value: expr::dot(part.clone(), v.clone()),
+                        scale: expr::mul(size.clone(), long.clone()),
+                    });
+                }
+                // What is left when the part along an axis is not kept.
+                for (name, v, long) in axes.iter().skip(usize::from(count)) {
+                    out.push(Candidate {
+                        name: format!("{which}_across_{name}"),
+                        value: expr::cross(v.clone(), part.clone()),
                         scale: expr::mul(size.clone(), long.clone()),
                     });
                 }

@@ -272,3 +272,73 @@ fn the_bracket_of_body_and_space_differ_in_sign() {
     assert_eq!(entry(&space, 3, 2), Ok(-4.0));
     assert_eq!(entry(&space, 2, 3), Ok(4.0));
 }
+
+/// A body in a fluid, with what is said of its surroundings.
+fn body_in_fluid(declared: &str, potential: &str) -> Derivation {
+    derive(&format!(
+        "model Body {{
+            param J, M: Sym<3>; param D: Mat<3>;
+            group G: SE<3> velocity V;
+            {declared}
+            constraint next(G) = G*V;
+            let u = (pos(V) - pos(V^-1))/2;
+            lagrangian = -tr(J*rot(V))/h + dot(u, M*u)/(2*h) + dot(vee(rot(V)), D*u)/h{potential};
+        }}"
+    ))
+}
+
+#[test]
+fn a_body_in_a_fluid_keeps_what_its_surroundings_leave_alone() {
+    let free = body_in_fluid("", "");
+    let wanted = [
+        "energy~",
+        "spatial_momentum",
+        "momentum_angular_momentum_linear",
+        "momentum_linear_squared",
+    ];
+    assert_eq!(names(&free), wanted);
+    assert_eq!(free.integrability.rank, Some((6, 4)));
+    // Its weight balanced by buoyancy: only the vertical direction is told.
+    let upright = body_in_fluid(
+        "param b, z: Vec<3>; advected Γ: Vec<3> = rot(G)^T*z; constraint next(Γ) = rot(V)^T*Γ;",
+        " - h*dot(b, Γ)",
+    );
+    let wanted = [
+        "energy~",
+        "momentum_linear_squared",
+        "momentum_linear_Gamma",
+        "Gamma_squared",
+        "spatial_momentum_linear",
+        "spatial_momentum_angular_z",
+    ];
+    assert_eq!(names(&upright), wanted);
+    assert_eq!(upright.integrability.rank, Some((9, 6)));
+    // A net weight: the height is told, horizontal translations are not.
+    let heavy = body_in_fluid(
+        "param b, Z: Vec<4>; advected P: Vec<4> = G^T*Z; constraint next(P) = V^T*P;",
+        " - h*dot(b, P)",
+    );
+    let wanted = [
+        "energy~",
+        "P_part_squared",
+        "momentum_linear_across_P_part_squared",
+        "spatial_momentum_linear_across_Z",
+        "spatial_momentum_angular_Z",
+    ];
+    assert_eq!(names(&heavy), wanted);
+    assert_eq!(heavy.integrability.rank, Some((10, 8)));
+    assert_eq!(heavy.integrability.casimirs, 2);
+    // Held by a spring to a point: its weight never changes, and the moment about it is kept.
+    let held = body_in_fluid(
+        "param K: Sym<4>; param X: Vec<4>; advected Q: Vec<4> = G^-1*X; constraint next(Q) = V^-1*Q;",
+        " - h*dot(Q, K*Q)",
+    );
+    let wanted = [
+        "energy~",
+        "moment_about_Q_squared",
+        "Q_weight",
+        "spatial_momentum_moment_about_X",
+    ];
+    assert_eq!(names(&held), wanted);
+    assert_eq!(held.integrability.rank, Some((10, 8)));
+}

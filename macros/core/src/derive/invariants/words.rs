@@ -2,6 +2,7 @@
 //! space is made of, simple ones first. Takes the momenta and advected quantities of a model; gives
 //! numbers that may or may not be Casimirs.
 
+use super::homogeneous;
 use super::noether::components;
 use super::passage::Passage;
 use super::{Candidate, Inputs, here, length};
@@ -17,10 +18,10 @@ const MOST: usize = 400;
 
 /// A part of a word, with its name and the length of what it is made of.
 #[derive(Clone)]
-struct Piece {
-    name: String,
-    value: Expr,
-    size: Expr,
+pub(super) struct Piece {
+    pub(super) name: String,
+    pub(super) value: Expr,
+    pub(super) size: Expr,
 }
 
 /// All candidates, simple ones first.
@@ -122,6 +123,8 @@ pub(super) fn candidates(x: &Inputs, passages: &[Passage]) -> Vec<Candidate> {
             break;
         }
     }
+    out.extend(homogeneous::weights(x));
+    out.extend(areas(&vectors));
     out.extend(products_in_three(&vectors));
     out.extend(circulations(x));
     out.extend(across(x, &vectors));
@@ -268,6 +271,7 @@ fn vectors(x: &Inputs, passages: &[Passage]) -> Vec<Piece> {
             });
         }
     }
+    out.extend(homogeneous::pieces(x));
     out
 }
 
@@ -378,6 +382,25 @@ fn matrices(x: &Inputs) -> Vec<Piece> {
             value,
             size,
         }));
+    }
+    out
+}
+
+/// Squares of the cross products of two vectors: the part of one across the other.
+fn areas(vectors: &[Piece]) -> Vec<Candidate> {
+    let three = |v: &&Piece| v.value.shape() == Shape::vector(Dim::Fixed(3));
+    let list: Vec<&Piece> = vectors.iter().filter(three).take(8).collect();
+    let mut out = Vec::new();
+    for (i, u) in list.iter().enumerate() {
+        for v in &list[i + 1..] {
+            let across = expr::cross(u.value.clone(), v.value.clone());
+            let size = expr::mul(u.size.clone(), v.size.clone());
+            out.push(Candidate {
+                name: format!("{}_across_{}_squared", u.name, v.name),
+                value: expr::dot(across.clone(), across),
+                scale: expr::power(size, Rational::integer(2)),
+            });
+        }
     }
     out
 }
