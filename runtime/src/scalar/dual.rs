@@ -209,6 +209,11 @@ impl<const N: usize> Real for Dual<N> {
     #[inline(always)]
     fn sqrt(self) -> Self {
         let root = self.real.sqrt();
+        if root == 0.0 {
+            // The length of what is zero and stays so has no change; anything else has no derivative.
+            let dual = self.dual.map(|d| if d == 0.0 { 0.0 } else { d / root });
+            return Self { real: root, dual };
+        }
         self.chain(root, 0.5 / root)
     }
 
