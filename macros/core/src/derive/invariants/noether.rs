@@ -231,20 +231,30 @@ fn about_axes(x: &Inputs, group: Group, m: &Expr, size: &Expr) -> Vec<Candidate>
     let mut out = Vec::new();
     match group {
         Group::RigidMotions => {
+            // The angular part is a sum of two that both grow with the distance of the body.
+            let moved = x.spec.configurations.iter();
+            let moved = moved.filter(|c| c.group == Group::RigidMotions);
+            let lever = moved.map(|c| {
+                let place = expr::column(s, &expr::here(s, c.element));
+                length(x, &place)
+            });
+            let lever = expr::sum(lever, Shape::SCALAR);
+            let moment = expr::mul(lever, length(x, &bracket::linear(s, m)));
+            let with_lever = expr::add(size.clone(), moment);
             // Homogeneous vectors, planes and points, have a part in space.
             for p in parameters(Shape::vector(Dim::Fixed(4))).take(AXES) {
                 let whole = expr::here(s, p);
                 out.push(Candidate {
                     name: format!("moment_about_{}", ascii(x, p)),
                     value: homogeneous::moment(s, m, &whole),
-                    scale: expr::mul(size.clone(), length(x, &whole)),
+                    scale: expr::mul(with_lever.clone(), length(x, &whole)),
                 });
                 let v = homogeneous::spatial_part(s, &whole);
                 axes.push((ascii(x, p), v.clone(), length(x, &v)));
             }
-            for (which, part) in [
-                ("linear", bracket::linear(s, m)),
-                ("angular", bracket::angular(s, m)),
+            for (which, part, size) in [
+                ("linear", bracket::linear(s, m), size),
+                ("angular", bracket::angular(s, m), &with_lever),
             ] {
                 out.push(Candidate {
                     name: which.to_owned(),
