@@ -67,6 +67,13 @@ pub fn entry() -> Entry {
                 2_000,
             ),
             case(
+                "floating",
+                "weight and buoyancy in balance, the centre of mass off the centre of buoyancy",
+                [0.1, -0.05, 0.15],
+                [0.1, 0.0, -0.2, 0.0],
+                2_000,
+            ),
+            case(
                 "sinking",
                 "a heavy body, its centre of mass off the centre of buoyancy",
                 [0.1, -0.05, 0.15],

@@ -1,16 +1,18 @@
 //! One step of every model of the gallery as a map of T*G, attitudes included: its exact Jacobian, from dual numbers,
 //! keeps the canonical two-form to 1e-10. Takes the data of the cases and random phases; a list below says how each
-//! model is started, and must name every model. A step whose length depends on the state fails, which is shown too.
+//! model is started, and must name every model of fixed size. A step whose length depends on the state fails, which is shown too.
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables)]
 
-use clebsch::nalgebra::{Matrix3, SMatrix, Vector3};
-use clebsch::{BodyMomentum, Dual, Rotation, SpatialMomentum};
+use clebsch::nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use clebsch::{
+    BodyImpulse, BodyMomentum, Dual, Real, RigidMotion, Rotation, SpatialMomentum, UnitQuaternion,
+};
 use clebsch_models::Case;
 use clebsch_tests::handwritten::attitude::Vector;
 use clebsch_tests::physics::draws::Draws;
-use clebsch_tests::physics::symplectic::defect_of_product;
+use clebsch_tests::physics::symplectic::{defect_of_motion, defect_of_product};
 
 /// Rounding of a product of three matrices with entries of order one to ten, with a wide margin.
 const TOLERANCE: f64 = 1e-10;
@@ -70,6 +72,11 @@ impl<const N: usize> Phase<N> {
         (seen + seen.transpose()) * Dual::constant(0.5)
     }
 
+    /// One of the two quaternions of the attitude: momenta on SU(2) are those of the rotations they cover.
+    fn quaternion(&self) -> UnitQuaternion<Dual<N>> {
+        UnitQuaternion::from_components(self.attitude.quaternion()).expect("a unit quaternion")
+    }
+
     fn space_momentum(&self) -> SpatialMomentum<Dual<N>> {
         SpatialMomentum(self.to_space(&self.momentum))
     }
@@ -123,6 +130,23 @@ fn defect<const N: usize>(
     defect_of_product(&jacobian, &before, &after) / size
 }
 
+/// The rotation of space that an attitude is.
+trait Turn<T> {
+    fn turn(&self) -> Matrix3<T>;
+}
+
+impl<T: Real> Turn<T> for Rotation<T> {
+    fn turn(&self) -> Matrix3<T> {
+        self.matrix()
+    }
+}
+
+impl<T: Real> Turn<T> for UnitQuaternion<T> {
+    fn turn(&self) -> Matrix3<T> {
+        self.rotation().matrix()
+    }
+}
+
 /// Starts a model at a phase, steps once, and gives the phase after it.
 macro_rules! stepped {
     ($model:ident, $parameters:ident { $($p:ident: $value:expr),* $(,)? },
@@ -132,7 +156,7 @@ macro_rules! stepped {
         let initial = $initial { $($i: $start),* };
         let (mut state, mut workspace) = model.start(initial, $h).expect("solvable");
         model.step(&mut state, &mut workspace).expect("solvable");
-        [$((state.$attitude().matrix(), state.$momentum().0)),+]
+        [$((state.$attitude().turn(), state.$momentum().0)),+]
     }};
 }
 
@@ -287,15 +311,111 @@ fn coupled_bodies(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
     defect(&[&p, &q], &after)
 }
 
+fn cayley_klein(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
+    use clebsch_models::cayley_klein::*;
+    let p = phase::<6>(draws, 0);
+    let after = stepped!(
+        CayleyKlein,
+        CayleyKleinParameters {
+            I: matrix(&case.parameters[0]),
+            c: number(&case.parameters[1]),
+        },
+        CayleyKleinInitial {
+            q: p.quaternion(),
+            body_momentum: p.body_momentum()
+        },
+        step(case.h, warp, &p),
+        (q, body_momentum)
+    );
+    defect(&[&p], &after)
+}
+
+fn cayley_klein_spatial(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
+    use clebsch_models::cayley_klein_spatial::*;
+    let p = phase::<6>(draws, 0);
+    let after = stepped!(
+        CayleyKleinSpatial,
+        CayleyKleinSpatialParameters {
+            c: number(&case.parameters[0])
+        },
+        CayleyKleinSpatialInitial {
+            q: p.quaternion(),
+            spatial_momentum: p.space_momentum(),
+            I: p.carried(&matrix(&case.initial[2])),
+        },
+        step(case.h, warp, &p),
+        (q, body_momentum)
+    );
+    defect(&[&p], &after)
+}
+
+fn kirchhoff_body(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
+    use clebsch_models::kirchhoff_body::*;
+    let random = |draws: &mut Draws| {
+        let ([a, b, c], [d, e, f]) = (draws.direction(), draws.direction());
+        [a, b, c, d, e, f]
+    };
+    let (place, start) = (random(draws), random(draws));
+    let change = |first: usize| Vector3::from_fn(|i, _| Dual::<12>::variable(0.0, first + i));
+    let q = draws.attitude().0.map(Dual::constant);
+    let own = RigidMotion {
+        rotation: Rotation::from_quaternion(q).expect("a unit quaternion"),
+        translation: column(&place),
+    };
+    // To first order this is the exponential.
+    let motion = own
+        * RigidMotion {
+            rotation: Rotation::exp(&change(0)),
+            translation: change(3),
+        };
+    let mu = SVector::from_fn(|i, _| Dual::<12>::variable(start[i], 6 + i));
+    let model = KirchhoffBody::new(KirchhoffBodyParameters {
+        J: matrix(&case.parameters[0]),
+        M: matrix(&case.parameters[1]),
+        D: matrix(&case.parameters[2]),
+        b: SVector::from_fn(|i, _| Dual::constant(case.parameters[3][i])),
+        Z: SVector::from_fn(|i, _| Dual::constant(case.parameters[4][i])),
+    })
+    .expect("parameters of a case");
+    let initial = KirchhoffBodyInitial {
+        G: motion,
+        body_momentum: BodyImpulse(mu),
+    };
+    let h = Dual::constant(case.h) * (Dual::constant(1.0) + Dual::constant(warp) * mu[0]);
+    let (mut state, mut workspace) = model.start(initial, h).expect("solvable");
+    model.step(&mut state, &mut workspace).expect("solvable");
+    let (moved, after) = (state.G().matrix(), state.body_momentum().0);
+    // G^-1 dG = [hat(xi) v; 0 0].
+    let back = state.G().inverse().matrix().map(|x| x.real);
+    let turns: Vec<_> = (0..12)
+        .map(|seed| back * moved.map(|x| x.dual[seed]))
+        .collect();
+    let entries = [(2, 1), (0, 2), (1, 0), (0, 3), (1, 3), (2, 3)];
+    let mut jacobian: Vec<Vec<f64>> = entries
+        .iter()
+        .map(|at| turns.iter().map(|t| t[*at]).collect())
+        .collect();
+    jacobian.extend(after.iter().map(|x| x.dual.to_vec()));
+    let (before, after) = (start, std::array::from_fn(|i| after[i].real));
+    let size = before
+        .iter()
+        .chain(&after)
+        .fold(1.0_f64, |m, x| m.max(x.abs()));
+    defect_of_motion(&jacobian, &before, &after) / size
+}
+
 /// How each model is started.
-const MODELS: [(&str, Defect); 7] = [
+const MODELS: [(&str, Defect); 10] = [
     ("body-in-quadratic-field", body_in_quadratic_field),
     ("body-in-two-fields", body_in_two_fields),
+    ("cayley-klein", cayley_klein),
+    ("cayley-klein-spatial", cayley_klein_spatial),
     ("coupled-bodies", coupled_bodies),
     ("free-body", free_body),
     ("free-body-spatial", free_body_spatial),
     ("heavy-top", heavy_top),
     ("heavy-top-spatial", heavy_top_spatial),
+    ("kirchhoff-body", kirchhoff_body),
 ];
 
 fn for_every_case(mut look: impl FnMut(&str, &Case, Defect)) {

@@ -56,7 +56,32 @@ pub fn defect_of_product(jacobian: &[Vec<f64>], before: &[Vector], after: &[Vect
         }
         w
     };
-    let (old, new) = (form(before), form(after));
+    pulled_back(jacobian, &form(before), &form(after))
+}
+
+/// The same for SE(3): a turn and a displacement `G^-1 dG`, then the angular and the linear momentum.
+pub fn defect_of_motion(jacobian: &[Vec<f64>], before: &[f64; 6], after: &[f64; 6]) -> f64 {
+    let form = |mu: &[f64; 6]| {
+        let mut w = vec![vec![0.0; 12]; 12];
+        for i in 0..6 {
+            w[i][i + 6] = -1.0;
+            w[i + 6][i] = 1.0;
+        }
+        // -mu . [a, b] with [(w, v), (w', v')] = (w x w', w x v' - w' x v).
+        for i in 0..3 {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            for (r, c, value) in [(j, k, mu[i]), (j, k + 3, mu[i + 3]), (j + 3, k, mu[i + 3])] {
+                w[r][c] = -value;
+                w[c][r] = value;
+            }
+        }
+        w
+    };
+    pulled_back(jacobian, &form(before), &form(after))
+}
+
+/// Largest entry of D^T W' D - W.
+fn pulled_back(jacobian: &[Vec<f64>], old: &[Vec<f64>], new: &[Vec<f64>]) -> f64 {
     let size = old.len();
     if new.len() != size || jacobian.len() != size {
         return f64::INFINITY;
@@ -65,7 +90,7 @@ pub fn defect_of_product(jacobian: &[Vec<f64>], before: &[Vector], after: &[Vect
     for r in 0..size {
         for c in 0..size {
             let mut off = -old[r][c];
-            for (row, form) in jacobian.iter().zip(&new) {
+            for (row, form) in jacobian.iter().zip(new) {
                 let turned: f64 = form.iter().zip(jacobian).map(|(w, d)| w * d[c]).sum();
                 off += row[r] * turned;
             }
