@@ -77,11 +77,14 @@ fn generated_steppers_tend_to_the_hand_written_equations() {
             });
             // Steady motions are exact but for rounding; else the error falls by 2^order. The next term of
             // the expansion, some h^2 of the first one, and rounding change the exponent by less than 0.1.
+            // A step that has not been shown to be reversible may still be of order two.
             let order = (errors[0] / errors[1]).log2();
             let expected = f64::from(entry.card.order);
             let exact = errors[1] < 1e-11;
             assert!(
-                exact || (order - expected).abs() < 0.1,
+                exact
+                    || (order - expected).abs() < 0.1
+                    || (!entry.card.reversible && order > expected),
                 "{model} {}: order {order}, errors {errors:?}",
                 case.name
             );

@@ -281,7 +281,32 @@ pub mod body_n {
             }
         }
     }
-    impl<const N: usize, T: Real> BodyN<N, T> {}
+    impl<const N: usize, T: Real> BodyN<N, T> {
+        /// `-½ tr(μ_k²)`: Casimir: constant on coadjoint orbits.
+        pub fn momentum_squared(&self, state: &BodyNState<N, T>) -> T {
+            let μ = state.body_momentum().0;
+            -(T::from_f64(0.5) * (μ * μ).trace())
+        }
+        /// `tr(μ_k⁴)`: Casimir: constant on coadjoint orbits.
+        pub fn trace_momentum4(&self, state: &BodyNState<N, T>) -> T {
+            let μ = state.body_momentum().0;
+            (μ * (μ * (μ * μ))).trace()
+        }
+    }
+    impl<const N: usize, T: Real> BodyN<N, T> {
+        /// The discrete energy of the edge between two consecutive states, `tr(C)/h² - tr(C Ω_kᵀ)/h²`: bounded, since the stepper is symplectic.
+        pub fn discrete_energy(
+            &self,
+            h: T,
+            before: &BodyNState<N, T>,
+            after: &BodyNState<N, T>,
+        ) -> T {
+            let BodyNParameters { C, .. } = self.parameters;
+            let Ω = (before.Λ.inverse() * after.Λ).matrix();
+            let t1 = h.powi(-2);
+            t1 * C.trace() - t1 * (C * Ω.transpose()).trace()
+        }
+    }
     /// One trajectory of the model, its type hidden.
     struct BodyNTrajectory<const N: usize> {
         model: BodyN<N, f64>,
@@ -312,10 +337,56 @@ pub mod body_n {
         }
         fn invariants(&self, out: &mut [f64]) {
             let state = &self.state;
+            let out = put(out, skew_coordinates(&state.spatial_momentum().0));
+            let out = put(out, [self.model.momentum_squared(state)]);
+            let out = put(out, [self.model.trace_momentum4(state)]);
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
             let state = &self.start;
+            let out = put(
+                out,
+                ::core::iter::repeat_n(
+                    {
+                        type T = f64;
+                        let Λ = state.Λ.matrix();
+                        let μ = state.body_momentum().0;
+                        let value: T = (-(Λ
+                            * (μ * Λ.tr_mul(&(Λ * (μ * Λ.transpose())))))
+                            .trace())
+                            .sqrt();
+                        value
+                    },
+                    (N * (N - 1) / 2),
+                ),
+            );
+            let out = put(
+                out,
+                ::core::iter::repeat_n(
+                    {
+                        type T = f64;
+                        let μ = state.body_momentum().0;
+                        let value: T = (-(μ * μ).trace()).sqrt()
+                            * (-(μ * μ).trace()).sqrt();
+                        value
+                    },
+                    1usize,
+                ),
+            );
+            let out = put(
+                out,
+                ::core::iter::repeat_n(
+                    {
+                        type T = f64;
+                        let μ = state.body_momentum().0;
+                        let value: T = (-(μ * μ).trace()).sqrt()
+                            * (-(μ * μ).trace()).sqrt() * (-(μ * μ).trace()).sqrt()
+                            * (-(μ * μ).trace()).sqrt();
+                        value
+                    },
+                    1usize,
+                ),
+            );
             let _ = out;
         }
     }
@@ -327,7 +398,7 @@ pub mod body_n {
             doc: "Free rigid body in n dimensions.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   -tr(Cᵀ Ω_k)/h\nmomentum of Λ        -C Ω_kᵀ/h + Ω_k Cᵀ/h\nRiccati form         exact, C = C\ninvariants           \ntime reversal        not symmetric: first order\ncertificate          10 identities proved by normal form",
+            summary: "action of one step   -tr(Cᵀ Ω_k)/h\nmomentum of Λ        -C Ω_kᵀ/h + Ω_k Cᵀ/h\nRiccati form         exact, C = C\ninvariants           spatial_momentum, momentum_squared, trace_momentum4\ntime reversal        not symmetric: first order\ncertificate          10 identities proved by normal form",
             solver: "Moser-Veselov: C is constant: Newton's method on the Lie algebra",
             order: 1u32,
             orders: &[1],
@@ -387,7 +458,26 @@ pub mod body_n {
                     doc: "momentum, space frame",
                 },
             ],
-            invariants: &[],
+            invariants: &[
+                Invariant {
+                    name: "spatial_momentum",
+                    formula: "Λ μ",
+                    rows: (N * (N - 1) / 2),
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "momentum_squared",
+                    formula: "-½ tr(μ_k²)",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "trace_momentum4",
+                    formula: "tr(μ_k⁴)",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+            ],
             open: Self::open,
             solvers: if N == 3 { &Method::NAMES } else { &Method::ANY_SIZE },
             dimensions: &[

@@ -149,5 +149,7 @@ fn errors_say_what_was_expected() {
         found: 3,
     };
     assert_eq!(error.to_string(), "`J` takes 9 numbers, found 3");
-    assert!(std::mem::size_of::<StepError>() <= 64);
+    // A result is copied out of every step: ten words hold the numbers of every refusal.
+    let size = std::mem::size_of::<StepError>();
+    assert!(size <= 80, "{size}");
 }

@@ -236,7 +236,7 @@ fn the_largest_step_told_is_one_that_every_lane_can_make() {
     assert!(slowest != 0, "lane 0 would hide a fault: {alone:?}");
     let together = SVector::from_fn(|row, _| Lanes(std::array::from_fn(|i| fast(i)[row])));
     let e = refusal::<Lanes<4>>(together, h);
-    assert_eq!(e.lane, slowest);
+    assert_eq!(e.lane as usize, slowest);
     assert_eq!(e.largest_step, Some(alone[slowest]));
     assert!(
         e.to_string().starts_with(&format!("lane {slowest}: ")),

@@ -26,7 +26,7 @@ pub struct MoserVeselovError {
     pub order: Order,
     /// The lane all this is about: the worst, or that of the smallest step where it was searched.
     /// 0 for types without lanes.
-    pub lane: usize,
+    pub lane: u32,
 }
 
 /// The step offered is this little inside the bound: at the bound itself the quartic has a double
@@ -52,7 +52,7 @@ impl MoserVeselovError {
             if ratio.is_nan() || ratio > worst.ratio {
                 worst.ratio = ratio;
                 worst.component = fastest(&body, &n);
-                worst.lane = lane;
+                worst.lane = index(lane);
             }
             if ratio.is_nan() {
                 break;
@@ -98,7 +98,7 @@ impl MoserVeselovError {
                     largest_step: Some(largest),
                     component: fastest(&body, &n),
                     order,
-                    lane,
+                    lane: index(lane),
                 });
             }
         }
@@ -120,7 +120,7 @@ impl MoserVeselovError {
     #[cold]
     #[must_use]
     pub fn with_linear_step<T: Real>(self, h: T) -> Self {
-        let h = h.lane(self.lane);
+        let h = h.lane(self.lane as usize);
         self.with_steps(h, h / self.ratio * INSIDE)
     }
 
@@ -144,13 +144,18 @@ impl MoserVeselovError {
             // NaN, which an infinite momentum gives, is told only if nothing else is.
             if told.largest_step.is_none_or(|smallest| largest < smallest) {
                 told = Self {
-                    lane,
+                    lane: index(lane),
                     ..told.with_steps(own_h, largest)
                 };
             }
         }
         told
     }
+}
+
+/// The number of a lane; there are a few of them.
+fn index(lane: usize) -> u32 {
+    u32::try_from(lane).unwrap_or(u32::MAX)
 }
 
 /// The index of the largest `|h N_i| / I_ii`.
