@@ -288,6 +288,7 @@ pub mod cayley_klein_spatial {
             }
         }
     }
+    impl<T: Real> Reversible for CayleyKleinSpatial<T> {}
     /// A configuration at one node, solution or not.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct CayleyKleinSpatialConfiguration<T = f64> {
@@ -527,12 +528,12 @@ pub mod cayley_klein_spatial {
             doc: "Free rigid body in unit quaternions, spatial representation.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   -4 c re(w_k)/h + 2 im(w_k)·((I_k - c Id) im(w_k))/h\nmomentum of q        2 im((-c Id/h + ½ quat(2 (I_k - c Id) im(w_k)/h)) w_kᵀ)\nRiccati form         none: the group is not SO(n)\ninvariants           energy, spatial_momentum, trace_I1, trace_I2, trace_I3\ntime reversal        not symmetric: first order\ncertificate          10 identities proved by normal form, 6 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
+            summary: "action of one step   -4 c re(w_k)/h + 2 im(w_k)·((I_k - c Id) im(w_k))/h\nmomentum of q        2 im((-c Id/h + ½ quat(2 (I_k - c Id) im(w_k)/h)) w_kᵀ)\nRiccati form         none: the group is not SO(n)\ninvariants           energy, spatial_momentum, trace_I1, trace_I2, trace_I3\ntime reversal        symmetric: second order\ncertificate          10 identities proved by normal form, 6 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
             solver: "Newton: the group is not SO(n): Newton on the derived residual",
-            order: 1u32,
-            orders: &[1],
+            order: 2u32,
+            orders: &[2, 4, 6, 8],
             preprocessed: false,
-            reversible: false,
+            reversible: true,
             parameters: &[
                 Field {
                     name: "c",
@@ -676,7 +677,7 @@ pub mod cayley_klein_spatial {
             };
             chosen_solver(settings, Self::CARD.solvers)?;
             let state = model.at_node_0(initial)?;
-            let steps = Steps::plain(&model, &state, settings, Self::CARD.orders)?;
+            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)?;
             Ok(
                 Box::new(CayleyKleinSpatialTrajectory {
                     model,
