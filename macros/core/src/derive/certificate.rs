@@ -209,6 +209,10 @@ fn combination(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
     let multipliers = x.letters.momentum.iter().chain(&x.letters.multiplier);
     for (quantity, multiplier) in quantities.zip(multipliers) {
         let own = |gradient: &Expr| {
+            let letters = expr::letters(gradient);
+            if !letters.iter().any(|l| l.symbol == *multiplier) {
+                return expr::zero(gradient.shape());
+            }
             let (with, without) = (
                 with_multiplier(x, gradient, Some(*multiplier)),
                 with_multiplier(x, gradient, None),
@@ -228,15 +232,23 @@ fn combined(x: &Inputs, i: usize, part: &dyn Fn(&Expr) -> Expr) -> Expr {
     let s = &x.letters.symbols;
     let v = &x.variations[i];
     let mut terms = Vec::new();
+    let outgoing = v.on_outgoing();
     for relation in x.relations {
+        let here = outgoing.iter().filter(|(l, _)| *l == relation.variable);
+        let here: Vec<_> = here.collect();
+        let incoming = v.incoming.0.symbol == relation.variable.symbol;
+        if here.is_empty() && !incoming {
+            continue;
+        }
         let gradient = part(&relation.gradient);
-        for (letter, change) in v.on_outgoing() {
-            if letter == relation.variable {
-                terms.push(pairing(x.letters, &gradient, &change));
-            }
+        if gradient.is_zero() {
+            continue;
+        }
+        for (_, change) in here {
+            terms.push(pairing(x.letters, &gradient, change));
         }
         // The velocity of the incoming edge has its relation one level earlier.
-        if v.incoming.0.symbol == relation.variable.symbol {
+        if incoming {
             let earlier = expr::shift_time(s, &gradient, Shift::PREVIOUS.time);
             terms.push(pairing(x.letters, &earlier, &v.incoming.1));
         }
@@ -248,8 +260,9 @@ fn combined(x: &Inputs, i: usize, part: &dyn Fn(&Expr) -> Expr) -> Expr {
 fn with_multiplier(x: &Inputs, e: &Expr, kept: Option<SymbolId>) -> Expr {
     let s = &x.letters.symbols;
     let multipliers = x.letters.momentum.iter().chain(&x.letters.multiplier);
+    let present = expr::letters(e);
     let nothing: Vec<_> = multipliers
-        .filter(|m| Some(**m) != kept)
+        .filter(|m| Some(**m) != kept && present.iter().any(|l| l.symbol == **m))
         .flat_map(|m| {
             let zero = expr::zero(s.get(*m).shape);
             [Shift::HERE, Shift::NEXT].map(|shift| (Letter { symbol: *m, shift }, zero.clone()))
