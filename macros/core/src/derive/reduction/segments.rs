@@ -188,7 +188,7 @@ impl Reducer<'_> {
         let later = matches!((w.first().and_then(|f| self.element(f)), w.last().and_then(|f| self.element(f))), (Some(a), Some(b)) if a > b);
         let turned = row || (later && !minus);
         let own = if turned { back.clone() } else { w.to_vec() };
-        let quantity = self.declare(&own, &back == w && !minus, &back == w && minus);
+        let quantity = self.declare(&own, back == *w && !minus, back == *w && minus);
         let e = expr::here(&self.symbols, quantity);
         match (turned, minus) {
             (false, _) => e,
