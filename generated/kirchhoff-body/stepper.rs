@@ -654,6 +654,92 @@ pub mod kirchhoff_body {
             let (kinetic, potential) = self.energies(state);
             kinetic + potential
         }
+        /// `(ι₄₁ᵀ P_k)·(ι₄₁ᵀ P_k)`: Casimir: the group leaves it alone.
+        pub fn P_part_squared(&self, state: &KirchhoffBodyState<T>) -> T {
+            let KirchhoffBodyParameters { Z, .. } = self.parameters;
+            let G = state.G.matrix();
+            let P = G.tr_mul(&Z);
+            let t1 = rows_from::<T, 4, 3, 1>(&P, 0);
+            t1.dot(&t1)
+        }
+        /// `((ι₆₄ᵀ μ_k) × (ι₄₁ᵀ P_k))·((ι₆₄ᵀ μ_k) × (ι₄₁ᵀ P_k))`: Casimir: the Kelvin-Noether quantity of what is advected.
+        pub fn momentum_linear_across_P_part_squared(
+            &self,
+            state: &KirchhoffBodyState<T>,
+        ) -> T {
+            let KirchhoffBodyParameters { Z, .. } = self.parameters;
+            let G = state.G.matrix();
+            let P = G.tr_mul(&Z);
+            let μ = state.body_momentum().0;
+            let t1 = (rows_from::<T, 6, 3, 1>(&μ, 3))
+                .cross(&(rows_from::<T, 4, 3, 1>(&P, 0)));
+            t1.dot(&t1)
+        }
+        /// `(ι₄₁ᵀ Z) × (ι₆₄ᵀ (ι₆₁ (rot(G_k) ι₆₁ᵀ μ_k + pos(G_k) × (rot(G_k) ι₆₄ᵀ μ_k)) + ι₆₄ rot(G_k) ι₆₄ᵀ μ_k))`: Noether: the action is invariant under what keeps the axis in space.
+        pub fn spatial_momentum_linear_across_Z(
+            &self,
+            state: &KirchhoffBodyState<T>,
+        ) -> SVector<T, 3> {
+            let KirchhoffBodyParameters { Z, .. } = self.parameters;
+            let G = state.G.matrix();
+            let μ = state.body_momentum().0;
+            let t1 = motion_rotation(&G);
+            (rows_from::<T, 4, 3, 1>(&Z, 0))
+                .cross(
+                    &(rows_from::<
+                        T,
+                        6,
+                        3,
+                        1,
+                    >(
+                        &(into_rows::<
+                            T,
+                            6,
+                            3,
+                            1,
+                        >(
+                            &(t1 * rows_from::<T, 6, 3, 1>(&μ, 0)
+                                + motion_translation(&G)
+                                    .cross(&(t1 * rows_from::<T, 6, 3, 1>(&μ, 3)))),
+                            0,
+                        )
+                            + into_rows::<
+                                T,
+                                6,
+                                3,
+                                1,
+                            >(&(t1 * rows_from::<T, 6, 3, 1>(&μ, 3)), 3)),
+                        3,
+                    )),
+                )
+        }
+        /// `(ι₆₁ᵀ (ι₆₁ (rot(G_k) ι₆₁ᵀ μ_k + pos(G_k) × (rot(G_k) ι₆₄ᵀ μ_k)) + ι₆₄ rot(G_k) ι₆₄ᵀ μ_k))·(ι₄₁ᵀ Z)`: Noether: the action is invariant under what keeps the axis in space.
+        pub fn spatial_momentum_angular_Z(&self, state: &KirchhoffBodyState<T>) -> T {
+            let KirchhoffBodyParameters { Z, .. } = self.parameters;
+            let G = state.G.matrix();
+            let μ = state.body_momentum().0;
+            let t1 = motion_rotation(&G);
+            (rows_from::<
+                T,
+                6,
+                3,
+                1,
+            >(
+                &(into_rows::<
+                    T,
+                    6,
+                    3,
+                    1,
+                >(
+                    &(t1 * rows_from::<T, 6, 3, 1>(&μ, 0)
+                        + motion_translation(&G)
+                            .cross(&(t1 * rows_from::<T, 6, 3, 1>(&μ, 3)))),
+                    0,
+                ) + into_rows::<T, 6, 3, 1>(&(t1 * rows_from::<T, 6, 3, 1>(&μ, 3)), 3)),
+                0,
+            ))
+                .dot(&(rows_from::<T, 4, 3, 1>(&Z, 0)))
+        }
     }
     impl<T: Real> KirchhoffBody<T> {
         /// The discrete energy of the edge between two consecutive states, `-tr(J rot(V_k))/h² + 2 (½ (pos(V_k) + rot(V_k)ᵀ pos(V_k)))·(½ M (pos(V_k) + rot(V_k)ᵀ pos(V_k)))/(2 h)² + (vee(rot(V_k))·(½ D (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/h² + ½ b·P_k + ½ b·P_{k+1} + tr(J)/h²`: bounded, since the stepper is symplectic.
@@ -713,6 +799,13 @@ pub mod kirchhoff_body {
         fn invariants(&self, out: &mut [f64]) {
             let state = &self.state;
             let out = put(out, [self.model.energy(state)]);
+            let out = put(out, [self.model.P_part_squared(state)]);
+            let out = put(
+                out,
+                [self.model.momentum_linear_across_P_part_squared(state)],
+            );
+            let out = put(out, rows(self.model.spatial_momentum_linear_across_Z(state)));
+            let out = put(out, [self.model.spatial_momentum_angular_Z(state)]);
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
@@ -722,6 +815,223 @@ pub mod kirchhoff_body {
                 [{
                     let (kinetic, potential) = self.model.energies(state);
                     kinetic.abs() + potential.abs()
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let KirchhoffBodyParameters { Z, .. } = self.model.parameters;
+                    let G = state.G.matrix();
+                    let P = G.tr_mul(&Z);
+                    let value: T = (rows_from::<T, 4, 3, 1>(&P, 0))
+                        .dot(&(rows_from::<T, 4, 3, 1>(&P, 0)))
+                        .sqrt()
+                        * (rows_from::<T, 4, 3, 1>(&P, 0))
+                            .dot(&(rows_from::<T, 4, 3, 1>(&P, 0)))
+                            .sqrt();
+                    value
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let KirchhoffBodyParameters { Z, .. } = self.model.parameters;
+                    let G = state.G.matrix();
+                    let P = G.tr_mul(&Z);
+                    let μ = state.body_momentum().0;
+                    let value: T = ((rows_from::<T, 6, 3, 1>(&μ, 3))
+                        .dot(&(rows_from::<T, 6, 3, 1>(&μ, 3)))
+                        .sqrt()
+                        * (rows_from::<T, 4, 3, 1>(&P, 0))
+                            .dot(&(rows_from::<T, 4, 3, 1>(&P, 0)))
+                            .sqrt())
+                        * ((rows_from::<T, 6, 3, 1>(&μ, 3))
+                            .dot(&(rows_from::<T, 6, 3, 1>(&μ, 3)))
+                            .sqrt()
+                            * (rows_from::<T, 4, 3, 1>(&P, 0))
+                                .dot(&(rows_from::<T, 4, 3, 1>(&P, 0)))
+                                .sqrt());
+                    value
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let KirchhoffBodyParameters { Z, .. } = self.model.parameters;
+                    let G = state.G.matrix();
+                    let μ = state.body_momentum().0;
+                    let value: T = (into_rows::<
+                        T,
+                        6,
+                        3,
+                        1,
+                    >(
+                        &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 0)
+                            + motion_translation(&G)
+                                .cross(
+                                    &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
+                                )),
+                        0,
+                    )
+                        + into_rows::<
+                            T,
+                            6,
+                            3,
+                            1,
+                        >(&(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)), 3))
+                        .dot(
+                            &(into_rows::<
+                                T,
+                                6,
+                                3,
+                                1,
+                            >(
+                                &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 0)
+                                    + motion_translation(&G)
+                                        .cross(
+                                            &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
+                                        )),
+                                0,
+                            )
+                                + into_rows::<
+                                    T,
+                                    6,
+                                    3,
+                                    1,
+                                >(
+                                    &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
+                                    3,
+                                )),
+                        )
+                        .sqrt()
+                        * (rows_from::<T, 4, 3, 1>(&Z, 0))
+                            .dot(&(rows_from::<T, 4, 3, 1>(&Z, 0)))
+                            .sqrt();
+                    value
+                }; 3 * 1],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let KirchhoffBodyParameters { Z, .. } = self.model.parameters;
+                    let G = state.G.matrix();
+                    let μ = state.body_momentum().0;
+                    let value: T = ((into_rows::<
+                        T,
+                        6,
+                        3,
+                        1,
+                    >(
+                        &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 0)
+                            + motion_translation(&G)
+                                .cross(
+                                    &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
+                                )),
+                        0,
+                    )
+                        + into_rows::<
+                            T,
+                            6,
+                            3,
+                            1,
+                        >(&(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)), 3))
+                        .dot(
+                            &(into_rows::<
+                                T,
+                                6,
+                                3,
+                                1,
+                            >(
+                                &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 0)
+                                    + motion_translation(&G)
+                                        .cross(
+                                            &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
+                                        )),
+                                0,
+                            )
+                                + into_rows::<
+                                    T,
+                                    6,
+                                    3,
+                                    1,
+                                >(
+                                    &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
+                                    3,
+                                )),
+                        )
+                        .sqrt()
+                        + motion_translation(&G).dot(&motion_translation(&G)).sqrt()
+                            * (rows_from::<
+                                T,
+                                6,
+                                3,
+                                1,
+                            >(
+                                &(into_rows::<
+                                    T,
+                                    6,
+                                    3,
+                                    1,
+                                >(
+                                    &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 0)
+                                        + motion_translation(&G)
+                                            .cross(
+                                                &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
+                                            )),
+                                    0,
+                                )
+                                    + into_rows::<
+                                        T,
+                                        6,
+                                        3,
+                                        1,
+                                    >(
+                                        &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
+                                        3,
+                                    )),
+                                3,
+                            ))
+                                .dot(
+                                    &(rows_from::<
+                                        T,
+                                        6,
+                                        3,
+                                        1,
+                                    >(
+                                        &(into_rows::<
+                                            T,
+                                            6,
+                                            3,
+                                            1,
+                                        >(
+                                            &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 0)
+                                                + motion_translation(&G)
+                                                    .cross(
+                                                        &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
+                                                    )),
+                                            0,
+                                        )
+                                            + into_rows::<
+                                                T,
+                                                6,
+                                                3,
+                                                1,
+                                            >(
+                                                &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
+                                                3,
+                                            )),
+                                        3,
+                                    )),
+                                )
+                                .sqrt())
+                        * (rows_from::<T, 4, 3, 1>(&Z, 0))
+                            .dot(&(rows_from::<T, 4, 3, 1>(&Z, 0)))
+                            .sqrt();
+                    value
                 }; 1usize],
             );
             let _ = out;
@@ -735,7 +1045,7 @@ pub mod kirchhoff_body {
             doc: "Rigid body in an ideal fluid, with added masses, coupling, and net weight.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   -tr(J rot(V_k))/h + ((½ (pos(V_k) + rot(V_k)ᵀ pos(V_k)))·(½ M (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/(2 h) + (vee(rot(V_k))·(½ D (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/h - ½ h b·P_k - ½ h b·P_{k+1}\nmomentum of G        ι₆₁ ((pos(V_k) × (M rot(V_k)ᵀ pos(V_k)))/(4 h) + (pos(V_k) × (M pos(V_k)))/(4 h) + (pos(V_k) × (Dᵀ vee(rot(V_k))))/(2 h) - 2 vee(J rot(V_k)ᵀ)/h + vee(rot(V_k) hat(D rot(V_k)ᵀ pos(V_k)))/(2 h) + vee(rot(V_k) hat(D pos(V_k)))/(2 h)) + ι₆₄ (M rot(V_k)ᵀ pos(V_k)/(4 h) + M pos(V_k)/(4 h) + Dᵀ vee(rot(V_k))/(2 h) + rot(V_k) M rot(V_k)ᵀ pos(V_k)/(4 h) + rot(V_k) M pos(V_k)/(4 h) + rot(V_k) Dᵀ vee(rot(V_k))/(2 h))\nRiccati form         none: the group is not SO(n)\ninvariants           energy\ntime reversal        symmetric: second order\ncertificate          12 identities proved by normal form, 5 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
+            summary: "action of one step   -tr(J rot(V_k))/h + ((½ (pos(V_k) + rot(V_k)ᵀ pos(V_k)))·(½ M (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/(2 h) + (vee(rot(V_k))·(½ D (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/h - ½ h b·P_k - ½ h b·P_{k+1}\nmomentum of G        ι₆₁ ((pos(V_k) × (M rot(V_k)ᵀ pos(V_k)))/(4 h) + (pos(V_k) × (M pos(V_k)))/(4 h) + (pos(V_k) × (Dᵀ vee(rot(V_k))))/(2 h) - 2 vee(J rot(V_k)ᵀ)/h + vee(rot(V_k) hat(D rot(V_k)ᵀ pos(V_k)))/(2 h) + vee(rot(V_k) hat(D pos(V_k)))/(2 h)) + ι₆₄ (M rot(V_k)ᵀ pos(V_k)/(4 h) + M pos(V_k)/(4 h) + Dᵀ vee(rot(V_k))/(2 h) + rot(V_k) M rot(V_k)ᵀ pos(V_k)/(4 h) + rot(V_k) M pos(V_k)/(4 h) + rot(V_k) Dᵀ vee(rot(V_k))/(2 h))\nRiccati form         none: the group is not SO(n)\ninvariants           energy, P_part_squared, momentum_linear_across_P_part_squared, spatial_momentum_linear_across_Z, spatial_momentum_angular_Z\ntime reversal        symmetric: second order\ncertificate          12 identities proved by normal form, 5 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
             solver: "Newton: the group is not SO(n): Newton on the derived residual",
             order: 2u32,
             orders: &[2, 4, 6, 8],
@@ -841,6 +1151,30 @@ pub mod kirchhoff_body {
                     formula: "½ μ·I⁻¹μ + b·P_k",
                     rows: 1usize,
                     conserved: Conserved::Boundedly,
+                },
+                Invariant {
+                    name: "P_part_squared",
+                    formula: "(ι₄₁ᵀ P_k)·(ι₄₁ᵀ P_k)",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "momentum_linear_across_P_part_squared",
+                    formula: "((ι₆₄ᵀ μ_k) × (ι₄₁ᵀ P_k))·((ι₆₄ᵀ μ_k) × (ι₄₁ᵀ P_k))",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "spatial_momentum_linear_across_Z",
+                    formula: "(ι₄₁ᵀ Z) × (ι₆₄ᵀ (ι₆₁ (rot(G_k) ι₆₁ᵀ μ_k + pos(G_k) × (rot(G_k) ι₆₄ᵀ μ_k)) + ι₆₄ rot(G_k) ι₆₄ᵀ μ_k))",
+                    rows: 3 * 1,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "spatial_momentum_angular_Z",
+                    formula: "(ι₆₁ᵀ (ι₆₁ (rot(G_k) ι₆₁ᵀ μ_k + pos(G_k) × (rot(G_k) ι₆₄ᵀ μ_k)) + ι₆₄ rot(G_k) ι₆₄ᵀ μ_k))·(ι₄₁ᵀ Z)",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
                 },
             ],
             open: Self::open,
