@@ -1,6 +1,7 @@
 //! Solvers of the implicit steps, one folder or file a solver; they know no models.
 //! Each takes numbers of one step and gives the discrete velocity, or a typed error with numbers.
 
+mod golden_section;
 pub mod left_factor;
 mod method;
 pub mod moser_veselov;

@@ -3,6 +3,7 @@
 
 use super::factor::LeftFactor;
 use crate::Real;
+use crate::solvers::golden_section::peak;
 use nalgebra::SMatrix;
 
 impl<const N: usize, T: Real> LeftFactor<N, T> {
@@ -77,7 +78,7 @@ fn ratio<const N: usize>(c: &nalgebra::SVector<f64, N>, v: &SMatrix<f64, N, N>) 
         let here = at(i);
         if here >= at(i - 1) && here >= at(i + 1) {
             let centre = first + spacing * f64::from(i);
-            best = best.max(peak(&norm, centre - spacing, centre + spacing));
+            best = best.max(peak(&norm, centre - spacing, centre + spacing, 45));
         }
     }
     best * length / unit
@@ -90,27 +91,4 @@ fn largest_singular_value<const N: usize>(w: &SMatrix<f64, N, N>) -> f64 {
     let frame = crate::linalg::principal_frame(&gram);
     let diagonal = frame.tr_mul(&(gram * frame));
     (0..N).map(|i| diagonal[(i, i)]).fold(0.0, f64::max).sqrt()
-}
-
-/// The maximum of a function with one peak between `low` and `high`, by golden section.
-fn peak(f: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
-    const GOLDEN: f64 = 0.618_033_988_749_894_8;
-    let mut left = high - GOLDEN * (high - low);
-    let mut right = low + GOLDEN * (high - low);
-    let (mut f_left, mut f_right) = (f(left), f(right));
-    // The maximum is known to rounding once its place is known to half the digits.
-    for _ in 0..45 {
-        if f_left < f_right {
-            low = left;
-            (left, f_left) = (right, f_right);
-            right = low + GOLDEN * (high - low);
-            f_right = f(right);
-        } else {
-            high = right;
-            (right, f_right) = (left, f_left);
-            left = high - GOLDEN * (high - low);
-            f_left = f(left);
-        }
-    }
-    f_left.max(f_right)
 }

@@ -3,6 +3,7 @@
 
 use super::Poinsot;
 use crate::linalg::symmetric_eigenvalues;
+use crate::solvers::golden_section::peak;
 use nalgebra::Vector3;
 
 /// The ratio of `h N` to its exact bound: at most 1 if and only if the principal solution exists.
@@ -42,35 +43,12 @@ pub fn reach(body: &Poinsot<f64>, h_n: &Vector3<f64>) -> f64 {
     for i in 0..=(count as i32) {
         if at(i) >= at(i - 1) && at(i) >= at(i + 1) {
             let centre = first + spacing * f64::from(i);
-            best = best.max(peak(&square, centre - spacing, centre + spacing));
+            best = best.max(peak(&square, centre - spacing, centre + spacing, 50));
         }
     }
     // Equal peaks collapse the bracket to a point; rounding may shift a peak just outside.
     best = best.max(at(0)).max(at(count as i32));
     best.sqrt() * (length / body.unit)
-}
-
-/// The maximum of a function with one peak between `low` and `high`, by golden section.
-fn peak(f: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
-    const GOLDEN: f64 = 0.618_033_988_749_894_8;
-    let mut left = high - GOLDEN * (high - low);
-    let mut right = low + GOLDEN * (high - low);
-    let (mut f_left, mut f_right) = (f(left), f(right));
-    // The maximum is known to rounding once its place is known to half the digits.
-    for _ in 0..50 {
-        if f_left < f_right {
-            low = left;
-            (left, f_left) = (right, f_right);
-            right = low + GOLDEN * (high - low);
-            f_right = f(right);
-        } else {
-            high = right;
-            (right, f_right) = (left, f_left);
-            left = high - GOLDEN * (high - low);
-            f_left = f(left);
-        }
-    }
-    f_left.max(f_right)
 }
 
 /// The largest step not beyond `h` whose ratio is at most 1, by bisection.
