@@ -5,6 +5,7 @@
 pub mod bodies;
 pub mod coupled;
 pub mod elastic;
+pub mod mixed;
 pub mod motions;
 pub mod quaternions;
 pub mod spatial;
@@ -90,9 +91,18 @@ pub fn stationarity<const N: usize, const G: usize>(
     nodes: &[[Square<f64, N>; G]; 3],
     basis: &[Square<f64, N>],
 ) -> Variation {
+    stationarity_along(action, nodes, [basis; G])
+}
+
+/// The same with a basis of its own for each group.
+pub fn stationarity_along<const N: usize, const G: usize>(
+    action: &impl DiscreteAction<N, G>,
+    nodes: &[[Square<f64, N>; G]; 3],
+    bases: [&[Square<f64, N>]; G],
+) -> Variation {
     let [before, here, after] = nodes;
     let (before, after) = (steady(before), steady(after));
-    vary(action.side(), here, basis, |varied| {
+    vary(action.side(), here, bases, |varied| {
         let mut summands = action.edge(&before, varied);
         summands.extend(action.edge(varied, &after));
         summands
@@ -107,7 +117,7 @@ pub fn momentum_in<const N: usize, const G: usize>(
     basis: &[Square<f64, N>],
 ) -> Variation {
     let tail = steady(tail);
-    vary(action.side(), head, basis, |varied| {
+    vary(action.side(), head, [basis; G], |varied| {
         action.edge(&tail, varied)
     })
 }
@@ -120,7 +130,7 @@ pub fn momentum_out<const N: usize, const G: usize>(
     basis: &[Square<f64, N>],
 ) -> Variation {
     let head = steady(head);
-    let mut variation = vary(action.side(), tail, basis, |varied| {
+    let mut variation = vary(action.side(), tail, [basis; G], |varied| {
         action.edge(varied, &head)
     });
     for component in &mut variation.derivative {
@@ -168,12 +178,12 @@ fn steady<const N: usize, const G: usize>(node: &[Square<f64, N>; G]) -> [Square
 fn vary<const N: usize, const G: usize>(
     side: Side,
     node: &[Square<f64, N>; G],
-    basis: &[Square<f64, N>],
+    bases: [&[Square<f64, N>]; G],
     action: impl Fn(&[Square<Dual, N>; G]) -> Vec<Dual>,
 ) -> Variation {
-    let mut derivative = Vec::with_capacity(G * basis.len());
+    let mut derivative = Vec::new();
     let mut largest: Vec<f64> = Vec::new();
-    for group in 0..G {
+    for (group, basis) in bases.into_iter().enumerate() {
         for direction in basis {
             let mut varied = steady(node);
             let tangent = match side {

@@ -277,9 +277,28 @@ impl Algebra<'_> {
         self.cancelled(word)
     }
 
-    /// Whether the factor is an element of an orthogonal group.
-    pub(crate) fn is_rotation(&self, f: &Factor) -> bool {
-        self.is_orthogonal(f)
+    /// The group that a product lies in whatever its letters are, if all of them lie in one.
+    pub(crate) fn structure_of_word(&self, word: &[Factor]) -> Option<Structure> {
+        let mut found = None;
+        for f in word {
+            let Factor::Letter { source, .. } = f else {
+                return None;
+            };
+            let own = self.structure(*source);
+            if !own.is_invertible() || found.is_some_and(|other| other != own) {
+                return None;
+            }
+            // The transpose of a rigid motion is none.
+            if let Factor::Letter {
+                transposed: true, ..
+            } = f
+                && own == Structure::RigidMotion
+            {
+                return None;
+            }
+            found = Some(own);
+        }
+        found
     }
 
     /// What an interned number stands for.

@@ -77,6 +77,20 @@ impl<'a> Algebra<'a> {
         }
     }
 
+    /// An engine for more symbols that starts with the work spent so far.
+    pub(crate) fn over<'b>(&self, symbols: &'b Symbols) -> Algebra<'b> {
+        let other = Algebra::new(symbols);
+        other.work.set(self.work.get());
+        other.evaluated.set(self.evaluated.get());
+        other
+    }
+
+    /// Books the work that another engine has spent since it was made by [`Algebra::over`].
+    pub(crate) fn charge(&self, other: &Algebra) {
+        self.work.set(other.work.get());
+        self.evaluated.set(other.evaluated.get());
+    }
+
     /// The symbols.
     pub fn symbols(&self) -> &'a Symbols {
         self.symbols

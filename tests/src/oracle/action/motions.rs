@@ -10,9 +10,9 @@ use std::array::from_fn;
 
 /// A rotation and a translation.
 #[derive(Clone, Copy, Debug)]
-struct Motion<T> {
-    turn: Square<T, 3>,
-    shift: [T; 3],
+pub(super) struct Motion<T> {
+    pub(super) turn: Square<T, 3>,
+    pub(super) shift: [T; 3],
 }
 
 fn plus<T: Number, const N: usize>(a: [T; N], b: [T; N]) -> [T; N] {
@@ -21,7 +21,7 @@ fn plus<T: Number, const N: usize>(a: [T; N], b: [T; N]) -> [T; N] {
 
 impl<T: Number> Motion<T> {
     /// Read from its homogeneous matrix.
-    fn of(a: &Square<T, 4>) -> Self {
+    pub(super) fn of(a: &Square<T, 4>) -> Self {
         Motion {
             turn: Square::from_entries(|i, j| a.0[i][j]),
             shift: from_fn(|i| a.0[i][3]),

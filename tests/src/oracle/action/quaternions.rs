@@ -9,7 +9,7 @@ use super::{DiscreteAction, NodeRule, Side};
 use std::array::from_fn;
 
 /// Hamilton's product of `(w, x, y, z)`.
-fn hamilton<T: Number>(a: [T; 4], b: [T; 4]) -> [T; 4] {
+pub(super) fn hamilton<T: Number>(a: [T; 4], b: [T; 4]) -> [T; 4] {
     [
         a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
         a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
@@ -18,16 +18,16 @@ fn hamilton<T: Number>(a: [T; 4], b: [T; 4]) -> [T; 4] {
     ]
 }
 
-fn conjugate<T: Number>(a: [T; 4]) -> [T; 4] {
+pub(super) fn conjugate<T: Number>(a: [T; 4]) -> [T; 4] {
     [a[0], -a[1], -a[2], -a[3]]
 }
 
-fn imaginary<T: Number>(a: [T; 4]) -> [T; 3] {
+pub(super) fn imaginary<T: Number>(a: [T; 4]) -> [T; 3] {
     [a[1], a[2], a[3]]
 }
 
 /// The quaternion without real part.
-fn of_vector<T: Number>(v: &[T; 3]) -> [T; 4] {
+pub(super) fn of_vector<T: Number>(v: &[T; 3]) -> [T; 4] {
     [T::constant(0.0), v[0], v[1], v[2]]
 }
 
@@ -41,7 +41,7 @@ pub fn left<T: Number>(a: [T; 4]) -> Square<T, 4> {
 }
 
 /// `q v q*`, column by column.
-fn rotation<T: Number>(q: [T; 4]) -> Square<T, 3> {
+pub(super) fn rotation<T: Number>(q: [T; 4]) -> Square<T, 3> {
     let columns: [[T; 3]; 3] = from_fn(|j| {
         let unit: [T; 3] = from_fn(|i| T::constant(f64::from(u8::from(i == j))));
         imaginary(hamilton(hamilton(q, of_vector(&unit)), conjugate(q)))
@@ -50,7 +50,7 @@ fn rotation<T: Number>(q: [T; 4]) -> Square<T, 3> {
 }
 
 /// The quaternion of a left multiplication: what it makes of 1.
-fn of_matrix<T: Number>(a: &Square<T, 4>) -> [T; 4] {
+pub(super) fn of_matrix<T: Number>(a: &Square<T, 4>) -> [T; 4] {
     from_fn(|i| a.0[i][0])
 }
 

@@ -3,7 +3,11 @@
 //! along, as `z` by `Λ^T z`. Takes a checked model; gives the reduced one, with the advected
 //! quantities that the statement holds, or the term that breaks the invariance.
 
+mod carry;
+mod element;
+mod relative;
 mod segments;
+mod settle;
 mod terms;
 #[cfg(test)]
 mod tests;
@@ -21,7 +25,6 @@ pub fn reduce(mut spec: Spec) -> Result<Spec, Errors> {
     if !is_unreduced(&spec) {
         return Ok(spec);
     }
-    matrix_groups_only(&spec)?;
     let symbols = spec.symbols.clone();
     let algebra = Algebra::new(&symbols);
     let forward: Vec<(Letter, Expr)> = spec
@@ -32,9 +35,19 @@ pub fn reduce(mut spec: Spec) -> Result<Spec, Errors> {
     let (edge, nodal) = action::split(&symbols, &spec.lagrangian);
     let [edge, nodal] = [edge, nodal].map(|e| expr::substitute(&symbols, &e, &forward));
     let mut r = Reducer::new(&spec, &algebra);
-    let (Ok(new_edge), Ok(new_nodal)) = (r.number(&edge), r.number(&nodal)) else {
+    let (Ok(mut new_edge), Ok(mut new_nodal)) = (r.reduced(&edge), r.reduced(&nodal)) else {
         return Err(refusal(&spec, &algebra, &forward));
     };
+    // A plane holds the vector of its normal: with the planes known from the start, the vector is
+    // not carried a second time.
+    let planes = r.planes();
+    if !planes.is_empty() {
+        r = Reducer::new(&spec, &algebra);
+        r.declare_all(&planes);
+        if let (Ok(e), Ok(n)) = (r.reduced(&edge), r.reduced(&nodal)) {
+            (new_edge, new_nodal) = (e, n);
+        }
+    }
     let (symbols, carried) = (r.symbols, r.carried);
     // The proof: with the definitions put back, the reduced Lagrangian is the one that was stated.
     let definitions: Vec<(Letter, Expr)> = carried
@@ -81,37 +94,25 @@ fn is_unreduced(spec: &Spec) -> bool {
     })
 }
 
-/// Quaternions and rigid motions act on vectors through maps that segments of words do not see.
-fn matrix_groups_only(spec: &Spec) -> Result<(), Errors> {
-    let other = spec
-        .configurations
-        .iter()
-        .find(|c| matches!(c.group, Group::UnitQuaternions | Group::RigidMotions));
-    match other {
-        None => Ok(()),
-        Some(c) => Err(Diagnostic::new(
-            c.group_place,
-            "a model stated by `next(...)` of its configuration is reduced for SO<n> and GL<n> only",
-        )
-        .help("state the reduced model: velocities and advected quantities")
-        .into()),
-    }
-}
-
 fn velocities_remain(spec: &Spec) -> Result<(), Errors> {
     let used = expr::letters(&spec.lagrangian);
     let mut errors = Errors::new();
     for c in &spec.configurations {
         if !used.contains(&at(c.velocity, Shift::HERE)) {
             let name = &spec.symbols.get(c.element).name;
+            let example = match c.group {
+                Group::SpecialOrthogonal(_) | Group::GeneralLinear(_) => {
+                    format!("-tr(J*{name}^T*next({name}))/h")
+                }
+                Group::UnitQuaternions => format!("-(4*c/h)*re({name}^T*next({name}))"),
+                Group::RigidMotions => format!("-tr(J*rot({name})^T*rot(next({name})))/h"),
+            };
             errors.push(
                 Diagnostic::new(
                     spec.lagrangian_place,
                     format!("after reduction nothing is left that the velocity of `{name}` moves"),
                 )
-                .help(format!(
-                    "add a kinetic term, for example `-tr(J*{name}^T*next({name}))/h`"
-                )),
+                .help(format!("add a kinetic term, for example `{example}`")),
             );
         }
     }
@@ -137,7 +138,7 @@ fn refusal(spec: &Spec, algebra: &Algebra, forward: &[(Letter, Expr)]) -> Errors
             continue;
         }
         let e = expr::substitute(s, e, forward);
-        let Err(left) = Reducer::new(spec, algebra).number(&e) else {
+        let Err(left) = Reducer::new(spec, algebra).reduced(&e) else {
             continue;
         };
         let text = crate::print::expression(&left.0, s, &style, crate::print::Format::Text);
@@ -150,9 +151,19 @@ fn refusal(spec: &Spec, algebra: &Algebra, forward: &[(Letter, Expr)]) -> Errors
             continue;
         };
         let (g, w) = (&s.get(c.element).name, &s.get(c.velocity).name);
-        let (words, example) = match c.side {
-            Side::Body => (format!("next({g}) = {g} * {w}"), format!("dot(z, {g}*v)")),
-            Side::Spatial => (format!("next({g}) = {w} * {g}"), format!("dot({g}*v, z)")),
+        let words = match c.side {
+            Side::Body => format!("next({g}) = {g} * {w}"),
+            Side::Spatial => format!("next({g}) = {w} * {g}"),
+        };
+        let acting = match c.group {
+            Group::UnitQuaternions => format!("rot({g})"),
+            Group::SpecialOrthogonal(_) | Group::GeneralLinear(_) | Group::RigidMotions => {
+                g.clone()
+            }
+        };
+        let example = match c.side {
+            Side::Body => format!("dot(z, {acting}*v)"),
+            Side::Spatial => format!("dot({acting}*v, z)"),
         };
         errors.push(
             Diagnostic::new(

@@ -2,8 +2,10 @@
 //! them by their normal form, word by word. Takes expressions in elements and velocities; gives
 //! them in velocities and carried quantities, or the word that holds an element still.
 
+use super::element::Open;
+use super::settle::settled;
 use crate::algebra::{Algebra, Atom, Factor, Poly, Rational, Source, Term};
-use crate::check::spec::{Configuration, Side, Spec};
+use crate::check::spec::{Configuration, Spec};
 use crate::expr::shape::{Shape, Structure};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Function, Letter, Node};
@@ -31,13 +33,6 @@ pub(super) struct Reducer<'a> {
     pub(super) carried: Vec<Carried>,
 }
 
-/// On which side of an element the index lies that must not be left.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Open {
-    Left,
-    Right,
-}
-
 impl<'a> Reducer<'a> {
     /// With nothing found yet.
     pub(super) fn new(spec: &'a Spec, algebra: &'a Algebra<'a>) -> Reducer<'a> {
@@ -50,7 +45,15 @@ impl<'a> Reducer<'a> {
     }
 }
 
-impl Reducer<'_> {
+impl<'a> Reducer<'a> {
+    /// A number: parts in which the elements cancel first, then what is left.
+    pub(super) fn reduced(&mut self, e: &Expr) -> Reduced {
+        let symbols = &self.spec.symbols;
+        let holds = |e: &Expr| expr::contains_role(symbols, e, Role::Element);
+        let e = settled(self.algebra, &holds, e);
+        self.number(&e)
+    }
+
     /// A number, its sums and products kept as they were written.
     pub(super) fn number(&mut self, e: &Expr) -> Reduced {
         if !self.holds_element(e) {
@@ -72,11 +75,17 @@ impl Reducer<'_> {
             }
             Node::Power(a, q) => expr::power(self.number(a)?, *q),
             Node::Call(f, a) => expr::call(*f, self.number(a)?),
-            Node::Dot(a, b) => match self.dot(a, b) {
-                Some(e) => e,
-                None => self.poly(&self.algebra.lower(e))?,
-            },
-            _ => self.poly(&self.algebra.lower(e))?,
+            node => {
+                if let Some(e) = self.relative(e) {
+                    return Ok(e);
+                }
+                if let Node::Dot(a, b) = node
+                    && let Some(e) = self.dot(a, b)
+                {
+                    return Ok(e);
+                }
+                self.poly(&self.algebra.lower(e))?
+            }
         })
     }
 
@@ -125,28 +134,9 @@ impl Reducer<'_> {
         expr::contains_role(&self.symbols, e, Role::Element)
     }
 
-    pub(super) fn configuration(&self, symbol: SymbolId) -> Option<&Configuration> {
+    pub(super) fn configuration(&self, symbol: SymbolId) -> Option<&'a Configuration> {
         let mut list = self.spec.configurations.iter();
         list.find(|c| c.element == symbol)
-    }
-
-    /// For an element: where the index lies that must be absorbed. On the body side `Λ` has it on
-    /// its left (space), on the spatial side on its right (the reference).
-    pub(super) fn open(&self, f: &Factor) -> Option<Open> {
-        let Factor::Letter {
-            source: Source::Letter(l),
-            transposed,
-            inverted,
-        } = f
-        else {
-            return None;
-        };
-        let c = self.configuration(l.symbol)?;
-        let outward = transposed == inverted;
-        Some(match (c.side, outward) {
-            (Side::Body, true) | (Side::Spatial, false) => Open::Left,
-            (Side::Body, false) | (Side::Spatial, true) => Open::Right,
-        })
     }
 
     /// Whether a factor is made of constants.

@@ -107,3 +107,184 @@ fn reduced_statements_are_left_as_they_are() {
     );
     assert!(d.spec.reduction.is_none() && found(&d).is_empty());
 }
+
+/// The unit quaternion body, and what is added to its action.
+fn quaternion(update: &str, terms: &str) -> String {
+    format!(
+        "model Quaternion {{
+            param I: Diag<3>; param c: Real; param g, z: Vec<3>; param K: Mat<4>; param S: Sym<3>;
+            group q: SU<2> velocity W;
+            constraint next(q) = {update};
+            let w = im(q^T*next(q));
+            lagrangian = -(4*c/h)*re(q^T*next(q)) + (2/h)*dot(w, (I - c*Id)*w){terms};
+        }}"
+    )
+}
+
+/// A body with mass, and what is added to its action.
+fn motion(update: &str, terms: &str) -> String {
+    format!(
+        "model Motion {{
+            param J, M: Sym<3>; param b, Z: Vec<4>; param z, g: Vec<3>; param K: Mat<4>; param A: Mat<3>;
+            group G: SE<3> velocity V;
+            constraint next(G) = {update};
+            let v = pos(G^-1*next(G));
+            lagrangian = -tr(J*rot(G)^T*rot(next(G)))/h + dot(v, M*v)/(2*h){terms};
+        }}"
+    )
+}
+
+fn lagrangian(d: &Derivation) -> String {
+    let style = Style::new("k");
+    expression(&d.spec.lagrangian, &d.letters.symbols, &style, Format::Text)
+}
+
+#[test]
+fn the_quaternion_body_is_reduced_on_both_sides() {
+    let d = derive(&quaternion("q*W", " - h*dot(z, rot(q)*g)"));
+    // The form in which it was typed is kept, with the velocity for `q^T*next(q)`.
+    assert_eq!(
+        lagrangian(&d),
+        "-4 c re(W_k)/h + 2 im(W_k)·((I - c Id) im(W_k))/h - h g·z_{body,k}"
+    );
+    let carried = "z_body = rot(q_k)ᵀ z; rot(W_k)ᵀ z_{body,k}";
+    assert_eq!(found(&d), [carried]);
+    // The same weight by products of quaternions.
+    let products = quaternion("q*W", " + h*re(q*quat(g)*q^T*quat(z))");
+    assert_eq!(found(&derive(&products)), [carried]);
+    let d = derive(&quaternion("W*q", " - h*tr(K*q)"));
+    assert_eq!(
+        found(&d),
+        [
+            "I_space = rot(q_k) I rot(q_k)ᵀ; rot(W_k) I_{space,k} rot(W_k)ᵀ",
+            "K_space = q_k K; W_k K_{space,k}"
+        ]
+    );
+}
+
+#[test]
+fn bodies_with_mass_are_reduced_on_both_sides() {
+    let cases = [
+        ("", vec![]),
+        (
+            " - h*dot(b, G^T*Z)",
+            vec!["Z_body = G_kᵀ Z; V_kᵀ Z_{body,k}"],
+        ),
+        // The plane holds its normal: one quantity for the height and the vertical.
+        (
+            " - h*dot(z, rot(G)*g) - h*dot(z, pos(G))",
+            vec!["z_body = G_kᵀ ι₄₁ z; V_kᵀ z_{body,k}"],
+        ),
+        (
+            " - h*dot(z, rot(G)*g)",
+            vec!["z_body = rot(G_k)ᵀ z; rot(V_k)ᵀ z_{body,k}"],
+        ),
+        (
+            " - h*dot(pos(G), pos(G))",
+            vec!["metric_G = G_kᵀ ι₄₁ ι₄₁ᵀ G_k; V_kᵀ metric_{G,k} V_k"],
+        ),
+        (
+            " - h*dot(rot(G)^T*pos(G), g)",
+            vec!["E4_body = G_k⁻¹ E₄; V_k⁻¹ E_{4,body,k}"],
+        ),
+    ];
+    for (terms, expected) in cases {
+        let d = derive(&motion("G*V", terms));
+        assert_eq!(found(&d), expected, "{terms}");
+        let kinetic = "-tr(J rot(V_k))/h + (pos(V_k)·(M pos(V_k)))/(2 h)";
+        assert!(lagrangian(&d).starts_with(kinetic), "{}", lagrangian(&d));
+    }
+    let d = derive(&motion("V*G", " - h*dot(z, pos(G))"));
+    assert_eq!(
+        found(&d),
+        [
+            "J_space = rot(G_k) J rot(G_k)ᵀ; rot(V_k) J_{space,k} rot(V_k)ᵀ",
+            "E4_space = G_k E₄; V_k E_{4,space,k}",
+            "M_space = rot(G_k) M rot(G_k)ᵀ; rot(V_k) M_{space,k} rot(V_k)ᵀ"
+        ]
+    );
+}
+
+#[test]
+fn terms_of_quaternions_and_motions_that_nothing_absorbs_are_named() {
+    let cases = [
+        (quaternion("q*W", " - h*re(q)"), "tr(q_k)", "rot(q)*v"),
+        (
+            quaternion("q*W", " - h*tr(rot(q))"),
+            "tr(rot(q_k))",
+            "rot(q)*v",
+        ),
+        (
+            quaternion("q*W", " + dot(im(q), im(next(q)))"),
+            "q_k",
+            "rot(q)*v",
+        ),
+        (motion("G*V", " - h*tr(rot(G))"), "tr(rot(G_k))", "G*v"),
+        (motion("G*V", " - h*tr(G)"), "tr(G_k)", "G*v"),
+        (
+            motion("V*G", " - h*dot(b, G^T*b)*tr(rot(G))"),
+            "tr(rot(G_k))",
+            "G*v",
+        ),
+    ];
+    for (text, left, help) in cases {
+        let Err(e) = derive_source(&text) else {
+            panic!("{text}\nis not refused");
+        };
+        let e = e.to_string();
+        assert!(e.contains("is not invariant"), "{e}");
+        assert!(e.contains(&format!("it leaves {left}")), "{e}");
+        assert!(e.contains(help), "{e}");
+        assert_eq!(e.matches("not invariant").count(), 1, "{e}");
+    }
+}
+
+fn coupled(group: &str, kinetic: &str, coupling: &str, side: fn(&str) -> String) -> String {
+    let bodies = ["A", "B", "C"].map(|g| {
+        format!(
+            "group {g}: {group} velocity v{g}; constraint next({g}) = {};",
+            side(g)
+        )
+    });
+    let kinetic = ["A", "B", "C"].map(|g| kinetic.replace('g', g)).join(" + ");
+    format!(
+        "model Coupled {{ param J, M: Sym<3>; param d, e: Vec<3>; {} lagrangian = {kinetic} - h*({coupling}); }}",
+        bodies.join(" ")
+    )
+}
+
+#[test]
+fn several_bodies_are_carried_relative_to_one_another() {
+    let body: fn(&str) -> String = |g| format!("{g}*v{g}");
+    let space: fn(&str) -> String = |g| format!("v{g}*{g}");
+    let spin = "dot(im(g^T*next(g)), J*im(g^T*next(g)))/h";
+    let joints = "dot(rot(A)*d, rot(B)*e) + dot(rot(B)*d, rot(C)*e) + dot(rot(C)*d, rot(A)*e)";
+    let d = derive(&coupled("SU<2>", spin, joints, body));
+    assert_eq!(
+        found(&d),
+        [
+            "relative_A_B = A_kᵀ B_k; vA_kᵀ relative_{A,B,k} vB_k",
+            "relative_B_C = B_kᵀ C_k; vB_kᵀ relative_{B,C,k} vC_k"
+        ]
+    );
+    let drift =
+        "(dot(pos(next(g)) - pos(g), pos(next(g)) - pos(g)) - tr(J*rot(g)^T*rot(next(g))))/h";
+    let springs = "dot(pos(A) - pos(B), pos(A) - pos(B)) + dot(rot(B)*d, pos(C) - pos(B))";
+    let d = derive(&coupled("SE<3>", drift, springs, body));
+    assert_eq!(
+        found(&d),
+        [
+            "relative_A_B = A_k⁻¹ B_k; vA_k⁻¹ relative_{A,B,k} vB_k",
+            "relative_B_C = B_k⁻¹ C_k; vB_k⁻¹ relative_{B,C,k} vC_k"
+        ]
+    );
+    // A force that holds one body to space is no relative one: planes and points beside them.
+    let held = format!("{springs} + dot(d, pos(A))");
+    let d = derive(&coupled("SE<3>", drift, &held, body));
+    assert_eq!(found(&d).len(), 3, "{:?}", found(&d));
+    let d = derive(&coupled("SU<2>", "tr(g^T*next(g))/h", "re(A*B^T)", space));
+    assert_eq!(
+        found(&d),
+        ["relative_A_B = A_k B_kᵀ; vA_k relative_{A,B,k} vB_kᵀ"]
+    );
+}
