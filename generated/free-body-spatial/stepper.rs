@@ -84,6 +84,18 @@ pub mod free_body_spatial {
         solver: Free<T>,
         J: SMatrix<T, 3, 3>,
     }
+    impl<T: Real> FreeBodySpatialWorkspace<T> {
+        /// The solver: the momentum that it keeps, and what its last projection corrected.
+        pub fn solver(&self) -> &Free<T> {
+            &self.solver
+        }
+        /// The same, with rounding left to gather, so that it can be measured.
+        #[must_use]
+        pub fn without_projection(mut self) -> Self {
+            self.solver = self.solver.without_projection();
+            self
+        }
+    }
     impl<T: Real> FreeBodySpatial<T> {
         /// Starts a trajectory with step `h` from data at node 0; of order two, symplectic.
         ///
@@ -188,16 +200,11 @@ pub mod free_body_spatial {
                             .at_node(state.node),
                     );
                 };
-                let order = work.solver.order();
-                match Free::start_of_order(
-                    &factor,
-                    &state.Λ,
-                    &state.momentum,
-                    work.h,
-                    order,
-                ) {
-                    Ok(solver) => work.solver = solver,
-                    Err(e) => return Err(StepCause::from(e).at_node(state.node)),
+                if let Err(e) = work
+                    .solver
+                    .restart_as(&factor, &state.Λ, &state.momentum)
+                {
+                    return Err(StepCause::from(e).at_node(state.node));
                 }
                 work.J = state.J;
             }

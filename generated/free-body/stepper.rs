@@ -83,6 +83,18 @@ pub mod free_body {
         h: T,
         solver: Free<T>,
     }
+    impl<T: Real> FreeBodyWorkspace<T> {
+        /// The solver: the momentum that it keeps, and what its last projection corrected.
+        pub fn solver(&self) -> &Free<T> {
+            &self.solver
+        }
+        /// The same, with rounding left to gather, so that it can be measured.
+        #[must_use]
+        pub fn without_projection(mut self) -> Self {
+            self.solver = self.solver.without_projection();
+            self
+        }
+    }
     impl<T: Real> FreeBody<T> {
         /// Starts a trajectory with step `h` from data at node 0; of order two, symplectic.
         ///

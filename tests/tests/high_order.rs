@@ -175,6 +175,25 @@ fn compositions_of_the_heavy_top() {
 }
 
 #[test]
+fn compositions_of_the_free_body() {
+    let model = Tumbler::new(TumblerParameters { P: quad(poinsot()) }).unwrap();
+    let mu = quad(Vector3::new(0.2, -0.4, 0.9));
+    let initial = TumblerInitial {
+        R: attitude(),
+        body_momentum: BodyMomentum(mu),
+    };
+    let top = HeavyTopParameters {
+        J: quad(poinsot()),
+        gU: Vector3::zeros(),
+        z: quad(Vector3::z()),
+    };
+    let (state, _) = model.start(initial, Quad::from_f64(0.1)).unwrap();
+    let out = |s: &TumblerState<Quad>| numbers(&[(s.R(), s.body_momentum().0)]);
+    let exact = series((attitude().matrix(), mu), &top, 4.0);
+    measured("free body", &model, state, (4.0, 64), out, &exact);
+}
+
+#[test]
 fn compositions_of_coupled_bodies() {
     let parameters = CoupledBodiesParameters {
         J1: quad(poinsot()),

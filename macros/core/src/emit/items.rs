@@ -552,6 +552,20 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
             " The step and the last velocities, from which the next solve starts.",
         ),
     };
+    let rounding = matches!(d.solve.method, Method::FreeMoserVeselov).then(|| {
+        quote! {
+            impl #bound #work #used {
+                /// The solver: the momentum that it keeps, and what its last projection corrected.
+                pub fn solver(&self) -> &Free<T> { &self.solver }
+                /// The same, with rounding left to gather, so that it can be measured.
+                #[must_use]
+                pub fn without_projection(mut self) -> Self {
+                    self.solver = self.solver.without_projection();
+                    self
+                }
+            }
+        }
+    });
     let state_doc = " What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.";
     quote! {
         /// Initial data.
@@ -571,5 +585,7 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
         #[doc = #work_doc]
         #[derive(Clone, Copy, Debug)]
         pub struct #work #declared { h: T, #work_field }
+
+        #rounding
     }
 }

@@ -228,10 +228,8 @@ fn free_step(d: &Derivation, names: &Names) -> TokenStream {
                 let Ok(factor) = self.factor(state) else {
                     return Err(StepCause::NotFinite { what: "body" }.at_node(state.#node));
                 };
-                let order = work.solver.order();
-                match Free::start_of_order(&factor, &state.#element, &state.#momentum, work.h, order) {
-                    Ok(solver) => work.solver = solver,
-                    Err(e) => return Err(StepCause::from(e).at_node(state.#node)),
+                if let Err(e) = work.solver.restart_as(&factor, &state.#element, &state.#momentum) {
+                    return Err(StepCause::from(e).at_node(state.#node));
                 }
                 #(work.#references = state.#references;)*
             }

@@ -17,10 +17,23 @@ const PROJECT_EVERY: u32 = 64;
 /// the angle of the step hardly varies, and would add up until the projection.
 const REPAIR_EVERY: u32 = 8;
 
+/// Relative change of the energy, in roundings, up to which a new attitude is one of the same
+/// trajectory: those of some projections.
+const SAME_TRAJECTORY: f64 = 64.0;
+
 /// Squared sine of the angle between `u` and `adj(I) u` below which the energy is left alone: so
 /// near to a principal axis (or with equal moments) it depends on `|u|` only, to second order in
 /// the sine times the rounding error.
 const DEGENERATE: f64 = 1e-6;
+
+/// What a projection has taken out: the rounding of the steps since the one before.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Correction<T = f64> {
+    /// Change of the body momentum, over its length.
+    pub momentum: T,
+    /// Angle that the attitude was turned by, in radians.
+    pub attitude: T,
+}
 
 /// The constants and the momentum of one free trajectory.
 ///
@@ -64,6 +77,10 @@ pub struct Free<T = f64> {
     /// Whether the two differ.
     turned: bool,
     until_projection: u32,
+    /// Whether it is made.
+    projects: bool,
+    /// Squares of the last [`Correction`].
+    corrected: [T; 2],
     /// Where the last step ended: an attitude that is not this one has been put there by the user.
     attitude: Rotation<T>,
     momentum: SpatialMomentum<T>,
@@ -170,6 +187,8 @@ impl<T: Real> Free<T> {
             frame,
             turned: turned.is_some(),
             until_projection: PROJECT_EVERY,
+            projects: true,
+            corrected: [T::zero(); 2],
             attitude: *attitude,
             momentum: *momentum,
             h,
@@ -194,6 +213,23 @@ impl<T: Real> Free<T> {
         self.order
     }
 
+    /// What the last projection has taken out; zero before the first, at step 64.
+    #[must_use]
+    pub fn correction(&self) -> Correction<T> {
+        let [momentum, attitude] = self.corrected.map(T::sqrt);
+        Correction { momentum, attitude }
+    }
+
+    /// The same trajectory with its rounding left to gather, so that it can be seen: nothing is put
+    /// back on the quadrics or aligned. The attitude's quaternion keeps its length.
+    #[must_use]
+    pub fn without_projection(self) -> Self {
+        Self {
+            projects: false,
+            ..self
+        }
+    }
+
     /// As [`Free::step`], for a state that may have been replaced: it is followed where it is, with
     /// the momentum it has.
     ///
@@ -206,7 +242,7 @@ impl<T: Real> Free<T> {
         momentum: &SpatialMomentum<T>,
     ) -> Result<(), MoserVeselovError> {
         if *attitude != self.attitude || *momentum != self.momentum {
-            self.restart(attitude, momentum)?;
+            self.rejoin(attitude, momentum)?;
         }
         self.step_on(attitude)
     }
@@ -222,6 +258,61 @@ impl<T: Real> Free<T> {
         self.follow(attitude, &momentum)
     }
 
+    /// Starts anew with another body, step size and order as they were.
+    ///
+    /// # Errors
+    /// As [`Free::start_of_order`]; nothing is changed.
+    #[cold]
+    #[inline(never)]
+    pub fn restart_as(
+        &mut self,
+        body: &Poinsot<T>,
+        attitude: &Rotation<T>,
+        momentum: &SpatialMomentum<T>,
+    ) -> Result<(), MoserVeselovError> {
+        *self = Self {
+            projects: self.projects,
+            ..Self::start_of_order(body, attitude, momentum, self.h, self.order)?
+        };
+        Ok(())
+    }
+
+    /// Goes on from where somebody else has left the body. Compositions do so in every step: on the
+    /// same trajectory all constants are as they were, and only the place on it is new.
+    #[inline(never)]
+    fn rejoin(
+        &mut self,
+        attitude: &Rotation<T>,
+        momentum: &SpatialMomentum<T>,
+    ) -> Result<(), MoserVeselovError> {
+        if *momentum == self.momentum {
+            let space = Vector3::from(self.axes.map(|axis| axis.space));
+            let [u] = self.frame.tr_mul(&attitude.inverse_rotate(&space)).data.0;
+            let energy = dot(u, self.energy_gradient(u));
+            let change = (energy - self.energy) / self.energy;
+            // False for NaN, which a body at rest gives.
+            if change.magnitude() <= SAME_TRAJECTORY * T::EPSILON {
+                for (axis, x) in self.axes.iter_mut().zip(u) {
+                    axis.body = x;
+                }
+                // As at a start: what follows does not depend on how many steps were made before.
+                self.until_projection = PROJECT_EVERY;
+                return Ok(());
+            }
+        }
+        self.restart(attitude, momentum)
+    }
+
+    /// `adj(I) u`, half the gradient of the energy.
+    #[inline(always)]
+    fn energy_gradient(&self, u: [T; 3]) -> [T; 3] {
+        if plain::<T>() {
+            self.body.adjugate_times::<true>(u)
+        } else {
+            self.body.adjugate_times::<false>(u)
+        }
+    }
+
     #[cold]
     #[inline(never)]
     fn restart(
@@ -229,8 +320,8 @@ impl<T: Real> Free<T> {
         attitude: &Rotation<T>,
         momentum: &SpatialMomentum<T>,
     ) -> Result<(), MoserVeselovError> {
-        *self = Self::start_of_order(&self.given, attitude, momentum, self.h, self.order)?;
-        Ok(())
+        let body = self.given;
+        self.restart_as(&body, attitude, momentum)
     }
 
     #[inline(always)]
@@ -251,7 +342,8 @@ impl<T: Real> Free<T> {
     /// One step without the projection; false, and nothing changed, when a number is not finite.
     #[inline(always)]
     fn advance(&mut self, attitude: &mut Rotation<T>) -> bool {
-        let (u, quaternion, norm) = self.moved(self.u(), attitude, self.until_projection);
+        let repairs = self.until_projection.is_multiple_of(REPAIR_EVERY);
+        let (u, quaternion, norm) = self.moved(self.u(), attitude, repairs);
         if !norm.is_finite() {
             return false;
         }
@@ -264,12 +356,7 @@ impl<T: Real> Free<T> {
 
     /// The next `u` and attitude, and a number that is finite if and only if they are.
     #[inline(always)]
-    fn moved(
-        &self,
-        u: [T; 3],
-        attitude: &Rotation<T>,
-        until_projection: u32,
-    ) -> ([T; 3], Rotation<T>, T) {
+    fn moved(&self, u: [T; 3], attitude: &Rotation<T>, repairs: bool) -> ([T; 3], Rotation<T>, T) {
         let (det, n) = if plain::<T>() {
             self.orbit.solve(&self.body, u)
         } else {
@@ -295,7 +382,7 @@ impl<T: Real> Free<T> {
             n
         };
         let mut scale = per_norm.sqrt();
-        if until_projection.is_multiple_of(REPAIR_EVERY) {
+        if repairs {
             scale *= attitude.repair();
         }
         let omega = Rotation::from_unit([det * scale, x * scale, y * scale, z * scale]);
@@ -315,7 +402,7 @@ impl<T: Real> Free<T> {
         count: u64,
     ) -> Result<(), MoserVeselovError> {
         if *attitude != self.attitude || *momentum != self.momentum {
-            self.restart(attitude, momentum)?;
+            self.rejoin(attitude, momentum)?;
         }
         let mut solver = *self;
         let mut moving = *attitude;
@@ -324,7 +411,8 @@ impl<T: Real> Free<T> {
             let mut u = solver.u();
             let mut norm = T::one();
             while left > 0 && solver.until_projection > 0 {
-                (u, moving, norm) = solver.moved(u, &moving, solver.until_projection);
+                let repairs = solver.until_projection.is_multiple_of(REPAIR_EVERY);
+                (u, moving, norm) = solver.moved(u, &moving, repairs);
                 solver.until_projection -= 1;
                 left -= 1;
             }
@@ -351,11 +439,20 @@ impl<T: Real> Free<T> {
     #[cold]
     #[inline(never)]
     fn project(&mut self, attitude: &mut Rotation<T>) {
-        let u = self.on_quadrics(self.u());
+        if !self.projects {
+            return;
+        }
+        let (u, before) = (self.on_quadrics(self.u()), self.u());
+        let (aligned, half) = self.aligned(*attitude, u);
+        let change = [0, 1, 2].map(|i| u[i] - before[i]);
+        self.corrected = [
+            dot(change, change) * self.per_square,
+            dot(half, half) * T::from_f64(4.0),
+        ];
         for (axis, x) in self.axes.iter_mut().zip(u) {
             axis.body = x;
         }
-        *attitude = self.aligned(*attitude, u);
+        *attitude = aligned;
     }
 
     /// `u`, in the axes worked in.
@@ -369,11 +466,7 @@ impl<T: Real> Free<T> {
     /// gradients `u` and `v`; along `u` alone where they are parallel.
     fn on_quadrics(&self, u: [T; 3]) -> [T; 3] {
         let (one, half) = (T::one(), T::from_f64(0.5));
-        let v = if plain::<T>() {
-            self.body.adjugate_times::<true>(u)
-        } else {
-            self.body.adjugate_times::<false>(u)
-        };
+        let v = self.energy_gradient(u);
         let (uu, uv, vv) = (dot(u, u), dot(u, v), dot(v, v));
         let (f, g) = (half * (self.square - uu), half * (self.energy - uv));
         let gram = uu * vv - uv * uv;
@@ -389,15 +482,18 @@ impl<T: Real> Free<T> {
     }
 
     /// Turns the attitude from the left by the small angle that takes the body momentum, seen from
-    /// space, to the conserved spatial one. A body at rest is only normalised.
-    fn aligned(&self, attitude: Rotation<T>, u: [T; 3]) -> Rotation<T> {
+    /// space, to the conserved spatial one; half of that angle beside it, as a vector. A body at rest
+    /// is only normalised.
+    fn aligned(&self, attitude: Rotation<T>, u: [T; 3]) -> (Rotation<T>, [T; 3]) {
         let attitude = attitude.renormalised();
         let [[a, b, c]] = attitude.rotate(&(self.frame * Vector3::from(u))).data.0;
         let half = T::from_f64(0.5) * self.per_square;
-        let [p, q, r] = cross([a, b, c], self.axes.map(|axis| axis.space)).map(|x| x * half);
-        Rotation::from_unit([T::one(), p, q, r])
+        let turn = cross([a, b, c], self.axes.map(|axis| axis.space)).map(|x| x * half);
+        let [p, q, r] = turn;
+        let aligned = Rotation::from_unit([T::one(), p, q, r])
             .compose_raw(&attitude)
-            .renormalised()
+            .renormalised();
+        (aligned, turn)
     }
 }
 

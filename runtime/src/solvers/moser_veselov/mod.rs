@@ -26,7 +26,7 @@ mod reach;
 pub use edge::Edge;
 pub use failure::MoserVeselovError;
 pub use forced::forced;
-pub use free::Free;
+pub use free::{Correction, Free};
 pub use poinsot::{Poinsot, PoinsotError};
 pub use preprocess::Order;
 pub use reach::{largest_step, reach};
