@@ -16,7 +16,7 @@ pub mod gallery;
 mod list;
 mod output;
 mod plan;
-mod plots;
+pub mod plots;
 mod record;
 mod run;
 mod suggestion;

@@ -11,7 +11,7 @@ pub(crate) const FLOOR: f64 = 1e-17;
 
 /// A linear axis, or one of decimal logarithms.
 #[derive(Clone, Debug)]
-pub(crate) struct Axis {
+pub struct Axis {
     low: f64,
     high: f64,
     ticks: Vec<(f64, String)>,
@@ -104,15 +104,19 @@ impl Axis {
 
     /// Whole decades around the logarithms in `curves`, not below the floor.
     pub fn decades(curves: &[Curve]) -> Self {
-        let values = curves
-            .iter()
-            .flat_map(|curve| curve.points.iter().map(|point| point.1));
-        let values = values.filter(|value| value.is_finite());
+        let points = curves.iter().flat_map(|curve| &curve.points);
+        Self::decades_around(points.map(|point| point.1))
+    }
+
+    /// Whole decades around logarithms, not below the floor.
+    pub fn decades_around(logarithms: impl Iterator<Item = f64>) -> Self {
+        let values = logarithms.filter(|value| value.is_finite());
         let floor = FLOOR.log10().round();
         let (low, high) = values.fold((f64::INFINITY, floor), |(low, high), value| {
             (low.min(value), high.max(value))
         });
-        let low = low.min(high).floor();
+        // A hair above a decade is on it.
+        let low = (low.min(high) + 1e-9).floor();
         let clamped = low <= floor;
         let high = (high + 0.2).ceil().max(low + 2.0);
         let stride = ((high - low) / 9.0).ceil().max(1.0);

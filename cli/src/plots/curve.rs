@@ -17,21 +17,38 @@ const PALETTE: [RGBColor; 7] = [
 
 /// Points to be joined, with an entry in the legend unless the label is empty.
 #[derive(Clone, Debug)]
-pub(crate) struct Curve {
+pub struct Curve {
+    /// Its name in the legend.
     pub label: String,
     /// A second, fainter line under the label.
     pub note: Option<String>,
     /// Time and value; for a logarithmic axis the decimal logarithm.
     pub points: Vec<(f64, f64)>,
+    /// How it is drawn.
     pub stroke: Stroke,
 }
 
 /// Colour and dashes of a curve.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Stroke {
+pub struct Stroke {
+    /// Its colour.
     pub color: RGBColor,
     /// Lengths of dash and gap in pixels; `None` for a full line.
     pub dash: Option<(u32, u32)>,
+    /// How points are marked, where a curve joins measurements.
+    pub marks: Marks,
+}
+
+/// Marks at the points of a curve.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Marks {
+    /// None.
+    #[default]
+    None,
+    /// Discs.
+    Full,
+    /// Circles.
+    Hollow,
 }
 
 impl Stroke {
@@ -45,6 +62,7 @@ impl Stroke {
                 1 => Some((8, 4)),
                 _ => Some((14, 4)),
             },
+            marks: Marks::None,
         }
     }
 
@@ -56,11 +74,29 @@ impl Stroke {
         }
     }
 
+    /// Member `index` of a family of `count` curves: shades of one blue, the last one darkest.
+    pub fn shade(index: usize, count: usize) -> Self {
+        let part = index as f64 / count.saturating_sub(1).max(1) as f64;
+        // From a blue that is still seen on white to one that is nearly black.
+        let mix = |light: f64, dark: f64| (light + (dark - light) * part.min(1.0)) as u8;
+        Self {
+            color: RGBColor(mix(150.0, 0.0), mix(196.0, 34.0), mix(232.0, 92.0)),
+            dash: None,
+            marks: Marks::None,
+        }
+    }
+
+    /// The same with its points marked.
+    pub fn marked(self, marks: Marks) -> Self {
+        Self { marks, ..self }
+    }
+
     /// A bound that several curves have in common.
     pub fn shared_bound() -> Self {
         Self {
             color: RGBColor(110, 110, 110),
             dash: Some((4, 4)),
+            marks: Marks::None,
         }
     }
 }

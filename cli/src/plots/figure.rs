@@ -2,11 +2,11 @@
 //! Takes curves and axes; gives an SVG.
 
 use super::axis::Axis;
-use super::curve::{Curve, Stroke};
+use super::curve::{Curve, Marks, Stroke};
 use plotters::coord::Shift;
 use plotters::prelude::{
-    ChartBuilder, Color, DashedLineSeries, DrawingArea, IntoDrawingArea, LineSeries, PathElement,
-    RGBColor, SVGBackend, ShapeStyle, Text, WHITE,
+    ChartBuilder, Circle, Color, DashedLineSeries, DrawingArea, IntoDrawingArea, LineSeries,
+    PathElement, RGBColor, SVGBackend, ShapeStyle, Text, WHITE,
 };
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{IntoFont, TextStyle};
@@ -23,20 +23,29 @@ const EDGE: u32 = 4;
 
 /// Panels that share the axis of time.
 #[derive(Clone, Debug)]
-pub(crate) struct Figure {
+pub struct Figure {
+    /// Above everything.
     pub title: String,
+    /// Below the title, smaller.
     pub subtitle: String,
+    /// The axis that all panels share.
     pub x: Axis,
+    /// What it shows, and in which unit.
     pub x_label: String,
+    /// From above.
     pub panels: Vec<Panel>,
 }
 
 /// One chart.
 #[derive(Clone, Debug)]
-pub(crate) struct Panel {
+pub struct Panel {
+    /// Above the chart.
     pub caption: String,
+    /// What the axis shows, and in which unit.
     pub y_label: String,
+    /// The vertical axis.
     pub y: Axis,
+    /// What is drawn, the last on top.
     pub curves: Vec<Curve>,
     /// Height in pixels, caption included.
     pub height: u32,
@@ -46,6 +55,9 @@ type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 impl Figure {
     /// The figure as SVG.
+    ///
+    /// # Errors
+    /// What the drawing library says.
     pub fn svg(&self) -> Result<String, String> {
         let height = HEAD + self.panels.iter().map(|panel| panel.height).sum::<u32>() + FOOT + EDGE;
         let mut svg = String::new();
@@ -145,6 +157,8 @@ impl Panel {
                     stroke,
                 ))?,
             };
+            let inside = curve.points.iter().filter(|point| point.1.is_finite());
+            chart.draw_series(inside.flat_map(|point| mark(*point, curve.stroke)))?;
         }
         Ok(())
     }
@@ -173,6 +187,19 @@ impl Panel {
     }
 }
 
+/// What marks a place where something was measured: a disc, or a circle on a white one.
+fn mark<P: Copy>(place: P, stroke: Stroke) -> Vec<Circle<P, i32>> {
+    let disc = |color: RGBColor| Circle::new(place, 3 * fine(1).cast_signed(), color.filled());
+    match stroke.marks {
+        Marks::None => Vec::new(),
+        Marks::Full => vec![disc(stroke.color)],
+        Marks::Hollow => vec![
+            disc(WHITE),
+            Circle::new(place, 3 * fine(1).cast_signed(), line(stroke.color, 5)),
+        ],
+    }
+}
+
 /// A short piece of the curve, beside its label.
 fn sample(area: &Area<'_>, stroke: Stroke, y: i32) -> Result<(), Box<dyn std::error::Error>> {
     let level = (y + 7) * fine(1).cast_signed();
@@ -195,6 +222,9 @@ fn sample(area: &Area<'_>, stroke: Stroke, y: i32) -> Result<(), Box<dyn std::er
                 pen,
             ))?;
         }
+    }
+    for mark in mark((15 * fine(1).cast_signed(), level), stroke) {
+        area.draw(&mark)?;
     }
     Ok(())
 }

@@ -1,10 +1,10 @@
 //! Plots of a run as SVG: momenta, drift of the invariants, advected vectors.
 //! Takes a finished run and its samples; gives SVG text, or nothing when there is nothing to show.
 
-pub(crate) mod axis;
+pub mod axis;
 mod comparison;
-pub(crate) mod curve;
-pub(crate) mod figure;
+pub mod curve;
+pub mod figure;
 pub(crate) mod reduce;
 mod window;
 
