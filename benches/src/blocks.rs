@@ -45,7 +45,7 @@ pub fn compare<A: FnOnce(), B: FnOnce()>(
 }
 
 /// Nanoseconds that this thread has computed: waiting for a processor that others use is not counted.
-fn computed() -> f64 {
+pub fn computed() -> f64 {
     let now = clock_gettime(ClockId::ThreadCPUTime);
     now.tv_sec as f64 * 1e9 + now.tv_nsec as f64
 }

@@ -2,24 +2,16 @@
 //! run. Takes no arguments; prints a table.
 //! `cargo run --release --manifest-path benches/Cargo.toml --bin peers`, about a minute.
 
-// The fields of the models are Greek letters, as in the papers.
-#![allow(mixed_script_confusables)]
-
-#[path = "../blocks.rs"]
-mod blocks;
-
-use blocks::{Comparison, STEPS, compare};
-use clebsch::nalgebra::{Matrix3, Vector3};
-use clebsch::{BodyMomentum, Order, Rotation};
+use clebsch::Order;
+use clebsch_benches::blocks::{self, Comparison, STEPS, compare};
+use clebsch_benches::body::{Generated, start_of};
 use clebsch_comparisons::body::exact::Exact;
 use clebsch_comparisons::body::implicit::{FixedPoint, Newton};
 use clebsch_comparisons::body::splitting::{FourthOrderSplitting, MergedSplitting, Splitting};
 use clebsch_comparisons::body::{BodyMotion, Start};
 use clebsch_comparisons::continuous::rigid::{Field, RigidBody};
-use clebsch_comparisons::handwritten::attitude::Quaternion;
 use clebsch_comparisons::handwritten::free_body::FreeBody as Written;
 use clebsch_comparisons::runge_kutta::{Accuracy, Method54, Method85, RungeKutta, Scheme};
-use clebsch_models::free_body::{FreeBody, FreeBodyInitial, FreeBodyParameters};
 use std::hint::black_box;
 
 /// The bodies of thesis figures 2.5, 2.6 and 2.17.
@@ -54,15 +46,7 @@ fn main() {
     );
     println!("error: largest |M - M*| up to time 100, M* the closed form");
     for (name, moments, body_momentum) in BODIES {
-        let half = moments.iter().sum::<f64>() / 2.0;
-        let start = Start {
-            poinsot: std::array::from_fn(|r| {
-                std::array::from_fn(|c| if r == c { half - moments[r] } else { 0.0 })
-            }),
-            attitude: Quaternion::IDENTITY,
-            body_momentum,
-            h: H,
-        };
+        let start = start_of(moments, body_momentum, H);
         println!("\n{name}");
         println!(
             "{:<36} {:>9} {:>12} {:>9}   quartiles of the ratio",
@@ -171,61 +155,4 @@ fn runge_kutta<R: Scheme<7>>(start: &Start, tolerance: f64) -> RungeKutta<R, Rig
     let body = RigidBody::new(&start.poinsot, Field::None);
     let accuracy = Accuracy::of(tolerance);
     RungeKutta::start(body, &[w, x, y, z, a, b, c], start.h, accuracy).expect("finite")
-}
-
-/// The generated stepper as one of the methods.
-#[derive(Clone)]
-struct Generated {
-    model: FreeBody<f64>,
-    state: clebsch_models::free_body::FreeBodyState<f64>,
-    workspace: clebsch_models::free_body::FreeBodyWorkspace<f64>,
-}
-
-impl Generated {
-    fn start(start: &Start, order: Order) -> Self {
-        let model = FreeBody::new(FreeBodyParameters {
-            J: Matrix3::from_fn(|r, c| start.poinsot[r][c]),
-        })
-        .expect("a body");
-        let initial = FreeBodyInitial {
-            Λ: Rotation::from_quaternion(start.attitude.0).expect("a unit quaternion"),
-            body_momentum: BodyMomentum(Vector3::from(start.body_momentum)),
-        };
-        let (state, workspace) = model
-            .start_of_order(initial, start.h, order)
-            .expect("solvable");
-        Self {
-            model,
-            state,
-            workspace,
-        }
-    }
-
-    /// A block of steps, as a user writes the loop.
-    fn block(self) -> impl FnOnce() {
-        move || {
-            let (model, mut state, mut workspace) =
-                black_box((self.model, self.state, self.workspace));
-            for _ in 0..STEPS {
-                model.step(&mut state, &mut workspace).expect("solvable");
-            }
-            black_box((&state, &workspace));
-        }
-    }
-}
-
-impl BodyMotion for Generated {
-    #[inline(always)]
-    fn step(&mut self) -> Result<(), clebsch_comparisons::handwritten::Unsolvable> {
-        let done = self.model.step(&mut self.state, &mut self.workspace);
-        done.map_err(|_| clebsch_comparisons::handwritten::Unsolvable)
-    }
-
-    fn attitude(&self) -> Quaternion {
-        Quaternion(self.state.Λ().quaternion())
-    }
-
-    fn body_momentum(&self) -> [f64; 3] {
-        self.state.body_momentum().0.into()
-    }
 }

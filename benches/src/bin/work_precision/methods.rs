@@ -1,0 +1,236 @@
+//! The methods written in Rust, each with a range of steps or tolerances: the generated stepper of every order, alone and
+//! in lanes, its compositions, splitting, the fixed point, Runge-Kutta. Takes nothing; gives runs for the clock.
+
+use super::timing::{End, Run};
+use super::{MOMENTS, MOMENTUM, TIME};
+use clebsch::integrate::{Composition, CompositionOrder, Stepper};
+use clebsch::nalgebra::{Matrix3, Vector3};
+use clebsch::{BodyMomentum, DoubleDouble, Lanes, Order, Real, Rotation};
+use clebsch_benches::body::{Generated, start_of};
+use clebsch_comparisons::body::implicit::FixedPoint;
+use clebsch_comparisons::body::splitting::{FourthOrderSplitting, Splitting};
+use clebsch_comparisons::body::{BodyMotion, Start};
+use clebsch_comparisons::continuous::rigid::{Field, RigidBody};
+use clebsch_comparisons::runge_kutta::{
+    Accuracy, Method54, Method85, Method98, RungeKutta, Scheme,
+};
+use clebsch_models::free_body::{FreeBody, FreeBodyInitial, FreeBodyParameters};
+
+/// Trajectories side by side.
+pub const LANES: usize = 8;
+
+/// Distance of the nodes of Runge-Kutta methods: longer than the steps they take, short enough that the sum of the steps
+/// within is not rounded visibly. For loose tolerances, and for those below 1e-9.
+const LOOSE: u32 = 25;
+const TIGHT: u32 = 5;
+
+/// Whole steps until the end: h = 1 to 0.001.
+const COUNTS: [u32; 16] = [
+    100, 125, 160, 200, 250, 320, 400, 500, 640, 800, 1000, 2000, 5000, 10_000, 30_000, 100_000,
+];
+
+/// All of them.
+pub fn all() -> Vec<Run> {
+    let mut runs = Vec::new();
+    for order in Order::ALL {
+        for count in wanted(order.number()) {
+            runs.push(stepping(
+                &format!("generated, order {order}"),
+                count,
+                move |start| Some(Generated::start(start, order)),
+            ));
+        }
+    }
+    for count in wanted(Order::Ten.number()) {
+        runs.push(lanes(Order::Ten, count));
+    }
+    for count in COUNTS.into_iter().filter(|n| (160..=5000).contains(n)) {
+        runs.push(composed(CompositionOrder::Eight, count));
+    }
+    for count in COUNTS {
+        runs.push(stepping("splitting", count, |s| Splitting::start(s).ok()));
+    }
+    for count in COUNTS.into_iter().filter(|n| *n <= 10_000) {
+        runs.push(stepping("splitting, order 4", count, |s| {
+            FourthOrderSplitting::start(s).ok()
+        }));
+    }
+    for count in COUNTS.into_iter().filter(|n| *n >= 200) {
+        runs.push(stepping("fixed point", count, |s| {
+            FixedPoint::start(s).ok()
+        }));
+    }
+    runs.extend(tolerances(
+        "Dormand-Prince 5(4)",
+        adaptive::<Method54<7>, LOOSE>,
+        adaptive::<Method54<7>, TIGHT>,
+    ));
+    runs.extend(tolerances(
+        "Dormand-Prince 8(5,3)",
+        adaptive::<Method85<7>, LOOSE>,
+        adaptive::<Method85<7>, TIGHT>,
+    ));
+    runs.extend(tolerances(
+        "Verner 9(8)",
+        adaptive::<Method98<7>, LOOSE>,
+        adaptive::<Method98<7>, TIGHT>,
+    ));
+    runs
+}
+
+/// Steps worth measuring at an order: until rounding is reached, and a little on.
+fn wanted(order: u32) -> impl Iterator<Item = u32> {
+    let most = match order {
+        0..=3 => 100_000,
+        4 => 30_000,
+        5..=6 => 5000,
+        _ => 2000,
+    };
+    COUNTS.into_iter().filter(move |count| *count <= most)
+}
+
+/// A method with a fixed step.
+fn stepping<M: BodyMotion>(
+    method: &str,
+    count: u32,
+    make: impl Fn(&Start) -> Option<M> + 'static,
+) -> Run {
+    let h = TIME / f64::from(count);
+    let start = start_of(MOMENTS, MOMENTUM, h);
+    let motion = move || {
+        let Some(mut motion) = make(&start) else {
+            return nowhere();
+        };
+        for _ in 0..count {
+            if motion.step().is_err() {
+                return nowhere();
+            }
+        }
+        (motion.attitude().0, motion.body_momentum())
+    };
+    run(method, h, count, 1, motion)
+}
+
+fn run(method: &str, h: f64, count: u32, lanes: usize, make: impl Fn() -> End + 'static) -> Run {
+    Run {
+        method: method.to_owned(),
+        setting: format!("h = {}", (h * 1e4).round() / 1e4),
+        lanes,
+        time: DoubleDouble::from_f64(h) * DoubleDouble::from_f64(f64::from(count)),
+        make: Box::new(make),
+    }
+}
+
+/// The end of a motion that could not be made: infinitely wrong.
+fn nowhere() -> End {
+    ([f64::NAN; 4], [f64::NAN; 3])
+}
+
+/// The same trajectory in every lane: nothing is gained by it, and every lane has its own numbers.
+fn lanes(order: Order, count: u32) -> Run {
+    type Wide = Lanes<LANES>;
+    let h = TIME / f64::from(count);
+    let start = start_of(MOMENTS, MOMENTUM, h);
+    let motion = move || {
+        let wide = Wide::from_f64;
+        let parameters = FreeBodyParameters {
+            J: Matrix3::from_fn(|r, c| wide(start.poinsot[r][c])),
+        };
+        let initial = FreeBodyInitial {
+            Λ: Rotation::identity(),
+            body_momentum: BodyMomentum(Vector3::from(start.body_momentum.map(wide))),
+        };
+        let Ok(model) = FreeBody::new(parameters) else {
+            return nowhere();
+        };
+        let Ok((mut state, mut work)) = model.start_of_order(initial, wide(h), order) else {
+            return nowhere();
+        };
+        if model
+            .advance_many(&mut state, &mut work, u64::from(count))
+            .is_err()
+        {
+            return nowhere();
+        }
+        let momentum: [Wide; 3] = state.body_momentum().0.into();
+        (
+            state.Λ().quaternion().map(Wide::value),
+            momentum.map(Wide::value),
+        )
+    };
+    run(
+        &format!("generated, order {order}, lanes"),
+        h,
+        count,
+        LANES,
+        motion,
+    )
+}
+
+/// The step of order two, composed: symplectic in momentum and attitude.
+fn composed(order: CompositionOrder, count: u32) -> Run {
+    let h = TIME / f64::from(count);
+    let start = start_of(MOMENTS, MOMENTUM, h);
+    let motion = move || {
+        let Generated {
+            model, mut state, ..
+        } = Generated::start(&start, Order::Two);
+        let Ok(mut composition) = Composition::start(&model, &state, h, order) else {
+            return nowhere();
+        };
+        for _ in 0..count {
+            if composition.step(&model, &mut state).is_err() {
+                return nowhere();
+            }
+        }
+        (state.Λ().quaternion(), state.body_momentum().0.into())
+    };
+    run(
+        &format!("generated, composed, order {order}"),
+        h,
+        count,
+        1,
+        motion,
+    )
+}
+
+type Adaptive = fn(&str, f64) -> Run;
+
+/// A method over tolerances half a decade apart.
+fn tolerances(method: &str, loose: Adaptive, tight: Adaptive) -> Vec<Run> {
+    let run = |half_decades: u32| {
+        let tolerance = 10_f64.powf(-0.5 * f64::from(half_decades));
+        let nodes = if half_decades < 18 { loose } else { tight };
+        nodes(method, tolerance)
+    };
+    (8..=31).map(run).collect()
+}
+
+/// A method that chooses its steps; the distance of its nodes is known to the compiler, which favours it.
+fn adaptive<R: Scheme<7> + 'static, const NODES: u32>(method: &str, tolerance: f64) -> Run {
+    let nodes = f64::from(NODES);
+    let start = start_of(MOMENTS, MOMENTUM, nodes);
+    let motion = move || {
+        let ([w, x, y, z], [a, b, c]) = (start.attitude.0, start.body_momentum);
+        let body = RigidBody::new(&start.poinsot, Field::None);
+        let accuracy = Accuracy::of(tolerance);
+        let made: Result<RungeKutta<R, _, 7>, _> =
+            RungeKutta::start(body, &[w, x, y, z, a, b, c], nodes, accuracy);
+        let Ok(mut motion) = made else {
+            return nowhere();
+        };
+        for _ in 0..(TIME / nodes) as u32 {
+            if motion.step().is_err() {
+                return nowhere();
+            }
+        }
+        (motion.attitude().0, motion.body_momentum())
+    };
+    Run {
+        method: method.to_owned(),
+        setting: format!("{tolerance:.0e}"),
+        lanes: 1,
+        time: DoubleDouble::from_f64(TIME),
+        make: Box::new(motion),
+    }
+}

@@ -1,0 +1,66 @@
+//! Peers that live in Python, measured by a script beside this crate in an environment of its own.
+//! Takes nothing; gives their points, or why there are none.
+
+use super::timing::{Measured, error};
+use super::{MOMENTS, MOMENTUM, TIME};
+use clebsch::{DoubleDouble, Real};
+use serde_json::Value;
+use std::path::Path;
+use std::process::Command;
+
+/// Versions in words, and what was measured.
+pub fn measured() -> Result<(String, Vec<Measured>), String> {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let (script, made) = (here.join("python/peers.py"), here.join("target/python"));
+    let result = made.join("peers.json");
+    let status = Command::new("python3")
+        .arg(script)
+        .arg("--out")
+        .arg(&result)
+        .arg("--venv")
+        .arg(made.join("venv"))
+        .status()
+        .map_err(|e| format!("python3 cannot be run: {e}"))?;
+    if !status.success() {
+        return Err("the script could not measure them; its message is above".to_owned());
+    }
+    let text = std::fs::read_to_string(&result).map_err(|e| e.to_string())?;
+    let read: Value = serde_json::from_str(&text).map_err(|e| e.to_string())?;
+    parsed(&read).ok_or_else(|| format!("{} is not what the script writes", result.display()))
+}
+
+fn parsed(read: &Value) -> Option<(String, Vec<Measured>)> {
+    // Another problem would be compared with this one's truth.
+    let problem = [numbers(&read["moments"])?, numbers(&read["body_momentum"])?];
+    if problem != [MOMENTS.to_vec(), MOMENTUM.to_vec()] || read["time"].as_f64()? != TIME {
+        return None;
+    }
+    let versions = read["versions"].as_object()?;
+    let named = versions
+        .iter()
+        .map(|(name, v)| Some(format!("{name} {}", v.as_str()?)));
+    let mut named = named.collect::<Option<Vec<_>>>()?;
+    named.push(format!("Python {}", read["python"].as_str()?));
+    named.push(format!("{} lanes of heyoka", read["lanes"].as_u64()?));
+    let points = read["points"].as_array()?.iter().map(|point| {
+        let state = numbers(&point["state"])?;
+        let (attitude, momentum) = state.split_at_checked(4)?;
+        let mut attitude: [f64; 4] = attitude.try_into().ok()?;
+        let norm = attitude.iter().map(|x| x * x).sum::<f64>().sqrt();
+        attitude = attitude.map(|x| x / norm);
+        let end = (attitude, momentum.try_into().ok()?);
+        Some(Measured {
+            method: point["method"].as_str()?.to_owned(),
+            setting: point["setting"].as_str()?.to_owned(),
+            error: error(&end, DoubleDouble::from_f64(TIME)),
+            micros: point["micros"].as_f64()?,
+        })
+    });
+    let mut points = points.collect::<Option<Vec<_>>>()?;
+    points.sort_by_key(|point| point.method.clone());
+    Some((named.join(", "), points))
+}
+
+fn numbers(list: &Value) -> Option<Vec<f64>> {
+    list.as_array()?.iter().map(Value::as_f64).collect()
+}

@@ -1,0 +1,86 @@
+//! The generated free body as one of the methods that are compared, and what all of them start from.
+//! Takes principal moments, a momentum and a step; gives a start, and the generated motion from it.
+
+use crate::blocks::STEPS;
+use clebsch::nalgebra::{Matrix3, Vector3};
+use clebsch::{BodyMomentum, Order, Rotation};
+use clebsch_comparisons::body::{BodyMotion, Start};
+use clebsch_comparisons::handwritten::Unsolvable;
+use clebsch_comparisons::handwritten::attitude::Quaternion;
+use clebsch_models::free_body::{
+    FreeBody, FreeBodyInitial, FreeBodyParameters, FreeBodyState, FreeBodyWorkspace,
+};
+use std::hint::black_box;
+
+/// A body with principal moments of inertia along its axes, at the identity.
+pub fn start_of(moments: [f64; 3], body_momentum: [f64; 3], h: f64) -> Start {
+    let half = moments.iter().sum::<f64>() / 2.0;
+    let entry = |r: usize, c: usize| if r == c { half - moments[r] } else { 0.0 };
+    Start {
+        poinsot: std::array::from_fn(|r| std::array::from_fn(|c| entry(r, c))),
+        attitude: Quaternion::IDENTITY,
+        body_momentum,
+        h,
+    }
+}
+
+/// The generated stepper as one of the methods.
+#[derive(Clone)]
+pub struct Generated {
+    /// The body.
+    pub model: FreeBody<f64>,
+    /// The present node.
+    pub state: FreeBodyState<f64>,
+    /// What its solver keeps.
+    pub workspace: FreeBodyWorkspace<f64>,
+}
+
+impl Generated {
+    /// Starts a motion that is known to be solvable.
+    pub fn start(start: &Start, order: Order) -> Self {
+        let model = FreeBody::new(FreeBodyParameters {
+            J: Matrix3::from_fn(|r, c| start.poinsot[r][c]),
+        })
+        .expect("a body");
+        let initial = FreeBodyInitial {
+            Λ: Rotation::from_quaternion(start.attitude.0).expect("a unit quaternion"),
+            body_momentum: BodyMomentum(Vector3::from(start.body_momentum)),
+        };
+        let (state, workspace) = model
+            .start_of_order(initial, start.h, order)
+            .expect("solvable");
+        Self {
+            model,
+            state,
+            workspace,
+        }
+    }
+
+    /// A block of steps, as a user writes the loop.
+    pub fn block(self) -> impl FnOnce() {
+        move || {
+            let (model, mut state, mut workspace) =
+                black_box((self.model, self.state, self.workspace));
+            for _ in 0..STEPS {
+                model.step(&mut state, &mut workspace).expect("solvable");
+            }
+            black_box((&state, &workspace));
+        }
+    }
+}
+
+impl BodyMotion for Generated {
+    #[inline(always)]
+    fn step(&mut self) -> Result<(), Unsolvable> {
+        let done = self.model.step(&mut self.state, &mut self.workspace);
+        done.map_err(|_| Unsolvable)
+    }
+
+    fn attitude(&self) -> Quaternion {
+        Quaternion(self.state.Λ().quaternion())
+    }
+
+    fn body_momentum(&self) -> [f64; 3] {
+        self.state.body_momentum().0.into()
+    }
+}
