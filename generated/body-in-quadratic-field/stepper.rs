@@ -262,6 +262,74 @@ pub mod body_in_quadratic_field {
         }
     }
     impl<T: Real> Reversible for BodyInQuadraticField<T> {}
+    impl<T: Real> ::clebsch::OfScalars for BodyInQuadraticFieldParameters<T> {
+        type Scalar = T;
+        type Over<U: Real> = BodyInQuadraticFieldParameters<U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> BodyInQuadraticFieldParameters<U> {
+            BodyInQuadraticFieldParameters {
+                J: self.J.over(change),
+                K: self.K.over(change),
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::OfScalars for BodyInQuadraticFieldInitial<T> {
+        type Scalar = T;
+        type Over<U: Real> = BodyInQuadraticFieldInitial<U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> BodyInQuadraticFieldInitial<U> {
+            BodyInQuadraticFieldInitial {
+                Λ: self.Λ.over(change),
+                body_momentum: self.body_momentum.over(change),
+                Γ: self.Γ.over(change),
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::OfScalars for BodyInQuadraticFieldState<T> {
+        type Scalar = T;
+        type Over<U: Real> = BodyInQuadraticFieldState<U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> BodyInQuadraticFieldState<U> {
+            BodyInQuadraticFieldState {
+                Λ: self.Λ.over(change),
+                momentum: self.momentum.over(change),
+                Γ: self.Γ.over(change),
+                node: self.node,
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::integrate::Model for BodyInQuadraticField<T> {
+        type Parameters = BodyInQuadraticFieldParameters<T>;
+        type Initial = BodyInQuadraticFieldInitial<T>;
+        type Choice = ();
+        type Over<U: Real> = BodyInQuadraticField<U>;
+        fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
+            Self::new(parameters)
+        }
+        fn given(&self) -> &Self::Parameters {
+            &self.parameters
+        }
+        fn begin(
+            &self,
+            initial: Self::Initial,
+        ) -> Result<BodyInQuadraticFieldState<T>, StartError> {
+            self.at_node_0(initial)
+        }
+        fn prepare(
+            &self,
+            state: &BodyInQuadraticFieldState<T>,
+            h: T,
+            _: Self::Choice,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h)
+        }
+    }
     /// A configuration at one node, solution or not.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct BodyInQuadraticFieldConfiguration<T = f64> {

@@ -263,6 +263,75 @@ pub mod body_in_two_fields {
         }
     }
     impl<T: Real> Reversible for BodyInTwoFields<T> {}
+    impl<T: Real> ::clebsch::OfScalars for BodyInTwoFieldsParameters<T> {
+        type Scalar = T;
+        type Over<U: Real> = BodyInTwoFieldsParameters<U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> BodyInTwoFieldsParameters<U> {
+            BodyInTwoFieldsParameters {
+                J: self.J.over(change),
+                gU: self.gU.over(change),
+                p: self.p.over(change),
+                z: self.z.over(change),
+                b: self.b.over(change),
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::OfScalars for BodyInTwoFieldsInitial<T> {
+        type Scalar = T;
+        type Over<U: Real> = BodyInTwoFieldsInitial<U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> BodyInTwoFieldsInitial<U> {
+            BodyInTwoFieldsInitial {
+                Λ: self.Λ.over(change),
+                body_momentum: self.body_momentum.over(change),
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::OfScalars for BodyInTwoFieldsState<T> {
+        type Scalar = T;
+        type Over<U: Real> = BodyInTwoFieldsState<U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> BodyInTwoFieldsState<U> {
+            BodyInTwoFieldsState {
+                Λ: self.Λ.over(change),
+                momentum: self.momentum.over(change),
+                node: self.node,
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::integrate::Model for BodyInTwoFields<T> {
+        type Parameters = BodyInTwoFieldsParameters<T>;
+        type Initial = BodyInTwoFieldsInitial<T>;
+        type Choice = ();
+        type Over<U: Real> = BodyInTwoFields<U>;
+        fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
+            Self::new(parameters)
+        }
+        fn given(&self) -> &Self::Parameters {
+            &self.parameters
+        }
+        fn begin(
+            &self,
+            initial: Self::Initial,
+        ) -> Result<BodyInTwoFieldsState<T>, StartError> {
+            self.at_node_0(initial)
+        }
+        fn prepare(
+            &self,
+            state: &BodyInTwoFieldsState<T>,
+            h: T,
+            _: Self::Choice,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h)
+        }
+    }
     /// A configuration at one node, solution or not.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct BodyInTwoFieldsConfiguration<T = f64> {

@@ -245,6 +245,62 @@ pub mod body_n {
             BodyNState { node: node, ..state }
         }
     }
+    impl<const N: usize, T: Real> ::clebsch::OfScalars for BodyNParameters<N, T> {
+        type Scalar = T;
+        type Over<U: Real> = BodyNParameters<N, U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> BodyNParameters<N, U> {
+            BodyNParameters {
+                C: self.C.over(change),
+            }
+        }
+    }
+    impl<const N: usize, T: Real> ::clebsch::OfScalars for BodyNInitial<N, T> {
+        type Scalar = T;
+        type Over<U: Real> = BodyNInitial<N, U>;
+        fn over<U: Real>(&self, change: &mut impl FnMut(T) -> U) -> BodyNInitial<N, U> {
+            BodyNInitial {
+                Λ: self.Λ.over(change),
+                body_momentum: self.body_momentum.over(change),
+            }
+        }
+    }
+    impl<const N: usize, T: Real> ::clebsch::OfScalars for BodyNState<N, T> {
+        type Scalar = T;
+        type Over<U: Real> = BodyNState<N, U>;
+        fn over<U: Real>(&self, change: &mut impl FnMut(T) -> U) -> BodyNState<N, U> {
+            BodyNState {
+                Λ: self.Λ.over(change),
+                momentum: self.momentum.over(change),
+                node: self.node,
+            }
+        }
+    }
+    impl<const N: usize, T: Real> ::clebsch::integrate::Model for BodyN<N, T> {
+        type Parameters = BodyNParameters<N, T>;
+        type Initial = BodyNInitial<N, T>;
+        type Choice = ();
+        type Over<U: Real> = BodyN<N, U>;
+        fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
+            Self::new(parameters)
+        }
+        fn given(&self) -> &Self::Parameters {
+            &self.parameters
+        }
+        fn begin(&self, initial: Self::Initial) -> Result<BodyNState<N, T>, StartError> {
+            self.at_node_0(initial)
+        }
+        fn prepare(
+            &self,
+            state: &BodyNState<N, T>,
+            h: T,
+            _: Self::Choice,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h)
+        }
+    }
     /// A configuration at one node, solution or not.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct BodyNConfiguration<const N: usize, T = f64> {

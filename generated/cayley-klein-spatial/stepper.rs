@@ -289,6 +289,73 @@ pub mod cayley_klein_spatial {
         }
     }
     impl<T: Real> Reversible for CayleyKleinSpatial<T> {}
+    impl<T: Real> ::clebsch::OfScalars for CayleyKleinSpatialParameters<T> {
+        type Scalar = T;
+        type Over<U: Real> = CayleyKleinSpatialParameters<U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> CayleyKleinSpatialParameters<U> {
+            CayleyKleinSpatialParameters {
+                c: self.c.over(change),
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::OfScalars for CayleyKleinSpatialInitial<T> {
+        type Scalar = T;
+        type Over<U: Real> = CayleyKleinSpatialInitial<U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> CayleyKleinSpatialInitial<U> {
+            CayleyKleinSpatialInitial {
+                q: self.q.over(change),
+                spatial_momentum: self.spatial_momentum.over(change),
+                I: self.I.over(change),
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::OfScalars for CayleyKleinSpatialState<T> {
+        type Scalar = T;
+        type Over<U: Real> = CayleyKleinSpatialState<U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> CayleyKleinSpatialState<U> {
+            CayleyKleinSpatialState {
+                q: self.q.over(change),
+                momentum: self.momentum.over(change),
+                I: self.I.over(change),
+                node: self.node,
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::integrate::Model for CayleyKleinSpatial<T> {
+        type Parameters = CayleyKleinSpatialParameters<T>;
+        type Initial = CayleyKleinSpatialInitial<T>;
+        type Choice = ();
+        type Over<U: Real> = CayleyKleinSpatial<U>;
+        fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
+            Self::new(parameters)
+        }
+        fn given(&self) -> &Self::Parameters {
+            &self.parameters
+        }
+        fn begin(
+            &self,
+            initial: Self::Initial,
+        ) -> Result<CayleyKleinSpatialState<T>, StartError> {
+            self.at_node_0(initial)
+        }
+        fn prepare(
+            &self,
+            state: &CayleyKleinSpatialState<T>,
+            h: T,
+            _: Self::Choice,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h)
+        }
+    }
     /// A configuration at one node, solution or not.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct CayleyKleinSpatialConfiguration<T = f64> {

@@ -261,6 +261,69 @@ pub mod cayley_klein {
         }
     }
     impl<T: Real> Reversible for CayleyKlein<T> {}
+    impl<T: Real> ::clebsch::OfScalars for CayleyKleinParameters<T> {
+        type Scalar = T;
+        type Over<U: Real> = CayleyKleinParameters<U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> CayleyKleinParameters<U> {
+            CayleyKleinParameters {
+                I: self.I.over(change),
+                c: self.c.over(change),
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::OfScalars for CayleyKleinInitial<T> {
+        type Scalar = T;
+        type Over<U: Real> = CayleyKleinInitial<U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> CayleyKleinInitial<U> {
+            CayleyKleinInitial {
+                q: self.q.over(change),
+                body_momentum: self.body_momentum.over(change),
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::OfScalars for CayleyKleinState<T> {
+        type Scalar = T;
+        type Over<U: Real> = CayleyKleinState<U>;
+        fn over<U: Real>(&self, change: &mut impl FnMut(T) -> U) -> CayleyKleinState<U> {
+            CayleyKleinState {
+                q: self.q.over(change),
+                momentum: self.momentum.over(change),
+                node: self.node,
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::integrate::Model for CayleyKlein<T> {
+        type Parameters = CayleyKleinParameters<T>;
+        type Initial = CayleyKleinInitial<T>;
+        type Choice = ();
+        type Over<U: Real> = CayleyKlein<U>;
+        fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
+            Self::new(parameters)
+        }
+        fn given(&self) -> &Self::Parameters {
+            &self.parameters
+        }
+        fn begin(
+            &self,
+            initial: Self::Initial,
+        ) -> Result<CayleyKleinState<T>, StartError> {
+            self.at_node_0(initial)
+        }
+        fn prepare(
+            &self,
+            state: &CayleyKleinState<T>,
+            h: T,
+            _: Self::Choice,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h)
+        }
+    }
     /// A configuration at one node, solution or not.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct CayleyKleinConfiguration<T = f64> {

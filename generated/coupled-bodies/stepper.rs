@@ -336,6 +336,79 @@ pub mod coupled_bodies {
         }
     }
     impl<T: Real> Reversible for CoupledBodies<T> {}
+    impl<T: Real> ::clebsch::OfScalars for CoupledBodiesParameters<T> {
+        type Scalar = T;
+        type Over<U: Real> = CoupledBodiesParameters<U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> CoupledBodiesParameters<U> {
+            CoupledBodiesParameters {
+                J1: self.J1.over(change),
+                J2: self.J2.over(change),
+                d1: self.d1.over(change),
+                d2: self.d2.over(change),
+                eps: self.eps.over(change),
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::OfScalars for CoupledBodiesInitial<T> {
+        type Scalar = T;
+        type Over<U: Real> = CoupledBodiesInitial<U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> CoupledBodiesInitial<U> {
+            CoupledBodiesInitial {
+                Λ1: self.Λ1.over(change),
+                body_momentum_Λ1: self.body_momentum_Λ1.over(change),
+                Λ2: self.Λ2.over(change),
+                body_momentum_Λ2: self.body_momentum_Λ2.over(change),
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::OfScalars for CoupledBodiesState<T> {
+        type Scalar = T;
+        type Over<U: Real> = CoupledBodiesState<U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> CoupledBodiesState<U> {
+            CoupledBodiesState {
+                Λ1: self.Λ1.over(change),
+                momentum_Λ1: self.momentum_Λ1.over(change),
+                Λ2: self.Λ2.over(change),
+                momentum_Λ2: self.momentum_Λ2.over(change),
+                node: self.node,
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::integrate::Model for CoupledBodies<T> {
+        type Parameters = CoupledBodiesParameters<T>;
+        type Initial = CoupledBodiesInitial<T>;
+        type Choice = ();
+        type Over<U: Real> = CoupledBodies<U>;
+        fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
+            Self::new(parameters)
+        }
+        fn given(&self) -> &Self::Parameters {
+            &self.parameters
+        }
+        fn begin(
+            &self,
+            initial: Self::Initial,
+        ) -> Result<CoupledBodiesState<T>, StartError> {
+            self.at_node_0(initial)
+        }
+        fn prepare(
+            &self,
+            state: &CoupledBodiesState<T>,
+            h: T,
+            _: Self::Choice,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h)
+        }
+    }
     /// A configuration at one node, solution or not.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct CoupledBodiesConfiguration<T = f64> {

@@ -269,6 +269,73 @@ pub mod free_body_spatial {
         }
     }
     impl<T: Real> Reversible for FreeBodySpatial<T> {}
+    impl<T: Real> ::clebsch::OfScalars for FreeBodySpatialParameters<T> {
+        type Scalar = T;
+        type Over<U: Real> = FreeBodySpatialParameters<U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> FreeBodySpatialParameters<U> {
+            FreeBodySpatialParameters {
+                scalar: ::core::marker::PhantomData,
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::OfScalars for FreeBodySpatialInitial<T> {
+        type Scalar = T;
+        type Over<U: Real> = FreeBodySpatialInitial<U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> FreeBodySpatialInitial<U> {
+            FreeBodySpatialInitial {
+                Λ: self.Λ.over(change),
+                spatial_momentum: self.spatial_momentum.over(change),
+                J: self.J.over(change),
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::OfScalars for FreeBodySpatialState<T> {
+        type Scalar = T;
+        type Over<U: Real> = FreeBodySpatialState<U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> FreeBodySpatialState<U> {
+            FreeBodySpatialState {
+                Λ: self.Λ.over(change),
+                momentum: self.momentum.over(change),
+                J: self.J.over(change),
+                node: self.node,
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::integrate::Model for FreeBodySpatial<T> {
+        type Parameters = FreeBodySpatialParameters<T>;
+        type Initial = FreeBodySpatialInitial<T>;
+        type Choice = Order;
+        type Over<U: Real> = FreeBodySpatial<U>;
+        fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
+            Self::new(parameters)
+        }
+        fn given(&self) -> &Self::Parameters {
+            &self.parameters
+        }
+        fn begin(
+            &self,
+            initial: Self::Initial,
+        ) -> Result<FreeBodySpatialState<T>, StartError> {
+            self.at_node_0(initial)
+        }
+        fn prepare(
+            &self,
+            state: &FreeBodySpatialState<T>,
+            h: T,
+            order: Self::Choice,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h, order)
+        }
+    }
     /// A configuration at one node, solution or not.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct FreeBodySpatialConfiguration<T = f64> {

@@ -226,6 +226,62 @@ pub mod free_body {
         }
     }
     impl<T: Real> Reversible for FreeBody<T> {}
+    impl<T: Real> ::clebsch::OfScalars for FreeBodyParameters<T> {
+        type Scalar = T;
+        type Over<U: Real> = FreeBodyParameters<U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> FreeBodyParameters<U> {
+            FreeBodyParameters {
+                J: self.J.over(change),
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::OfScalars for FreeBodyInitial<T> {
+        type Scalar = T;
+        type Over<U: Real> = FreeBodyInitial<U>;
+        fn over<U: Real>(&self, change: &mut impl FnMut(T) -> U) -> FreeBodyInitial<U> {
+            FreeBodyInitial {
+                Λ: self.Λ.over(change),
+                body_momentum: self.body_momentum.over(change),
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::OfScalars for FreeBodyState<T> {
+        type Scalar = T;
+        type Over<U: Real> = FreeBodyState<U>;
+        fn over<U: Real>(&self, change: &mut impl FnMut(T) -> U) -> FreeBodyState<U> {
+            FreeBodyState {
+                Λ: self.Λ.over(change),
+                momentum: self.momentum.over(change),
+                node: self.node,
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::integrate::Model for FreeBody<T> {
+        type Parameters = FreeBodyParameters<T>;
+        type Initial = FreeBodyInitial<T>;
+        type Choice = Order;
+        type Over<U: Real> = FreeBody<U>;
+        fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
+            Self::new(parameters)
+        }
+        fn given(&self) -> &Self::Parameters {
+            &self.parameters
+        }
+        fn begin(&self, initial: Self::Initial) -> Result<FreeBodyState<T>, StartError> {
+            self.at_node_0(initial)
+        }
+        fn prepare(
+            &self,
+            state: &FreeBodyState<T>,
+            h: T,
+            order: Self::Choice,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h, order)
+        }
+    }
     /// A configuration at one node, solution or not.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct FreeBodyConfiguration<T = f64> {

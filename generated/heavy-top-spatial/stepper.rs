@@ -294,6 +294,76 @@ pub mod heavy_top_spatial {
         }
     }
     impl<T: Real> Reversible for HeavyTopSpatial<T> {}
+    impl<T: Real> ::clebsch::OfScalars for HeavyTopSpatialParameters<T> {
+        type Scalar = T;
+        type Over<U: Real> = HeavyTopSpatialParameters<U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> HeavyTopSpatialParameters<U> {
+            HeavyTopSpatialParameters {
+                w: self.w.over(change),
+                z: self.z.over(change),
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::OfScalars for HeavyTopSpatialInitial<T> {
+        type Scalar = T;
+        type Over<U: Real> = HeavyTopSpatialInitial<U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> HeavyTopSpatialInitial<U> {
+            HeavyTopSpatialInitial {
+                Λ: self.Λ.over(change),
+                spatial_momentum: self.spatial_momentum.over(change),
+                J: self.J.over(change),
+                χ: self.χ.over(change),
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::OfScalars for HeavyTopSpatialState<T> {
+        type Scalar = T;
+        type Over<U: Real> = HeavyTopSpatialState<U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> HeavyTopSpatialState<U> {
+            HeavyTopSpatialState {
+                Λ: self.Λ.over(change),
+                momentum: self.momentum.over(change),
+                J: self.J.over(change),
+                χ: self.χ.over(change),
+                node: self.node,
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::integrate::Model for HeavyTopSpatial<T> {
+        type Parameters = HeavyTopSpatialParameters<T>;
+        type Initial = HeavyTopSpatialInitial<T>;
+        type Choice = ();
+        type Over<U: Real> = HeavyTopSpatial<U>;
+        fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
+            Self::new(parameters)
+        }
+        fn given(&self) -> &Self::Parameters {
+            &self.parameters
+        }
+        fn begin(
+            &self,
+            initial: Self::Initial,
+        ) -> Result<HeavyTopSpatialState<T>, StartError> {
+            self.at_node_0(initial)
+        }
+        fn prepare(
+            &self,
+            state: &HeavyTopSpatialState<T>,
+            h: T,
+            _: Self::Choice,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h)
+        }
+    }
     /// A configuration at one node, solution or not.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct HeavyTopSpatialConfiguration<T = f64> {

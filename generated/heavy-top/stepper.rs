@@ -244,6 +244,64 @@ pub mod heavy_top {
         }
     }
     impl<T: Real> Reversible for HeavyTop<T> {}
+    impl<T: Real> ::clebsch::OfScalars for HeavyTopParameters<T> {
+        type Scalar = T;
+        type Over<U: Real> = HeavyTopParameters<U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> HeavyTopParameters<U> {
+            HeavyTopParameters {
+                J: self.J.over(change),
+                gU: self.gU.over(change),
+                z: self.z.over(change),
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::OfScalars for HeavyTopInitial<T> {
+        type Scalar = T;
+        type Over<U: Real> = HeavyTopInitial<U>;
+        fn over<U: Real>(&self, change: &mut impl FnMut(T) -> U) -> HeavyTopInitial<U> {
+            HeavyTopInitial {
+                Λ: self.Λ.over(change),
+                body_momentum: self.body_momentum.over(change),
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::OfScalars for HeavyTopState<T> {
+        type Scalar = T;
+        type Over<U: Real> = HeavyTopState<U>;
+        fn over<U: Real>(&self, change: &mut impl FnMut(T) -> U) -> HeavyTopState<U> {
+            HeavyTopState {
+                Λ: self.Λ.over(change),
+                momentum: self.momentum.over(change),
+                node: self.node,
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::integrate::Model for HeavyTop<T> {
+        type Parameters = HeavyTopParameters<T>;
+        type Initial = HeavyTopInitial<T>;
+        type Choice = ();
+        type Over<U: Real> = HeavyTop<U>;
+        fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
+            Self::new(parameters)
+        }
+        fn given(&self) -> &Self::Parameters {
+            &self.parameters
+        }
+        fn begin(&self, initial: Self::Initial) -> Result<HeavyTopState<T>, StartError> {
+            self.at_node_0(initial)
+        }
+        fn prepare(
+            &self,
+            state: &HeavyTopState<T>,
+            h: T,
+            _: Self::Choice,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h)
+        }
+    }
     /// A configuration at one node, solution or not.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct HeavyTopConfiguration<T = f64> {

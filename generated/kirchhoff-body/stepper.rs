@@ -478,6 +478,75 @@ pub mod kirchhoff_body {
         }
     }
     impl<T: Real> Reversible for KirchhoffBody<T> {}
+    impl<T: Real> ::clebsch::OfScalars for KirchhoffBodyParameters<T> {
+        type Scalar = T;
+        type Over<U: Real> = KirchhoffBodyParameters<U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> KirchhoffBodyParameters<U> {
+            KirchhoffBodyParameters {
+                J: self.J.over(change),
+                M: self.M.over(change),
+                D: self.D.over(change),
+                b: self.b.over(change),
+                Z: self.Z.over(change),
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::OfScalars for KirchhoffBodyInitial<T> {
+        type Scalar = T;
+        type Over<U: Real> = KirchhoffBodyInitial<U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> KirchhoffBodyInitial<U> {
+            KirchhoffBodyInitial {
+                G: self.G.over(change),
+                body_momentum: self.body_momentum.over(change),
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::OfScalars for KirchhoffBodyState<T> {
+        type Scalar = T;
+        type Over<U: Real> = KirchhoffBodyState<U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> KirchhoffBodyState<U> {
+            KirchhoffBodyState {
+                G: self.G.over(change),
+                momentum: self.momentum.over(change),
+                node: self.node,
+            }
+        }
+    }
+    impl<T: Real> ::clebsch::integrate::Model for KirchhoffBody<T> {
+        type Parameters = KirchhoffBodyParameters<T>;
+        type Initial = KirchhoffBodyInitial<T>;
+        type Choice = ();
+        type Over<U: Real> = KirchhoffBody<U>;
+        fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
+            Self::new(parameters)
+        }
+        fn given(&self) -> &Self::Parameters {
+            &self.parameters
+        }
+        fn begin(
+            &self,
+            initial: Self::Initial,
+        ) -> Result<KirchhoffBodyState<T>, StartError> {
+            self.at_node_0(initial)
+        }
+        fn prepare(
+            &self,
+            state: &KirchhoffBodyState<T>,
+            h: T,
+            _: Self::Choice,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h)
+        }
+    }
     /// A configuration at one node, solution or not.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct KirchhoffBodyConfiguration<T = f64> {

@@ -16,7 +16,7 @@ pub use crate::linalg::{
     quaternion_imaginary, quaternion_real, quaternion_rotation, rows_from, skew_coordinates, solve,
     twist, vee,
 };
-pub use crate::scalar::Real;
+pub use crate::scalar::{OfScalars as _, Real};
 pub use crate::solvers::Method;
 pub use crate::solvers::left_factor::{
     LeftFactor, LeftFactorError, Unsolved, reach_of, rotation_at,

@@ -27,7 +27,7 @@ pub use groups::{
     NotARotation, NotInvertible, Orthogonal, RigidMotion, Rotation, SpatialImpulse,
     SpatialMomentum, SpatialMomentumMatrix, TurnedRotation, UnitQuaternion,
 };
-pub use scalar::{DoubleDouble, Dual, Lanes, Real};
+pub use scalar::{DoubleDouble, Dual, Lanes, OfScalars, Real};
 pub use solvers::moser_veselov::{MoserVeselovError, Order, Poinsot, PoinsotError};
 pub use solvers::newton::NewtonError;
 

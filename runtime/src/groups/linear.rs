@@ -4,6 +4,7 @@
 use super::{Coadjoint, Group};
 use crate::Real;
 use crate::linalg::inverse;
+use crate::scalar::of_scalars;
 use core::fmt;
 use nalgebra::SMatrix;
 
@@ -12,6 +13,8 @@ use nalgebra::SMatrix;
 pub struct Linear<const N: usize, T = f64> {
     matrix: SMatrix<T, N, N>,
 }
+
+of_scalars!(Linear<N> { matrix });
 
 /// A matrix that is no element of GL(n).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,6 +3,7 @@
 
 use super::Coadjoint;
 use crate::Real;
+use crate::scalar::of_scalars;
 use nalgebra::SMatrix;
 
 /// A node momentum seen from the body, an n x n matrix: it pairs with a body velocity `X` as
@@ -14,6 +15,9 @@ pub struct BodyMomentumMatrix<const N: usize, T = f64>(pub SMatrix<T, N, N>);
 /// keeps it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpatialMomentumMatrix<const N: usize, T = f64>(pub SMatrix<T, N, N>);
+
+of_scalars!(BodyMomentumMatrix<N> { 0 });
+of_scalars!(SpatialMomentumMatrix<N> { 0 });
 
 impl<const N: usize, T: Real> BodyMomentumMatrix<N, T> {
     /// The same momentum seen from space.

@@ -5,6 +5,7 @@
 use super::{Coadjoint, Group, NotARotation};
 use crate::Real;
 use crate::linalg::{determinant, skew_from, solve_many};
+use crate::scalar::of_scalars;
 use nalgebra::SMatrix;
 
 /// A rotation of n-dimensional space, by convention from body to space: `v_space = R v_body`.
@@ -15,6 +16,8 @@ use nalgebra::SMatrix;
 pub struct Orthogonal<const N: usize, T = f64> {
     matrix: SMatrix<T, N, N>,
 }
+
+of_scalars!(Orthogonal<N> { matrix });
 
 /// Input data typed with ten digits is accepted and made orthonormal; anything worse is a mistake.
 const ALLOWED_DEFECT: f64 = 1e-9;

@@ -3,6 +3,7 @@
 
 use super::{Coadjoint, Group, NotARotation, Rotation};
 use crate::Real;
+use crate::scalar::of_scalars;
 use core::fmt;
 use core::ops::Mul;
 use nalgebra::{Matrix4, SVector, Vector3};
@@ -18,6 +19,11 @@ pub struct RigidMotion<T = f64> {
     /// `x`, where the body's origin is in space.
     pub translation: Vector3<T>,
 }
+
+of_scalars!(RigidMotion {
+    rotation,
+    translation
+});
 
 /// A matrix that is no rigid motion, with the number that shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -194,6 +200,9 @@ pub struct BodyImpulse<T = f64>(pub SVector<T, 6>);
 /// keeps both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpatialImpulse<T = f64>(pub SVector<T, 6>);
+
+of_scalars!(BodyImpulse { 0 });
+of_scalars!(SpatialImpulse { 0 });
 
 impl<T: Real> BodyImpulse<T> {
     /// The same impulse in space axes.

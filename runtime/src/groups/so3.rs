@@ -3,6 +3,7 @@
 
 use super::{Coadjoint, Group};
 use crate::Real;
+use crate::scalar::of_scalars;
 use core::fmt;
 use core::ops::Mul;
 use nalgebra::{Matrix3, Vector3};
@@ -15,6 +16,8 @@ use nalgebra::{Matrix3, Vector3};
 pub struct Rotation<T = f64> {
     q: [T; 4],
 }
+
+of_scalars!(Rotation { q });
 
 /// Whether all pairs are equal, looking at all of them: steppers ask at each step, and one branch
 /// is cheaper than one per number.
@@ -372,6 +375,9 @@ pub struct BodyMomentum<T = f64>(pub Vector3<T>);
 /// Angular momentum in spatial axes, at a node; a free motion keeps it.
 #[derive(Clone, Copy, Debug)]
 pub struct SpatialMomentum<T = f64>(pub Vector3<T>);
+
+of_scalars!(BodyMomentum { 0 });
+of_scalars!(SpatialMomentum { 0 });
 
 impl<T: PartialEq> PartialEq for SpatialMomentum<T> {
     #[inline(always)]

@@ -4,6 +4,7 @@
 use super::{Coadjoint, Group, NotARotation, Rotation};
 use crate::Real;
 use crate::linalg::left_multiplication;
+use crate::scalar::of_scalars;
 use core::ops::Mul;
 use nalgebra::{Matrix4, Vector3};
 
@@ -14,6 +15,8 @@ use nalgebra::{Matrix4, Vector3};
 /// quaternion without real part (thesis section 2.5, the Cayley-Klein form).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnitQuaternion<T = f64>(Rotation<T>);
+
+of_scalars!(UnitQuaternion { 0 });
 
 impl<T: Real> UnitQuaternion<T> {
     /// The neutral element, `1`.

@@ -5,13 +5,15 @@
 mod composition;
 mod drift;
 mod ensemble;
+mod model;
 mod run;
 mod stepper;
 mod steps;
 
 pub use composition::{Composition, CompositionOrder};
 pub use drift::Drift;
-pub use ensemble::{Ensemble, EnsembleError, Member};
+pub use ensemble::{Ensemble, EnsembleError, InstructionSet};
+pub use model::Model;
 pub use run::{Observer, Summary, run};
 pub use stepper::{Reversible, Stepper};
 pub use steps::{Steps, preprocessing_order};

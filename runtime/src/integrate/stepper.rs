@@ -10,7 +10,7 @@ pub trait Stepper {
     /// What moves, at one node. Saved and compared by the user.
     type State: Copy + core::fmt::Debug;
     /// The step size, what is kept between steps, and what the first guess needs.
-    type Workspace: Clone + core::fmt::Debug;
+    type Workspace: Clone + core::fmt::Debug + Send;
 
     /// A workspace for steps of `h`, of either sign, from `state`.
     ///

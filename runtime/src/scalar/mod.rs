@@ -5,10 +5,13 @@ mod double;
 mod double_double;
 mod dual;
 mod lanes;
+mod over;
 
 pub use double_double::DoubleDouble;
 pub use dual::Dual;
 pub use lanes::Lanes;
+pub(crate) use over::of_scalars;
+pub use over::{OfScalars, gather, lane};
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};

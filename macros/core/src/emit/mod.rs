@@ -10,6 +10,7 @@ mod expression;
 mod forced;
 mod invariants;
 mod items;
+mod lanes;
 mod left_factor;
 mod names;
 mod newton;
@@ -81,6 +82,7 @@ pub fn emit(d: &Derivation, documented: bool) -> TokenStream {
         items::state(d, &names),
         step::start_and_step(d, &names),
         stepper::traits(d, &names),
+        lanes::over_any_scalar(d, &names),
         residual::balance(d, &names),
         invariants::invariants(d, &names),
         discrete_energy::discrete_energy(d, &names),

@@ -72,6 +72,12 @@ impl Generics {
         quote!(<#(#list,)* T>)
     }
 
+    /// As a type over another scalar takes them: `<N, U>`.
+    pub fn used_over(&self, scalar: &Ident) -> TokenStream {
+        let list = &self.constants;
+        quote!(<#(#list,)* #scalar>)
+    }
+
     /// As an `impl` over plain numbers binds them: `<const N: usize>`, or nothing.
     pub fn sizes_bound(&self) -> TokenStream {
         let list = &self.constants;

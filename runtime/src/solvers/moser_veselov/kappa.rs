@@ -122,16 +122,17 @@ impl<T: Real> Quartic<T> {
         [self.value(k) * per_fall, bend, twist]
     }
 
-    /// Whether an improvement from `k` is exact to rounding in every lane: what it leaves is about
-    /// `newton^4 bend (bend^2 + twist)`, with factors of a few.
-    fn arrives(&self, k: T) -> bool {
+    /// 1 in the lanes where an improvement from `k` is exact to rounding, 0 in the others: what it
+    /// leaves is about `newton^4 bend (bend^2 + twist)`, with factors of a few.
+    fn arrives(&self, k: T) -> T {
         let [newton, bend, twist] = self.change(k);
         let square = newton * newton;
         let allowed = k * T::from_f64(0.125 * T::EPSILON);
-        [bend * bend, twist].into_iter().all(|x| {
+        let [first, second] = [bend * bend, twist].map(|x| {
             let left = (square * square) * (bend * x);
-            (left * left - allowed * allowed).greatest() <= 0.0
-        })
+            (allowed * allowed - left * left).where_positive(T::one())
+        });
+        first * second
     }
 
     /// Newton steps that make the derivative parts of `k` exact; none for plain numbers.
@@ -143,12 +144,13 @@ impl<T: Real> Quartic<T> {
         k
     }
 
-    /// Newton's method from below the smallest root: the iterates rise to it and never pass it. A
-    /// point with `g > 0` and `g' >= 0` on the way proves that there is no root.
-    fn monotone(&self) -> Option<T> {
+    /// Newton's method from below the smallest root, in the lanes where `slow` is 1: the iterates
+    /// rise to it and never pass it. A point with `g > 0` and `g' >= 0` on the way proves that
+    /// there is no root.
+    fn monotone(&self, slow: T) -> Option<T> {
         let one = T::one();
         let constant = self.energy + self.square;
-        let mut k = constant / (one + self.turn);
+        let mut k = slow.where_positive(constant / (one + self.turn));
         if !k.is_finite() {
             return None;
         }
@@ -158,7 +160,7 @@ impl<T: Real> Quartic<T> {
         for _ in 0..MOST_MONOTONE {
             let (value, fall) = (self.value(k), self.fall(k));
             // 1 in the lanes still on their way, 0 in those that have arrived.
-            let active = (value - noise).where_positive(one);
+            let active = slow * (value - noise).where_positive(one);
             if active.greatest() <= 0.0 {
                 return self.finished(k);
             }
@@ -204,20 +206,40 @@ pub(super) fn kappa<T: Real>(body: &Poinsot<T>, a: T, energy: T, deviation: T) -
 }
 
 /// The root where one iteration does not do: more of them, or the monotone approach.
+///
+/// Every lane goes its own way, with the operations it would go through alone: what it finds does
+/// not depend on the others.
 #[cold]
 #[inline(never)]
 fn hard<T: Real>(body: &Symmetric<T>, a: T, energy: T, deviation: T) -> Option<T> {
-    let quartic = Quartic::new(body, a, energy);
-    let y = energy * body.second;
-    if (y - T::from_f64(SMALL)).greatest() <= 0.0 {
-        let mut k = quartic.start(deviation);
-        for _ in 0..MOST_FAST {
-            let last = quartic.arrives(k);
-            k = quartic.improved(k);
-            if last {
-                return Some(quartic.polished(k));
-            }
-        }
+    if !(a.is_finite() && energy.is_finite()) {
+        return None;
     }
-    quartic.monotone()
+    let one = T::one();
+    let quartic = Quartic::new(body, a, energy);
+    let easy = one - (energy - body.easy).where_positive(one);
+    let mut slow = (energy * body.second - T::from_f64(SMALL)).where_positive(one);
+    // 1 in the lanes that still iterate.
+    let mut active = one - slow;
+    let mut k = quartic.start(deviation);
+    for _ in 0..MOST_FAST {
+        if active.greatest() <= 0.0 {
+            break;
+        }
+        let last = choose(easy, one, quartic.arrives(k));
+        k = choose(active, quartic.improved(k), k);
+        active *= one - last;
+    }
+    slow += active;
+    k = quartic.polished(k);
+    if slow.greatest() > 0.0 {
+        k = choose(slow, quartic.monotone(slow)?, k);
+    }
+    Some(k)
+}
+
+/// One or the other, lane by lane, as the mask is 1 or 0.
+#[inline(always)]
+fn choose<T: Real>(mask: T, then: T, otherwise: T) -> T {
+    mask.where_positive(then) + (T::one() - mask).where_positive(otherwise)
 }

@@ -1,0 +1,60 @@
+//! Why an ensemble cannot start or go on, and which body is to blame.
+//! Takes the body's index and its own error; gives text.
+
+use core::fmt;
+
+/// At least one body could not start or go on.
+///
+/// Bodies step side by side, as many as there are lanes; if one of them cannot go on, those beside
+/// it stay behind with it. All other bodies are where they should be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EnsembleError<E> {
+    /// The index of the body, in the order the bodies were given; the first, if several fail.
+    pub body: usize,
+    /// How many bodies from this one on may be meant: 1, unless each of them would do alone, and
+    /// only side by side they would not.
+    pub among: usize,
+    /// How many bodies have failed.
+    pub failed: usize,
+    /// Why the first did.
+    pub cause: E,
+}
+
+impl<E: fmt::Display> fmt::Display for EnsembleError<E> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.among {
+            0 | 1 => write!(f, "body {}: {}", self.body, self.cause)?,
+            n => write!(
+                f,
+                "bodies {} to {}, side by side: {}",
+                self.body,
+                self.body + n - 1,
+                self.cause
+            )?,
+        }
+        match self.failed {
+            0 | 1 => Ok(()),
+            n => write!(f, " ({n} bodies failed)"),
+        }
+    }
+}
+
+impl<E: std::error::Error + 'static> std::error::Error for EnsembleError<E> {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        Some(&self.cause)
+    }
+}
+
+/// The first failure, with the number of bodies that failed in all.
+pub(super) fn first<E>(
+    failures: impl Iterator<Item = EnsembleError<E>>,
+) -> Result<(), EnsembleError<E>> {
+    let mut told: Option<EnsembleError<E>> = None;
+    for failure in failures {
+        match &mut told {
+            Some(told) => told.failed += failure.failed,
+            None => told = Some(failure),
+        }
+    }
+    told.map_or(Ok(()), Err)
+}

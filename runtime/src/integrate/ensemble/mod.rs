@@ -1,0 +1,231 @@
+//! Many independent bodies of one model, with different parameters and states.
+//! Takes parameters and initial data of each; advances all of them, in cache and on all cores.
+//!
+//! Bodies stand side by side in the lanes of vector registers, `N` in a group. A group makes all
+//! its steps before the next one is touched, so that a large ensemble costs per step what a small
+//! one does. Groups do not speak to each other: the result is the same bits whatever the number of
+//! threads and the size of their tasks.
+
+mod dispatch;
+mod failure;
+mod group;
+
+pub use dispatch::InstructionSet;
+pub use failure::EnsembleError;
+
+use super::{Model, Stepper};
+use crate::{Lanes, StartError, StepError};
+use failure::first;
+use group::{Body, Group, Steps, Wide};
+
+/// How many groups one task of a parallel run takes at least, unless said otherwise.
+#[cfg(feature = "rayon")]
+const BLOCK: usize = 4;
+
+/// An ensemble of bodies, `N` of them side by side.
+///
+/// A number of bodies that is no multiple of `N` is made up by repeating the last one in the lanes
+/// left over; nothing else sees them.
+///
+/// With the feature `simd` the steps are compiled for several instruction sets, of which the best
+/// one the processor has is taken at run time; without, for that of the build. The results are the
+/// same bits: every lane rounds as plain numbers do, and products and sums are never fused.
+#[derive(Clone, Debug)]
+pub struct Ensemble<M: Model<Scalar = f64>, const N: usize = 16> {
+    groups: Vec<Group<M, N>>,
+    bodies: usize,
+    steps: Steps<M::Choice>,
+    instructions: InstructionSet,
+    #[cfg(feature = "rayon")]
+    block: usize,
+}
+
+impl<M: Model<Scalar = f64>, const N: usize> Ensemble<M, N> {
+    /// The ensemble of these bodies, at node 0, with steps of `h`.
+    ///
+    /// # Errors
+    /// Names the first body whose parameters or initial data are not admissible, or whose first
+    /// step could not be made.
+    pub fn start(
+        bodies: impl IntoIterator<Item = (M::Parameters, M::Initial)>,
+        h: f64,
+    ) -> Result<Self, EnsembleError<StartError>> {
+        Self::start_with(bodies, h, M::Choice::default())
+    }
+
+    /// As [`Ensemble::start`], with what the model lets choose: the order of a free body.
+    ///
+    /// # Errors
+    /// As [`Ensemble::start`].
+    pub fn start_with(
+        bodies: impl IntoIterator<Item = (M::Parameters, M::Initial)>,
+        h: f64,
+        choice: M::Choice,
+    ) -> Result<Self, EnsembleError<StartError>> {
+        let begun = bodies.into_iter().enumerate().map(|(body, (p, initial))| {
+            let state = M::of(p).map_err(StartError::from);
+            let state = state.and_then(|model| model.begin(initial));
+            state
+                .map(|state| (p, state))
+                .map_err(|cause| EnsembleError {
+                    body,
+                    among: 1,
+                    failed: 1,
+                    cause,
+                })
+        });
+        let begun: Vec<Body<M>> = begun.collect::<Result<_, _>>()?;
+        Self::resume(begun, h, choice)
+    }
+
+    /// The ensemble of bodies that are on their way, each at a node of its own, with steps of `h`
+    /// of either sign.
+    ///
+    /// # Errors
+    /// Names the first body whose next step could not be made.
+    pub fn resume(
+        bodies: impl IntoIterator<Item = (M::Parameters, M::State)>,
+        h: f64,
+        choice: M::Choice,
+    ) -> Result<Self, EnsembleError<StartError>> {
+        let bodies: Vec<Body<M>> = bodies.into_iter().collect();
+        let steps = Steps { h, choice };
+        let groups = bodies
+            .chunks(N.max(1))
+            .enumerate()
+            .filter_map(|(i, list)| Group::start(list, i * N, steps))
+            .collect::<Result<_, _>>()?;
+        Ok(Self {
+            groups,
+            bodies: bodies.len(),
+            steps,
+            instructions: InstructionSet::default(),
+            #[cfg(feature = "rayon")]
+            block: BLOCK,
+        })
+    }
+
+    /// The same ensemble, at least `groups` groups of bodies a task of a parallel run.
+    #[cfg(feature = "rayon")]
+    #[must_use]
+    pub fn with_block(self, groups: usize) -> Self {
+        let block = groups.max(1);
+        Self { block, ..self }
+    }
+
+    /// The same ensemble on the instruction set named, where it is at hand.
+    #[must_use]
+    pub fn with_instructions(self, instructions: InstructionSet) -> Self {
+        Self {
+            instructions,
+            ..self
+        }
+    }
+
+    /// How many bodies there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.bodies
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.bodies == 0
+    }
+
+    /// The parameters and the state of a body; nothing when there is none of that index.
+    #[must_use]
+    pub fn body(&self, index: usize) -> Option<(M::Parameters, M::State)> {
+        if index >= self.bodies {
+            return None;
+        }
+        let group = self.groups.get(index / N.max(1))?;
+        Some(group.body(index % N.max(1)))
+    }
+
+    /// Parameters and states of all bodies, in the order they were given.
+    pub fn bodies(&self) -> impl Iterator<Item = (M::Parameters, M::State)> + '_ {
+        (0..self.bodies).filter_map(|i| self.body(i))
+    }
+
+    /// A number for every body, in their order, found for all lanes at once:
+    /// `ensemble.observe(|model, state| model.energy(state))`.
+    pub fn observe(
+        &self,
+        number: impl Fn(&Wide<M, N>, &<Wide<M, N> as Stepper>::State) -> Lanes<N>,
+    ) -> impl Iterator<Item = f64> {
+        let lanes = self
+            .groups
+            .iter()
+            .flat_map(move |group| number(&group.model, &group.state).0);
+        lanes.take(self.bodies)
+    }
+
+    /// `count` steps of every body, on this thread.
+    ///
+    /// # Errors
+    /// Names the first body that could not go on. It and those beside it are where they were, all
+    /// others have made their steps.
+    pub fn run(&mut self, count: u64) -> Result<(), EnsembleError<StepError>> {
+        let task = self.task(count);
+        first(
+            self.groups
+                .iter_mut()
+                .enumerate()
+                .filter_map(|(at, group)| task.advance(at, group)),
+        )
+    }
+
+    /// As [`Ensemble::run`], on all threads of the pool in use; the same bits.
+    ///
+    /// # Errors
+    /// As [`Ensemble::run`].
+    #[cfg(feature = "rayon")]
+    pub fn run_parallel(&mut self, count: u64) -> Result<(), EnsembleError<StepError>> {
+        use rayon::prelude::*;
+        let task = self.task(count);
+        let failures: Vec<_> = self
+            .groups
+            .par_iter_mut()
+            .enumerate()
+            .with_min_len(self.block)
+            .filter_map(|(at, group)| task.advance(at, group))
+            .collect();
+        first(failures.into_iter())
+    }
+
+    fn task(&self, count: u64) -> Task<M::Choice> {
+        Task {
+            count,
+            bodies: self.bodies,
+            steps: self.steps,
+            instructions: self.instructions,
+        }
+    }
+}
+
+/// What is done with every group.
+#[derive(Clone, Copy)]
+struct Task<C> {
+    count: u64,
+    bodies: usize,
+    steps: Steps<C>,
+    instructions: InstructionSet,
+}
+
+impl<C: Copy> Task<C> {
+    /// The steps of the group with this place.
+    fn advance<M: Model<Scalar = f64, Choice = C>, const N: usize>(
+        &self,
+        at: usize,
+        group: &mut Group<M, N>,
+    ) -> Option<EnsembleError<StepError>> {
+        let count = self.count;
+        let advance = || group.advance(count);
+        let cause = self.instructions.run(advance).err()?;
+        let first = at * N;
+        let here = [first, self.bodies.saturating_sub(first).min(N)];
+        Some(group.blame(count, here, self.steps, cause))
+    }
+}

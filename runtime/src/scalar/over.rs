@@ -1,0 +1,113 @@
+//! Types made of scalars, over any scalar: parameters, states and what they consist of.
+//! Takes a value over one scalar and a function of scalars; gives the same value over another: the
+//! lanes gathered from several bodies, or one body out of the lanes.
+
+use super::{Lanes, Real};
+use core::array::from_fn;
+use nalgebra::SMatrix;
+
+/// A type made of scalars, and of nothing else that would differ from body to body.
+///
+/// The emitted parameters, initial data and states implement it, field by field.
+pub trait OfScalars: Copy + core::fmt::Debug + Send + Sync {
+    /// The scalars it is made of.
+    type Scalar: Real;
+
+    /// The same type over another scalar.
+    type Over<U: Real>: OfScalars<Scalar = U, Over<Self::Scalar> = Self>;
+
+    /// Every scalar replaced by its image, always in the same order. Nothing is checked: the result
+    /// is what its type promises (a unit quaternion, say) as far as `change` keeps it so.
+    fn over<U: Real>(&self, change: &mut impl FnMut(Self::Scalar) -> U) -> Self::Over<U>;
+}
+
+/// `N` bodies side by side: lane `i` is `body(i)`.
+///
+/// ```
+/// use clebsch::Lanes;
+/// use clebsch::nalgebra::Vector2;
+/// use clebsch::scalar::{gather, lane};
+///
+/// let bodies = [Vector2::new(1.0, 2.0), Vector2::new(3.0, 4.0)];
+/// let wide: Vector2<Lanes<2>> = gather(|i| bodies[i]);
+/// assert_eq!(wide.x, Lanes([1.0, 3.0]));
+/// assert_eq!(lane::<Vector2<f64>, 2>(&wide, 1), bodies[1]);
+/// ```
+pub fn gather<X, const N: usize>(body: impl Fn(usize) -> X) -> X::Over<Lanes<N>>
+where
+    X: OfScalars<Scalar = f64>,
+{
+    let lists: [Vec<f64>; N] = from_fn(|i| {
+        let mut list = Vec::new();
+        let _ = body(i).over(&mut |x: f64| {
+            list.push(x);
+            x
+        });
+        list
+    });
+    let mut place = 0;
+    // Any body shows where the scalars belong.
+    body(0).over(&mut |_| {
+        let at = |list: &Vec<f64>| list.get(place).copied().unwrap_or(f64::NAN);
+        let lanes = Lanes(lists.each_ref().map(at));
+        place += 1;
+        lanes
+    })
+}
+
+/// One of the bodies side by side; all NaN when there is no such lane.
+pub fn lane<X, const N: usize>(wide: &X::Over<Lanes<N>>, index: usize) -> X
+where
+    X: OfScalars<Scalar = f64>,
+{
+    wide.over(&mut |x: Lanes<N>| x.lane(index))
+}
+
+impl<T: Real> OfScalars for T {
+    type Scalar = T;
+    type Over<U: Real> = U;
+
+    #[inline]
+    fn over<U: Real>(&self, change: &mut impl FnMut(T) -> U) -> U {
+        change(*self)
+    }
+}
+
+impl<T: Real, const R: usize, const C: usize> OfScalars for SMatrix<T, R, C> {
+    type Scalar = T;
+    type Over<U: Real> = SMatrix<U, R, C>;
+
+    #[inline]
+    fn over<U: Real>(&self, change: &mut impl FnMut(T) -> U) -> SMatrix<U, R, C> {
+        self.map(change)
+    }
+}
+
+impl<T: Real, const K: usize> OfScalars for [T; K] {
+    type Scalar = T;
+    type Over<U: Real> = [U; K];
+
+    #[inline]
+    fn over<U: Real>(&self, change: &mut impl FnMut(T) -> U) -> [U; K] {
+        self.map(change)
+    }
+}
+
+/// Implements [`OfScalars`] for a type of the runtime, given its fields.
+macro_rules! of_scalars {
+    ($Type:ident $(<$N:ident>)? { $($field:tt),+ }) => {
+        impl<$(const $N: usize,)? T: $crate::Real> $crate::scalar::OfScalars for $Type<$($N,)? T> {
+            type Scalar = T;
+            type Over<U: $crate::Real> = $Type<$($N,)? U>;
+
+            #[inline]
+            fn over<U: $crate::Real>(
+                &self,
+                change: &mut impl FnMut(T) -> U,
+            ) -> $Type<$($N,)? U> {
+                $Type { $($field: self.$field.over(change)),+ }
+            }
+        }
+    };
+}
+pub(crate) use of_scalars;
