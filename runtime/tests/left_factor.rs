@@ -109,6 +109,25 @@ fn lie_newton_solves_to_rounding_up_to_the_bound() {
     });
 }
 
+/// The symmetric part is iterated down to a hundredth; below it, Newton alone.
+#[test]
+fn nearly_flat_factors_are_solved_to_rounding() {
+    let mut random = Random(77);
+    for smallest in [0.1, 0.0101, 0.0099, 1e-6, 0.0] {
+        let diagonal = clebsch::nalgebra::SVector::from([1.0, 0.8, 0.6, smallest]);
+        let factor = LeftFactor::new(SMatrix::<f64, 4, 4>::from_diagonal(&diagonal));
+        let factor = factor.expect("at most one is zero");
+        for fraction in [0.05, 0.3, 0.6, 0.95] {
+            let v = skew::<4>(&mut random);
+            let v = v * (fraction / factor.reach(&v));
+            let omega = factor.solve(&v, Method::LieNewton).expect("solvable");
+            let found = residual(&factor.matrix(), &omega, &v);
+            assert!(found < ROUNDING, "{smallest}, {fraction}: {found:e}");
+            assert!(omega.distance_from_group() < ROUNDING);
+        }
+    }
+}
+
 fn refuses<const N: usize>() {
     at_fraction::<N>(1.0 + 1e-6, 30, |factor, v| {
         for method in [Method::LieNewton, Method::Sign, Method::Schur] {

@@ -4,7 +4,7 @@
 
 use super::{Coadjoint, Group, NotARotation};
 use crate::Real;
-use crate::linalg::{determinant, skew_from, solve_many};
+use crate::linalg::{determinant, orthonormalised, product, skew_from, solve_many};
 use crate::scalar::of_scalars;
 use nalgebra::SMatrix;
 
@@ -94,13 +94,6 @@ impl<const N: usize, T: Real> Orthogonal<N, T> {
     }
 }
 
-/// One Newton step towards the nearest orthogonal matrix, `A (3 - A^T A)/2`: it squares the defect.
-#[inline]
-fn orthonormalised<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
-    let excess = a.tr_mul(a) - SMatrix::identity();
-    a - a * excess * T::from_f64(0.5)
-}
-
 /// The largest entry of `A^T A - 1` in absolute value, over the real parts of all lanes.
 fn defect<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> f64 {
     let gram = a.tr_mul(a) - SMatrix::identity();
@@ -114,7 +107,7 @@ impl<const N: usize, T: Real> core::ops::Mul for Orthogonal<N, T> {
     /// The composition, orthogonal to rounding however long the chain of products.
     #[inline]
     fn mul(self, other: Self) -> Self {
-        Self::nearby(&(self.matrix * other.matrix))
+        Self::nearby(&product(&self.matrix, &other.matrix))
     }
 }
 

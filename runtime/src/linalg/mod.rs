@@ -8,6 +8,7 @@ mod frame;
 mod inclusion;
 mod motion;
 mod pencil;
+mod product;
 mod quaternion;
 mod skew;
 
@@ -17,6 +18,7 @@ pub use frame::principal_frame;
 pub use inclusion::{columns_from, inclusion, into_columns, into_rows, rows_from};
 pub use motion::{motion_rotation, motion_translation, twist};
 pub use pencil::{even_count, even_degrees, pencil_coefficients};
+pub use product::{orthonormalised, product};
 pub use quaternion::{
     left_multiplication, pure_quaternion, quaternion_imaginary, quaternion_real,
     quaternion_rotation,

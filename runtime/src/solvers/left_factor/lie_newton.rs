@@ -4,15 +4,18 @@
 //! With `A = R C^T` and `F = A - A^T - V`, the perturbation `cay(X) R` changes `F` by
 //! `X A + A^T X`: the tangent of the method on the Lie algebra (Owren and Welfert, BIT 40, 2000). A
 //! factorised tangent serves several steps while they converge quickly. In the principal frame of
-//! the factor the first guess is `X_ij = V_ij / (c_i + c_j)`.
+//! the factor the tangent without momentum is `X_ij = F_ij / (c_i + c_j)`: up to half the bound it
+//! is enough, after the iteration for the symmetric part of `A`, and nothing is
+//! factorised.
 
 use super::factor::LeftFactor;
 use super::principal::is_principal;
+use super::symmetric_part::nearby_rotation;
 use super::tangent::Tangent;
 use super::{Refusal, Unsolved};
 use crate::Real;
 use crate::groups::Orthogonal;
-use crate::linalg::solve_many;
+use crate::linalg::{product, solve_many};
 use crate::solvers::Method;
 use nalgebra::SMatrix;
 
@@ -35,8 +38,8 @@ const QUICK: f64 = 0.1;
 /// Steps below this take the series of the Cayley map.
 const SMALL: f64 = 0.05;
 
-/// Steps by the factor alone that better the first guess; each costs a tenth of a factorisation.
-const FIRST_STEPS: usize = 2;
+/// Steps by the factor alone that better a guess; each costs a tenth of a factorisation.
+const STEPS_BY_FACTOR: usize = 4;
 
 /// Why an attempt failed.
 enum Failed {
@@ -54,24 +57,6 @@ fn largest<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> f64 {
         // NaN must not hide.
         if size.is_nan() { f64::NAN } else { m.max(size) }
     })
-}
-
-/// The product, column by column: short loops of a length known to the compiler.
-#[inline(always)]
-fn product<T: Real, const N: usize>(
-    a: &SMatrix<T, N, N>,
-    b: &SMatrix<T, N, N>,
-) -> SMatrix<T, N, N> {
-    let (a, b) = (&a.data.0, &b.data.0);
-    let mut c = [[T::zero(); N]; N];
-    for (c, b) in c.iter_mut().zip(b) {
-        for (a, x) in a.iter().zip(b) {
-            for (c, a) in c.iter_mut().zip(a) {
-                *c += *a * *x;
-            }
-        }
-    }
-    SMatrix::from_data(nalgebra::ArrayStorage(c))
 }
 
 /// `cay(X) R`, or for small `X` its series to second order, made orthogonal by a Newton step: of
@@ -104,14 +89,14 @@ fn by_factor<T: Real, const N: usize>(
     g.component_mul(reciprocals)
 }
 
-/// One attempt from a guess, in the principal frame.
-#[inline]
+/// One attempt from a guess, in the principal frame. Not inlined: its work arrays are large, and most steps do without.
+#[inline(never)]
 fn attempt<T: Real, const N: usize>(
     factor: &LeftFactor<N, T>,
     v: &SMatrix<T, N, N>,
     guess: &SMatrix<T, N, N>,
 ) -> Result<SMatrix<T, N, N>, Failed> {
-    let unit = T::EPSILON * (2.0 * largest(&factor.framed)).max(largest(v));
+    let unit = unit(factor, v);
     let turned_factor = factor.framed.transpose();
     let mut r = *guess;
     let mut linear = Tangent::<T, N>::blank();
@@ -127,8 +112,7 @@ fn attempt<T: Real, const N: usize>(
         if size.is_nan() {
             return Err(Failed::NotConverged(size));
         }
-        let done = size <= CONVERGED_ROUNDINGS * unit
-            || (size <= STAGNATED_ROUNDINGS * unit && size >= 0.5 * previous);
+        let done = is_solved(size, previous, unit);
         if done && rest == 0 {
             return match is_principal(&a) {
                 true => Ok(r),
@@ -156,6 +140,52 @@ fn attempt<T: Real, const N: usize>(
     Err(Failed::NotConverged(size))
 }
 
+/// The principal solution from a guess, by steps whose tangent is that without momentum; the best rotation found as an
+/// error where they are not enough.
+#[inline]
+fn by_steps_of_the_factor<T: Real, const N: usize>(
+    factor: &LeftFactor<N, T>,
+    reciprocals: &SMatrix<T, N, N>,
+    v: &SMatrix<T, N, N>,
+    guess: &SMatrix<T, N, N>,
+) -> Result<SMatrix<T, N, N>, SMatrix<T, N, N>> {
+    let unit = unit(factor, v);
+    let transposed = factor.framed.transpose();
+    let (mut r, mut previous) = (*guess, f64::INFINITY);
+    for _ in 0..STEPS_BY_FACTOR {
+        let a = product(&r, &transposed);
+        let f = a.transpose() - a + v;
+        let size = largest(&f);
+        if is_solved(size, previous, unit) {
+            return if is_principal(&a) { Ok(r) } else { Err(r) };
+        }
+        // Near the bound these steps lead away.
+        if size > 0.5 * previous || size.is_nan() {
+            break;
+        }
+        previous = size;
+        let x = by_factor(reciprocals, &f);
+        let Some(next) = turned(&x, &r, largest(&x)) else {
+            break;
+        };
+        r = next;
+    }
+    Err(r)
+}
+
+/// One rounding of the residual.
+#[inline]
+fn unit<T: Real, const N: usize>(factor: &LeftFactor<N, T>, v: &SMatrix<T, N, N>) -> f64 {
+    T::EPSILON * (2.0 * largest(&factor.framed)).max(largest(v))
+}
+
+/// Whether a residual is rounding, given the one before.
+#[inline]
+fn is_solved(size: f64, previous: f64, unit: f64) -> bool {
+    size <= CONVERGED_ROUNDINGS * unit
+        || (size <= STAGNATED_ROUNDINGS * unit && size >= 0.5 * previous)
+}
+
 /// The principal solution.
 #[inline]
 pub(super) fn solve<T: Real, const N: usize>(
@@ -172,23 +202,20 @@ pub(super) fn solve<T: Real, const N: usize>(
             reciprocals[(j, i)] = x;
         }
     }
-    let one = SMatrix::identity();
-    let first = by_factor(&reciprocals, &v);
-    let mut guess = turned(&first, &one, largest(&first)).unwrap_or(one);
-    let transposed = factor.framed.transpose();
-    let mut previous = largest(&v);
-    for _ in 0..FIRST_STEPS {
-        let a = product(&guess, &transposed);
-        let f = a.transpose() - a + v;
-        let size = largest(&f);
-        // Near the bound these steps lead away.
-        if size > 0.5 * previous || size.is_nan() {
-            break;
+    let near = nearby_rotation(&spectrum, &reciprocals, &v);
+    let guess = match near {
+        Some(near) => by_steps_of_the_factor(factor, &reciprocals, &v, &near),
+        None => {
+            let one = SMatrix::identity();
+            let first = by_factor(&reciprocals, &v);
+            let turned = turned(&first, &one, largest(&first)).unwrap_or(one);
+            by_steps_of_the_factor(factor, &reciprocals, &v, &turned)
         }
-        previous = size;
-        let x = by_factor(&reciprocals, &f);
-        guess = turned(&x, &guess, largest(&x)).unwrap_or(guess);
-    }
+    };
+    let guess = match guess {
+        Ok(r) if T::ORDER == 0 => return Ok(factor.unframed(&r)),
+        Ok(r) | Err(r) => r,
+    };
     match attempt(factor, &v, &guess) {
         Ok(r) => Ok(factor.unframed(&r)),
         Err(failed) => by_continuation(factor, h_n, &v, failed),

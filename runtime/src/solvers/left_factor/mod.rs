@@ -16,6 +16,7 @@ mod principal;
 mod reach;
 mod schur;
 mod sign;
+mod symmetric_part;
 mod tangent;
 
 pub use davenport::{davenport, rotation_at};

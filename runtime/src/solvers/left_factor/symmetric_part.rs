@@ -1,0 +1,134 @@
+//! The symmetric part of `A = R C^T` by an iteration that costs one product of matrices, for momenta up to about half the
+//! bound. Takes the principal values of the factor and `V = h N`, in the principal frame; gives a rotation near the
+//! solution, or nothing where it converges too slowly.
+//!
+//! With `A = S + V/2` the skew part is right whatever `S`, and what is left of `R` being orthogonal is `A^T A = D^2`,
+//! the matrix Riccati equation. Its tangent without momentum is diagonal: `S_ij` is corrected by the defect at
+//! `ij` over `d_i + d_j`. (The tangent at the solution is a Lyapunov operator, a matrix of `N^2 / 2` rows.)
+
+use crate::Real;
+use crate::linalg::product;
+use nalgebra::{ArrayStorage, SMatrix, SVector};
+
+/// Sweeps after which it gives up: at the slowest rate allowed, from the first defect to rounding.
+const MOST_SWEEPS: usize = 60;
+
+/// A sweep that leaves more than this of the defect is too slow; a factorised tangent is then the cheaper one.
+const SLOW: f64 = 0.6;
+
+/// The first sweeps, in which the defect may fall more slowly than later.
+const OPENING: usize = 3;
+
+/// Defects below this many roundings of each row are rounding.
+const CONVERGED_ROUNDINGS: f64 = 1.0;
+
+/// Where the defect stops falling below this many, rounding is the reason.
+const STAGNATED_ROUNDINGS: f64 = 64.0;
+
+/// Smallest part of the largest principal value: the rotation is `A` over them, and rounding grows by their ratio.
+const FLATTEST: f64 = 1e-2;
+
+type Square<T, const N: usize> = [[T; N]; N];
+
+/// A rotation, to rounding times the ratio of the principal values.
+#[inline]
+pub(super) fn nearby_rotation<T: Real, const N: usize>(
+    spectrum: &SVector<T, N>,
+    reciprocals: &SMatrix<T, N, N>,
+    v: &SMatrix<T, N, N>,
+) -> Option<SMatrix<T, N, N>> {
+    let d = &spectrum.data.0[0];
+    let (least, greatest) = d.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), x| {
+        (low.min(x.least()), high.max(x.greatest()))
+    });
+    let unit = T::EPSILON * greatest * greatest * N as f64;
+    // Also refuses NaN.
+    if !(least > FLATTEST * greatest) {
+        return None;
+    }
+    let half = T::from_f64(0.5);
+    // Those given are of pairs.
+    let mut reciprocals = reciprocals.data.0;
+    for (i, x) in d.iter().enumerate() {
+        reciprocals[i][i] = half / *x;
+    }
+    let half_v = v.data.0.map(|column| column.map(|x| x * half));
+    let mut s = [[T::zero(); N]; N];
+    for (i, x) in d.iter().enumerate() {
+        s[i][i] = *x;
+    }
+    let mut previous = f64::INFINITY;
+    for sweep in 0..MOST_SWEEPS {
+        let (a, gram) = gram(&s, &half_v);
+        let (defect, square) = defect(d, &gram);
+        let size = square.greatest().sqrt();
+        if size <= CONVERGED_ROUNDINGS * unit
+            || (size <= STAGNATED_ROUNDINGS * unit && size >= 0.5 * previous)
+        {
+            return Some(over(&a, d));
+        }
+        // Also refuses NaN.
+        if !(size <= SLOW * previous || (sweep < OPENING && size.is_finite())) {
+            return None;
+        }
+        previous = size;
+        for ((s, defect), reciprocals) in s.iter_mut().zip(&defect).zip(&reciprocals) {
+            for ((s, defect), reciprocal) in s.iter_mut().zip(defect).zip(reciprocals) {
+                *s += *defect * *reciprocal;
+            }
+        }
+    }
+    None
+}
+
+/// `A` and `A^T A`, in columns. `S` is symmetric to the last bit, hence the transpose is `S - V/2`.
+#[inline(always)]
+fn gram<T: Real, const N: usize>(
+    s: &Square<T, N>,
+    half_v: &Square<T, N>,
+) -> (Square<T, N>, SMatrix<T, N, N>) {
+    let (mut a, mut transposed) = (*s, *s);
+    for j in 0..N {
+        for i in 0..N {
+            a[j][i] += half_v[j][i];
+            transposed[j][i] -= half_v[j][i];
+        }
+    }
+    let [a_matrix, transposed] = [a, transposed].map(|m| SMatrix::from_data(ArrayStorage(m)));
+    (a, product(&transposed, &a_matrix))
+}
+
+/// `D^2 - A^T A`, made symmetric to the last bit, and the sum of its squares.
+#[inline(always)]
+fn defect<T: Real, const N: usize>(d: &[T; N], gram: &SMatrix<T, N, N>) -> (Square<T, N>, T) {
+    let gram = &gram.data.0;
+    let mut defect = [[T::zero(); N]; N];
+    let mut squares = [T::zero(); N];
+    let half = T::from_f64(0.5);
+    for j in 0..N {
+        for i in 0..N {
+            defect[j][i] = -(gram[j][i] + gram[i][j]) * half;
+        }
+        defect[j][j] += d[j] * d[j];
+        for i in 0..N {
+            squares[i] += defect[j][i] * defect[j][i];
+        }
+    }
+    (
+        defect,
+        squares.into_iter().fold(T::zero(), |sum, x| sum + x),
+    )
+}
+
+/// `A D^-1`, made orthogonal by a Newton step.
+#[inline(always)]
+fn over<T: Real, const N: usize>(a: &Square<T, N>, d: &[T; N]) -> SMatrix<T, N, N> {
+    let mut r = *a;
+    for (column, d) in r.iter_mut().zip(d) {
+        let reciprocal = T::one() / *d;
+        for x in column {
+            *x *= reciprocal;
+        }
+    }
+    crate::linalg::orthonormalised(&SMatrix::from_data(ArrayStorage(r)))
+}
