@@ -82,7 +82,7 @@ pub mod cayley_klein_spatial {
     #[derive(Clone, Copy, Debug)]
     pub struct CayleyKleinSpatialWorkspace<T = f64> {
         h: T,
-        guess: [UnitQuaternion<T>; 1],
+        search: newton::Search<T, [UnitQuaternion<T>; 1], 3>,
     }
     impl<T: Real> CayleyKleinSpatial<T> {
         /// Starts a trajectory with step `h` from data at node 0.
@@ -134,7 +134,7 @@ pub mod cayley_klein_spatial {
             let state = *state;
             let work = CayleyKleinSpatialWorkspace {
                 h,
-                guess: [UnitQuaternion::identity()],
+                search: newton::Search::from_rest(),
             };
             let (mut trial, mut scratch) = (state, work);
             self.step(&mut trial, &mut scratch)
@@ -158,79 +158,57 @@ pub mod cayley_klein_spatial {
             let I = quaternion_rotation(&q)
                 * (I_reference * quaternion_rotation(&q).transpose());
             let momenta: [SVector<T, 3>; 1] = [state.momentum.0];
-            let residual = |trial: &[UnitQuaternion<T>; 1]| {
-                let w = trial[0].matrix();
-                let t1 = h.powi(-1);
-                let t2 = quaternion_imaginary(&w);
-                let t3 = I * t2;
-                let parts: [SVector<T, 3>; 1] = [
-                    (quaternion_imaginary(&(w.tr_mul(&pure_quaternion(&t3))))
-                        * T::from_f64(2.0) * t1 - t3.cross(&t2) * T::from_f64(4.0) * t1
-                        + t2 * T::from_f64(2.0) * t1 * c
-                        - quaternion_imaginary(&(w * w)) * t1 * c) - momenta[0],
-                ];
-                {
-                    let mut all = SVector::<T, 3>::zeros();
-                    let rest = all.as_mut_slice();
-                    let rest = put_vector(rest, &parts[0]);
-                    let _ = rest;
-                    all
+            let s1 = h.powi(-1);
+            let k2 = T::from_f64(2.0) * s1;
+            let k3 = T::from_f64(2.0) * c * s1;
+            let k4 = c * s1;
+            let momentum = size_of(&momenta[0]);
+            let mut iteration = work.search.begin(state.node, momentum);
+            let solved: [UnitQuaternion<T>; 1] = loop {
+                let trial = iteration.trial();
+                if iteration.wants_scale() {
+                    let w = trial[0].matrix();
+                    let t1 = pure_quaternion(
+                        &(((I - SMatrix::<T, 3, 3>::identity() * c)
+                            * quaternion_imaginary(&w) * T::from_f64(2.0)) / h),
+                    ) * T::from_f64(0.25);
+                    iteration
+                        .set_scale(
+                            length(&(t1 - (SMatrix::<T, 4, 4>::identity() * c) / h + t1))
+                                .magnitude(),
+                        );
                 }
-            };
-            let tangent = |trial: &[UnitQuaternion<T>; 1]| {
-                let w = trial[0].matrix();
-                let mut matrix = SMatrix::<T, 3, 3>::zeros();
-                for axis in 0..3 {
-                    let η = unit::<T, 3>(axis);
-                    let t1 = h.powi(-1);
-                    let t2 = pure_quaternion(&η);
-                    let t3 = quaternion_imaginary(&(w * t2 * T::from_f64(0.5)));
-                    let t4 = I * t3;
-                    let t5 = quaternion_imaginary(&w);
-                    let t6 = I * t5;
-                    let parts: [SVector<T, 3>; 1] = [
-                        quaternion_imaginary(
-                            &(w.tr_mul(&pure_quaternion(&t4))
-                                - t2 * w.tr_mul(&pure_quaternion(&t6)) * T::from_f64(0.5)),
-                        ) * T::from_f64(2.0) * t1
-                            - (t4.cross(&t5) + t6.cross(&t3)) * T::from_f64(4.0) * t1
-                            + t3 * T::from_f64(2.0) * t1 * c
-                            - quaternion_imaginary(
-                                &(w * (t2 * w) * T::from_f64(0.5)
-                                    + w * (w * t2) * T::from_f64(0.5)),
-                            ) * t1 * c,
-                    ];
-                    matrix
-                        .set_column(
-                            axis,
+                let (w_re, w_im) = (trial[0].real(), trial[0].imaginary());
+                if iteration
+                    .assess({
+                        let t1 = I * w_im;
+                        ((w_im.cross(&t1) * T::from_f64(4.0)
+                            + t1.cross(&w_im) * T::from_f64(2.0)) * s1
+                            + I * w_im * k2 * w_re + w_im * (k3 - k3 * w_re))
+                            - momenta[0]
+                    })
+                {
+                    iteration
+                        .set_tangent(
                             &{
-                                let mut all = SVector::<T, 3>::zeros();
-                                let rest = all.as_mut_slice();
-                                let rest = put_vector(rest, &parts[0]);
-                                let _ = rest;
-                                all
+                                let t1 = crossed(&w_im, &I);
+                                let t2 = SMatrix::<T, 3, 3>::identity() * w_re + hat(&w_im);
+                                let t3 = k4 * w_re;
+                                (((t1 - hat(&(I * w_im))) * T::from_f64(2.0) - t1
+                                    + hat(&(I * w_im))) * t2 - (I * w_im) * w_im.transpose())
+                                    * s1 + I * t2 * s1 * w_re
+                                    + SMatrix::<T, 3, 3>::identity() * (t3 - k4 * (w_re * w_re))
+                                    + hat(&w_im) * (k4 - t3) + w_im * w_im.transpose() * k4
                             },
                         );
                 }
-                matrix
-            };
-            let scale = {
-                let trial = &work.guess;
-                let w = trial[0].matrix();
-                let t1 = pure_quaternion(
-                    &(((I - SMatrix::<T, 3, 3>::identity() * c)
-                        * quaternion_imaginary(&w) * T::from_f64(2.0)) / h),
-                ) * T::from_f64(0.25);
-                let mut total = 0.0;
-                total += length(&momenta[0]).magnitude();
-                total
-                    += length(&(t1 - (SMatrix::<T, 4, 4>::identity() * c) / h + t1))
-                        .magnitude();
-                total
-            };
-            let solved = match newton::solve(work.guess, scale, residual, tangent) {
-                Ok(found) => found.element,
-                Err(e) => return Err(StepCause::from(e).at_node(state.node)),
+                match iteration.correct() {
+                    newton::Progress::Continue => {}
+                    newton::Progress::Solved(found) => break found.element,
+                    newton::Progress::Failed(e) => {
+                        return Err(StepCause::from(e).at_node(state.node));
+                    }
+                }
             };
             let w_matrix = solved[0].matrix();
             let q_moved = solved[0] * state.q;
@@ -246,7 +224,7 @@ pub mod cayley_klein_spatial {
             state.q = q_moved;
             state.momentum = SpatialMomentum(momentum_next);
             state.node += 1;
-            work.guess = solved;
+            work.search.remember(state.node - 1, solved);
             Ok(())
         }
         /// `I` at the node of this state.
@@ -703,12 +681,6 @@ pub mod cayley_klein_spatial {
                     conserved: Conserved::Exactly,
                 },
             ],
-            discrete_energy: Invariant {
-                name: "discrete_energy",
-                formula: "-4 c re(w_k)/h² + 2 im(w_k)·((I_k - c Id) im(w_k))/h² + 4 c/h²",
-                rows: 1,
-                conserved: Conserved::Boundedly,
-            },
             open: Self::open,
             solvers: &[],
             dimensions: &[],

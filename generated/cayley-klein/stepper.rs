@@ -84,7 +84,7 @@ pub mod cayley_klein {
     #[derive(Clone, Copy, Debug)]
     pub struct CayleyKleinWorkspace<T = f64> {
         h: T,
-        guess: [UnitQuaternion<T>; 1],
+        search: newton::Search<T, [UnitQuaternion<T>; 1], 3>,
     }
     impl<T: Real> CayleyKlein<T> {
         /// Starts a trajectory with step `h` from data at node 0.
@@ -126,7 +126,7 @@ pub mod cayley_klein {
             let state = *state;
             let work = CayleyKleinWorkspace {
                 h,
-                guess: [UnitQuaternion::identity()],
+                search: newton::Search::from_rest(),
             };
             let (mut trial, mut scratch) = (state, work);
             self.step(&mut trial, &mut scratch)
@@ -146,72 +146,54 @@ pub mod cayley_klein {
             let h = work.h;
             let CayleyKleinParameters { I, c, .. } = self.parameters;
             let momenta: [SVector<T, 3>; 1] = [state.momentum.to_body(&state.q).0];
-            let residual = |trial: &[UnitQuaternion<T>; 1]| {
-                let W = trial[0].matrix();
-                let t1 = h.powi(-1);
-                let t2 = quaternion_imaginary(&W);
-                let parts: [SVector<T, 3>; 1] = [
-                    (quaternion_imaginary(&(W * pure_quaternion(&(I * t2))))
-                        * T::from_f64(2.0) * t1 + t2 * T::from_f64(2.0) * t1 * c
-                        - quaternion_imaginary(&(W * W)) * t1 * c) - momenta[0],
-                ];
-                {
-                    let mut all = SVector::<T, 3>::zeros();
-                    let rest = all.as_mut_slice();
-                    let rest = put_vector(rest, &parts[0]);
-                    let _ = rest;
-                    all
+            let s1 = h.powi(-1);
+            let k1 = T::from_f64(2.0) * s1;
+            let k2 = T::from_f64(2.0) * c * s1;
+            let k4 = c * s1;
+            let momentum = size_of(&momenta[0]);
+            let mut iteration = work.search.begin(state.node, momentum);
+            let solved: [UnitQuaternion<T>; 1] = loop {
+                let trial = iteration.trial();
+                if iteration.wants_scale() {
+                    let W = trial[0].matrix();
+                    let t1 = pure_quaternion(
+                        &(((I - SMatrix::<T, 3, 3>::identity() * c)
+                            * quaternion_imaginary(&W) * T::from_f64(2.0)) / h),
+                    ) * T::from_f64(0.25);
+                    iteration
+                        .set_scale(
+                            length(&(t1 - (SMatrix::<T, 4, 4>::identity() * c) / h + t1))
+                                .magnitude(),
+                        );
                 }
-            };
-            let tangent = |trial: &[UnitQuaternion<T>; 1]| {
-                let W = trial[0].matrix();
-                let mut matrix = SMatrix::<T, 3, 3>::zeros();
-                for axis in 0..3 {
-                    let η = unit::<T, 3>(axis);
-                    let t1 = h.powi(-1);
-                    let t2 = pure_quaternion(&η);
-                    let t3 = quaternion_imaginary(&(W * t2 * T::from_f64(0.5)));
-                    let parts: [SVector<T, 3>; 1] = [
-                        quaternion_imaginary(
-                            &(W * (t2 * pure_quaternion(&(I * quaternion_imaginary(&W))))
-                                * T::from_f64(0.5) + W * pure_quaternion(&(I * t3))),
-                        ) * T::from_f64(2.0) * t1 + t3 * T::from_f64(2.0) * t1 * c
-                            - quaternion_imaginary(
-                                &(W * (t2 * W) * T::from_f64(0.5)
-                                    + W * (W * t2) * T::from_f64(0.5)),
-                            ) * t1 * c,
-                    ];
-                    matrix
-                        .set_column(
-                            axis,
+                let (W_re, W_im) = (trial[0].real(), trial[0].imaginary());
+                if iteration
+                    .assess({
+                        (diagonal_times(&I, &W_im) * k1 * W_re
+                            + W_im.cross(&(diagonal_times(&I, &W_im))) * k1
+                            + W_im * (k2 - k2 * W_re)) - momenta[0]
+                    })
+                {
+                    iteration
+                        .set_tangent(
                             &{
-                                let mut all = SVector::<T, 3>::zeros();
-                                let rest = all.as_mut_slice();
-                                let rest = put_vector(rest, &parts[0]);
-                                let _ = rest;
-                                all
+                                let t1 = SMatrix::<T, 3, 3>::identity() * W_re + hat(&W_im);
+                                let t2 = k4 * W_re;
+                                ((crossed(&W_im, &I) - hat(&(diagonal_times(&I, &W_im))))
+                                    * t1 - diagonal_times(&I, &W_im) * W_im.transpose()) * s1
+                                    + diagonal_times(&I, &t1) * s1 * W_re
+                                    + SMatrix::<T, 3, 3>::identity() * (t2 - k4 * (W_re * W_re))
+                                    + hat(&W_im) * (k4 - t2) + W_im * W_im.transpose() * k4
                             },
                         );
                 }
-                matrix
-            };
-            let scale = {
-                let trial = &work.guess;
-                let W = trial[0].matrix();
-                let t1 = pure_quaternion(
-                    &(((I - SMatrix::<T, 3, 3>::identity() * c)
-                        * quaternion_imaginary(&W) * T::from_f64(2.0)) / h),
-                ) * T::from_f64(0.25);
-                let mut total = 0.0;
-                total += length(&momenta[0]).magnitude();
-                total
-                    += length(&(t1 - (SMatrix::<T, 4, 4>::identity() * c) / h + t1))
-                        .magnitude();
-                total
-            };
-            let solved = match newton::solve(work.guess, scale, residual, tangent) {
-                Ok(found) => found.element,
-                Err(e) => return Err(StepCause::from(e).at_node(state.node)),
+                match iteration.correct() {
+                    newton::Progress::Continue => {}
+                    newton::Progress::Solved(found) => break found.element,
+                    newton::Progress::Failed(e) => {
+                        return Err(StepCause::from(e).at_node(state.node));
+                    }
+                }
             };
             let W_matrix = solved[0].matrix();
             let q_moved = state.q * solved[0];
@@ -227,7 +209,7 @@ pub mod cayley_klein {
             state.q = q_moved;
             state.momentum = SpatialMomentum(momentum_next);
             state.node += 1;
-            work.guess = solved;
+            work.search.remember(state.node - 1, solved);
             Ok(())
         }
     }
@@ -350,11 +332,13 @@ pub mod cayley_klein {
             let t2 = quaternion_imaginary(&W_before);
             let t3 = quaternion_imaginary(&W);
             let parts: [SVector<T, 3>; 1] = [
-                quaternion_imaginary(&(W_before.tr_mul(&pure_quaternion(&(I * t2)))))
-                    * T::from_f64(2.0) * t1 + t2 * T::from_f64(2.0) * t1 * c
+                quaternion_imaginary(
+                    &(W_before.tr_mul(&pure_quaternion(&(diagonal_times(&I, &t2))))),
+                ) * T::from_f64(2.0) * t1 + t2 * T::from_f64(2.0) * t1 * c
                     - quaternion_imaginary(&(W_before * W_before)) * t1 * c
-                    - quaternion_imaginary(&(W * pure_quaternion(&(I * t3))))
-                        * T::from_f64(2.0) * t1 - t3 * T::from_f64(2.0) * t1 * c
+                    - quaternion_imaginary(
+                        &(W * pure_quaternion(&(diagonal_times(&I, &t3)))),
+                    ) * T::from_f64(2.0) * t1 - t3 * T::from_f64(2.0) * t1 * c
                     + quaternion_imaginary(&(W * W)) * t1 * c,
             ];
             {
@@ -382,7 +366,7 @@ pub mod cayley_klein {
             let mut inertia = SMatrix::<T, 3, 3>::zeros();
             for axis in 0..3 {
                 let ξ: SVector<T, 3> = unit::<T, 3>(axis);
-                let t1 = I * ξ * T::from_f64(0.5);
+                let t1 = diagonal_times(&I, &ξ) * T::from_f64(0.5);
                 let parts: [SVector<T, 3>; 1] = [t1 + t1];
                 inertia
                     .set_column(
@@ -590,12 +574,6 @@ pub mod cayley_klein {
                     conserved: Conserved::Exactly,
                 },
             ],
-            discrete_energy: Invariant {
-                name: "discrete_energy",
-                formula: "-4 c re(W_k)/h² + 2 im(W_k)·((I - c Id) im(W_k))/h² + 4 c/h²",
-                rows: 1,
-                conserved: Conserved::Boundedly,
-            },
             open: Self::open,
             solvers: &[],
             dimensions: &[],

@@ -111,7 +111,7 @@ pub mod coupled_bodies {
     #[derive(Clone, Copy, Debug)]
     pub struct CoupledBodiesWorkspace<T = f64> {
         h: T,
-        guess: [Rotation<T>; 2],
+        search: newton::Search<T, [Rotation<T>; 2], 6>,
     }
     impl<T: Real> CoupledBodies<T> {
         /// Starts a trajectory with step `h` from data at node 0.
@@ -163,7 +163,7 @@ pub mod coupled_bodies {
             let state = *state;
             let work = CoupledBodiesWorkspace {
                 h,
-                guess: [Rotation::identity(); 2],
+                search: newton::Search::from_rest(),
             };
             let (mut trial, mut scratch) = (state, work);
             self.step(&mut trial, &mut scratch)
@@ -189,98 +189,96 @@ pub mod coupled_bodies {
                 Λ1.tr_mul(&state.momentum_Λ1.0),
                 Λ2.tr_mul(&state.momentum_Λ2.0),
             ];
-            let residual = |trial: &[Rotation<T>; 2]| {
-                let Ω1 = trial[0].matrix();
-                let Ω2 = trial[1].matrix();
-                let t1 = h.powi(-1);
-                let t2 = d1.cross(&(R * d2));
-                let parts: [SVector<T, 3>; 2] = [
-                    (t2 * t1 * eps - axial_of_difference(&(J1 * Ω1.transpose())) * t1
-                        - d1.cross(&(R * (Ω2 * d2))) * t1 * eps) - momenta[0],
-                    (R.tr_mul(&(Ω1 * d1.cross(&(Ω1.tr_mul(&(R * d2)))))) * t1 * eps
-                        - axial_of_difference(&(J2 * Ω2.transpose())) * t1
-                        - R.tr_mul(&t2) * t1 * eps) - momenta[1],
-                ];
-                SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3])
-            };
-            let tangent = |trial: &[Rotation<T>; 2]| {
-                let Ω1 = trial[0].matrix();
-                let Ω2 = trial[1].matrix();
-                let mut matrix = SMatrix::<T, 6, 6>::zeros();
-                for axis in 0..3 {
-                    let η1 = basis::<T>(axis);
-                    let t1 = h.powi(-1);
-                    let parts: [SVector<T, 3>; 2] = [
-                        axial_of_difference(&(J1 * (η1 * Ω1.transpose()))) * t1,
-                        R.tr_mul(&(Ω1 * (η1 * d1.cross(&(Ω1.tr_mul(&(R * d2)))))))
-                            * t1 * eps
-                            - R.tr_mul(&(Ω1 * d1.cross(&(η1 * Ω1.tr_mul(&(R * d2))))))
-                                * t1 * eps,
-                    ];
-                    matrix
-                        .set_column(
-                            axis,
-                            &SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3]),
+            let s1 = h.powi(-1);
+            let s2 = R * d2;
+            let k2 = d1.cross(&s2);
+            let k3 = eps * s1;
+            let k5 = crossed(&d1, &R);
+            let k6 = crossing(&R.transpose(), &s2);
+            let momentum = size_of(&momenta[0]) + size_of(&momenta[1]);
+            let mut iteration = work.search.begin(state.node, momentum);
+            let solved: [Rotation<T>; 2] = loop {
+                let trial = iteration.trial();
+                if iteration.wants_scale() {
+                    let Ω1 = trial[0].matrix();
+                    let Ω2 = trial[1].matrix();
+                    iteration
+                        .set_scale(
+                            length(
+                                    &((-(J1 / h))
+                                        - ((R * ((Ω2 - SMatrix::<T, 3, 3>::identity()) * d2))
+                                            * d1.transpose() * eps) / h),
+                                )
+                                .magnitude()
+                                + length(
+                                        &((-(J2 / h))
+                                            - (R.tr_mul(&((Ω1 - SMatrix::<T, 3, 3>::identity()) * d1))
+                                                * d2.transpose() * eps) / h),
+                                    )
+                                    .magnitude(),
                         );
                 }
-                for axis in 0..3 {
-                    let η2 = basis::<T>(axis);
-                    let t1 = h.powi(-1);
-                    let parts: [SVector<T, 3>; 2] = [
-                        -(d1.cross(&(R * (Ω2 * (η2 * d2)))) * t1 * eps),
-                        axial_of_difference(&(J2 * (η2 * Ω2.transpose()))) * t1,
-                    ];
-                    matrix
-                        .set_column(
-                            3 + axis,
-                            &SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3]),
-                        );
-                }
-                matrix
-            };
-            let scale = {
-                let trial = &work.guess;
                 let Ω1 = trial[0].matrix();
                 let Ω2 = trial[1].matrix();
-                let mut total = 0.0;
-                total += length(&momenta[0]).magnitude();
-                total += length(&momenta[1]).magnitude();
-                total
-                    += length(
-                            &((-(J1 / h))
-                                - ((R * ((Ω2 - SMatrix::<T, 3, 3>::identity()) * d2))
-                                    * d1.transpose() * eps) / h),
+                if iteration
+                    .assess({
+                        joined::<
+                            T,
+                            2,
+                            6,
+                        >(
+                            &[
+                                (((R * (Ω2 * d2)).cross(&d1) + k2) * k3
+                                    - axial_of_difference(&(J1 * Ω1.transpose())) * s1)
+                                    - momenta[0],
+                                (R.tr_mul(&(Ω1 * d1 - d1).cross(&s2)) * k3
+                                    - axial_of_difference(&(J2 * Ω2.transpose())) * s1)
+                                    - momenta[1],
+                            ],
                         )
-                        .magnitude();
-                total
-                    += length(
-                            &((-(J2 / h))
-                                - (R.tr_mul(&((Ω1 - SMatrix::<T, 3, 3>::identity()) * d1))
-                                    * d2.transpose() * eps) / h),
-                        )
-                        .magnitude();
-                total
-            };
-            let solved = match newton::solve(work.guess, scale, residual, tangent) {
-                Ok(found) => found.element,
-                Err(e) => return Err(StepCause::from(e).at_node(state.node)),
+                    })
+                {
+                    iteration
+                        .set_tangent(
+                            &{
+                                assembled::<
+                                    T,
+                                    2,
+                                    6,
+                                >(
+                                    &[
+                                        [
+                                            (trace_complement(&(Ω1 * J1))) * Ω1 * s1,
+                                            k5 * crossing(&Ω2, &d2) * k3,
+                                        ],
+                                        [
+                                            k6 * crossing(&Ω1, &d1) * k3,
+                                            (trace_complement(&(Ω2 * J2))) * Ω2 * s1,
+                                        ],
+                                    ],
+                                )
+                            },
+                        );
+                }
+                match iteration.correct() {
+                    newton::Progress::Continue => {}
+                    newton::Progress::Solved(found) => break found.element,
+                    newton::Progress::Failed(e) => {
+                        return Err(StepCause::from(e).at_node(state.node));
+                    }
+                }
             };
             let Ω1_matrix = solved[0].matrix();
             let Ω2_matrix = solved[1].matrix();
             let Λ1_moved = state.Λ1 * solved[0];
             let Λ2_moved = state.Λ2 * solved[1];
-            let t1 = Ω1_matrix - SMatrix::<T, 3, 3>::identity();
-            let t2 = Ω2_matrix.transpose() - SMatrix::<T, 3, 3>::identity();
+            let t1 = h.powi(-1);
+            let t2 = Ω2_matrix - SMatrix::<T, 3, 3>::identity();
+            let t3 = Ω1_matrix - SMatrix::<T, 3, 3>::identity();
             let momentum_Λ1_next = state.momentum_Λ1.0
-                + Λ1
-                    * (axial_of_difference(
-                        &(((t1 * d1) * (d2.tr_mul(&t2) * R.transpose()) * eps) / h),
-                    ));
+                + Λ1 * ((R * (t2 * d2)).cross(&(t3 * d1)) * eps * t1);
             let momentum_Λ2_next = state.momentum_Λ2.0
-                + Λ2
-                    * (-(axial_of_difference(
-                        &((R.tr_mul(&(t1 * d1)) * d2.tr_mul(&t2) * eps) / h),
-                    )));
+                + Λ2 * (-((t2 * d2).cross(&(R.tr_mul(&(t3 * d1)))) * eps * t1));
             if !(all_finite(&momentum_Λ1_next) && all_finite(&momentum_Λ2_next)) {
                 return Err(
                     StepCause::NotFinite {
@@ -294,7 +292,7 @@ pub mod coupled_bodies {
             state.momentum_Λ1 = SpatialMomentum(momentum_Λ1_next);
             state.momentum_Λ2 = SpatialMomentum(momentum_Λ2_next);
             state.node += 1;
-            work.guess = solved;
+            work.search.remember(state.node - 1, solved);
             Ok(())
         }
         /// `R` at the node of this state.
@@ -816,12 +814,6 @@ pub mod coupled_bodies {
                     conserved: Conserved::Exactly,
                 },
             ],
-            discrete_energy: Invariant {
-                name: "discrete_energy",
-                formula: "-tr(J₁ Ω_{1,k})/h² - tr(J₂ Ω_{2,k})/h² - eps ((Ω_{1,k} - Id) d₁)·(R_k (Ω_{2,k} - Id) d₂)/h² + tr(J₁)/h² + tr(J₂)/h² + eps ((Id - Id) d₁)·(R_k (Id - Id) d₂)/h²",
-                rows: 1,
-                conserved: Conserved::Boundedly,
-            },
             open: Self::open,
             solvers: &[],
             dimensions: &[],

@@ -11,10 +11,10 @@ pub use crate::groups::{
 };
 pub use crate::integrate::{Reversible, Stepper, Steps, preprocessing_order};
 pub use crate::linalg::{
-    axial_of_difference, columns_from, determinant, even_count, hat, inclusion, into_columns,
-    into_rows, motion_rotation, motion_translation, pencil_coefficients, pure_quaternion,
-    quaternion_imaginary, quaternion_real, quaternion_rotation, rows_from, skew_coordinates, solve,
-    twist, vee,
+    axial_of_difference, columns_from, crossed, crossing, determinant, even_count, hat, inclusion,
+    into_columns, into_rows, motion_rotation, motion_translation, pencil_coefficients,
+    pure_quaternion, quaternion_imaginary, quaternion_real, quaternion_rotation, rows_from,
+    skew_coordinates, solve, trace_complement, twist, vee,
 };
 pub use crate::scalar::{OfScalars as _, Real};
 pub use crate::solvers::Method;
@@ -54,6 +54,54 @@ pub fn spectrum_scales<const N: usize>(m: f64, s: f64) -> impl Iterator<Item = f
     let power = |x: f64, n: usize| (0..n).fold(1.0, |p, _| p * x);
     crate::linalg::even_degrees(N)
         .map(move |(row, i)| power(m, row + 1) * power(s, N.saturating_sub(row + 1 + i)))
+}
+
+/// `D A` of a diagonal matrix.
+#[inline(always)]
+#[must_use]
+pub fn diagonal_times<T: Real, const N: usize, const C: usize>(
+    diagonal: &SMatrix<T, N, N>,
+    a: &SMatrix<T, N, C>,
+) -> SMatrix<T, N, C> {
+    SMatrix::from_fn(|i, j| diagonal[(i, i)] * a[(i, j)])
+}
+
+/// `A D` of a diagonal matrix.
+#[inline(always)]
+#[must_use]
+pub fn times_diagonal<T: Real, const R: usize, const N: usize>(
+    a: &SMatrix<T, R, N>,
+    diagonal: &SMatrix<T, N, N>,
+) -> SMatrix<T, R, N> {
+    SMatrix::from_fn(|i, j| a[(i, j)] * diagonal[(j, j)])
+}
+
+/// The size of a momentum: the sum of the magnitudes of its components.
+#[inline(always)]
+#[must_use]
+pub fn size_of<T: Real, const R: usize, const C: usize>(a: &SMatrix<T, R, C>) -> f64 {
+    a.iter().fold(0.0, |sum, x| sum + x.magnitude())
+}
+
+/// Vectors of three components on top of each other.
+#[inline(always)]
+#[must_use]
+pub fn joined<T: Real, const K: usize, const D: usize>(
+    parts: &[SVector<T, 3>; K],
+) -> SVector<T, D> {
+    SVector::from_fn(|i, _| parts.get(i / 3).map_or_else(T::zero, |part| part[i % 3]))
+}
+
+/// The matrix of these blocks of three, given by rows.
+#[inline(always)]
+#[must_use]
+pub fn assembled<T: Real, const K: usize, const D: usize>(
+    blocks: &[[SMatrix<T, 3, 3>; K]; K],
+) -> SMatrix<T, D, D> {
+    SMatrix::from_fn(|i, j| {
+        let block = blocks.get(i / 3).and_then(|row| row.get(j / 3));
+        block.map_or_else(T::zero, |block| block[(i % 3, j % 3)])
+    })
 }
 
 /// The unit vector along `axis`, counted from 0.

@@ -18,27 +18,6 @@ pub use so3::{BodyMomentum, NotARotation, Rotation, SpatialMomentum};
 pub use su2::UnitQuaternion;
 pub use turned::TurnedRotation;
 
-/// The operations of [`Group`] that an element has by itself already, by the same names.
-macro_rules! own_operations {
-    () => {
-        #[inline]
-        fn identity() -> Self {
-            Self::identity()
-        }
-
-        #[inline]
-        fn compose(&self, other: &Self) -> Self {
-            *self * *other
-        }
-
-        #[inline]
-        fn inverse(&self) -> Self {
-            self.inverse()
-        }
-    };
-}
-use own_operations;
-
 /// A Lie group with the operations an iteration on it needs.
 ///
 /// Laws every implementation keeps to rounding: associativity, neutral element, inverses, and
@@ -59,6 +38,14 @@ pub trait Group<T>: Copy {
     /// `self . retraction(xi)`: the element perturbed on the right (body side) by the algebra
     /// coordinates `xi`. Coordinates that are missing count as zero, surplus ones are ignored.
     fn retract(&self, xi: &[T]) -> Self;
+
+    /// An element near the combination of `element(0)`, `element(1)`, ... with weights that add up to
+    /// one, entry by entry: where velocities vary smoothly along a trajectory, their extrapolation.
+    /// A group that has no such thing at little cost gives the first element.
+    #[inline(always)]
+    fn combined(_weights: &[f64], element: impl Fn(usize) -> Self) -> Self {
+        element(0)
+    }
 
     /// How far rounding has carried the element off the group, in the units of its entries.
     fn distance_from_group(&self) -> f64;

@@ -34,6 +34,11 @@ impl<T, G: Group<T>, const COUNT: usize> Group<T> for [G; COUNT] {
         moved
     }
 
+    #[inline(always)]
+    fn combined(weights: &[f64], element: impl Fn(usize) -> Self) -> Self {
+        core::array::from_fn(|k| G::combined(weights, |i| element(i)[k]))
+    }
+
     #[inline]
     fn distance_from_group(&self) -> f64 {
         self.iter()
@@ -72,6 +77,11 @@ macro_rules! product_of {
                     part
                 };
                 ($(self.$index.retract(part($group::DIMENSION)),)+)
+            }
+
+            #[inline(always)]
+            fn combined(weights: &[f64], element: impl Fn(usize) -> Self) -> Self {
+                ($($group::combined(weights, |i| element(i).$index),)+)
             }
 
             #[inline]

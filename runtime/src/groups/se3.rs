@@ -132,7 +132,20 @@ impl<T: Real> Mul for RigidMotion<T> {
 impl<T: Real> Group<T> for RigidMotion<T> {
     const DIMENSION: usize = 6;
 
-    super::own_operations!();
+    #[inline]
+    fn identity() -> Self {
+        Self::identity()
+    }
+
+    #[inline]
+    fn compose(&self, other: &Self) -> Self {
+        *self * *other
+    }
+
+    #[inline]
+    fn inverse(&self) -> Self {
+        self.inverse()
+    }
 
     /// `self . [cay(ω) v; 0 1]`: it agrees with the exponential to first order and needs no
     /// trigonometry.
@@ -145,6 +158,18 @@ impl<T: Real> Group<T> for RigidMotion<T> {
                 rotation: Rotation::identity().retract(&angular),
                 translation: linear,
             }
+    }
+
+    #[inline(always)]
+    fn combined(weights: &[f64], element: impl Fn(usize) -> Self) -> Self {
+        let mut translation = Vector3::repeat(T::zero());
+        for (i, weight) in weights.iter().enumerate().rev() {
+            translation += element(i).translation * T::from_f64(*weight);
+        }
+        Self {
+            rotation: Rotation::combined(weights, |i| element(i).rotation),
+            translation,
+        }
     }
 
     #[inline]

@@ -322,7 +322,20 @@ impl<T: Real> Mul for Rotation<T> {
 impl<T: Real> Group<T> for Rotation<T> {
     const DIMENSION: usize = 3;
 
-    super::own_operations!();
+    #[inline]
+    fn identity() -> Self {
+        Self::identity()
+    }
+
+    #[inline]
+    fn compose(&self, other: &Self) -> Self {
+        *self * *other
+    }
+
+    #[inline]
+    fn inverse(&self) -> Self {
+        self.inverse()
+    }
 
     /// `self . cay(hat(xi))`, the Cayley map `(1 - hat(xi)/2)^-1 (1 + hat(xi)/2)`: it agrees with
     /// the exponential to second order and needs no trigonometry.
@@ -330,7 +343,33 @@ impl<T: Real> Group<T> for Rotation<T> {
     fn retract(&self, xi: &[T]) -> Self {
         let half = T::from_f64(0.5);
         let at = |i: usize| xi.get(i).map_or_else(T::zero, |x| *x * half);
-        Self::normalised(hamilton(self.q, [T::one(), at(0), at(1), at(2)]))
+        let [x, y, z] = [at(0), at(1), at(2)];
+        let turned = hamilton(self.q, [T::one(), x, y, z]);
+        // (1 + e)^(-1/2) is 1 - e/2 up to 3 e^2/8: for small corrections, root and quotient are
+        // not waited for. The element itself is unit.
+        let excess = x * x + y * y + z * z;
+        let largest = excess.greatest();
+        if T::ORDER == 0 && largest * largest < T::EPSILON {
+            let scale = T::one() - excess * half;
+            return Self {
+                q: turned.map(|x| x * scale),
+            };
+        }
+        Self::normalised(turned)
+    }
+
+    /// The combination of the quaternions, made unit.
+    #[inline(always)]
+    fn combined(weights: &[f64], element: impl Fn(usize) -> Self) -> Self {
+        let mut q = [T::zero(); 4];
+        // The first is the newest: the sum waits for it last.
+        for (i, weight) in weights.iter().enumerate().rev() {
+            let weight = T::from_f64(*weight);
+            for (sum, x) in q.iter_mut().zip(element(i).q) {
+                *sum += x * weight;
+            }
+        }
+        Self::normalised(q)
     }
 
     #[inline]

@@ -40,6 +40,20 @@ impl<T: Real> UnitQuaternion<T> {
         self.0.quaternion()
     }
 
+    /// The real part.
+    #[inline(always)]
+    pub fn real(&self) -> T {
+        let [w, ..] = self.components();
+        w
+    }
+
+    /// The imaginary part, the coefficients of i, j and k.
+    #[inline(always)]
+    pub fn imaginary(&self) -> Vector3<T> {
+        let [_, x, y, z] = self.components();
+        Vector3::new(x, y, z)
+    }
+
     /// The matrix of the left multiplication by it, 4 x 4 and orthogonal.
     #[inline]
     pub fn matrix(&self) -> Matrix4<T> {
@@ -72,12 +86,30 @@ impl<T: Real> Mul for UnitQuaternion<T> {
 impl<T: Real> Group<T> for UnitQuaternion<T> {
     const DIMENSION: usize = 3;
 
-    super::own_operations!();
+    #[inline]
+    fn identity() -> Self {
+        Self::identity()
+    }
+
+    #[inline]
+    fn compose(&self, other: &Self) -> Self {
+        *self * *other
+    }
+
+    #[inline]
+    fn inverse(&self) -> Self {
+        self.inverse()
+    }
 
     /// `self . (1 + ξ/2)/|1 + ξ/2|`, the Cayley map: it covers that of the rotations.
     #[inline]
     fn retract(&self, xi: &[T]) -> Self {
         Self(self.0.retract(xi))
+    }
+
+    #[inline(always)]
+    fn combined(weights: &[f64], element: impl Fn(usize) -> Self) -> Self {
+        Self(Rotation::combined(weights, |i| element(i).0))
     }
 
     #[inline]

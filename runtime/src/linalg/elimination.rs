@@ -58,7 +58,9 @@ pub fn solve_leading<T: Real, const N: usize>(
     b: &SVector<T, N>,
     size: usize,
 ) -> Option<SVector<T, N>> {
-    eliminate_leading(a, b, size.min(N)).map(|(x, _)| x)
+    let size = size.min(N);
+    let solved = eliminate_leading(a, b, size);
+    solved.map(|(x, _)| SVector::from_fn(|i, _| if i < size { x[i] } else { T::zero() }))
 }
 
 /// The inverse of the leading block of `size` rows and columns; the rest is that of the identity

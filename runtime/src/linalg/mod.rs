@@ -4,6 +4,7 @@
 
 mod eigenvalues;
 mod elimination;
+mod factors;
 mod frame;
 mod inclusion;
 mod motion;
@@ -14,6 +15,7 @@ mod skew;
 
 pub use eigenvalues::symmetric_eigenvalues;
 pub use elimination::{determinant, inverse, inverse_leading, solve, solve_leading, solve_many};
+pub use factors::Factors;
 pub use frame::principal_frame;
 pub use inclusion::{columns_from, inclusion, into_columns, into_rows, rows_from};
 pub use motion::{motion_rotation, motion_translation, twist};
@@ -23,4 +25,6 @@ pub use quaternion::{
     left_multiplication, pure_quaternion, quaternion_imaginary, quaternion_real,
     quaternion_rotation,
 };
-pub use skew::{axial_of_difference, hat, skew_coordinates, skew_from, vee};
+pub use skew::{
+    axial_of_difference, crossed, crossing, hat, skew_coordinates, skew_from, trace_complement, vee,
+};

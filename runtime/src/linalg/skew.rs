@@ -57,6 +57,50 @@ pub fn axial_of_difference<T: Real>(a: &Matrix3<T>) -> Vector3<T> {
     Vector3::new(a32 - a23, a13 - a31, a21 - a12)
 }
 
+/// `hat(v) A`: the columns of `A` turned by `v x`.
+#[inline(always)]
+#[must_use]
+pub fn crossed<T: Real>(v: &Vector3<T>, a: &Matrix3<T>) -> Matrix3<T> {
+    let [x, y, z] = [v.x, v.y, v.z];
+    Matrix3::from_fn(|i, j| {
+        let [a, b, c] = [a[(0, j)], a[(1, j)], a[(2, j)]];
+        match i {
+            0 => y * c - z * b,
+            1 => z * a - x * c,
+            _ => x * b - y * a,
+        }
+    })
+}
+
+/// `A hat(v)`: the rows of `A` turned by `. x v`.
+#[inline(always)]
+#[must_use]
+pub fn crossing<T: Real>(a: &Matrix3<T>, v: &Vector3<T>) -> Matrix3<T> {
+    let [x, y, z] = [v.x, v.y, v.z];
+    Matrix3::from_fn(|i, j| {
+        let [a, b, c] = [a[(i, 0)], a[(i, 1)], a[(i, 2)]];
+        match j {
+            0 => b * z - c * y,
+            1 => c * x - a * z,
+            _ => a * y - b * x,
+        }
+    })
+}
+
+/// `tr(A) Id - A`: of a Poinsot matrix the moment of inertia.
+#[inline(always)]
+#[must_use]
+pub fn trace_complement<T: Real>(a: &Matrix3<T>) -> Matrix3<T> {
+    let [d, e, f] = [a.m11, a.m22, a.m33];
+    #[rustfmt::skip]
+    let complement = Matrix3::new(
+        e + f, -a.m12, -a.m13,
+        -a.m21, d + f, -a.m23,
+        -a.m31, -a.m32, d + e,
+    );
+    complement
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,8 +1,9 @@
 //! Newton's method on a Lie group, for implicit steps without a closed form.
-//! Takes a guess, the residual and its tangent; gives a converged element or an error.
+//! Takes a guess or the solutions before, the residual and its tangent; gives a converged element
+//! or an error.
 
 use crate::groups::Group;
-use crate::linalg;
+use crate::linalg::Factors;
 use crate::scalar::Real;
 use core::fmt;
 use nalgebra::{SMatrix, SVector};
@@ -20,6 +21,17 @@ const POLISHED_ROUNDINGS: f64 = 4.0;
 /// Ill-conditioned terms may keep the residual above [`CONVERGED_ROUNDINGS`]; when it stops falling
 /// below this many roundings, rounding is the reason.
 const STAGNATED_ROUNDINGS: f64 = 1e3;
+
+/// A factored tangent serves further corrections while each leaves less than this of the residual;
+/// past that a tangent at the new place pays.
+const WORTH_KEEPING: f64 = 0.02;
+
+/// A tangent of so many steps ago still makes a residual that is rounding already smaller: it has
+/// turned with the motion by a few angles of a step.
+const OLDEST_TANGENT: u32 = 8;
+
+/// How far the next residual may exceed the one foreseen at the rate of the last correction.
+const FORESIGHT: f64 = 4.0;
 
 /// A converged solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,76 +101,324 @@ impl fmt::Display for NewtonError {
 
 impl std::error::Error for NewtonError {}
 
-/// Solves `residual(g) = 0` from the guess `g`.
+/// How many solutions the next guess is made from.
+const REMEMBERED: usize = 6;
+
+/// The search for one velocity after the other along a trajectory: it remembers the last solutions,
+/// in which the next one is foreseen to sixth order in the step.
+///
+/// What it remembers decides how many iterations a step takes, and rounding; not which equations
+/// are solved.
+#[derive(Clone, Copy, Debug)]
+pub struct Search<T, G, const D: usize> {
+    /// A ring, twice in a row, the newest at `newest`.
+    past: [G; 2 * REMEMBERED],
+    newest: usize,
+    known: usize,
+    /// The node of the step that follows the newest solution.
+    next: u64,
+    /// The size of the residual's terms besides the momenta, where it was last asked for.
+    scale: f64,
+    /// The tangent factored last.
+    factors: Factors<T, D>,
+    /// How many steps ago that was.
+    age: u32,
+}
+
+impl<T: Real, G: Group<T>, const D: usize> Search<T, G, D> {
+    /// Nothing known: the first guess is the neutral element.
+    #[must_use]
+    pub fn from_rest() -> Self {
+        Self {
+            past: [G::identity(); 2 * REMEMBERED],
+            newest: 0,
+            known: 0,
+            next: 0,
+            scale: f64::NAN,
+            factors: Factors::none(),
+            age: OLDEST_TANGENT,
+        }
+    }
+
+    /// Begins the solution of the step that leaves `node`; `momentum` is the size of the momenta
+    /// there. The first trial is foreseen from the past; if that leads nowhere, the last solution
+    /// is tried, then the neutral element.
+    #[inline(always)]
+    pub fn begin(&mut self, node: u64, momentum: f64) -> Newton<'_, T, G, D> {
+        if node != self.next {
+            self.known = 0;
+            self.age = OLDEST_TANGENT;
+        }
+        let foreseen = self.known > 1;
+        let first = if foreseen {
+            self.foreseen()
+        } else {
+            self.start(1)
+        };
+        let attempt = if foreseen { 0 } else { 1 };
+        let scale = if foreseen { self.scale } else { f64::NAN };
+        Newton {
+            search: self,
+            trial: first,
+            attempt,
+            momentum,
+            scale: scale + momentum,
+            residual: SVector::zeros(),
+            size: f64::NAN,
+            previous: f64::INFINITY,
+            iteration: 0,
+        }
+    }
+
+    /// Where the later attempts start.
+    fn start(&self, attempt: u32) -> G {
+        match attempt {
+            1 if self.known > 0 => self.past[self.newest],
+            _ => G::identity(),
+        }
+    }
+
+    /// The polynomial through the last solutions, one step further.
+    #[inline(always)]
+    fn foreseen(&self) -> G {
+        // Each solution stands twice, so that the last ones are always side by side.
+        let past = |i: usize| self.past[self.newest + i];
+        match self.known {
+            0 | 1 => past(0),
+            2 => G::combined(&[2.0, -1.0], past),
+            3 => G::combined(&[3.0, -3.0, 1.0], past),
+            4 => G::combined(&[4.0, -6.0, 4.0, -1.0], past),
+            5 => G::combined(&[5.0, -10.0, 10.0, -5.0, 1.0], past),
+            _ => G::combined(&[6.0, -15.0, 20.0, -15.0, 6.0, -1.0], past),
+        }
+    }
+
+    /// Remembers the solution of the step that began at `node`.
+    #[inline(always)]
+    pub fn remember(&mut self, node: u64, solution: G) {
+        self.newest = match self.newest {
+            0 => REMEMBERED - 1,
+            i => i - 1,
+        };
+        self.past[self.newest] = solution;
+        self.past[self.newest + REMEMBERED] = solution;
+        self.known = (self.known + 1).min(REMEMBERED);
+        self.next = node + 1;
+        self.age = self.age.saturating_add(1);
+    }
+}
+
+/// Newton's method at work: the caller evaluates the equations at the trial, this decides what is
+/// done with them.
+///
+/// ```text
+/// loop {
+///     trial(); if wants_scale() { set_scale(..) }
+///     if assess(residual) { set_tangent(..) }
+///     match correct() { .. }
+/// }
+/// ```
+///
+/// The tangent is the derivative of the residual with respect to the coordinates of
+/// [`Group::retract`] at 0. It is factored once and kept while the corrections shrink fast. With
+/// `scale`, the natural size of the residual's terms, a solution is accepted when the residual is
+/// below `16 EPSILON scale` and one more correction is made, or is sure to fall below a quarter of
+/// that with the next one, or has stopped falling below `1e3 EPSILON scale`. The size of the
+/// residual is that of its real parts, in every lane: from a real solution one more step makes the
+/// first derivatives exact whatever they were, so that step follows for dual numbers, with a
+/// tangent of its own.
 ///
 /// Of the `D` components the first [`Group::DIMENSION`] are looked at, so that one `D` can serve
 /// several sizes of a group.
-///
-/// `tangent(g)` is the derivative of the residual with respect to the coordinates of
-/// [`Group::retract`] at 0. `scale` is the natural size of the residual's terms (positive): the
-/// solution is accepted when the residual is below `16 EPSILON scale`, or has stopped falling below
-/// `1e3 EPSILON scale`. The size of the residual is that of its real parts, in every lane: from a
-/// real solution one more step makes the first derivatives exact whatever they were, so that step
-/// follows for dual numbers, and for plain ones unless the residual is rounding already.
+#[derive(Debug)]
+pub struct Newton<'a, T, G, const D: usize> {
+    search: &'a mut Search<T, G, D>,
+    trial: G,
+    attempt: u32,
+    momentum: f64,
+    scale: f64,
+    residual: SVector<T, D>,
+    size: f64,
+    previous: f64,
+    iteration: usize,
+}
+
+/// What became of a correction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Progress<G> {
+    /// There is another trial.
+    Continue,
+    /// The equations are solved.
+    Solved(Solved<G>),
+    /// No attempt led to a solution.
+    Failed(NewtonError),
+}
+
+impl<T: Real, G: Group<T>, const D: usize> Newton<'_, T, G, D> {
+    /// The element at which the equations are wanted.
+    #[inline(always)]
+    pub fn trial(&self) -> G {
+        self.trial
+    }
+
+    /// Whether the size of the residual's terms is not known yet. It varies little along a
+    /// trajectory and is asked for at its first step and where an attempt fails.
+    #[inline(always)]
+    pub fn wants_scale(&self) -> bool {
+        self.scale.is_nan()
+    }
+
+    /// The size of the residual's terms at the trial, besides the momenta.
+    #[cold]
+    pub fn set_scale(&mut self, scale: f64) {
+        self.search.scale = scale;
+        self.scale = scale + self.momentum;
+    }
+
+    /// Takes the residual at the trial; says whether the tangent there is wanted.
+    #[inline(always)]
+    pub fn assess(&mut self, residual: SVector<T, D>) -> bool {
+        self.size = largest(&residual);
+        self.residual = residual;
+        if T::ORDER > 0 {
+            return true;
+        }
+        if self.iteration > 0 {
+            return self.size > WORTH_KEEPING * self.previous && !self.polished();
+        }
+        // What is foreseen to rounding needs no more than the tangent of a step before.
+        !(self.size <= CONVERGED_ROUNDINGS * T::EPSILON * self.scale
+            && self.search.age < OLDEST_TANGENT)
+    }
+
+    /// Whether the residual is nothing but rounding. What is only foreseen is corrected once.
+    #[inline(always)]
+    fn polished(&self) -> bool {
+        T::ORDER == 0
+            && self.iteration > 0
+            && self.size <= POLISHED_ROUNDINGS * T::EPSILON * self.scale
+    }
+
+    /// Takes the tangent at the trial.
+    #[inline(always)]
+    pub fn set_tangent(&mut self, tangent: &SMatrix<T, D, D>) {
+        self.search.factors.set(tangent, G::DIMENSION);
+        self.search.age = 0;
+    }
+
+    /// Moves the trial by Newton's correction, or ends.
+    #[inline(always)]
+    pub fn correct(&mut self) -> Progress<G> {
+        if self.polished() {
+            return self.solved(self.iteration);
+        }
+        let size = self.size;
+        // What is left after the next correction, if it does as well as the last.
+        let foreseen = FORESIGHT * size * (size / self.previous);
+        let unit = T::EPSILON * self.scale;
+        let done = size <= CONVERGED_ROUNDINGS * unit
+            || (size <= STAGNATED_ROUNDINGS * unit && size >= 0.5 * self.previous)
+            || (T::ORDER == 0 && self.iteration > 0 && foreseen <= POLISHED_ROUNDINGS * unit);
+        let Some(correction) = self.search.factors.solve(&self.residual) else {
+            return self.failed();
+        };
+        let step = -correction;
+        self.trial = self.trial.retract(step.as_slice());
+        if done {
+            return self.solved(self.iteration + 1);
+        }
+        self.previous = size;
+        self.iteration += 1;
+        if self.iteration == MOST_ITERATIONS || !size.is_finite() {
+            return self.failed();
+        }
+        Progress::Continue
+    }
+
+    #[inline(always)]
+    fn solved(&self, iterations: usize) -> Progress<G> {
+        Progress::Solved(Solved {
+            element: self.trial,
+            iterations,
+            residual: self.size,
+        })
+    }
+
+    /// Another attempt, or what was wrong with the last.
+    #[cold]
+    #[inline(never)]
+    fn failed(&mut self) -> Progress<G> {
+        if self.attempt < 2 {
+            self.attempt += 1;
+            self.trial = self.search.start(self.attempt);
+            self.scale = f64::NAN;
+            self.previous = f64::INFINITY;
+            self.iteration = 0;
+            self.search.age = OLDEST_TANGENT;
+            return Progress::Continue;
+        }
+        let residual = self.size;
+        Progress::Failed(if !residual.is_finite() {
+            NewtonError::NotFinite {
+                iteration: self.iteration.saturating_sub(1),
+            }
+        } else if self.iteration == MOST_ITERATIONS {
+            NewtonError::NotConverged {
+                iterations: MOST_ITERATIONS,
+                residual,
+                tolerance: CONVERGED_ROUNDINGS * T::EPSILON * self.scale,
+            }
+        } else {
+            NewtonError::SingularTangent {
+                iteration: self.iteration,
+                residual,
+            }
+        })
+    }
+}
+
+/// Solves `residual(g) = 0` from the guess `g`, with `tangent(g)` and the size `scale` of the
+/// residual's terms as [`Newton`] has them.
 ///
 /// # Errors
 /// [`NewtonError`]; an unconverged element is never returned.
-#[inline]
 pub fn solve<T: Real, G: Group<T>, const D: usize>(
     guess: G,
     scale: f64,
     mut residual: impl FnMut(&G) -> SVector<T, D>,
     mut tangent: impl FnMut(&G) -> SMatrix<T, D, D>,
 ) -> Result<Solved<G>, NewtonError> {
-    let tolerance = CONVERGED_ROUNDINGS * T::EPSILON * scale;
-    let stagnation = STAGNATED_ROUNDINGS * T::EPSILON * scale;
-    let mut element = guess;
-    let mut previous = f64::INFINITY;
-    let mut size = f64::NAN;
-    for iteration in 0..MOST_ITERATIONS {
-        let value = residual(&element);
-        if !value.iter().all(|x| x.is_finite()) {
-            return Err(NewtonError::NotFinite { iteration });
+    let mut search = Search::from_rest();
+    search.remember(0, guess);
+    let mut newton = search.begin(1, 0.0);
+    // One attempt.
+    newton.attempt = 2;
+    loop {
+        let trial = newton.trial();
+        if newton.wants_scale() {
+            newton.set_scale(scale);
         }
-        size = largest(&value);
-        if T::ORDER == 0 && size <= POLISHED_ROUNDINGS * T::EPSILON * scale {
-            return Ok(Solved {
-                element,
-                iterations: iteration,
-                residual: size,
-            });
+        if newton.assess(residual(&trial)) {
+            newton.set_tangent(&tangent(&trial));
         }
-        let done = size <= tolerance || (size <= stagnation && size >= 0.5 * previous);
-        let Some(correction) = linalg::solve_leading(&tangent(&element), &value, G::DIMENSION)
-        else {
-            return Err(NewtonError::SingularTangent {
-                iteration,
-                residual: size,
-            });
-        };
-        let step = -correction;
-        let moved = element.retract(step.as_slice());
-        if done {
-            return Ok(Solved {
-                element: moved,
-                iterations: iteration + 1,
-                residual: size,
-            });
+        match newton.correct() {
+            Progress::Continue => {}
+            Progress::Solved(found) => return Ok(found),
+            Progress::Failed(why) => return Err(why),
         }
-        element = moved;
-        previous = size;
     }
-    Err(NewtonError::NotConverged {
-        iterations: MOST_ITERATIONS,
-        residual: size,
-        tolerance,
-    })
 }
 
-/// The largest absolute real part over components and lanes.
+/// The largest absolute real part over components and lanes; NaN if any is.
 #[inline(always)]
 fn largest<T: Real, const D: usize>(v: &SVector<T, D>) -> f64 {
-    v.iter().fold(0.0, |largest: f64, x| {
-        largest.max(x.greatest()).max(-x.least())
-    })
+    let (mut sum, mut largest) = (T::zero(), 0.0);
+    for x in v.iter() {
+        sum += *x;
+        let (above, below) = (x.greatest(), -x.least());
+        let size = if above > below { above } else { below };
+        largest = if size > largest { size } else { largest };
+    }
+    // Comparisons pass over NaN, a sum does not.
+    largest + 0.0 * sum.magnitude()
 }

@@ -1,17 +1,28 @@
 //! From syntax to shaped expressions: names become symbols, every operation checks its shapes,
 //! `Id`, `0` and `E1 E2 E3` take theirs from the context.
 
-mod functions;
-mod names;
-mod products;
-
 use super::declare::Declared;
-use super::messages::shape_text;
-use crate::algebra::Rational;
-use crate::diagnostic::{Diagnostic, Errors};
-use crate::expr::shape::{Dim, Shape};
-use crate::expr::{self, Expr};
+use super::messages::{self, shape_text};
+use crate::algebra::{Algebra, Rational};
+use crate::diagnostic::{Diagnostic, Errors, Place, closest};
+use crate::expr::shape::{Dim, Shape, Structure};
+use crate::expr::symbol::{Role, Symbols};
+use crate::expr::{self, Expr, Function, Node, Part, Shift};
 use crate::syntax::ast::{Expression, Kind, Name};
+use crate::syntax::{FUNCTIONS, HIDEABLE};
+
+/// Whether an expression is an element of the group of this structure whatever its letters are.
+fn is_element(symbols: &Symbols, e: &Expr, structure: Structure) -> bool {
+    let go = |x: &Expr| is_element(symbols, x, structure);
+    match e.node() {
+        Node::Letter(at) => symbols.get(at.symbol).structure == structure,
+        Node::Identity(_) => true,
+        Node::Product(factors) => factors.iter().all(go),
+        Node::Inverse(a) => go(a),
+        Node::Transpose(a) => structure.is_orthogonal() && go(a),
+        _ => false,
+    }
+}
 
 /// Elaborates the expressions of one model.
 pub struct Elaborator<'a> {
@@ -20,6 +31,21 @@ pub struct Elaborator<'a> {
     /// Names of `let`s that are not among the bindings: still to come, or (`true`) faulty.
     unbound: Vec<(String, bool)>,
 }
+
+/// Longest product: its derivatives grow with the square of its length.
+const LONGEST_PRODUCT: usize = 40;
+
+/// What the functions of the language are called elsewhere.
+const OTHERWISE: [(&str, &str); 8] = [
+    ("trace", "tr(A)"),
+    ("determinant", "det(A)"),
+    ("inverse", "inv(A)"),
+    ("transpose", "A^T"),
+    ("ln", "log(a)"),
+    ("inner", "dot(a, b)"),
+    ("norm", "sqrt(dot(a, a))"),
+    ("previous", "prev(a)"),
+];
 
 /// The terms of a number, each with its place: summands at the top, through signs and divisors.
 pub fn terms(e: &Expression) -> Vec<&Expression> {
@@ -232,6 +258,378 @@ impl<'a> Elaborator<'a> {
                 }
             }
             Kind::Call(name, args) => self.call(name, args, e.place, expected),
+        }
+    }
+
+    fn name(&self, n: &str, place: Place, expected: Option<Shape>) -> Elaborated {
+        if let Some((_, value)) = self.bindings.iter().find(|(b, _)| b == n) {
+            return Ok(value.clone());
+        }
+        if let Some(id) = self.names.symbols.find(n) {
+            return Ok(expr::here(&self.names.symbols, id));
+        }
+        if n == "Id" {
+            let size = match expected {
+                Some(s) if s.is_square() && !s.is_scalar() => s.rows,
+                Some(s) if !s.is_square() => {
+                    let what = shape_text(&self.names.symbols, s);
+                    let message = format!("`Id` is square, but {what} is needed here");
+                    return fail(Diagnostic::new(place, message));
+                }
+                _ => self.default_size(),
+            };
+            return Ok(expr::identity(size));
+        }
+        if let Some(axis) = UNITS.iter().position(|u| *u == n) {
+            let size = match expected {
+                Some(s) if s.is_vector() => s.rows,
+                _ => self.default_size(),
+            };
+            return Ok(expr::unit(size, axis as u8));
+        }
+        let declared = self
+            .names
+            .symbols
+            .ids()
+            .map(|id| &self.names.symbols.get(id).name);
+        let bound = self.bindings.iter().map(|(b, _)| b);
+        let mut d = Diagnostic::new(place, format!("`{n}` is not declared"));
+        if self.names.was_declared(n) || self.unbound.contains(&(n.to_owned(), true)) {
+            d = Diagnostic::following(place, format!("`{n}` has a faulty declaration"));
+        } else if n == "T" {
+            d = d.help("`T` is the transpose and only stands after `^`");
+        } else if self.unbound.contains(&(n.to_owned(), false)) {
+            d = Diagnostic::new(place, format!("`{n}` is used before its `let`"))
+                .help(format!("move `let {n} = ...;` up, before its first use"));
+        } else if FUNCTIONS.contains(&n) {
+            d = Diagnostic::new(place, format!("`{n}` is a function of the language"))
+                .help(format!("write `{n}(...)`"));
+        } else if let Some(near) = closest(n, declared.chain(bound).map(String::as_str)) {
+            d = d.help(format!("did you mean `{near}`?"));
+        } else if let Some((_, written)) = OTHERWISE.iter().find(|(other, _)| *other == n) {
+            d = d.help(format!("the language writes `{written}`"));
+        } else if let Some(near) = closest(n, FUNCTIONS) {
+            d = d.help(format!("did you mean the function `{near}`?"));
+        } else if n == self.names.time_index {
+            d = d.help(format!(
+                "`{n}` is the time index; `next(x)` is `x` at the node after"
+            ));
+        } else {
+            d = d.help(format!("declare it, for example `param {n}: Real;`"));
+        }
+        fail(d)
+    }
+
+    fn sum(&self, terms: &[(bool, Expression)], expected: Option<Shape>) -> Elaborated {
+        let context = terms.iter().find_map(|(_, t)| self.hint(t)).or(expected);
+        let mut out: Vec<Expr> = Vec::new();
+        for (minus, t) in terms {
+            let value = self.elaborate(t, context)?;
+            if let Some(first) = out.first()
+                && first.shape() != value.shape()
+            {
+                let symbols = &self.names.symbols;
+                let message = format!(
+                    "{} and {} cannot be added",
+                    shape_text(symbols, first.shape()),
+                    shape_text(symbols, value.shape())
+                );
+                let place = terms[0].1.place.to(t.place);
+                return fail(Diagnostic::new(place, message).help(
+                    "every term of a sum has one shape; `Id` and `0` take that of the others",
+                ));
+            }
+            out.push(if *minus { expr::neg(value) } else { value });
+        }
+        let shape = out.first().map_or(Shape::SCALAR, Expr::shape);
+        Ok(expr::sum(out, shape))
+    }
+
+    fn product(&self, factors: &[Expression], expected: Option<Shape>) -> Elaborated {
+        if factors.len() > LONGEST_PRODUCT {
+            let place = factors[0].place.to(factors[factors.len() - 1].place);
+            let message = format!("a product of more than {LONGEST_PRODUCT} factors is refused");
+            return fail(Diagnostic::new(place, message).help("make parts of it parameters"));
+        }
+        let mut left: Option<(Expr, Place)> = None;
+        let mut numbers = Vec::new();
+        for (i, f) in factors.iter().enumerate() {
+            // What must stand here, from the neighbour before or after.
+            let before = left.as_ref().map(|(l, _)| Shape::square(l.shape().cols));
+            let after = factors[i + 1..]
+                .iter()
+                .find_map(|g| self.hint(g).filter(|s| !s.is_scalar()));
+            let context = before.or(after.map(|s| Shape::square(s.rows))).or(expected);
+            let value = if matches!(&f.kind, Kind::Number(q) if q.is_zero()) {
+                expr::integer(0)
+            } else {
+                self.elaborate(f, context.filter(|s| !s.is_scalar()))?
+            };
+            if value.shape().is_scalar() {
+                numbers.push(value);
+                continue;
+            }
+            left = Some(match left {
+                None => (value, f.place),
+                Some((l, place)) => {
+                    if l.shape().cols != value.shape().rows {
+                        return fail(self.mismatch(&l, place, &value, f.place));
+                    }
+                    (expr::mul(l, value), place.to(f.place))
+                }
+            });
+        }
+        Ok(expr::product(
+            numbers.into_iter().chain(left.map(|(l, _)| l)),
+        ))
+    }
+
+    fn mismatch(&self, a: &Expr, ap: Place, b: &Expr, bp: Place) -> Diagnostic {
+        let symbols = &self.names.symbols;
+        let d = Diagnostic::new(
+            ap.to(bp),
+            format!(
+                "{} cannot be multiplied by {}",
+                shape_text(symbols, a.shape()),
+                shape_text(symbols, b.shape())
+            ),
+        );
+        if a.shape().is_vector() && b.shape().is_vector() && a.shape() == b.shape() {
+            d.help("write `dot(a, b)` for the scalar product, `a * b^T` for the outer one")
+        } else if a.shape().is_vector() {
+            d.help("a vector is a column: write the matrix first, `A * v`, or transpose, `v^T * A`")
+        } else {
+            d.help("columns of the left factor and rows of the right one must agree")
+        }
+    }
+
+    fn inverse(&self, a: Expr, place: Place) -> Elaborated {
+        if self.vanishes(&a) {
+            return fail(Diagnostic::new(
+                place,
+                "this is identically zero and has no inverse",
+            ));
+        }
+        Ok(expr::inverse(&self.names.symbols, a))
+    }
+
+    /// Whether an expression is zero whatever its letters are.
+    fn vanishes(&self, e: &Expr) -> bool {
+        Algebra::new(&self.names.symbols).is_zero(e)
+    }
+
+    fn square(&self, a: &Expr, place: Place, what: &str) -> Result<(), Box<Diagnostic>> {
+        if a.shape().is_square() {
+            return Ok(());
+        }
+        let shape = shape_text(&self.names.symbols, a.shape());
+        fail(
+            Diagnostic::new(
+                place,
+                format!("{what} needs a square matrix, and this is {shape}"),
+            )
+            .help("multiply by a transpose, as in `tr(a * b^T)`, or use `dot(a, b)` for vectors"),
+        )
+    }
+
+    /// A word that is declared is no function: `rot (a)` is then a product.
+    fn hidden(&self, name: &Name, args: &[Expression]) -> Option<Expression> {
+        let n = name.text.as_str();
+        let declared = self.names.symbols.find(n).is_some()
+            || self.bindings.iter().any(|(bound, _)| bound == n);
+        let [argument] = args else { return None };
+        if !HIDEABLE.contains(&n) || !declared {
+            return None;
+        }
+        let factor = Expression {
+            kind: Kind::Name(n.to_owned()),
+            place: name.place,
+        };
+        Some(Expression {
+            place: name.place.to(argument.place),
+            kind: Kind::Product(vec![factor, argument.clone()]),
+        })
+    }
+
+    /// Parts of elements of SU(2) and SE(3).
+    fn of_group(&self, f: &str, a: Expr, place: Place) -> Elaborated {
+        let symbols = &self.names.symbols;
+        if a.shape() != Shape::square(Dim::Fixed(4)) {
+            let what = shape_text(symbols, a.shape());
+            let d = Diagnostic::new(
+                place,
+                format!("`{f}` needs a 4 x 4 matrix, and this is {what}"),
+            );
+            return fail(d.help("elements of SU<2> and of SE<3> are 4 x 4 matrices"));
+        }
+        let quaternion = is_element(symbols, &a, Structure::UnitQuaternion);
+        let motion = is_element(symbols, &a, Structure::RigidMotion);
+        match f {
+            "re" => return Ok(expr::real(a)),
+            "im" => return Ok(expr::imaginary(a)),
+            "rot" if quaternion => return Ok(expr::rotation(symbols, a)),
+            "rot" if motion => return Ok(expr::block(symbols, &a)),
+            "pos" if motion => return Ok(expr::column(symbols, &a)),
+            _ => {}
+        }
+        let (what, example) = match f {
+            "rot" => ("SU<2> or SE<3>", "rot(g)"),
+            _ => ("SE<3>", "pos(G)"),
+        };
+        let message =
+            format!("`{f}` needs an element of {what}: products and inverses of such letters");
+        fail(Diagnostic::new(place, message).help(format!("write for example `{example}`")))
+    }
+
+    fn call(
+        &self,
+        name: &Name,
+        args: &[Expression],
+        place: Place,
+        expected: Option<Shape>,
+    ) -> Elaborated {
+        if let Some(product) = self.hidden(name, args) {
+            return self.elaborate(&product, expected);
+        }
+        let symbols = &self.names.symbols;
+        let f = name.text.as_str();
+        let count = if matches!(f, "dot" | "cross") { 2 } else { 1 };
+        if args.len() != count {
+            let (wanted, example) = match count {
+                1 => ("one argument", format!("{f}(a)")),
+                _ => ("two arguments", format!("{f}(a, b)")),
+            };
+            let message = format!("`{f}` takes {wanted}, {} given", args.len());
+            return fail(Diagnostic::new(place, message).help(format!("write `{example}`")));
+        }
+        let three = |a: &Expr, at: Place| {
+            if a.shape() == Shape::vector(Dim::Fixed(3)) {
+                return Ok(());
+            }
+            let what = shape_text(symbols, a.shape());
+            fail(Diagnostic::new(
+                at,
+                format!("`{f}` needs a vector of length 3, and this is {what}"),
+            ))
+        };
+        let first = &args[0];
+        let argument = |context: Option<Shape>| self.elaborate(first, context);
+        match f {
+            "tr" | "Tr" | "det" | "I1" | "I2" | "inv" | "sym" | "skew" | "diag" => {
+                let context = if matches!(f, "inv" | "sym" | "skew" | "diag") {
+                    expected
+                } else {
+                    None
+                };
+                let a = argument(context)?;
+                self.square(&a, first.place, &format!("`{f}`"))?;
+                Ok(match f {
+                    "tr" | "Tr" | "I1" => expr::trace(a),
+                    "det" => expr::det(a),
+                    // I2 = ((tr A)^2 - tr A^2)/2
+                    "I2" => expr::scale(
+                        Rational::HALF,
+                        expr::sub(
+                            expr::power(expr::trace(a.clone()), Rational::integer(2)),
+                            expr::trace(expr::mul(a.clone(), a)),
+                        ),
+                    ),
+                    "inv" => self.inverse(a, first.place)?,
+                    "sym" => expr::part(Part::Symmetric, a),
+                    "skew" => expr::part(Part::Skew, a),
+                    _ => expr::part(Part::Diagonal, a),
+                })
+            }
+            "log" | "exp" | "sqrt" => {
+                let a = self.of_shape(first, Shape::SCALAR)?;
+                Ok(match f {
+                    "log" => expr::call(Function::Log, a),
+                    "exp" => expr::call(Function::Exp, a),
+                    _ => expr::power(a, Rational::HALF),
+                })
+            }
+            "hat" | "quat" => {
+                let a = argument(Some(Shape::vector(Dim::Fixed(3))))?;
+                three(&a, first.place)?;
+                Ok(match f {
+                    "hat" => expr::hat(a),
+                    _ => expr::pure(a),
+                })
+            }
+            "vee" => {
+                let a = argument(expected.map(|s| Shape::square(s.rows)))?;
+                if a.shape() != Shape::square(Dim::Fixed(3)) {
+                    let what = shape_text(symbols, a.shape());
+                    let message = format!("`vee` needs a 3 x 3 matrix, and this is {what}");
+                    return fail(Diagnostic::new(first.place, message));
+                }
+                Ok(expr::vee(a))
+            }
+            "dot" | "cross" => {
+                let (a, b) = self.pair(first, &args[1])?;
+                if f == "cross" {
+                    three(&a, first.place)?;
+                    return Ok(expr::cross(a, b));
+                }
+                if !a.shape().is_vector() {
+                    let what = shape_text(symbols, a.shape());
+                    return fail(
+                        Diagnostic::new(
+                            first.place,
+                            format!("`dot` pairs two vectors, and this is {what}"),
+                        )
+                        .help("the pairing of two matrices is `tr(A^T * B)`"),
+                    );
+                }
+                Ok(expr::dot(a, b))
+            }
+            "next" | "prev" => {
+                let a = argument(expected)?;
+                let moves = expr::letters(&a).iter().any(|l| {
+                    matches!(
+                        symbols.get(l.symbol).role,
+                        Role::Element | Role::Velocity | Role::Advected
+                    )
+                });
+                if !moves {
+                    return fail(
+                        Diagnostic::new(
+                            place,
+                            format!("`{f}` of a constant is the constant itself"),
+                        )
+                        .help(format!("drop `{f}`")),
+                    );
+                }
+                let by = if f == "next" {
+                    Shift::NEXT
+                } else {
+                    Shift::PREVIOUS
+                };
+                let shifted = expr::shift_time(symbols, &a, by.time);
+                for l in expr::letters(&shifted) {
+                    if symbols.get(l.symbol).role == Role::Velocity {
+                        let name = &symbols.get(l.symbol).name;
+                        return fail(messages::shifted_velocity(place, name));
+                    }
+                    if !messages::EDGE.contains(&l.shift.time) {
+                        return fail(messages::shift_too_far(place));
+                    }
+                }
+                Ok(shifted)
+            }
+            "re" | "im" | "rot" | "pos" => {
+                let a = argument(Some(Shape::square(Dim::Fixed(4))))?;
+                self.of_group(f, a, first.place)
+            }
+            _ => fail(
+                Diagnostic::new(
+                    name.place,
+                    format!("`{f}` belongs to models that this version does not derive yet"),
+                )
+                .help(
+                    "available: tr det log exp sqrt inv sym skew diag hat vee dot cross re im quat rot pos I1 I2 next",
+                ),
+            ),
         }
     }
 }

@@ -126,17 +126,6 @@ pub fn ty(d: &Derivation, i: usize) -> TokenStream {
     }
 }
 
-/// The neutral element.
-pub fn identity(d: &Derivation, i: usize) -> TokenStream {
-    match of(d, i) {
-        Family::Rotation => quote!(Rotation::identity()),
-        Family::Orthogonal(_) => quote!(Orthogonal::identity()),
-        Family::Linear(_) => quote!(Linear::identity()),
-        Family::Quaternion => quote!(UnitQuaternion::identity()),
-        Family::Motion => quote!(RigidMotion::identity()),
-    }
-}
-
 /// The numbers of an element as a slice.
 pub fn numbers(d: &Derivation, i: usize, element: TokenStream) -> TokenStream {
     match of(d, i) {

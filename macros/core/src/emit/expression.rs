@@ -4,7 +4,7 @@
 use super::names::variable;
 use super::sizes::size;
 use crate::algebra::Rational;
-use crate::expr::shape::{Dim, Shape};
+use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr, Function, Letter, Map, Node, Part};
 use crate::schedule::{Bracketed, Program, associate};
@@ -158,7 +158,13 @@ impl Writer<'_> {
                 let polynomial = self.write(&expr::adjugate_polynomial(a));
                 quote!((#polynomial))
             }
-            Node::Dot(a, b) => self.method(a, "dot", b),
+            Node::Dot(a, b) => match b.node() {
+                Node::Unit(_, axis) => {
+                    let (a, axis) = (go(a), Literal::usize_unsuffixed(*axis as usize));
+                    quote!(#a[#axis])
+                }
+                _ => self.method(a, "dot", b),
+            },
             Node::Cross(a, b) => self.method(a, "cross", b),
             Node::Hat(a) => self.function("hat", a),
             Node::Vee(a) => self.function("vee", a),
@@ -209,7 +215,37 @@ impl Writer<'_> {
         quote!(#a.#name(#b))
     }
 
+    /// Whether this is a diagonal matrix by its declaration.
+    fn is_diagonal(&self, e: &Expr) -> bool {
+        match e.node() {
+            Node::Letter(at) => self.symbols.get(at.symbol).structure == Structure::Diagonal,
+            _ => false,
+        }
+    }
+
+    /// `tr(A) Id - A`.
+    fn complement(&self, terms: &[Expr]) -> Option<TokenStream> {
+        let [trace, subtracted] = terms else {
+            return None;
+        };
+        let (Node::Product(factors), Node::Neg(a)) = (trace.node(), subtracted.node()) else {
+            return None;
+        };
+        let [number, identity] = factors.as_slice() else {
+            return None;
+        };
+        let (Node::Trace(x), Node::Identity(_)) = (number.node(), identity.node()) else {
+            return None;
+        };
+        // The trace of the transpose is the same.
+        (a == x || *a == expr::transpose(self.symbols, x.clone()))
+            .then(|| self.function("trace_complement", a))
+    }
+
     fn sum(&self, terms: &[Expr]) -> TokenStream {
+        if let Some(complement) = self.complement(terms) {
+            return complement;
+        }
         // A leading minus sign costs an operation and reads badly: start with a positive term.
         let first = terms
             .iter()
@@ -332,6 +368,26 @@ impl Writer<'_> {
                         _ => None,
                     });
                     let (n, m) = (number(left.rows), number(right.cols));
+                    let three = |e: &Option<Expr>| match e.as_ref().map(Expr::node) {
+                        Some(Node::Hat(v)) => Some(w.operand(v)),
+                        _ => None,
+                    };
+                    let crossed = match (three(&x_expr), three(&y_expr)) {
+                        (Some(v), _) if right.is_vector() => Some(quote!(#v.cross(&#y))),
+                        (Some(v), _) if right.cols == Dim::Fixed(3) => {
+                            Some(quote!(crossed(&#v, &#y)))
+                        }
+                        (_, Some(v)) if left.rows == Dim::Fixed(3) => {
+                            Some(quote!(crossing(&#x, &#v)))
+                        }
+                        _ if x_expr.as_ref().is_some_and(|e| w.is_diagonal(e)) => {
+                            Some(quote!(diagonal_times(&#x, &#y)))
+                        }
+                        _ if y_expr.as_ref().is_some_and(|e| w.is_diagonal(e)) => {
+                            Some(quote!(times_diagonal(&#x, &#y)))
+                        }
+                        _ => None,
+                    };
                     let constant = match (x_expr.as_ref(), y_expr.as_ref()) {
                         (Some(e), _) if is_inclusion(e).is_some() => {
                             is_inclusion(e).map(|(whole, at, taken)| {
@@ -353,6 +409,7 @@ impl Writer<'_> {
                     };
                     let tokens = match transposed {
                         _ if constant.is_some() => constant.unwrap_or_default(),
+                        _ if crossed.is_some() => crossed.unwrap_or_default(),
                         // nalgebra multiplies by a number on the right.
                         _ if left.is_scalar() => quote!((#y * #x)),
                         // A row times a column, and A^T B without forming the transpose.

@@ -517,7 +517,8 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
     let types: Vec<TokenStream> = (0..d.spec.configurations.len())
         .map(|i| element::ty(d, i))
         .collect();
-    let guess = element::Bundle::of(d).ty(&types);
+    let elements = element::Bundle::of(d).ty(&types);
+    let dimension = element::total(d);
     let (work_field, work_doc) = match d.solve.method {
         Method::FreeMoserVeselov if !factor_references(d).is_empty() => {
             let kept = factor_references(d).into_iter().map(|id| {
@@ -548,7 +549,7 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
         Method::ForcedMoserVeselov => (TokenStream::new(), " The step."),
         Method::LeftFactor | Method::Davenport => super::left_factor::work(d),
         Method::Newton => (
-            quote!(guess: #guess,),
+            quote!(search: newton::Search<T, #elements, #dimension>,),
             " The step and the last velocities, from which the next solve starts.",
         ),
     };

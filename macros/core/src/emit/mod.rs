@@ -6,6 +6,7 @@ mod card;
 mod discrete_energy;
 mod element;
 mod energy;
+mod equations;
 mod expression;
 mod forced;
 mod invariants;
@@ -18,8 +19,6 @@ mod residual;
 mod sizes;
 mod step;
 mod stepper;
-#[cfg(test)]
-mod tests;
 
 use crate::derive::Derivation;
 use crate::diagnostic::{Diagnostic, Errors};

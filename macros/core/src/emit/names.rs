@@ -167,7 +167,7 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
 
 /// What emitted functions call by a plain name, and what they name themselves: a local of the
 /// model under such a name would hide it. The test of hygiene states a model with all of them.
-const INSIDE: [&str; 102] = [
+const INSIDE: [&str; 110] = [
     "BodyImpulse",
     "BodyMomentum",
     "BodyMomentumMatrix",
@@ -186,6 +186,7 @@ const INSIDE: [&str; 102] = [
     "UnitQuaternion",
     "all",
     "all_finite",
+    "assembled",
     "axial_of_difference",
     "axis",
     "basis",
@@ -193,14 +194,19 @@ const INSIDE: [&str; 102] = [
     "chosen_solver",
     "columns_from",
     "count",
+    "size_of",
+    "crossed",
+    "crossing",
+    "trace_complement",
     "determinant",
     "diagonal_part",
+    "diagonal_times",
+    "times_diagonal",
     "e",
     "even_count",
     "factor",
     "forced",
     "found",
-    "guess",
     "h",
     "i",
     "inclusion",
@@ -210,6 +216,7 @@ const INSIDE: [&str; 102] = [
     "into_rows",
     "inverse_or_nan",
     "j",
+    "joined",
     "kinetic",
     "largest_step",
     "length",
@@ -249,6 +256,7 @@ const INSIDE: [&str; 102] = [
     "rows_from",
     "same",
     "scratch",
+    "search",
     "settings",
     "sizes",
     "skew_basis",

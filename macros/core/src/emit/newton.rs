@@ -1,14 +1,15 @@
 //! The step of a model whose velocities are found by Newton's method: residual and tangent are
 //! both derived, all configurations are solved together.
 
-use super::element::{self, Bundle, Family, family, stack};
+use super::element::{self, Bundle, Family, family};
+use super::equations::Equations;
 use super::expression::{Bindings, program};
 use super::items::{letters_of, parameter_locals, with_transports};
 use super::names::{Names, item, own, per_configuration, tagged, variable};
 use super::sizes::Generics;
 use super::step::{at, finish, here, update};
 use crate::check::spec::Side;
-use crate::derive::{Derivation, lie};
+use crate::derive::Derivation;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::schedule;
 use proc_macro2::TokenStream;
@@ -34,21 +35,18 @@ fn outgoing(d: &Derivation) -> Vec<Expr> {
 pub fn step(d: &Derivation, names: &Names) -> TokenStream {
     let s = &d.letters.symbols;
     let bodies = d.spec.configurations.len();
-    let dimension = element::total(d);
     let bundle = Bundle::of(d);
-    let covectors = element::covectors(d);
     let types: Vec<TokenStream> = (0..bodies).map(|i| element::ty(d, i)).collect();
     let elements = bundle.ty(&types);
     let used = Generics::of(d).used();
     let (state, work) = (item(d, "State"), item(d, "Workspace"));
     let node = names.local("node");
     let step = variable(s, d.spec.step);
-    let (trial, residual, tangent, mu, scale, solved) = (
+    let (trial, mu, momentum, newton, solved) = (
         names.local("trial"),
-        names.local("residual"),
-        names.local("tangent"),
         names.local("momenta"),
-        names.local("scale"),
+        names.local("momentum"),
+        names.local("iteration"),
         names.local("solved"),
     );
     let momenta = outgoing(d);
@@ -104,83 +102,23 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
             }
         })
         .collect();
-    let node_momenta = bundle.value(&node_momenta);
-    // Residual.
-    let p = schedule::program(s, &momenta, "t");
-    let (lets, values) = program(&p, &bindings);
-    let parts: Vec<TokenStream> = values
-        .iter()
-        .enumerate()
-        .map(|(i, v)| {
-            let own = bundle.part(quote!(#mu), i);
-            quote!((#v) - #own)
-        })
-        .collect();
-    let parts = bundle.value(&parts);
-    let stacked = stack(d, quote!(parts));
-    let residual_closure = quote! {
-        let #residual = |#trial: &#elements| {
-            #velocities
-            #lets
-            let parts: #covectors = #parts;
-            #stacked
-        };
+    let solved_for = Equations {
+        d,
+        bindings: &bindings,
+        trial: &trial,
+        momenta: &mu,
     };
-    // Tangent: the derivative along Ω η for every basis element of every velocity.
-    let mut columns = TokenStream::new();
-    for j in 0..bodies {
-        let w = d.spec.configurations[j].velocity;
-        let eta = d.letters.direction[j];
-        let group = d.spec.configurations[j].group;
-        let change = expr::mul(expr::here(s, w), lie::element(s, group, eta));
-        let derivatives: Vec<Expr> = momenta
-            .iter()
-            .map(|m| expr::directional(s, m, &[(at(w, Shift::HERE), change.clone())]))
-            .collect();
-        let p = schedule::program(s, &derivatives, "t");
-        let (lets, values) = program(&p, &bindings);
-        let eta = variable(s, eta);
-        let column = if j == 0 {
-            quote!(axis)
-        } else {
-            let offset = element::offset(d, j);
-            quote!(#offset + axis)
-        };
-        let (directions, basis) = (
-            element::coordinates(d, j),
-            element::basis(d, j, quote!(axis)),
-        );
-        let values = bundle.value(&values);
-        columns.extend(quote! {
-            for axis in 0..#directions {
-                let #eta = #basis;
-                #lets
-                let parts: #covectors = #values;
-                matrix.set_column(#column, &#stacked);
-            }
-        });
-    }
-    let tangent_closure = quote! {
-        let #tangent = |#trial: &#elements| {
-            #velocities
-            let mut matrix = SMatrix::<T, #dimension, #dimension>::zeros();
-            #columns
-            matrix
-        };
-    };
+    let (known, equations) = solved_for.write(&momenta, &node_momenta);
+    let (at_trial, residual_body, tangent_body) =
+        (equations.at_trial, equations.residual, equations.tangent);
     // The natural size of the residual: the momenta and the gradients they are made of.
     let p = schedule::program(s, &gradients, "t");
     let (gradient_lets, gradient_values) = program(&p, &bindings);
     let sizes = gradient_values
         .iter()
         .map(|v| quote!(length(&(#v)).magnitude()));
-    let momentum_parts: Vec<TokenStream> =
-        (0..bodies).map(|i| bundle.part(quote!(#mu), i)).collect();
-    let guess_names: TokenStream = quote! {
-        let #trial = &work.guess;
-        #velocities
-    };
-    let guess = quote!(work.guess = #solved;);
+    let momentum_parts = &equations.momenta;
+    let remembered = quote!(work.search.remember(state.#node - 1, #solved););
     let mut after = bindings.clone();
     let matrices: TokenStream = (0..bodies)
         .map(|i| {
@@ -192,7 +130,7 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
         })
         .collect();
     let solved_at = |i: usize| bundle.part(quote!(#solved), i);
-    let rest = finish(d, names, &mut after, &solved_at, guess);
+    let rest = finish(d, names, &mut after, &solved_at, remembered);
     let method = format!(" One step, in place. Solved thus: {}.", d.solve.reason);
     quote! {
         #[doc = #method]
@@ -204,20 +142,25 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
             let #step = work.h;
             #parameters
             #locals
-            let #mu: #covectors = #node_momenta;
-            #residual_closure
-            #tangent_closure
-            let #scale = {
-                #guess_names
-                #gradient_lets
-                let mut total = 0.0;
-                #(total += length(&#momentum_parts).magnitude();)*
-                #(total += #sizes;)*
-                total
-            };
-            let #solved = match newton::solve(work.guess, #scale, #residual, #tangent) {
-                Ok(found) => found.element,
-                Err(e) => return Err(StepCause::from(e).at_node(state.#node)),
+            #known
+            let #momentum = #(size_of(&#momentum_parts))+*;
+            let mut #newton = work.search.begin(state.#node, #momentum);
+            let #solved: #elements = loop {
+                let #trial = #newton.trial();
+                if #newton.wants_scale() {
+                    #velocities
+                    #gradient_lets
+                    #newton.set_scale(#(#sizes)+*);
+                }
+                #at_trial
+                if #newton.assess({ #residual_body }) {
+                    #newton.set_tangent(&{ #tangent_body });
+                }
+                match #newton.correct() {
+                    newton::Progress::Continue => {}
+                    newton::Progress::Solved(found) => break found.element,
+                    newton::Progress::Failed(e) => return Err(StepCause::from(e).at_node(state.#node)),
+                }
             };
             #matrices
             #rest

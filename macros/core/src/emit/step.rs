@@ -1,7 +1,7 @@
 //! `start` and `step`: the momentum of the edge from that of the node, the solve, the new element,
 //! the momentum of the next node.
 
-use super::element::{self, Bundle, Family, family};
+use super::element::{self, Family, family};
 use super::expression::{Bindings, Writer, program};
 use super::items::{self, kept, letters_of, node_locals, parameter_locals, with_transports};
 use super::names::{Names, field, item, own, per_configuration, tagged, variable};
@@ -12,7 +12,7 @@ use crate::derive::recognise::{Method, Riccati};
 use crate::derive::transport::Transport;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::schedule;
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::TokenStream;
 use quote::quote;
 
 pub(super) fn at(symbol: crate::expr::symbol::SymbolId, shift: Shift) -> Letter {
@@ -149,19 +149,6 @@ fn start(d: &Derivation, names: &Names) -> TokenStream {
         };
         references.extend(quote!(let #local = #value;));
     }
-    let identities: Vec<TokenStream> = (0..d.spec.configurations.len())
-        .map(|i| element::identity(d, i))
-        .collect();
-    let guess = Bundle::of(d).value(&identities);
-    let guess = match identities.as_slice() {
-        // Shorter, and as long as it says how often.
-        [first, _, ..] if element::only_rotations(d) => {
-            let count = Literal::usize_unsuffixed(identities.len());
-            quote!([#first; #count])
-        }
-        [first] if element::only_rotations(d) => quote!([#first; 1]),
-        _ => guess,
-    };
     let work_init = match d.solve.method {
         Method::FreeMoserVeselov => {
             let element = own(d, d.spec.configurations[0].element);
@@ -186,7 +173,7 @@ fn start(d: &Derivation, names: &Names) -> TokenStream {
         }
         Method::ForcedMoserVeselov => TokenStream::new(),
         Method::LeftFactor | Method::Davenport => super::left_factor::work_init(d),
-        Method::Newton => quote!(guess: #guess,),
+        Method::Newton => quote!(search: newton::Search::from_rest(),),
     };
     let state_of = quote! {
         #(#checks)*
@@ -272,7 +259,7 @@ pub(super) fn finish(
     names: &Names,
     bindings: &mut Bindings,
     solved: &dyn Fn(usize) -> TokenStream,
-    guess: TokenStream,
+    remembered: TokenStream,
 ) -> TokenStream {
     let s = &d.letters.symbols;
     let updates: Vec<Update> = (0..d.balances.len()).map(|i| update(d, i)).collect();
@@ -332,7 +319,8 @@ pub(super) fn finish(
     out.extend(node_locals(
         d, names, 1, &needed, &element, &reference, bindings,
     ));
-    let p = schedule::program(s, &wanted, "t");
+    let factored: Vec<Expr> = wanted.iter().map(|e| expr::factored(s, e)).collect();
+    let p = schedule::program(s, &factored, "t");
     let (lets, values) = program(&p, bindings);
     out.extend(lets);
     let mut values = values.into_iter();
@@ -390,7 +378,7 @@ pub(super) fn finish(
         }
         #assignments
         state.#node += 1;
-        #guess
+        #remembered
         Ok(())
     }
 }

@@ -6,10 +6,10 @@ use super::*;
 use crate::expr::symbol::Symbols;
 
 /// A term as coefficient, powers of numbers, and matrices in order.
-struct Parts {
-    coefficient: Rational,
-    numbers: Vec<(Expr, Rational)>,
-    matrices: Vec<Expr>,
+pub(super) struct Parts {
+    pub coefficient: Rational,
+    pub numbers: Vec<(Expr, Rational)>,
+    pub matrices: Vec<Expr>,
     shape: Shape,
 }
 
@@ -95,7 +95,7 @@ fn cancelled(e: &Expr) -> Expr {
     scaled(coefficient, whole(parts))
 }
 
-fn parts(e: &Expr) -> Parts {
+pub(super) fn parts(e: &Expr) -> Parts {
     let mut out = Parts {
         coefficient: Rational::ONE,
         numbers: Vec::new(),

@@ -4,6 +4,7 @@
 mod build;
 mod collect;
 mod directional;
+mod factored;
 mod gradient;
 mod projection;
 mod quaternion;
@@ -21,6 +22,7 @@ use symbol::SymbolId;
 pub use build::*;
 pub use collect::{collect, positive_first};
 pub use directional::directional;
+pub use factored::{axial_of_outer, factored};
 pub use gradient::gradient;
 pub use projection::projected;
 pub use quaternion::{imaginary, pure, real, rotation};

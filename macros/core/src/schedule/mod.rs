@@ -2,7 +2,9 @@
 //! temporaries, computed once, in an order in which each uses only those before it.
 
 mod chain;
+mod known;
 mod program;
 
 pub use chain::{Bracketed, associate};
+pub use known::Known;
 pub use program::{Program, program};

@@ -1,0 +1,334 @@
+//! Velocities by parts of three dimensions: a unit quaternion as a number and a vector, a rigid
+//! motion as a rotation and a vector. What is solved at each step is then written in vectors.
+//! Takes the derivation and expressions of it; gives the same in the parts.
+
+use super::Derivation;
+use crate::algebra::Rational;
+use crate::check::spec::Group;
+use crate::expr::shape::{Dim, Shape, Structure};
+use crate::expr::symbol::{Role, SymbolId, Symbols};
+use crate::expr::{self, Expr, Letter, Map, Node, Part, Shift};
+
+const THREE: Dim = Dim::Fixed(3);
+
+/// The parts of one velocity.
+#[derive(Clone, Copy, Debug)]
+pub enum Velocity {
+    /// SO(3): the rotation itself.
+    Rotation(SymbolId),
+    /// SU(2): real and imaginary part.
+    Quaternion(SymbolId, SymbolId),
+    /// SE(3): rotation and translation.
+    Motion(SymbolId, SymbolId),
+}
+
+/// All velocities by parts.
+#[derive(Clone, Debug)]
+pub struct Parts {
+    /// The letters of the derivation, those of the parts, and [`Parts::direction`].
+    pub symbols: Symbols,
+    /// The parts, one configuration after the other.
+    pub velocities: Vec<Velocity>,
+    /// The vector of three coordinates along which tangents are taken.
+    pub direction: SymbolId,
+    /// The velocities as the model writes them.
+    whole: Vec<Letter>,
+}
+
+/// The letter at its own edge.
+fn at(symbol: SymbolId) -> Letter {
+    Letter {
+        symbol,
+        shift: Shift::HERE,
+    }
+}
+
+impl Parts {
+    /// Those of a model; `None` where a group is not one of space.
+    pub fn of(d: &Derivation) -> Option<Parts> {
+        let mut symbols = d.letters.symbols.clone();
+        let mut add = |name: &str, shape: Shape, structure: Structure| {
+            let name = symbols.fresh_name(name);
+            symbols.add(&name, shape, structure, Role::Derived)
+        };
+        let mut velocities = Vec::new();
+        for c in &d.spec.configurations {
+            let name = &d.letters.symbols.get(c.velocity).name;
+            let named = |part: &str| format!("{name}_{part}");
+            velocities.push(match c.group {
+                Group::SpecialOrthogonal(n) if n == THREE => Velocity::Rotation(c.velocity),
+                Group::UnitQuaternions => Velocity::Quaternion(
+                    add(&named("re"), Shape::SCALAR, Structure::General),
+                    add(&named("im"), Shape::vector(THREE), Structure::General),
+                ),
+                Group::RigidMotions => Velocity::Motion(
+                    add(&named("rot"), Shape::square(THREE), Structure::Orthogonal),
+                    add(&named("pos"), Shape::vector(THREE), Structure::General),
+                ),
+                Group::SpecialOrthogonal(_) | Group::GeneralLinear(_) => return None,
+            });
+        }
+        let direction = add("η", Shape::vector(THREE), Structure::General);
+        let whole = d.spec.configurations.iter().map(|c| at(c.velocity));
+        Some(Parts {
+            whole: whole.collect(),
+            symbols,
+            velocities,
+            direction,
+        })
+    }
+
+    /// A covector of every configuration as vectors of three components.
+    pub fn covectors(&self, list: &[Expr]) -> Vec<Expr> {
+        let mut all = Vec::new();
+        for (e, v) in list.iter().zip(&self.velocities) {
+            match v {
+                Velocity::Rotation(_) | Velocity::Quaternion(..) => all.push(e.clone()),
+                Velocity::Motion(..) => all.extend([0, 3].map(|row| self.rows(e, row))),
+            }
+        }
+        all
+    }
+
+    /// Three components of a sum of vectors of six.
+    fn rows(&self, e: &Expr, row: u8) -> Expr {
+        match e.node() {
+            Node::Sum(terms) => expr::sum(
+                terms.iter().map(|t| self.rows(t, row)).collect::<Vec<_>>(),
+                Shape::vector(THREE),
+            ),
+            Node::Neg(a) => expr::neg(self.rows(a, row)),
+            Node::Quotient(a, b) => expr::quotient(self.rows(a, row), b.clone()),
+            Node::Product(factors) => {
+                let first = factors.iter().position(|f| !f.shape().is_scalar());
+                let included = first.and_then(|i| match factors[i].node() {
+                    Node::Inclusion(_, at) => Some((i, *at)),
+                    _ => None,
+                });
+                match included {
+                    Some((_, at)) if at != row => expr::zero(Shape::vector(THREE)),
+                    Some((i, _)) => {
+                        let mut rest = factors.clone();
+                        rest.remove(i);
+                        expr::product(rest)
+                    }
+                    None => expr::part_of_six(&self.symbols, e, row),
+                }
+            }
+            _ => expr::part_of_six(&self.symbols, e, row),
+        }
+    }
+
+    /// How the parts move when the velocity is moved from the right along the direction: one list a
+    /// block of three coordinates, in the order of the coordinates of the group.
+    pub fn changes(&self) -> Vec<Vec<(Letter, Expr)>> {
+        let letter = |id: SymbolId| expr::here(&self.symbols, id);
+        let along = letter(self.direction);
+        let half = |e: Expr| expr::scale(Rational::HALF, e);
+        let mut all = Vec::new();
+        for v in &self.velocities {
+            match *v {
+                Velocity::Rotation(w) => {
+                    all.push(vec![(
+                        at(w),
+                        expr::mul(letter(w), expr::hat(along.clone())),
+                    )]);
+                }
+                Velocity::Quaternion(re, im) => {
+                    let turned = expr::add(
+                        expr::mul(letter(re), along.clone()),
+                        expr::cross(letter(im), along.clone()),
+                    );
+                    let real = expr::neg(half(expr::dot(letter(im), along.clone())));
+                    all.push(vec![(at(re), real), (at(im), half(turned))]);
+                }
+                Velocity::Motion(rot, pos) => {
+                    let turn = expr::mul(letter(rot), expr::hat(along.clone()));
+                    let shift = expr::mul(letter(rot), along.clone());
+                    all.push(vec![(at(rot), turn)]);
+                    all.push(vec![(at(pos), shift)]);
+                }
+            }
+        }
+        all
+    }
+
+    /// An expression in the parts; `None` where a velocity of another group than SO(3) stays whole.
+    pub fn write(&self, e: &Expr) -> Option<Expr> {
+        let written = self.straight(&expr::collect(&self.symbols, &self.lowered(e)));
+        let whole = self.whole.iter().zip(&self.velocities);
+        let mut other = whole.filter(|(_, v)| !matches!(v, Velocity::Rotation(_)));
+        let stays = other.any(|(w, _)| expr::contains(&written, *w));
+        (!stays).then_some(written)
+    }
+
+    /// Whether this letter is a velocity or a part of one.
+    pub fn varies(&self, l: Letter) -> bool {
+        self.velocities.iter().any(|v| match v {
+            Velocity::Rotation(w) => l == at(*w),
+            Velocity::Quaternion(x, y) | Velocity::Motion(x, y) => l == at(*x) || l == at(*y),
+        })
+    }
+
+    /// The parts of a velocity that stands as it is.
+    fn velocity(&self, e: &Expr) -> Option<Velocity> {
+        let Node::Letter(letter) = e.node() else {
+            return None;
+        };
+        let i = self.whole.iter().position(|w| w == letter)?;
+        self.velocities.get(i).copied()
+    }
+
+    fn lowered(&self, e: &Expr) -> Expr {
+        let letter = |id: SymbolId| expr::here(&self.symbols, id);
+        if let Node::Map(map, a) = e.node() {
+            match (map, self.velocity(a)) {
+                (Map::Rotation, Some(Velocity::Motion(rot, _))) => return letter(rot),
+                (Map::Translation, Some(Velocity::Motion(_, pos))) => return letter(pos),
+                (Map::Rotation, Some(Velocity::Quaternion(re, im))) => {
+                    // Id + 2 hat(v) (w + hat(v)).
+                    let hat = expr::hat(letter(im));
+                    let w = expr::mul(letter(re), expr::identity(THREE));
+                    let two = Rational::integer(2);
+                    let turn = expr::scale(two, expr::mul(hat.clone(), expr::add(w, hat)));
+                    return expr::add(expr::identity(THREE), turn);
+                }
+                (Map::Real, _) => {
+                    if let Some((real, _)) = self.quaternion(a) {
+                        return real;
+                    }
+                }
+                (Map::Imaginary, _) => {
+                    if let Some((_, imaginary)) = self.quaternion(a) {
+                        return imaginary;
+                    }
+                }
+                _ => {}
+            }
+        }
+        if let Node::Trace(a) = e.node()
+            && a.shape() == Shape::square(Dim::Fixed(4))
+            && let Some((real, _)) = self.quaternion(a)
+        {
+            return expr::scale(Rational::integer(4), real);
+        }
+        expr::rebuild(&self.symbols, e, &mut |x| self.lowered(x))
+    }
+
+    /// A sum of words of quaternions as real and imaginary part.
+    fn quaternion(&self, e: &Expr) -> Option<(Expr, Expr)> {
+        let vector = Shape::vector(THREE);
+        let none = || expr::zero(vector);
+        Some(match e.node() {
+            Node::Letter(_) => match self.velocity(e)? {
+                Velocity::Quaternion(re, im) => {
+                    (expr::here(&self.symbols, re), expr::here(&self.symbols, im))
+                }
+                Velocity::Rotation(_) | Velocity::Motion(..) => return None,
+            },
+            Node::Identity(_) => (expr::integer(1), none()),
+            Node::Map(Map::Pure, v) => (expr::integer(0), self.lowered(v)),
+            Node::Transpose(a) | Node::Inverse(a) => {
+                let (re, im) = self.quaternion(a)?;
+                (re, expr::neg(im))
+            }
+            Node::Part(Part::Symmetric, a) => (self.quaternion(a)?.0, none()),
+            Node::Part(Part::Skew, a) => (expr::integer(0), self.quaternion(a)?.1),
+            Node::Neg(a) => {
+                let (re, im) = self.quaternion(a)?;
+                (expr::neg(re), expr::neg(im))
+            }
+            Node::Quotient(a, b) => {
+                let ((re, im), b) = (self.quaternion(a)?, self.lowered(b));
+                (expr::quotient(re, b.clone()), expr::quotient(im, b))
+            }
+            Node::Sum(terms) => {
+                let parts: Option<Vec<(Expr, Expr)>> =
+                    terms.iter().map(|t| self.quaternion(t)).collect();
+                let (re, im): (Vec<Expr>, Vec<Expr>) = parts?.into_iter().unzip();
+                (expr::sum(re, Shape::SCALAR), expr::sum(im, vector))
+            }
+            Node::Product(factors) => {
+                let (mut re, mut im) = (expr::integer(1), none());
+                for f in factors {
+                    if f.shape().is_scalar() {
+                        let f = self.lowered(f);
+                        (re, im) = (expr::mul(f.clone(), re), expr::mul(f, im));
+                        continue;
+                    }
+                    let (b, v) = self.quaternion(f)?;
+                    let real = expr::sub(
+                        expr::mul(re.clone(), b.clone()),
+                        expr::dot(im.clone(), v.clone()),
+                    );
+                    let turned = [
+                        expr::mul(re, v.clone()),
+                        expr::mul(b, im.clone()),
+                        expr::cross(im, v),
+                    ];
+                    (re, im) = (real, expr::sum(turned, vector));
+                }
+                (re, im)
+            }
+            _ => return None,
+        })
+    }
+
+    /// `R (a x R^T b)` as `R a x b`, for a rotation among the velocities: nothing is turned forth
+    /// and back.
+    fn straight(&self, e: &Expr) -> Expr {
+        let e = expr::rebuild(&self.symbols, e, &mut |x| self.straight(x));
+        let Node::Product(factors) = e.node() else {
+            return e;
+        };
+        let [before @ .., turn, last] = factors.as_slice() else {
+            return e;
+        };
+        let (Node::Cross(a, b), true) = (last.node(), self.is_turn(turn)) else {
+            return e;
+        };
+        let (a, b) = match (self.turned(turn, a), self.turned(turn, b)) {
+            (None, None) => return e,
+            (x, y) => {
+                let through = |z: &Expr| expr::mul(turn.clone(), z.clone());
+                (
+                    x.unwrap_or_else(|| through(a)),
+                    y.unwrap_or_else(|| through(b)),
+                )
+            }
+        };
+        let mut word = before.to_vec();
+        word.push(expr::cross(a, b));
+        expr::product(word)
+    }
+
+    /// Whether this is a rotation among the velocities, or the inverse of one.
+    fn is_turn(&self, e: &Expr) -> bool {
+        let e = match e.node() {
+            Node::Transpose(a) => a,
+            _ => e,
+        };
+        let Node::Letter(l) = e.node() else {
+            return false;
+        };
+        let mut all = self.velocities.iter();
+        all.any(|v| match v {
+            Velocity::Rotation(w) | Velocity::Motion(w, _) => *l == at(*w),
+            Velocity::Quaternion(..) => false,
+        })
+    }
+
+    /// `R x` for `x = R^T y`, which is `y`.
+    fn turned(&self, turn: &Expr, x: &Expr) -> Option<Expr> {
+        let Node::Product(factors) = x.node() else {
+            return None;
+        };
+        let first = factors.iter().position(|f| !f.shape().is_scalar())?;
+        if factors[first] != expr::transpose(&self.symbols, turn.clone()) {
+            return None;
+        }
+        let mut rest = factors.clone();
+        rest.remove(first);
+        Some(expr::product(rest))
+    }
+}

@@ -1,0 +1,252 @@
+//! What Newton's method solves: residual and tangent of the equations of one step, at a trial.
+//! Takes the derived momenta of the outgoing edge; gives the code of both. By vectors and
+//! blocks of three where the groups are those of space, by coordinates and columns elsewhere.
+
+use super::element::{self, Bundle, stack};
+use super::expression::{Bindings, program};
+use super::names::variable;
+use super::step::at;
+use crate::derive::parts::{Parts, Velocity};
+use crate::derive::tangent::Direction;
+use crate::derive::{Derivation, lie};
+use crate::expr::{self, Expr, Node, Shift};
+use crate::schedule;
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::quote;
+
+/// Where the equations stand.
+pub(super) struct Equations<'a> {
+    /// The model.
+    pub d: &'a Derivation,
+    /// What is known at the node.
+    pub bindings: &'a Bindings,
+    /// The local that holds the trial.
+    pub trial: &'a Ident,
+    /// The local that holds the momenta of the node.
+    pub momenta: &'a Ident,
+}
+
+/// The equations as code.
+pub(super) struct Written {
+    /// What both need of the trial.
+    pub at_trial: TokenStream,
+    /// The residual, as the body of a block.
+    pub residual: TokenStream,
+    /// The tangent, as the body of a block.
+    pub tangent: TokenStream,
+    /// The momenta of the node, one by one.
+    pub momenta: Vec<TokenStream>,
+}
+
+impl Equations<'_> {
+    /// The statement that binds the momenta of the node, and the equations: `list` is derived,
+    /// `node` are the values at hand.
+    pub fn write(&self, list: &[Expr], node: &[TokenStream]) -> (TokenStream, Written) {
+        self.in_blocks(list, node)
+            .unwrap_or_else(|| self.in_columns(list, node))
+    }
+
+    /// Blocks of three; nothing where a group has other coordinates, or no rule gives the tangent.
+    fn in_blocks(&self, list: &[Expr], node: &[TokenStream]) -> Option<(TokenStream, Written)> {
+        let (d, trial, mu) = (self.d, self.trial, self.momenta);
+        let parts = Parts::of(d)?;
+        let s = &parts.symbols;
+        let list: Option<Vec<Expr>> = parts
+            .covectors(list)
+            .iter()
+            .map(|e| parts.write(e))
+            .collect();
+        let list = list?;
+        let direction = Direction {
+            symbols: s,
+            letter: parts.direction,
+        };
+        let mut blocks: Vec<Expr> = Vec::new();
+        for e in &list {
+            for change in parts.changes() {
+                let derivative = expr::directional(s, e, &change);
+                let derivative = expr::collect(s, &derivative);
+                blocks.push(expr::factored(s, &direction.matrix(&derivative)?));
+            }
+        }
+        let bundle = Bundle::of(d);
+        let mut velocities = TokenStream::new();
+        let mut known = TokenStream::new();
+        let mut given = Vec::new();
+        for (i, (v, value)) in parts.velocities.iter().zip(node).enumerate() {
+            let part = bundle.part(quote!(#trial), i);
+            let name = |id| variable(s, id);
+            match v {
+                Velocity::Rotation(w) => {
+                    let w = name(*w);
+                    velocities.extend(quote!(let #w = #part.matrix();));
+                    given.push(value.clone());
+                }
+                Velocity::Quaternion(re, im) => {
+                    let (re, im) = (name(*re), name(*im));
+                    velocities.extend(quote!(let (#re, #im) = (#part.real(), #part.imaginary());));
+                    given.push(value.clone());
+                }
+                Velocity::Motion(rot, pos) => {
+                    let (rot, pos) = (name(*rot), name(*pos));
+                    velocities.extend(
+                        quote!(let (#rot, #pos) = (#part.rotation.matrix(), #part.translation);),
+                    );
+                    let both = match i {
+                        0 => quote::format_ident!("{mu}_six"),
+                        _ => quote::format_ident!("{mu}_six_{i}"),
+                    };
+                    known.extend(quote!(let #both = #value;));
+                    given.extend([
+                        quote!(rows_from::<T, 6, 3, 1>(&#both, 0)),
+                        quote!(rows_from::<T, 6, 3, 1>(&#both, 3)),
+                    ]);
+                }
+            }
+        }
+        let count = Literal::usize_unsuffixed(given.len());
+        let total = Literal::usize_unsuffixed(3 * given.len());
+        known.extend(quote!(let #mu: [SVector<T, 3>; #count] = [#(#given),*];));
+        let momenta: Vec<TokenStream> = (0..given.len())
+            .map(|i| {
+                let i = Literal::usize_unsuffixed(i);
+                quote!(#mu[#i])
+            })
+            .collect();
+        let varies = |l| parts.varies(l);
+        let mut at_node = schedule::Known::new(s, &varies, "k");
+        let list: Vec<Expr> = list
+            .iter()
+            .map(|e| at_node.apart(&expr::factored(s, e)))
+            .collect();
+        let blocks: Vec<Expr> = blocks.iter().map(|e| at_node.apart(e)).collect();
+        let (names, values): (Vec<_>, Vec<Expr>) = at_node.values.into_iter().unzip();
+        let s = &at_node.symbols;
+        let p = schedule::program(s, &values, "s");
+        let (lets, values) = program(&p, self.bindings);
+        known.extend(lets);
+        let mut bindings = self.bindings.clone();
+        for ((name, result), value) in names.into_iter().zip(&p.results).zip(values) {
+            match result.node() {
+                // Another name for what has one already.
+                Node::Letter(l) => {
+                    bindings.bind(at(name, Shift::HERE), variable(&p.symbols, l.symbol))
+                }
+                _ => {
+                    let name = variable(s, name);
+                    known.extend(quote!(let #name = #value;));
+                }
+            }
+        }
+        let p = schedule::program(s, &list, "t");
+        let (lets, values) = program(&p, &bindings);
+        let residual = match (values.as_slice(), momenta.as_slice()) {
+            ([value], [own]) => quote!(#lets (#value) - #own),
+            _ => {
+                let rows = values.iter().zip(&momenta);
+                let rows = rows.map(|(value, own)| quote!((#value) - #own));
+                quote!(#lets joined::<T, #count, #total>(&[#(#rows),*]))
+            }
+        };
+        let p = schedule::program(s, &blocks, "t");
+        let (lets, values) = program(&p, &bindings);
+        let tangent = match values.as_slice() {
+            [only] => quote!(#lets #only),
+            _ => {
+                let rows = values.chunks(given.len()).map(|row| quote!([#(#row),*]));
+                quote!(#lets assembled::<T, #count, #total>(&[#(#rows),*]))
+            }
+        };
+        Some((
+            known,
+            Written {
+                at_trial: velocities,
+                residual,
+                tangent,
+                momenta,
+            },
+        ))
+    }
+
+    /// Coordinates one after the other; the tangent by the derivative along each of them.
+    fn in_columns(&self, list: &[Expr], node: &[TokenStream]) -> (TokenStream, Written) {
+        let (d, trial, mu) = (self.d, self.trial, self.momenta);
+        let s = &d.letters.symbols;
+        let bodies = d.spec.configurations.len();
+        let dimension = element::total(d);
+        let bundle = Bundle::of(d);
+        let covectors = element::covectors(d);
+        let velocities: TokenStream = (0..bodies)
+            .map(|i| {
+                let w = variable(s, d.spec.configurations[i].velocity);
+                let part = bundle.part(quote!(#trial), i);
+                quote!(let #w = #part.matrix();)
+            })
+            .collect();
+        let node = bundle.value(node);
+        let known = quote!(let #mu: #covectors = #node;);
+        let momenta: Vec<TokenStream> = (0..bodies).map(|i| bundle.part(quote!(#mu), i)).collect();
+        let p = schedule::program(s, list, "t");
+        let (lets, values) = program(&p, self.bindings);
+        let parts: Vec<TokenStream> = values
+            .iter()
+            .zip(&momenta)
+            .map(|(value, own)| quote!((#value) - #own))
+            .collect();
+        let parts = bundle.value(&parts);
+        let stacked = stack(d, quote!(parts));
+        let residual = quote! {
+            #lets
+            let parts: #covectors = #parts;
+            #stacked
+        };
+        // The derivative along Ω η for every basis element of every velocity.
+        let mut columns = TokenStream::new();
+        for j in 0..bodies {
+            let c = &d.spec.configurations[j];
+            let eta = d.letters.direction[j];
+            let change = expr::mul(expr::here(s, c.velocity), lie::element(s, c.group, eta));
+            let along = [(at(c.velocity, Shift::HERE), change)];
+            let derivatives: Vec<Expr> = list
+                .iter()
+                .map(|m| expr::directional(s, m, &along))
+                .collect();
+            let p = schedule::program(s, &derivatives, "t");
+            let (lets, values) = program(&p, self.bindings);
+            let eta = variable(s, eta);
+            let column = if j == 0 {
+                quote!(axis)
+            } else {
+                let offset = element::offset(d, j);
+                quote!(#offset + axis)
+            };
+            let (directions, basis) = (
+                element::coordinates(d, j),
+                element::basis(d, j, quote!(axis)),
+            );
+            let values = bundle.value(&values);
+            columns.extend(quote! {
+                for axis in 0..#directions {
+                    let #eta = #basis;
+                    #lets
+                    let parts: #covectors = #values;
+                    matrix.set_column(#column, &#stacked);
+                }
+            });
+        }
+        let tangent = quote! {
+            let mut matrix = SMatrix::<T, #dimension, #dimension>::zeros();
+            #columns
+            matrix
+        };
+        (
+            known,
+            Written {
+                at_trial: velocities,
+                residual,
+                tangent,
+                momenta,
+            },
+        )
+    }
+}

@@ -1,0 +1,189 @@
+//! A small matrix factored once for several right sides.
+//! Takes a square matrix; gives solutions. Blocks of three without exchange of rows where they go
+//! in, elimination with pivots where they do not.
+
+use super::solve_leading;
+use crate::Real;
+use nalgebra::{SMatrix, SVector};
+
+/// The factors of a matrix of which the leading `size` rows and columns count.
+#[derive(Clone, Copy, Debug)]
+pub struct Factors<T, const D: usize> {
+    /// Columns: block `L U` factors with the pivot blocks inverted in place, or the matrix itself.
+    columns: [[T; D]; D],
+    size: usize,
+    blocks: bool,
+}
+
+impl<T: Real, const D: usize> Factors<T, D> {
+    /// Factors of nothing: they solve no equation.
+    #[must_use]
+    pub fn none() -> Self {
+        Self {
+            columns: [[T::zero(); D]; D],
+            size: D,
+            blocks: false,
+        }
+    }
+
+    /// Factors a matrix.
+    #[inline(always)]
+    pub fn set(&mut self, matrix: &SMatrix<T, D, D>, size: usize) {
+        self.columns = matrix.data.0;
+        self.size = size;
+        self.blocks = in_blocks::<D>(size) && factor(&mut self.columns);
+        if !self.blocks {
+            self.columns = matrix.data.0;
+        }
+    }
+
+    /// The solution of `A x = b`; `None` where there is no usable pivot.
+    #[inline(always)]
+    #[must_use]
+    pub fn solve(&self, b: &SVector<T, D>) -> Option<SVector<T, D>> {
+        if self.blocks {
+            return Some(SVector::from_column_slice(&substitute(
+                &self.columns,
+                b.data.0[0],
+            )));
+        }
+        with_pivots(&self.columns, b, self.size)
+    }
+}
+
+/// A pivot block of three may be singular though the matrix is not.
+#[cold]
+#[inline(never)]
+fn with_pivots<T: Real, const D: usize>(
+    columns: &[[T; D]; D],
+    b: &SVector<T, D>,
+    size: usize,
+) -> Option<SVector<T, D>> {
+    solve_leading(&SMatrix::from_fn(|i, j| columns[j][i]), b, size)
+}
+
+/// Whether blocks of three go in: bodies in space have three coordinates, rigid motions six.
+#[inline(always)]
+fn in_blocks<const D: usize>(size: usize) -> bool {
+    size == D && D % 3 == 0 && D <= 9
+}
+
+/// `[column][row]`, the pivot blocks replaced by their inverses; whether they have some.
+#[inline(always)]
+fn factor<T: Real, const D: usize>(a: &mut [[T; D]; D]) -> bool {
+    let mut sum = T::zero();
+    for p in (0..D).step_by(3) {
+        let pivot = inverse(a, p);
+        sum += pivot[0][0] + pivot[1][1] + pivot[2][2];
+        for (column, entries) in pivot.iter().enumerate() {
+            a[p + column][p..p + 3].copy_from_slice(entries);
+        }
+        for column in a.iter_mut().skip(p + 3) {
+            let [x, y, z] = [column[p], column[p + 1], column[p + 2]];
+            for row in 0..3 {
+                column[p + row] = pivot[0][row] * x + pivot[1][row] * y + pivot[2][row] * z;
+            }
+        }
+        for j in p + 3..D {
+            for i in p + 3..D {
+                let taken =
+                    a[p][i] * a[j][p] + a[p + 1][i] * a[j][p + 1] + a[p + 2][i] * a[j][p + 2];
+                a[j][i] -= taken;
+            }
+        }
+    }
+    // The quotient by a determinant that vanishes is not finite.
+    sum.is_finite()
+}
+
+/// The inverse of the block of three at `p`, by cofactors; not finite where it is singular.
+#[inline(always)]
+fn inverse<T: Real, const D: usize>(a: &[[T; D]; D], p: usize) -> [[T; 3]; 3] {
+    let at = |row: usize, column: usize| a[p + column][p + row];
+    let minor = |i: usize, j: usize| {
+        let (r, s) = ((i + 1) % 3, (i + 2) % 3);
+        let (u, v) = ((j + 1) % 3, (j + 2) % 3);
+        at(r, u) * at(s, v) - at(r, v) * at(s, u)
+    };
+    let first = [minor(0, 0), minor(0, 1), minor(0, 2)];
+    let det = at(0, 0) * first[0] + at(0, 1) * first[1] + at(0, 2) * first[2];
+    let scale = T::one() / det;
+    [
+        first.map(|x| x * scale),
+        [minor(1, 0), minor(1, 1), minor(1, 2)].map(|x| x * scale),
+        [minor(2, 0), minor(2, 1), minor(2, 2)].map(|x| x * scale),
+    ]
+}
+
+#[inline(always)]
+fn substitute<T: Real, const D: usize>(a: &[[T; D]; D], mut x: [T; D]) -> [T; D] {
+    for p in (0..D).step_by(3) {
+        let mut right = [x[p], x[p + 1], x[p + 2]];
+        for q in 0..p {
+            for (row, entry) in right.iter_mut().enumerate() {
+                *entry -= a[q][p + row] * x[q];
+            }
+        }
+        for row in 0..3 {
+            x[p + row] = a[p][p + row] * right[0]
+                + a[p + 1][p + row] * right[1]
+                + a[p + 2][p + row] * right[2];
+        }
+    }
+    for p in (0..D).step_by(3).rev() {
+        for j in p + 3..D {
+            for row in 0..3 {
+                let taken = a[j][p + row] * x[j];
+                x[p + row] -= taken;
+            }
+        }
+    }
+    x
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of<const D: usize>(a: &SMatrix<f64, D, D>, size: usize) -> Factors<f64, D> {
+        let mut factors = Factors::none();
+        factors.set(a, size);
+        factors
+    }
+
+    #[test]
+    fn blocks_solve_as_elimination_does() {
+        // A dominant diagonal: the condition is below 4, both solve to a few roundings.
+        let a = SMatrix::<f64, 9, 9>::from_fn(|i, j| {
+            if i == j {
+                3.0
+            } else {
+                ((7 * i + 3 * j) % 11) as f64 / 44.0 - 0.125
+            }
+        });
+        let b = SVector::<f64, 9>::from_fn(|i, _| i as f64 - 3.5);
+        let x = of(&a, 9).solve(&b).expect("regular");
+        assert!((a * x - b).amax() < 1e-14);
+        assert!((x - solve_leading(&a, &b, 9).expect("regular")).amax() < 1e-14);
+    }
+
+    #[test]
+    fn a_singular_pivot_block_is_no_singular_matrix() {
+        let one = SMatrix::<f64, 3, 3>::identity();
+        let mut a = SMatrix::<f64, 6, 6>::zeros();
+        a.fixed_view_mut::<3, 3>(0, 3).copy_from(&one);
+        a.fixed_view_mut::<3, 3>(3, 0).copy_from(&one);
+        let b = SVector::<f64, 6>::new(1.0, 2.0, 3.0, 4.0, 5.0, 6.0);
+        let x = of(&a, 6).solve(&b).expect("regular");
+        assert_eq!(x, SVector::<f64, 6>::new(4.0, 5.0, 6.0, 1.0, 2.0, 3.0));
+        assert!(of(&SMatrix::<f64, 6, 6>::zeros(), 6).solve(&b).is_none());
+    }
+
+    #[test]
+    fn surplus_rows_are_left_out() {
+        let a = SMatrix::<f64, 4, 4>::from_diagonal_element(2.0);
+        let b = SVector::<f64, 4>::repeat(2.0);
+        let x = of(&a, 2).solve(&b).expect("regular");
+        assert_eq!(x, SVector::<f64, 4>::new(1.0, 1.0, 0.0, 0.0));
+    }
+}
