@@ -1,5 +1,6 @@
 //! Time per step of generated steppers beside hand-written ones, called as a user calls them: one step at a time.
-//! Takes no arguments; prints a table. `cargo run --release --manifest-path benches/Cargo.toml`, about a minute.
+//! Takes a part of the names of the cases wanted, or nothing for all; prints a table.
+//! `cargo run --release --manifest-path benches/Cargo.toml`, about a minute; `-- coupled` behind it for some.
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables)]
@@ -10,7 +11,7 @@ mod loops;
 mod steppers;
 mod systems;
 
-use blocks::{Comparison, compare};
+use blocks::compare;
 use clebsch_tests::physics::cases::{
     Start, asymmetric_body, generic_top, lagrange_top, symmetric_body,
 };
@@ -38,82 +39,96 @@ fn main() {
         "{:<34} {:>9} {:>9} {:>7}   quartiles of the ratio",
         "case", "generated", "hand", "ratio"
     );
+    let table = Table {
+        only: std::env::args().nth(1),
+    };
     let bodies: [(&str, Start); 3] = [
         ("free body, I = (2, 2, 1)", symmetric_body()),
         ("free body, I = (3.5, 2.5, 2)", asymmetric_body()),
         ("free body, J full", generic_top()),
     ];
     for (name, start) in bodies {
-        print(
-            name,
-            &compare(|| generated_body(&start), || written_body(&start)),
-        );
+        table.row(name, || generated_body(&start), || written_body(&start));
     }
     let tops: [(&str, Start); 2] = [
         ("heavy top, Lagrange", lagrange_top()),
         ("heavy top, J full", generic_top()),
     ];
     for (name, start) in tops {
-        print(
-            name,
-            &compare(|| generated_top(&start), || written_top(&start)),
-        );
+        table.row(name, || generated_top(&start), || written_top(&start));
     }
-    print(
+    table.row(
         "free body in space",
-        &compare(generated_free_body_spatial, written_free_body_spatial),
+        generated_free_body_spatial,
+        written_free_body_spatial,
     );
-    print(
+    table.row(
         "heavy top in space, Lagrange",
-        &compare(generated_heavy_top_spatial, written_heavy_top_spatial),
+        generated_heavy_top_spatial,
+        written_heavy_top_spatial,
     );
-    print(
+    table.row(
         "body in a quadratic field",
-        &compare(generated_quadratic_field, written_quadratic_field),
+        generated_quadratic_field,
+        written_quadratic_field,
     );
-    print(
+    table.row(
         "body in two fields",
-        &compare(generated_two_fields, written_two_fields),
+        generated_two_fields,
+        written_two_fields,
     );
     for (name, start) in [
         ("coupled bodies, symmetric", reference_pair()),
         ("coupled bodies, general", generic_pair()),
     ] {
-        print(
-            name,
-            &compare(|| generated_pair(&start), || written_pair(&start)),
-        );
+        table.row(name, || generated_pair(&start), || written_pair(&start));
     }
     for (name, c) in [
         ("unit quaternions, c = 0", 0.0),
         ("unit quaternions, c = 1", 1.0),
     ] {
-        print(
+        table.row(
             name,
-            &compare(|| generated_cayley_klein(c), || written_cayley_klein(c)),
+            || generated_cayley_klein(c),
+            || written_cayley_klein(c),
         );
     }
-    print(
+    table.row(
         "unit quaternions in space, c = 1",
-        &compare(
-            || generated_cayley_klein_spatial(1.0),
-            || written_cayley_klein(1.0),
-        ),
+        || generated_cayley_klein_spatial(1.0),
+        || written_cayley_klein(1.0),
     );
-    print(
+    table.row(
         "body in a fluid",
-        &compare(generated_kirchhoff_body, written_kirchhoff_body),
+        generated_kirchhoff_body,
+        written_kirchhoff_body,
     );
 }
 
-fn print(name: &str, times: &Comparison) {
-    let [low, high] = times.quartiles;
-    println!(
-        "{name:<34} {:>9.2} {:>9.2} {:>7.3}   {low:.3} to {high:.3}",
-        times.generated,
-        times.hand,
-        times.generated / times.hand
-    );
+/// What is printed: every case, or those whose names contain a text.
+struct Table {
+    only: Option<String>,
+}
+
+impl Table {
+    fn row<A: FnOnce(), B: FnOnce()>(
+        &self,
+        name: &str,
+        generated: impl Fn() -> A,
+        hand: impl Fn() -> B,
+    ) {
+        if self.only.as_ref().is_some_and(|only| !name.contains(only)) {
+            return;
+        }
+        let times = compare(generated, hand);
+        let [low, high] = times.quartiles;
+        println!(
+            "{name:<34} {:>9.2} {:>9.2} {:>7.3}   {low:.3} to {high:.3}",
+            times.generated,
+            times.hand,
+            times.generated / times.hand
+        );
+    }
 }
 
 /// Name of the processor, where the system tells it.
