@@ -94,6 +94,12 @@ pub mod free_body {
             self.solver = self.solver.without_projection();
             self
         }
+        /// The same, with steps of an order above two made symplectic with the attitude.
+        #[must_use]
+        pub fn compensated(mut self) -> Self {
+            self.solver = self.solver.compensated();
+            self
+        }
     }
     impl<T: Real> FreeBody<T> {
         /// Starts a trajectory with step `h` from data at node 0; of order two, symplectic.
@@ -110,7 +116,7 @@ pub mod free_body {
         }
         /// As `start`, with steps of the given order: the moments are modified once, a step
         /// costs the same. Above two the step is Poisson in the momentum, but symplectic with
-        /// the attitude only up to its error.
+        /// the attitude only up to its error, unless the workspace is `compensated`.
         ///
         /// # Errors
         /// As `start`.

@@ -126,7 +126,7 @@ fn every_order_is_measured() {
 
 /// How far the step is from symplectic: the largest entry of `D^T W' D - W`, with `W` the canonical
 /// form on the attitudes and momenta, both seen from the body.
-fn symplectic_defect(h: f64, order: Order) -> f64 {
+fn symplectic_defect(h: f64, order: Order, compensated: bool) -> f64 {
     type D6 = Dual<6>;
     let body = body([3.5, 2.5, 2.0], Vector3::new(0.4, -0.9, 0.3));
     let lifted = Poinsot::new(body.matrix().map(D6::from_f64)).expect("a body");
@@ -142,6 +142,9 @@ fn symplectic_defect(h: f64, order: Order) -> f64 {
     let momentum = SpatialMomentum(attitude.rotate(&Vector3::from_fn(|i, _| seed(mu[i], 3 + i))));
     let mut free =
         Free::start_of_order(&lifted, &attitude, &momentum, D6::from_f64(h), order).expect("slow");
+    if compensated {
+        free = free.compensated();
+    }
     free.step(&mut attitude).expect("free");
     let there = attitude.matrix();
     let relative = there.map(|x| D6::from_f64(x.value())).transpose() * there;
@@ -168,9 +171,9 @@ fn symplectic_defect(h: f64, order: Order) -> f64 {
 #[test]
 fn only_order_two_is_symplectic_and_the_defect_is_that_of_the_order() {
     // A few roundings in each of some tens of operations.
-    assert!(symplectic_defect(0.4, Order::Two) < 1e-14);
+    assert!(symplectic_defect(0.4, Order::Two, false) < 1e-14);
     for order in [Order::Four, Order::Six, Order::Eight] {
-        let [coarse, fine] = [0.8, 0.4].map(|h| symplectic_defect(h, order));
+        let [coarse, fine] = [0.8, 0.4].map(|h| symplectic_defect(h, order, false));
         let measured = (coarse / fine).log2();
         println!("order {order}: {coarse:.1e}, {fine:.1e}, exponent {measured:.2}");
         assert!(fine > 1e-13, "order {order} passes: {fine:e}");
@@ -180,11 +183,80 @@ fn only_order_two_is_symplectic_and_the_defect_is_that_of_the_order() {
     for h in [0.4, 0.2, 0.1] {
         println!(
             "order 10, h = {h}: {:.1e}",
-            symplectic_defect(h, Order::Ten)
+            symplectic_defect(h, Order::Ten, false)
         );
     }
     // What is left of order ten at a moderate step is rounding.
-    assert!(symplectic_defect(0.1, Order::Ten) < 1e-14);
+    assert!(symplectic_defect(0.1, Order::Ten, false) < 1e-14);
+}
+
+#[test]
+fn compensation_leaves_the_defect_of_order_ten() {
+    for order in [Order::Four, Order::Six, Order::Eight] {
+        let [coarse, fine] = [0.8, 0.4].map(|h| symplectic_defect(h, order, true));
+        let plain = symplectic_defect(0.8, order, false);
+        let measured = (coarse / fine).log2();
+        println!(
+            "order {order}: {coarse:.1e} (without {plain:.1e}), {fine:.1e}, exponent {measured:.2}"
+        );
+        assert!(fine > 1e-15 || coarse < 1e-12, "order {order}: {coarse:e}");
+        assert!(measured > 9.5, "{order}: {measured}");
+        assert!(coarse < 0.1 * plain, "{order}: {coarse:e} of {plain:e}");
+        assert!(symplectic_defect(0.1, order, true) < 1e-14);
+    }
+    // Nothing is missing at order two.
+    assert!(symplectic_defect(0.4, Order::Two, true) < 1e-14);
+}
+
+#[test]
+fn a_compensated_step_has_its_order_and_can_be_undone() {
+    let mu = Vector3::new(-0.5, 0.2, 1.0);
+    let body = body([3.5, 2.5, 2.0], Vector3::new(0.4, -0.9, 0.3));
+    let momentum = SpatialMomentum(mu);
+    for order in [Order::Four, Order::Six, Order::Eight, Order::Ten] {
+        let end = |count: u32, compensated: bool| {
+            let h = 4.0 / f64::from(count);
+            let mut attitude = Rotation::identity();
+            let free = Free::start_of_order(&body, &attitude, &momentum, h, order).expect("slow");
+            let mut free = if compensated {
+                free.compensated()
+            } else {
+                free
+            };
+            for _ in 0..count {
+                free.step(&mut attitude).expect("free");
+            }
+            (attitude, free)
+        };
+        // What the turns add up to falls as the error does.
+        let apart = |count: u32| {
+            let ((a, _), (b, _)) = (end(count, false), end(count, true));
+            (a.matrix() - b.matrix()).amax()
+        };
+        let (coarse, fine) = (apart(4), apart(8));
+        let measured = (coarse / fine).log2();
+        println!("order {order}: {coarse:.1e}, {fine:.1e}, {measured:.2}");
+        if order < Order::Ten {
+            assert!(
+                (measured - f64::from(order.number())).abs() < 0.4,
+                "{order}"
+            );
+        } else {
+            assert_eq!(coarse, 0.0, "nothing is known to be missing");
+        }
+        let (mut attitude, there) = end(40, true);
+        let spatial = there.body_momentum().to_space(&attitude);
+        assert!(
+            (spatial.0 - mu).amax() < 1e-14,
+            "the turn is about the momentum"
+        );
+        let back = Free::start_of_order(&body, &attitude, &momentum, -0.1, order).expect("slow");
+        let mut back = back.compensated();
+        for _ in 0..40 {
+            back.step(&mut attitude).expect("free");
+        }
+        assert!((attitude.matrix() - Matrix3::identity()).amax() < 1e-13);
+    }
 }
 
 #[test]

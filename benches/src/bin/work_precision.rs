@@ -52,7 +52,7 @@ fn main() -> ExitCode {
     }
     println!("\nMicroseconds until time {TIME} of the cheapest setting whose error is at most\n");
     levels(&measured);
-    headline(&measured);
+    ratios(&measured);
     println!("\nEvery setting\n");
     println!("| method | setting | error | us |");
     println!("|---|---|---|---|");
@@ -74,32 +74,46 @@ fn main() -> ExitCode {
     }
 }
 
-/// How much longer other methods take to the error of order 10 at h = 0.1, or to the last level where they do not get
-/// so far.
-fn headline(measured: &[Measured]) {
-    let own = measured
-        .iter()
-        .find(|m| m.method == "generated, order 10" && m.setting == "h = 0.1");
-    let Some(own) = own else {
-        return;
+/// How much longer others take than the generated stepper of order ten, with the cheapest step for a level and with the
+/// step 0.1; lanes against lanes.
+fn ratios(measured: &[Measured]) {
+    let cheapest = |method: &str, level: f64| {
+        let good = measured
+            .iter()
+            .filter(|m| m.method == method && m.error <= level);
+        good.map(|m| m.micros).fold(f64::INFINITY, f64::min)
+    };
+    let (alone, lanes) = ("generated, order 10", "generated, order 10, lanes");
+    let of_step = |method: &str| {
+        let found = measured
+            .iter()
+            .find(|m| m.method == method && m.setting == "h = 0.1");
+        found.map_or((f64::NAN, f64::NAN), |m| (m.micros, m.error))
     };
     println!(
-        "\nOrder 10, h = 0.1: error {:.1e} in {:.1} us. Times that of others:\n",
-        own.error, own.micros
+        "\nOrder 10, h = 0.1: error {:.1e} in {:.1} us. How many times longer others take than order 10\n",
+        of_step(alone).1,
+        of_step(alone).0
     );
-    println!("| method | to an error of 5e-14 | to {:.1e} |", own.error);
-    println!("|---|---|---|");
+    println!("| method | to 1e-6 | to 1e-10 | to 5e-14 | to 5e-14, order 10 with h = 0.1 |");
+    println!("|---|---|---|---|---|");
     for method in drawing::methods(measured) {
-        let times = |level: f64| {
-            let all = measured.iter().filter(|m| m.method == method);
-            let good = all.filter(|m| m.error <= level).map(|m| m.micros);
-            let best = good.fold(f64::INFINITY, f64::min);
-            match best.is_finite() {
-                true => format!("{:.1}", best / own.micros),
-                false => "-".to_owned(),
-            }
+        if method.starts_with("generated, order 10") {
+            continue;
+        }
+        let own = if method.ends_with("batch") {
+            lanes
+        } else {
+            alone
         };
-        println!("| {method} | {} | {} |", times(5e-14), times(own.error));
+        let said = |ratio: f64| match ratio.is_finite() {
+            true => format!("{ratio:.1}"),
+            false => "-".to_owned(),
+        };
+        let cells =
+            [1e-6, 1e-10, 5e-14].map(|level| said(cheapest(method, level) / cheapest(own, level)));
+        let last = said(cheapest(method, 5e-14) / of_step(own).0);
+        println!("| {method} | {} | {last} |", cells.join(" | "));
     }
 }
 

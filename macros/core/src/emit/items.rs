@@ -564,6 +564,12 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
                     self.solver = self.solver.without_projection();
                     self
                 }
+                /// The same, with steps of an order above two made symplectic with the attitude.
+                #[must_use]
+                pub fn compensated(mut self) -> Self {
+                    self.solver = self.solver.compensated();
+                    self
+                }
             }
         }
     });

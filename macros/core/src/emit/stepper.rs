@@ -87,7 +87,7 @@ pub(super) fn start(d: &Derivation, state_of: TokenStream, fields: TokenStream) 
 
             /// As `start`, with steps of the given order: the moments are modified once, a step
             /// costs the same. Above two the step is Poisson in the momentum, but symplectic with
-            /// the attitude only up to its error.
+            /// the attitude only up to its error, unless the workspace is `compensated`.
             ///
             /// # Errors
             /// As `start`.

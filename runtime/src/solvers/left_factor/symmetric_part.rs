@@ -42,8 +42,9 @@ pub(super) fn nearby_rotation<T: Real, const N: usize>(
         (low.min(x.least()), high.max(x.greatest()))
     });
     let unit = T::EPSILON * greatest * greatest * N as f64;
-    // Also refuses NaN.
-    if !(least > FLATTEST * greatest) {
+    // Written so that NaN is refused.
+    let solid = least > FLATTEST * greatest;
+    if !solid {
         return None;
     }
     let half = T::from_f64(0.5);

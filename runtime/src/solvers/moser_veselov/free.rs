@@ -2,6 +2,7 @@
 //! Takes the body, the start and the step size; advances the attitude, keeps the body momentum.
 
 use super::cayley::{Orbit, Pencil, cross, dot, gyroscopic};
+use super::compensation;
 use super::kappa::kappa;
 use super::preprocess::preprocessed;
 use super::principal::PrincipalAxes;
@@ -79,6 +80,8 @@ pub struct Free<T = f64> {
     until_projection: u32,
     /// Whether it is made.
     projects: bool,
+    /// The turn about the momentum that makes up for modified moments, where it is asked for.
+    compensation: Option<Rotation<T>>,
     /// Squares of the last [`Correction`].
     corrected: [T; 2],
     /// Where the last step ended: an attitude that is not this one has been put there by the user.
@@ -131,7 +134,7 @@ impl<T: Real> Free<T> {
     ///
     /// Above two the map of the momentum is Poisson and energy, `|mu|^2` and spatial momentum are
     /// as exact as before, but the map of momentum and attitude together is not symplectic: the
-    /// defect is of the size of the error of the step.
+    /// defect is of the size of the error of the step. [`Free::compensated`] takes it out.
     ///
     /// # Errors
     /// As [`Free::start`]; the largest step is then found by bisection.
@@ -188,6 +191,7 @@ impl<T: Real> Free<T> {
             turned: turned.is_some(),
             until_projection: PROJECT_EVERY,
             projects: true,
+            compensation: None,
             corrected: [T::zero(); 2],
             attitude: *attitude,
             momentum: *momentum,
@@ -230,6 +234,24 @@ impl<T: Real> Free<T> {
         }
     }
 
+    /// The same trajectory, its steps followed by a turn about the spatial momentum that makes the map
+    /// of momentum and attitude symplectic again, where modified moments do not: for orders four,
+    /// six and eight up to terms of the order of the tenth's, whose own are not known. The turn is
+    /// of the size of the error of a step and constant, so that order, energy and momentum are as
+    /// before. Of order two nothing is missing.
+    #[must_use]
+    pub fn compensated(mut self) -> Self {
+        if self.order != Order::Two {
+            let h_mu = self
+                .attitude
+                .inverse_rotate(&self.momentum.0.map(|x| x * self.h));
+            let factor = compensation::factor(&self.given, self.given.scaled(&h_mu), self.order);
+            let half = self.axes.map(|axis| axis.space * factor);
+            self.compensation = Some(compensation::rotation(half));
+        }
+        self
+    }
+
     /// As [`Free::step`], for a state that may have been replaced: it is followed where it is, with
     /// the momentum it has.
     ///
@@ -270,9 +292,14 @@ impl<T: Real> Free<T> {
         attitude: &Rotation<T>,
         momentum: &SpatialMomentum<T>,
     ) -> Result<(), MoserVeselovError> {
+        let started = Self::start_of_order(body, attitude, momentum, self.h, self.order)?;
+        let started = match self.compensation {
+            Some(_) => started.compensated(),
+            None => started,
+        };
         *self = Self {
             projects: self.projects,
-            ..Self::start_of_order(body, attitude, momentum, self.h, self.order)?
+            ..started
         };
         Ok(())
     }
@@ -386,7 +413,12 @@ impl<T: Real> Free<T> {
             scale *= attitude.repair();
         }
         let omega = Rotation::from_unit([det * scale, x * scale, y * scale, z * scale]);
-        (pushed, attitude.compose_raw(&omega), norm)
+        let turned = attitude.compose_raw(&omega);
+        let moved = match &self.compensation {
+            None => turned,
+            Some(compensation) => compensation.compose_raw(&turned),
+        };
+        (pushed, moved, norm)
     }
 
     /// `count` steps at once, with the same result as one by one: for lanes, whose numbers then stay

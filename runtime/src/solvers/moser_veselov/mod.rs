@@ -13,6 +13,7 @@
 
 mod cayley;
 mod coefficients;
+mod compensation;
 mod edge;
 mod failure;
 mod forced;

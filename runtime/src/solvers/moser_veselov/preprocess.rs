@@ -8,7 +8,8 @@
 //!
 //! The momentum's map is Poisson at every order. The map of momentum and attitude together is
 //! symplectic at order two only: `s` and `d` differ between neighbouring trajectories. What is
-//! missing is a turn about the momentum of the size of the error of the step.
+//! missing is a turn about the momentum of the size of the error of the step
+//! ([`Free::compensated`](super::Free::compensated)).
 
 use super::Poinsot;
 use super::coefficients::{FACTOR, SHIFT, Term};
@@ -50,7 +51,7 @@ impl Order {
     }
 
     /// How many terms of the series it takes.
-    fn terms(self) -> usize {
+    pub(super) fn terms(self) -> usize {
         self as usize
     }
 }
@@ -71,22 +72,7 @@ pub(super) fn preprocessed<T: Real>(
     if order == Order::Two {
         return Some(*body);
     }
-    let [x, y, z] = u;
-    let [xx, yy, zz] = [x * x, y * y, z * z];
-    let two = T::from_f64(2.0);
-    let invariants = Invariants {
-        energy: two
-            * body
-                .energy
-                .value::<false>([xx, yy, zz], [y * z, z * x, x * y]),
-        momentum: two * (xx + yy + zz),
-        // Of the inverse moments.
-        symmetric: [
-            body.symmetric.second,
-            body.symmetric.first,
-            body.symmetric.zeroth,
-        ],
-    };
+    let invariants = Invariants::of(body, u);
     let series = |table: &[&[Term]; 4]| {
         let taken = table.iter().take(order.terms());
         let terms = taken.flat_map(|list| list.iter());
@@ -99,13 +85,33 @@ pub(super) fn preprocessed<T: Real>(
 }
 
 /// What the coefficients are polynomials in.
-struct Invariants<T> {
-    energy: T,
-    momentum: T,
-    symmetric: [T; 3],
+pub(super) struct Invariants<T> {
+    /// `h^2` times the energy.
+    pub(super) energy: T,
+    /// `h^2 |mu|^2 / 2`.
+    pub(super) momentum: T,
+    /// Symmetric functions of the inverse moments.
+    pub(super) symmetric: [T; 3],
 }
 
 impl<T: Real> Invariants<T> {
+    /// Those of the trajectory through `u = h mu / (2 unit)`, in units of the body.
+    pub(super) fn of(body: &Poinsot<T>, u: [T; 3]) -> Self {
+        let [x, y, z] = u;
+        let squares = [x * x, y * y, z * z];
+        let two = T::from_f64(2.0);
+        let energy = body.energy.value::<false>(squares, [y * z, z * x, x * y]);
+        Self {
+            energy: two * energy,
+            momentum: two * (squares[0] + squares[1] + squares[2]),
+            symmetric: [
+                body.symmetric.second,
+                body.symmetric.first,
+                body.symmetric.zeroth,
+            ],
+        }
+    }
+
     fn value(&self, term: &Term) -> T {
         let (numerator, denominator) = term.factor;
         let [e1, e2, e3] = self.symmetric;
