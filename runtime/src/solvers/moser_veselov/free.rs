@@ -80,8 +80,10 @@ pub struct Free<T = f64> {
     until_projection: u32,
     /// Whether it is made.
     projects: bool,
-    /// The turn about the momentum that makes up for modified moments, where it is asked for.
-    compensation: Option<Rotation<T>>,
+    /// The turn about the momentum that makes up for modified moments, where it is asked for, and the
+    /// steps until the next projection. It is made where projections are, after every single step:
+    /// steps without it do not pay for it.
+    compensation: Option<(Rotation<T>, u32)>,
     /// Squares of the last [`Correction`].
     corrected: [T; 2],
     /// Where the last step ended: an attitude that is not this one has been put there by the user.
@@ -247,7 +249,8 @@ impl<T: Real> Free<T> {
                 .inverse_rotate(&self.momentum.0.map(|x| x * self.h));
             let factor = compensation::factor(&self.given, self.given.scaled(&h_mu), self.order);
             let half = self.axes.map(|axis| axis.space * factor);
-            self.compensation = Some(compensation::rotation(half));
+            self.compensation = Some((compensation::rotation(half), PROJECT_EVERY));
+            self.count_anew();
         }
         self
     }
@@ -323,7 +326,7 @@ impl<T: Real> Free<T> {
                     axis.body = x;
                 }
                 // As at a start: what follows does not depend on how many steps were made before.
-                self.until_projection = PROJECT_EVERY;
+                self.count_anew();
                 return Ok(());
             }
         }
@@ -359,8 +362,7 @@ impl<T: Real> Free<T> {
         }
         self.until_projection -= 1;
         if self.until_projection == 0 {
-            self.project(attitude);
-            self.until_projection = PROJECT_EVERY;
+            self.settle(attitude);
         }
         self.attitude = *attitude;
         Ok(())
@@ -413,12 +415,7 @@ impl<T: Real> Free<T> {
             scale *= attitude.repair();
         }
         let omega = Rotation::from_unit([det * scale, x * scale, y * scale, z * scale]);
-        let turned = attitude.compose_raw(&omega);
-        let moved = match &self.compensation {
-            None => turned,
-            Some(compensation) => compensation.compose_raw(&turned),
-        };
-        (pushed, moved, norm)
+        (pushed, attitude.compose_raw(&omega), norm)
     }
 
     /// `count` steps at once, with the same result as one by one: for lanes, whose numbers then stay
@@ -457,8 +454,7 @@ impl<T: Real> Free<T> {
                 axis.body = x;
             }
             if solver.until_projection == 0 {
-                solver.project(&mut moving);
-                solver.until_projection = PROJECT_EVERY;
+                solver.settle(&mut moving);
             }
         }
         solver.attitude = moving;
@@ -467,9 +463,32 @@ impl<T: Real> Free<T> {
         Ok(())
     }
 
-    /// Takes the rounding errors out of the momentum and the attitude.
+    /// The steps that are made without looking up: one where each is followed by a turn.
+    fn count_anew(&mut self) {
+        self.until_projection = PROJECT_EVERY;
+        if let Some((_, left)) = &mut self.compensation {
+            *left = PROJECT_EVERY;
+            self.until_projection = 1;
+        }
+    }
+
+    /// What is not part of every step: the projection, and a compensating turn.
     #[cold]
     #[inline(never)]
+    fn settle(&mut self, attitude: &mut Rotation<T>) {
+        if let Some((turn, left)) = &mut self.compensation {
+            *attitude = turn.compose_raw(attitude).renormalised();
+            *left -= 1;
+            if *left > 0 {
+                self.until_projection = 1;
+                return;
+            }
+        }
+        self.project(attitude);
+        self.count_anew();
+    }
+
+    /// Takes the rounding errors out of the momentum and the attitude.
     fn project(&mut self, attitude: &mut Rotation<T>) {
         if !self.projects {
             return;
