@@ -26,7 +26,7 @@ pub struct Plan {
     /// The options that determine the results, as given; `null` where not given.
     pub arguments: Value,
     /// The solver asked for.
-    solver: Option<Method>,
+    pub solver: Option<Method>,
     /// For a case read from a file: its name, and the line of each key.
     origin: Option<(String, BTreeMap<String, usize>)>,
 }

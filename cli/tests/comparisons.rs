@@ -125,7 +125,9 @@ fn steppers_by_hand_have_the_errors_of_the_generated_ones() {
         for case in &entry.cases {
             let object = compared(model, &case.name);
             let methods = object["methods"].as_array().expect("methods");
-            if methods.iter().any(|method| method["name"] == "by-hand") {
+            // A factor that is not symmetric has no stepper by hand.
+            let by_hand = methods.iter().find(|method| method["name"] == "by-hand");
+            if by_hand.is_some_and(|method| method["stopped"].is_null()) {
                 let off = apart(&errors(&object, "generated"), &errors(&object, "by-hand"));
                 assert!(off < 1e-11, "{model} {}: {off:e}", case.name);
                 models.push(model);

@@ -23,6 +23,7 @@ pub mod body_in_quadratic_field {
     pub struct BodyInQuadraticField<T = f64> {
         parameters: BodyInQuadraticFieldParameters<T>,
         factor: Poinsot<T>,
+        method: Method,
     }
     impl<T: Real> BodyInQuadraticField<T> {
         /// The model as it was stated.
@@ -43,7 +44,16 @@ pub mod body_in_quadratic_field {
             validate::symmetric("K", &parameters.K)?;
             let BodyInQuadraticFieldParameters { J, .. } = parameters;
             let factor = Poinsot::new(J).map_err(|e| e.in_field("J"))?;
-            Ok(Self { parameters, factor })
+            Ok(Self {
+                parameters,
+                factor,
+                method: Method::of_size(3),
+            })
+        }
+        /// The same model, its steps solved by the solver named.
+        #[must_use]
+        pub fn with_solver(self, method: Method) -> Self {
+            Self { method, ..self }
         }
         /// The parameters.
         pub fn parameters(&self) -> &BodyInQuadraticFieldParameters<T> {
@@ -86,15 +96,16 @@ pub mod body_in_quadratic_field {
             self.node
         }
     }
-    /// The step, and the momentum of the edge that begins at the state `here`. Made anew for any other state.
+    /// The step, the solver's name, and the momentum of the edge that begins at the state `here`. Made anew for any other state.
     #[derive(Clone, Copy, Debug)]
     pub struct BodyInQuadraticFieldWorkspace<T = f64> {
         h: T,
+        method: Method,
         edge: Edge<T>,
         here: BodyInQuadraticFieldState<T>,
     }
     impl<T: Real> BodyInQuadraticField<T> {
-        /// Starts a trajectory with step `h` from data at node 0.
+        /// Starts a trajectory with step `h` from data at node 0, with the model's solver.
         ///
         /// # Errors
         /// Names the value that is not finite, or says why the first step cannot be solved and
@@ -107,9 +118,24 @@ pub mod body_in_quadratic_field {
             (BodyInQuadraticFieldState<T>, BodyInQuadraticFieldWorkspace<T>),
             StartError,
         > {
+            self.start_with(initial, h, self.method)
+        }
+        /// As `start`, with the solver named.
+        ///
+        /// # Errors
+        /// As `start`; also when the solver does not serve this size or scalar.
+        pub fn start_with(
+            &self,
+            initial: BodyInQuadraticFieldInitial<T>,
+            h: T,
+            method: Method,
+        ) -> Result<
+            (BodyInQuadraticFieldState<T>, BodyInQuadraticFieldWorkspace<T>),
+            StartError,
+        > {
             validate::positive_step(h)?;
             let state = self.at_node_0(initial)?;
-            Ok((state, self.workspace(&state, h)?))
+            Ok((state, self.workspace_with(&state, h, method)?))
         }
         /// The state at node 0.
         fn at_node_0(
@@ -140,9 +166,22 @@ pub mod body_in_quadratic_field {
             state: &BodyInQuadraticFieldState<T>,
             h: T,
         ) -> Result<BodyInQuadraticFieldWorkspace<T>, StartError> {
+            self.workspace_with(state, h, self.method)
+        }
+        /// The same with the solver named.
+        ///
+        /// # Errors
+        /// When the first step cannot be solved.
+        pub fn workspace_with(
+            &self,
+            state: &BodyInQuadraticFieldState<T>,
+            h: T,
+            method: Method,
+        ) -> Result<BodyInQuadraticFieldWorkspace<T>, StartError> {
             let state = *state;
             let work = BodyInQuadraticFieldWorkspace {
                 h,
+                method,
                 edge: self.edge(&state, h),
                 here: state,
             };
@@ -169,12 +208,16 @@ pub mod body_in_quadratic_field {
                 work.here = *state;
             }
             let edge = &work.edge;
-            let Λ_moved = match edge.turn(&self.factor, h, &state.Λ) {
+            let turned = match work.method {
+                Method::Kappa => edge.turn(&self.factor, h, &state.Λ),
+                method => edge.turn_by(method, &self.factor, h, &state.Λ),
+            };
+            let Λ_moved = match turned {
                 Ok(turned) => turned,
                 Err(e) => return Err(self.refused(*state, &self.factor, h, e)),
             };
             let BodyInQuadraticFieldParameters { K, .. } = self.parameters;
-            let Λ_next = Λ_moved.matrix();
+            let Λ_next = Λ_moved.turning();
             let Γ_reference = state.Γ;
             let Γ_next = Λ_next.tr_mul(&Γ_reference);
             let space = edge.space();
@@ -620,7 +663,7 @@ pub mod body_in_quadratic_field {
                 },
             ],
             open: Self::open,
-            solvers: &[],
+            solvers: &Method::NAMES,
             dimensions: &[],
             sized: Self::sized,
         };
@@ -659,7 +702,10 @@ pub mod body_in_quadratic_field {
                 ),
                 Γ: matrix_of("Γ", initial.get(2usize))?,
             };
-            chosen_solver(settings, Self::CARD.solvers)?;
+            let model = match chosen_solver(settings, Self::CARD.solvers)? {
+                Some(method) => model.with_solver(method),
+                None => model,
+            };
             let state = model.at_node_0(initial)?;
             let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)?;
             Ok(

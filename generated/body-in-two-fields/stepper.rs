@@ -29,6 +29,7 @@ pub mod body_in_two_fields {
     pub struct BodyInTwoFields<T = f64> {
         parameters: BodyInTwoFieldsParameters<T>,
         factor: Poinsot<T>,
+        method: Method,
     }
     impl<T: Real> BodyInTwoFields<T> {
         /// The model as it was stated.
@@ -51,7 +52,16 @@ pub mod body_in_two_fields {
             validate::finite("b", parameters.b.as_slice())?;
             let BodyInTwoFieldsParameters { J, .. } = parameters;
             let factor = Poinsot::new(J).map_err(|e| e.in_field("J"))?;
-            Ok(Self { parameters, factor })
+            Ok(Self {
+                parameters,
+                factor,
+                method: Method::of_size(3),
+            })
+        }
+        /// The same model, its steps solved by the solver named.
+        #[must_use]
+        pub fn with_solver(self, method: Method) -> Self {
+            Self { method, ..self }
         }
         /// The parameters.
         pub fn parameters(&self) -> &BodyInTwoFieldsParameters<T> {
@@ -91,15 +101,16 @@ pub mod body_in_two_fields {
             self.node
         }
     }
-    /// The step, and the momentum of the edge that begins at the state `here`. Made anew for any other state.
+    /// The step, the solver's name, and the momentum of the edge that begins at the state `here`. Made anew for any other state.
     #[derive(Clone, Copy, Debug)]
     pub struct BodyInTwoFieldsWorkspace<T = f64> {
         h: T,
+        method: Method,
         edge: Edge<T>,
         here: BodyInTwoFieldsState<T>,
     }
     impl<T: Real> BodyInTwoFields<T> {
-        /// Starts a trajectory with step `h` from data at node 0.
+        /// Starts a trajectory with step `h` from data at node 0, with the model's solver.
         ///
         /// # Errors
         /// Names the value that is not finite, or says why the first step cannot be solved and
@@ -109,9 +120,21 @@ pub mod body_in_two_fields {
             initial: BodyInTwoFieldsInitial<T>,
             h: T,
         ) -> Result<(BodyInTwoFieldsState<T>, BodyInTwoFieldsWorkspace<T>), StartError> {
+            self.start_with(initial, h, self.method)
+        }
+        /// As `start`, with the solver named.
+        ///
+        /// # Errors
+        /// As `start`; also when the solver does not serve this size or scalar.
+        pub fn start_with(
+            &self,
+            initial: BodyInTwoFieldsInitial<T>,
+            h: T,
+            method: Method,
+        ) -> Result<(BodyInTwoFieldsState<T>, BodyInTwoFieldsWorkspace<T>), StartError> {
             validate::positive_step(h)?;
             let state = self.at_node_0(initial)?;
-            Ok((state, self.workspace(&state, h)?))
+            Ok((state, self.workspace_with(&state, h, method)?))
         }
         /// The state at node 0.
         fn at_node_0(
@@ -135,9 +158,22 @@ pub mod body_in_two_fields {
             state: &BodyInTwoFieldsState<T>,
             h: T,
         ) -> Result<BodyInTwoFieldsWorkspace<T>, StartError> {
+            self.workspace_with(state, h, self.method)
+        }
+        /// The same with the solver named.
+        ///
+        /// # Errors
+        /// When the first step cannot be solved.
+        pub fn workspace_with(
+            &self,
+            state: &BodyInTwoFieldsState<T>,
+            h: T,
+            method: Method,
+        ) -> Result<BodyInTwoFieldsWorkspace<T>, StartError> {
             let state = *state;
             let work = BodyInTwoFieldsWorkspace {
                 h,
+                method,
                 edge: self.edge(&state, h),
                 here: state,
             };
@@ -157,17 +193,21 @@ pub mod body_in_two_fields {
             work: &mut BodyInTwoFieldsWorkspace<T>,
         ) -> Result<(), StepError> {
             let h = work.h;
-            if work.here != *state {
+            if work.here.Λ != state.Λ || work.here.momentum != state.momentum {
                 work.edge = self.edge(state, h);
                 work.here = *state;
             }
             let edge = &work.edge;
-            let Λ_moved = match edge.turn(&self.factor, h, &state.Λ) {
+            let turned = match work.method {
+                Method::Kappa => edge.turn(&self.factor, h, &state.Λ),
+                method => edge.turn_by(method, &self.factor, h, &state.Λ),
+            };
+            let Λ_moved = match turned {
                 Ok(turned) => turned,
                 Err(e) => return Err(self.refused(*state, &self.factor, h, e)),
             };
             let BodyInTwoFieldsParameters { gU, p, z, b, .. } = self.parameters;
-            let Λ_next = Λ_moved.matrix();
+            let Λ_next = Λ_moved.turning();
             let Γ_next = Λ_next.tr_mul(&z);
             let B_next = Λ_next.tr_mul(&b);
             let space = edge.space();
@@ -183,12 +223,13 @@ pub mod body_in_two_fields {
                         .at_node(state.node),
                 );
             }
-            *state = BodyInTwoFieldsState {
-                Λ: Λ_moved.rotation(),
-                momentum: SpatialMomentum(momentum_next),
-                node: state.node + 1,
-            };
-            work.here = *state;
+            let (Λ_arrived, momentum_next) = (
+                Λ_moved.rotation(),
+                SpatialMomentum(momentum_next),
+            );
+            (state.Λ, work.here.Λ) = (Λ_arrived, Λ_arrived);
+            (state.momentum, work.here.momentum) = (momentum_next, momentum_next);
+            state.node += 1;
             work.edge = edge_next;
             Ok(())
         }
@@ -668,7 +709,7 @@ pub mod body_in_two_fields {
                 },
             ],
             open: Self::open,
-            solvers: &[],
+            solvers: &Method::NAMES,
             dimensions: &[],
             sized: Self::sized,
         };
@@ -709,7 +750,10 @@ pub mod body_in_two_fields {
                     matrix_of("body_momentum", initial.get(1usize))?,
                 ),
             };
-            chosen_solver(settings, Self::CARD.solvers)?;
+            let model = match chosen_solver(settings, Self::CARD.solvers)? {
+                Some(method) => model.with_solver(method),
+                None => model,
+            };
             let state = model.at_node_0(initial)?;
             let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)?;
             Ok(

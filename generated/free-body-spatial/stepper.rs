@@ -20,6 +20,7 @@ pub mod free_body_spatial {
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct FreeBodySpatial<T = f64> {
         parameters: FreeBodySpatialParameters<T>,
+        method: Method,
     }
     impl<T: Real> FreeBodySpatial<T> {
         /// The model as it was stated.
@@ -34,7 +35,15 @@ pub mod free_body_spatial {
         pub fn new(
             parameters: FreeBodySpatialParameters<T>,
         ) -> Result<Self, ParameterError> {
-            Ok(Self { parameters })
+            Ok(Self {
+                parameters,
+                method: Method::of_size(3),
+            })
+        }
+        /// The same model, its steps solved by the solver named.
+        #[must_use]
+        pub fn with_solver(self, method: Method) -> Self {
+            Self { method, ..self }
         }
         /// The parameters.
         pub fn parameters(&self) -> &FreeBodySpatialParameters<T> {
@@ -165,12 +174,13 @@ pub mod free_body_spatial {
             let work = FreeBodySpatialWorkspace {
                 h,
                 solver: Free::start_of_order(
-                    &self.factor(&state)?,
-                    &state.Λ,
-                    &state.momentum,
-                    h,
-                    order,
-                )?,
+                        &self.factor(&state)?,
+                        &state.Λ,
+                        &state.momentum,
+                        h,
+                        order,
+                    )?
+                    .solved_by(self.method),
                 J: state.J,
             };
             let (mut trial, mut scratch) = (state, work);
@@ -671,7 +681,7 @@ pub mod free_body_spatial {
                 },
             ],
             open: Self::open,
-            solvers: &[],
+            solvers: &Method::NAMES,
             dimensions: &[],
             sized: Self::sized,
         };
@@ -709,7 +719,10 @@ pub mod free_body_spatial {
                 ),
                 J: matrix_of("J", initial.get(2usize))?,
             };
-            chosen_solver(settings, Self::CARD.solvers)?;
+            let model = match chosen_solver(settings, Self::CARD.solvers)? {
+                Some(method) => model.with_solver(method),
+                None => model,
+            };
             let order = preprocessing_order(settings, Self::CARD.orders)?;
             let (state, work) = model.start_of_order(initial, settings.h, order)?;
             Ok(

@@ -21,6 +21,7 @@ pub mod free_body {
     pub struct FreeBody<T = f64> {
         parameters: FreeBodyParameters<T>,
         factor: Poinsot<T>,
+        method: Method,
     }
     impl<T: Real> FreeBody<T> {
         /// The model as it was stated.
@@ -37,7 +38,16 @@ pub mod free_body {
             validate::symmetric("J", &parameters.J)?;
             let FreeBodyParameters { J, .. } = parameters;
             let factor = Poinsot::new(J).map_err(|e| e.in_field("J"))?;
-            Ok(Self { parameters, factor })
+            Ok(Self {
+                parameters,
+                factor,
+                method: Method::of_size(3),
+            })
+        }
+        /// The same model, its steps solved by the solver named.
+        #[must_use]
+        pub fn with_solver(self, method: Method) -> Self {
+            Self { method, ..self }
         }
         /// The parameters.
         pub fn parameters(&self) -> &FreeBodyParameters<T> {
@@ -157,12 +167,13 @@ pub mod free_body {
             let work = FreeBodyWorkspace {
                 h,
                 solver: Free::start_of_order(
-                    &self.factor,
-                    &state.Λ,
-                    &state.momentum,
-                    h,
-                    order,
-                )?,
+                        &self.factor,
+                        &state.Λ,
+                        &state.momentum,
+                        h,
+                        order,
+                    )?
+                    .solved_by(self.method),
             };
             let (mut trial, mut scratch) = (state, work);
             self.step(&mut trial, &mut scratch)
@@ -543,7 +554,7 @@ pub mod free_body {
                 },
             ],
             open: Self::open,
-            solvers: &[],
+            solvers: &Method::NAMES,
             dimensions: &[],
             sized: Self::sized,
         };
@@ -580,7 +591,10 @@ pub mod free_body {
                     matrix_of("body_momentum", initial.get(1usize))?,
                 ),
             };
-            chosen_solver(settings, Self::CARD.solvers)?;
+            let model = match chosen_solver(settings, Self::CARD.solvers)? {
+                Some(method) => model.with_solver(method),
+                None => model,
+            };
             let order = preprocessing_order(settings, Self::CARD.orders)?;
             let (state, work) = model.start_of_order(initial, settings.h, order)?;
             Ok(

@@ -22,6 +22,7 @@ pub mod heavy_top_spatial {
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct HeavyTopSpatial<T = f64> {
         parameters: HeavyTopSpatialParameters<T>,
+        method: Method,
     }
     impl<T: Real> HeavyTopSpatial<T> {
         /// The model as it was stated.
@@ -38,7 +39,15 @@ pub mod heavy_top_spatial {
         ) -> Result<Self, ParameterError> {
             validate::finite("w", &[parameters.w])?;
             validate::finite("z", parameters.z.as_slice())?;
-            Ok(Self { parameters })
+            Ok(Self {
+                parameters,
+                method: Method::of_size(3),
+            })
+        }
+        /// The same model, its steps solved by the solver named.
+        #[must_use]
+        pub fn with_solver(self, method: Method) -> Self {
+            Self { method, ..self }
         }
         /// The parameters.
         pub fn parameters(&self) -> &HeavyTopSpatialParameters<T> {
@@ -84,16 +93,17 @@ pub mod heavy_top_spatial {
             self.node
         }
     }
-    /// The step, the body, and the momentum of the edge that begins at the state `here`. Made anew for any other state.
+    /// The step, the solver's name, the body, and the momentum of the edge that begins at the state `here`. Made anew for any other state.
     #[derive(Clone, Copy, Debug)]
     pub struct HeavyTopSpatialWorkspace<T = f64> {
         h: T,
+        method: Method,
         factor: Poinsot<T>,
         edge: Edge<T>,
         here: HeavyTopSpatialState<T>,
     }
     impl<T: Real> HeavyTopSpatial<T> {
-        /// Starts a trajectory with step `h` from data at node 0.
+        /// Starts a trajectory with step `h` from data at node 0, with the model's solver.
         ///
         /// # Errors
         /// Names the value that is not finite, or says why the first step cannot be solved and
@@ -103,9 +113,21 @@ pub mod heavy_top_spatial {
             initial: HeavyTopSpatialInitial<T>,
             h: T,
         ) -> Result<(HeavyTopSpatialState<T>, HeavyTopSpatialWorkspace<T>), StartError> {
+            self.start_with(initial, h, self.method)
+        }
+        /// As `start`, with the solver named.
+        ///
+        /// # Errors
+        /// As `start`; also when the solver does not serve this size or scalar.
+        pub fn start_with(
+            &self,
+            initial: HeavyTopSpatialInitial<T>,
+            h: T,
+            method: Method,
+        ) -> Result<(HeavyTopSpatialState<T>, HeavyTopSpatialWorkspace<T>), StartError> {
             validate::positive_step(h)?;
             let state = self.at_node_0(initial)?;
-            Ok((state, self.workspace(&state, h)?))
+            Ok((state, self.workspace_with(&state, h, method)?))
         }
         /// The state at node 0.
         fn at_node_0(
@@ -143,9 +165,22 @@ pub mod heavy_top_spatial {
             state: &HeavyTopSpatialState<T>,
             h: T,
         ) -> Result<HeavyTopSpatialWorkspace<T>, StartError> {
+            self.workspace_with(state, h, self.method)
+        }
+        /// The same with the solver named.
+        ///
+        /// # Errors
+        /// When the first step cannot be solved.
+        pub fn workspace_with(
+            &self,
+            state: &HeavyTopSpatialState<T>,
+            h: T,
+            method: Method,
+        ) -> Result<HeavyTopSpatialWorkspace<T>, StartError> {
             let state = *state;
             let work = HeavyTopSpatialWorkspace {
                 h,
+                method,
                 factor: self.factor(&state)?,
                 edge: self.edge(&state, h),
                 here: state,
@@ -193,19 +228,24 @@ pub mod heavy_top_spatial {
                 work.here = *state;
             }
             let edge = &work.edge;
-            let Λ_moved = match edge.turn(&work.factor, h, &state.Λ) {
+            let turned = match work.method {
+                Method::Kappa => edge.turn(&work.factor, h, &state.Λ),
+                method => edge.turn_by(method, &work.factor, h, &state.Λ),
+            };
+            let Λ_moved = match turned {
                 Ok(turned) => turned,
                 Err(e) => return Err(self.refused(*state, &work.factor, h, e)),
             };
             let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
-            let Λ_next = Λ_moved.matrix();
+            let Λ_next = Λ_moved.turning();
             let χ_reference = state.χ;
             let χ_next = Λ_next * χ_reference;
             let space = edge.space();
+            let torque = (Λ_next.tr_mul(&z)).cross(&(χ_reference * h * w));
             let kick = (z * h * w).cross(&χ_next);
             let momentum_next = space + kick * T::from_f64(0.5);
             let left = space + kick;
-            let edge_next = Edge::new(Λ_next.tr_mul(&left), left);
+            let edge_next = Edge::new(Λ_next.tr_mul(&space) + torque, left);
             if !all_finite(&momentum_next) {
                 return Err(
                     StepCause::NotFinite {
@@ -808,7 +848,7 @@ pub mod heavy_top_spatial {
                 },
             ],
             open: Self::open,
-            solvers: &[],
+            solvers: &Method::NAMES,
             dimensions: &[],
             sized: Self::sized,
         };
@@ -848,7 +888,10 @@ pub mod heavy_top_spatial {
                 J: matrix_of("J", initial.get(2usize))?,
                 χ: matrix_of("χ", initial.get(3usize))?,
             };
-            chosen_solver(settings, Self::CARD.solvers)?;
+            let model = match chosen_solver(settings, Self::CARD.solvers)? {
+                Some(method) => model.with_solver(method),
+                None => model,
+            };
             let state = model.at_node_0(initial)?;
             let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)?;
             Ok(

@@ -25,6 +25,7 @@ pub mod heavy_top {
     pub struct HeavyTop<T = f64> {
         parameters: HeavyTopParameters<T>,
         factor: Poinsot<T>,
+        method: Method,
     }
     impl<T: Real> HeavyTop<T> {
         /// The model as it was stated.
@@ -43,7 +44,16 @@ pub mod heavy_top {
             validate::finite("z", parameters.z.as_slice())?;
             let HeavyTopParameters { J, .. } = parameters;
             let factor = Poinsot::new(J).map_err(|e| e.in_field("J"))?;
-            Ok(Self { parameters, factor })
+            Ok(Self {
+                parameters,
+                factor,
+                method: Method::of_size(3),
+            })
+        }
+        /// The same model, its steps solved by the solver named.
+        #[must_use]
+        pub fn with_solver(self, method: Method) -> Self {
+            Self { method, ..self }
         }
         /// The parameters.
         pub fn parameters(&self) -> &HeavyTopParameters<T> {
@@ -83,15 +93,16 @@ pub mod heavy_top {
             self.node
         }
     }
-    /// The step, and the momentum of the edge that begins at the state `here`. Made anew for any other state.
+    /// The step, the solver's name, and the momentum of the edge that begins at the state `here`. Made anew for any other state.
     #[derive(Clone, Copy, Debug)]
     pub struct HeavyTopWorkspace<T = f64> {
         h: T,
+        method: Method,
         edge: Edge<T>,
         here: HeavyTopState<T>,
     }
     impl<T: Real> HeavyTop<T> {
-        /// Starts a trajectory with step `h` from data at node 0.
+        /// Starts a trajectory with step `h` from data at node 0, with the model's solver.
         ///
         /// # Errors
         /// Names the value that is not finite, or says why the first step cannot be solved and
@@ -101,9 +112,21 @@ pub mod heavy_top {
             initial: HeavyTopInitial<T>,
             h: T,
         ) -> Result<(HeavyTopState<T>, HeavyTopWorkspace<T>), StartError> {
+            self.start_with(initial, h, self.method)
+        }
+        /// As `start`, with the solver named.
+        ///
+        /// # Errors
+        /// As `start`; also when the solver does not serve this size or scalar.
+        pub fn start_with(
+            &self,
+            initial: HeavyTopInitial<T>,
+            h: T,
+            method: Method,
+        ) -> Result<(HeavyTopState<T>, HeavyTopWorkspace<T>), StartError> {
             validate::positive_step(h)?;
             let state = self.at_node_0(initial)?;
-            Ok((state, self.workspace(&state, h)?))
+            Ok((state, self.workspace_with(&state, h, method)?))
         }
         /// The state at node 0.
         fn at_node_0(
@@ -127,9 +150,22 @@ pub mod heavy_top {
             state: &HeavyTopState<T>,
             h: T,
         ) -> Result<HeavyTopWorkspace<T>, StartError> {
+            self.workspace_with(state, h, self.method)
+        }
+        /// The same with the solver named.
+        ///
+        /// # Errors
+        /// When the first step cannot be solved.
+        pub fn workspace_with(
+            &self,
+            state: &HeavyTopState<T>,
+            h: T,
+            method: Method,
+        ) -> Result<HeavyTopWorkspace<T>, StartError> {
             let state = *state;
             let work = HeavyTopWorkspace {
                 h,
+                method,
                 edge: self.edge(&state, h),
                 here: state,
             };
@@ -149,17 +185,21 @@ pub mod heavy_top {
             work: &mut HeavyTopWorkspace<T>,
         ) -> Result<(), StepError> {
             let h = work.h;
-            if work.here != *state {
+            if work.here.Λ != state.Λ || work.here.momentum != state.momentum {
                 work.edge = self.edge(state, h);
                 work.here = *state;
             }
             let edge = &work.edge;
-            let Λ_moved = match edge.turn(&self.factor, h, &state.Λ) {
+            let turned = match work.method {
+                Method::Kappa => edge.turn(&self.factor, h, &state.Λ),
+                method => edge.turn_by(method, &self.factor, h, &state.Λ),
+            };
+            let Λ_moved = match turned {
                 Ok(turned) => turned,
                 Err(e) => return Err(self.refused(*state, &self.factor, h, e)),
             };
             let HeavyTopParameters { gU, z, .. } = self.parameters;
-            let Λ_next = Λ_moved.matrix();
+            let Λ_next = Λ_moved.turning();
             let Γ_next = Λ_next.tr_mul(&z);
             let space = edge.space();
             let torque = -(gU * h).cross(&Γ_next);
@@ -174,12 +214,13 @@ pub mod heavy_top {
                         .at_node(state.node),
                 );
             }
-            *state = HeavyTopState {
-                Λ: Λ_moved.rotation(),
-                momentum: SpatialMomentum(momentum_next),
-                node: state.node + 1,
-            };
-            work.here = *state;
+            let (Λ_arrived, momentum_next) = (
+                Λ_moved.rotation(),
+                SpatialMomentum(momentum_next),
+            );
+            (state.Λ, work.here.Λ) = (Λ_arrived, Λ_arrived);
+            (state.momentum, work.here.momentum) = (momentum_next, momentum_next);
+            state.node += 1;
             work.edge = edge_next;
             Ok(())
         }
@@ -582,7 +623,7 @@ pub mod heavy_top {
                 },
             ],
             open: Self::open,
-            solvers: &[],
+            solvers: &Method::NAMES,
             dimensions: &[],
             sized: Self::sized,
         };
@@ -621,7 +662,10 @@ pub mod heavy_top {
                     matrix_of("body_momentum", initial.get(1usize))?,
                 ),
             };
-            chosen_solver(settings, Self::CARD.solvers)?;
+            let model = match chosen_solver(settings, Self::CARD.solvers)? {
+                Some(method) => model.with_solver(method),
+                None => model,
+            };
             let state = model.at_node_0(initial)?;
             let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)?;
             Ok(

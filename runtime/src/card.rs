@@ -182,7 +182,8 @@ pub struct Card {
     pub invariants: &'static [Invariant],
     /// Starts a trajectory.
     pub open: Open,
-    /// Names of the solvers among which [`Settings::solver`] chooses; none where there is no choice.
+    /// Names of the solvers among which [`Settings::solver`] chooses, the model's own first; none
+    /// where there is no choice.
     pub solvers: &'static [&'static str],
     /// The named sizes of the model, with their values in this card; none for most models.
     pub dimensions: &'static [Dimension],

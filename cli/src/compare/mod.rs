@@ -17,6 +17,7 @@ use crate::plots;
 use crate::record::{LARGEST, Record};
 use clap::ArgMatches;
 use clebsch::card::Card;
+use clebsch::solvers::Method;
 use clebsch_comparisons::gallery::{Offer, Role, offers};
 use course::Course;
 use serde_json::{Value, json};
@@ -146,11 +147,7 @@ pub(crate) fn against_all(card: &Card, plan: &Plan, progress: bool) -> Result<Co
     for &higher in card.orders.iter().filter(|higher| **higher > order) {
         let mut plan = plan.clone();
         plan.order = Some(higher);
-        // A case may be too stiff for the longest steps of a composition: then this line says so.
-        let course = course::generated(card, &plan, false).unwrap_or_else(|why| Course {
-            record: Record::default(),
-            stopped: Some((0, why.to_string())),
-        });
+        let course = course_or_why(card, &plan);
         let time = clock::generated(card, &plan);
         let doc = format!("the same, {}", card.method_of_order(higher));
         scores.push(score(
@@ -160,6 +157,20 @@ pub(crate) fn against_all(card: &Card, plan: &Plan, progress: bool) -> Result<Co
             time,
             course,
         ));
+    }
+    // The first is what a model takes that was asked for none.
+    let own = plan
+        .solver
+        .map(Method::name)
+        .or(card.solvers.first().copied());
+    for name in card.solvers.iter().filter(|name| Some(**name) != own) {
+        let mut plan = plan.clone();
+        plan.solver = name.parse().ok();
+        let course = course_or_why(card, &plan);
+        let time = clock::generated(card, &plan);
+        let doc = format!("the same, solved by {name}");
+        let name = format!("generated-{name}");
+        scores.push(score(&name, doc, None, time, course));
     }
     for (offer, course) in others {
         let time = clock::other(plan, &offer);
@@ -172,6 +183,15 @@ pub(crate) fn against_all(card: &Card, plan: &Plan, progress: bool) -> Result<Co
     Ok(Comparison {
         reference: said,
         scores,
+    })
+}
+
+/// The generated stepper otherwise than asked for. A case may be too stiff for the longest steps of a
+/// composition, or beyond a solver's reach: then its line says so.
+fn course_or_why(card: &Card, plan: &Plan) -> Course {
+    course::generated(card, plan, false).unwrap_or_else(|why| Course {
+        record: Record::default(),
+        stopped: Some((0, why.to_string())),
     })
 }
 

@@ -2,6 +2,7 @@
 //! references. Takes parameters; gives right-hand sides of ordinary differential equations in plain
 //! arrays, with attitudes as quaternions, whose norm the equations keep.
 
+pub mod any_dimension;
 pub mod coupled;
 pub mod rigid;
 pub mod submerged;

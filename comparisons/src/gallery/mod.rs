@@ -2,6 +2,7 @@
 //! a case in the order of its card; gives methods that show their state as the initial values of the
 //! same card, so that whoever compares can ask the model itself for observables and invariants there.
 
+mod any_dimension;
 mod coupled;
 mod rigid;
 mod submerged;
@@ -144,6 +145,7 @@ pub fn offers(model: &str) -> Vec<Offer> {
         "cayley-klein" => unit_quaternion::body::<unit_quaternion::InBody>(),
         "cayley-klein-spatial" => unit_quaternion::body::<unit_quaternion::InSpace>(),
         "kirchhoff-body" => submerged::bodies(),
+        "body-n" => any_dimension::bodies(),
         _ => Vec::new(),
     }
 }

@@ -2,13 +2,16 @@
 //! Runge-Kutta on Euler's equations. Takes the values of a case; gives methods whose quaternions go on without a jump of
 //! sign, so that a motion on SU(2) is compared and not only the rotation under it.
 
-use super::{LOOSE, Method, Offer, Problem, TIGHT, by_hand, check, eighth, fifth, reference, rows};
+use super::{
+    LOOSE, Method, Offer, Problem, Role, TIGHT, by_hand, check, eighth, fifth, reference, rows,
+};
 use crate::continuous::rigid::{Field, RigidBody};
 use crate::handwritten::Unsolvable;
 use crate::handwritten::attitude::{
     Matrix, Quaternion, Vector, apply, apply_transposed, dot, product, transposed_product,
 };
 use crate::handwritten::cayley_klein::CayleyKlein;
+use crate::handwritten::cayley_klein_symmetric::SymmetricCayleyKlein;
 use crate::handwritten::principal_axes::PrincipalAxes;
 use crate::runge_kutta::{Accuracy, Method54, Method85, Method98, RungeKutta, Scheme};
 use std::marker::PhantomData;
@@ -133,6 +136,26 @@ impl Method for ByHand {
     }
 }
 
+/// The same for a body of revolution.
+struct Explicit {
+    motion: SymmetricCayleyKlein,
+    axes: PrincipalAxes,
+    shown: Shown,
+}
+
+impl Method for Explicit {
+    fn step(&mut self) -> Result<(), Unsolvable> {
+        self.motion.step();
+        Ok(())
+    }
+
+    fn shown(&self) -> Vec<Vec<f64>> {
+        let q = self.axes.leave_attitude(&self.motion.quaternion());
+        let momentum = self.axes.leave(&self.motion.body_momentum());
+        self.shown.of(&q.normalised(), &momentum)
+    }
+}
+
 type Started = Result<Box<dyn Method>, Unsolvable>;
 
 fn written<B: Read>(problem: &Problem<'_>) -> Started {
@@ -146,6 +169,23 @@ fn written<B: Read>(problem: &Problem<'_>) -> Started {
         problem.h,
     )?;
     Ok(Box::new(ByHand {
+        motion,
+        axes,
+        shown: body.shown,
+    }))
+}
+
+fn explicit<B: Read>(problem: &Problem<'_>) -> Started {
+    let body = B::read(problem).ok_or(Unsolvable)?;
+    let axes = PrincipalAxes::new(&poinsot(&body.inertia))?;
+    let motion = SymmetricCayleyKlein::start(
+        &axes.moments,
+        body.c,
+        &axes.enter_attitude(&body.attitude),
+        &axes.enter(&body.body_momentum),
+        problem.h,
+    )?;
+    Ok(Box::new(Explicit {
         motion,
         axes,
         shown: body.shown,
@@ -194,6 +234,12 @@ pub(super) fn body<B: Read>() -> Vec<Offer> {
         reference(Families::<B>::reference),
         check(Families::<B>::check),
         by_hand(written::<B>),
+        Offer {
+            name: "by-hand-explicit",
+            doc: "the same for two equal moments: solved once, every step explicit",
+            role: Role::ByHand,
+            start: explicit::<B>,
+        },
         eighth(Families::<B>::eighth),
         fifth(Families::<B>::fifth),
     ]

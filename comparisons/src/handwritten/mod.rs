@@ -6,6 +6,7 @@ pub mod attitude;
 pub mod body_in_field;
 pub mod body_n;
 pub mod cayley_klein;
+pub mod cayley_klein_symmetric;
 pub mod coupled_bodies;
 pub mod coupled_fixed_point;
 pub mod free_body;

@@ -16,7 +16,7 @@ pub use orthogonal::Orthogonal;
 pub use se3::{BodyImpulse, NotARigidMotion, RigidMotion, SpatialImpulse};
 pub use so3::{BodyMomentum, NotARotation, Rotation, SpatialMomentum};
 pub use su2::UnitQuaternion;
-pub use turned::TurnedRotation;
+pub use turned::{TurnedRotation, Turning};
 
 /// A Lie group with the operations an iteration on it needs.
 ///

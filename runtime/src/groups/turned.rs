@@ -1,10 +1,11 @@
 //! The product of a rotation with one whose quaternion has not been normalised yet.
-//! Takes both; gives the product's matrix after one division, its quaternion after a root as well.
+//! Takes both; gives the product's action on vectors and its matrix after one division, its quaternion after a root as well.
 
 use super::Rotation;
 use super::so3::{hamilton, norm_squared};
 use crate::Real;
-use nalgebra::Matrix3;
+use core::ops::Mul;
+use nalgebra::{Matrix3, Vector3};
 
 /// A rotation on its way: what follows a step may begin before its length is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +38,22 @@ impl<T: Real> TurnedRotation<T> {
         Rotation::from_unit(self.q.map(|x| x * scale))
     }
 
+    /// The 3x3 matrix, body -> space, as it acts on vectors.
+    #[inline(always)]
+    pub fn turning(&self) -> Turning<T> {
+        let ([w, x, y, z], scale) = (self.q, self.scale);
+        let (xx, yy, zz) = (x * x, y * y, z * z);
+        let (xy, xz, yz) = (x * y, x * z, y * z);
+        let (wx, wy, wz) = (w * x, w * y, w * z);
+        #[rustfmt::skip]
+        let deviation = [
+            [-(yy + zz), xy - wz, xz + wy],
+            [xy + wz, -(xx + zz), yz - wx],
+            [xz - wy, yz + wx, -(xx + yy)],
+        ];
+        Turning { deviation, scale }
+    }
+
     /// The 3x3 matrix, body -> space.
     #[inline(always)]
     pub fn matrix(&self) -> Matrix3<T> {
@@ -52,5 +69,44 @@ impl<T: Real> TurnedRotation<T> {
             s * (xz - wy), s * (yz + wx), one - s * (xx + yy),
         );
         matrix
+    }
+}
+
+/// The matrix `1 + s E` of a rotation, body -> space, which acts on a vector without being formed:
+/// `v + s (E v)`, where only the last step waits for the division that `s` is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turning<T = f64> {
+    /// `E`, by rows.
+    deviation: [[T; 3]; 3],
+    scale: T,
+}
+
+impl<T: Real> Turning<T> {
+    /// The inverse rotation of a vector, space -> body.
+    #[inline(always)]
+    pub fn tr_mul(&self, v: &Vector3<T>) -> Vector3<T> {
+        let ([[a, b, c], [d, e, f], [g, h, i]], s) = (self.deviation, self.scale);
+        let [[x, y, z]] = v.data.0;
+        Vector3::new(
+            x + s * ((a * x + d * y) + g * z),
+            y + s * ((b * x + e * y) + h * z),
+            z + s * ((c * x + f * y) + i * z),
+        )
+    }
+}
+
+impl<T: Real> Mul<Vector3<T>> for Turning<T> {
+    type Output = Vector3<T>;
+
+    /// The rotation of a vector, body -> space.
+    #[inline(always)]
+    fn mul(self, v: Vector3<T>) -> Vector3<T> {
+        let ([[a, b, c], [d, e, f], [g, h, i]], s) = (self.deviation, self.scale);
+        let [[x, y, z]] = v.data.0;
+        Vector3::new(
+            x + s * ((a * x + b * y) + c * z),
+            y + s * ((d * x + e * y) + f * z),
+            z + s * ((g * x + h * y) + i * z),
+        )
     }
 }

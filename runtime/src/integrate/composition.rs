@@ -7,7 +7,8 @@
 //! [`Reversible`], and a composition of it does not build.
 
 use super::{Reversible, Stepper};
-use crate::solvers::moser_veselov::MoserVeselovError;
+use crate::solvers::left_factor::Unsolved;
+use crate::solvers::moser_veselov::{MoserVeselovError, largest_step};
 use crate::{Real, StartError, StepCause, StepError};
 use core::fmt;
 
@@ -103,6 +104,7 @@ struct Stage<W> {
 #[derive(Clone, Debug)]
 pub struct Composition<S: Stepper> {
     stages: Vec<Stage<S::Workspace>>,
+    h: S::Scalar,
 }
 
 impl<S: Reversible> Composition<S> {
@@ -116,18 +118,22 @@ impl<S: Reversible> Composition<S> {
         h: S::Scalar,
         order: CompositionOrder,
     ) -> Result<Self, StartError> {
-        let factors = order.factors().into_iter();
-        let stages = factors.map(|factor| {
+        let factors = order.factors();
+        let stages = factors.iter().map(|&factor| {
             let workspace = model
                 .workspace(state, h * S::Scalar::from_f64(factor))
                 .map_err(|e| match e {
-                    StartError::Refused(cause) => StartError::Refused(in_all(cause, factor)),
+                    StartError::Refused(cause) => {
+                        let share = feasible(model, state, h, &factors);
+                        StartError::Refused(in_all(cause, factor, share))
+                    }
                     other => other,
                 })?;
             Ok(Stage { factor, workspace })
         });
         Ok(Self {
             stages: stages.collect::<Result<_, StartError>>()?,
+            h,
         })
     }
 }
@@ -144,7 +150,10 @@ impl<S: Stepper> Composition<S> {
         let mut moving = *state;
         for stage in &mut self.stages {
             if let Err(e) = model.advance(&mut moving, &mut stage.workspace) {
-                return Err(in_all(e.cause, stage.factor).at_node(node));
+                let factor = stage.factor;
+                let factors: Vec<f64> = self.stages.iter().map(|stage| stage.factor).collect();
+                let share = feasible(model, state, self.h, &factors);
+                return Err(in_all(e.cause, factor, share).at_node(node));
             }
         }
         *state = S::at_node(moving, node + 1);
@@ -152,12 +161,38 @@ impl<S: Stepper> Composition<S> {
     }
 }
 
-/// The cause said of the composed step instead of the factor that failed.
-fn in_all(cause: StepCause, factor: f64) -> StepCause {
+/// The largest part of the step `h` that can be made from this state, by bisection: a shorter step
+/// passes through other states, so that what the refused factor could do does not tell it.
+#[cold]
+#[inline(never)]
+fn feasible<S: Stepper>(model: &S, state: &S::State, h: S::Scalar, factors: &[f64]) -> f64 {
+    let made = |share: f64| {
+        let mut moving = *state;
+        for factor in factors {
+            let part = h * S::Scalar::from_f64(share * factor);
+            // A step of the whole must also start: each of its parts from the first state.
+            model.workspace(state, part).ok()?;
+            let mut workspace = model.workspace(&moving, part).ok()?;
+            model.advance(&mut moving, &mut workspace).ok()?;
+        }
+        Some(0.0)
+    };
+    largest_step(1.0, made)
+}
+
+/// The cause said of the composed step instead of the factor that failed, with the part of the step
+/// that can be made.
+fn in_all(cause: StepCause, factor: f64, share: f64) -> StepCause {
+    let whole = |h: Option<f64>| h.map(|h| h / factor);
     match cause {
         StepCause::MoserVeselov(e) => StepCause::MoserVeselov(MoserVeselovError {
-            h: e.h.map(|h| h / factor),
-            largest_step: e.largest_step.map(|h| h / factor),
+            h: whole(e.h),
+            largest_step: whole(e.h).map(|h| h * share),
+            ..e
+        }),
+        StepCause::LeftFactor(e) => StepCause::LeftFactor(Unsolved {
+            h: whole(e.h),
+            largest_step: whole(e.h).map(|h| h * share),
             ..e
         }),
         other => other,

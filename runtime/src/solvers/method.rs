@@ -43,6 +43,10 @@ impl Method {
     /// All names, in the same order.
     pub const NAMES: [&'static str; 5] = ["kappa", "lie-newton", "davenport", "sign", "schur"];
 
+    /// All names, for factors that would have to be prepared at each step.
+    pub const DAVENPORT_FIRST: [&'static str; 5] =
+        ["davenport", "kappa", "lie-newton", "sign", "schur"];
+
     /// The names that serve matrices of any size.
     pub const ANY_SIZE: [&'static str; 3] = ["lie-newton", "sign", "schur"];
 

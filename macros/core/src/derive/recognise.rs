@@ -6,11 +6,11 @@ use super::Letters;
 use super::balance::{Balance, shorter};
 use super::transport::Transport;
 use super::variation::at;
-use crate::algebra::{Algebra, Factor, Monomial, Poly, Source};
+use crate::algebra::{Algebra, Factor, Monomial, Poly, Rational, Source};
 use crate::check::spec::{Side, Spec};
 use crate::expr::shape::{Dim, Shape};
-use crate::expr::symbol::{Role, SymbolId};
-use crate::expr::{self, Expr, Letter, Shift};
+use crate::expr::symbol::{Role, SymbolId, Symbols};
+use crate::expr::{self, Expr, Letter, Node, Shift};
 
 /// The Riccati form of one balance.
 #[derive(Clone, Debug)]
@@ -39,6 +39,10 @@ pub struct MoserVeselov {
     /// What the momentum receives at the end of the edge, taken at the node there, on the side of
     /// the configuration; where that is all the node does: then the next edge can be made there.
     pub arrive: Option<Expr>,
+    /// For a configuration in space: what acts at a node on both sides of it, seen from the body
+    /// there, in the element and in advected quantities by their constant values at the identity.
+    /// None where the body does not see it more simply.
+    pub torque: Option<Expr>,
 }
 
 /// How the step is solved.
@@ -47,9 +51,9 @@ pub enum Method {
     /// Explicitly, with the constants of the trajectory found once: `C` is constant and the edge
     /// momentum is the node momentum, so that `κ` is conserved.
     FreeMoserVeselov,
-    /// Explicitly, one quartic a step.
+    /// Explicitly, one quartic a step, with the momentum of the next edge made at its first node.
     ForcedMoserVeselov,
-    /// By a solver of left factors, to be chosen by name: `C` is constant, in the frame of the
+    /// By a solver of left factors: `C` is constant, in the frame of the
     /// velocity or, where [`Solve::turned`] has it, in the other one.
     LeftFactor,
     /// By Davenport's eigenvalue problem, which takes any `C` known at the node; SO(3).
@@ -108,17 +112,10 @@ pub fn recognise(
                 constancy(letters, mv)
             ),
         ),
-        [Riccati::Exact(mv)]
-            if three(0) && mv.symmetric && (is_constant(letters, mv) || keeps_edge(mv)) =>
-        {
-            (
-                Method::ForcedMoserVeselov,
-                format!(
-                    "C is {} and symmetric: explicit after one quartic a step",
-                    constancy(letters, mv)
-                ),
-            )
-        }
+        [Riccati::Exact(mv)] if three(0) && mv.symmetric && keeps_edge(mv) => (
+            Method::ForcedMoserVeselov,
+            format!("C is {} and symmetric: {kappa}", constancy(letters, mv)),
+        ),
         [Riccati::Exact(_)] if turned.is_some() => (
             Method::LeftFactor,
             format!("C is constant seen from the body, where the equation is solved: {solver}"),
@@ -127,7 +124,11 @@ pub fn recognise(
             Method::Davenport,
             "C is known at each node: the largest real eigenvalue of a 4 x 4 matrix".to_owned(),
         ),
-        [Riccati::Exact(mv)] if three(0) && !mv.symmetric => (
+        [Riccati::Exact(mv)] if three(0) && mv.symmetric => (
+            Method::LeftFactor,
+            format!("C is constant and symmetric: {kappa}"),
+        ),
+        [Riccati::Exact(_)] if three(0) => (
             Method::LeftFactor,
             format!("C is constant, a rotation times a symmetric matrix: {kappa}"),
         ),
@@ -170,17 +171,7 @@ fn turned(
     if c.side != Side::Spatial {
         return None;
     }
-    let values: Vec<(Letter, Expr)> = spec
-        .advected
-        .iter()
-        .zip(transports)
-        .filter_map(|(a, t)| match t {
-            Transport::Defined(e) | Transport::Carried { value: e, .. } => {
-                Some((at(a.quantity, Shift::HERE), e.clone()))
-            }
-            Transport::Advanced => None,
-        })
-        .collect();
+    let values = carried(spec, transports);
     let here = expr::substitute(s, &mv.factor, &values);
     let element = expr::here(s, c.element);
     let seen = expr::product([expr::transpose(s, element.clone()), here, element]);
@@ -225,6 +216,76 @@ pub fn keeps_edge(mv: &MoserVeselov) -> bool {
     mv.in_body.is_some() && mv.arrive.is_some()
 }
 
+/// What acts at a node on both sides of it, seen from the body; see [`MoserVeselov::torque`].
+fn torque(
+    spec: &Spec,
+    letters: &Letters,
+    i: usize,
+    rest: &Expr,
+    arrive: &Expr,
+    transports: &[Transport],
+    algebra: &Algebra,
+) -> Option<Expr> {
+    let s = &letters.symbols;
+    let c = &spec.configurations[i];
+    if c.side == Side::Body || !rest.shape().is_vector() {
+        return None;
+    }
+    let (before, after) = (expr::shift_time(s, arrive, -1), expr::neg(rest.clone()));
+    let both = match before == after {
+        true => expr::scale(Rational::integer(2), after),
+        false => expr::add(before, after),
+    };
+    let spatial = expr::substitute(s, &both, &carried(spec, transports));
+    let seen = from_body(s, algebra, c.element, &spatial);
+    (!algebra.exhausted() && occurrences(&seen) <= occurrences(&spatial)).then_some(seen)
+}
+
+/// How many letters stand in an expression, each as often as it does; to transpose one costs
+/// nothing.
+fn occurrences(e: &Expr) -> u32 {
+    let inside = |list: Vec<&Expr>| list.into_iter().map(occurrences).sum();
+    u32::from(matches!(e.node(), Node::Letter(_))).saturating_add(inside(e.children()))
+}
+
+/// A vector seen from the body: the rotation passes through sums and vector products.
+fn from_body(s: &Symbols, algebra: &Algebra, element: SymbolId, e: &Expr) -> Expr {
+    let of = |x: &Expr| from_body(s, algebra, element, x);
+    match e.node() {
+        Node::Sum(terms) => expr::sum(terms.iter().map(of), e.shape()),
+        Node::Neg(a) => expr::neg(of(a)),
+        Node::Cross(a, b) => expr::cross(of(a), of(b)),
+        Node::Product(factors) => {
+            let (numbers, others): (Vec<Expr>, Vec<Expr>) =
+                factors.iter().cloned().partition(|f| f.shape().is_scalar());
+            match others.as_slice() {
+                [only] if !numbers.is_empty() => {
+                    expr::product(numbers.into_iter().chain([of(only)]))
+                }
+                _ => turned_back(s, algebra, element, e),
+            }
+        }
+        _ => turned_back(s, algebra, element, e),
+    }
+}
+
+fn turned_back(s: &Symbols, algebra: &Algebra, element: SymbolId, e: &Expr) -> Expr {
+    let back = expr::transpose(s, expr::here(s, element));
+    shorter(algebra, expr::mul(back, e.clone()))
+}
+
+/// Advected quantities by what acts on their reference values, for which their letters stand.
+fn carried(spec: &Spec, transports: &[Transport]) -> Vec<(Letter, Expr)> {
+    let list = spec.advected.iter().zip(transports);
+    list.filter_map(|(a, t)| match t {
+        Transport::Defined(value) | Transport::Carried { value, .. } => {
+            Some((at(a.quantity, Shift::HERE), value.clone()))
+        }
+        Transport::Advanced => None,
+    })
+    .collect()
+}
+
 /// `C` in the frame of the body, if it is constant there.
 fn in_body(
     spec: &Spec,
@@ -236,17 +297,7 @@ fn in_body(
 ) -> Option<Expr> {
     let s = &letters.symbols;
     let c = &spec.configurations[i];
-    let values: Vec<(Letter, Expr)> = spec
-        .advected
-        .iter()
-        .zip(transports)
-        .filter_map(|(a, t)| match t {
-            Transport::Defined(value) | Transport::Carried { value, .. } => {
-                Some((at(a.quantity, Shift::HERE), value.clone()))
-            }
-            Transport::Advanced => None,
-        })
-        .collect();
+    let values = carried(spec, transports);
     let known = |l: &Letter| {
         s.get(l.symbol).role == Role::Parameter || values.iter().any(|(letter, _)| letter == l)
     };
@@ -359,9 +410,13 @@ fn riccati(
     } else {
         rest
     };
+    let arrive = arrive(spec, letters, i, b, &rest, transports, algebra);
     let mv = MoserVeselov {
         in_body: in_body(spec, letters, i, &factor, transports, algebra),
-        arrive: arrive(spec, letters, i, b, &rest, transports, algebra),
+        torque: arrive
+            .as_ref()
+            .and_then(|a| torque(spec, letters, i, &rest, a, transports, algebra)),
+        arrive,
         factor: factor.clone(),
         symmetric,
         rest: rest.clone(),
@@ -375,12 +430,7 @@ fn riccati(
 
 /// Splits `Ω X - X^T Ω^T + rest`: returns `X` and the rest, or nothing if the velocity stands
 /// anywhere else.
-fn split(
-    algebra: &Algebra,
-    poly: &Poly,
-    velocity: SymbolId,
-    s: &crate::expr::symbol::Symbols,
-) -> Option<(Poly, Poly)> {
+fn split(algebra: &Algebra, poly: &Poly, velocity: SymbolId, s: &Symbols) -> Option<(Poly, Poly)> {
     let w = at(velocity, Shift::HERE);
     let is_velocity =
         |f: &Factor| matches!(f, Factor::Letter { source: Source::Letter(l), .. } if *l == w);
@@ -457,10 +507,6 @@ fn mentions(algebra: &Algebra, monomial: &Monomial, velocity: SymbolId) -> bool 
         monomial: monomial.clone(),
         word: Vec::new(),
     };
-    let number = algebra.raise(&Poly::term(
-        Shape::SCALAR,
-        crate::algebra::Rational::ONE,
-        term,
-    ));
+    let number = algebra.raise(&Poly::term(Shape::SCALAR, Rational::ONE, term));
     expr::letters(&number).iter().any(|l| l.symbol == velocity)
 }

@@ -29,7 +29,7 @@ pub fn discrete_energy(d: &Derivation, names: &Names) -> TokenStream {
     let node = |source: &Ident, level: i8, bindings: &mut Bindings| {
         let element = |i: usize| {
             let e = own(d, d.spec.configurations[i].element);
-            quote!(#source.#e)
+            quote!(#source.#e.matrix())
         };
         let reference = |id| {
             let r = own(d, id);

@@ -5,32 +5,26 @@ use super::expression::{Bindings, program};
 use super::items::{self, letters_of, node_locals, parameter_locals, with_transports};
 use super::names::{Names, item, own, per_configuration, tagged, variable};
 use super::sizes::Generics;
-use super::step::{Update, at, finish, here, step_signature, update};
+use super::step::{at, here, step_signature};
 use crate::algebra::Rational;
 use crate::check::spec::Side;
 use crate::derive::Derivation;
-use crate::derive::recognise::{self, Method, MoserVeselov, Riccati};
-use crate::expr::symbol::{Role, Symbols};
+use crate::derive::recognise::MoserVeselov;
+use crate::derive::transport::Transport;
+use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Node, Shift};
 use crate::schedule;
-use proc_macro2::TokenStream;
+use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
-/// What leaves the first node of an edge and what arrives at its second, where the momentum of the
-/// next edge can be made with the new node and kept.
-fn torques(d: &Derivation) -> Option<(Expr, Expr)> {
-    match (&d.solve.method, d.solve.riccati.first()) {
-        (Method::ForcedMoserVeselov, Some(Riccati::Exact(mv))) if recognise::keeps_edge(mv) => {
-            let arrive = mv.arrive.clone()?;
-            Some((expr::neg(mv.rest.clone()), arrive))
-        }
-        _ => None,
-    }
-}
-
-/// Whether the workspace keeps the edge that begins at the state.
-pub(super) fn keeps_edge(d: &Derivation) -> bool {
-    torques(d).is_some()
+/// What acts at the nodes.
+struct Torques {
+    /// At the first node of an edge, on it.
+    leave: Expr,
+    /// At its second node, taken there.
+    arrive: Expr,
+    /// Both at one node, seen from the body, where they are stated in space.
+    seen: Option<Expr>,
 }
 
 /// The body to solve with.
@@ -47,13 +41,19 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
     let node = names.local("node");
     let begin = begin(d, names, mv);
     let used = Generics::of(d).used();
-    let (step, momentum) = match torques(d) {
-        Some((leave, arrive)) => (
-            kept(d, names, &leave, &arrive),
-            quote!(self.edge(&state, trial).body()),
-        ),
-        None => (plain(d, names), quote!(self.edge_momentum(&state, trial))),
-    };
+    let step = kept(
+        d,
+        names,
+        &Torques {
+            leave: expr::neg(mv.rest.clone()),
+            // Known wherever this method is chosen.
+            arrive: mv
+                .arrive
+                .clone()
+                .unwrap_or_else(|| expr::neg(mv.rest.clone())),
+            seen: mv.torque.clone(),
+        },
+    );
     quote! {
         #step
         #begin
@@ -61,14 +61,13 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
         /// Says how far the step is beyond the bound, and which step could be solved.
         #[cold]
         fn refused(&self, state: #state #used, factor: &Poinsot<T>, h: T, e: MoserVeselovError) -> StepError {
-            let e = e.with_searched_step(factor, h, |trial| #momentum);
+            let e = e.with_searched_step(factor, h, |trial| self.edge(&state, trial).body());
             StepCause::from(e).at_node(state.#node)
         }
     }
 }
 
-/// The edge that starts at a node, or its momentum where nothing else is kept: for the solve at a
-/// given step, and for the search of a step.
+/// The edge that starts at a node: for the first step from a state, and for the search of a step.
 fn begin(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
     let s = &d.letters.symbols;
     let state = item(d, "State");
@@ -85,86 +84,90 @@ fn begin(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
     let step = variable(s, d.spec.step);
     let p = schedule::program(s, std::slice::from_ref(&mv.rest), "t");
     let (lets, values) = program(&p, &bindings);
-    let node_momentum = match c.side {
-        Side::Body => quote!(#element.tr_mul(&state.#momentum.0)),
-        Side::Spatial => quote!(state.#momentum.0),
-    };
-    let rest = (!mv.rest.is_zero()).then(|| quote!(- (#(#values)*)));
-    let used = Generics::of(d).used();
-    if keeps_edge(d) && c.side == Side::Spatial {
-        let space = names.local("space");
-        return quote! {
-            /// The edge that begins at this state, for a step `h`.
-            #[inline(never)]
-            fn edge(&self, state: &#state #used, #step: T) -> Edge<T> {
-                #parameters
-                #locals
-                #lets
-                let #space = #node_momentum #rest;
-                Edge::new(state.#own.matrix().tr_mul(&#space), #space)
-            }
-        };
-    }
-    if keeps_edge(d) {
-        let kick = names.local("kick");
+    let [kick, space] = ["kick", "space"].map(|base| names.local(base));
+    let edge = match c.side {
         // The spatial momentum is not taken through the body frame and back: each way would leave
         // its rounding in what is conserved.
-        return quote! {
-            /// The edge that begins at this state, for a step `h`.
-            #[inline(never)]
-            fn edge(&self, state: &#state #used, #step: T) -> Edge<T> {
-                #parameters
-                #locals
-                #lets
-                let #kick = #(#values)*;
-                Edge::new(#node_momentum - #kick, state.#momentum.0 - #element * #kick)
+        Side::Body => quote! {
+            let #kick = #(#values)*;
+            Edge::new(#element.tr_mul(&state.#momentum.0) - #kick, state.#momentum.0 - #element * #kick)
+        },
+        Side::Spatial => {
+            let rest = (!mv.rest.is_zero()).then(|| quote!(- (#(#values)*)));
+            quote! {
+                let #space = state.#momentum.0 #rest;
+                Edge::new(state.#own.matrix().tr_mul(&#space), #space)
             }
-        };
-    }
+        }
+    };
+    let used = Generics::of(d).used();
     quote! {
-        /// The momentum of the edge that starts at this node, for a step `h`.
-        #[inline]
-        fn edge_momentum(&self, state: &#state #used, #step: T) -> SVector<T, 3> {
+        /// The edge that begins at this state, for a step `h`.
+        #[inline(never)]
+        fn edge(&self, state: &#state #used, #step: T) -> Edge<T> {
             #parameters
             #locals
             #lets
-            #node_momentum #rest
+            #edge
         }
     }
 }
 
 /// The step that finds its edge in the workspace and leaves the next one there.
-fn kept(d: &Derivation, names: &Names, leave: &Expr, arrive: &Expr) -> TokenStream {
+fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
+    let (leave, arrive) = (&torques.leave, &torques.arrive);
     let s = &d.letters.symbols;
     let c = &d.spec.configurations[0];
-    let state = item(d, "State");
     let (element, momentum) = (own(d, c.element), per_configuration(d, "momentum", 0));
     let [moved, next] = ["moved", "next"].map(|tag| tagged(d, names, c.element, tag));
-    let [edge, following, space, momentum_next, node] =
-        ["edge", "edge_next", "space", "momentum_next", "node"].map(|base| names.local(base));
+    let [edge, following, space, momentum_next, node, turned] = [
+        "edge",
+        "edge_next",
+        "space",
+        "momentum_next",
+        "node",
+        "turned",
+    ]
+    .map(|base| names.local(base));
     let step = variable(s, d.spec.step);
     // Everything acts at the new node: what arrives there, and what leaves it on the next edge.
     // Where the two are equal, half their sum is each of them.
     let leave = expr::shift_time(s, leave, 1);
     let wanted: Vec<Expr> = if leave == *arrive {
-        vec![prescaled(s, &expr::scale(Rational::integer(2), leave))]
+        vec![prescaled(s, &expr::scale(Rational::integer(2), leave), &[])]
     } else {
-        vec![prescaled(s, arrive), prescaled(s, &leave)]
+        vec![prescaled(s, arrive, &[]), prescaled(s, &leave, &[])]
     };
     let mut needed = letters_of(&wanted);
-    let mut element_next = at(c.element, Shift::HERE);
-    element_next.shift.time = 1;
-    needed.push(element_next);
+    needed.push(at(c.element, Shift::NEXT));
     let parameters = parameter_locals(d, quote!(self.parameters), &with_transports(d, &needed, 1));
     let mut bindings = Bindings::new();
     let reference = |id| {
         let r = own(d, id);
         quote!(state.#r)
     };
-    let solved = |_| quote!(#moved);
+    let (at_node, onwards) = (at(c.element, Shift::HERE), at(c.element, Shift::NEXT));
+    let on_vectors = wanted.iter().all(|e| acts_on_vectors(e, onwards))
+        && d.spec.advected.iter().zip(&d.transports).all(|(a, t)| {
+            let unused = !needed.contains(&at(a.quantity, Shift::NEXT));
+            unused || carries_vectors(t, at_node)
+        })
+        && torques.seen.iter().all(|e| acts_on_vectors(e, at_node));
+    let solved = |_| match on_vectors {
+        true => quote!(#moved.turning()),
+        false => quote!(#moved.matrix()),
+    };
     let locals = node_locals(d, names, 1, &needed, &solved, &reference, &mut bindings);
     let p = schedule::program(s, &wanted, "t");
     let (lets, values) = program(&p, &bindings);
+    let seen = torques.seen.as_ref();
+    let seen = seen.map(|e| seen_from_body(d, names, e, &next, &needed));
+    // Of a momentum in space that is known only at the end, the body would have to wait.
+    let from_body = |left: TokenStream| match &seen {
+        Some((_, torque)) => quote!(#next.tr_mul(&#space) + #torque),
+        None => quote!(#next.tr_mul(&#left)),
+    };
+    let seen_lets = seen.as_ref().map(|(lets, _)| lets);
     let act = match values.as_slice() {
         [both] if c.side == Side::Body => {
             let [torque, kick] = ["torque", "kick"].map(|base| names.local(base));
@@ -177,19 +180,23 @@ fn kept(d: &Derivation, names: &Names, leave: &Expr, arrive: &Expr) -> TokenStre
         }
         [both] => {
             let [kick, left] = ["kick", "left"].map(|base| names.local(base));
+            let body = from_body(quote!(#left));
             quote! {
+                #seen_lets
                 let #kick = #both;
                 let #momentum_next = #space + #kick * T::from_f64(0.5);
                 let #left = #space + #kick;
-                let #following = Edge::new(#next.tr_mul(&#left), #left);
+                let #following = Edge::new(#body, #left);
             }
         }
         [arrived, kick] if c.side == Side::Spatial => {
             let left = names.local("left");
+            let body = from_body(quote!(#left));
             quote! {
+                #seen_lets
                 let #momentum_next = #space + #arrived;
                 let #left = #momentum_next + #kick;
-                let #following = Edge::new(#next.tr_mul(&#left), #left);
+                let #following = Edge::new(#body, #left);
             }
         }
         _ => {
@@ -223,43 +230,28 @@ fn kept(d: &Derivation, names: &Names, leave: &Expr, arrive: &Expr) -> TokenStre
             };
         }
     });
-    let references: Vec<_> = items::kept(d).into_iter().map(|id| own(d, id)).collect();
+    let references: Vec<_> = items::kept(d)
+        .into_iter()
+        .map(|id| (s.get(id).shape, own(d, id)))
+        .collect();
     let arrived_at = tagged(d, names, c.element, "arrived");
-    // References do not change: what moves is written where it is.
-    let (moved_away, arrived) = if references.is_empty() {
-        (
-            quote!(work.here != *state),
-            quote! {
-                *state = #state {
-                    #element: #moved.rotation(),
-                    #momentum: SpatialMomentum(#momentum_next),
-                    #node: state.#node + 1,
-                };
-                work.here = *state;
-            },
-        )
-    } else {
-        let equal = items::kept(d).into_iter().map(|id| {
-            let field = own(d, id);
-            match s.get(id).shape.is_scalar() {
-                true => quote!((work.here.#field == state.#field)),
-                false => quote!(same(&work.here.#field, &state.#field)),
-            }
+    let equal = references
+        .iter()
+        .map(|(shape, field)| match shape.is_scalar() {
+            true => quote!((work.here.#field == state.#field)),
+            false => quote!(same(&work.here.#field, &state.#field)),
         });
-        (
-            quote! {
-                work.here.#element != state.#element
-                    || work.here.#momentum != state.#momentum
-                    || !(#(#equal)&*)
-            },
-            quote! {
-                let (#arrived_at, #momentum_next) =
-                    (#moved.rotation(), SpatialMomentum(#momentum_next));
-                (state.#element, work.here.#element) = (#arrived_at, #arrived_at);
-                (state.#momentum, work.here.#momentum) = (#momentum_next, #momentum_next);
-                state.#node += 1;
-            },
-        )
+    let others = (!references.is_empty()).then(|| quote!(|| !(#(#equal)&*)));
+    // References do not change: what moves is written where it is, and not read back.
+    let moved_away = quote! {
+        work.here.#element != state.#element || work.here.#momentum != state.#momentum #others
+    };
+    let arrived = quote! {
+        let (#arrived_at, #momentum_next) =
+            (#moved.rotation(), SpatialMomentum(#momentum_next));
+        (state.#element, work.here.#element) = (#arrived_at, #arrived_at);
+        (state.#momentum, work.here.#momentum) = (#momentum_next, #momentum_next);
+        state.#node += 1;
     };
     step_signature(
         d,
@@ -271,7 +263,11 @@ fn kept(d: &Derivation, names: &Names, leave: &Expr, arrive: &Expr) -> TokenStre
                 work.here = *state;
             }
             let #edge = &work.edge;
-            let #moved = match #edge.turn(#factor, #step, &state.#element) {
+            let #turned = match work.method {
+                Method::Kappa => #edge.turn(#factor, #step, &state.#element),
+                method => #edge.turn_by(method, #factor, #step, &state.#element),
+            };
+            let #moved = match #turned {
                 Ok(turned) => turned,
                 Err(e) => return Err(self.refused(*state, #factor, #step, e)),
             };
@@ -290,17 +286,86 @@ fn kept(d: &Derivation, names: &Names, leave: &Expr, arrive: &Expr) -> TokenStre
     )
 }
 
-/// The same expression with its numbers multiplied into the constant factor of a vector product
-/// rather than into the product: they need not wait for the new node.
-fn prescaled(s: &Symbols, e: &Expr) -> Expr {
-    let constant = |e: &Expr| {
-        expr::letters(e)
-            .iter()
-            .all(|l| matches!(s.get(l.symbol).role, Role::Parameter | Role::Step))
+/// Whether an element stands in an expression only where it, or its transpose, acts on a vector:
+/// its matrix is then not formed.
+fn acts_on_vectors(e: &Expr, element: Letter) -> bool {
+    let is_element = |e: &Expr| matches!(e.node(), Node::Letter(l) if *l == element);
+    let acts = |e: &Expr| match e.node() {
+        Node::Transpose(a) => is_element(a),
+        _ => is_element(e),
     };
     match e.node() {
-        Node::Neg(a) => expr::neg(prescaled(s, a)),
-        Node::Sum(terms) => expr::sum(terms.iter().map(|t| prescaled(s, t)), e.shape()),
+        Node::Letter(_) => !is_element(e),
+        Node::Product(factors) if e.shape().is_vector() => factors
+            .iter()
+            .all(|f| acts(f) || acts_on_vectors(f, element)),
+        _ => e.children().iter().all(|c| acts_on_vectors(c, element)),
+    }
+}
+
+/// The same of what carries a quantity along.
+fn carries_vectors(t: &Transport, element: Letter) -> bool {
+    match t {
+        Transport::Defined(e) | Transport::Carried { value: e, .. } => acts_on_vectors(e, element),
+        Transport::Advanced => false,
+    }
+}
+
+/// What acts at the new node, seen from the body, as a local and its name: the edge that begins
+/// there need not wait for the momentum in space.
+fn seen_from_body(
+    d: &Derivation,
+    names: &Names,
+    e: &Expr,
+    next: &Ident,
+    known: &[Letter],
+) -> (TokenStream, Ident) {
+    let s = &d.letters.symbols;
+    let e = prescaled(s, e, &items::kept(d));
+    let torque = names.local("torque");
+    let mut bindings = Bindings::new();
+    bindings.bind(
+        at(d.spec.configurations[0].element, Shift::HERE),
+        next.clone(),
+    );
+    let letters = expr::letters(&e);
+    let mut references = TokenStream::new();
+    for id in items::kept(d) {
+        if letters.iter().any(|l| l.symbol == id) {
+            let (field, local) = (own(d, id), tagged(d, names, id, "reference"));
+            bindings.bind(at(id, Shift::HERE), local.clone());
+            // The value at the node has needed it already.
+            if !known.iter().any(|l| l.symbol == id) {
+                references.extend(quote!(let #local = state.#field;));
+            }
+        }
+    }
+    let p = schedule::program(s, &[e], "b");
+    let (lets, values) = program(&p, &bindings);
+    (
+        quote! {
+            #references
+            #lets
+            let #torque = #(#values)*;
+        },
+        torque,
+    )
+}
+
+/// The same expression with its numbers multiplied into the constant factor of a vector product
+/// rather than into the product: they need not wait for the new node. `references` are constant
+/// quantities too.
+fn prescaled(s: &Symbols, e: &Expr, references: &[SymbolId]) -> Expr {
+    let constant = |e: &Expr| {
+        expr::letters(e).iter().all(|l| {
+            let role = s.get(l.symbol).role;
+            matches!(role, Role::Parameter | Role::Step) || references.contains(&l.symbol)
+        })
+    };
+    let of = |e: &Expr| prescaled(s, e, references);
+    match e.node() {
+        Node::Neg(a) => expr::neg(of(a)),
+        Node::Sum(terms) => expr::sum(terms.iter().map(of), e.shape()),
         Node::Product(factors) => {
             let (numbers, others): (Vec<Expr>, Vec<Expr>) = factors
                 .iter()
@@ -311,9 +376,7 @@ fn prescaled(s: &Symbols, e: &Expr) -> Expr {
                 return e.clone();
             };
             match only.node() {
-                Node::Sum(terms) => {
-                    expr::sum(terms.iter().map(|t| prescaled(s, &scaled(t))), e.shape())
-                }
+                Node::Sum(terms) => expr::sum(terms.iter().map(|t| of(&scaled(t))), e.shape()),
                 Node::Cross(a, b) if constant(a) => expr::cross(scaled(a), b.clone()),
                 Node::Cross(a, b) if constant(b) => expr::cross(a.clone(), scaled(b)),
                 _ => e.clone(),
@@ -321,60 +384,4 @@ fn prescaled(s: &Symbols, e: &Expr) -> Expr {
         }
         _ => e.clone(),
     }
-}
-
-/// The step that keeps nothing but the step size.
-fn plain(d: &Derivation, names: &Names) -> TokenStream {
-    let s = &d.letters.symbols;
-    let c = &d.spec.configurations[0];
-    let edge = names.local("edge");
-    let omega = variable(s, c.velocity);
-    let step = variable(s, d.spec.step);
-    let mut bindings = Bindings::new();
-    let updates = update(d, 0);
-    let list = match &updates {
-        Update::Acted { leave, arrive } => vec![leave, arrive],
-        Update::Added(e) | Update::Brought(e) => vec![e],
-    };
-    let uses_velocity = list
-        .iter()
-        .any(|e| expr::contains(e, at(c.velocity, Shift::HERE)));
-    let mut needed: Vec<Letter> = letters_of(list.iter().copied());
-    if let Update::Acted { leave, .. } = &updates
-        && !leave.is_zero()
-    {
-        needed.push(at(c.element, Shift::HERE));
-    }
-    let mut all = with_transports(d, &needed, 0);
-    all.extend(with_transports(d, &needed, 1));
-    let parameters = parameter_locals(d, quote!(self.parameters), &all);
-    let locals = here(d, names, &needed, &mut bindings);
-    let matrix = uses_velocity.then(|| {
-        let name = tagged(d, names, c.velocity, "matrix");
-        bindings.bind(at(c.velocity, Shift::HERE), name.clone());
-        quote!(let #name = #omega.matrix();)
-    });
-    let rest = finish(
-        d,
-        names,
-        &mut bindings,
-        &|_| quote!(#omega),
-        TokenStream::new(),
-    );
-    let factor = body(d);
-    step_signature(
-        d,
-        quote! {
-            let #step = work.h;
-            let #edge = self.edge_momentum(state, #step);
-            let #omega = match forced(#factor, &(#edge * #step)) {
-                Ok(solved) => solved,
-                Err(e) => return Err(self.refused(*state, #factor, #step, e)),
-            };
-            #matrix
-            #parameters
-            #locals
-            #rest
-        },
-    )
 }

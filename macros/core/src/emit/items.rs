@@ -196,7 +196,8 @@ pub fn with_transports(d: &Derivation, needed: &[Letter], level: i8) -> Vec<Lett
 }
 
 /// Locals for what is known at one node: matrices of the elements and advected quantities, as far
-/// as `needed` asks for them. `element(i)` and `reference(id)` give where they come from.
+/// as `needed` asks for them. `element(i)` gives the matrix, `reference(id)` the
+/// value at the identity.
 pub fn node_locals(
     d: &Derivation,
     names: &Names,
@@ -225,7 +226,7 @@ pub fn node_locals(
         };
         if needed.contains(&letter) {
             let (name, value) = (local(c.element), element(i));
-            out.extend(quote!(let #name = #value.matrix();));
+            out.extend(quote!(let #name = #value;));
             bindings.bind(letter, name);
         }
     }
@@ -534,19 +535,14 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
             quote!(solver: Free<T>,),
             " The step and the constants of the trajectory. Belongs to the state it was started with.",
         ),
-        Method::ForcedMoserVeselov
-            if super::forced::keeps_edge(d) && !factor_references(d).is_empty() =>
-        {
-            (
-                quote!(factor: Poinsot<T>, edge: Edge<T>, here: #state #used,),
-                " The step, the body, and the momentum of the edge that begins at the state `here`. Made anew for any other state.",
-            )
-        }
-        Method::ForcedMoserVeselov if super::forced::keeps_edge(d) => (
-            quote!(edge: Edge<T>, here: #state #used,),
-            " The step, and the momentum of the edge that begins at the state `here`. Made anew for any other state.",
+        Method::ForcedMoserVeselov if !factor_references(d).is_empty() => (
+            quote!(method: Method, factor: Poinsot<T>, edge: Edge<T>, here: #state #used,),
+            " The step, the solver's name, the body, and the momentum of the edge that begins at the state `here`. Made anew for any other state.",
         ),
-        Method::ForcedMoserVeselov => (TokenStream::new(), " The step."),
+        Method::ForcedMoserVeselov => (
+            quote!(method: Method, edge: Edge<T>, here: #state #used,),
+            " The step, the solver's name, and the momentum of the edge that begins at the state `here`. Made anew for any other state.",
+        ),
         Method::LeftFactor | Method::Davenport => super::left_factor::work(d),
         Method::Newton => (
             quote!(search: newton::Search<T, #elements, #dimension>,),

@@ -25,7 +25,13 @@ pub(super) fn ty(d: &Derivation) -> TokenStream {
 
 /// Whether the solver can be chosen.
 fn chooses(d: &Derivation) -> bool {
-    matches!(d.solve.method, Method::LeftFactor | Method::Davenport)
+    match d.solve.method {
+        Method::FreeMoserVeselov
+        | Method::ForcedMoserVeselov
+        | Method::LeftFactor
+        | Method::Davenport => true,
+        Method::Newton => false,
+    }
 }
 
 /// The solver that `start` takes.
@@ -60,10 +66,13 @@ pub(super) fn of_model(d: &Derivation) -> (TokenStream, TokenStream, TokenStream
     )
 }
 
-/// The names of the solvers that can be chosen.
+/// The names of the solvers that can be chosen, the one taken otherwise first.
 pub(super) fn offered(d: &Derivation) -> TokenStream {
     match (chooses(d), family(&d.spec.configurations[0])) {
         (false, _) => quote!(&[]),
+        (true, Family::Rotation) if matches!(d.solve.method, Method::Davenport) => {
+            quote!(&Method::DAVENPORT_FIRST)
+        }
         (true, Family::Rotation) => quote!(&Method::NAMES),
         (true, Family::Orthogonal(n)) => {
             let n = size(&d.letters.symbols, n);

@@ -42,7 +42,7 @@ pub fn balance(d: &Derivation, names: &Names) -> TokenStream {
         all.extend(with_transports(d, &needed, level));
         let element = |i: usize| {
             let e = own(d, d.spec.configurations[i].element);
-            quote!(#source.#e)
+            quote!(#source.#e.matrix())
         };
         // Quantities without a definition are given at every node.
         let mut given = TokenStream::new();

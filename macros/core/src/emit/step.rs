@@ -162,16 +162,16 @@ fn start(d: &Derivation, names: &Names) -> TokenStream {
                 false => quote!(&self.factor(&state)?),
             };
             quote! {
-                solver: Free::start_of_order(#factor, &state.#element, &state.#momentum, h, order)?,
+                solver: Free::start_of_order(#factor, &state.#element, &state.#momentum, h, order)?
+                    .solved_by(self.method),
                 #(#references: state.#references,)*
             }
         }
-        Method::ForcedMoserVeselov if super::forced::keeps_edge(d) => {
+        Method::ForcedMoserVeselov => {
             let factor = (!items::factor_references(d).is_empty())
                 .then(|| quote!(factor: self.factor(&state)?,));
-            quote!(#factor edge: self.edge(&state, h), here: state)
+            quote!(method, #factor edge: self.edge(&state, h), here: state)
         }
-        Method::ForcedMoserVeselov => TokenStream::new(),
         Method::LeftFactor | Method::Davenport => super::left_factor::work_init(d),
         Method::Newton => quote!(search: newton::Search::from_rest(),),
     };
@@ -244,7 +244,7 @@ pub(super) fn here(
 ) -> TokenStream {
     let element = |i: usize| {
         let e = own(d, d.spec.configurations[i].element);
-        quote!(state.#e)
+        quote!(state.#e.matrix())
     };
     let reference = |id| {
         let r = own(d, id);
@@ -299,7 +299,7 @@ pub(super) fn finish(
     }
     let element = |i: usize| {
         let moved = tagged(d, names, d.spec.configurations[i].element, "moved");
-        quote!(#moved)
+        quote!(#moved.matrix())
     };
     let reference = |id| {
         let r = own(d, id);

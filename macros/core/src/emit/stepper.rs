@@ -35,7 +35,40 @@ pub(super) fn start(d: &Derivation, state_of: TokenStream, fields: TokenStream) 
         self.step(&mut trial, &mut scratch).map_err(|e| StartError::Refused(e.cause))?;
         Ok(work)
     };
-    if super::left_factor::default_solver(d).is_some() {
+    if preprocessed(d) {
+        quote! {
+            /// Starts a trajectory with step `h` from data at node 0; of order two, symplectic.
+            ///
+            /// # Errors
+            /// Names the value that is not finite, or says why the first step cannot be solved and
+            /// which step could.
+            pub fn start(&self, initial: #initial #used, h: T) -> Result<(#state, #work), StartError> {
+                self.start_of_order(initial, h, Order::Two)
+            }
+
+            /// As `start`, with steps of the given order: the moments are modified once, a step
+            /// costs the same. Above two the step is Poisson in the momentum, but symplectic with
+            /// the attitude only up to its error, unless the workspace is `compensated`.
+            ///
+            /// # Errors
+            /// As `start`.
+            pub fn start_of_order(&self, initial: #initial #used, h: T, order: Order) -> Result<(#state, #work), StartError> {
+                validate::positive_step(h)?;
+                let state = self.at_node_0(initial)?;
+                Ok((state, self.workspace(&state, h, order)?))
+            }
+
+            #at_node_0
+
+            /// A workspace for steps of `h`, of either sign, from any state.
+            ///
+            /// # Errors
+            /// When the first step cannot be solved.
+            pub fn workspace(&self, state: &#state, h: T, order: Order) -> Result<#work, StartError> {
+                #tried
+            }
+        }
+    } else if super::left_factor::default_solver(d).is_some() {
         quote! {
             /// Starts a trajectory with step `h` from data at node 0, with the model's solver.
             ///
@@ -71,39 +104,6 @@ pub(super) fn start(d: &Derivation, state_of: TokenStream, fields: TokenStream) 
             /// # Errors
             /// When the first step cannot be solved.
             pub fn workspace_with(&self, state: &#state, h: T, method: Method) -> Result<#work, StartError> {
-                #tried
-            }
-        }
-    } else if preprocessed(d) {
-        quote! {
-            /// Starts a trajectory with step `h` from data at node 0; of order two, symplectic.
-            ///
-            /// # Errors
-            /// Names the value that is not finite, or says why the first step cannot be solved and
-            /// which step could.
-            pub fn start(&self, initial: #initial #used, h: T) -> Result<(#state, #work), StartError> {
-                self.start_of_order(initial, h, Order::Two)
-            }
-
-            /// As `start`, with steps of the given order: the moments are modified once, a step
-            /// costs the same. Above two the step is Poisson in the momentum, but symplectic with
-            /// the attitude only up to its error, unless the workspace is `compensated`.
-            ///
-            /// # Errors
-            /// As `start`.
-            pub fn start_of_order(&self, initial: #initial #used, h: T, order: Order) -> Result<(#state, #work), StartError> {
-                validate::positive_step(h)?;
-                let state = self.at_node_0(initial)?;
-                Ok((state, self.workspace(&state, h, order)?))
-            }
-
-            #at_node_0
-
-            /// A workspace for steps of `h`, of either sign, from any state.
-            ///
-            /// # Errors
-            /// When the first step cannot be solved.
-            pub fn workspace(&self, state: &#state, h: T, order: Order) -> Result<#work, StartError> {
                 #tried
             }
         }

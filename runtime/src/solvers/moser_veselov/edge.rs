@@ -3,6 +3,8 @@
 
 use super::forced::turn;
 use super::{MoserVeselovError, Poinsot};
+use crate::solvers::Method;
+use crate::solvers::left_factor::rotation_at;
 use crate::{Real, Rotation, TurnedRotation};
 use nalgebra::Vector3;
 
@@ -10,50 +12,64 @@ use nalgebra::Vector3;
 ///
 /// A stepper makes it at the end of a step, when the quantities of the new node are at hand, and
 /// keeps it for the next one: the solve waits for the body components, and for nothing else.
+///
+/// Aligned so that no pair of its numbers lies across two lines of the cache.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(32))]
 pub struct Edge<T = f64> {
-    body: Apart<T>,
-    space: Vector3<T>,
+    body: Paired<T>,
+    space: Paired<T>,
 }
 
-/// Three numbers, each alone in memory. Side by side they would be loaded in overlapping pairs,
-/// which the processor cannot forward from the stores of the step before.
+/// Three numbers in memory: a pair, stored and loaded as a whole, and one alone. Side by side they
+/// would be loaded in overlapping pairs, which the processor cannot forward from the stores of the
+/// step before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
-struct Apart<T> {
-    x: T,
+struct Paired<T> {
+    pair: [T; 2],
     gap: u64,
-    y: T,
-    other_gap: u64,
-    z: T,
+    alone: T,
+}
+
+impl<T: Real> Paired<T> {
+    #[inline(always)]
+    fn new(v: Vector3<T>) -> Self {
+        let [[x, y, z]] = v.data.0;
+        Self {
+            pair: [x, y],
+            gap: 0,
+            alone: z,
+        }
+    }
+
+    #[inline(always)]
+    fn get(&self) -> [T; 3] {
+        let [x, y] = self.pair;
+        [x, y, self.alone]
+    }
 }
 
 impl<T: Real> Edge<T> {
     /// The edge with momentum `body` in the frame at its first node, `space` in space.
     #[inline(always)]
     pub fn new(body: Vector3<T>, space: Vector3<T>) -> Self {
-        let [[x, y, z]] = body.data.0;
-        let body = Apart {
-            x,
-            gap: 0,
-            y,
-            other_gap: 0,
-            z,
-        };
-        Self { body, space }
+        Self {
+            body: Paired::new(body),
+            space: Paired::new(space),
+        }
     }
 
     /// The momentum of the edge, in the frame at its first node.
     #[inline(always)]
     pub fn body(&self) -> Vector3<T> {
-        let Apart { x, y, z, .. } = self.body;
-        Vector3::new(x, y, z)
+        self.body.get().into()
     }
 
     /// The momentum of the edge, in space.
     #[inline(always)]
     pub fn space(&self) -> Vector3<T> {
-        self.space
+        self.space.get().into()
     }
 
     /// The attitude where the edge ends, given that where it begins: the principal solution of the
@@ -69,13 +85,33 @@ impl<T: Real> Edge<T> {
         attitude: &Rotation<T>,
     ) -> Result<TurnedRotation<T>, MoserVeselovError> {
         let scale = h * body.half_over_unit;
-        let Apart { x, y, z, .. } = self.body;
+        let [x, y, z] = self.body.get();
         match turn(body, [x * scale, y * scale, z * scale]) {
             Some(omega) => Ok(attitude.turned(omega)),
             None => Err(MoserVeselovError::diagnose(
                 body,
                 &Vector3::new(x * h, y * h, z * h),
             )),
+        }
+    }
+
+    /// The same by the solver named, which prepares the body anew.
+    ///
+    /// # Errors
+    /// As [`Edge::turn`]; also when the solver does not serve this scalar.
+    #[cold]
+    #[inline(never)]
+    pub fn turn_by(
+        &self,
+        method: Method,
+        body: &Poinsot<T>,
+        h: T,
+        attitude: &Rotation<T>,
+    ) -> Result<TurnedRotation<T>, MoserVeselovError> {
+        let h_n = self.body() * h;
+        match rotation_at(body.matrix(), &h_n, method) {
+            Ok(omega) => Ok(attitude.turned(omega.quaternion())),
+            Err(_) => Err(MoserVeselovError::of_solver(method, body, &h_n)),
         }
     }
 }

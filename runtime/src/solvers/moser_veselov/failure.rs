@@ -5,6 +5,7 @@ use super::forced::turn;
 use super::preprocess::preprocessed;
 use super::{Order, Poinsot, largest_step, reach};
 use crate::Real;
+use crate::solvers::Method;
 use core::fmt;
 use nalgebra::Vector3;
 
@@ -24,6 +25,8 @@ pub struct MoserVeselovError {
     /// The order of the step: above two, the ratio is that of the modified moments, and infinite
     /// where these are no longer positive.
     pub order: Order,
+    /// The solver, where another than the one by `kappa` was asked for.
+    pub solver: Method,
     /// The lane all this is about: the worst, or that of the smallest step where it was searched.
     /// 0 for types without lanes.
     pub lane: u32,
@@ -44,6 +47,7 @@ impl MoserVeselovError {
             largest_step: None,
             component: 0,
             order: Order::Two,
+            solver: Method::Kappa,
             lane: 0,
         };
         for lane in 0..T::LANES {
@@ -98,11 +102,22 @@ impl MoserVeselovError {
                     largest_step: Some(largest),
                     component: fastest(&body, &n),
                     order,
+                    solver: Method::Kappa,
                     lane: index(lane),
                 });
             }
         }
         told.unwrap_or_else(|| Self::diagnose(body, h_mu))
+    }
+
+    /// The refusal of another solver.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn of_solver<T: Real>(method: Method, body: &Poinsot<T>, h_n: &Vector3<T>) -> Self {
+        Self {
+            solver: method,
+            ..Self::diagnose(body, h_n)
+        }
     }
 
     /// The same error with the step size that was refused, and the largest that would do.
@@ -183,6 +198,14 @@ impl fmt::Display for MoserVeselovError {
         }
         if self.lane > 0 {
             write!(f, "lane {}: ", self.lane)?;
+        }
+        if self.solver != Method::Kappa && self.ratio <= 1.0 {
+            return write!(
+                f,
+                "solver {} found no solution, although the momentum is only {:.6} of its bound, or \
+                 does not serve this scalar; take kappa",
+                self.solver, self.ratio
+            );
         }
         if self.ratio.is_infinite() {
             write!(

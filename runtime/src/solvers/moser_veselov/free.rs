@@ -1,12 +1,15 @@
 //! The torque-free rigid body, stepped explicitly.
 //! Takes the body, the start and the step size; advances the attitude, keeps the body momentum.
 
-use super::cayley::{Orbit, Pencil, cross, dot, gyroscopic};
+mod by_name;
+
+use super::cayley::{Orbit, Pencil, cross, dot, gyroscopic, square_sum};
 use super::compensation;
 use super::kappa::kappa;
 use super::preprocess::preprocessed;
 use super::principal::PrincipalAxes;
 use super::{MoserVeselovError, Order, Poinsot};
+use crate::solvers::Method;
 use crate::{BodyMomentum, Real, Rotation, SpatialMomentum};
 use nalgebra::{Matrix3, Vector3};
 
@@ -14,9 +17,9 @@ use nalgebra::{Matrix3, Vector3};
 /// random directions, so eight ulps gather in between, at a sixty-fourth of the cost.
 const PROJECT_EVERY: u32 = 64;
 
-/// Steps between two repairs of the attitude's length: its rounding errors have a common sign where
-/// the angle of the step hardly varies, and would add up until the projection.
-const REPAIR_EVERY: u32 = 8;
+/// Steps between two repairs of the attitude's length: the rounding errors of a step's norm have a
+/// common sign, and would add up until the projection.
+const REPAIR_EVERY: u32 = 4;
 
 /// Relative change of the energy, in roundings, up to which a new attitude is one of the same
 /// trajectory: those of some projections.
@@ -91,6 +94,8 @@ pub struct Free<T = f64> {
     momentum: SpatialMomentum<T>,
     h: T,
     order: Order,
+    /// What solves a step; all but the one by `kappa` do without the constants.
+    method: Method,
     /// The body in the axes given.
     given: Poinsot<T>,
     /// `|u|^2`; constant.
@@ -199,6 +204,7 @@ impl<T: Real> Free<T> {
             momentum: *momentum,
             h,
             order,
+            method: Method::Kappa,
             given,
             square,
             per_square: moving / (square + (T::one() - moving)),
@@ -244,9 +250,7 @@ impl<T: Real> Free<T> {
     #[must_use]
     pub fn compensated(mut self) -> Self {
         if self.order != Order::Two {
-            let h_mu = self
-                .attitude
-                .inverse_rotate(&self.momentum.0.map(|x| x * self.h));
+            let h_mu = self.body_momentum().0.map(|x| x * self.h);
             let factor = compensation::factor(&self.given, self.given.scaled(&h_mu), self.order);
             let half = self.axes.map(|axis| axis.space * factor);
             self.compensation = Some((compensation::rotation(half), PROJECT_EVERY));
@@ -267,7 +271,7 @@ impl<T: Real> Free<T> {
         momentum: &SpatialMomentum<T>,
     ) -> Result<(), MoserVeselovError> {
         if *attitude != self.attitude || *momentum != self.momentum {
-            self.rejoin(attitude, momentum)?;
+            return self.elsewhere(attitude, momentum);
         }
         self.step_on(attitude)
     }
@@ -302,7 +306,7 @@ impl<T: Real> Free<T> {
         };
         *self = Self {
             projects: self.projects,
-            ..started
+            ..started.solved_by(self.method)
         };
         Ok(())
     }
@@ -341,6 +345,21 @@ impl<T: Real> Free<T> {
         } else {
             self.body.adjugate_times::<false>(u)
         }
+    }
+
+    /// A step from a state that has been put there, or by another solver, which knows no other.
+    #[cold]
+    #[inline(never)]
+    fn elsewhere(
+        &mut self,
+        attitude: &mut Rotation<T>,
+        momentum: &SpatialMomentum<T>,
+    ) -> Result<(), MoserVeselovError> {
+        if self.method != Method::Kappa {
+            return self.step_by(attitude, momentum);
+        }
+        self.rejoin(attitude, momentum)?;
+        self.step_on(attitude)
     }
 
     #[cold]
@@ -386,13 +405,13 @@ impl<T: Real> Free<T> {
     /// The next `u` and attitude, and a number that is finite if and only if they are.
     #[inline(always)]
     fn moved(&self, u: [T; 3], attitude: &Rotation<T>, repairs: bool) -> ([T; 3], Rotation<T>, T) {
-        let (det, n) = if plain::<T>() {
-            self.orbit.solve(&self.body, u)
+        let (det, n, norm) = if plain::<T>() {
+            let (det, n) = self.orbit.solve(&self.body, u);
+            (det, n, self.orbit.norm(u, det, n))
         } else {
-            self.pencil.solve(&self.body, u)
+            let (det, n) = self.pencil.solve(&self.body, u);
+            (det, n, square_sum(det, n))
         };
-        let [x, y, z] = n;
-        let norm = (det * det + x * x) + (y * y + z * z);
         let per_norm = T::one() / norm;
         let [p, q, r] = if plain::<T>() {
             self.orbit.push(n)
@@ -410,12 +429,13 @@ impl<T: Real> Free<T> {
         } else {
             n
         };
+        // The product of the quaternions does not wait for the root, only its length does.
         let mut scale = per_norm.sqrt();
         if repairs {
             scale *= attitude.repair();
         }
-        let omega = Rotation::from_unit([det * scale, x * scale, y * scale, z * scale]);
-        (pushed, attitude.compose_raw(&omega), norm)
+        let turned = attitude.compose_raw(&Rotation::from_unit([det, x, y, z]));
+        (pushed, turned.scaled(scale), norm)
     }
 
     /// `count` steps at once, with the same result as one by one: for lanes, whose numbers then stay
@@ -430,6 +450,14 @@ impl<T: Real> Free<T> {
         momentum: &SpatialMomentum<T>,
         count: u64,
     ) -> Result<(), MoserVeselovError> {
+        if self.method != Method::Kappa {
+            let (mut solver, mut moving) = (*self, *attitude);
+            for _ in 0..count {
+                solver.step_by(&mut moving, momentum)?;
+            }
+            (*self, *attitude) = (solver, moving);
+            return Ok(());
+        }
         if *attitude != self.attitude || *momentum != self.momentum {
             self.rejoin(attitude, momentum)?;
         }
