@@ -123,6 +123,20 @@ pub struct Search<T, G, const D: usize> {
     factors: Factors<T, D>,
     /// How many steps ago that was.
     age: u32,
+    last: Summary,
+}
+
+/// How a step was solved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Summary {
+    /// Tangents made and factored: Newton's iterations proper. None where an earlier one served.
+    pub tangents: usize,
+    /// Corrections made, those with a kept tangent included.
+    pub corrections: usize,
+    /// The largest component of the residual before the last of them.
+    pub residual: f64,
+    /// The size of the terms that the residual is made of.
+    pub scale: f64,
 }
 
 impl<T: Real, G: Group<T>, const D: usize> Search<T, G, D> {
@@ -137,7 +151,19 @@ impl<T: Real, G: Group<T>, const D: usize> Search<T, G, D> {
             scale: f64::NAN,
             factors: Factors::none(),
             age: OLDEST_TANGENT,
+            last: Summary {
+                tangents: 0,
+                corrections: 0,
+                residual: 0.0,
+                scale: 0.0,
+            },
         }
+    }
+
+    /// How the last step was solved; zeros before the first.
+    #[must_use]
+    pub fn last(&self) -> Summary {
+        self.last
     }
 
     /// Begins the solution of the step that leaves `node`; `momentum` is the size of the momenta
@@ -149,6 +175,7 @@ impl<T: Real, G: Group<T>, const D: usize> Search<T, G, D> {
             self.known = 0;
             self.age = OLDEST_TANGENT;
         }
+        self.last.tangents = 0;
         let foreseen = self.known > 1;
         let first = if foreseen {
             self.foreseen()
@@ -195,7 +222,14 @@ impl<T: Real, G: Group<T>, const D: usize> Search<T, G, D> {
 
     /// Remembers the solution of the step that began at `node`.
     #[inline(always)]
-    pub fn remember(&mut self, node: u64, solution: G) {
+    pub fn remember(&mut self, node: u64, solution: &Solved<G>) {
+        self.last = Summary {
+            corrections: solution.iterations,
+            residual: solution.residual,
+            scale: self.scale,
+            ..self.last
+        };
+        let solution = solution.element;
         self.newest = match self.newest {
             0 => REMEMBERED - 1,
             i => i - 1,
@@ -304,6 +338,7 @@ impl<T: Real, G: Group<T>, const D: usize> Newton<'_, T, G, D> {
     pub fn set_tangent(&mut self, tangent: &SMatrix<T, D, D>) {
         self.search.factors.set(tangent, G::DIMENSION);
         self.search.age = 0;
+        self.search.last.tangents += 1;
     }
 
     /// Moves the trial by Newton's correction, or ends.
@@ -389,7 +424,8 @@ pub fn solve<T: Real, G: Group<T>, const D: usize>(
     mut tangent: impl FnMut(&G) -> SMatrix<T, D, D>,
 ) -> Result<Solved<G>, NewtonError> {
     let mut search = Search::from_rest();
-    search.remember(0, guess);
+    search.past = [guess; 2 * REMEMBERED];
+    (search.known, search.next) = (1, 1);
     let mut newton = search.begin(1, 0.0);
     // One attempt.
     newton.attempt = 2;

@@ -570,6 +570,16 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
         }
     });
     let state_doc = " What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.";
+    let summary = matches!(d.solve.method, Method::Newton).then(|| {
+        quote! {
+            impl #bound #work #used {
+                /// How the last step was solved: tangents, corrections, and the residual before the last.
+                pub fn solved(&self) -> newton::Summary {
+                    self.search.last()
+                }
+            }
+        }
+    });
     quote! {
         /// Initial data.
         #[derive(Clone, Copy, Debug, PartialEq)]
@@ -590,5 +600,6 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
         pub struct #work #declared { h: T, #work_field }
 
         #rounding
+        #summary
     }
 }

@@ -42,11 +42,12 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
     let (state, work) = (item(d, "State"), item(d, "Workspace"));
     let node = names.local("node");
     let step = variable(s, d.spec.step);
-    let (trial, mu, momentum, newton, solved) = (
+    let (trial, mu, momentum, newton, found, solved) = (
         names.local("trial"),
         names.local("momenta"),
         names.local("momentum"),
         names.local("iteration"),
+        names.local("found"),
         names.local("solved"),
     );
     let momenta = outgoing(d);
@@ -118,7 +119,7 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
         .iter()
         .map(|v| quote!(length(&(#v)).magnitude()));
     let momentum_parts = &equations.momenta;
-    let remembered = quote!(work.search.remember(state.#node - 1, #solved););
+    let remembered = quote!(work.search.remember(state.#node - 1, &#found););
     let mut after = bindings.clone();
     let matrices: TokenStream = (0..bodies)
         .map(|i| {
@@ -145,7 +146,7 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
             #known
             let #momentum = #(size_of(&#momentum_parts))+*;
             let mut #newton = work.search.begin(state.#node, #momentum);
-            let #solved: #elements = loop {
+            let #found: newton::Solved<#elements> = loop {
                 let #trial = #newton.trial();
                 if #newton.wants_scale() {
                     #velocities
@@ -158,10 +159,11 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
                 }
                 match #newton.correct() {
                     newton::Progress::Continue => {}
-                    newton::Progress::Solved(found) => break found.element,
+                    newton::Progress::Solved(solved) => break solved,
                     newton::Progress::Failed(e) => return Err(StepCause::from(e).at_node(state.#node)),
                 }
             };
+            let #solved = #found.element;
             #matrices
             #rest
         }
