@@ -12,7 +12,7 @@ mod steps;
 
 pub use composition::{Composition, CompositionOrder};
 pub use drift::Drift;
-pub use ensemble::{Ensemble, EnsembleError, InstructionSet};
+pub use ensemble::{Ensemble, EnsembleError, InstructionSet, Work};
 pub use model::Model;
 pub use run::{Observer, Summary, run};
 pub use stepper::{Reversible, Stepper};

@@ -32,7 +32,8 @@ pub trait Stepper {
         workspace: &mut Self::Workspace,
     ) -> Result<(), StepError>;
 
-    /// `count` steps, in place, with the same result as one by one.
+    /// `count` steps, in place, with the same result as one by one, but for rounding where the
+    /// model has a shorter way. How many are asked for at once makes no difference at all.
     ///
     /// # Errors
     /// When one of them cannot be solved; the state is then somewhere between.

@@ -1,5 +1,5 @@
 //! The instruction set that the steps of an ensemble run on, chosen at run time.
-//! Takes the work as a closure; gives what it gives.
+//! Takes the work; gives what it gives.
 
 /// The instruction set of an ensemble's steps. The results are the same on all of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -13,28 +13,49 @@ pub enum InstructionSet {
     Build,
 }
 
+/// What is to be compiled for each instruction set. A trait, since a closure cannot be told to be
+/// inlined, and what is called and not inlined is compiled for the build's own.
+pub trait Work {
+    /// What it gives.
+    type Output;
+
+    /// Does it. To be marked `#[inline(always)]`, as the functions of its inner loops.
+    fn done(self) -> Self::Output;
+}
+
 impl InstructionSet {
-    /// Does the work. What it inlines is compiled for each instruction set; what it calls is not.
+    /// Does the work.
     #[cfg(feature = "simd")]
-    #[inline(always)]
-    pub(super) fn run<R>(self, work: impl FnOnce() -> R) -> R {
+    pub fn run<W: Work>(self, work: W) -> W::Output {
         match self {
-            Self::Best => pulp::Arch::new().dispatch(work),
+            Self::Best => pulp::Arch::new().dispatch(Dispatched(work)),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             Self::Avx2 => match pulp::x86::V3::try_new() {
-                Some(avx2) => avx2.vectorize(work),
-                None => work(),
+                Some(avx2) => pulp::Simd::vectorize(avx2, Dispatched(work)),
+                None => work.done(),
             },
             #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-            Self::Avx2 => work(),
-            Self::Build => work(),
+            Self::Avx2 => work.done(),
+            Self::Build => work.done(),
         }
     }
 
     /// Does the work, on what the program was built for.
     #[cfg(not(feature = "simd"))]
+    pub fn run<W: Work>(self, work: W) -> W::Output {
+        work.done()
+    }
+}
+
+#[cfg(feature = "simd")]
+struct Dispatched<W>(W);
+
+#[cfg(feature = "simd")]
+impl<W: Work> pulp::WithSimd for Dispatched<W> {
+    type Output = W::Output;
+
     #[inline(always)]
-    pub(super) fn run<R>(self, work: impl FnOnce() -> R) -> R {
-        work()
+    fn with_simd<S: pulp::Simd>(self, _: S) -> W::Output {
+        self.0.done()
     }
 }

@@ -10,7 +10,7 @@ mod dispatch;
 mod failure;
 mod group;
 
-pub use dispatch::InstructionSet;
+pub use dispatch::{InstructionSet, Work};
 pub use failure::EnsembleError;
 
 use super::{Model, Stepper};
@@ -30,6 +30,48 @@ const BLOCK: usize = 4;
 /// With the feature `simd` the steps are compiled for several instruction sets, of which the best
 /// one the processor has is taken at run time; without, for that of the build. The results are the
 /// same bits: every lane rounds as plain numbers do, and products and sums are never fused.
+///
+/// Explicit steps and those with a quartic are, bit for bit, those that [`Stepper::advance_many`]
+/// makes of each body alone. Steps by Newton's method differ by rounding: lanes share the number of
+/// iterations and the order of elimination.
+///
+/// ```
+/// use clebsch::integrate::Ensemble;
+/// use clebsch::nalgebra::{Matrix3, Vector3};
+/// use clebsch::{BodyMomentum, Rotation};
+///
+/// clebsch::model! {
+///     model Pendulum3D {
+///         param J: Sym<3>;
+///         param w: Vec<3>;
+///         group R: SO<3> velocity W;
+///         advected g: Vec<3>;
+///         constraint next(R) = R*W;
+///         constraint next(g) = W^T*g;
+///         lagrangian = -tr(J*W)/h - h*dot(w, g);
+///     }
+/// }
+///
+/// let bodies = (0..1000).map(|i| {
+///     let x = f64::from(i) / 1000.0;
+///     let parameters = Pendulum3DParameters {
+///         J: Matrix3::from_diagonal(&Vector3::new(1.0, 1.0 + x, 1.5)),
+///         w: Vector3::new(0.0, 0.0, x),
+///     };
+///     let initial = Pendulum3DInitial {
+///         R: Rotation::identity(),
+///         body_momentum: BodyMomentum(Vector3::new(0.1, x, 1.0)),
+///         g: Vector3::z(),
+///     };
+///     (parameters, initial)
+/// });
+/// let mut pendulums = Ensemble::<Pendulum3D>::start(bodies, 0.1)?;
+/// pendulums.run(200)?; // or run_parallel, on all cores
+/// let energies: Vec<f64> = pendulums.observe(|model, state| model.energy(state)).collect();
+/// let (parameters, state) = pendulums.body(7).ok_or("there are a thousand")?;
+/// assert_eq!(energies[7], Pendulum3D::new(parameters)?.energy(&state));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Ensemble<M: Model<Scalar = f64>, const N: usize = 16> {
     groups: Vec<Group<M, N>>,
@@ -205,6 +247,21 @@ impl<M: Model<Scalar = f64>, const N: usize> Ensemble<M, N> {
     }
 }
 
+/// The steps of one group.
+struct Advance<'a, M: Model<Scalar = f64>, const N: usize> {
+    group: &'a mut Group<M, N>,
+    count: u64,
+}
+
+impl<M: Model<Scalar = f64>, const N: usize> Work for Advance<'_, M, N> {
+    type Output = Result<(), StepError>;
+
+    #[inline(always)]
+    fn done(self) -> Self::Output {
+        self.group.advance(self.count)
+    }
+}
+
 /// What is done with every group.
 #[derive(Clone, Copy)]
 struct Task<C> {
@@ -221,11 +278,13 @@ impl<C: Copy> Task<C> {
         at: usize,
         group: &mut Group<M, N>,
     ) -> Option<EnsembleError<StepError>> {
-        let count = self.count;
-        let advance = || group.advance(count);
-        let cause = self.instructions.run(advance).err()?;
+        let steps = Advance {
+            group: &mut *group,
+            count: self.count,
+        };
+        let cause = self.instructions.run(steps).err()?;
         let first = at * N;
         let here = [first, self.bodies.saturating_sub(first).min(N)];
-        Some(group.blame(count, here, self.steps, cause))
+        Some(group.blame(self.count, here, self.steps, cause))
     }
 }

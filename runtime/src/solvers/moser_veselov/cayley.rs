@@ -56,6 +56,11 @@ impl<T: Real> Pencil<T> {
         }
     }
 
+    /// Diagonal entries of `d`.
+    pub(super) fn d_moments(&self) -> [T; 3] {
+        self.d_moments
+    }
+
     /// `det` and `n`; the quaternion of `Omega` is `(det, n)` over its length.
     #[inline(always)]
     pub(super) fn solve(&self, body: &Poinsot<T>, u: [T; 3]) -> (T, [T; 3]) {
@@ -152,6 +157,16 @@ impl<T: Real> Orbit<T> {
             dominated: (T::from_f64(DOMINATED) * first - others).least() >= 0.0,
             ..self
         }
+    }
+
+    /// Diagonal entries of `adj d + a`.
+    pub(super) fn adjugate(&self) -> [T; 3] {
+        self.adjugate
+    }
+
+    /// `det(d - hat u)`: the constant, and the factor of `u_2^2`.
+    pub(super) fn determinant(&self) -> [T; 2] {
+        self.determinant
     }
 
     /// As [`Pencil::solve`].

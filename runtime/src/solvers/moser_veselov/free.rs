@@ -6,6 +6,7 @@ mod by_name;
 use super::cayley::{Orbit, Pencil, cross, dot, gyroscopic, square_sum};
 use super::compensation;
 use super::kappa::kappa;
+use super::phase::Phase;
 use super::preprocess::preprocessed;
 use super::principal::PrincipalAxes;
 use super::{MoserVeselovError, Order, Poinsot};
@@ -106,6 +107,8 @@ pub struct Free<T = f64> {
     energy: T,
     /// What turns `u` back into the momentum: `2 unit / h`.
     per_scale: T,
+    /// For many plain steps at once.
+    phase: Phase<T>,
 }
 
 /// One component of the scaled momentum. Body and spatial components alternate in memory on
@@ -161,6 +164,7 @@ impl<T: Real> Free<T> {
             None => given,
         };
         let turned = frame.filter(|axes| axes.frame != Rotation::identity());
+        let rotation = turned.as_ref().map(|axes| axes.frame);
         let turned = turned.map(|axes| axes.frame.matrix());
         let frame = turned.unwrap_or_else(Matrix3::identity);
         let u = body.scaled(&frame.tr_mul(&h_mu));
@@ -210,6 +214,7 @@ impl<T: Real> Free<T> {
             per_square: moving / (square + (T::one() - moving)),
             energy,
             per_scale: T::from_f64(2.0 * body.unit) / h,
+            phase: Phase::new(rotation.unwrap_or_else(Rotation::identity), square, kappa),
         })
     }
 
@@ -331,6 +336,7 @@ impl<T: Real> Free<T> {
                 }
                 // As at a start: what follows does not depend on how many steps were made before.
                 self.count_anew();
+                self.phase.lost();
                 return Ok(());
             }
         }
@@ -376,9 +382,9 @@ impl<T: Real> Free<T> {
     #[inline(always)]
     fn step_on(&mut self, attitude: &mut Rotation<T>) -> Result<(), MoserVeselovError> {
         if !self.advance(attitude) {
-            let nan = Vector3::repeat(T::from_f64(f64::NAN));
-            return Err(MoserVeselovError::diagnose(&self.given, &nan));
+            return Err(self.not_finite());
         }
+        self.phase.lost();
         self.until_projection -= 1;
         if self.until_projection == 0 {
             self.settle(attitude);
@@ -438,8 +444,10 @@ impl<T: Real> Free<T> {
         (pushed, turned.scaled(scale), norm)
     }
 
-    /// `count` steps at once, with the same result as one by one: for lanes, whose numbers then stay
-    /// in registers.
+    /// `count` steps at once, with the same result as one by one but for rounding: the attitude is
+    /// found at the end, from one angle. For lanes, whose numbers then stay in registers.
+    ///
+    /// How many steps are asked for at once makes no difference, not even in rounding.
     ///
     /// # Errors
     /// As [`Free::follow`]; nothing is changed.
@@ -460,35 +468,78 @@ impl<T: Real> Free<T> {
         }
         if *attitude != self.attitude || *momentum != self.momentum {
             self.rejoin(attitude, momentum)?;
+            self.attitude = *attitude;
         }
-        let mut solver = *self;
-        let mut moving = *attitude;
-        let mut left = count;
+        if !plain::<T>() || self.compensation.is_some() {
+            return self.step_many(attitude, count);
+        }
+        let mut phase = self.phase;
+        let body = (&self.body, &self.pencil, &self.orbit);
+        let (path, mut moving) = phase.taken_up(body, attitude, self.u());
+        let (mut left, mut until_projection) = (count, self.until_projection);
+        let (mut norm, mut corrected) = (T::one(), self.corrected);
         while left > 0 {
-            let mut u = solver.u();
-            let mut norm = T::one();
-            while left > 0 && solver.until_projection > 0 {
-                let repairs = solver.until_projection.is_multiple_of(REPAIR_EVERY);
-                (u, moving, norm) = solver.moved(u, &moving, repairs);
-                solver.until_projection -= 1;
-                left -= 1;
+            let until_repair = match until_projection % REPAIR_EVERY {
+                0 => REPAIR_EVERY,
+                n => n,
+            };
+            let steps = left.min(u64::from(until_repair));
+            for _ in 0..steps {
+                (moving, norm) = path.step(&moving);
             }
-            // What is not finite stays so: one test is enough.
-            if !norm.is_finite() {
-                let nan = Vector3::repeat(T::from_f64(f64::NAN));
-                return Err(MoserVeselovError::diagnose(&self.given, &nan));
+            left -= steps;
+            // `REPAIR_EVERY` at most.
+            until_projection -= steps as u32;
+            if until_projection.is_multiple_of(REPAIR_EVERY) {
+                moving.repair();
             }
-            for (axis, x) in solver.axes.iter_mut().zip(u) {
-                axis.body = x;
-            }
-            if solver.until_projection == 0 {
-                solver.settle(&mut moving);
+            if until_projection == 0 {
+                if self.projects {
+                    let before = phase.solver_axes(moving.u);
+                    let u = self.on_quadrics(before);
+                    moving.u = phase.relabelled(u);
+                    // The attitude turns with the momentum.
+                    corrected = [self.relative_change(before, u); 2];
+                }
+                until_projection = PROJECT_EVERY;
             }
         }
-        solver.attitude = moving;
-        *self = solver;
-        *attitude = moving;
+        // What is not finite stays so: one test is enough.
+        if !norm.is_finite() {
+            return Err(self.not_finite());
+        }
+        if count > 0 {
+            *attitude = phase.left_at(&moving);
+        }
+        for (axis, x) in self.axes.iter_mut().zip(phase.solver_axes(moving.u)) {
+            axis.body = x;
+        }
+        self.attitude = *attitude;
+        self.until_projection = until_projection;
+        self.corrected = corrected;
+        self.phase = phase;
         Ok(())
+    }
+
+    /// The same one by one: for numbers with derivatives, and steps that are each followed by a turn.
+    fn step_many(
+        &mut self,
+        attitude: &mut Rotation<T>,
+        count: u64,
+    ) -> Result<(), MoserVeselovError> {
+        let (mut solver, mut moving) = (*self, *attitude);
+        for _ in 0..count {
+            solver.step_on(&mut moving)?;
+        }
+        (*self, *attitude) = (solver, moving);
+        Ok(())
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn not_finite(&self) -> MoserVeselovError {
+        let nan = Vector3::repeat(T::from_f64(f64::NAN));
+        MoserVeselovError::diagnose(&self.given, &nan)
     }
 
     /// The steps that are made without looking up: one where each is followed by a turn.
@@ -523,15 +574,21 @@ impl<T: Real> Free<T> {
         }
         let (u, before) = (self.on_quadrics(self.u()), self.u());
         let (aligned, half) = self.aligned(*attitude, u);
-        let change = [0, 1, 2].map(|i| u[i] - before[i]);
         self.corrected = [
-            dot(change, change) * self.per_square,
+            self.relative_change(before, u),
             dot(half, half) * T::from_f64(4.0),
         ];
         for (axis, x) in self.axes.iter_mut().zip(u) {
             axis.body = x;
         }
         *attitude = aligned;
+    }
+
+    /// The square of a change of `u`, over that of its length.
+    #[inline(always)]
+    fn relative_change(&self, before: [T; 3], after: [T; 3]) -> T {
+        let change = [0, 1, 2].map(|i| after[i] - before[i]);
+        dot(change, change) * self.per_square
     }
 
     /// `u`, in the axes worked in.
@@ -543,6 +600,7 @@ impl<T: Real> Free<T> {
 
     /// One Newton step for `|u|^2 = square`, `u . v = energy` with `v = adj(I) u`, along the two
     /// gradients `u` and `v`; along `u` alone where they are parallel.
+    #[inline(always)]
     fn on_quadrics(&self, u: [T; 3]) -> [T; 3] {
         let (one, half) = (T::one(), T::from_f64(0.5));
         let v = self.energy_gradient(u);
