@@ -94,6 +94,13 @@ fn reductions_see_every_lane_and_every_derivative() {
     let poisoned = Lanes([2.0, f64::NAN, 0.5]);
     assert!(poisoned.least().is_nan() && poisoned.greatest().is_nan());
     assert!(poisoned.magnitude().is_nan() && !poisoned.is_finite());
+    assert!(Lanes([-1.0, 0.0, -0.0]).nowhere_positive() && (-1.0_f64).nowhere_positive());
+    assert!(
+        !lanes.nowhere_positive() && !poisoned.nowhere_positive() && !1.0_f64.nowhere_positive()
+    );
+    assert!(!Lanes([-1.0, f64::NAN]).nowhere_positive() && !f64::NAN.nowhere_positive());
+    assert!(lanes == lanes && poisoned != poisoned && lanes != Lanes([2.0, -3.0, 0.25]));
+    assert!(lanes.is_finite() && !poisoned.is_finite());
     let mask = lanes.where_positive(Lanes([7.0; 3]));
     assert_eq!(mask, Lanes([7.0, 0.0, 7.0]));
     assert_eq!(

@@ -199,6 +199,8 @@ fn table<M: Model<Scalar = f64>>(
         }
         black_box(&alone);
     }));
+    sets::<M, 1>(&mut ways, &bodies, choice, steps as u64);
+    ways.truncate(2);
     sets::<M, 8>(&mut ways, &bodies, choice, steps as u64);
     sets::<M, 16>(&mut ways, &bodies, choice, steps as u64);
     race(

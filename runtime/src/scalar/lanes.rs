@@ -10,9 +10,18 @@ use num_traits::{One, Zero};
 ///
 /// Every operation rounds each lane as `f64` does. `N` of 4 or 8 fills the vector registers of
 /// current processors; the alignment of 64 bytes lets a lane group be loaded in one instruction.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub struct Lanes<const N: usize>(pub [f64; N]);
+
+impl<const N: usize> PartialEq for Lanes<N> {
+    /// Looks at all lanes, without a branch for each.
+    #[inline(always)]
+    fn eq(&self, other: &Self) -> bool {
+        let pairs = self.0.iter().zip(&other.0);
+        pairs.fold(true, |all, (x, y)| all & (x == y))
+    }
+}
 
 impl<const N: usize> Lanes<N> {
     #[inline(always)]
@@ -156,7 +165,12 @@ impl<const N: usize> Real for Lanes<N> {
 
     #[inline(always)]
     fn is_finite(self) -> bool {
-        self.0.iter().all(|x| x.is_finite())
+        self.0.iter().fold(true, |all, x| all & x.is_finite())
+    }
+
+    #[inline(always)]
+    fn nowhere_positive(self) -> bool {
+        self.0.iter().fold(true, |all, x| all & (*x <= 0.0))
     }
 }
 

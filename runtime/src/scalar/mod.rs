@@ -84,6 +84,13 @@ pub trait Real:
     /// The largest real part over the lanes; NaN if any lane is NaN.
     fn greatest(self) -> f64;
 
+    /// Whether the real part is zero or negative in every lane; false if any is NaN. The same as
+    /// `greatest() <= 0.0`, which has to find the greatest first.
+    #[inline(always)]
+    fn nowhere_positive(self) -> bool {
+        self.greatest() <= 0.0
+    }
+
     /// `then` in the lanes where the real part of `self` is positive, zero in the others.
     ///
     /// This is how an iteration freezes the lanes that are done. NaN counts as not positive.

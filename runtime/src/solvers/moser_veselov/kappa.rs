@@ -197,7 +197,7 @@ impl<T: Real> Quartic<T> {
 pub(super) fn kappa<T: Real>(body: &Poinsot<T>, a: T, energy: T, deviation: T) -> Option<T> {
     let body = &body.symmetric;
     // Written so that NaN is not easy.
-    if (energy - body.easy).greatest() <= 0.0 {
+    if (energy - body.easy).nowhere_positive() {
         let quartic = Quartic::new(body, a, energy);
         let k = quartic.improved(quartic.start(deviation));
         return Some(quartic.polished(k));
