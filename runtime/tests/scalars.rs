@@ -150,3 +150,28 @@ fn rational_powers() {
     assert_eq!(Real::powi(dd(3.0), 0), dd(1.0));
     assert_eq!(2.0.powr(i64::MIN, i64::MIN), 2.0);
 }
+
+/// The length of what is zero: no change where nothing changes, no derivative where something does.
+#[test]
+fn the_root_of_zero_has_a_change_only_where_nothing_changes() {
+    let still = Dual::<2>::constant(0.0).sqrt();
+    assert_eq!((still.real, still.dual), (0.0, [0.0; 2]));
+    // The length of a vector that stays zero along one direction and leaves it along the other.
+    let x = Dual {
+        real: 0.0,
+        dual: [0.0, 1.0],
+    };
+    let length = (x * x).sqrt();
+    assert_eq!((length.real, length.dual), (0.0, [0.0; 2]));
+    let grows = x.sqrt();
+    assert_eq!((grows.real, grows.dual[0]), (0.0, 0.0));
+    assert_eq!(grows.dual[1], f64::INFINITY);
+    assert!(!grows.is_finite());
+    // Away from zero it is the chain rule, and below zero nothing.
+    let four = Dual {
+        real: 4.0,
+        dual: [1.0, 0.0],
+    };
+    assert_eq!((four.sqrt().real, four.sqrt().dual), (2.0, [0.25, 0.0]));
+    assert!(Dual::<1>::constant(-1.0).sqrt().real.is_nan());
+}

@@ -9,6 +9,10 @@ use core::fmt;
 use nalgebra::SMatrix;
 
 /// An invertible matrix, by convention from reference to space: `x = Q X`.
+///
+/// The Lie algebra is all matrices and the retraction is affine in them. Where the equation of a step
+/// is linear in its velocity, as for a kinetic energy with a constant inertia in the reference, Newton's
+/// method with this retraction has it after one correction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Linear<const N: usize, T = f64> {
     matrix: SMatrix<T, N, N>,
@@ -89,20 +93,7 @@ impl<const N: usize, T: Real> core::ops::Mul for Linear<N, T> {
 impl<const N: usize, T: Real> Group<T> for Linear<N, T> {
     const DIMENSION: usize = N * N;
 
-    #[inline]
-    fn identity() -> Self {
-        Self::identity()
-    }
-
-    #[inline]
-    fn compose(&self, other: &Self) -> Self {
-        *self * *other
-    }
-
-    #[inline]
-    fn inverse(&self) -> Self {
-        self.inverse()
-    }
+    super::own_operations!();
 
     /// `self . (1 + X)`, `X` the matrix of the coordinates, row by row.
     #[inline]

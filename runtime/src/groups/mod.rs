@@ -18,6 +18,27 @@ pub use so3::{BodyMomentum, NotARotation, Rotation, SpatialMomentum};
 pub use su2::UnitQuaternion;
 pub use turned::{TurnedRotation, Turning};
 
+/// The operations of [`Group`] that an element has by itself already, by the same names.
+macro_rules! own_operations {
+    () => {
+        #[inline]
+        fn identity() -> Self {
+            Self::identity()
+        }
+
+        #[inline]
+        fn compose(&self, other: &Self) -> Self {
+            *self * *other
+        }
+
+        #[inline]
+        fn inverse(&self) -> Self {
+            self.inverse()
+        }
+    };
+}
+use own_operations;
+
 /// A Lie group with the operations an iteration on it needs.
 ///
 /// Laws every implementation keeps to rounding: associativity, neutral element, inverses, and

@@ -114,20 +114,7 @@ impl<const N: usize, T: Real> core::ops::Mul for Orthogonal<N, T> {
 impl<const N: usize, T: Real> Group<T> for Orthogonal<N, T> {
     const DIMENSION: usize = N * (N.saturating_sub(1)) / 2;
 
-    #[inline]
-    fn identity() -> Self {
-        Self::identity()
-    }
-
-    #[inline]
-    fn compose(&self, other: &Self) -> Self {
-        *self * *other
-    }
-
-    #[inline]
-    fn inverse(&self) -> Self {
-        self.inverse()
-    }
+    super::own_operations!();
 
     /// `self . cay(X)` with the Cayley map `(1 - X/2)^-1 (1 + X/2)`, `X` the skew matrix of the
     /// coordinates: for `i < j`, row by row, `-xi` at (i, j) and `+xi` at (j, i).

@@ -132,20 +132,7 @@ impl<T: Real> Mul for RigidMotion<T> {
 impl<T: Real> Group<T> for RigidMotion<T> {
     const DIMENSION: usize = 6;
 
-    #[inline]
-    fn identity() -> Self {
-        Self::identity()
-    }
-
-    #[inline]
-    fn compose(&self, other: &Self) -> Self {
-        *self * *other
-    }
-
-    #[inline]
-    fn inverse(&self) -> Self {
-        self.inverse()
-    }
+    super::own_operations!();
 
     /// `self . [cay(ω) v; 0 1]`: it agrees with the exponential to first order and needs no
     /// trigonometry.

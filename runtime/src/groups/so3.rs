@@ -335,20 +335,7 @@ impl<T: Real> Mul for Rotation<T> {
 impl<T: Real> Group<T> for Rotation<T> {
     const DIMENSION: usize = 3;
 
-    #[inline]
-    fn identity() -> Self {
-        Self::identity()
-    }
-
-    #[inline]
-    fn compose(&self, other: &Self) -> Self {
-        *self * *other
-    }
-
-    #[inline]
-    fn inverse(&self) -> Self {
-        self.inverse()
-    }
+    super::own_operations!();
 
     /// `self . cay(hat(xi))`, the Cayley map `(1 - hat(xi)/2)^-1 (1 + hat(xi)/2)`: it agrees with
     /// the exponential to second order and needs no trigonometry.

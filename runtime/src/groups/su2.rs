@@ -86,20 +86,7 @@ impl<T: Real> Mul for UnitQuaternion<T> {
 impl<T: Real> Group<T> for UnitQuaternion<T> {
     const DIMENSION: usize = 3;
 
-    #[inline]
-    fn identity() -> Self {
-        Self::identity()
-    }
-
-    #[inline]
-    fn compose(&self, other: &Self) -> Self {
-        *self * *other
-    }
-
-    #[inline]
-    fn inverse(&self) -> Self {
-        self.inverse()
-    }
+    super::own_operations!();
 
     /// `self . (1 + ξ/2)/|1 + ξ/2|`, the Cayley map: it covers that of the rotations.
     #[inline]
