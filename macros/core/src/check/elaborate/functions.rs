@@ -1,0 +1,228 @@
+//! The functions of the language, and the words that are functions only where nothing of that name is
+//! declared. Takes a call; gives the expression.
+
+use super::{Elaborated, Elaborator, fail};
+use crate::algebra::Rational;
+use crate::check::messages::{self, shape_text};
+use crate::diagnostic::{Diagnostic, Place};
+use crate::expr::shape::{Dim, Shape, Structure};
+use crate::expr::symbol::{Role, Symbols};
+use crate::expr::{self, Expr, Function, Node, Part, Shift};
+use crate::syntax::HIDEABLE;
+use crate::syntax::ast::{Expression, Kind, Name};
+
+/// Whether an expression is an element of the group of this structure whatever its letters are.
+fn is_element(symbols: &Symbols, e: &Expr, structure: Structure) -> bool {
+    let go = |x: &Expr| is_element(symbols, x, structure);
+    match e.node() {
+        Node::Letter(at) => symbols.get(at.symbol).structure == structure,
+        Node::Identity(_) => true,
+        Node::Product(factors) => factors.iter().all(go),
+        Node::Inverse(a) => go(a),
+        Node::Transpose(a) => structure.is_orthogonal() && go(a),
+        _ => false,
+    }
+}
+
+impl Elaborator<'_> {
+    /// A word that is declared is no function: `rot (a)` is then a product.
+    pub(super) fn hidden(&self, name: &Name, args: &[Expression]) -> Option<Expression> {
+        let n = name.text.as_str();
+        let declared = self.names.symbols.find(n).is_some()
+            || self.bindings.iter().any(|(bound, _)| bound == n);
+        let [argument] = args else { return None };
+        if !HIDEABLE.contains(&n) || !declared {
+            return None;
+        }
+        let factor = Expression {
+            kind: Kind::Name(n.to_owned()),
+            place: name.place,
+        };
+        Some(Expression {
+            place: name.place.to(argument.place),
+            kind: Kind::Product(vec![factor, argument.clone()]),
+        })
+    }
+
+    /// Parts of elements of SU(2) and SE(3).
+    fn of_group(&self, f: &str, a: Expr, place: Place) -> Elaborated {
+        let symbols = &self.names.symbols;
+        if a.shape() != Shape::square(Dim::Fixed(4)) {
+            let what = shape_text(symbols, a.shape());
+            let d = Diagnostic::new(
+                place,
+                format!("`{f}` needs a 4 x 4 matrix, and this is {what}"),
+            );
+            return fail(d.help("elements of SU<2> and of SE<3> are 4 x 4 matrices"));
+        }
+        let quaternion = is_element(symbols, &a, Structure::UnitQuaternion);
+        let motion = is_element(symbols, &a, Structure::RigidMotion);
+        match f {
+            "re" => return Ok(expr::real(a)),
+            "im" => return Ok(expr::imaginary(a)),
+            "rot" if quaternion => return Ok(expr::rotation(symbols, a)),
+            "rot" if motion => return Ok(expr::block(symbols, &a)),
+            "pos" if motion => return Ok(expr::column(symbols, &a)),
+            _ => {}
+        }
+        let (what, example) = match f {
+            "rot" => ("SU<2> or SE<3>", "rot(g)"),
+            _ => ("SE<3>", "pos(G)"),
+        };
+        let message =
+            format!("`{f}` needs an element of {what}: products and inverses of such letters");
+        fail(Diagnostic::new(place, message).help(format!("write for example `{example}`")))
+    }
+
+    pub(super) fn call(
+        &self,
+        name: &Name,
+        args: &[Expression],
+        place: Place,
+        expected: Option<Shape>,
+    ) -> Elaborated {
+        if let Some(product) = self.hidden(name, args) {
+            return self.elaborate(&product, expected);
+        }
+        let symbols = &self.names.symbols;
+        let f = name.text.as_str();
+        let count = if matches!(f, "dot" | "cross") { 2 } else { 1 };
+        if args.len() != count {
+            let (wanted, example) = match count {
+                1 => ("one argument", format!("{f}(a)")),
+                _ => ("two arguments", format!("{f}(a, b)")),
+            };
+            let message = format!("`{f}` takes {wanted}, {} given", args.len());
+            return fail(Diagnostic::new(place, message).help(format!("write `{example}`")));
+        }
+        let three = |a: &Expr, at: Place| {
+            if a.shape() == Shape::vector(Dim::Fixed(3)) {
+                return Ok(());
+            }
+            let what = shape_text(symbols, a.shape());
+            fail(Diagnostic::new(
+                at,
+                format!("`{f}` needs a vector of length 3, and this is {what}"),
+            ))
+        };
+        let first = &args[0];
+        let argument = |context: Option<Shape>| self.elaborate(first, context);
+        match f {
+            "tr" | "Tr" | "det" | "I1" | "I2" | "inv" | "sym" | "skew" | "diag" => {
+                let context = if matches!(f, "inv" | "sym" | "skew" | "diag") {
+                    expected
+                } else {
+                    None
+                };
+                let a = argument(context)?;
+                self.square(&a, first.place, &format!("`{f}`"))?;
+                Ok(match f {
+                    "tr" | "Tr" | "I1" => expr::trace(a),
+                    "det" => expr::det(a),
+                    // I2 = ((tr A)^2 - tr A^2)/2
+                    "I2" => expr::scale(
+                        Rational::HALF,
+                        expr::sub(
+                            expr::power(expr::trace(a.clone()), Rational::integer(2)),
+                            expr::trace(expr::mul(a.clone(), a)),
+                        ),
+                    ),
+                    "inv" => self.inverse(a, first.place)?,
+                    "sym" => expr::part(Part::Symmetric, a),
+                    "skew" => expr::part(Part::Skew, a),
+                    _ => expr::part(Part::Diagonal, a),
+                })
+            }
+            "log" | "exp" | "sqrt" => {
+                let a = self.of_shape(first, Shape::SCALAR)?;
+                Ok(match f {
+                    "log" => expr::call(Function::Log, a),
+                    "exp" => expr::call(Function::Exp, a),
+                    _ => expr::power(a, Rational::HALF),
+                })
+            }
+            "hat" | "quat" => {
+                let a = argument(Some(Shape::vector(Dim::Fixed(3))))?;
+                three(&a, first.place)?;
+                Ok(match f {
+                    "hat" => expr::hat(a),
+                    _ => expr::pure(a),
+                })
+            }
+            "vee" => {
+                let a = argument(expected.map(|s| Shape::square(s.rows)))?;
+                if a.shape() != Shape::square(Dim::Fixed(3)) {
+                    let what = shape_text(symbols, a.shape());
+                    let message = format!("`vee` needs a 3 x 3 matrix, and this is {what}");
+                    return fail(Diagnostic::new(first.place, message));
+                }
+                Ok(expr::vee(a))
+            }
+            "dot" | "cross" => {
+                let (a, b) = self.pair(first, &args[1])?;
+                if f == "cross" {
+                    three(&a, first.place)?;
+                    return Ok(expr::cross(a, b));
+                }
+                if !a.shape().is_vector() {
+                    let what = shape_text(symbols, a.shape());
+                    return fail(
+                        Diagnostic::new(
+                            first.place,
+                            format!("`dot` pairs two vectors, and this is {what}"),
+                        )
+                        .help("the pairing of two matrices is `tr(A^T * B)`"),
+                    );
+                }
+                Ok(expr::dot(a, b))
+            }
+            "next" | "prev" => {
+                let a = argument(expected)?;
+                let moves = expr::letters(&a).iter().any(|l| {
+                    matches!(
+                        symbols.get(l.symbol).role,
+                        Role::Element | Role::Velocity | Role::Advected
+                    )
+                });
+                if !moves {
+                    return fail(
+                        Diagnostic::new(
+                            place,
+                            format!("`{f}` of a constant is the constant itself"),
+                        )
+                        .help(format!("drop `{f}`")),
+                    );
+                }
+                let by = if f == "next" {
+                    Shift::NEXT
+                } else {
+                    Shift::PREVIOUS
+                };
+                let shifted = expr::shift_time(symbols, &a, by.time);
+                for l in expr::letters(&shifted) {
+                    if symbols.get(l.symbol).role == Role::Velocity {
+                        let name = &symbols.get(l.symbol).name;
+                        return fail(messages::shifted_velocity(place, name));
+                    }
+                    if !messages::EDGE.contains(&l.shift.time) {
+                        return fail(messages::shift_too_far(place));
+                    }
+                }
+                Ok(shifted)
+            }
+            "re" | "im" | "rot" | "pos" => {
+                let a = argument(Some(Shape::square(Dim::Fixed(4))))?;
+                self.of_group(f, a, first.place)
+            }
+            _ => fail(
+                Diagnostic::new(
+                    name.place,
+                    format!("`{f}` belongs to models that this version does not derive yet"),
+                )
+                .help(
+                    "available: tr det log exp sqrt inv sym skew diag hat vee dot cross re im quat rot pos I1 I2 next",
+                ),
+            ),
+        }
+    }
+}

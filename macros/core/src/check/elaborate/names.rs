@@ -1,0 +1,82 @@
+//! Names: what was declared or bound, `Id` and the unit vectors in the size that the context asks for.
+//! Takes a word and its place; gives an expression, or what the word may have been meant to be.
+
+use super::{Elaborated, Elaborator, UNITS, fail};
+use crate::check::messages::shape_text;
+use crate::diagnostic::{Diagnostic, Place, closest};
+use crate::expr;
+use crate::expr::shape::Shape;
+use crate::syntax::FUNCTIONS;
+
+/// What the functions of the language are called elsewhere.
+const OTHERWISE: [(&str, &str); 8] = [
+    ("trace", "tr(A)"),
+    ("determinant", "det(A)"),
+    ("inverse", "inv(A)"),
+    ("transpose", "A^T"),
+    ("ln", "log(a)"),
+    ("inner", "dot(a, b)"),
+    ("norm", "sqrt(dot(a, a))"),
+    ("previous", "prev(a)"),
+];
+
+impl Elaborator<'_> {
+    pub(super) fn name(&self, n: &str, place: Place, expected: Option<Shape>) -> Elaborated {
+        if let Some((_, value)) = self.bindings.iter().find(|(b, _)| b == n) {
+            return Ok(value.clone());
+        }
+        if let Some(id) = self.names.symbols.find(n) {
+            return Ok(expr::here(&self.names.symbols, id));
+        }
+        if n == "Id" {
+            let size = match expected {
+                Some(s) if s.is_square() && !s.is_scalar() => s.rows,
+                Some(s) if !s.is_square() => {
+                    let what = shape_text(&self.names.symbols, s);
+                    let message = format!("`Id` is square, but {what} is needed here");
+                    return fail(Diagnostic::new(place, message));
+                }
+                _ => self.default_size(),
+            };
+            return Ok(expr::identity(size));
+        }
+        if let Some(axis) = UNITS.iter().position(|u| *u == n) {
+            let size = match expected {
+                Some(s) if s.is_vector() => s.rows,
+                _ => self.default_size(),
+            };
+            return Ok(expr::unit(size, axis as u8));
+        }
+        let declared = self
+            .names
+            .symbols
+            .ids()
+            .map(|id| &self.names.symbols.get(id).name);
+        let bound = self.bindings.iter().map(|(b, _)| b);
+        let mut d = Diagnostic::new(place, format!("`{n}` is not declared"));
+        if self.names.was_declared(n) || self.unbound.contains(&(n.to_owned(), true)) {
+            d = Diagnostic::following(place, format!("`{n}` has a faulty declaration"));
+        } else if n == "T" {
+            d = d.help("`T` is the transpose and only stands after `^`");
+        } else if self.unbound.contains(&(n.to_owned(), false)) {
+            d = Diagnostic::new(place, format!("`{n}` is used before its `let`"))
+                .help(format!("move `let {n} = ...;` up, before its first use"));
+        } else if FUNCTIONS.contains(&n) {
+            d = Diagnostic::new(place, format!("`{n}` is a function of the language"))
+                .help(format!("write `{n}(...)`"));
+        } else if let Some(near) = closest(n, declared.chain(bound).map(String::as_str)) {
+            d = d.help(format!("did you mean `{near}`?"));
+        } else if let Some((_, written)) = OTHERWISE.iter().find(|(other, _)| *other == n) {
+            d = d.help(format!("the language writes `{written}`"));
+        } else if let Some(near) = closest(n, FUNCTIONS) {
+            d = d.help(format!("did you mean the function `{near}`?"));
+        } else if n == self.names.time_index {
+            d = d.help(format!(
+                "`{n}` is the time index; `next(x)` is `x` at the node after"
+            ));
+        } else {
+            d = d.help(format!("declare it, for example `param {n}: Real;`"));
+        }
+        fail(d)
+    }
+}
