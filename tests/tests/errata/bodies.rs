@@ -1,86 +1,15 @@
-//! What the thesis prints wrongly, each with the right form beside it: the right one holds, the
-//! printed one does not. Takes random points that solve nothing; the judge is the variation of the
-//! unreduced action, a directional derivative, or what a rotation or a bracket must keep. The list is
-//! `docs/errata.md`; its Lagrangian and momenta are -h times ours.
+//! Chapter 2 and its appendix on rotations. Takes random points; gives the printed form and the right
+//! one to the judge.
 
+use super::{
+    Matrix, Vector, ad_star, bracket, id, inner, judge, length, minus, residual, size, skew, sym,
+};
 use clebsch_core::derive_source;
 use clebsch_tests::oracle::action::bodies::{HeavyTop, Stated};
 use clebsch_tests::oracle::action::coupled::CoupledBodies;
-use clebsch_tests::oracle::action::{DiscreteAction, rotations, stationarity};
 use clebsch_tests::oracle::points::Source;
 use clebsch_tests::oracle::square::{Square, cross, dot, hat, outer, vee};
 use std::array::from_fn;
-
-type Matrix = Square<f64, 3>;
-type Vector = [f64; 3];
-
-/// Numbers of order one, a hundred roundings.
-const ROUNDING: f64 = 1e-12;
-/// A printed form that is wrong is wrong by a number of order one.
-const VISIBLE: f64 = 1e-3;
-/// Draws; at every one the right form must hold, at every one the printed one must fail.
-const DRAWS: u64 = 50;
-
-fn inner(a: &Matrix, b: &Matrix) -> f64 {
-    (a.transpose() * *b).trace()
-}
-
-/// `(A - Aᵀ)/2`, as the thesis uses it.
-fn skew(a: &Matrix) -> Matrix {
-    (*a - a.transpose()).scaled(0.5)
-}
-
-fn sym(a: &Matrix) -> Matrix {
-    (*a + a.transpose()).scaled(0.5)
-}
-
-fn bracket(a: &Matrix, b: &Matrix) -> Matrix {
-    *a * *b - *b * *a
-}
-
-/// `Ad*_g M = gᵀ M g⁻ᵀ` (2.88).
-fn ad_star(g: &Matrix, m: &Matrix) -> Matrix {
-    g.transpose() * *m * g.transpose().inverse()
-}
-
-fn size(a: &Matrix) -> f64 {
-    a.0.iter().flatten().fold(0.0, |m, x| f64::max(m, x.abs()))
-}
-
-fn length(v: &Vector) -> f64 {
-    v.iter().fold(0.0, |m, x| f64::max(m, x.abs()))
-}
-
-fn minus(a: &Vector, b: &Vector) -> Vector {
-    from_fn(|i| a[i] - b[i])
-}
-
-/// Judges a printed and a right form by how far each is off, at every draw.
-fn judge(what: &str, mut off: impl FnMut(&mut Source) -> (f64, f64)) {
-    for seed in 1..=DRAWS {
-        let (printed, right) = off(&mut Source::seeded(seed));
-        assert!(
-            right < ROUNDING,
-            "{what}: the right form is off by {right:e}"
-        );
-        assert!(
-            printed > VISIBLE,
-            "{what}: the printed form is off by {printed:e} only"
-        );
-    }
-}
-
-fn id() -> Matrix {
-    Square::identity()
-}
-
-/// The oracle's residual at the middle one of three nodes.
-fn residual<const G: usize>(
-    action: &impl DiscreteAction<3, G>,
-    nodes: &[[Matrix; G]; 3],
-) -> Vec<f64> {
-    stationarity(action, nodes, &rotations()).derivative
-}
 
 #[test]
 fn two_57_the_second_gradient_belongs_to_the_next_node() {
@@ -407,113 +336,60 @@ fn appendix_a_3_divides_by_the_old_tensor() {
 }
 
 #[test]
-fn three_4_is_a_congruence() {
-    judge("(3.4)", |s| {
-        let (g, c): (Matrix, Matrix) = (s.matrix(), s.positive());
-        let asymmetry = |a: Matrix| size(&(a - a.transpose()));
-        let printed = asymmetry(g.transpose() * c * g.transpose());
-        (printed, asymmetry(g.transpose() * c * g))
-    });
-}
-
-#[test]
-fn three_36_to_three_39_spatial_ellipsoid() {
-    judge("(3.38)", |s| {
-        // A point on which (3.36) holds: γᵀ ∇ℓ = P Qᵀ + 2 (J + ∇ℓ_I) I.
-        let (p, q, j, force): (Matrix, Matrix, Matrix, Matrix) =
-            (s.matrix(), s.matrix(), s.symmetric(), s.symmetric());
-        let shape = q * q.transpose();
-        let wanted = p * q.transpose() + (j + force) * shape.scaled(2.0);
-        let printed = p * q.transpose() + (j + force * shape).scaled(2.0);
-        let right = p * q.transpose() + ((j + force) * shape).scaled(2.0);
-        (size(&(printed - wanted)), size(&(right - wanted)))
-    });
-    judge("(3.39)", |s| {
-        let (c0, shape, g, change): (Matrix, Matrix, Matrix, Matrix) =
-            (s.positive(), s.positive(), s.matrix(), s.matrix());
-        // l = tr((γ - 1) I (γ - 1)ᵀ C0)/2, quadratic: the central difference is exact.
-        let l = |g: Matrix| {
-            let moved = g - id();
-            0.5 * (moved * shape * moved.transpose() * c0).trace()
+fn two_77_the_multiplier_of_orthogonality_counts_twice() {
+    judge("(2.77)", |s| {
+        let (theta, w, change): (Matrix, Matrix, Matrix) =
+            (s.symmetric(), s.orthogonal(), s.matrix());
+        // tr(Θ (Ω Ωᵀ - 1)) along a change of Ω, quadratic: the central difference is exact.
+        let at = |e: f64| {
+            let w = w + change.scaled(e);
+            (theta * (w * w.transpose() - id())).trace()
         };
-        let slope = 0.5 * (l(g + change) - l(g - change));
-        let gradient = |m: Matrix| inner(&m, &change);
-        let printed = gradient((g - id()) * shape);
-        let right = gradient(c0 * (g - id()) * shape);
-        ((printed - slope).abs(), (right - slope).abs())
-    });
-}
-
-/// A particle of mass `m` on the f-plane with `R = f0 (-y, x)/2`.
-struct Particle {
-    mass: f64,
-    f0: f64,
-    /// `g (h + 2 b)/2`.
-    height: f64,
-    x: [f64; 2],
-    u: [f64; 2],
-}
-
-impl Particle {
-    fn random(s: &mut Source) -> Particle {
-        Particle {
-            mass: s.between(0.5, 2.0),
-            f0: s.between(1.0, 2.0),
-            height: s.between(0.5, 1.0),
-            x: from_fn(|_| s.between(0.3, 1.0)),
-            u: from_fn(|_| s.between(0.3, 1.0)),
-        }
-    }
-
-    fn r(&self) -> [f64; 2] {
-        [-0.5 * self.f0 * self.x[1], 0.5 * self.f0 * self.x[0]]
-    }
-
-    /// `∂L/∂U = m (U + R)`.
-    fn momentum(&self) -> [f64; 2] {
-        from_fn(|i| self.mass * (self.u[i] + self.r()[i]))
-    }
-}
-
-fn plane(a: &[f64; 2], b: &[f64; 2]) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
-}
-
-#[test]
-fn c_3_is_not_the_legendre_transform() {
-    judge("(C.3)", |s| {
-        let q = Particle::random(s);
-        let (p, r) = (q.momentum(), q.r());
-        // L of (4.1) for one particle; H = P·U - L.
-        let kinetic = 0.5 * plane(&q.u, &q.u) + plane(&r, &q.u);
-        let wanted = plane(&p, &q.u) - q.mass * (kinetic - q.height);
-        let printed = plane(&p, &p) / q.mass + 2.0 * plane(&r, &p) - 2.0 * q.height;
-        let moved: [f64; 2] = from_fn(|i| p[i] - q.mass * r[i]);
-        let right = plane(&moved, &moved) / (2.0 * q.mass) + q.mass * q.height;
-        ((printed - wanted).abs(), (right - wanted).abs())
+        let slope = 0.5 * (at(1.0) - at(-1.0));
+        let gradient = theta * w;
+        (
+            (inner(&gradient, &change) - slope).abs(),
+            (2.0 * inner(&gradient, &change) - slope).abs(),
+        )
     });
 }
 
 #[test]
-fn c_5_turns_the_wrong_way() {
-    judge("(C.5), Coriolis term", |s| {
-        let q = Particle::random(s);
-        // Euler-Lagrange without height: d/dt (U + R) = (∇R)ᵀ U, that is U̇ = -f0 k × U (4.25).
-        let rate = [q.f0 * q.u[1], -q.f0 * q.u[0]];
-        let turned = [-q.u[1], q.u[0]].map(|x| q.f0 * x);
-        let off = |sign: f64| {
-            f64::max(
-                (sign * turned[0] - rate[0]).abs(),
-                (sign * turned[1] - rate[1]).abs(),
-            )
-        };
-        (off(1.0), off(-1.0))
+fn two_27_the_matrix_of_second_moments_is_no_inertia_matrix() {
+    judge("inertia matrix of (2.27)", |s| {
+        let (second, w): (Matrix, Vector) = (s.positive(), s.vector());
+        // The limit of the action: tr(ξ I0 ξᵀ)/2 with ξ = hat(ω).
+        let xi = hat(&w);
+        let wanted = 0.5 * (xi * second * xi.transpose()).trace();
+        let energy = |inertia: Matrix| 0.5 * dot(&w, &inertia.apply(&w));
+        let right = id().scaled(second.trace()) - second;
+        (
+            (energy(second) - wanted).abs(),
+            (energy(right) - wanted).abs(),
+        )
     });
-    judge("(C.5), velocity", |s| {
-        let q = Particle::random(s);
-        let (p, r) = (q.momentum(), q.r());
-        let off = |v: [f64; 2]| f64::max((v[0] - q.u[0]).abs(), (v[1] - q.u[1]).abs());
-        let printed = off(p.map(|x| x / q.mass));
-        (printed, off(from_fn(|i| p[i] / q.mass - r[i])))
+}
+
+#[test]
+fn appendix_a_3_formula_for_the_velocity() {
+    judge("(A.3)", |s| {
+        let (w, j): (Matrix, Matrix) = (s.orthogonal(), s.positive());
+        // In the sign of the thesis; S is the symmetric part of Ω I.
+        let (m, symmetric) = (j * w.transpose() - w * j, sym(&(w * j)));
+        let printed = j.inverse() * (symmetric - m);
+        let right = (symmetric - m.scaled(0.5)) * j.inverse();
+        (size(&(printed - w)), size(&(right - w)))
+    });
+    judge("(A.2), second line", |s| {
+        // Each momentum is that of its own body plus its coupling.
+        let (w, j, coupled): ([Matrix; 2], [Matrix; 2], Matrix) = (
+            from_fn(|_| s.orthogonal()),
+            from_fn(|_| s.positive()),
+            s.matrix(),
+        );
+        let momentum = |c: Matrix, w: Matrix| c * w.transpose() - w * c.transpose();
+        let wanted = momentum(j[1] + coupled, w[1]);
+        let with = |own: Matrix| size(&(own + momentum(coupled, w[1]) - wanted));
+        (with(momentum(j[0], w[0])), with(momentum(j[1], w[1])))
     });
 }

@@ -1,0 +1,130 @@
+//! What the thesis says of orders and of the symplectic form of whole steps. Takes random motions;
+//! the judge is the order at which an error falls, or the two-form of a map by dual numbers.
+
+use super::{Matrix, Vector, judge, size, skew};
+use clebsch::nalgebra::{Matrix3, Vector3};
+use clebsch::{BodyMomentum, Dual, Rotation};
+use clebsch_models::free_body::{FreeBody, FreeBodyInitial, FreeBodyParameters};
+use clebsch_tests::oracle::square::{Square, cross, hat};
+use clebsch_tests::physics::symplectic::{Jacobian, defect};
+use std::array::from_fn;
+
+fn rotation(v: &Vector) -> Matrix {
+    let r = Rotation::exp(&Vector3::from(*v)).matrix();
+    Square::from_entries(|i, j| r[(i, j)])
+}
+
+/// The power of the step with which an error falls.
+fn order(error: impl Fn(f64) -> f64) -> f64 {
+    let (h, half) = (0.02, 0.01);
+    (error(h) / error(half)).log2()
+}
+
+#[test]
+fn section_2_2_1_the_velocity_of_a_step_is_of_first_order() {
+    judge("Ω = 1 + Ω Δt to second order", |s| {
+        let (a, b): (Vector, Vector) = (s.vector(), s.vector());
+        // Λ(t) = exp(t a) exp(t² b), whose velocity in the body is exp(-t² b) a + 2 t b.
+        let at = |t: f64| rotation(&a.map(|x| t * x)) * rotation(&b.map(|x| t * t * x));
+        let t = 0.4;
+        let back = rotation(&b.map(|x| -t * t * x)).apply(&a);
+        let velocity: Vector = from_fn(|i| back[i] + 2.0 * t * b[i]);
+        let edge = |h: f64| at(t - 0.5 * h).transpose() * at(t + 0.5 * h);
+        let id = Square::identity();
+        // Less its value: the whole of Ω, and its skew part alone.
+        let whole = |h: f64| size(&((edge(h) - id).scaled(1.0 / h) - hat(&velocity)));
+        let part = |h: f64| size(&(skew(&edge(h)).scaled(1.0 / h) - hat(&velocity)));
+        // By how much each misses the second order: by one, and by less than a tenth.
+        let missing = |order: f64| if (order - 2.0).abs() < 0.1 { 0.0 } else { 1.0 };
+        (missing(order(whole)), missing(order(part)))
+    });
+}
+
+#[test]
+fn appendix_a_4_the_coupling_is_of_the_order_of_the_rest() {
+    judge("coupling to order Δt²", |s| {
+        let [d1, d2, xi]: [Vector; 3] = from_fn(|_| s.vector());
+        let relative: Matrix = s.orthogonal();
+        // The coupling term of the momentum, d1 × Λ (Ω2 - 1) d2.
+        let term = |h: f64| {
+            let moved = (rotation(&xi.map(|x| h * x)) - Square::identity()).apply(&d2);
+            super::length(&cross(&d1, &relative.apply(&moved)))
+        };
+        let found = order(term);
+        let missing = |wanted: f64| {
+            if (found - wanted).abs() < 0.3 {
+                0.0
+            } else {
+                1.0
+            }
+        };
+        (missing(2.0), missing(1.0))
+    });
+}
+
+type Number = Dual<6>;
+
+/// How far a step of (Λ, μ) is from symplectic.
+fn off(
+    step: impl Fn(Rotation<Number>, Vector3<Number>) -> (Matrix3<Number>, Vector3<Number>),
+    mu: &Vector,
+) -> f64 {
+    let xi = Vector3::from_fn(|i, _| Dual::variable(0.0, i));
+    let start = Vector3::from_fn(|i, _| Dual::variable(mu[i], 3 + i));
+    let (attitude, momentum) = step(Rotation::exp(&xi), start);
+    let back = attitude.map(|x| x.real).transpose();
+    let mut jacobian: Jacobian = [[0.0; 6]; 6];
+    for seed in 0..6 {
+        let turn = back * attitude.map(|x| x.dual[seed]);
+        for (row, at) in [(2, 1), (0, 2), (1, 0)].into_iter().enumerate() {
+            jacobian[row][seed] = turn[at];
+            jacobian[3 + row][seed] = momentum[row].dual[seed];
+        }
+    }
+    defect(&jacobian, mu, &from_fn(|i| momentum[i].real))
+}
+
+#[test]
+fn two_63_holds_the_velocity_fixed_and_would_prove_too_much() {
+    // The printed proof differentiates Λ Ω and P Ω with Ω held fixed. It would make every step
+    // symplectic that turns both by a rotation made from the momentum; one is only if that rotation
+    // solves the equation of the action.
+    judge("(2.63)", |s| {
+        let mu: Vector = from_fn(|_| s.between(0.3, 1.0));
+        let second = [
+            s.between(0.5, 0.7),
+            s.between(0.8, 1.0),
+            s.between(1.1, 1.4),
+        ];
+        let h = Dual::constant(0.5);
+        let turned = |r: Rotation<Number>, w: Rotation<Number>, m: Vector3<Number>| {
+            ((r * w).matrix(), w.inverse_rotate(&m))
+        };
+        let printed = off(
+            |r, m| {
+                // A rotation by the velocity that the moments of inertia give, exact to first order.
+                let all: f64 = second.iter().sum();
+                let velocity = Vector3::from_fn(|i, _| m[i] * h / Dual::constant(all - second[i]));
+                turned(r, Rotation::exp(&velocity), m)
+            },
+            &mu,
+        );
+        let body = FreeBody::new(FreeBodyParameters {
+            J: Matrix3::from_diagonal(&Vector3::from(second.map(Dual::constant))),
+        })
+        .expect("a body");
+        let right = off(
+            |r, m| {
+                let initial = FreeBodyInitial {
+                    Λ: r,
+                    body_momentum: BodyMomentum(m),
+                };
+                let (mut state, mut work) = body.start(initial, h).expect("solvable");
+                body.step(&mut state, &mut work).expect("solvable");
+                (state.Λ().matrix(), state.body_momentum().0)
+            },
+            &mu,
+        );
+        (printed, right)
+    });
+}
