@@ -1,5 +1,6 @@
-//! What the documents show is what the programs do: every model of the language page derives, and
-//! the figures are those that the command beside them writes, byte for byte.
+//! What the documents show is what the programs do: every model of the language page derives, the
+//! extract of a derivation is part of what is printed, and the figures are those that the command
+//! beside them writes, byte for byte.
 
 use clebsch_cli::gallery::Gallery;
 use clebsch_cli::{Streams, execute};
@@ -25,6 +26,44 @@ fn every_model_of_the_language_page_derives() {
             panic!("{text}\n{errors}");
         }
     }
+}
+
+/// Words and signs without the breaks between lines, which depend on what stands before.
+fn flat(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// The indented block of the page that follows these words.
+fn block_after<'a>(page: &'a str, words: &str) -> &'a str {
+    let rest = page.split(words).nth(1).expect("the words");
+    let block = rest.split("```text\n").nth(1).expect("a block");
+    block.split("```").next().expect("its end")
+}
+
+#[test]
+fn the_extract_on_the_first_page_is_what_is_printed() {
+    let page = fs::read_to_string(root().join("README.md")).unwrap();
+    let model = clebsch_models::find("heavy-top").expect("in the gallery");
+    let d = clebsch_core::derive_source(model.card.source).expect("derives");
+    let printed = clebsch_core::document::printed(&d, clebsch_core::print::Format::Text);
+    let printed = flat(&printed);
+    let extract = block_after(&page, "derive heavy-top` prints the whole derivation");
+    let equations: Vec<&str> = extract.split("\n\n").collect();
+    assert!(equations.len() >= 5, "the page has lost its extract");
+    for equation in equations {
+        assert!(
+            printed.contains(&flat(equation)),
+            "not in the derivation any more: {equation}"
+        );
+        // A changed number or sign is noticed.
+        assert!(!printed.contains(&flat(&equation.replace("= ", "= -"))));
+    }
+    let refused = block_after(&page, "A model that is wrong is told where and why");
+    let wrong = model.card.source.replace("Ω^T*Γ", "Ω*Γ");
+    assert_ne!(wrong, model.card.source);
+    let told = clebsch_core::derive_source(&wrong).expect_err("refused");
+    let told = flat(&format!("error: {told}"));
+    assert!(told.starts_with(&flat(refused)), "{told}");
 }
 
 #[test]

@@ -19,6 +19,8 @@ mod residual;
 mod sizes;
 mod step;
 mod stepper;
+#[cfg(test)]
+mod tests;
 
 use crate::derive::Derivation;
 use crate::diagnostic::{Diagnostic, Errors};
