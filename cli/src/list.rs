@@ -4,6 +4,7 @@
 use crate::columns::aligned;
 use crate::failure::Failure;
 use crate::gallery::{Case, Entry, Gallery};
+use clebsch::card::Conserved;
 use serde_json::{Value, json};
 use std::io::Write;
 
@@ -44,6 +45,13 @@ fn model(entry: &Entry) -> Value {
         "solver": card.solver,
         "order": card.order,
         "reversible": card.reversible,
+        "discrete_energy": {
+            "formula": card.discrete_energy.formula,
+            "conserved": match card.discrete_energy.conserved {
+                Conserved::Exactly => "exactly",
+                Conserved::Boundedly => "boundedly",
+            },
+        },
         "fingerprint": format!("{:016x}", card.fingerprint),
         "cases": entry.cases.iter().map(case).collect::<Vec<_>>(),
     })

@@ -662,6 +662,12 @@ pub mod body_in_quadratic_field {
                     conserved: Conserved::Exactly,
                 },
             ],
+            discrete_energy: Invariant {
+                name: "discrete_energy",
+                formula: "tr(J)/h² - tr(J Ω_k)/h² + ¼ Γ_k·(K Γ_k) + ¼ Γ_{k+1}·(K Γ_{k+1})",
+                rows: 1,
+                conserved: Conserved::Boundedly,
+            },
             open: Self::open,
             solvers: &Method::NAMES,
             dimensions: &[],

@@ -348,6 +348,16 @@ pub mod body_n {
             let μ = state.body_momentum().0;
             (μ * (μ * (μ * μ))).trace()
         }
+        /// `tr(μ_k⁶)`: Casimir: constant on coadjoint orbits.
+        pub fn trace_momentum6(&self, state: &BodyNState<N, T>) -> T {
+            let μ = state.body_momentum().0;
+            (μ * (μ * (μ * (μ * (μ * μ))))).trace()
+        }
+        /// `tr(μ_k⁸)`: Casimir: constant on coadjoint orbits.
+        pub fn trace_momentum8(&self, state: &BodyNState<N, T>) -> T {
+            let μ = state.body_momentum().0;
+            (μ * (μ * (μ * (μ * (μ * (μ * (μ * μ))))))).trace()
+        }
     }
     impl<const N: usize, T: Real> BodyN<N, T> {
         /// The discrete energy of the edge between two consecutive states, `tr(C)/h² - tr(C Ω_kᵀ)/h²`: bounded, since the stepper is symplectic.
@@ -396,6 +406,8 @@ pub mod body_n {
             let out = put(out, skew_coordinates(&state.spatial_momentum().0));
             let out = put(out, [self.model.momentum_squared(state)]);
             let out = put(out, [self.model.trace_momentum4(state)]);
+            let out = put(out, [self.model.trace_momentum6(state)]);
+            let out = put(out, [self.model.trace_momentum8(state)]);
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
@@ -443,6 +455,37 @@ pub mod body_n {
                     1usize,
                 ),
             );
+            let out = put(
+                out,
+                ::core::iter::repeat_n(
+                    {
+                        type T = f64;
+                        let μ = state.body_momentum().0;
+                        let value: T = (-(μ * μ).trace()).sqrt()
+                            * (-(μ * μ).trace()).sqrt() * (-(μ * μ).trace()).sqrt()
+                            * (-(μ * μ).trace()).sqrt() * (-(μ * μ).trace()).sqrt()
+                            * (-(μ * μ).trace()).sqrt();
+                        value
+                    },
+                    1usize,
+                ),
+            );
+            let out = put(
+                out,
+                ::core::iter::repeat_n(
+                    {
+                        type T = f64;
+                        let μ = state.body_momentum().0;
+                        let value: T = (-(μ * μ).trace()).sqrt()
+                            * (-(μ * μ).trace()).sqrt() * (-(μ * μ).trace()).sqrt()
+                            * (-(μ * μ).trace()).sqrt() * (-(μ * μ).trace()).sqrt()
+                            * (-(μ * μ).trace()).sqrt() * (-(μ * μ).trace()).sqrt()
+                            * (-(μ * μ).trace()).sqrt();
+                        value
+                    },
+                    1usize,
+                ),
+            );
             let _ = out;
         }
     }
@@ -454,7 +497,7 @@ pub mod body_n {
             doc: "Free rigid body in n dimensions.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   -tr(Cᵀ Ω_k)/h\nmomentum of Λ        -C Ω_kᵀ/h + Ω_k Cᵀ/h\nRiccati form         exact, C = C\ninvariants           spatial_momentum, momentum_squared, trace_momentum4\ntime reversal        not symmetric: first order\ncertificate          10 identities proved by normal form",
+            summary: "action of one step   -tr(Cᵀ Ω_k)/h\nmomentum of Λ        -C Ω_kᵀ/h + Ω_k Cᵀ/h\nRiccati form         exact, C = C\ninvariants           spatial_momentum, momentum_squared, trace_momentum4, trace_momentum6, trace_momentum8\ntime reversal        not symmetric: first order\ncertificate          10 identities proved by normal form",
             solver: "Moser-Veselov: C is constant: Newton's method on the Lie algebra",
             order: 1u32,
             orders: &[1],
@@ -533,7 +576,25 @@ pub mod body_n {
                     rows: 1usize,
                     conserved: Conserved::Exactly,
                 },
+                Invariant {
+                    name: "trace_momentum6",
+                    formula: "tr(μ_k⁶)",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "trace_momentum8",
+                    formula: "tr(μ_k⁸)",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
             ],
+            discrete_energy: Invariant {
+                name: "discrete_energy",
+                formula: "tr(C)/h² - tr(C Ω_kᵀ)/h²",
+                rows: 1,
+                conserved: Conserved::Boundedly,
+            },
             open: Self::open,
             solvers: if N == 3 { &Method::NAMES } else { &Method::ANY_SIZE },
             dimensions: &[

@@ -681,6 +681,12 @@ pub mod cayley_klein_spatial {
                     conserved: Conserved::Exactly,
                 },
             ],
+            discrete_energy: Invariant {
+                name: "discrete_energy",
+                formula: "-4 c re(w_k)/h² + 2 im(w_k)·((I_k - c Id) im(w_k))/h² + 4 c/h²",
+                rows: 1,
+                conserved: Conserved::Boundedly,
+            },
             open: Self::open,
             solvers: &[],
             dimensions: &[],

@@ -574,6 +574,12 @@ pub mod cayley_klein {
                     conserved: Conserved::Exactly,
                 },
             ],
+            discrete_energy: Invariant {
+                name: "discrete_energy",
+                formula: "-4 c re(W_k)/h² + 2 im(W_k)·((I - c Id) im(W_k))/h² + 4 c/h²",
+                rows: 1,
+                conserved: Conserved::Boundedly,
+            },
             open: Self::open,
             solvers: &[],
             dimensions: &[],

@@ -680,6 +680,12 @@ pub mod free_body_spatial {
                     conserved: Conserved::Exactly,
                 },
             ],
+            discrete_energy: Invariant {
+                name: "discrete_energy",
+                formula: "-tr(ω_k J_k)/h² + tr(J_k)/h²",
+                rows: 1,
+                conserved: Conserved::Exactly,
+            },
             open: Self::open,
             solvers: &Method::NAMES,
             dimensions: &[],

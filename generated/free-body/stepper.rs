@@ -553,6 +553,12 @@ pub mod free_body {
                     conserved: Conserved::Exactly,
                 },
             ],
+            discrete_energy: Invariant {
+                name: "discrete_energy",
+                formula: "tr(J)/h² - tr(J Ω_k)/h²",
+                rows: 1,
+                conserved: Conserved::Exactly,
+            },
             open: Self::open,
             solvers: &Method::NAMES,
             dimensions: &[],

@@ -847,6 +847,12 @@ pub mod heavy_top_spatial {
                     conserved: Conserved::Exactly,
                 },
             ],
+            discrete_energy: Invariant {
+                name: "discrete_energy",
+                formula: "-tr(ω_k J_k)/h² + tr(J_k)/h² + ½ w z·χ_k + ½ w z·χ_{k+1}",
+                rows: 1,
+                conserved: Conserved::Boundedly,
+            },
             open: Self::open,
             solvers: &Method::NAMES,
             dimensions: &[],

@@ -1185,6 +1185,12 @@ pub mod kirchhoff_body {
                     conserved: Conserved::Exactly,
                 },
             ],
+            discrete_energy: Invariant {
+                name: "discrete_energy",
+                formula: "-tr(J rot(V_k))/h² + 2 (½ (pos(V_k) + rot(V_k)ᵀ pos(V_k)))·(½ M (pos(V_k) + rot(V_k)ᵀ pos(V_k)))/(2 h)² + (vee(rot(V_k))·(½ D (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/h² + ½ b·P_k + ½ b·P_{k+1} + tr(J)/h²",
+                rows: 1,
+                conserved: Conserved::Boundedly,
+            },
             open: Self::open,
             solvers: &[],
             dimensions: &[],

@@ -116,7 +116,8 @@ pub fn entry() -> Entry {
             ),
             case(
                 "turned",
-                "four dimensions, a left factor that is not symmetric, 0.3 of the bound",
+                "four dimensions, a left factor that is not symmetric, 0.3 of the bound; for this step only: \
+                 with a factor that stays, the term tr(Cᵀ ξ) does not shrink with the step",
                 moments::<4>() * turn::<4>(),
                 0.3,
             ),

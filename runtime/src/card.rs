@@ -180,6 +180,9 @@ pub struct Card {
     pub observables: &'static [Field],
     /// The invariants, in the order [`Trajectory::invariants`] gives them.
     pub invariants: &'static [Invariant],
+    /// The discrete energy of an edge, by what stands at its two ends: how the action of the step
+    /// falls when the step grows. The model's `discrete_energy` gives its value.
+    pub discrete_energy: Invariant,
     /// Starts a trajectory.
     pub open: Open,
     /// Names of the solvers among which [`Settings::solver`] chooses, the model's own first; none

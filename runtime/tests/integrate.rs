@@ -32,6 +32,12 @@ static CARD: Card = Card {
         rows: 1,
         conserved: Conserved::Boundedly,
     }],
+    discrete_energy: Invariant {
+        name: "discrete_energy",
+        formula: "0",
+        rows: 1,
+        conserved: Conserved::Exactly,
+    },
     open: |_, _, _| {
         Ok(Box::new(Counter {
             node: 0,

@@ -244,6 +244,54 @@ fn order_two() {
     }
 }
 
+clebsch::model! {
+    /// The same body with what is assumed of its factor.
+    model Assumed {
+        dim n in 3..=4;
+        param C: Mat<n>;
+        assume C^T == C;
+        group Λ: SO<n> velocity Ω;
+        constraint next(Λ) = Λ*Ω;
+        lagrangian = -tr(C^T*Ω)/h;
+    }
+}
+
+#[test]
+fn with_a_factor_assumed_symmetric_steps_are_reversible_and_compose() {
+    let (card, general) = (Assumed::<4>::CARD, BodyN::<4>::CARD);
+    assert!(card.reversible && !general.reversible);
+    assert_eq!((card.order, general.order), (2, 1));
+    let mut source = Source::seeded(12);
+    let c = factor::<4>(&mut source, true);
+    let (_, initial) = at_fraction(&mut source, c, 0.3);
+    let rows = |m: SMatrix<f64, 4, 4>| m.transpose().as_slice().to_vec();
+    let start = [rows(initial.Λ.matrix()), rows(initial.body_momentum.0)];
+    let end = |order: u32, h: f64| {
+        let settings = Settings::step(h).of_order(order);
+        let mut run = (card.open)(&[rows(c)], &start, settings).expect("a symmetric factor");
+        for _ in 0..(1.0 / h).round() as u64 {
+            run.step().expect("solvable");
+        }
+        let count: usize = card.observables.iter().map(|f| f.count()).sum();
+        let mut out = vec![0.0; count];
+        run.observe(&mut out);
+        out
+    };
+    let exact = end(8, 0.02);
+    for (order, steps) in [(2, [0.05, 0.025]), (4, [0.1, 0.05])] {
+        let [coarse, fine] = steps.map(|h| {
+            let pairs = end(order, h).into_iter().zip(exact.clone());
+            pairs.fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()))
+        });
+        let found = (coarse / fine).log2();
+        println!("order {order}: {found}, {coarse:e}, {fine:e}");
+        assert!((found - f64::from(order)).abs() < 0.3, "{order}: {found}");
+    }
+    // What is assumed is checked.
+    let turned = factor::<4>(&mut source, false);
+    assert!((card.open)(&[rows(turned)], &start, Settings::step(H)).is_err());
+}
+
 fn bound<const N: usize>() {
     let mut source = Source::seeded(8);
     let c = factor::<N>(&mut source, false);

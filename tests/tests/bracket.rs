@@ -422,7 +422,7 @@ fn casimirs_commute_with_everything() {
             assert!(gradient.iter().any(|x| x.abs() > 1e-3), "{}", v.name);
             count += 1;
         }
-        let (dimension, rank) = d.integrability.rank.expect("fixed sizes");
+        let (dimension, rank) = d.integrability.rank().expect("fixed sizes");
         assert_eq!(count, dimension - rank, "{}", spec.name);
     }
 }

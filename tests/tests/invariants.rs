@@ -281,6 +281,8 @@ fn free_bodies_of_every_dimension() {
             "spatial_momentum",
             "momentum_squared",
             "trace_momentum4",
+            "trace_momentum6",
+            "trace_momentum8",
             "manakov",
         ];
         hold(&found, &names);

@@ -92,6 +92,12 @@ pub static CARD: Card = Card {
             conserved: Conserved::Exactly,
         },
     ],
+    discrete_energy: Invariant {
+        name: "discrete_energy",
+        formula: "p²/(2 I) + κ (1 - cos θ)",
+        rows: 1,
+        conserved: Conserved::Boundedly,
+    },
     open,
     solvers: &[],
     dimensions: &[],

@@ -80,6 +80,42 @@ pub fn defect_of_motion(jacobian: &[Vec<f64>], before: &[f64; 6], after: &[f64; 
     pulled_back(jacobian, &form(before), &form(after))
 }
 
+/// The same for SO(n): entries (j, i), i < j, row by row, of `Lambda^T dLambda` and of the momentum, paired entry by
+/// entry.
+pub fn defect_of_rotations(n: usize, jacobian: &[Vec<f64>], before: &[f64], after: &[f64]) -> f64 {
+    let planes: Vec<(usize, usize)> = (0..n)
+        .flat_map(|i| (i + 1..n).map(move |j| (j, i)))
+        .collect();
+    let d = planes.len();
+    // The entry (r, c) of the skew matrix with one at `plane` and minus one across.
+    let entry = |plane: (usize, usize), r: usize, c: usize| {
+        f64::from(i8::from((r, c) == plane) - i8::from((c, r) == plane))
+    };
+    let form = |mu: &[f64]| {
+        let mut w = vec![vec![0.0; 2 * d]; 2 * d];
+        for a in 0..d {
+            w[a][a + d] = -1.0;
+            w[a + d][a] = 1.0;
+            for b in 0..d {
+                // -<mu, [E_a, E_b]>.
+                for (k, (r, c)) in planes.iter().enumerate() {
+                    let product = |x: usize, y: usize| -> f64 {
+                        (0..n)
+                            .map(|m| entry(planes[x], *r, m) * entry(planes[y], m, *c))
+                            .sum()
+                    };
+                    w[a][b] -= mu[k] * (product(a, b) - product(b, a));
+                }
+            }
+        }
+        w
+    };
+    if before.len() != d || after.len() != d {
+        return f64::INFINITY;
+    }
+    pulled_back(jacobian, &form(before), &form(after))
+}
+
 /// Largest entry of D^T W' D - W.
 fn pulled_back(jacobian: &[Vec<f64>], old: &[Vec<f64>], new: &[Vec<f64>]) -> f64 {
     let size = old.len();

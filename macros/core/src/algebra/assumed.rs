@@ -2,7 +2,7 @@
 //! chosen at random, then solved for where an assumed equation ties them. Takes equations between
 //! parameters; gives points in exact arithmetic, or none where the equations are beyond it.
 
-use super::exact::{ATTEMPTS, Matrix, Point, add, inverse, mix, mul, negate, root};
+use super::exact::{ATTEMPTS, Matrix, POINTS, Point, add, inverse, mix, mul, negate, root};
 use crate::expr::shape::Structure;
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr, Letter};
@@ -21,7 +21,21 @@ pub(crate) fn point<'a>(
     attempt: u64,
     equations: &[Expr],
 ) -> Option<Point<'a>> {
-    let mut point = Point::new(symbols, attempt);
+    start(Point::new(symbols, attempt), attempt, equations)
+}
+
+/// The same, with this size for every dimension that has only a name.
+pub(crate) fn point_of_size<'a>(
+    symbols: &'a Symbols,
+    attempt: u64,
+    equations: &[Expr],
+    size: usize,
+) -> Option<Point<'a>> {
+    let point = Point::new(symbols, attempt).sized(size);
+    start(point, attempt, equations)
+}
+
+fn start<'a>(mut point: Point<'a>, attempt: u64, equations: &[Expr]) -> Option<Point<'a>> {
     let mut free: Vec<(Letter, Vec<Matrix>)> = Vec::new();
     let mut order: Vec<&Expr> = equations.iter().collect();
     // What ties one letter alone comes first: equations between letters then take it as given.
@@ -37,6 +51,20 @@ pub(crate) fn point<'a>(
 pub(crate) fn reachable(symbols: &Symbols, equations: &[Expr]) -> bool {
     // Half of all numbers have a root: with two quadratic equations a point in four is found.
     (0..ATTEMPTS / 4).any(|attempt| point(symbols, attempt, equations).is_some())
+}
+
+/// Whether the expression vanishes wherever the equations hold: at exact random points of that
+/// kind. `false` where none is found.
+pub(crate) fn vanishes(symbols: &Symbols, equations: &[Expr], e: &Expr) -> bool {
+    let points = (0..ATTEMPTS).filter_map(|attempt| point(symbols, attempt, equations)?.value(e));
+    let mut found = 0;
+    for value in points.take(POINTS as usize) {
+        if !value.vanishes() {
+            return false;
+        }
+        found += 1;
+    }
+    found == POINTS
 }
 
 fn occurrences(e: &Expr) -> usize {

@@ -16,9 +16,6 @@ pub(crate) const POINTS: u64 = 6;
 /// Attempts to find a point where every root exists and every divisor is non-zero.
 pub(crate) const ATTEMPTS: u64 = 100;
 
-/// Size taken for a named dimension, by turns.
-const SIZES: [usize; 2] = [3, 4];
-
 pub(crate) fn add(a: u64, b: u64) -> u64 {
     let sum = a + b;
     if sum >= PRIME { sum - PRIME } else { sum }
@@ -172,25 +169,43 @@ impl Matrix {
     }
 }
 
+/// What a dimension that has only a name stands for.
+#[derive(Clone, Copy)]
+enum Size {
+    Smallest,
+    Largest,
+    Given(usize),
+}
+
 /// One point: every letter has the value it was given, or one made from the seed and the letter
 /// itself.
 #[derive(Clone)]
 pub(crate) struct Point<'a> {
     symbols: &'a Symbols,
     pub(super) seed: u64,
-    size: usize,
+    size: Size,
     given: BTreeMap<Letter, Matrix>,
 }
 
 impl<'a> Point<'a> {
-    /// The point of an attempt. Named dimensions take the sizes of [`SIZES`] by turns.
+    /// The point of an attempt. Named dimensions take their smallest and their largest
+    /// size by turns.
     pub(crate) fn new(symbols: &'a Symbols, attempt: u64) -> Point<'a> {
         Point {
             symbols,
             seed: mix(attempt.wrapping_mul(0x5851_f42d_4c95_7f2d)),
-            size: SIZES[(attempt % 2) as usize],
+            size: match attempt % 2 {
+                0 => Size::Smallest,
+                _ => Size::Largest,
+            },
             given: BTreeMap::new(),
         }
+    }
+
+    /// The same point with this size for every dimension that has only a name.
+    pub(crate) fn sized(mut self, size: usize) -> Point<'a> {
+        self.size = Size::Given(size);
+        self
     }
 
     /// Gives a letter its value.
@@ -207,7 +222,11 @@ impl<'a> Point<'a> {
     pub(crate) fn dim(&self, d: Dim) -> usize {
         match d {
             Dim::Fixed(n) => n as usize,
-            Dim::Named(_) => self.size,
+            Dim::Named(_) => match self.size {
+                Size::Smallest => self.symbols.sizes(d).0,
+                Size::Largest => self.symbols.sizes(d).1,
+                Size::Given(n) => n,
+            },
         }
     }
 

@@ -140,7 +140,7 @@ impl Declared {
         match statement {
             Statement::Dim { name, from, to } => {
                 if self.admit(name, errors) {
-                    self.symbols.add_dim(&name.text);
+                    self.symbols.add_dim(&name.text, *from, *to);
                     self.dimensions.push(Dimension {
                         name: name.text.clone(),
                         from: *from,

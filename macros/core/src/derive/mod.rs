@@ -3,6 +3,7 @@
 //! certificate, what must be solved each step, invariants, time reversal, the continuous limit.
 
 pub mod action;
+mod assumptions;
 pub mod balance;
 pub mod bracket;
 pub mod certificate;
@@ -81,6 +82,8 @@ pub struct Derivation {
     pub transports: Vec<transport::Transport>,
     /// Whether the one-step action is symmetric under time reversal.
     pub reversible: bool,
+    /// The same with what breaks it, or what it takes.
+    pub reversal: reversal::Reversal,
     /// The Lagrangian in the limit of small steps, or why there is none.
     pub limit: Result<limit::Limit, String>,
     /// The equations of motion of that limit, where there is one.
@@ -235,8 +238,9 @@ pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
     bounded(&algebra)?;
     let certificate = certificate?;
     let solve = recognise::recognise(&spec, &letters, &balances, &transports, &algebra);
-    let reversible = reversal::is_reversible(&spec, &action, &algebra);
-    let limit = limit::limit(&spec, &letters, &action, &variations, &algebra);
+    let assumed = assumptions::equations(&spec, &letters.symbols);
+    let reversal = reversal::reversal(&spec, &action, &assumed, &algebra);
+    let limit = limit::limit(&spec, &letters, &action, &variations, &assumed, &algebra);
     let continuous = limit
         .as_ref()
         .ok()
@@ -250,6 +254,7 @@ pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
         bracket: &bracket,
         solve: &solve,
         limit: limit.as_ref().ok(),
+        assumed: &assumed,
         algebra: &algebra,
     });
     bounded(&algebra)?;
@@ -264,7 +269,8 @@ pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
         momenta,
         solve,
         transports,
-        reversible,
+        reversible: reversal.is_symmetric(),
+        reversal,
         limit,
         continuous,
         bracket,

@@ -3,13 +3,34 @@
 
 use super::action::Action;
 use super::variation::at;
-use crate::algebra::Algebra;
+use crate::algebra::{Algebra, assumed};
 use crate::check::spec::Spec;
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Letter, Shift};
 
-/// Whether `ℓ(q0, q1, h) = -ℓ(q1, q0, -h)` up to constants.
-pub fn is_reversible(spec: &Spec, action: &Action, algebra: &Algebra) -> bool {
+/// Whether the action of a step is symmetric under time reversal.
+#[derive(Clone, Debug)]
+pub enum Reversal {
+    /// It is, whatever the parameters.
+    Symmetric,
+    /// It is for the parameters that the assumptions admit.
+    Assumed,
+    /// What is left of `ℓ(q0, q1, h) + ℓ(q1, q0, -h)`; nothing where that is too large to be shown.
+    Broken(Option<Expr>),
+}
+
+impl Reversal {
+    /// Whether the step may be composed.
+    pub fn is_symmetric(&self) -> bool {
+        matches!(self, Reversal::Symmetric | Reversal::Assumed)
+    }
+}
+
+/// Largest left-over that is shown.
+const LARGEST: u32 = 40;
+
+/// Whether `ℓ(q0, q1, h) = -ℓ(q1, q0, -h)` up to constants, `assumed` being what vanishes.
+pub fn reversal(spec: &Spec, action: &Action, assumed: &[Expr], algebra: &Algebra) -> Reversal {
     let s = &spec.symbols;
     let mut swap: Vec<(Letter, Expr)> = vec![(
         at(spec.step, Shift::HERE),
@@ -41,10 +62,10 @@ pub fn is_reversible(spec: &Spec, action: &Action, algebra: &Algebra) -> bool {
     };
     let rest = algebra.raise(&algebra.lower(&sum));
     if algebra.exhausted() {
-        return false;
+        return Reversal::Broken(None);
     }
     if constant(&rest) {
-        return true;
+        return Reversal::Symmetric;
     }
     // A sum that is constant has the value that it has at rest, which identities beyond the normal
     // form may prove: that a rotation keeps its axis, for one.
@@ -55,5 +76,14 @@ pub fn is_reversible(spec: &Spec, action: &Action, algebra: &Algebra) -> bool {
         .collect();
     let at_rest = expr::substitute(s, &rest, &still);
     let at_rest = algebra.raise(&algebra.lower(&at_rest));
-    constant(&at_rest) && algebra.equal(&rest, &at_rest)
+    if constant(&at_rest) {
+        if algebra.equal(&rest, &at_rest) {
+            return Reversal::Symmetric;
+        }
+        let moving = expr::sub(rest.clone(), at_rest);
+        if !assumed.is_empty() && assumed::vanishes(s, assumed, &moving) {
+            return Reversal::Assumed;
+        }
+    }
+    Reversal::Broken((rest.size() <= LARGEST).then_some(rest))
 }

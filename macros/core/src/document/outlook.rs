@@ -3,7 +3,8 @@
 
 use super::sheet::{Sheet, references};
 use crate::check::spec::{Configuration, Side};
-use crate::derive::invariants::{Invariant, Kind};
+use crate::derive::invariants::{Invariant, Kind, Known};
+use crate::derive::reversal::Reversal;
 use crate::expr::{self, Letter, Shift};
 use crate::print::document::{Document, Inline, Section};
 use crate::print::formula::{Formula, Relation};
@@ -12,7 +13,10 @@ use crate::print::formula::{Formula, Relation};
 pub fn invariants(sheet: &Sheet, doc: &mut Document) {
     let d = sheet.d;
     let section = doc.section("Invariants");
-    let items: Vec<Vec<Inline>> = d.invariants.iter().map(|v| invariant(sheet, v)).collect();
+    let mut items: Vec<Vec<Inline>> = d.invariants.iter().map(|v| invariant(sheet, v)).collect();
+    if let Known::NotSought(why) = &d.integrability.casimirs {
+        items.push(vec![format!("Casimirs were not looked for: {why}").into()]);
+    }
     if items.is_empty() {
         section.text("None was found among the candidates.");
     } else {
@@ -25,11 +29,30 @@ pub fn invariants(sheet: &Sheet, doc: &mut Document) {
         sheet.derived(&energy.value).into(),
         format!(", is {how}: {}.", energy.reason).into(),
     ]);
-    section.text(if d.reversible {
-        "The action of one step changes sign when its ends change places and the step changes sign: the scheme is symmetric under time reversal, of even order, and may be composed."
-    } else {
-        "The action of one step is not symmetric under time reversal: the scheme is of first order and must not be composed."
-    });
+    reversal(sheet, section);
+}
+
+/// Whether the step may be composed, and what stands in the way.
+fn reversal(sheet: &Sheet, section: &mut Section) {
+    let symmetric =
+        "The action of one step changes sign when its ends change places and the step changes sign";
+    let first = "the scheme is of first order and must not be composed.";
+    match &sheet.d.reversal {
+        Reversal::Symmetric => section.text(&format!(
+            "{symmetric}: the scheme is symmetric under time reversal, of even order, and may be composed."
+        )),
+        Reversal::Assumed => section.text(&format!(
+            "{symmetric}, for the parameters that the assumptions admit: the scheme is symmetric under time reversal, of even order, and may be composed."
+        )),
+        Reversal::Broken(None) => section.text(&format!(
+            "The action of one step is not symmetric under time reversal: {first}"
+        )),
+        Reversal::Broken(Some(left)) => section.paragraph([
+            "The action of one step is not symmetric under time reversal: with its ends exchanged and the step reversed, the sum of both is ".into(),
+            sheet.derived(left).into(),
+            format!(" and no constant, unless the parameters make it one. In general {first}").into(),
+        ]),
+    };
 }
 
 fn invariant(sheet: &Sheet, v: &Invariant) -> Vec<Inline> {

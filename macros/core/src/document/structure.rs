@@ -2,8 +2,10 @@
 //! its Casimirs, and the Lax form of a free body. Takes a derivation; adds sections.
 
 use super::sheet::Sheet;
+use crate::derive::Derivation;
+use crate::derive::invariants::{Count, Known};
 use crate::expr::Expr;
-use crate::print::document::Document;
+use crate::print::document::{Document, Section};
 use crate::print::formula::Formula;
 
 fn braces(sheet: &Sheet, first: &Expr, second: &Expr) -> Formula {
@@ -46,16 +48,86 @@ pub fn bracket(sheet: &Sheet, doc: &mut Document) {
             sheet.derived(&row.value),
         ));
     }
-    if let Some((dimension, rank)) = d.integrability.rank {
-        let (corank, found) = (dimension - rank, d.integrability.casimirs);
-        let listed = match corank == found {
-            true => "all of them are listed below".to_owned(),
-            false => format!("{found} of them are listed below"),
-        };
-        section.text(&format!(
-            "At a general point its rank is {rank} of {dimension}, so there are {corank} independent Casimirs; {listed}."
-        ));
+    let counts = match &d.integrability.casimirs {
+        Known::Counted(counts) => counts,
+        Known::NotSought(why) => {
+            section.text(&format!(
+                "Its Casimirs were neither counted nor looked for: {why}. Those that there are, are constant all the same."
+            ));
+            return;
+        }
+    };
+    match counts.as_slice() {
+        [] => {
+            section.text("Its Casimirs are not counted, for sizes that vary independently.");
+        }
+        [one] if one.size.is_none() => {
+            section.text(&format!(
+                "At a general point its rank is {} of {}, so there {}; {}.",
+                one.rank,
+                one.dimension,
+                number(one.all()),
+                listed(one)
+            ));
+        }
+        many => by_size(d, many, section),
     }
+}
+
+fn number(n: usize) -> String {
+    match n {
+        0 => "are no Casimirs".to_owned(),
+        1 => "is 1 independent Casimir".to_owned(),
+        n => format!("are {n} independent Casimirs"),
+    }
+}
+
+fn listed(c: &Count) -> String {
+    match c.all() == c.found {
+        true if c.found == 0 => "what is listed below is kept for other reasons".to_owned(),
+        true if c.found == 1 => "it is listed below".to_owned(),
+        true => "all of them are listed below".to_owned(),
+        false => format!(
+            "{} of them are listed below, no others being among the scalar products, traces and determinants that were tried",
+            c.found
+        ),
+    }
+}
+
+/// The counts of a model whose size has only a name.
+fn by_size(d: &Derivation, counts: &[Count], section: &mut Section) {
+    let name = d.spec.dimensions.first().map_or("", |n| n.name.as_str());
+    let each = counts.iter().map(|c| {
+        let size = c.size.unwrap_or_default();
+        let mut text = format!(
+            "for {name} = {size} it is {} of {}, and there {}",
+            c.rank,
+            c.dimension,
+            number(c.all())
+        );
+        if c.found < c.all() {
+            text.push_str(&format!(", {} of them listed below", c.found));
+        }
+        text
+    });
+    section.text(&format!(
+        "Its rank at a general point: {}.",
+        each.collect::<Vec<_>>().join("; ")
+    ));
+    let complete = counts.iter().all(|c| c.found == c.all());
+    let largest = counts.last().and_then(|c| c.size).unwrap_or_default();
+    let beyond = d.spec.dimensions.iter().any(|n| n.to > largest as u64);
+    section.text(match (complete, beyond) {
+        (true, false) => {
+            "All of them are listed below; at the smaller sizes those that are listed depend on one another."
+        }
+        (true, true) => {
+            "All of them are listed below, up to the largest of these sizes; beyond it they were not counted."
+        }
+        (false, _) => {
+            "No others are among the scalar products, traces and determinants that were tried."
+        }
+    });
 }
 
 /// The Lax form of the step.

@@ -243,6 +243,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
         d.spec.node_rule == NodeRule::Symmetric || order == 1 || d.action.nodal.is_zero()
     );
     let reversible = d.reversible;
+    let discrete_energy = discrete_energy(d);
     let fields = |list: &[FieldOf]| -> Vec<TokenStream> {
         list.iter().map(|f| f.tokens(&d.letters.symbols)).collect()
     };
@@ -344,6 +345,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                 initial: &[#(#i),*],
                 observables: &[#(#o),*],
                 invariants: &[#(#invariants),*],
+                discrete_energy: #discrete_energy,
                 open: Self::open,
                 solvers: #solvers,
                 dimensions: &[#(#dimensions),*],
@@ -357,6 +359,21 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                 #choose
                 #begin
             }
+        }
+    }
+}
+
+/// The discrete energy as data.
+fn discrete_energy(d: &Derivation) -> TokenStream {
+    let energy = &d.integrability.discrete_energy;
+    let formula = super::items::text(d, &energy.value);
+    let conserved = format_ident!("{}", if energy.exact { "Exactly" } else { "Boundedly" });
+    quote! {
+        Invariant {
+            name: "discrete_energy",
+            formula: #formula,
+            rows: 1,
+            conserved: Conserved::#conserved,
         }
     }
 }

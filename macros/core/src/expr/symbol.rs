@@ -47,8 +47,20 @@ pub struct Symbol {
 #[derive(Clone, Default, PartialEq, Eq, Debug)]
 pub struct Symbols {
     list: Vec<Symbol>,
-    dims: Vec<String>,
+    dims: Vec<NamedSize>,
 }
+
+/// A dimension that has only a name.
+#[derive(Clone, PartialEq, Eq, Debug)]
+struct NamedSize {
+    name: String,
+    from: u64,
+    to: u64,
+}
+
+/// Largest size taken for a dimension that has only a name, where smaller ones are allowed: what
+/// holds there for words of up to so many factors holds for every larger size.
+const LARGEST_TRIED: u64 = 8;
 
 impl Symbols {
     /// Adds a symbol and returns its index.
@@ -63,9 +75,13 @@ impl Symbols {
         SymbolId((self.list.len() - 1) as u32)
     }
 
-    /// Declares a named dimension.
-    pub fn add_dim(&mut self, name: &str) -> Dim {
-        self.dims.push(name.to_owned());
+    /// Declares a named dimension, from this size to that.
+    pub fn add_dim(&mut self, name: &str, from: u64, to: u64) -> Dim {
+        self.dims.push(NamedSize {
+            name: name.to_owned(),
+            from,
+            to,
+        });
         Dim::Named((self.dims.len() - 1) as u16)
     }
 
@@ -73,7 +89,22 @@ impl Symbols {
     pub fn dim_text(&self, dim: Dim) -> String {
         match dim {
             Dim::Fixed(n) => n.to_string(),
-            Dim::Named(i) => self.dims.get(i as usize).cloned().unwrap_or_default(),
+            Dim::Named(i) => self
+                .dims
+                .get(i as usize)
+                .map(|d| d.name.clone())
+                .unwrap_or_default(),
+        }
+    }
+
+    /// The smallest and the largest size that a dimension is tried at.
+    pub fn sizes(&self, dim: Dim) -> (usize, usize) {
+        match dim {
+            Dim::Fixed(n) => (n as usize, n as usize),
+            Dim::Named(i) => self.dims.get(i as usize).map_or((3, 4), |d| {
+                let largest = d.to.min(LARGEST_TRIED.max(d.from));
+                (d.from as usize, largest as usize)
+            }),
         }
     }
 
@@ -84,7 +115,7 @@ impl Symbols {
 
     /// The declared dimension of that name.
     pub fn find_dim(&self, name: &str) -> Option<Dim> {
-        let i = self.dims.iter().position(|d| d == name)?;
+        let i = self.dims.iter().position(|d| d.name == name)?;
         Some(Dim::Named(i as u16))
     }
 

@@ -11,12 +11,32 @@ use crate::derive::bracket::{Element, Numbers, Space};
 use crate::expr::shape::Dim;
 use crate::expr::{self, Expr, Letter};
 
+/// What is known of the Casimirs at one size of the model.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Count {
+    /// The size, where it has only a name.
+    pub size: Option<usize>,
+    /// The dimension of the reduced space.
+    pub dimension: usize,
+    /// The rank of its bracket at a general point.
+    pub rank: usize,
+    /// How many of those that were found are independent.
+    pub found: usize,
+}
+
+impl Count {
+    /// How many there are.
+    pub fn all(&self) -> usize {
+        self.dimension - self.rank
+    }
+}
+
 /// What the search gave.
 #[derive(Default)]
 pub(super) struct Casimirs {
     pub(super) list: Vec<Invariant>,
-    /// Dimension of the reduced space and rank of its bracket.
-    pub(super) rank: Option<(usize, usize)>,
+    /// Size by size; one entry where no size has only a name.
+    pub(super) counts: Vec<Count>,
 }
 
 /// Points at which a Casimir is tested.
@@ -30,7 +50,7 @@ struct General<'a> {
 
 /// The Casimirs.
 pub(super) fn casimirs(x: &Inputs, equations: &[Expr], passages: &[Passage]) -> Casimirs {
-    // Odd attempts take the larger size for a dimension that has only a name.
+    // Odd attempts take the largest size for a dimension that has only a name.
     let attempts = (0..ATTEMPTS).filter(|a| a % 2 == 1);
     let found = attempts.filter_map(|attempt| general(x, equations, attempt));
     let points: Vec<General> = found.take(POINTS).collect();
@@ -39,9 +59,6 @@ pub(super) fn casimirs(x: &Inputs, equations: &[Expr], passages: &[Passage]) -> 
         return out;
     };
     let (dimension, size) = (first.matrix.len(), rank(&first.matrix));
-    if x.spec.dimensions.is_empty() {
-        out.rank = Some((dimension, size));
-    }
     let mut differentials = Independent::default();
     for c in words::candidates(x, passages) {
         if differentials.len() == dimension - size {
@@ -83,7 +100,42 @@ pub(super) fn casimirs(x: &Inputs, equations: &[Expr], passages: &[Passage]) -> 
             exact: true,
         });
     }
+    out.counts = match x.spec.dimensions.as_slice() {
+        [] => vec![Count {
+            size: None,
+            dimension,
+            rank: size,
+            found: out.list.len(),
+        }],
+        [one] => {
+            let (from, to) = x.letters.symbols.sizes(Dim::Named(0));
+            debug_assert!(from as u64 == one.from);
+            let sizes = from..=to;
+            sizes.filter_map(|n| count(x, equations, n, &out)).collect()
+        }
+        // Sizes that vary by themselves have no single list.
+        _ => Vec::new(),
+    };
     out
+}
+
+/// How many Casimirs there are at one size, and how many of those found are independent there.
+fn count(x: &Inputs, equations: &[Expr], size: usize, found: &Casimirs) -> Option<Count> {
+    let general = (0..ATTEMPTS).find_map(|attempt| {
+        let point = assumed::point_of_size(&x.letters.symbols, attempt, equations, size)?;
+        at_point(x, point)
+    })?;
+    let rows: Option<Vec<Vec<u64>>> = found
+        .list
+        .iter()
+        .map(|v| differential(x, &general.point, v.value.as_ref()?))
+        .collect();
+    Some(Count {
+        size: Some(size),
+        dimension: general.matrix.len(),
+        rank: rank(&general.matrix),
+        found: rank(&rows?),
+    })
 }
 
 fn reason(x: &Inputs, value: &Expr) -> &'static str {
@@ -102,7 +154,10 @@ fn reason(x: &Inputs, value: &Expr) -> &'static str {
 }
 
 fn general<'a>(x: &Inputs<'a>, equations: &[Expr], attempt: u64) -> Option<General<'a>> {
-    let mut point = assumed::point(&x.letters.symbols, attempt, equations)?;
+    at_point(x, assumed::point(&x.letters.symbols, attempt, equations)?)
+}
+
+fn at_point<'a>(x: &Inputs<'a>, mut point: Point<'a>) -> Option<General<'a>> {
     for id in words::letters(x) {
         let value = point.letter(here(id))?;
         point.set(here(id), value);

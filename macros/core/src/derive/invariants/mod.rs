@@ -23,9 +23,9 @@ use crate::algebra::{Algebra, Rational};
 use crate::check::spec::Spec;
 use crate::expr::shape::{Dim, Shape};
 use crate::expr::{self, Expr, Letter, Shift};
-use crate::syntax::ast::Comparison;
 use passage::Passage;
 
+pub use casimirs::Count;
 pub use energy::DiscreteEnergy;
 pub use isospectral::Lax;
 
@@ -80,15 +80,35 @@ pub struct Invariant {
 /// What is known of the number of invariants, and the Lax form.
 #[derive(Clone, Debug)]
 pub struct Integrability {
-    /// The dimension of the reduced space and the rank of its bracket at a general point; nothing
-    /// when its size has only a name.
-    pub rank: Option<(usize, usize)>,
-    /// Independent Casimirs found; the dimension less the rank is how many there are.
-    pub casimirs: usize,
+    /// What is known of the Casimirs.
+    pub casimirs: Known,
     /// The Lax form of the step, if one was found.
     pub lax: Option<Lax>,
     /// The discrete energy of an edge.
     pub discrete_energy: DiscreteEnergy,
+}
+
+/// What is known of the Casimirs of a model.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum Known {
+    /// How many there are and how many were found, at each size that was looked at.
+    Counted(Vec<Count>),
+    /// None was looked for, with the reason.
+    NotSought(String),
+}
+
+impl Integrability {
+    /// The dimension of the reduced space and the rank of its bracket at a general point, for a
+    /// model of one size that was looked at.
+    pub fn rank(&self) -> Option<(usize, usize)> {
+        match &self.casimirs {
+            Known::Counted(counts) => match counts.as_slice() {
+                [one] if one.size.is_none() => Some((one.dimension, one.rank)),
+                _ => None,
+            },
+            Known::NotSought(_) => None,
+        }
+    }
 }
 
 /// What the search looks at.
@@ -107,6 +127,8 @@ pub struct Inputs<'a> {
     pub solve: &'a Solve,
     /// The continuous Lagrangian.
     pub limit: Option<&'a Limit>,
+    /// What is assumed of the parameters, as expressions that vanish.
+    pub assumed: &'a [Expr],
     /// The normal forms.
     pub algebra: &'a Algebra<'a>,
 }
@@ -120,17 +142,16 @@ struct Candidate {
 
 /// The invariants that can be proved.
 pub fn invariants(x: &Inputs) -> (Vec<Invariant>, Integrability) {
-    let assumed = assumed(x);
-    let passages = passage::passages(x, &assumed);
+    let passages = passage::passages(x, x.assumed);
     let mut out = Vec::new();
-    let small = is_small(x);
+    let large = too_large(x);
+    let small = large.is_none();
     out.extend(energy::energy(x, if small { &passages } else { &[] }));
     let momenta = noether::of_space(x, &passages);
     let casimirs = match small {
-        true => casimirs::casimirs(x, &assumed, &passages),
+        true => casimirs::casimirs(x, x.assumed, &passages),
         false => casimirs::Casimirs::default(),
     };
-    let found = casimirs.list.len();
     let (vectors, about_axes): (Vec<_>, Vec<_>) = momenta
         .into_iter()
         .partition(|v| !matches!(v.kind, Kind::Value));
@@ -152,43 +173,25 @@ pub fn invariants(x: &Inputs) -> (Vec<Invariant>, Integrability) {
     }
     distinguish(&mut out);
     let known = Integrability {
-        rank: casimirs.rank,
-        casimirs: found,
+        casimirs: match large {
+            Some(why) => Known::NotSought(why),
+            None => Known::Counted(casimirs.counts),
+        },
         discrete_energy: energy::discrete(x, &passages, lax.as_ref()),
         lax,
     };
     (out, known)
 }
 
-/// The equations among the assumptions, as expressions that vanish. Those beyond the exact points
-/// are left out: what holds without an assumption holds with it.
-fn assumed(x: &Inputs) -> Vec<Expr> {
-    let s = &x.letters.symbols;
-    let mut out: Vec<Expr> = Vec::new();
-    for a in &x.spec.assumptions {
-        if a.relation != Comparison::Equal || out.len() == crate::algebra::assumed::MOST {
-            continue;
-        }
-        out.push(expr::sub(a.left.clone(), a.right.clone()));
-        if !crate::algebra::assumed::reachable(s, &out) {
-            out.pop();
-        }
-    }
-    out
-}
-
 /// Most products of numbers that one matrix of the bracket may take. Up to eight dimensions it is
 /// a tenth of that.
 const LARGEST: usize = 4_000_000;
 
-/// Whether the spaces of the model are small enough to be searched: what is not searched is not
-/// listed, and its count is not given.
-fn is_small(x: &Inputs) -> bool {
+/// Why the spaces of the model are too large to be searched, if they are: what is not searched is
+/// not listed.
+fn too_large(x: &Inputs) -> Option<String> {
     let s = &x.letters.symbols;
-    let number = |d: Dim| match d {
-        Dim::Fixed(n) => n as usize,
-        Dim::Named(_) => 4,
-    };
+    let number = |d: Dim| s.sizes(d).1;
     let sizes = x.spec.configurations.iter().map(|c| number(c.group.size()));
     let work: usize = sizes.map(|n| n.saturating_pow(7)).sum();
     let entries: usize = x
@@ -201,7 +204,11 @@ fn is_small(x: &Inputs) -> bool {
         })
         .sum();
     // Elimination of a matrix with this many rows.
-    work <= 4 * LARGEST && entries.saturating_pow(3) <= 16 * LARGEST
+    if work > 4 * LARGEST {
+        return Some("the Lie algebra of the configuration has too many dimensions".to_owned());
+    }
+    (entries.saturating_pow(3) > 16 * LARGEST)
+        .then(|| format!("the advected quantities have {entries} entries"))
 }
 
 /// Two invariants of one name are told apart by a number.

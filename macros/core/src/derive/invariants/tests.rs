@@ -1,7 +1,7 @@
 //! Which invariants are found, and which are refused. Takes models as text; compares the names of
 //! what is found.
 
-use super::Family;
+use super::{Family, Known};
 use crate::derive::Derivation;
 use crate::pipeline::derive_source;
 
@@ -107,7 +107,7 @@ fn coupled_bodies_keep_the_sum_of_their_momenta() {
         names(&d),
         ["energy~", "total_momentum_Gamma", "Gamma_squared"].map(|n| n.replace("Gamma", "G"))
     );
-    assert_eq!(d.integrability.rank, Some((12, 10)));
+    assert_eq!(d.integrability.rank(), Some((12, 10)));
 }
 
 #[test]
@@ -154,8 +154,8 @@ fn the_spatial_side_has_the_eigenvalues_of_what_it_carries() {
         "momentum_z",
     ];
     assert_eq!(names(&d), wanted);
-    assert_eq!(d.integrability.rank, Some((12, 6)));
-    assert_eq!(d.integrability.casimirs, 6);
+    assert_eq!(d.integrability.rank(), Some((12, 6)));
+    assert_eq!(casimirs(&d), [(None, 6, 6)]);
     let free = "model Body {
         group Λ: SO<3> velocity ω; advected J: Sym<3>;
         constraint next(Λ) = ω*Λ; constraint next(J) = ω*J*ω^T;
@@ -192,7 +192,7 @@ fn free_bodies_have_manakov_integrals_in_every_dimension() {
             "manakov",
         ];
         assert_eq!(names(&d), wanted, "{n}");
-        assert_eq!(d.integrability.rank, Some(rank));
+        assert_eq!(d.integrability.rank(), Some(rank));
         assert!(d.integrability.lax.is_some());
     }
     // A factor without symmetry has no Lax form: the momentum and its Casimirs alone are left.
@@ -297,7 +297,7 @@ fn a_body_in_a_fluid_keeps_what_its_surroundings_leave_alone() {
         "momentum_linear_squared",
     ];
     assert_eq!(names(&free), wanted);
-    assert_eq!(free.integrability.rank, Some((6, 4)));
+    assert_eq!(free.integrability.rank(), Some((6, 4)));
     // Its weight balanced by buoyancy: only the vertical direction is told.
     let upright = body_in_fluid(
         "param b, z: Vec<3>; advected Γ: Vec<3> = rot(G)^T*z; constraint next(Γ) = rot(V)^T*Γ;",
@@ -312,7 +312,7 @@ fn a_body_in_a_fluid_keeps_what_its_surroundings_leave_alone() {
         "spatial_momentum_angular_z",
     ];
     assert_eq!(names(&upright), wanted);
-    assert_eq!(upright.integrability.rank, Some((9, 6)));
+    assert_eq!(upright.integrability.rank(), Some((9, 6)));
     // A net weight: the height is told, horizontal translations are not.
     let heavy = body_in_fluid(
         "param b, Z: Vec<4>; advected P: Vec<4> = G^T*Z; constraint next(P) = V^T*P;",
@@ -326,8 +326,8 @@ fn a_body_in_a_fluid_keeps_what_its_surroundings_leave_alone() {
         "spatial_momentum_angular_Z",
     ];
     assert_eq!(names(&heavy), wanted);
-    assert_eq!(heavy.integrability.rank, Some((10, 8)));
-    assert_eq!(heavy.integrability.casimirs, 2);
+    assert_eq!(heavy.integrability.rank(), Some((10, 8)));
+    assert_eq!(casimirs(&heavy), [(None, 2, 2)]);
     // Held by a spring to a point: its weight never changes, and the moment about it is kept.
     let held = body_in_fluid(
         "param K: Sym<4>; param X: Vec<4>; advected Q: Vec<4> = G^-1*X; constraint next(Q) = V^-1*Q;",
@@ -340,5 +340,62 @@ fn a_body_in_a_fluid_keeps_what_its_surroundings_leave_alone() {
         "spatial_momentum_moment_about_X",
     ];
     assert_eq!(names(&held), wanted);
-    assert_eq!(held.integrability.rank, Some((10, 8)));
+    assert_eq!(held.integrability.rank(), Some((10, 8)));
+}
+
+/// How many Casimirs were found of how many there are, size by size.
+fn casimirs(d: &Derivation) -> Vec<(Option<usize>, usize, usize)> {
+    match &d.integrability.casimirs {
+        Known::Counted(counts) => counts.iter().map(|c| (c.size, c.found, c.all())).collect(),
+        Known::NotSought(_) => Vec::new(),
+    }
+}
+
+fn body_of(dimension: &str, size: &str, factor: &str, assumed: &str) -> Derivation {
+    derive(&format!(
+        "model Body {{
+            {dimension} param C: {factor}<{size}>; {assumed}
+            group Λ: SO<{size}> velocity Ω; constraint next(Λ) = Λ*Ω;
+            lagrangian = -tr(C^T*Ω)/h;
+        }}"
+    ))
+}
+
+#[test]
+fn casimirs_of_a_named_size_are_counted_at_every_size() {
+    let d = body_of("dim n in 3..=8;", "n", "Mat", "");
+    let all = [(3, 1), (4, 2), (5, 2), (6, 3), (7, 3), (8, 4)];
+    assert_eq!(casimirs(&d), all.map(|(n, c)| (Some(n), c, c)));
+    let text = crate::document::printed(&d, crate::print::Format::Text);
+    let flat = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        flat.contains("for n = 7 it is 18 of 21, and there are 3 independent Casimirs"),
+        "{text}"
+    );
+    // Beyond what is tried the document says so.
+    let wide = body_of("dim n in 3..=12;", "n", "Mat", "");
+    assert_eq!(casimirs(&wide).last(), Some(&(Some(8), 4, 4)));
+    let none = body_of("", "12", "Mat", "");
+    assert!(matches!(none.integrability.casimirs, Known::NotSought(_)));
+    assert!(none.integrability.rank().is_none());
+}
+
+#[test]
+fn a_symmetric_factor_makes_the_step_reversible() {
+    use crate::derive::reversal::Reversal;
+    for dimension in [("dim n in 3..=8;", "n"), ("", "3"), ("", "4")] {
+        let of = |factor, assumed| body_of(dimension.0, dimension.1, factor, assumed);
+        let general = of("Mat", "");
+        assert!(matches!(general.reversal, Reversal::Broken(Some(_))));
+        assert!(!general.reversible && general.limit.is_err());
+        let declared = of("Sym", "");
+        assert!(matches!(declared.reversal, Reversal::Symmetric));
+        assert!(declared.reversible && declared.limit.is_ok());
+        let assumed = of("Mat", "assume C^T == C;");
+        assert!(matches!(assumed.reversal, Reversal::Assumed));
+        assert!(assumed.reversible && assumed.limit.is_ok());
+        // Another assumption does not do it.
+        let other = of("Mat", "assume tr(C) == 1;");
+        assert!(!other.reversible && other.limit.is_err());
+    }
 }

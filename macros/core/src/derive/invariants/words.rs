@@ -93,10 +93,8 @@ pub(super) fn candidates(x: &Inputs, passages: &[Passage]) -> Vec<Candidate> {
         });
     }
     for m in &matrices {
-        let longest = match m.value.shape().rows {
-            Dim::Fixed(n) => n.clamp(3, 8) as usize,
-            Dim::Named(_) => 4,
-        };
+        let largest = x.letters.symbols.sizes(m.value.shape().rows).1;
+        let longest = largest.clamp(3, 8);
         let powers = (1..=longest).filter_map(|n| {
             let mut c = trace(&vec![m; n])?;
             if n == 1 {

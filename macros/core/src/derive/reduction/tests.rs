@@ -93,7 +93,7 @@ fn three_bodies_have_two_relative_attitudes() {
         }",
     );
     assert_eq!(found(&d).len(), 2, "{:?}", found(&d));
-    assert_eq!(d.integrability.rank, Some((15, 14)));
+    assert_eq!(d.integrability.rank(), Some((15, 14)));
 }
 
 #[test]

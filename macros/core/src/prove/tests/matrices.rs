@@ -93,7 +93,7 @@ fn symmetric_against_skew() {
 #[test]
 fn linear_groups_of_any_dimension() {
     let mut d = Desk::default();
-    let n = d.symbols.add_dim("n");
+    let n = d.symbols.add_dim("n", 3, 4);
     let mut square =
         |name: &str, structure| d.letter(name, Shape::square(n), structure, Role::Parameter);
     let (g, c) = (

@@ -299,7 +299,7 @@ fn momentum_as_a_vector() {
 #[test]
 fn ellipsoid_of_any_dimension() {
     let mut d = Desk::default();
-    let n = d.symbols.add_dim("n");
+    let n = d.symbols.add_dim("n", 3, 4);
     let mut square =
         |name: &str, s: Structure| d.letter(name, Shape::square(n), s, Role::Parameter);
     let g = square("G", Structure::Invertible);

@@ -1,0 +1,24 @@
+//! The equations among the assumptions of a model, as far as proofs may use them. Takes a checked
+//! model; gives expressions that vanish for every admitted choice of the parameters.
+
+use crate::algebra::assumed;
+use crate::check::spec::Spec;
+use crate::expr::symbol::Symbols;
+use crate::expr::{self, Expr};
+use crate::syntax::ast::Comparison;
+
+/// Left sides less right sides. Those beyond the exact points are left out: what holds without an
+/// assumption holds with it.
+pub(crate) fn equations(spec: &Spec, symbols: &Symbols) -> Vec<Expr> {
+    let mut out: Vec<Expr> = Vec::new();
+    for a in &spec.assumptions {
+        if a.relation != Comparison::Equal || out.len() == assumed::MOST {
+            continue;
+        }
+        out.push(expr::sub(a.left.clone(), a.right.clone()));
+        if !assumed::reachable(symbols, &out) {
+            out.pop();
+        }
+    }
+    out
+}
