@@ -93,20 +93,22 @@ pub fn defect_of_rotations(n: usize, jacobian: &[Vec<f64>], before: &[f64], afte
     };
     let form = |mu: &[f64]| {
         let mut w = vec![vec![0.0; 2 * d]; 2 * d];
-        for a in 0..d {
-            w[a][a + d] = -1.0;
-            w[a + d][a] = 1.0;
-            for b in 0..d {
+        for (a, row) in w.iter_mut().enumerate().take(d) {
+            row[a + d] = -1.0;
+            for (b, value) in row.iter_mut().enumerate().take(d) {
                 // -<mu, [E_a, E_b]>.
-                for (k, (r, c)) in planes.iter().enumerate() {
+                for (m, (r, c)) in mu.iter().zip(&planes) {
                     let product = |x: usize, y: usize| -> f64 {
                         (0..n)
-                            .map(|m| entry(planes[x], *r, m) * entry(planes[y], m, *c))
+                            .map(|k| entry(planes[x], *r, k) * entry(planes[y], k, *c))
                             .sum()
                     };
-                    w[a][b] -= mu[k] * (product(a, b) - product(b, a));
+                    *value -= m * (product(a, b) - product(b, a));
                 }
             }
+        }
+        for (a, row) in w.iter_mut().skip(d).enumerate() {
+            row[a] = 1.0;
         }
         w
     };

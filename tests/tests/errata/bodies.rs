@@ -8,7 +8,7 @@ use clebsch_core::derive_source;
 use clebsch_tests::oracle::action::bodies::{HeavyTop, Stated};
 use clebsch_tests::oracle::action::coupled::CoupledBodies;
 use clebsch_tests::oracle::points::Source;
-use clebsch_tests::oracle::square::{Square, cross, dot, hat, outer, vee};
+use clebsch_tests::oracle::square::{cross, dot, hat, outer, vee};
 use std::array::from_fn;
 
 #[test]

@@ -3,6 +3,9 @@
 //! unreduced action, a directional derivative, or what a rotation or a bracket must keep. The list is
 //! `docs/errata.md`; its Lagrangian and momenta are -h times ours.
 
+// The fields of the models are Greek letters, as in the papers.
+#![allow(mixed_script_confusables)]
+
 mod bodies;
 mod ellipsoids;
 mod quaternions;

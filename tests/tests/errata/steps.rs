@@ -74,8 +74,8 @@ fn off(
     let (attitude, momentum) = step(Rotation::exp(&xi), start);
     let back = attitude.map(|x| x.real).transpose();
     let mut jacobian: Jacobian = [[0.0; 6]; 6];
-    for seed in 0..6 {
-        let turn = back * attitude.map(|x| x.dual[seed]);
+    let turns: [Matrix3<f64>; 6] = from_fn(|seed| back * attitude.map(|x| x.dual[seed]));
+    for (seed, turn) in turns.iter().enumerate() {
         for (row, at) in [(2, 1), (0, 2), (1, 0)].into_iter().enumerate() {
             jacobian[row][seed] = turn[at];
             jacobian[3 + row][seed] = momentum[row].dual[seed];

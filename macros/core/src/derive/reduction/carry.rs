@@ -1,6 +1,7 @@
 //! What is carried along: the quantity that stands for a segment of a word, known already or
 //! declared with its name, structure, definition and constraint. Takes segments; gives letters.
 
+use super::relative::Frame;
 use super::terms::{Carried, Reducer};
 use crate::algebra::{Factor, Word};
 use crate::check::spec::Side;
@@ -59,7 +60,7 @@ impl Reducer<'_> {
     }
 
     /// The element of a factor, and whether it is its rotation that stands there.
-    fn body(&self, f: &Factor) -> Option<(SymbolId, bool)> {
+    fn body(&self, f: &Factor) -> Option<Frame> {
         let o = self.occurrence(f)?;
         Some((o.configuration.element, o.rotation))
     }

@@ -10,6 +10,9 @@ use crate::expr::shape::Structure;
 use crate::expr::symbol::{Role, SymbolId};
 use crate::expr::{self, Expr, Letter, Shift};
 
+/// The frame of a body, by its element; with `true` by the rotation of that element alone.
+pub(super) type Frame = (SymbolId, bool);
+
 impl<'a> Reducer<'a> {
     /// A number in relative motions, where no element is left over.
     pub(super) fn relative(&mut self, e: &Expr) -> Option<Expr> {
@@ -97,10 +100,10 @@ impl<'a> Reducer<'a> {
     }
 
     /// The way from one body's frame to another's by relative elements that are carried already:
-    /// three bodies have two of them, whatever pairs the statement names. With `true` beside a body
-    /// it is its rotation that is meant, which those of whole elements give as well.
-    pub(super) fn path(&self, from: (SymbolId, bool), to: (SymbolId, bool)) -> Option<Vec<Expr>> {
-        let mut reached: Vec<((SymbolId, bool), Vec<Expr>)> = vec![(from, Vec::new())];
+    /// three bodies have two of them, whatever pairs the statement names. Whole elements give
+    /// their rotations as well.
+    pub(super) fn path(&self, from: Frame, to: Frame) -> Option<Vec<Expr>> {
+        let mut reached: Vec<(Frame, Vec<Expr>)> = vec![(from, Vec::new())];
         let mut k = 0;
         while let Some((body, way)) = reached.get(k).cloned() {
             k += 1;
@@ -121,11 +124,7 @@ impl<'a> Reducer<'a> {
     }
 
     /// A carried relative element as a step between two bodies, in both directions.
-    fn steps(
-        &self,
-        c: &Carried,
-        rotation: bool,
-    ) -> Vec<((SymbolId, bool), (SymbolId, bool), Expr)> {
+    fn steps(&self, c: &Carried, rotation: bool) -> Vec<(Frame, Frame, Expr)> {
         let [a, b] = c.word.as_slice() else {
             return Vec::new();
         };
