@@ -251,10 +251,10 @@ impl<T: Real> Free<T> {
     /// of momentum and attitude symplectic again, where modified moments do not: for orders four,
     /// six and eight up to terms of the order of the tenth's, whose own are not known. The turn is
     /// of the size of the error of a step and constant, so that order, energy and momentum are as
-    /// before. Of order two nothing is missing.
+    /// before. Of order two nothing is missing, and of order ten nothing that is known.
     #[must_use]
     pub fn compensated(mut self) -> Self {
-        if self.order != Order::Two {
+        if !matches!(self.order, Order::Two | Order::Ten) {
             let h_mu = self.body_momentum().0.map(|x| x * self.h);
             let factor = compensation::factor(&self.given, self.given.scaled(&h_mu), self.order);
             let half = self.axes.map(|axis| axis.space * factor);
