@@ -84,6 +84,12 @@ pub mod cayley_klein_spatial {
         h: T,
         search: newton::Search<T, [UnitQuaternion<T>; 1], 3>,
     }
+    impl<T: Real> CayleyKleinSpatialWorkspace<T> {
+        /// How the last step was solved: tangents, corrections, and the residual before the last.
+        pub fn solved(&self) -> newton::Summary {
+            self.search.last()
+        }
+    }
     impl<T: Real> CayleyKleinSpatial<T> {
         /// Starts a trajectory with step `h` from data at node 0.
         ///
@@ -164,7 +170,7 @@ pub mod cayley_klein_spatial {
             let k4 = c * s1;
             let momentum = size_of(&momenta[0]);
             let mut iteration = work.search.begin(state.node, momentum);
-            let solved: [UnitQuaternion<T>; 1] = loop {
+            let found: newton::Solved<[UnitQuaternion<T>; 1]> = loop {
                 let trial = iteration.trial();
                 if iteration.wants_scale() {
                     let w = trial[0].matrix();
@@ -204,12 +210,13 @@ pub mod cayley_klein_spatial {
                 }
                 match iteration.correct() {
                     newton::Progress::Continue => {}
-                    newton::Progress::Solved(found) => break found.element,
+                    newton::Progress::Solved(solved) => break solved,
                     newton::Progress::Failed(e) => {
                         return Err(StepCause::from(e).at_node(state.node));
                     }
                 }
             };
+            let solved = found.element;
             let w_matrix = solved[0].matrix();
             let q_moved = solved[0] * state.q;
             let momentum_next = state.momentum.0;
@@ -224,7 +231,7 @@ pub mod cayley_klein_spatial {
             state.q = q_moved;
             state.momentum = SpatialMomentum(momentum_next);
             state.node += 1;
-            work.search.remember(state.node - 1, solved);
+            work.search.remember(state.node - 1, &found);
             Ok(())
         }
         /// `I` at the node of this state.

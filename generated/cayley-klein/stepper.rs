@@ -86,6 +86,12 @@ pub mod cayley_klein {
         h: T,
         search: newton::Search<T, [UnitQuaternion<T>; 1], 3>,
     }
+    impl<T: Real> CayleyKleinWorkspace<T> {
+        /// How the last step was solved: tangents, corrections, and the residual before the last.
+        pub fn solved(&self) -> newton::Summary {
+            self.search.last()
+        }
+    }
     impl<T: Real> CayleyKlein<T> {
         /// Starts a trajectory with step `h` from data at node 0.
         ///
@@ -152,7 +158,7 @@ pub mod cayley_klein {
             let k4 = c * s1;
             let momentum = size_of(&momenta[0]);
             let mut iteration = work.search.begin(state.node, momentum);
-            let solved: [UnitQuaternion<T>; 1] = loop {
+            let found: newton::Solved<[UnitQuaternion<T>; 1]> = loop {
                 let trial = iteration.trial();
                 if iteration.wants_scale() {
                     let W = trial[0].matrix();
@@ -189,12 +195,13 @@ pub mod cayley_klein {
                 }
                 match iteration.correct() {
                     newton::Progress::Continue => {}
-                    newton::Progress::Solved(found) => break found.element,
+                    newton::Progress::Solved(solved) => break solved,
                     newton::Progress::Failed(e) => {
                         return Err(StepCause::from(e).at_node(state.node));
                     }
                 }
             };
+            let solved = found.element;
             let W_matrix = solved[0].matrix();
             let q_moved = state.q * solved[0];
             let momentum_next = state.momentum.0;
@@ -209,7 +216,7 @@ pub mod cayley_klein {
             state.q = q_moved;
             state.momentum = SpatialMomentum(momentum_next);
             state.node += 1;
-            work.search.remember(state.node - 1, solved);
+            work.search.remember(state.node - 1, &found);
             Ok(())
         }
     }

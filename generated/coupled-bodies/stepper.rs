@@ -113,6 +113,12 @@ pub mod coupled_bodies {
         h: T,
         search: newton::Search<T, [Rotation<T>; 2], 6>,
     }
+    impl<T: Real> CoupledBodiesWorkspace<T> {
+        /// How the last step was solved: tangents, corrections, and the residual before the last.
+        pub fn solved(&self) -> newton::Summary {
+            self.search.last()
+        }
+    }
     impl<T: Real> CoupledBodies<T> {
         /// Starts a trajectory with step `h` from data at node 0.
         ///
@@ -197,7 +203,7 @@ pub mod coupled_bodies {
             let k6 = crossing(&R.transpose(), &s2);
             let momentum = size_of(&momenta[0]) + size_of(&momenta[1]);
             let mut iteration = work.search.begin(state.node, momentum);
-            let solved: [Rotation<T>; 2] = loop {
+            let found: newton::Solved<[Rotation<T>; 2]> = loop {
                 let trial = iteration.trial();
                 if iteration.wants_scale() {
                     let Ω1 = trial[0].matrix();
@@ -262,12 +268,13 @@ pub mod coupled_bodies {
                 }
                 match iteration.correct() {
                     newton::Progress::Continue => {}
-                    newton::Progress::Solved(found) => break found.element,
+                    newton::Progress::Solved(solved) => break solved,
                     newton::Progress::Failed(e) => {
                         return Err(StepCause::from(e).at_node(state.node));
                     }
                 }
             };
+            let solved = found.element;
             let Ω1_matrix = solved[0].matrix();
             let Ω2_matrix = solved[1].matrix();
             let Λ1_moved = state.Λ1 * solved[0];
@@ -292,7 +299,7 @@ pub mod coupled_bodies {
             state.momentum_Λ1 = SpatialMomentum(momentum_Λ1_next);
             state.momentum_Λ2 = SpatialMomentum(momentum_Λ2_next);
             state.node += 1;
-            work.search.remember(state.node - 1, solved);
+            work.search.remember(state.node - 1, &found);
             Ok(())
         }
         /// `R` at the node of this state.

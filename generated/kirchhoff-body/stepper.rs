@@ -95,6 +95,12 @@ pub mod kirchhoff_body {
         h: T,
         search: newton::Search<T, [RigidMotion<T>; 1], 6>,
     }
+    impl<T: Real> KirchhoffBodyWorkspace<T> {
+        /// How the last step was solved: tangents, corrections, and the residual before the last.
+        pub fn solved(&self) -> newton::Summary {
+            self.search.last()
+        }
+    }
     impl<T: Real> KirchhoffBody<T> {
         /// Starts a trajectory with step `h` from data at node 0.
         ///
@@ -168,7 +174,7 @@ pub mod kirchhoff_body {
             let k4 = T::from_f64(0.25) * s1;
             let momentum = size_of(&momenta[0]) + size_of(&momenta[1]);
             let mut iteration = work.search.begin(state.node, momentum);
-            let solved: [RigidMotion<T>; 1] = loop {
+            let found: newton::Solved<[RigidMotion<T>; 1]> = loop {
                 let trial = iteration.trial();
                 if iteration.wants_scale() {
                     let V = trial[0].matrix();
@@ -322,12 +328,13 @@ pub mod kirchhoff_body {
                 }
                 match iteration.correct() {
                     newton::Progress::Continue => {}
-                    newton::Progress::Solved(found) => break found.element,
+                    newton::Progress::Solved(solved) => break solved,
                     newton::Progress::Failed(e) => {
                         return Err(StepCause::from(e).at_node(state.node));
                     }
                 }
             };
+            let solved = found.element;
             let V_matrix = solved[0].matrix();
             let G_moved = state.G * solved[0];
             let G_next = G_moved.matrix();
@@ -376,7 +383,7 @@ pub mod kirchhoff_body {
             state.G = G_moved;
             state.momentum = SpatialImpulse(momentum_next);
             state.node += 1;
-            work.search.remember(state.node - 1, solved);
+            work.search.remember(state.node - 1, &found);
             Ok(())
         }
         /// `P` at the node of this state.
