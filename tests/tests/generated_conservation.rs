@@ -63,7 +63,7 @@ fn rounding(start: &Start, projects: bool) -> (f64, [f64; 2]) {
         let seen = apply(&body.attitude(), &mu);
         let away: [f64; 3] = std::array::from_fn(|i| seen[i] - spatial[i]);
         error = error.max(dot(&away, &away).sqrt() / length);
-        if body.state.node() % 64 == 0 {
+        if body.state.node().is_multiple_of(64) {
             let velocity = apply(&inverse, &mu);
             let product = cross(&mu, &velocity);
             let sine = (dot(&product, &product) / dot(&velocity, &velocity)).sqrt() / length;

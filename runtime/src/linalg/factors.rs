@@ -65,7 +65,7 @@ fn with_pivots<T: Real, const D: usize>(
 /// Whether blocks of three go in: bodies in space have three coordinates, rigid motions six.
 #[inline(always)]
 fn in_blocks<const D: usize>(size: usize) -> bool {
-    size == D && D % 3 == 0 && D <= 9
+    size == D && D.is_multiple_of(3) && D <= 9
 }
 
 /// `[column][row]`, the pivot blocks replaced by their inverses; whether they have some.

@@ -147,7 +147,9 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
         quote!(state.#r)
     };
     let (at_node, onwards) = (at(c.element, Shift::HERE), at(c.element, Shift::NEXT));
-    let on_vectors = wanted.iter().all(|e| acts_on_vectors(e, onwards))
+    // In the body its matrix is used three times: once formed, it costs less.
+    let on_vectors = c.side == Side::Spatial
+        && wanted.iter().all(|e| acts_on_vectors(e, onwards))
         && d.spec.advected.iter().zip(&d.transports).all(|(a, t)| {
             let unused = !needed.contains(&at(a.quantity, Shift::NEXT));
             unused || carries_vectors(t, at_node)

@@ -1,12 +1,11 @@
-//! Items that hold data: the parameters and the validated model, the initial data, the state and
-//! the workspace; and the locals with which every emitted function starts.
+//! Items that hold data: the parameters and the validated model; and the locals with which every
+//! emitted function starts.
 
-use super::element;
 use super::expression::{Bindings, Writer, ty};
-use super::names::{Names, field, item, own, per_configuration, tagged, variable};
+use super::names::{Names, field, item, own, tagged, variable};
 use super::sizes::Generics;
 use crate::algebra::Rational;
-use crate::check::spec::{Assumption, Side};
+use crate::check::spec::Assumption;
 use crate::derive::Derivation;
 use crate::derive::recognise::{Method, Riccati};
 use crate::derive::transport::Transport;
@@ -463,143 +462,5 @@ fn sizes(d: &Derivation) -> TokenStream {
     quote! {
         /// Sizes the model does not admit do not build.
         const ADMITTED: () = { #(#tests)* };
-    }
-}
-
-/// Initial data, state and workspace.
-pub fn state(d: &Derivation, names: &Names) -> TokenStream {
-    let s = &d.letters.symbols;
-    let (initial, state, work) = (item(d, "Initial"), item(d, "State"), item(d, "Workspace"));
-    let node = names.local("node");
-    let (mut given, mut kept_fields, mut access) = (Vec::new(), Vec::new(), Vec::new());
-    for (i, c) in d.spec.configurations.iter().enumerate() {
-        let element = own(d, c.element);
-        let momentum = per_configuration(d, "momentum", i);
-        let (spatial, body) = (
-            per_configuration(d, "spatial_momentum", i),
-            per_configuration(d, "body_momentum", i),
-        );
-        let name = &s.get(c.element).name;
-        let doc = format!(" `{name}` at node 0: body -> space.");
-        let (kind, of_body, of_space) = (
-            element::ty(d, i),
-            element::momentum(d, i, Side::Body),
-            element::momentum(d, i, Side::Spatial),
-        );
-        given.push(match c.side {
-            Side::Body => quote! {
-                #[doc = #doc] pub #element: #kind,
-                #[doc = " Momentum at node 0, in the body frame."] pub #body: #of_body
-            },
-            Side::Spatial => quote! {
-                #[doc = #doc] pub #element: #kind,
-                #[doc = " Momentum at node 0, in the space frame."] pub #spatial: #of_space
-            },
-        });
-        kept_fields.push(quote!(#element: #kind, #momentum: #of_space));
-        let doc = format!(" `{name}` at this node: body -> space.");
-        access.push(quote! {
-            #[doc = #doc]
-            pub fn #element(&self) -> #kind { self.#element }
-            /// The momentum at this node, in the space frame.
-            pub fn #spatial(&self) -> #of_space { self.#momentum }
-            /// The momentum at this node, in the body frame.
-            pub fn #body(&self) -> #of_body { self.#momentum.to_body(&self.#element) }
-        });
-    }
-    for id in kept(d) {
-        let (field, t) = (own(d, id), ty(s, s.get(id).shape));
-        let doc = format!(" `{}` at node 0.", s.get(id).name);
-        given.push(quote!(#[doc = #doc] pub #field: #t));
-        kept_fields.push(quote!(#field: #t));
-    }
-    let g = Generics::of(d);
-    let (declared, bound, used) = (g.declared(), g.bound(), g.used());
-    let types: Vec<TokenStream> = (0..d.spec.configurations.len())
-        .map(|i| element::ty(d, i))
-        .collect();
-    let elements = element::Bundle::of(d).ty(&types);
-    let dimension = element::total(d);
-    let (work_field, work_doc) = match d.solve.method {
-        Method::FreeMoserVeselov if !factor_references(d).is_empty() => {
-            let kept = factor_references(d).into_iter().map(|id| {
-                let (field, t) = (own(d, id), ty(s, s.get(id).shape));
-                quote!(#field: #t)
-            });
-            (
-                quote!(solver: Free<T>, #(#kept,)*),
-                " The step and the constants of the trajectory. Made anew for a state of another body.",
-            )
-        }
-        Method::FreeMoserVeselov => (
-            quote!(solver: Free<T>,),
-            " The step and the constants of the trajectory. Belongs to the state it was started with.",
-        ),
-        Method::ForcedMoserVeselov if !factor_references(d).is_empty() => (
-            quote!(method: Method, factor: Poinsot<T>, edge: Edge<T>, here: #state #used,),
-            " The step, the solver's name, the body, and the momentum of the edge that begins at the state `here`. Made anew for any other state.",
-        ),
-        Method::ForcedMoserVeselov => (
-            quote!(method: Method, edge: Edge<T>, here: #state #used,),
-            " The step, the solver's name, and the momentum of the edge that begins at the state `here`. Made anew for any other state.",
-        ),
-        Method::LeftFactor | Method::Davenport => super::left_factor::work(d),
-        Method::Newton => (
-            quote!(search: newton::Search<T, #elements, #dimension>,),
-            " The step and the last velocities, from which the next solve starts.",
-        ),
-    };
-    let rounding = matches!(d.solve.method, Method::FreeMoserVeselov).then(|| {
-        quote! {
-            impl #bound #work #used {
-                /// The solver: the momentum that it keeps, and what its last projection corrected.
-                pub fn solver(&self) -> &Free<T> { &self.solver }
-                /// The same, with rounding left to gather, so that it can be measured.
-                #[must_use]
-                pub fn without_projection(mut self) -> Self {
-                    self.solver = self.solver.without_projection();
-                    self
-                }
-                /// The same, with steps of an order above two made symplectic with the attitude.
-                #[must_use]
-                pub fn compensated(mut self) -> Self {
-                    self.solver = self.solver.compensated();
-                    self
-                }
-            }
-        }
-    });
-    let state_doc = " What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.";
-    let summary = matches!(d.solve.method, Method::Newton).then(|| {
-        quote! {
-            impl #bound #work #used {
-                /// How the last step was solved: tangents, corrections, and the residual before the last.
-                pub fn solved(&self) -> newton::Summary {
-                    self.search.last()
-                }
-            }
-        }
-    });
-    quote! {
-        /// Initial data.
-        #[derive(Clone, Copy, Debug, PartialEq)]
-        pub struct #initial #declared { #(#given,)* }
-
-        #[doc = #state_doc]
-        #[derive(Clone, Copy, Debug, PartialEq)]
-        pub struct #state #declared { #(#kept_fields,)* #node: u64 }
-
-        impl #bound #state #used {
-            #(#access)*
-            /// The number of the node.
-            pub fn node(&self) -> u64 { self.#node }
-        }
-
-        #[doc = #work_doc]
-        #[derive(Clone, Copy, Debug)]
-        pub struct #work #declared { h: T, #work_field }
-
-        #rounding
-        #summary
     }
 }

@@ -17,6 +17,7 @@ mod names;
 mod newton;
 mod residual;
 mod sizes;
+mod state;
 mod step;
 mod stepper;
 #[cfg(test)]
@@ -82,7 +83,7 @@ pub fn emit(d: &Derivation, documented: bool) -> TokenStream {
     let items = [
         items::parameters(d),
         items::model(d, documented),
-        items::state(d, &names),
+        state::state(d, &names),
         step::start_and_step(d, &names),
         stepper::traits(d, &names),
         lanes::over_any_scalar(d, &names),

@@ -7,6 +7,9 @@ use super::shape::Structure;
 use super::*;
 use crate::expr::symbol::Symbols;
 
+/// Numbers and the powers they are raised to.
+type Powers = Vec<(Expr, Rational)>;
+
 /// A term of a sum without its numbers: how many times which factors in order.
 #[derive(Clone)]
 struct Word {
@@ -118,7 +121,7 @@ fn of_terms(symbols: &Symbols, terms: Vec<Parts>, shape: Shape) -> Expr {
             None => same.push((t.matrices.clone(), vec![t])),
         }
     }
-    let mut groups: Vec<(Vec<(Expr, Rational)>, Vec<Word>)> = Vec::new();
+    let mut groups: Vec<(Powers, Vec<Word>)> = Vec::new();
     for (factors, list) in same {
         let (times, numbers) = match list.as_slice() {
             [only] => (only.coefficient, only.numbers.clone()),

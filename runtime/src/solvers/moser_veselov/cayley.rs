@@ -106,8 +106,9 @@ pub(super) struct Orbit<T> {
 }
 
 /// The share of the first term that the others may reach for the polynomial to be taken: its
-/// rounding errors are then at most 5/3 of those of the value.
-const DOMINATED: f64 = 0.25;
+/// rounding errors are then at most 11/9 of those of the value. With a quarter, energies near the
+/// bound drift by 1.2e-13 over 20000 steps instead of less than 1e-13.
+const DOMINATED: f64 = 0.1;
 
 impl<T: Real> Orbit<T> {
     /// The trajectory through `u`.

@@ -2,8 +2,9 @@
 //! Takes the body, the start and the step size; advances the attitude, keeps the body momentum.
 
 mod by_name;
+mod projection;
 
-use super::cayley::{Orbit, Pencil, cross, dot, gyroscopic, square_sum};
+use super::cayley::{Orbit, Pencil, dot, gyroscopic, square_sum};
 use super::compensation;
 use super::kappa::kappa;
 use super::phase::Phase;
@@ -567,70 +568,11 @@ impl<T: Real> Free<T> {
         self.count_anew();
     }
 
-    /// Takes the rounding errors out of the momentum and the attitude.
-    fn project(&mut self, attitude: &mut Rotation<T>) {
-        if !self.projects {
-            return;
-        }
-        let (u, before) = (self.on_quadrics(self.u()), self.u());
-        let (aligned, half) = self.aligned(*attitude, u);
-        self.corrected = [
-            self.relative_change(before, u),
-            dot(half, half) * T::from_f64(4.0),
-        ];
-        for (axis, x) in self.axes.iter_mut().zip(u) {
-            axis.body = x;
-        }
-        *attitude = aligned;
-    }
-
-    /// The square of a change of `u`, over that of its length.
-    #[inline(always)]
-    fn relative_change(&self, before: [T; 3], after: [T; 3]) -> T {
-        let change = [0, 1, 2].map(|i| after[i] - before[i]);
-        dot(change, change) * self.per_square
-    }
-
     /// `u`, in the axes worked in.
     #[inline(always)]
     fn u(&self) -> [T; 3] {
         let [x, y, z] = &self.axes;
         [x.body, y.body, z.body]
-    }
-
-    /// One Newton step for `|u|^2 = square`, `u . v = energy` with `v = adj(I) u`, along the two
-    /// gradients `u` and `v`; along `u` alone where they are parallel.
-    #[inline(always)]
-    fn on_quadrics(&self, u: [T; 3]) -> [T; 3] {
-        let (one, half) = (T::one(), T::from_f64(0.5));
-        let v = self.energy_gradient(u);
-        let (uu, uv, vv) = (dot(u, u), dot(u, v), dot(v, v));
-        let (f, g) = (half * (self.square - uu), half * (self.energy - uv));
-        let gram = uu * vv - uv * uv;
-        let both = (gram - T::from_f64(DEGENERATE) * (uu * vv)).where_positive(one);
-        let gram = both * gram + (one - both);
-        let y = both * ((uu * g - uv * f) / gram);
-        let x = (f - uv * y) * self.per_square;
-        [
-            u[0] + (x * u[0] + y * v[0]),
-            u[1] + (x * u[1] + y * v[1]),
-            u[2] + (x * u[2] + y * v[2]),
-        ]
-    }
-
-    /// Turns the attitude from the left by the small angle that takes the body momentum, seen from
-    /// space, to the conserved spatial one; half of that angle beside it, as a vector. A body at rest
-    /// is only normalised.
-    fn aligned(&self, attitude: Rotation<T>, u: [T; 3]) -> (Rotation<T>, [T; 3]) {
-        let attitude = attitude.renormalised();
-        let [[a, b, c]] = attitude.rotate(&(self.frame * Vector3::from(u))).data.0;
-        let half = T::from_f64(0.5) * self.per_square;
-        let turn = cross([a, b, c], self.axes.map(|axis| axis.space)).map(|x| x * half);
-        let [p, q, r] = turn;
-        let aligned = Rotation::from_unit([T::one(), p, q, r])
-            .compose_raw(&attitude)
-            .renormalised();
-        (aligned, turn)
     }
 }
 
