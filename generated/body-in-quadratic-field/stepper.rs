@@ -217,7 +217,7 @@ pub mod body_in_quadratic_field {
                 Err(e) => return Err(self.refused(*state, &self.factor, h, e)),
             };
             let BodyInQuadraticFieldParameters { K, .. } = self.parameters;
-            let Λ_next = Λ_moved.turning();
+            let Λ_next = Λ_moved.matrix();
             let Γ_reference = state.Γ;
             let Γ_next = Λ_next.tr_mul(&Γ_reference);
             let space = edge.space();

@@ -207,7 +207,7 @@ pub mod body_in_two_fields {
                 Err(e) => return Err(self.refused(*state, &self.factor, h, e)),
             };
             let BodyInTwoFieldsParameters { gU, p, z, b, .. } = self.parameters;
-            let Λ_next = Λ_moved.turning();
+            let Λ_next = Λ_moved.matrix();
             let Γ_next = Λ_next.tr_mul(&z);
             let B_next = Λ_next.tr_mul(&b);
             let space = edge.space();

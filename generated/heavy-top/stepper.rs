@@ -199,7 +199,7 @@ pub mod heavy_top {
                 Err(e) => return Err(self.refused(*state, &self.factor, h, e)),
             };
             let HeavyTopParameters { gU, z, .. } = self.parameters;
-            let Λ_next = Λ_moved.turning();
+            let Λ_next = Λ_moved.matrix();
             let Γ_next = Λ_next.tr_mul(&z);
             let space = edge.space();
             let torque = -(gU * h).cross(&Γ_next);

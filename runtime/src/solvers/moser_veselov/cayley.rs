@@ -87,10 +87,6 @@ impl<T: Real> Pencil<T> {
 /// Along it `|u|^2` and `u . adj(I) u` are constant, hence `u_1^2` and `u_3^2` are linear in
 /// `u_2^2`, and so is the determinant. Since the moment is the middle one both lines fall, by at
 /// most 1, and rounding is not amplified.
-///
-/// In the same way `det^2 + |n|^2` is `a + b s + c s^2 + d u_1 u_2 u_3` with `s = u_2^2`: the
-/// division of the step then need not wait for `n`. There rounding is amplified where the first
-/// term does not dominate, near the bound of solvability, and the squares are added up instead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Orbit<T> {
     /// Diagonal entries of `adj d + a`.
@@ -99,16 +95,7 @@ pub(super) struct Orbit<T> {
     determinant: [T; 2],
     /// Twice the differences of the moments.
     doubled: [T; 3],
-    /// The factors of 1, `u_2^2`, `u_2^4` and `u_1 u_2 u_3` in `det^2 + |n|^2`.
-    norm: [T; 4],
-    /// Whether the first of them dominates.
-    dominated: bool,
 }
-
-/// The share of the first term that the others may reach for the polynomial to be taken: its
-/// rounding errors are then at most 11/9 of those of the value. With a quarter, energies near the
-/// bound drift by 1.2e-13 over 20000 steps instead of less than 1e-13.
-const DOMINATED: f64 = 0.1;
 
 impl<T: Real> Orbit<T> {
     /// The trajectory through `u`.
@@ -121,42 +108,10 @@ impl<T: Real> Orbit<T> {
         let slopes = [i * p * per_spread, one, k * r * per_spread];
         let factor = dot(pencil.d_moments, slopes);
         let now = pencil.determinant + dot(pencil.d_moments, u.map(|x| x * x));
-        let orbit = Self {
+        Self {
             adjugate: pencil.adjugate_moments,
             determinant: [now - factor * (u[1] * u[1]), factor],
             doubled: body.differences.map(|x| x + x),
-            norm: [T::zero(); 4],
-            dominated: false,
-        };
-        orbit.with_norm(body, slopes, u)
-    }
-
-    /// With the polynomial of the norm, given what multiplies `u_2^2` in the squares of `u`.
-    fn with_norm(self, body: &Poinsot<T>, slopes: [T; 3], u: [T; 3]) -> Self {
-        let square = |x: T| x * x;
-        let s = square(u[1]);
-        let constants = [0, 1, 2].map(|i| u[i] * u[i] - slopes[i] * s);
-        let (push, gyration) = (self.adjugate, body.differences);
-        let [constant, factor] = self.determinant;
-        let (mut linear, mut quadratic) = (constant * (factor + factor), factor * factor);
-        for (i, (j, k)) in [(1, 2), (2, 0), (0, 1)].into_iter().enumerate() {
-            let across = constants[j] * slopes[k] + constants[k] * slopes[j];
-            linear += square(push[i]) * slopes[i] + square(gyration[i]) * across;
-            quadratic += square(gyration[i]) * (slopes[j] * slopes[k]);
-        }
-        let odd = dot(push, self.doubled);
-        // What is left is the constant.
-        let (det, n) = self.solve(body, u);
-        let product = (odd * u[0]) * (u[1] * u[2]);
-        let first = square_sum(det, n) - ((linear + quadratic * s) * s + product);
-        let length = dot(u, u);
-        let others = T::from_f64(linear.magnitude() + quadratic.magnitude() * length.magnitude());
-        let others = others * length + T::from_f64(odd.magnitude()) * (length * length.sqrt());
-        Self {
-            norm: [first, linear, quadratic, odd],
-            // Written so that NaN is not dominated.
-            dominated: (T::from_f64(DOMINATED) * first - others).least() >= 0.0,
-            ..self
         }
     }
 
@@ -178,18 +133,6 @@ impl<T: Real> Orbit<T> {
         let [constant, factor] = self.determinant;
         let det = constant + factor * (y * y);
         (det, [p * x + a, q * y + b, r * z + c])
-    }
-
-    /// `det^2 + |n|^2` of what [`Orbit::solve`] gives for `u`.
-    #[inline(always)]
-    pub(super) fn norm(&self, [x, y, z]: [T; 3], det: T, n: [T; 3]) -> T {
-        if self.dominated {
-            let [first, linear, quadratic, odd] = self.norm;
-            let s = y * y;
-            ((first + (odd * x) * (y * z)) + linear * s) + (quadratic * s) * s
-        } else {
-            square_sum(det, n)
-        }
     }
 
     /// Twice `(I n) x n`.

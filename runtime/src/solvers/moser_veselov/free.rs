@@ -412,13 +412,12 @@ impl<T: Real> Free<T> {
     /// The next `u` and attitude, and a number that is finite if and only if they are.
     #[inline(always)]
     fn moved(&self, u: [T; 3], attitude: &Rotation<T>, repairs: bool) -> ([T; 3], Rotation<T>, T) {
-        let (det, n, norm) = if plain::<T>() {
-            let (det, n) = self.orbit.solve(&self.body, u);
-            (det, n, self.orbit.norm(u, det, n))
+        let (det, n) = if plain::<T>() {
+            self.orbit.solve(&self.body, u)
         } else {
-            let (det, n) = self.pencil.solve(&self.body, u);
-            (det, n, square_sum(det, n))
+            self.pencil.solve(&self.body, u)
         };
+        let norm = square_sum(det, n);
         let per_norm = T::one() / norm;
         let [p, q, r] = if plain::<T>() {
             self.orbit.push(n)
