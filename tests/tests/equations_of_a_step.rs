@@ -6,7 +6,7 @@ use clebsch_core::derive::parts::{Parts, Velocity};
 use clebsch_core::derive::tangent::Direction;
 use clebsch_core::expr::shape::{Dim, Structure};
 use clebsch_core::expr::symbol::Symbols;
-use clebsch_core::expr::{self, Expr, Letter, Shift};
+use clebsch_core::expr::{self, Expr};
 use clebsch_core::interpret::{Assignment, Matrix, evaluate};
 use clebsch_core::print::{Format, Style, expression};
 use clebsch_core::schedule::Known;
@@ -67,16 +67,7 @@ const MODELS: [(&str, &str); 6] = [
 
 /// Momenta by the outgoing edge, its end written by its start and the velocities.
 fn momenta(d: &Derivation) -> Vec<Expr> {
-    let next = |symbol| Letter {
-        symbol,
-        shift: Shift::NEXT,
-    };
-    let elements = d.spec.configurations.iter();
-    let advected = d.spec.advected.iter();
-    let forward: Vec<(Letter, Expr)> = elements
-        .map(|c| (next(c.element), c.update.clone()))
-        .chain(advected.map(|a| (next(a.quantity), a.update.clone())))
-        .collect();
+    let forward = d.spec.end_of_edge();
     let list = d.balances.iter();
     list.map(|b| expr::substitute(&d.letters.symbols, &b.outgoing, &forward))
         .collect()

@@ -2,9 +2,9 @@
 //! passed names, shapes and sides; spans are kept only to report what a derivation refuses.
 
 use crate::diagnostic::Place;
-use crate::expr::Expr;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::{SymbolId, Symbols};
+use crate::expr::{Expr, Letter, Shift};
 use crate::syntax::ast::{Comparison, NodeRule};
 
 /// A matrix group of the engine's table.
@@ -185,5 +185,20 @@ impl Spec {
     /// Shape of a symbol.
     pub fn shape(&self, id: SymbolId) -> Shape {
         self.symbols.get(id).shape
+    }
+
+    /// What stands at the end of an edge, elements and advected quantities, by its start and the
+    /// velocities: written so, the dependence on the velocities is complete.
+    pub fn end_of_edge(&self) -> Vec<(Letter, Expr)> {
+        let at_end = |symbol| Letter {
+            symbol,
+            shift: Shift::NEXT,
+        };
+        let elements = self.configurations.iter();
+        let advected = self.advected.iter();
+        elements
+            .map(|c| (at_end(c.element), c.update.clone()))
+            .chain(advected.map(|a| (at_end(a.quantity), a.update.clone())))
+            .collect()
     }
 }

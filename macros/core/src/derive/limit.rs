@@ -40,19 +40,15 @@ pub fn limit(
     algebra: &Algebra,
 ) -> Result<Limit, String> {
     let s = &letters.symbols;
-    let mut forward: Vec<(Letter, Expr)> = Vec::new();
     let (mut identity, mut first, mut second) = (Vec::new(), Vec::new(), Vec::new());
     for (i, c) in spec.configurations.iter().enumerate() {
         let xi = lie::element(s, c.group, letters.variation[i]);
         let w = at(c.velocity, Shift::HERE);
-        forward.push((at(c.element, Shift::NEXT), c.update.clone()));
         identity.push((w, expr::identity(c.group.size())));
         first.push((w, xi.clone()));
         second.push((w, expr::mul(xi.clone(), xi)));
     }
-    let carried = spec.advected.iter();
-    forward.extend(carried.map(|a| (at(a.quantity, Shift::NEXT), a.update.clone())));
-    let l = expr::substitute(s, &action.total, &forward);
+    let l = expr::substitute(s, &action.total, &spec.end_of_edge());
     let step = expr::here(s, spec.step);
     let d1 = expr::directional(s, &l, &first);
     if d1.size() > LARGEST {

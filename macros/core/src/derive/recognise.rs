@@ -366,18 +366,7 @@ fn riccati(
         return Riccati::None("the group is not SO(n)".to_owned());
     }
     let n = c.group.size();
-    // What stands at the end of the edge depends on the velocity: written so, it shows.
-    let forward: Vec<(Letter, Expr)> = spec
-        .advected
-        .iter()
-        .map(|a| (at(a.quantity, Shift::NEXT), a.update.clone()))
-        .chain(
-            spec.configurations
-                .iter()
-                .map(|c| (at(c.element, Shift::NEXT), c.update.clone())),
-        )
-        .collect();
-    let outgoing = expr::substitute(s, &b.outgoing, &forward);
+    let outgoing = expr::substitute(s, &b.outgoing, &spec.end_of_edge());
     let matrix = if n == Dim::Fixed(3) {
         expr::hat(outgoing)
     } else {

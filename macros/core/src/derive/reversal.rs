@@ -36,17 +36,11 @@ pub fn reversal(spec: &Spec, action: &Action, assumed: &[Expr], algebra: &Algebr
         at(spec.step, Shift::HERE),
         expr::neg(expr::here(s, spec.step)),
     )];
-    let mut forward = Vec::new();
     for c in &spec.configurations {
         let w = expr::here(s, c.velocity);
         swap.push((at(c.velocity, Shift::HERE), expr::inverse(s, w)));
-        forward.push((at(c.element, Shift::NEXT), c.update.clone()));
     }
-    forward.extend(
-        spec.advected
-            .iter()
-            .map(|a| (at(a.quantity, Shift::NEXT), a.update.clone())),
-    );
+    let forward = spec.end_of_edge();
     let nodes = spec.configurations.iter().map(|c| c.element);
     for x in nodes.chain(spec.advected.iter().map(|a| a.quantity)) {
         swap.push((at(x, Shift::HERE), expr::letter(s, x, Shift::NEXT)));

@@ -18,16 +18,9 @@ use quote::quote;
 /// Node momenta by the outgoing edge, with everything at the end of the edge written by its start
 /// and the velocities, so that the derivative with respect to the velocities is complete.
 fn outgoing(d: &Derivation) -> Vec<Expr> {
-    let s = &d.letters.symbols;
-    let mut forward: Vec<(Letter, Expr)> = Vec::new();
-    for c in &d.spec.configurations {
-        forward.push((at(c.element, Shift::NEXT), c.update.clone()));
-    }
-    for a in &d.spec.advected {
-        forward.push((at(a.quantity, Shift::NEXT), a.update.clone()));
-    }
+    let forward = d.spec.end_of_edge();
     let list = d.balances.iter();
-    list.map(|b| expr::substitute(s, &b.outgoing, &forward))
+    list.map(|b| expr::substitute(&d.letters.symbols, &b.outgoing, &forward))
         .collect()
 }
 
