@@ -150,7 +150,8 @@ pub mod cayley_klein_spatial {
         /// One step, in place. Solved thus: the group is not SO(n): Newton on the derived residual.
         ///
         /// # Errors
-        /// When the iteration does not converge, with its residual; the state is then unchanged.
+        /// When the iteration does not converge: which equation is worst, and which step could be
+        /// solved; the state is then unchanged.
         #[inline]
         pub fn step(
             &self,
@@ -211,9 +212,7 @@ pub mod cayley_klein_spatial {
                 match iteration.correct() {
                     newton::Progress::Continue => {}
                     newton::Progress::Solved(solved) => break solved,
-                    newton::Progress::Failed(e) => {
-                        return Err(StepCause::from(e).at_node(state.node));
-                    }
+                    newton::Progress::Failed(e) => return Err(self.refused(*state, h, e)),
                 }
             };
             let solved = found.element;
@@ -233,6 +232,32 @@ pub mod cayley_klein_spatial {
             state.node += 1;
             work.search.remember(state.node - 1, &found);
             Ok(())
+        }
+        /// Says which equation is worst, and which step could be solved.
+        #[cold]
+        #[inline(never)]
+        fn refused(
+            &self,
+            state: CayleyKleinSpatialState<T>,
+            h: T,
+            e: newton::NewtonError,
+        ) -> StepError {
+            let e = e
+                .explained(
+                    h,
+                    &["q"],
+                    |h| {
+                        let (mut trial, search) = (state, newton::Search::to_try());
+                        self.step(
+                            &mut trial,
+                            &mut CayleyKleinSpatialWorkspace {
+                                h,
+                                search,
+                            },
+                        )
+                    },
+                );
+            StepCause::from(e).at_node(state.node)
         }
         /// `I` at the node of this state.
         #[inline]

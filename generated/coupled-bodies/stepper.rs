@@ -179,7 +179,8 @@ pub mod coupled_bodies {
         /// One step, in place. Solved thus: several velocities are solved together: Newton on the derived residuals.
         ///
         /// # Errors
-        /// When the iteration does not converge, with its residual; the state is then unchanged.
+        /// When the iteration does not converge: which equation is worst, and which step could be
+        /// solved; the state is then unchanged.
         #[inline]
         pub fn step(
             &self,
@@ -269,9 +270,7 @@ pub mod coupled_bodies {
                 match iteration.correct() {
                     newton::Progress::Continue => {}
                     newton::Progress::Solved(solved) => break solved,
-                    newton::Progress::Failed(e) => {
-                        return Err(StepCause::from(e).at_node(state.node));
-                    }
+                    newton::Progress::Failed(e) => return Err(self.refused(*state, h, e)),
                 }
             };
             let solved = found.element;
@@ -301,6 +300,32 @@ pub mod coupled_bodies {
             state.node += 1;
             work.search.remember(state.node - 1, &found);
             Ok(())
+        }
+        /// Says which equation is worst, and which step could be solved.
+        #[cold]
+        #[inline(never)]
+        fn refused(
+            &self,
+            state: CoupledBodiesState<T>,
+            h: T,
+            e: newton::NewtonError,
+        ) -> StepError {
+            let e = e
+                .explained(
+                    h,
+                    &["Λ1", "Λ2"],
+                    |h| {
+                        let (mut trial, search) = (state, newton::Search::to_try());
+                        self.step(
+                            &mut trial,
+                            &mut CoupledBodiesWorkspace {
+                                h,
+                                search,
+                            },
+                        )
+                    },
+                );
+            StepCause::from(e).at_node(state.node)
         }
         /// `R` at the node of this state.
         #[inline]

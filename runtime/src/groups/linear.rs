@@ -1,7 +1,7 @@
 //! Invertible linear maps of n-dimensional space, GL(n).
 //! Takes matrices with an inverse; gives group elements that carry it along.
 
-use super::{Coadjoint, Group};
+use super::{Coadjoint, Coordinate, Group, Part};
 use crate::Real;
 use crate::linalg::inverse;
 use crate::scalar::of_scalars;
@@ -113,6 +113,10 @@ impl<const N: usize, T: Real> Group<T> for Linear<N, T> {
                 sum + element(i).matrix * T::from_f64(*weight)
             }),
         }
+    }
+
+    fn coordinate(index: usize) -> Coordinate {
+        Coordinate::of(Part::entry(index, N))
     }
 
     /// Zero for every invertible matrix: rounding does not carry it off the group. NaN otherwise.

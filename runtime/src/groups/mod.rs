@@ -1,6 +1,7 @@
 //! Matrix Lie groups as the solvers see them, one file a group, and their products.
 //! Takes group elements and algebra coordinates; gives group elements.
 
+mod coordinate;
 mod linear;
 mod matrix_momentum;
 mod orthogonal;
@@ -10,6 +11,7 @@ pub mod so3;
 mod su2;
 mod turned;
 
+pub use coordinate::{Coordinate, Part};
 pub use linear::{Linear, NotInvertible};
 pub use matrix_momentum::{BodyMomentumMatrix, SpatialMomentumMatrix};
 pub use orthogonal::Orthogonal;
@@ -66,6 +68,11 @@ pub trait Group<T>: Copy {
     #[inline(always)]
     fn combined(_weights: &[f64], element: impl Fn(usize) -> Self) -> Self {
         element(0)
+    }
+
+    /// What the coordinate with this index stands for, in words of errors.
+    fn coordinate(index: usize) -> Coordinate {
+        Coordinate::of(Part::axis(index))
     }
 
     /// How far rounding has carried the element off the group, in the units of its entries.

@@ -2,7 +2,7 @@
 //! Takes matrices or algebra coordinates; gives elements that stay orthogonal however long the
 //! chain of products.
 
-use super::{Coadjoint, Group, NotARotation};
+use super::{Coadjoint, Coordinate, Group, NotARotation, Part};
 use crate::Real;
 use crate::linalg::{determinant, orthonormalised, product, skew_from, solve_many};
 use crate::scalar::of_scalars;
@@ -129,6 +129,10 @@ impl<const N: usize, T: Real> Group<T> for Orthogonal<N, T> {
                 matrix: SMatrix::repeat(T::from_f64(f64::NAN)),
             },
         }
+    }
+
+    fn coordinate(index: usize) -> Coordinate {
+        Coordinate::of(Part::of_pair(index, N))
     }
 
     fn distance_from_group(&self) -> f64 {

@@ -1,7 +1,7 @@
 //! Direct products of groups, for coupled bodies: arrays of one group, tuples of several.
 //! Takes arrays or tuples of elements; the algebra coordinates are those of the factors, one after another.
 
-use super::Group;
+use super::{Coordinate, Group, Part};
 
 impl<T, G: Group<T>, const COUNT: usize> Group<T> for [G; COUNT] {
     const DIMENSION: usize = COUNT * G::DIMENSION;
@@ -37,6 +37,11 @@ impl<T, G: Group<T>, const COUNT: usize> Group<T> for [G; COUNT] {
     #[inline(always)]
     fn combined(weights: &[f64], element: impl Fn(usize) -> Self) -> Self {
         core::array::from_fn(|k| G::combined(weights, |i| element(i)[k]))
+    }
+
+    fn coordinate(index: usize) -> Coordinate {
+        let each = G::DIMENSION.max(1);
+        G::coordinate(index % each).in_factor(index / each)
     }
 
     #[inline]
@@ -82,6 +87,18 @@ macro_rules! product_of {
             #[inline(always)]
             fn combined(weights: &[f64], element: impl Fn(usize) -> Self) -> Self {
                 ($($group::combined(weights, |i| element(i).$index),)+)
+            }
+
+            fn coordinate(index: usize) -> Coordinate {
+                let mut rest = index;
+                $(
+                    if rest < $group::DIMENSION {
+                        return $group::coordinate(rest).in_factor($index);
+                    }
+                    rest -= $group::DIMENSION;
+                )+
+                let _ = rest;
+                Coordinate::of(Part::axis(index))
             }
 
             #[inline]

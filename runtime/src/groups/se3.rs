@@ -1,7 +1,7 @@
 //! Rigid motions of space, the group SE(3), and the momenta they carry.
 //! Takes rotations and translations or homogeneous matrices; gives motions body -> space.
 
-use super::{Coadjoint, Group, NotARotation, Rotation};
+use super::{Coadjoint, Coordinate, Group, NotARotation, Part, Rotation};
 use crate::Real;
 use crate::scalar::of_scalars;
 use core::fmt;
@@ -157,6 +157,10 @@ impl<T: Real> Group<T> for RigidMotion<T> {
             rotation: Rotation::combined(weights, |i| element(i).rotation),
             translation,
         }
+    }
+
+    fn coordinate(index: usize) -> Coordinate {
+        Coordinate::of(Part::of_motion(index))
     }
 
     #[inline]

@@ -195,6 +195,7 @@ fn in_all(cause: StepCause, factor: f64, share: f64) -> StepCause {
             largest_step: whole(e.h).map(|h| h * share),
             ..e
         }),
+        StepCause::Newton(e) => StepCause::Newton(e.in_all(factor, share)),
         other => other,
     }
 }

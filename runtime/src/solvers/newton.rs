@@ -2,10 +2,13 @@
 //! Takes a guess or the solutions before, the residual and its tangent; gives a converged element
 //! or an error.
 
+mod failure;
+
+pub use failure::{NewtonError, NewtonFailure};
+
 use crate::groups::Group;
 use crate::linalg::Factors;
 use crate::scalar::Real;
-use core::fmt;
 use nalgebra::{SMatrix, SVector};
 
 /// Iterations after which the method gives up; quadratic convergence needs fewer than ten.
@@ -44,63 +47,6 @@ pub struct Solved<G> {
     pub residual: f64,
 }
 
-/// Why Newton's method failed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum NewtonError {
-    /// The residual is still too large.
-    NotConverged {
-        /// Steps made.
-        iterations: usize,
-        /// The largest residual component.
-        residual: f64,
-        /// What it should have come below.
-        tolerance: f64,
-    },
-    /// The tangent matrix has no inverse.
-    SingularTangent {
-        /// The step at which it happened.
-        iteration: usize,
-        /// The largest residual component there.
-        residual: f64,
-    },
-    /// The residual became NaN or infinite.
-    NotFinite {
-        /// The step at which it happened.
-        iteration: usize,
-    },
-}
-
-impl fmt::Display for NewtonError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotConverged {
-                iterations,
-                residual,
-                tolerance,
-            } => write!(
-                f,
-                "Newton's method did not converge in {iterations} iterations: residual \
-                 {residual:.3e}, needed {tolerance:.3e}; reduce the step size"
-            ),
-            Self::SingularTangent {
-                iteration,
-                residual,
-            } => write!(
-                f,
-                "the tangent is singular at Newton iteration {iteration} (residual \
-                 {residual:.3e}); reduce the step size"
-            ),
-            Self::NotFinite { iteration } => write!(
-                f,
-                "the residual is NaN or infinite at Newton iteration {iteration}; reduce the step \
-                 size or check the values"
-            ),
-        }
-    }
-}
-
-impl std::error::Error for NewtonError {}
-
 /// How many solutions the next guess is made from.
 const REMEMBERED: usize = 6;
 
@@ -124,6 +70,8 @@ pub struct Search<T, G, const D: usize> {
     /// How many steps ago that was.
     age: u32,
     last: Summary,
+    /// Whether steps are only tried: a refusal then looks for no other.
+    tries: bool,
 }
 
 /// How a step was solved.
@@ -157,6 +105,17 @@ impl<T: Real, G: Group<T>, const D: usize> Search<T, G, D> {
                 residual: 0.0,
                 scale: 0.0,
             },
+            tries: false,
+        }
+    }
+
+    /// The same for a step that is only tried, in the search of one that can be made.
+    #[cold]
+    #[must_use]
+    pub fn to_try() -> Self {
+        Self {
+            tries: true,
+            ..Self::from_rest()
         }
     }
 
@@ -383,7 +342,8 @@ impl<T: Real, G: Group<T>, const D: usize> Newton<'_, T, G, D> {
     #[cold]
     #[inline(never)]
     fn failed(&mut self) -> Progress<G> {
-        if self.attempt < 2 {
+        // Without a past, every attempt would be the first.
+        if self.attempt < 2 && self.search.known > 0 {
             self.attempt += 1;
             self.trial = self.search.start(self.attempt);
             self.scale = f64::NAN;
@@ -392,22 +352,19 @@ impl<T: Real, G: Group<T>, const D: usize> Newton<'_, T, G, D> {
             self.search.age = OLDEST_TANGENT;
             return Progress::Continue;
         }
-        let residual = self.size;
-        Progress::Failed(if !residual.is_finite() {
-            NewtonError::NotFinite {
-                iteration: self.iteration.saturating_sub(1),
-            }
+        let (failure, iterations) = if !self.size.is_finite() {
+            (NewtonFailure::NotFinite, self.iteration.saturating_sub(1))
         } else if self.iteration == MOST_ITERATIONS {
-            NewtonError::NotConverged {
-                iterations: MOST_ITERATIONS,
-                residual,
-                tolerance: CONVERGED_ROUNDINGS * T::EPSILON * self.scale,
-            }
+            (NewtonFailure::NotConverged, MOST_ITERATIONS)
         } else {
-            NewtonError::SingularTangent {
-                iteration: self.iteration,
-                residual,
-            }
+            (NewtonFailure::SingularTangent, self.iteration)
+        };
+        let looked_at = G::DIMENSION.min(D);
+        let residual = self.residual.as_slice().get(..looked_at).unwrap_or(&[]);
+        let tolerance = CONVERGED_ROUNDINGS * T::EPSILON * self.scale;
+        Progress::Failed(NewtonError {
+            tried: self.search.tries,
+            ..NewtonError::of::<T, G>(failure, iterations, residual, tolerance)
         })
     }
 }

@@ -4,7 +4,7 @@
 
 use super::element::{self, Bundle, stack};
 use super::expression::{Bindings, program};
-use super::names::variable;
+use super::names::{Names, variable};
 use super::step::at;
 use crate::derive::parts::{Parts, Velocity};
 use crate::derive::tangent::Direction;
@@ -18,6 +18,8 @@ use quote::quote;
 pub(super) struct Equations<'a> {
     /// The model.
     pub d: &'a Derivation,
+    /// Its names.
+    pub names: &'a Names,
     /// What is known at the node.
     pub bindings: &'a Bindings,
     /// The local that holds the trial.
@@ -92,10 +94,10 @@ impl Equations<'_> {
                     velocities.extend(
                         quote!(let (#rot, #pos) = (#part.rotation.matrix(), #part.translation);),
                     );
-                    let both = match i {
-                        0 => quote::format_ident!("{mu}_six"),
-                        _ => quote::format_ident!("{mu}_six_{i}"),
-                    };
+                    let both = self.names.local(&match i {
+                        0 => "momenta_six".to_owned(),
+                        _ => format!("momenta_six_{i}"),
+                    });
                     known.extend(quote!(let #both = #value;));
                     given.extend([
                         quote!(rows_from::<T, 6, 3, 1>(&#both, 0)),

@@ -98,6 +98,7 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
         .collect();
     let solved_for = Equations {
         d,
+        names,
         bindings: &bindings,
         trial: &trial,
         momenta: &mu,
@@ -123,6 +124,11 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
             quote!(let #name = #part.matrix();)
         })
         .collect();
+    let configurations = d
+        .spec
+        .configurations
+        .iter()
+        .map(|c| &s.get(c.element).name);
     let solved_at = |i: usize| bundle.part(quote!(#solved), i);
     let rest = finish(d, names, &mut after, &solved_at, remembered);
     let method = format!(" One step, in place. Solved thus: {}.", d.solve.reason);
@@ -130,7 +136,8 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
         #[doc = #method]
         ///
         /// # Errors
-        /// When the iteration does not converge, with its residual; the state is then unchanged.
+        /// When the iteration does not converge: which equation is worst, and which step could be
+        /// solved; the state is then unchanged.
         #[inline]
         pub fn step(&self, state: &mut #state #used, work: &mut #work #used) -> Result<(), StepError> {
             let #step = work.h;
@@ -153,12 +160,23 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
                 match #newton.correct() {
                     newton::Progress::Continue => {}
                     newton::Progress::Solved(solved) => break solved,
-                    newton::Progress::Failed(e) => return Err(StepCause::from(e).at_node(state.#node)),
+                    newton::Progress::Failed(e) => return Err(self.refused(*state, #step, e)),
                 }
             };
             let #solved = #found.element;
             #matrices
             #rest
+        }
+
+        /// Says which equation is worst, and which step could be solved.
+        #[cold]
+        #[inline(never)]
+        fn refused(&self, state: #state #used, h: T, e: newton::NewtonError) -> StepError {
+            let e = e.explained(h, &[#(#configurations),*], |h| {
+                let (mut trial, search) = (state, newton::Search::to_try());
+                self.step(&mut trial, &mut #work { h, search })
+            });
+            StepCause::from(e).at_node(state.#node)
         }
     }
 }

@@ -7,7 +7,7 @@
 //! a column of the adjugate, and Newton's method on the group takes out what rounding left. Nothing
 //! of `C` is prepared: it may change from step to step.
 
-use super::reach::reach_of;
+use super::reach::{farthest_of, fastest_of};
 use super::{LeftFactor, Refusal, Unsolved};
 use crate::linalg::{axial_of_difference, solve};
 use crate::solvers::Method;
@@ -159,7 +159,7 @@ fn eigenvector<T: Real>(c: &Matrix3<T>, v: &Vector3<T>) -> Option<Rotation<T>> {
 #[inline(never)]
 fn refuse<T: Real>(c: &Matrix3<T>, v: &Vector3<T>, residual: f64) -> Unsolved {
     let hat: SMatrix<T, 3, 3> = crate::linalg::hat(v);
-    let ratio = reach_of(c, &hat);
+    let (ratio, lane) = farthest_of(c, &hat);
     let refusal = if !v.iter().all(|x| x.is_finite()) {
         Refusal::NotFinite
     } else if ratio <= 1.0 {
@@ -171,6 +171,8 @@ fn refuse<T: Real>(c: &Matrix3<T>, v: &Vector3<T>, residual: f64) -> Unsolved {
         method: Method::Davenport,
         refusal,
         ratio,
+        fastest: fastest_of(c, &hat, lane),
+        lane: u8::try_from(lane).unwrap_or(u8::MAX),
         residual,
         h: None,
         largest_step: None,

@@ -276,7 +276,8 @@ impl<const N: usize, T: Real> LeftFactor<N, T> {
         h_n: &SMatrix<T, N, N>,
         refusal: Refusal,
     ) -> Unsolved {
-        let ratio = self.reach(h_n);
+        let (ratio, lane) = self.farthest(h_n);
+        let p = self.left * self.framed * self.left.transpose();
         let refusal = match refusal {
             Refusal::NotConverged if ratio > 1.0 || ratio.is_nan() => Refusal::BeyondBound,
             other => other,
@@ -285,6 +286,8 @@ impl<const N: usize, T: Real> LeftFactor<N, T> {
             method,
             refusal,
             ratio,
+            fastest: super::reach::fastest(&p, h_n, lane),
+            lane: u8::try_from(lane).unwrap_or(u8::MAX),
             residual: f64::NAN,
             h: None,
             largest_step: None,

@@ -1,5 +1,6 @@
 //! Why the Moser-Veselov equation was not solved, with numbers.
 
+use crate::groups::Part;
 use crate::solvers::Method;
 use core::fmt;
 
@@ -28,6 +29,11 @@ pub struct Unsolved {
     /// The scaled momentum over its exact bound: above 1 there is no solution. Of several lanes,
     /// the worst.
     pub ratio: f64,
+    /// The component or the plane in which a short step turns fastest, in the frame of the factor:
+    /// that of the largest momentum over moment of inertia.
+    pub fastest: Part,
+    /// The lane of the worst ratio; 0 for types without lanes.
+    pub lane: u8,
     /// The largest entry of `Omega C^T - C Omega^T - h N` when the solver gave up; NaN where it
     /// found none to try.
     pub residual: f64,
@@ -53,12 +59,15 @@ impl Unsolved {
 
 impl fmt::Display for Unsolved {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.lane > 0 {
+            write!(f, "lane {}: ", self.lane)?;
+        }
         match self.refusal {
             Refusal::BeyondBound => write!(
                 f,
                 "the body turns too far in one step: the momentum is {:.9} times what the \
-                 Moser-Veselov equation can take",
-                self.ratio
+                 Moser-Veselov equation can take ({} is the largest)",
+                self.ratio, self.fastest
             )?,
             Refusal::NotConverged => write!(
                 f,
@@ -78,7 +87,9 @@ impl fmt::Display for Unsolved {
                     self.method
                 );
             }
-            Refusal::NotFinite => return write!(f, "the momentum is NaN or infinite"),
+            Refusal::NotFinite => {
+                return write!(f, "the momentum is NaN or infinite ({})", self.fastest);
+            }
         }
         match (self.h, self.largest_step) {
             (Some(h), Some(largest)) if largest < h => {

@@ -1,10 +1,11 @@
 //! Where the equation of a left factor stops having a principal solution.
-//! Takes the factor and `h N`; gives the exact bound ratio.
+//! Takes the factor and `h N`; gives the exact bound ratio, and which plane turns fastest.
 
 use super::factor::LeftFactor;
 use crate::Real;
+use crate::groups::Part;
 use crate::solvers::golden_section::peak;
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, SVector};
 
 impl<const N: usize, T: Real> LeftFactor<N, T> {
     /// The ratio of `h N` to its exact bound: at most 1 if and only if the principal solution
@@ -14,41 +15,97 @@ impl<const N: usize, T: Real> LeftFactor<N, T> {
     /// Hermitian matrix polynomial `nu^2 + C C^T - i nu V` must not lose its positivity.
     #[must_use]
     pub fn reach(&self, h_n: &SMatrix<T, N, N>) -> f64 {
-        let v = self.framed_momentum(h_n);
-        let mut worst: f64 = 0.0;
-        for lane in 0..T::LANES {
-            let spectrum = self.spectrum().map(|x| x.lane(lane).max(0.0));
-            let ratio = ratio(&spectrum, &v.map(|x| x.lane(lane)));
-            if ratio.is_nan() {
-                return ratio;
-            }
-            worst = worst.max(ratio);
-        }
-        worst
+        self.farthest(h_n).0
     }
+
+    /// The same with the lane it is of.
+    pub(super) fn farthest(&self, h_n: &SMatrix<T, N, N>) -> (f64, usize) {
+        let v = self.framed_momentum(h_n);
+        farthest::<T>(|lane| {
+            let spectrum = self.spectrum().map(|x| x.lane(lane).max(0.0));
+            ratio(&spectrum, &v.map(|x| x.lane(lane)))
+        })
+    }
+}
+
+/// The largest of the ratios of the lanes, and its lane; NaN is larger than all.
+fn farthest<T: Real>(ratio: impl Fn(usize) -> f64) -> (f64, usize) {
+    let mut worst = (0.0, 0);
+    for lane in 0..T::LANES {
+        let ratio = ratio(lane);
+        if ratio > worst.0 || ratio.is_nan() {
+            worst = (ratio, lane);
+        }
+        if ratio.is_nan() {
+            break;
+        }
+    }
+    worst
+}
+
+/// The plane of the largest `|h N_ij| / (P_ii + P_jj)`, momentum over moment of inertia, in one
+/// lane: the one that a short step turns fastest.
+pub(super) fn fastest<T: Real, const N: usize>(
+    p: &SMatrix<T, N, N>,
+    h_n: &SMatrix<T, N, N>,
+    lane: usize,
+) -> Part {
+    let (mut largest, mut plane) = (-1.0, (0, 1));
+    for i in 0..N {
+        for j in i + 1..N {
+            let moment = p[(i, i)].lane(lane) + p[(j, j)].lane(lane);
+            let angle = (h_n[(i, j)].lane(lane) / moment).abs();
+            if angle > largest || (angle.is_nan() && !f64::is_nan(largest)) {
+                (largest, plane) = (angle, (i, j));
+            }
+        }
+    }
+    Part::plane(plane.0, plane.1, N)
 }
 
 /// The ratio of [`LeftFactor::reach`] for a factor that nothing is prepared of.
 #[must_use]
 pub fn reach_of<T: Real, const N: usize>(c: &SMatrix<T, N, N>, v: &SMatrix<T, N, N>) -> f64 {
-    let mut worst: f64 = 0.0;
-    for lane in 0..T::LANES {
-        let (c, v) = (c.map(|x| x.lane(lane)), v.map(|x| x.lane(lane)));
-        let square = c * c.transpose();
-        let frame = crate::linalg::principal_frame(&square);
-        let spectrum = frame.tr_mul(&(square * frame)).diagonal();
-        let spectrum = spectrum.map(|x| x.max(0.0).sqrt());
-        let ratio = ratio(&spectrum, &frame.tr_mul(&(v * frame)));
-        if ratio.is_nan() {
-            return ratio;
-        }
-        worst = worst.max(ratio);
-    }
-    worst
+    farthest_of(c, v).0
+}
+
+/// The same with the lane it is of.
+pub(super) fn farthest_of<T: Real, const N: usize>(
+    c: &SMatrix<T, N, N>,
+    v: &SMatrix<T, N, N>,
+) -> (f64, usize) {
+    farthest::<T>(|lane| {
+        let v = v.map(|x| x.lane(lane));
+        let (frame, spectrum) = positive_part(c, lane);
+        ratio(&spectrum, &frame.tr_mul(&(v * frame)))
+    })
+}
+
+/// The principal frame and the spectrum of `P` in `C = P Q`, of one lane.
+fn positive_part<T: Real, const N: usize>(
+    c: &SMatrix<T, N, N>,
+    lane: usize,
+) -> (SMatrix<f64, N, N>, SVector<f64, N>) {
+    let c = c.map(|x| x.lane(lane));
+    let square = c * c.transpose();
+    let frame = crate::linalg::principal_frame(&square);
+    let spectrum = frame.tr_mul(&(square * frame)).diagonal();
+    (frame, spectrum.map(|x| x.max(0.0).sqrt()))
+}
+
+/// [`fastest`] for a factor that nothing is prepared of.
+pub(super) fn fastest_of<T: Real, const N: usize>(
+    c: &SMatrix<T, N, N>,
+    h_n: &SMatrix<T, N, N>,
+    lane: usize,
+) -> Part {
+    let (frame, spectrum) = positive_part(c, lane);
+    let p = frame * SMatrix::from_diagonal(&spectrum) * frame.transpose();
+    fastest(&p, &h_n.map(|x| x.lane(lane)), 0)
 }
 
 /// The ratio for a diagonal factor.
-fn ratio<const N: usize>(c: &nalgebra::SVector<f64, N>, v: &SMatrix<f64, N, N>) -> f64 {
+fn ratio<const N: usize>(c: &SVector<f64, N>, v: &SMatrix<f64, N, N>) -> f64 {
     let (length, unit) = (v.amax(), c.amax());
     if !v.iter().all(|x| x.is_finite()) || !c.iter().all(|x| x.is_finite()) {
         return f64::NAN;

@@ -1,0 +1,202 @@
+//! Why Newton's method found no solution: how far off it was, which equation was worst, and which
+//! step could have been made from the same state.
+//! Takes the last residual and a way to try other steps; gives the error.
+
+use crate::groups::{Coordinate, Group};
+use crate::scalar::Real;
+use crate::solvers::moser_veselov::largest_step;
+use crate::{StepCause, StepError};
+use core::cell::Cell;
+use core::fmt;
+
+/// What went wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NewtonFailure {
+    /// The residual is still too large.
+    NotConverged,
+    /// The tangent matrix has no inverse.
+    SingularTangent,
+    /// The residual became NaN or infinite.
+    NotFinite,
+}
+
+/// The equations of a step that Newton's method did not solve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NewtonError {
+    /// What went wrong.
+    pub failure: NewtonFailure,
+    /// Corrections made.
+    pub iterations: u8,
+    /// The largest component of the residual, over all lanes; NaN if any is.
+    pub residual: f64,
+    /// What it should have come below.
+    pub tolerance: f64,
+    /// The step size refused, where the caller knows it.
+    pub h: Option<f64>,
+    /// The largest step that a fresh workspace takes from the same state, found by bisection, of
+    /// the sign of `h`; 0 when none above `h / 2^60` will do, `h` itself when only the workspace
+    /// led astray.
+    pub largest_step: Option<f64>,
+    /// The equation of the largest residual: a component of the momentum of a configuration, in
+    /// the frame in which the model is stated. Where a largest step was found, that of the
+    /// shortest step refused: the equation that ceases to have a solution.
+    pub worst: Coordinate,
+    /// The lane it is in; 0 for types without lanes.
+    pub lane: u8,
+    /// The configurations of the model, in their order.
+    pub(crate) configurations: &'static [&'static str],
+    /// Whether the step was only tried.
+    pub(super) tried: bool,
+}
+
+impl NewtonError {
+    /// The failure at this residual.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn of<T: Real, G: Group<T>>(
+        failure: NewtonFailure,
+        iterations: usize,
+        residual: &[T],
+        tolerance: f64,
+    ) -> Self {
+        let (mut size, mut index, mut lane) = (0.0, 0, 0);
+        for (i, x) in residual.iter().enumerate() {
+            for at in 0..T::LANES {
+                let x = x.lane(at).abs();
+                if x > size || (x.is_nan() && !f64::is_nan(size)) {
+                    (size, index, lane) = (x, i, at);
+                }
+            }
+        }
+        Self {
+            failure,
+            iterations: u8::try_from(iterations).unwrap_or(u8::MAX),
+            residual: size,
+            tolerance,
+            h: None,
+            largest_step: None,
+            worst: G::coordinate(index),
+            lane: u8::try_from(lane).unwrap_or(u8::MAX),
+            configurations: &[],
+            tried: false,
+        }
+    }
+
+    /// The configuration to whose momentum the worst equation belongs, where it is known.
+    #[must_use]
+    pub fn configuration(&self) -> Option<&'static str> {
+        let factor = usize::from(self.worst.factor);
+        self.configurations.get(factor).copied()
+    }
+
+    /// The same error with the step size that was refused, the largest that could be made, and the
+    /// names of the configurations. `step` makes a step of another size from the same state in a
+    /// workspace of [`Search::to_try`](super::Search::to_try).
+    #[cold]
+    #[inline(never)]
+    #[must_use]
+    pub fn explained<T: Real>(
+        self,
+        h: T,
+        configurations: &'static [&'static str],
+        step: impl Fn(T) -> Result<(), StepError>,
+    ) -> Self {
+        if self.tried {
+            return self;
+        }
+        let nearest = Cell::new(self);
+        let fits = |share: f64| match step(h * T::from_f64(share)) {
+            Ok(()) => Some(0.0),
+            Err(StepError {
+                cause: StepCause::Newton(e),
+                ..
+            }) => {
+                nearest.set(e);
+                None
+            }
+            Err(_) => None,
+        };
+        let share = largest_step(1.0, fits);
+        let NewtonError { worst, lane, .. } = match share > 0.0 && share < 1.0 {
+            true => nearest.get(),
+            false => self,
+        };
+        let h = h.lane(usize::from(lane));
+        Self {
+            h: Some(h),
+            largest_step: Some(h * share),
+            worst,
+            lane,
+            configurations,
+            ..self
+        }
+    }
+
+    /// The same error, of a step composed of several: this one was `factor` of the whole, of which
+    /// only the part `share` can be made.
+    #[cold]
+    #[must_use]
+    pub(crate) fn in_all(self, factor: f64, share: f64) -> Self {
+        let h = self.h.map(|h| h / factor);
+        Self {
+            h,
+            largest_step: h.map(|h| h * share),
+            ..self
+        }
+    }
+}
+
+impl fmt::Display for NewtonError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            iterations,
+            residual,
+            tolerance,
+            worst,
+            ..
+        } = self;
+        if self.lane > 0 {
+            write!(f, "lane {}: ", self.lane)?;
+        }
+        match self.failure {
+            NewtonFailure::NotConverged => write!(
+                f,
+                "Newton's method did not converge in {iterations} iterations: residual \
+                 {residual:.3e}, needed {tolerance:.3e}"
+            )?,
+            NewtonFailure::SingularTangent => write!(
+                f,
+                "the tangent is singular at Newton iteration {iterations} (residual \
+                 {residual:.3e}, needed {tolerance:.3e})"
+            )?,
+            NewtonFailure::NotFinite => write!(
+                f,
+                "the residual is NaN or infinite at Newton iteration {iterations}"
+            )?,
+        }
+        match self.configuration() {
+            Some(name) => write!(f, "; the worst is {} of the momentum of `{name}`", worst.part)?,
+            None => write!(f, "; the worst is {} of factor {}", worst.part, worst.factor)?,
+        }
+        match (self.h, self.largest_step) {
+            (Some(h), Some(largest)) if largest == h => write!(
+                f,
+                "; a fresh workspace takes this step: start again from this state"
+            ),
+            (Some(h), Some(largest)) if largest != 0.0 => write!(
+                f,
+                "; the step is {:.6} times the largest that can be solved from this state: reduce \
+                 it from {h} to at most {largest:.6e}",
+                h / largest
+            ),
+            (Some(h), Some(_)) => write!(
+                f,
+                "; no step shorter than {h} was solved from this state either: check its values \
+                 and the parameters"
+            ),
+            _ => write!(f, "; reduce the step size or check the values"),
+        }
+    }
+}
+
+impl std::error::Error for NewtonError {}
