@@ -3,6 +3,7 @@
 
 mod common;
 
+use clebsch::groups::Part;
 use clebsch::linalg::{hat, skew_from};
 use clebsch::nalgebra::{Matrix3, SMatrix, Vector3};
 use clebsch::solvers::Method;
@@ -155,6 +156,40 @@ fn refuses<const N: usize>() {
 #[test]
 fn beyond_the_bound_every_solver_refuses_with_its_ratio() {
     sizes(|n| of_size!(n, refuses()));
+}
+
+/// A momentum in one plane of one lane is too large: plane and lane are named.
+#[test]
+fn refusals_name_the_plane_and_the_lane() {
+    let four = LeftFactor::new(SMatrix::<f64, 4, 4>::from_diagonal(
+        &[0.5, 0.9, 0.7, 1.1].into(),
+    ));
+    let four = four.expect("a factor");
+    for (i, j) in [(0, 1), (1, 3), (2, 3)] {
+        let mut v = SMatrix::<f64, 4, 4>::repeat(0.01);
+        v[(i, j)] = 3.0;
+        v = v - v.transpose();
+        for method in [Method::LieNewton, Method::Sign, Method::Schur] {
+            let e = four.solve(&v, method).expect_err("too fast");
+            assert_eq!(e.fastest, Part::Plane(i as u8, j as u8), "{e}");
+            assert!(e.to_string().contains(&format!("plane ({i}, {j})")), "{e}");
+        }
+    }
+    let c = Matrix3::from_diagonal(&Vector3::new(0.5, 0.9, 0.7))
+        * Rotation::exp(&Vector3::z()).matrix();
+    let wide = |x: f64| Lanes([x; 4]);
+    let mut v = Vector3::new(0.01, 0.02, 0.01).map(wide);
+    v[1] = Lanes([0.1, 0.2, 9.0, 4.0]);
+    let e = davenport(&c.map(wide), &v).expect_err("too fast");
+    assert_eq!((e.fastest, e.lane), (Part::Axis(1), 2), "{e}");
+    let prepared = LeftFactor::new(c.map(wide)).expect("a factor");
+    let e = prepared
+        .rotation(&v, Method::LieNewton)
+        .expect_err("too fast");
+    assert_eq!((e.fastest, e.lane), (Part::Axis(1), 2), "{e}");
+    assert!(e.to_string().starts_with("lane 2: "), "{e}");
+    // Within the bound nothing is refused.
+    assert!(davenport(&c.map(wide), &v.map(|x| x * wide(0.01))).is_ok());
 }
 
 fn agree<const N: usize>(fraction: f64, allowed: f64) {

@@ -3,10 +3,10 @@
 
 mod common;
 
+use clebsch::groups::Part;
 use clebsch::linalg::{axial_of_difference, hat};
 use clebsch::nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use clebsch::solvers::moser_veselov::forced;
-use clebsch::groups::Part;
 use clebsch::solvers::newton::{NewtonError, NewtonFailure, Solved, solve};
 use clebsch::{DoubleDouble, Dual, Group, Lanes, Poinsot, Real, Rotation};
 use common::{Random, lift, lift_matrix};
@@ -161,6 +161,9 @@ fn failures_carry_numbers() {
         |_| Matrix3::identity(),
     );
     let stuck = stuck.expect_err("no solution");
-    assert_eq!((stuck.failure, stuck.iterations), (NewtonFailure::NotConverged, 50));
+    assert_eq!(
+        (stuck.failure, stuck.iterations),
+        (NewtonFailure::NotConverged, 50)
+    );
     assert_eq!((stuck.worst.part, stuck.residual), (Part::Axis(2), 1e-3));
 }

@@ -6,8 +6,8 @@
 #![deny(unreachable_pub, unused_qualifications, single_use_lifetimes)]
 
 use clebsch::card::Settings;
-use clebsch::nalgebra::{Matrix3, Matrix3x2, Vector3};
-use clebsch::{BodyMomentum, Rotation, SpatialMomentum};
+use clebsch::nalgebra::{Matrix3, Matrix3x2, Vector3, Vector6};
+use clebsch::{BodyImpulse, BodyMomentum, RigidMotion, Rotation, SpatialMomentum};
 
 clebsch::model! {
     /// A documented model that the crate exports.
@@ -148,7 +148,7 @@ macro_rules! awkward_names {
                 after axis before body e edge found guess h_ here i inertia initial j kinetic
                 matrix model momenta momentum momentum_next n node out parameters parts potential
                 residual scratch solved solver state tangent total trial value velocity work x
-                field expected t1 t2 t3
+                field expected t1 t2 t3 momenta_six configurations
                 // Members.
                 balance body_momentum edge_momentum energies energy refused spatial_momentum start
                 step factor parameters_ CARD SOURCE
@@ -239,6 +239,16 @@ twice! { AwkwardSpatial PlainSpatial {
     lagrangian = -tr(w*J)/state_ - state_*weight*dot(carried, vertical);
 } }
 
+twice! { AwkwardMotion PlainMotion {
+    param J, mass: Sym<3>;
+    group G: SE<3> velocity V;
+    group K: SE<3> velocity W;
+    constraint next(G) = G*V;
+    constraint next(K) = K*W;
+    lagrangian = -tr(J*rot(V))/h - tr(J*rot(W))/h + weight*dot(pos(V), mass*pos(V))/h
+        + dot(pos(W), mass*pos(W))/h;
+} }
+
 // The time step, the velocity and what moves may bear such names as well.
 clebsch::model! {
     model AwkwardStep {
@@ -292,6 +302,23 @@ fn weight() -> f64 {
 
 const STEPS: usize = 20;
 
+/// The attitude of an element of either group.
+trait Turned {
+    fn turned(&self) -> [f64; 4];
+}
+
+impl Turned for Rotation {
+    fn turned(&self) -> [f64; 4] {
+        self.quaternion()
+    }
+}
+
+impl Turned for RigidMotion {
+    fn turned(&self) -> [f64; 4] {
+        self.rotation.quaternion()
+    }
+}
+
 /// Steps a model and gives its attitudes and momenta.
 macro_rules! attitudes {
     ($model:expr, $initial:expr, $($element:ident)*) => {{
@@ -300,7 +327,7 @@ macro_rules! attitudes {
         let mut all = Vec::new();
         for _ in 0..STEPS {
             model.step(&mut state, &mut work).unwrap();
-            $(all.extend(state.$element().quaternion());)*
+            $(all.extend(state.$element().turned());)*
         }
         all
     }};
@@ -351,6 +378,16 @@ fn names_that_emitted_code_uses_change_nothing() {
             R1: attitude(), body_momentum_R1: body_momentum(),
             R2: attitude(), body_momentum_R2: body_momentum(), carried
         } R1 R2
+    );
+    let impulse = BodyImpulse(Vector6::new(0.1, -0.2, 0.8, 0.3, 0.2, -0.1));
+    same_motion!(
+        [AwkwardMotion PlainMotion] [AwkwardMotionParameters PlainMotionParameters]
+        [AwkwardMotionInitial PlainMotionInitial]
+        { J: inertia(), mass: inertia() }
+        {
+            G: RigidMotion::identity(), body_momentum_G: impulse,
+            K: RigidMotion::identity(), body_momentum_K: impulse
+        } G K
     );
     same_motion!(
         [AwkwardSpatial PlainSpatial] [AwkwardSpatialParameters PlainSpatialParameters]

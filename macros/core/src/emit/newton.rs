@@ -124,11 +124,7 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
             quote!(let #name = #part.matrix();)
         })
         .collect();
-    let configurations = d
-        .spec
-        .configurations
-        .iter()
-        .map(|c| &s.get(c.element).name);
+    let configurations = d.spec.configurations.iter().map(|c| &s.get(c.element).name);
     let solved_at = |i: usize| bundle.part(quote!(#solved), i);
     let rest = finish(d, names, &mut after, &solved_at, remembered);
     let method = format!(" One step, in place. Solved thus: {}.", d.solve.reason);

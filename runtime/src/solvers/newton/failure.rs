@@ -175,8 +175,16 @@ impl fmt::Display for NewtonError {
             )?,
         }
         match self.configuration() {
-            Some(name) => write!(f, "; the worst is {} of the momentum of `{name}`", worst.part)?,
-            None => write!(f, "; the worst is {} of factor {}", worst.part, worst.factor)?,
+            Some(name) => write!(
+                f,
+                "; the worst is {} of the momentum of `{name}`",
+                worst.part
+            )?,
+            None => write!(
+                f,
+                "; the worst is {} of factor {}",
+                worst.part, worst.factor
+            )?,
         }
         match (self.h, self.largest_step) {
             (Some(h), Some(largest)) if largest == h => write!(
