@@ -7,16 +7,19 @@ pub use crate::card::{
 };
 pub use crate::groups::{
     BodyImpulse, BodyMomentum, BodyMomentumMatrix, Coadjoint, Group, Linear, Orthogonal,
-    RigidMotion, Rotation, SpatialImpulse, SpatialMomentum, SpatialMomentumMatrix, UnitQuaternion,
+    RigidMotion, Rotation, SpatialImpulse, SpatialMomentum, SpatialMomentumMatrix, TurnedRotation,
+    UnitQuaternion,
 };
-pub use crate::integrate::{Reversible, Stepper, Steps, preprocessing_order};
+pub use crate::integrate::{
+    Moving, Reversible, SideBySide, Stepper, Steps, advance_side_by_side, preprocessing_order,
+};
 pub use crate::linalg::{
     axial_of_difference, columns_from, crossed, crossing, determinant, even_count, hat, inclusion,
     into_columns, into_rows, motion_rotation, motion_translation, pencil_coefficients,
     pure_quaternion, quaternion_imaginary, quaternion_real, quaternion_rotation, rows_from,
     skew_coordinates, solve, trace_complement, twist, vee,
 };
-pub use crate::scalar::{OfScalars as _, Real};
+pub use crate::scalar::{InLanes, OfScalars as _, Real};
 pub use crate::solvers::Method;
 pub use crate::solvers::left_factor::{
     LeftFactor, LeftFactorError, Unsolved, reach_of, rotation_at,

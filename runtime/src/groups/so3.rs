@@ -4,6 +4,7 @@
 use super::{Coadjoint, Group};
 use crate::Real;
 use crate::scalar::of_scalars;
+use crate::scalar::one::{in_lanes, set_all};
 use core::fmt;
 use core::ops::Mul;
 use nalgebra::{Matrix3, Vector3};
@@ -23,6 +24,7 @@ pub struct Rotation<T = f64> {
 }
 
 of_scalars!(Rotation { q });
+in_lanes!(Rotation { q });
 
 /// Whether all pairs are equal, looking at all of them: steppers ask at each step, and one branch
 /// is cheaper than one per number.
@@ -89,6 +91,12 @@ pub(super) fn norm_squared<T: Real>([w, x, y, z]: [T; 4]) -> T {
     (w * w + x * x) + (y * y + z * z)
 }
 
+/// The quaternion times a number.
+#[inline(always)]
+pub(super) fn times<T: Real>([w, x, y, z]: [T; 4], scale: T) -> [T; 4] {
+    [w * scale, x * scale, y * scale, z * scale]
+}
+
 impl<T: Real> Rotation<T> {
     /// The rotation that does nothing.
     #[inline]
@@ -145,15 +153,19 @@ impl<T: Real> Rotation<T> {
         let square = norm_squared(q);
         let root = square.sqrt();
         let scale = root * (T::one() / square);
-        Self {
-            q: q.map(|x| x * scale),
-        }
+        Self { q: times(q, scale) }
     }
 
     /// A quaternion the caller knows to be unit.
     #[inline(always)]
     pub(crate) fn from_unit(q: [T; 4]) -> Self {
         Self { q }
+    }
+
+    /// Puts the rotation of one lane there.
+    #[inline(always)]
+    pub(crate) fn set_one(&mut self, lane: usize, one: Rotation<T::One>) {
+        set_all(&mut self.q, lane, one.q);
     }
 
     /// The product without renormalisation: each call may move `|q|` by one rounding, so a caller
@@ -169,7 +181,7 @@ impl<T: Real> Rotation<T> {
     #[inline(always)]
     pub(crate) fn scaled(&self, scale: T) -> Self {
         Self {
-            q: self.q.map(|x| x * scale),
+            q: times(self.q, scale),
         }
     }
 
@@ -185,7 +197,7 @@ impl<T: Real> Rotation<T> {
     pub(crate) fn renormalised(&self) -> Self {
         let scale = self.repair();
         Self {
-            q: self.q.map(|x| x * scale),
+            q: times(self.q, scale),
         }
     }
 
@@ -327,7 +339,7 @@ impl<T: Real> Mul for Rotation<T> {
         let excess = norm_squared(self.q) + norm_squared(other.q);
         let scale = T::from_f64(2.0) - T::from_f64(0.5) * excess;
         Self {
-            q: hamilton(self.q, other.q).map(|x| x * scale),
+            q: times(hamilton(self.q, other.q), scale),
         }
     }
 }
@@ -352,7 +364,7 @@ impl<T: Real> Group<T> for Rotation<T> {
         if T::ORDER == 0 && largest * largest < T::EPSILON {
             let scale = T::one() - excess * half;
             return Self {
-                q: turned.map(|x| x * scale),
+                q: times(turned, scale),
             };
         }
         Self::normalised(turned)
@@ -404,6 +416,7 @@ pub struct SpatialMomentum<T = f64>(pub Vector3<T>);
 
 of_scalars!(BodyMomentum { 0 });
 of_scalars!(SpatialMomentum { 0 });
+in_lanes!(SpatialMomentum { 0 });
 
 impl<T: PartialEq> PartialEq for SpatialMomentum<T> {
     #[inline(always)]
@@ -425,6 +438,13 @@ impl<T: Real> BodyMomentum<T> {
 }
 
 impl<T: Real> SpatialMomentum<T> {
+    /// Puts the momentum of one lane there.
+    #[inline(always)]
+    pub(crate) fn set_one(&mut self, lane: usize, one: SpatialMomentum<T::One>) {
+        let ([all], [ones]) = (&mut self.0.data.0, one.0.data.0);
+        set_all(all, lane, ones);
+    }
+
     /// `mu = R^T m`, for a rotation or a unit quaternion.
     #[inline]
     pub fn to_body<G>(&self, attitude: &G) -> BodyMomentum<T>

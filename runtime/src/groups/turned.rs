@@ -2,7 +2,7 @@
 //! Takes both; gives the product's action on vectors and its matrix after one division, its quaternion after a root as well.
 
 use super::Rotation;
-use super::so3::{hamilton, norm_squared};
+use super::so3::{hamilton, norm_squared, times};
 use crate::Real;
 use core::ops::Mul;
 use nalgebra::{Matrix3, Vector3};
@@ -35,7 +35,7 @@ impl<T: Real> TurnedRotation<T> {
     #[inline(always)]
     pub fn rotation(&self) -> Rotation<T> {
         let scale = (T::from_f64(0.5) * self.scale).sqrt();
-        Rotation::from_unit(self.q.map(|x| x * scale))
+        Rotation::from_unit(times(self.q, scale))
     }
 
     /// The 3x3 matrix, body -> space, as it acts on vectors.

@@ -7,6 +7,7 @@ mod drift;
 mod ensemble;
 mod model;
 mod run;
+mod side_by_side;
 mod stepper;
 mod steps;
 
@@ -15,5 +16,6 @@ pub use drift::Drift;
 pub use ensemble::{Ensemble, EnsembleError, InstructionSet, Work};
 pub use model::Model;
 pub use run::{Observer, Summary, run};
+pub use side_by_side::{Moving, SideBySide, advance_side_by_side};
 pub use stepper::{Reversible, Stepper};
 pub use steps::{Steps, preprocessing_order};

@@ -4,8 +4,19 @@
 use super::Real;
 
 impl Real for f64 {
+    type One = Self;
     const EPSILON: f64 = f64::EPSILON / 2.0;
     const ORDER: u32 = 0;
+
+    #[inline(always)]
+    fn one_of(&self, _: usize) -> Self {
+        *self
+    }
+
+    #[inline(always)]
+    fn set_lane(&mut self, _: usize, one: Self) {
+        *self = one;
+    }
 
     #[inline(always)]
     fn from_f64(x: f64) -> Self {

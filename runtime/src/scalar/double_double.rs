@@ -230,9 +230,20 @@ impl From<f64> for DoubleDouble {
 }
 
 impl Real for DoubleDouble {
+    type One = Self;
     // 2^-104: the worst error of one operation, four times the representation's 2^-106.
     const EPSILON: f64 = f64::EPSILON * f64::EPSILON;
     const ORDER: u32 = 0;
+
+    #[inline(always)]
+    fn one_of(&self, _: usize) -> Self {
+        *self
+    }
+
+    #[inline(always)]
+    fn set_lane(&mut self, _: usize, one: Self) {
+        *self = one;
+    }
 
     #[inline(always)]
     fn from_f64(x: f64) -> Self {

@@ -163,8 +163,19 @@ impl<const N: usize> One for Dual<N> {
 }
 
 impl<const N: usize> Real for Dual<N> {
+    type One = Self;
     const EPSILON: f64 = <f64 as Real>::EPSILON;
     const ORDER: u32 = 1;
+
+    #[inline(always)]
+    fn one_of(&self, _: usize) -> Self {
+        *self
+    }
+
+    #[inline(always)]
+    fn set_lane(&mut self, _: usize, one: Self) {
+        *self = one;
+    }
 
     #[inline(always)]
     fn from_f64(x: f64) -> Self {

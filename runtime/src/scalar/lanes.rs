@@ -25,8 +25,11 @@ impl<const N: usize> PartialEq for Lanes<N> {
 
 impl<const N: usize> Lanes<N> {
     #[inline(always)]
-    fn map(self, f: impl Fn(f64) -> f64) -> Self {
-        Self(self.0.map(f))
+    fn map(mut self, f: impl Fn(f64) -> f64) -> Self {
+        for x in &mut self.0 {
+            *x = f(*x);
+        }
+        self
     }
 
     /// Folds the lanes with `pick`, NaN winning over everything; without branches, to vectorise.
@@ -55,8 +58,8 @@ macro_rules! lanewise {
         impl<const N: usize> $Assign for Lanes<N> {
             #[inline(always)]
             fn $assign(&mut self, other: Self) {
-                for (a, b) in self.0.iter_mut().zip(other.0) {
-                    a.$assign(b);
+                for (a, b) in self.0.iter_mut().zip(&other.0) {
+                    a.$assign(*b);
                 }
             }
         }
@@ -71,8 +74,11 @@ lanewise!(Div, div, DivAssign, div_assign);
 impl<const N: usize> Neg for Lanes<N> {
     type Output = Self;
     #[inline(always)]
-    fn neg(self) -> Self {
-        self.map(|x| -x)
+    fn neg(mut self) -> Self {
+        for x in &mut self.0 {
+            *x = -*x;
+        }
+        self
     }
 }
 
@@ -95,9 +101,27 @@ impl<const N: usize> One for Lanes<N> {
 }
 
 impl<const N: usize> Real for Lanes<N> {
+    type One = f64;
+
     const EPSILON: f64 = <f64 as Real>::EPSILON;
     const ORDER: u32 = 0;
     const LANES: usize = N;
+
+    #[inline(always)]
+    fn one_of(&self, lane: usize) -> f64 {
+        self.0
+            .get(lane)
+            .or(self.0.first())
+            .copied()
+            .unwrap_or(f64::NAN)
+    }
+
+    #[inline(always)]
+    fn set_lane(&mut self, lane: usize, one: f64) {
+        if let Some(x) = self.0.get_mut(lane) {
+            *x = one;
+        }
+    }
 
     #[inline(always)]
     fn from_f64(x: f64) -> Self {
@@ -132,15 +156,18 @@ impl<const N: usize> Real for Lanes<N> {
     #[inline(always)]
     fn where_positive(self, then: Self) -> Self {
         let mut kept = then;
-        for (k, x) in kept.0.iter_mut().zip(self.0) {
-            *k = if x > 0.0 { *k } else { 0.0 };
+        for (k, x) in kept.0.iter_mut().zip(&self.0) {
+            *k = if *x > 0.0 { *k } else { 0.0 };
         }
         kept
     }
 
     #[inline(always)]
-    fn sqrt(self) -> Self {
-        self.map(f64::sqrt)
+    fn sqrt(mut self) -> Self {
+        for x in &mut self.0 {
+            *x = x.sqrt();
+        }
+        self
     }
 
     #[inline]

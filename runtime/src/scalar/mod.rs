@@ -5,11 +5,13 @@ mod double;
 mod double_double;
 mod dual;
 mod lanes;
+pub(crate) mod one;
 mod over;
 
 pub use double_double::DoubleDouble;
 pub use dual::Dual;
 pub use lanes::Lanes;
+pub use one::InLanes;
 pub(crate) use over::of_scalars;
 pub use over::{OfScalars, gather, lane};
 
@@ -45,6 +47,9 @@ pub trait Real:
     + Zero
     + One
 {
+    /// What stands in one lane: `f64` for several lanes, the type itself for those without.
+    type One: Real<One = Self::One>;
+
     /// Unit roundoff: the largest relative error of one rounded operation is about this.
     const EPSILON: f64;
 
@@ -74,6 +79,12 @@ pub trait Real:
     fn lane(self, index: usize) -> f64 {
         if index == 0 { self.value() } else { f64::NAN }
     }
+
+    /// What stands in a lane; that of the first when there is no such lane.
+    fn one_of(&self, lane: usize) -> Self::One;
+
+    /// Puts it there; nothing happens when there is no such lane.
+    fn set_lane(&mut self, lane: usize, one: Self::One);
 
     /// The largest absolute value over all lanes and all derivative parts; NaN if any is NaN.
     fn magnitude(self) -> f64;

@@ -232,30 +232,23 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
             };
         }
     });
-    let references: Vec<_> = items::kept(d)
-        .into_iter()
-        .map(|id| (s.get(id).shape, own(d, id)))
-        .collect();
-    let arrived_at = tagged(d, names, c.element, "arrived");
-    let equal = references
-        .iter()
-        .map(|(shape, field)| match shape.is_scalar() {
-            true => quote!((work.here.#field == state.#field)),
-            false => quote!(same(&work.here.#field, &state.#field)),
-        });
-    let others = (!references.is_empty()).then(|| quote!(|| !(#(#equal)&*)));
     // References do not change: what moves is written where it is, and not read back.
-    let moved_away = quote! {
-        work.here.#element != state.#element || work.here.#momentum != state.#momentum #others
-    };
-    let arrived = quote! {
-        let (#arrived_at, #momentum_next) =
-            (#moved.rotation(), SpatialMomentum(#momentum_next));
-        (state.#element, work.here.#element) = (#arrived_at, #arrived_at);
-        (state.#momentum, work.here.#momentum) = (#momentum_next, #momentum_next);
-        state.#node += 1;
-    };
-    step_signature(
+    let moved_away = moved_away(d);
+    let next_edge = names.local("arrival");
+    let arrived = arrived(
+        d,
+        names,
+        &moved,
+        &quote! {
+            #parameters
+            #locals
+            #lets
+            let #space = #edge.space();
+            #act
+            Moving { attitude: #moved.rotation(), momentum: SpatialMomentum(#momentum_next), edge: #following }
+        },
+    );
+    let step_of = step_signature(
         d,
         quote! {
             let #step = work.h;
@@ -273,19 +266,125 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
                 Ok(turned) => turned,
                 Err(e) => return Err(self.refused(*state, #factor, #step, e)),
             };
-            #parameters
-            #locals
-            #lets
-            let #space = #edge.space();
-            #act
-            if !all_finite(&#momentum_next) {
+            let #next_edge = self.arrived(state, #edge, #step, #moved);
+            if !all_finite(&#next_edge.momentum.0) {
                 return Err(StepCause::NotFinite { what: "momentum" }.at_node(state.#node));
             }
-            #arrived
-            work.edge = #following;
+            (state.#element, work.here.#element) = (#next_edge.attitude, #next_edge.attitude);
+            (state.#momentum, work.here.#momentum) = (#next_edge.momentum, #next_edge.momentum);
+            state.#node += 1;
+            work.edge = #next_edge.edge;
             Ok(())
         },
-    )
+    );
+    quote! {
+        #step_of
+        #arrived
+    }
+}
+
+/// Whether the workspace is that of another state.
+fn moved_away(d: &Derivation) -> TokenStream {
+    let element = own(d, d.spec.configurations[0].element);
+    let momentum = per_configuration(d, "momentum", 0);
+    let references: Vec<_> = items::kept(d)
+        .into_iter()
+        .map(|id| (d.letters.symbols.get(id).shape, own(d, id)))
+        .collect();
+    let equal = references
+        .iter()
+        .map(|(shape, field)| match shape.is_scalar() {
+            true => quote!((work.here.#field == state.#field)),
+            false => quote!(same(&work.here.#field, &state.#field)),
+        });
+    let others = (!references.is_empty()).then(|| quote!(|| !(#(#equal)&*)));
+    quote! {
+        work.here.#element != state.#element || work.here.#momentum != state.#momentum #others
+    }
+}
+
+/// The same step lane by lane, for ensembles.
+pub(super) fn side_by_side(d: &Derivation, names: &Names) -> TokenStream {
+    let (name, given) = (item(d, ""), item(d, "Parameters"));
+    let (state, work) = (item(d, "State"), item(d, "Workspace"));
+    let g = Generics::of(d);
+    let (bound, used) = (g.bound(), g.used());
+    let one = g.used_over_tokens(&quote!(<T as Real>::One));
+    let element = own(d, d.spec.configurations[0].element);
+    let momentum = per_configuration(d, "momentum", 0);
+    let node = names.local("node");
+    let moved_away = moved_away(d);
+    let parameters: Vec<Ident> = d.spec.parameters.iter().map(|p| own(d, *p)).collect();
+    let kept: Vec<Ident> = items::kept(d).into_iter().map(|id| own(d, id)).collect();
+    let of_state = !items::factor_references(d).is_empty();
+    let (factor, own_factor) = match of_state {
+        true => (quote!(work.factor), None),
+        false => (
+            quote!(self.factor),
+            Some(quote!(factor: self.factor.in_lane(lane),)),
+        ),
+    };
+    let no_parameters = parameters
+        .is_empty()
+        .then(|| quote!(scalar: ::core::marker::PhantomData));
+    quote! {
+        impl #bound SideBySide for #name #used {
+            #[inline(always)]
+            fn moving(&self, state: &#state #used, work: &#work #used) -> Option<Moving<T>> {
+                let another = work.method != Method::Kappa || #moved_away;
+                (!another).then_some(Moving { attitude: state.#element, momentum: state.#momentum, edge: work.edge })
+            }
+            #[inline(always)]
+            fn arrive(state: &mut #state #used, work: &mut #work #used, moving: &Moving<T>, steps: u64) {
+                (state.#element, state.#momentum) = (moving.attitude, moving.momentum);
+                state.#node += steps;
+                (work.here, work.edge) = (*state, moving.edge);
+            }
+            #[inline(always)]
+            fn is_diagonal(&self, work: &#work #used) -> bool {
+                let _ = work;
+                #factor.is_diagonal()
+            }
+            #[inline(always)]
+            fn step_lanes<const DIAGONAL: bool>(&self, state: &#state #used, work: &#work #used, from: &Moving<T>, to: &mut Moving<T>) -> bool {
+                let mut easy = true;
+                for lane in 0..T::LANES {
+                    let (attitude, edge) = from.from(lane);
+                    let (h, factor) = (work.h.one_of(lane), #factor.in_lane(lane));
+                    let (turned, found) = edge.turn_at_once::<DIAGONAL>(&factor, h, &attitude);
+                    let model = #name::#one {
+                        parameters: #given { #(#parameters: self.parameters.#parameters.in_lane(lane),)* #no_parameters },
+                        #own_factor
+                        method: self.method,
+                    };
+                    let state = #state::#one {
+                        #element: attitude,
+                        #momentum: from.momentum.in_lane(lane),
+                        #(#kept: state.#kept.in_lane(lane),)*
+                        #node: state.#node,
+                    };
+                    easy &= found & to.set(lane, model.arrived(&state, &edge, h, turned));
+                }
+                easy
+            }
+        }
+    }
+}
+
+/// What follows once the turn of the edge is known.
+fn arrived(d: &Derivation, names: &Names, moved: &Ident, body: &TokenStream) -> TokenStream {
+    let (state, used) = (item(d, "State"), Generics::of(d).used());
+    let (edge, step) = (
+        names.local("edge"),
+        variable(&d.letters.symbols, d.spec.step),
+    );
+    quote! {
+        /// The next node and the edge that begins there, given the attitude there.
+        #[inline(always)]
+        fn arrived(&self, state: &#state #used, #edge: &Edge<T>, #step: T, #moved: TurnedRotation<T>) -> Moving<T> {
+            #body
+        }
+    }
 }
 
 /// Whether an element stands in an expression only where it, or its transpose, acts on a vector:

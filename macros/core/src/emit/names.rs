@@ -44,7 +44,7 @@ pub fn own(d: &Derivation, id: SymbolId) -> Ident {
 }
 
 /// Types, traits and variants that emitted code calls by a plain name: no model can bear one.
-const TYPES: [&str; 48] = [
+const TYPES: [&str; 52] = [
     "BodyImpulse",
     "BodyMomentum",
     "BodyMomentumMatrix",
@@ -93,10 +93,14 @@ const TYPES: [&str; 48] = [
     "UnitQuaternion",
     "Unsolved",
     "Vec",
+    "Edge",
+    "Moving",
+    "SideBySide",
+    "TurnedRotation",
 ];
 
 /// Methods and constants that every model has.
-const MEMBERS: [&str; 28] = [
+const MEMBERS: [&str; 29] = [
     "ADMITTED",
     "CARD",
     "FINGERPRINT",
@@ -125,6 +129,7 @@ const MEMBERS: [&str; 28] = [
     "with_solver",
     "workspace",
     "workspace_with",
+    "arrived",
 ];
 
 /// The model, a configuration or an advected quantity whose name emitted items need for
@@ -167,7 +172,7 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
 
 /// What emitted functions call by a plain name, and what they name themselves: a local of the
 /// model under such a name would hide it. The test of hygiene states a model with all of them.
-const INSIDE: [&str; 110] = [
+const INSIDE: [&str; 115] = [
     "BodyImpulse",
     "BodyMomentum",
     "BodyMomentumMatrix",
@@ -278,6 +283,11 @@ const INSIDE: [&str; 110] = [
     "value",
     "velocity",
     "work",
+    "Edge",
+    "Moving",
+    "SideBySide",
+    "TurnedRotation",
+    "advance_side_by_side",
 ];
 
 /// The symbol's name as a local variable: its own, unless the emitted code needs that one itself.

@@ -78,6 +78,12 @@ impl Generics {
         quote!(<#(#list,)* #scalar>)
     }
 
+    /// The same over a type.
+    pub fn used_over_tokens(&self, scalar: &TokenStream) -> TokenStream {
+        let list = &self.constants;
+        quote!(<#(#list,)* #scalar>)
+    }
+
     /// As an `impl` over plain numbers binds them: `<const N: usize>`, or nothing.
     pub fn sizes_bound(&self) -> TokenStream {
         let list = &self.constants;

@@ -154,6 +154,24 @@ pub fn traits(d: &Derivation, names: &Names) -> TokenStream {
             }
         }
     });
+    let forced = matches!(d.solve.method, Method::ForcedMoserVeselov);
+    let lanes = forced.then(|| super::forced::side_by_side(d, names));
+    let many = many.or_else(|| {
+        forced.then(|| {
+            quote! {
+                #[inline(always)]
+                fn advance_many(&self, state: &mut Self::State, work: &mut Self::Workspace, count: u64) -> Result<(), StepError> {
+                    if T::LANES > 1 {
+                        return advance_side_by_side(self, state, work, count);
+                    }
+                    for _ in 0..count {
+                        self.step(state, work)?;
+                    }
+                    Ok(())
+                }
+            }
+        })
+    });
     let reversible = d
         .reversible
         .then(|| quote!(impl #bound Reversible for #name #used {}));
@@ -175,6 +193,7 @@ pub fn traits(d: &Derivation, names: &Names) -> TokenStream {
                 #state { #node: node, ..state }
             }
         }
+        #lanes
         #reversible
     }
 }

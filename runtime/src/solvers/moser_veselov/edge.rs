@@ -1,8 +1,9 @@
 //! The edge that begins at a node of a forced motion, and the node where it ends.
 //! Takes the edge's momentum; gives the next attitude as soon as it can be used.
 
-use super::forced::turn;
+use super::forced::{principal_at_once, turn};
 use super::{MoserVeselovError, Poinsot};
+use crate::scalar::one::{in_lanes, set_all};
 use crate::solvers::Method;
 use crate::solvers::left_factor::rotation_at;
 use crate::{Real, Rotation, TurnedRotation};
@@ -32,6 +33,9 @@ struct Paired<T> {
     alone: T,
 }
 
+in_lanes!(Paired { pair, alone; gap });
+in_lanes!(Edge { body, space });
+
 impl<T: Real> Paired<T> {
     #[inline(always)]
     fn new(v: Vector3<T>) -> Self {
@@ -41,6 +45,12 @@ impl<T: Real> Paired<T> {
             gap: 0,
             alone: z,
         }
+    }
+
+    #[inline(always)]
+    fn set_one(&mut self, lane: usize, one: Paired<T::One>) {
+        set_all(&mut self.pair, lane, one.pair);
+        self.alone.set_lane(lane, one.alone);
     }
 
     #[inline(always)]
@@ -93,6 +103,30 @@ impl<T: Real> Edge<T> {
                 &Vector3::new(x * h, y * h, z * h),
             )),
         }
+    }
+
+    /// The same where one iteration finds the root of the quartic, and whether it does. There is no
+    /// branch: a loop over many bodies vectorises. `DIAGONAL` says that the body is given in
+    /// principal axes. What is not found is of no meaning.
+    #[inline(always)]
+    pub fn turn_at_once<const DIAGONAL: bool>(
+        &self,
+        body: &Poinsot<T>,
+        h: T,
+        attitude: &Rotation<T>,
+    ) -> (TurnedRotation<T>, bool) {
+        let scale = h * body.half_over_unit;
+        let [x, y, z] = self.body.get();
+        let u = [x * scale, y * scale, z * scale];
+        let (omega, found) = principal_at_once::<T, DIAGONAL>(body, u);
+        (attitude.turned(omega), found)
+    }
+
+    /// Puts the edge of one lane there.
+    #[inline(always)]
+    pub(crate) fn set_one(&mut self, lane: usize, one: Edge<T::One>) {
+        self.body.set_one(lane, one.body);
+        self.space.set_one(lane, one.space);
     }
 
     /// The same by the solver named, which prepares the body anew.

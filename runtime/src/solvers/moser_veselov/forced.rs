@@ -2,8 +2,9 @@
 //! Takes the body and `h N`; gives the rotation `Omega` of the edge.
 
 use super::cayley::{dot, gyroscopic};
-use super::kappa::kappa;
+use super::kappa::{kappa, kappa_at_once};
 use super::{MoserVeselovError, Poinsot};
+use crate::scalar::InLanes;
 use crate::{Real, Rotation};
 use nalgebra::Vector3;
 
@@ -37,6 +38,15 @@ pub fn forced<T: Real>(
     body: &Poinsot<T>,
     h_n: &Vector3<T>,
 ) -> Result<Rotation<T>, MoserVeselovError> {
+    if T::LANES > 1 {
+        let (all, found) = match body.diagonal {
+            true => in_all_lanes::<T, true>(body, h_n),
+            false => in_all_lanes::<T, false>(body, h_n),
+        };
+        if found {
+            return Ok(all);
+        }
+    }
     match turn(body, body.scaled(h_n)) {
         Some(q) => Ok(Rotation::normalised(q)),
         None => Err(MoserVeselovError::diagnose(body, h_n)),
@@ -56,24 +66,83 @@ pub(super) fn turn<T: Real>(body: &Poinsot<T>, u: [T; 3]) -> Option<[T; 4]> {
 
 #[inline(always)]
 fn principal<T: Real, const DIAGONAL: bool>(body: &Poinsot<T>, u: [T; 3]) -> Option<[T; 4]> {
-    let squares = [u[0] * u[0], u[1] * u[1], u[2] * u[2]];
-    let products = [u[1] * u[2], u[2] * u[0], u[0] * u[1]];
-    let a = (squares[0] + squares[1]) + squares[2];
-    let energy = body.energy.value::<DIAGONAL>(squares, products);
-    let deviation = body.deviation.value::<DIAGONAL>(squares, products);
-    let kappa = kappa(body, a, energy, deviation)?;
-    // adj(I - kappa) u = adj(I) u + kappa (I - s1) u + kappa^2 u and det(I - kappa), sorted by
-    // powers so that little is left to do once kappa is known.
-    let inertia_u = body.inertia_times::<DIAGONAL>(u);
-    let adjugate_u = body.adjugate_times::<DIAGONAL>(u);
-    let gyro = gyroscopic::<T, DIAGONAL>(body, u);
-    let p = dot(u, inertia_u);
-    let square = kappa * kappa;
-    let det = ((body.s3 + p) - kappa * (body.s2 + a)) + square * (body.s1 - kappa);
-    let n = |i: usize| {
-        let constant = (adjugate_u[i] + gyro[i]) + a * u[i];
-        let linear = inertia_u[i] - body.s1 * u[i];
-        (constant + kappa * linear) + square * u[i]
-    };
-    Some([det, n(0), n(1), n(2)])
+    let momentum = Momentum::new::<DIAGONAL>(body, u);
+    let kappa = kappa(body, momentum.a, momentum.energy, momentum.deviation)?;
+    Some(momentum.quaternion::<DIAGONAL>(body, kappa))
+}
+
+/// The same where one iteration finds the root, and whether it does; without a branch, so that a
+/// loop over many bodies vectorises. What is not found is of no meaning.
+#[inline(always)]
+pub(super) fn principal_at_once<T: Real, const DIAGONAL: bool>(
+    body: &Poinsot<T>,
+    u: [T; 3],
+) -> ([T; 4], bool) {
+    let momentum = Momentum::new::<DIAGONAL>(body, u);
+    let (a, energy) = (momentum.a, momentum.energy);
+    let (kappa, found) = kappa_at_once(body, a, energy, momentum.deviation);
+    (momentum.quaternion::<DIAGONAL>(body, kappa), found)
+}
+
+/// `u` and its quadratic forms.
+struct Momentum<T> {
+    u: [T; 3],
+    /// `|u|^2`.
+    a: T,
+    energy: T,
+    deviation: T,
+}
+
+impl<T: Real> Momentum<T> {
+    #[inline(always)]
+    fn new<const DIAGONAL: bool>(body: &Poinsot<T>, u: [T; 3]) -> Self {
+        let squares = [u[0] * u[0], u[1] * u[1], u[2] * u[2]];
+        let products = [u[1] * u[2], u[2] * u[0], u[0] * u[1]];
+        Self {
+            u,
+            a: (squares[0] + squares[1]) + squares[2],
+            energy: body.energy.value::<DIAGONAL>(squares, products),
+            deviation: body.deviation.value::<DIAGONAL>(squares, products),
+        }
+    }
+
+    /// `det(I - kappa - hat(u))` and `adj(I - kappa - hat(u)) u`.
+    #[inline(always)]
+    fn quaternion<const DIAGONAL: bool>(&self, body: &Poinsot<T>, kappa: T) -> [T; 4] {
+        let Self { u, a, .. } = *self;
+        // adj(I - kappa) u = adj(I) u + kappa (I - s1) u + kappa^2 u and det(I - kappa), sorted by
+        // powers so that little is left to do once kappa is known.
+        let inertia_u = body.inertia_times::<DIAGONAL>(u);
+        let adjugate_u = body.adjugate_times::<DIAGONAL>(u);
+        let gyro = gyroscopic::<T, DIAGONAL>(body, u);
+        let p = dot(u, inertia_u);
+        let square = kappa * kappa;
+        let det = ((body.s3 + p) - kappa * (body.s2 + a)) + square * (body.s1 - kappa);
+        // A loop, since closures are not always inlined.
+        let mut n = u;
+        for i in 0..3 {
+            let constant = (adjugate_u[i] + gyro[i]) + a * u[i];
+            let linear = inertia_u[i] - body.s1 * u[i];
+            n[i] = (constant + kappa * linear) + square * u[i];
+        }
+        [det, n[0], n[1], n[2]]
+    }
+}
+
+/// The principal solutions of all lanes, in a loop over the lanes, and whether one iteration found
+/// the root of each.
+#[inline(always)]
+fn in_all_lanes<T: Real, const DIAGONAL: bool>(
+    body: &Poinsot<T>,
+    h_n: &Vector3<T>,
+) -> (Rotation<T>, bool) {
+    let (mut all, mut found) = (Rotation::identity(), true);
+    for lane in 0..T::LANES {
+        let body = body.in_lane(lane);
+        let u = body.scaled(&h_n.in_lane(lane));
+        let (q, one) = principal_at_once::<T::One, DIAGONAL>(&body, u);
+        all.set_one(lane, Rotation::normalised(q));
+        found &= one;
+    }
+    (all, found)
 }

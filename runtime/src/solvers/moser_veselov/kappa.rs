@@ -7,6 +7,7 @@
 
 use super::Poinsot;
 use crate::Real;
+use crate::scalar::one::in_lanes;
 
 /// Below this, `s2 e / s3` leaves the quartic so close to its linear part that the series start is
 /// inside the basin of the smallest root: in units of `e` it reads `1 - w + y w^2 - ...` with
@@ -34,6 +35,13 @@ pub(super) struct Symmetric<T> {
     /// The largest `e` for which one iteration from the series start is exact to rounding.
     easy: T,
 }
+
+in_lanes!(Symmetric {
+    zeroth,
+    first,
+    second,
+    easy
+});
 
 impl<T: Real> Symmetric<T> {
     pub(super) fn new(s1: T, s2: T, s3: T) -> Self {
@@ -195,14 +203,26 @@ impl<T: Real> Quartic<T> {
 /// Inlined is the case of a moderate step, where one iteration from the series does.
 #[inline(always)]
 pub(super) fn kappa<T: Real>(body: &Poinsot<T>, a: T, energy: T, deviation: T) -> Option<T> {
-    let body = &body.symmetric;
-    // Written so that NaN is not easy.
-    if (energy - body.easy).nowhere_positive() {
-        let quartic = Quartic::new(body, a, energy);
-        let k = quartic.improved(quartic.start(deviation));
-        return Some(quartic.polished(k));
+    let (k, found) = kappa_at_once(body, a, energy, deviation);
+    if found {
+        return Some(k);
     }
-    hard(body, a, energy, deviation)
+    hard(&body.symmetric, a, energy, deviation)
+}
+
+/// The root by one iteration, and whether that does; without a branch.
+#[inline(always)]
+pub(super) fn kappa_at_once<T: Real>(
+    body: &Poinsot<T>,
+    a: T,
+    energy: T,
+    deviation: T,
+) -> (T, bool) {
+    let body = &body.symmetric;
+    let quartic = Quartic::new(body, a, energy);
+    let k = quartic.improved(quartic.start(deviation));
+    // Written so that NaN is not easy.
+    (quartic.polished(k), (energy - body.easy).nowhere_positive())
 }
 
 /// The root where one iteration does not do: more of them, or the monotone approach.

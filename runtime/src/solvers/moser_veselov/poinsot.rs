@@ -5,6 +5,7 @@ use super::cayley::dot;
 use super::kappa::Symmetric;
 use crate::Real;
 use crate::linalg::{determinant, symmetric_eigenvalues};
+use crate::scalar::one::in_lanes;
 use crate::validate::{ROUNDINGS, mirrored_difference};
 use core::fmt;
 use nalgebra::{Matrix3, Vector3};
@@ -51,6 +52,12 @@ pub(super) struct Form<T> {
     squares: [T; 3],
     products: [T; 3],
 }
+
+in_lanes!(Form { squares, products });
+in_lanes!(Poinsot {
+    j, half_over_unit, moments, products, differences, adjugate_moments, adjugate_products,
+    s1, s2, s3, symmetric, energy, deviation; unit, diagonal
+});
 
 impl<T: Real> Form<T> {
     #[inline(always)]
@@ -249,6 +256,12 @@ impl<T: Real> Poinsot<T> {
         let inertia = (inertia + inertia.transpose()).map(|x| x * half);
         let j = Matrix3::from_diagonal_element(inertia.trace() * half) - inertia;
         Self::with_constants(j.map(|x| x * T::from_f64(self.unit)), inertia, self.unit)
+    }
+
+    /// Whether it is given in principal axes: the solver then has less to do.
+    #[inline(always)]
+    pub fn is_diagonal(&self) -> bool {
+        self.diagonal
     }
 
     /// One lane of the body, without derivatives.

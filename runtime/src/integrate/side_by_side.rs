@@ -1,0 +1,124 @@
+//! Steps of bodies side by side, in a loop over the lanes that does the arithmetic of one body.
+//! Takes a model over lanes, its state and workspace; gives as many steps as one iteration of each solve allows.
+
+use super::Stepper;
+use crate::scalar::InLanes;
+use crate::solvers::moser_veselov::Edge;
+use crate::{Real, Rotation, SpatialMomentum, StepError};
+
+/// What a forced step changes: the body where the step begins, and the edge that leaves from there.
+#[derive(Clone, Copy, Debug)]
+pub struct Moving<T = f64> {
+    /// The attitude.
+    pub attitude: Rotation<T>,
+    /// The momentum at the node.
+    pub momentum: SpatialMomentum<T>,
+    /// The edge that begins at the node.
+    pub edge: Edge<T>,
+}
+
+impl<T: Real> Moving<T> {
+    /// The body and its edge in one lane.
+    #[inline(always)]
+    pub fn from(&self, lane: usize) -> (Rotation<T::One>, Edge<T::One>) {
+        (self.attitude.in_lane(lane), self.edge.in_lane(lane))
+    }
+
+    /// Puts one body into its lane; says whether its momentum is finite.
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, one: Moving<T::One>) -> bool {
+        let [[x, y, z]] = one.momentum.0.data.0;
+        self.attitude.set_one(lane, one.attitude);
+        self.momentum.set_one(lane, one.momentum);
+        self.edge.set_one(lane, one.edge);
+        x.is_finite() & y.is_finite() & z.is_finite()
+    }
+}
+
+/// A model whose step can be made lane by lane without a branch, where it is an easy one.
+pub trait SideBySide: Stepper {
+    /// What a step would begin with; nothing where the workspace is not that of the state, or asks
+    /// for another solver.
+    fn moving(
+        &self,
+        state: &Self::State,
+        workspace: &Self::Workspace,
+    ) -> Option<Moving<Self::Scalar>>;
+
+    /// Leaves it in state and workspace, `steps` nodes further.
+    fn arrive(
+        state: &mut Self::State,
+        workspace: &mut Self::Workspace,
+        moving: &Moving<Self::Scalar>,
+        steps: u64,
+    );
+
+    /// Whether the body is given in principal axes.
+    fn is_diagonal(&self, workspace: &Self::Workspace) -> bool;
+
+    /// One step of every lane; whether all were easy. Otherwise what it leaves is of no meaning.
+    fn step_lanes<const DIAGONAL: bool>(
+        &self,
+        state: &Self::State,
+        workspace: &Self::Workspace,
+        from: &Moving<Self::Scalar>,
+        to: &mut Moving<Self::Scalar>,
+    ) -> bool;
+}
+
+/// Steps one after the other: easy ones in a loop over the lanes, others by the model's own step,
+/// with the same result.
+///
+/// # Errors
+/// As [`Stepper::advance`].
+#[inline(always)]
+pub fn advance_side_by_side<M: SideBySide>(
+    model: &M,
+    state: &mut M::State,
+    workspace: &mut M::Workspace,
+    count: u64,
+) -> Result<(), StepError> {
+    let mut left = count;
+    while left > 0 {
+        left -= match model.is_diagonal(workspace) {
+            true => easy_steps::<M, true>(model, state, workspace, left),
+            false => easy_steps::<M, false>(model, state, workspace, left),
+        };
+        if left > 0 {
+            model.advance(state, workspace)?;
+            left -= 1;
+        }
+    }
+    Ok(())
+}
+
+/// Up to `most` easy steps; how many were made.
+#[inline(always)]
+fn easy_steps<M: SideBySide, const DIAGONAL: bool>(
+    model: &M,
+    state: &mut M::State,
+    workspace: &mut M::Workspace,
+    most: u64,
+) -> u64 {
+    let Some(mut here) = model.moving(state, workspace) else {
+        return 0;
+    };
+    // To and fro between two places: a step that was not easy leaves what it began with.
+    let mut there = here;
+    let mut made = 0;
+    while made < most {
+        if !model.step_lanes::<DIAGONAL>(state, workspace, &here, &mut there) {
+            break;
+        }
+        made += 1;
+        if made == most || !model.step_lanes::<DIAGONAL>(state, workspace, &there, &mut here) {
+            here = there;
+            break;
+        }
+        made += 1;
+    }
+    if made > 0 {
+        M::arrive(state, workspace, &here, made);
+    }
+    made
+}
