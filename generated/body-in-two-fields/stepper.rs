@@ -206,6 +206,30 @@ pub mod body_in_two_fields {
                 Ok(turned) => turned,
                 Err(e) => return Err(self.refused(*state, &self.factor, h, e)),
             };
+            let arrival = self.arrived(state, edge, h, Λ_moved);
+            if !all_finite(&arrival.momentum.0) {
+                return Err(
+                    StepCause::NotFinite {
+                        what: "momentum",
+                    }
+                        .at_node(state.node),
+                );
+            }
+            (state.Λ, work.here.Λ) = (arrival.attitude, arrival.attitude);
+            (state.momentum, work.here.momentum) = (arrival.momentum, arrival.momentum);
+            state.node += 1;
+            work.edge = arrival.edge;
+            Ok(())
+        }
+        /// The next node and the edge that begins there, given the attitude there.
+        #[inline(always)]
+        fn arrived(
+            &self,
+            state: &BodyInTwoFieldsState<T>,
+            edge: &Edge<T>,
+            h: T,
+            Λ_moved: TurnedRotation<T>,
+        ) -> Moving<T> {
             let BodyInTwoFieldsParameters { gU, p, z, b, .. } = self.parameters;
             let Λ_next = Λ_moved.matrix();
             let Γ_next = Λ_next.tr_mul(&z);
@@ -215,23 +239,11 @@ pub mod body_in_two_fields {
             let kick = Λ_next * torque;
             let momentum_next = space + kick * T::from_f64(0.5);
             let edge_next = Edge::new(Λ_next.tr_mul(&space) + torque, space + kick);
-            if !all_finite(&momentum_next) {
-                return Err(
-                    StepCause::NotFinite {
-                        what: "momentum",
-                    }
-                        .at_node(state.node),
-                );
+            Moving {
+                attitude: Λ_moved.rotation(),
+                momentum: SpatialMomentum(momentum_next),
+                edge: edge_next,
             }
-            let (Λ_arrived, momentum_next) = (
-                Λ_moved.rotation(),
-                SpatialMomentum(momentum_next),
-            );
-            (state.Λ, work.here.Λ) = (Λ_arrived, Λ_arrived);
-            (state.momentum, work.here.momentum) = (momentum_next, momentum_next);
-            state.node += 1;
-            work.edge = edge_next;
-            Ok(())
         }
         /// The edge that begins at this state, for a step `h`.
         #[inline(never)]
@@ -293,6 +305,21 @@ pub mod body_in_two_fields {
         ) -> Result<(), StepError> {
             self.step(state, work)
         }
+        #[inline(always)]
+        fn advance_many(
+            &self,
+            state: &mut Self::State,
+            work: &mut Self::Workspace,
+            count: u64,
+        ) -> Result<(), StepError> {
+            if T::LANES > 1 {
+                return advance_side_by_side(self, state, work, count);
+            }
+            for _ in 0..count {
+                self.step(state, work)?;
+            }
+            Ok(())
+        }
         fn node(state: &Self::State) -> u64 {
             state.node
         }
@@ -301,6 +328,73 @@ pub mod body_in_two_fields {
                 node: node,
                 ..state
             }
+        }
+    }
+    impl<T: Real> SideBySide for BodyInTwoFields<T> {
+        #[inline(always)]
+        fn moving(
+            &self,
+            state: &BodyInTwoFieldsState<T>,
+            work: &BodyInTwoFieldsWorkspace<T>,
+        ) -> Option<Moving<T>> {
+            let another = work.method != Method::Kappa || work.here.Λ != state.Λ
+                || work.here.momentum != state.momentum;
+            (!another)
+                .then_some(Moving {
+                    attitude: state.Λ,
+                    momentum: state.momentum,
+                    edge: work.edge,
+                })
+        }
+        #[inline(always)]
+        fn arrive(
+            state: &mut BodyInTwoFieldsState<T>,
+            work: &mut BodyInTwoFieldsWorkspace<T>,
+            moving: &Moving<T>,
+            steps: u64,
+        ) {
+            (state.Λ, state.momentum) = (moving.attitude, moving.momentum);
+            state.node += steps;
+            (work.here, work.edge) = (*state, moving.edge);
+        }
+        #[inline(always)]
+        fn is_diagonal(&self, work: &BodyInTwoFieldsWorkspace<T>) -> bool {
+            let _ = work;
+            self.factor.is_diagonal()
+        }
+        #[inline(always)]
+        fn step_lanes<const DIAGONAL: bool>(
+            &self,
+            state: &BodyInTwoFieldsState<T>,
+            work: &BodyInTwoFieldsWorkspace<T>,
+            from: &Moving<T>,
+            to: &mut Moving<T>,
+        ) -> bool {
+            let mut easy = true;
+            for lane in 0..T::LANES {
+                let (attitude, edge) = from.from(lane);
+                let (h, factor) = (work.h.one_of(lane), self.factor.in_lane(lane));
+                let (turned, found) = edge
+                    .turn_at_once::<DIAGONAL>(&factor, h, &attitude);
+                let model = BodyInTwoFields::<<T as Real>::One> {
+                    parameters: BodyInTwoFieldsParameters {
+                        J: self.parameters.J.in_lane(lane),
+                        gU: self.parameters.gU.in_lane(lane),
+                        p: self.parameters.p.in_lane(lane),
+                        z: self.parameters.z.in_lane(lane),
+                        b: self.parameters.b.in_lane(lane),
+                    },
+                    factor: self.factor.in_lane(lane),
+                    method: self.method,
+                };
+                let state = BodyInTwoFieldsState::<<T as Real>::One> {
+                    Λ: attitude,
+                    momentum: from.momentum.in_lane(lane),
+                    node: state.node,
+                };
+                easy &= found & to.set(lane, model.arrived(&state, &edge, h, turned));
+            }
+            easy
         }
     }
     impl<T: Real> Reversible for BodyInTwoFields<T> {}

@@ -236,6 +236,30 @@ pub mod heavy_top_spatial {
                 Ok(turned) => turned,
                 Err(e) => return Err(self.refused(*state, &work.factor, h, e)),
             };
+            let arrival = self.arrived(state, edge, h, Λ_moved);
+            if !all_finite(&arrival.momentum.0) {
+                return Err(
+                    StepCause::NotFinite {
+                        what: "momentum",
+                    }
+                        .at_node(state.node),
+                );
+            }
+            (state.Λ, work.here.Λ) = (arrival.attitude, arrival.attitude);
+            (state.momentum, work.here.momentum) = (arrival.momentum, arrival.momentum);
+            state.node += 1;
+            work.edge = arrival.edge;
+            Ok(())
+        }
+        /// The next node and the edge that begins there, given the attitude there.
+        #[inline(always)]
+        fn arrived(
+            &self,
+            state: &HeavyTopSpatialState<T>,
+            edge: &Edge<T>,
+            h: T,
+            Λ_moved: TurnedRotation<T>,
+        ) -> Moving<T> {
             let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
             let Λ_next = Λ_moved.turning();
             let χ_reference = state.χ;
@@ -246,23 +270,11 @@ pub mod heavy_top_spatial {
             let momentum_next = space + kick * T::from_f64(0.5);
             let left = space + kick;
             let edge_next = Edge::new(Λ_next.tr_mul(&space) + torque, left);
-            if !all_finite(&momentum_next) {
-                return Err(
-                    StepCause::NotFinite {
-                        what: "momentum",
-                    }
-                        .at_node(state.node),
-                );
+            Moving {
+                attitude: Λ_moved.rotation(),
+                momentum: SpatialMomentum(momentum_next),
+                edge: edge_next,
             }
-            let (Λ_arrived, momentum_next) = (
-                Λ_moved.rotation(),
-                SpatialMomentum(momentum_next),
-            );
-            (state.Λ, work.here.Λ) = (Λ_arrived, Λ_arrived);
-            (state.momentum, work.here.momentum) = (momentum_next, momentum_next);
-            state.node += 1;
-            work.edge = edge_next;
-            Ok(())
         }
         /// The edge that begins at this state, for a step `h`.
         #[inline(never)]
@@ -323,6 +335,21 @@ pub mod heavy_top_spatial {
         ) -> Result<(), StepError> {
             self.step(state, work)
         }
+        #[inline(always)]
+        fn advance_many(
+            &self,
+            state: &mut Self::State,
+            work: &mut Self::Workspace,
+            count: u64,
+        ) -> Result<(), StepError> {
+            if T::LANES > 1 {
+                return advance_side_by_side(self, state, work, count);
+            }
+            for _ in 0..count {
+                self.step(state, work)?;
+            }
+            Ok(())
+        }
         fn node(state: &Self::State) -> u64 {
             state.node
         }
@@ -331,6 +358,72 @@ pub mod heavy_top_spatial {
                 node: node,
                 ..state
             }
+        }
+    }
+    impl<T: Real> SideBySide for HeavyTopSpatial<T> {
+        #[inline(always)]
+        fn moving(
+            &self,
+            state: &HeavyTopSpatialState<T>,
+            work: &HeavyTopSpatialWorkspace<T>,
+        ) -> Option<Moving<T>> {
+            let another = work.method != Method::Kappa || work.here.Λ != state.Λ
+                || work.here.momentum != state.momentum
+                || !(same(&work.here.J, &state.J) & same(&work.here.χ, &state.χ));
+            (!another)
+                .then_some(Moving {
+                    attitude: state.Λ,
+                    momentum: state.momentum,
+                    edge: work.edge,
+                })
+        }
+        #[inline(always)]
+        fn arrive(
+            state: &mut HeavyTopSpatialState<T>,
+            work: &mut HeavyTopSpatialWorkspace<T>,
+            moving: &Moving<T>,
+            steps: u64,
+        ) {
+            (state.Λ, state.momentum) = (moving.attitude, moving.momentum);
+            state.node += steps;
+            (work.here, work.edge) = (*state, moving.edge);
+        }
+        #[inline(always)]
+        fn is_diagonal(&self, work: &HeavyTopSpatialWorkspace<T>) -> bool {
+            let _ = work;
+            work.factor.is_diagonal()
+        }
+        #[inline(always)]
+        fn step_lanes<const DIAGONAL: bool>(
+            &self,
+            state: &HeavyTopSpatialState<T>,
+            work: &HeavyTopSpatialWorkspace<T>,
+            from: &Moving<T>,
+            to: &mut Moving<T>,
+        ) -> bool {
+            let mut easy = true;
+            for lane in 0..T::LANES {
+                let (attitude, edge) = from.from(lane);
+                let (h, factor) = (work.h.one_of(lane), work.factor.in_lane(lane));
+                let (turned, found) = edge
+                    .turn_at_once::<DIAGONAL>(&factor, h, &attitude);
+                let model = HeavyTopSpatial::<<T as Real>::One> {
+                    parameters: HeavyTopSpatialParameters {
+                        w: self.parameters.w.in_lane(lane),
+                        z: self.parameters.z.in_lane(lane),
+                    },
+                    method: self.method,
+                };
+                let state = HeavyTopSpatialState::<<T as Real>::One> {
+                    Λ: attitude,
+                    momentum: from.momentum.in_lane(lane),
+                    J: state.J.in_lane(lane),
+                    χ: state.χ.in_lane(lane),
+                    node: state.node,
+                };
+                easy &= found & to.set(lane, model.arrived(&state, &edge, h, turned));
+            }
+            easy
         }
     }
     impl<T: Real> Reversible for HeavyTopSpatial<T> {}
