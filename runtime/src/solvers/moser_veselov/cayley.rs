@@ -128,11 +128,15 @@ impl<T: Real> Orbit<T> {
     /// As [`Pencil::solve`].
     #[inline(always)]
     pub(super) fn solve(&self, body: &Poinsot<T>, u: [T; 3]) -> (T, [T; 3]) {
-        let [a, b, c] = gyroscopic::<T, true>(body, u);
         let ([x, y, z], [p, q, r]) = (u, self.adjugate);
-        let [constant, factor] = self.determinant;
+        let ([a, b, c], [constant, factor]) = (body.differences, self.determinant);
         let det = constant + factor * (y * y);
-        (det, [p * x + a, q * y + b, r * z + c])
+        let n = [
+            p * x + a * (y * z),
+            q * y + b * (z * x),
+            r * z + c * (x * y),
+        ];
+        (det, n)
     }
 
     /// Twice `(I n) x n`.
@@ -146,5 +150,5 @@ impl<T: Real> Orbit<T> {
 /// `det^2 + |n|^2`.
 #[inline(always)]
 pub(super) fn square_sum<T: Real>(det: T, [x, y, z]: [T; 3]) -> T {
-    (det * det + x * x) + (y * y + z * z)
+    (x * x + y * y) + (z * z + det * det)
 }

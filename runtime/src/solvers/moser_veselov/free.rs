@@ -21,7 +21,7 @@ const PROJECT_EVERY: u32 = 64;
 
 /// Steps between two repairs of the attitude's length: the rounding errors of a step's norm have a
 /// common sign, and would add up until the projection.
-const REPAIR_EVERY: u32 = 4;
+const REPAIR_EVERY: u32 = 8;
 
 /// Relative change of the energy, in roundings, up to which a new attitude is one of the same
 /// trajectory: those of some projections.
