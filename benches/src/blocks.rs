@@ -19,18 +19,29 @@ pub struct Comparison {
     pub quartiles: [f64; 2],
 }
 
-/// Times both; `generated` and `hand` make work that is ready to run, outside the clock.
+/// Times both; `generated` and `hand` make work that is ready to run, outside the clock: blocks of [`STEPS`] steps.
 pub fn compare<A: FnOnce(), B: FnOnce()>(
+    generated: impl Fn() -> A,
+    hand: impl Fn() -> B,
+) -> Comparison {
+    compare_blocks(STEPS, STEPS, QUADRUPLES, generated, hand)
+}
+
+/// The same with blocks of so many steps each, in so many groups of four.
+pub fn compare_blocks<A: FnOnce(), B: FnOnce()>(
+    steps_generated: u32,
+    steps_hand: u32,
+    quadruples: usize,
     generated: impl Fn() -> A,
     hand: impl Fn() -> B,
 ) -> Comparison {
     let (mut first, mut second, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
     // The first groups warm caches, predictors and clock frequency.
-    for group in 0..QUADRUPLES + 5 {
-        let a1 = time(generated());
-        let b1 = time(hand());
-        let b2 = time(hand());
-        let a2 = time(generated());
+    for group in 0..quadruples + 5 {
+        let a1 = time(steps_generated, generated());
+        let b1 = time(steps_hand, hand());
+        let b2 = time(steps_hand, hand());
+        let a2 = time(steps_generated, generated());
         if group >= 5 {
             first.extend([a1, a2]);
             second.extend([b1, b2]);
@@ -50,10 +61,10 @@ pub fn computed() -> f64 {
     now.tv_sec as f64 * 1e9 + now.tv_nsec as f64
 }
 
-fn time(work: impl FnOnce()) -> f64 {
+fn time(steps: u32, work: impl FnOnce()) -> f64 {
     let begin = computed();
     work();
-    (computed() - begin) / f64::from(STEPS)
+    (computed() - begin) / f64::from(steps)
 }
 
 fn quantile(times: &mut [f64], share: f64) -> f64 {

@@ -1,8 +1,8 @@
 //! The generated free body as one of the methods that are compared, and what all of them start from.
 //! Takes principal moments, a momentum and a step; gives a start, and the generated motion from it.
 
-use crate::blocks::STEPS;
 use clebsch::nalgebra::{Matrix3, Vector3};
+use clebsch::solvers::Method;
 use clebsch::{BodyMomentum, Order, Rotation};
 use clebsch_comparisons::body::{BodyMotion, Start};
 use clebsch_comparisons::handwritten::Unsolvable;
@@ -24,6 +24,18 @@ pub fn start_of(moments: [f64; 3], body_momentum: [f64; 3], h: f64) -> Start {
     }
 }
 
+/// Parameters and initial data of the generated model.
+pub fn body_of(start: &Start) -> (FreeBodyParameters, FreeBodyInitial) {
+    let parameters = FreeBodyParameters {
+        J: Matrix3::from_fn(|r, c| start.poinsot[r][c]),
+    };
+    let initial = FreeBodyInitial {
+        Λ: Rotation::from_quaternion(start.attitude.0).expect("a unit quaternion"),
+        body_momentum: BodyMomentum(Vector3::from(start.body_momentum)),
+    };
+    (parameters, initial)
+}
+
 /// The generated stepper as one of the methods.
 #[derive(Clone)]
 pub struct Generated {
@@ -38,14 +50,15 @@ pub struct Generated {
 impl Generated {
     /// Starts a motion that is known to be solvable.
     pub fn start(start: &Start, order: Order) -> Self {
-        let model = FreeBody::new(FreeBodyParameters {
-            J: Matrix3::from_fn(|r, c| start.poinsot[r][c]),
-        })
-        .expect("a body");
-        let initial = FreeBodyInitial {
-            Λ: Rotation::from_quaternion(start.attitude.0).expect("a unit quaternion"),
-            body_momentum: BodyMomentum(Vector3::from(start.body_momentum)),
-        };
+        Self::solved_by(start, order, Method::Kappa)
+    }
+
+    /// The same, its steps solved by the solver named.
+    pub fn solved_by(start: &Start, order: Order, method: Method) -> Self {
+        let (parameters, initial) = body_of(start);
+        let model = FreeBody::new(parameters)
+            .expect("a body")
+            .with_solver(method);
         let (state, workspace) = model
             .start_of_order(initial, start.h, order)
             .expect("solvable");
@@ -56,12 +69,12 @@ impl Generated {
         }
     }
 
-    /// A block of steps, as a user writes the loop.
-    pub fn block(self) -> impl FnOnce() {
+    /// A block of so many steps, as a user writes the loop.
+    pub fn block(self, steps: u32) -> impl FnOnce() {
         move || {
             let (model, mut state, mut workspace) =
                 black_box((self.model, self.state, self.workspace));
-            for _ in 0..STEPS {
+            for _ in 0..steps {
                 model.step(&mut state, &mut workspace).expect("solvable");
             }
             black_box((&state, &workspace));

@@ -1,8 +1,8 @@
 //! The picture: error against time of the processor, both logarithmic, one curve a method.
 //! Takes what was measured; gives SVG.
 
+use super::precision::{MOMENTS, MOMENTUM, TIME};
 use super::timing::Measured;
-use super::{MOMENTS, MOMENTUM, TIME};
 use clebsch_cli::plots::axis::Axis;
 use clebsch_cli::plots::curve::{Curve, Marks, Stroke};
 use clebsch_cli::plots::figure::{Figure, Panel};

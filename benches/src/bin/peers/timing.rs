@@ -1,7 +1,7 @@
 //! Times of many short integrations, interleaved: every round makes a block of each, so that a drift of the machine falls
 //! on all alike. Takes runs; gives the error of each and the median of its times.
 
-use super::{MOMENTS, MOMENTUM};
+use super::precision::{MOMENTS, MOMENTUM};
 use clebsch::DoubleDouble;
 use clebsch_benches::blocks::computed;
 use clebsch_benches::body::start_of;

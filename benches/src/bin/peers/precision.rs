@@ -1,54 +1,28 @@
 //! Error of the free body at time 100 against processor time, for the generated stepper of every order and for other
-//! methods. `cargo run --release --manifest-path benches/Cargo.toml --bin work_precision -- FOLDER [--python]`, a minute or
-//! two. Writes the picture into the folder and prints tables; `--python` measures heyoka, SciPy and PyElastica too.
+//! methods. Takes what was measured of peers in Python, or why they are missing; prints tables, gives all points.
 
-// The fields of the models are Greek letters, as in the papers.
-#![allow(mixed_script_confusables)]
-
-#[path = "work_precision/drawing.rs"]
-mod drawing;
-#[path = "work_precision/methods.rs"]
-mod methods;
-#[path = "work_precision/python.rs"]
-mod python;
-#[path = "work_precision/timing.rs"]
-mod timing;
-
-use std::path::Path;
-use std::process::ExitCode;
-use timing::Measured;
+use super::timing::{self, Measured};
+use super::{drawing, methods};
 
 /// Principal moments, momentum and time of the problem.
-const MOMENTS: [f64; 3] = [3.5, 2.5, 2.0];
-const MOMENTUM: [f64; 3] = [-0.5, 0.0, 1.0];
-const TIME: f64 = 100.0;
+pub const MOMENTS: [f64; 3] = [3.5, 2.5, 2.0];
+/// Its body momentum at the start.
+pub const MOMENTUM: [f64; 3] = [-0.5, 0.0, 1.0];
+/// Its end.
+pub const TIME: f64 = 100.0;
 
 /// Errors at which methods are compared.
 const LEVELS: [f64; 6] = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 5e-14];
 
-fn main() -> ExitCode {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let Some(folder) = arguments.iter().find(|a| !a.starts_with("--")) else {
-        eprintln!("which folder shall the picture go to?");
-        return ExitCode::from(2);
-    };
+/// Measures the methods written in Rust, and prints all.
+pub fn tables(peers: Result<(String, Vec<Measured>), String>) -> Vec<Measured> {
     let mut measured = timing::measure(methods::all());
-    let peers = match arguments.iter().any(|a| a == "--python") {
-        true => python::measured(),
-        false => Err("not asked for (--python)".to_owned()),
-    };
-    println!(
-        "{}, {} lanes of {}",
-        env!("RUSTC_VERSION"),
-        methods::LANES,
-        vectors()
-    );
     match peers {
         Ok((versions, others)) => {
-            println!("{versions}");
+            println!("\n{versions}");
             measured.extend(others);
         }
-        Err(reason) => println!("heyoka, SciPy, PyElastica: {reason}"),
+        Err(reason) => println!("\nheyoka, SciPy, PyElastica: {reason}"),
     }
     println!("\nMicroseconds until time {TIME} of the cheapest setting whose error is at most\n");
     levels(&measured);
@@ -62,16 +36,7 @@ fn main() -> ExitCode {
             m.method, m.setting, m.error, m.micros
         );
     }
-    let file = Path::new(folder).join("work-precision.svg");
-    let drawn = drawing::svg(&measured)
-        .and_then(|svg| std::fs::write(&file, svg).map_err(|e| e.to_string()));
-    match drawn {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(reason) => {
-            eprintln!("{}: {reason}", file.display());
-            ExitCode::FAILURE
-        }
-    }
+    measured
 }
 
 /// How much longer others take than the generated stepper of order ten, with the cheapest step for a level and with the
@@ -114,16 +79,6 @@ fn ratios(measured: &[Measured]) {
             [1e-6, 1e-10, 5e-14].map(|level| said(cheapest(method, level) / cheapest(own, level)));
         let last = said(cheapest(method, 5e-14) / of_step(own).0);
         println!("| {method} | {} | {last} |", cells.join(" | "));
-    }
-}
-
-/// The vector instructions that this program was built for.
-fn vectors() -> &'static str {
-    match () {
-        () if cfg!(target_feature = "avx512f") => "AVX-512",
-        () if cfg!(target_feature = "avx2") => "AVX2",
-        () if cfg!(target_feature = "sse2") => "SSE2",
-        () => "plain numbers",
     }
 }
 

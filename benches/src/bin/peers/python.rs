@@ -1,8 +1,8 @@
 //! Peers that live in Python, measured by a script beside this crate in an environment of its own.
 //! Takes nothing; gives their points, or why there are none.
 
+use super::precision::{MOMENTS, MOMENTUM, TIME};
 use super::timing::{Measured, error};
-use super::{MOMENTS, MOMENTUM, TIME};
 use clebsch::{DoubleDouble, Real};
 use serde_json::Value;
 use std::path::Path;

@@ -1,12 +1,11 @@
 //! The methods written in Rust, each with a range of steps or tolerances: the generated stepper of every order, alone and
 //! in lanes, its compositions, splitting, the fixed point, Runge-Kutta. Takes nothing; gives runs for the clock.
 
+use super::precision::{MOMENTS, MOMENTUM, TIME};
 use super::timing::{End, Run};
-use super::{MOMENTS, MOMENTUM, TIME};
-use clebsch::integrate::{Composition, CompositionOrder, Stepper};
-use clebsch::nalgebra::{Matrix3, Vector3};
-use clebsch::{BodyMomentum, DoubleDouble, Lanes, Order, Real, Rotation};
-use clebsch_benches::body::{Generated, start_of};
+use clebsch::integrate::{Composition, CompositionOrder, Ensemble};
+use clebsch::{DoubleDouble, Order, Real};
+use clebsch_benches::body::{Generated, body_of, start_of};
 use clebsch_comparisons::body::implicit::FixedPoint;
 use clebsch_comparisons::body::splitting::{FourthOrderSplitting, Splitting};
 use clebsch_comparisons::body::{BodyMotion, Start};
@@ -14,10 +13,10 @@ use clebsch_comparisons::continuous::rigid::{Field, RigidBody};
 use clebsch_comparisons::runge_kutta::{
     Accuracy, Method54, Method85, Method98, RungeKutta, Scheme,
 };
-use clebsch_models::free_body::{FreeBody, FreeBodyInitial, FreeBodyParameters};
+use clebsch_models::free_body::FreeBody;
 
 /// Trajectories side by side.
-pub const LANES: usize = 8;
+pub const LANES: usize = 16;
 
 /// Distance of the nodes of Runge-Kutta methods: longer than the steps they take, short enough that the sum of the steps
 /// within is not rounded visibly. For loose tolerances, and for those below 1e-9.
@@ -126,37 +125,24 @@ fn nowhere() -> End {
     ([f64::NAN; 4], [f64::NAN; 3])
 }
 
-/// The same trajectory in every lane: nothing is gained by it, and every lane has its own numbers.
+/// The same trajectory in every lane of an ensemble, on the best instruction set: nothing is gained by its being the
+/// same, every lane has its own numbers.
 fn lanes(order: Order, count: u32) -> Run {
-    type Wide = Lanes<LANES>;
     let h = TIME / f64::from(count);
     let start = start_of(MOMENTS, MOMENTUM, h);
     let motion = move || {
-        let wide = Wide::from_f64;
-        let parameters = FreeBodyParameters {
-            J: Matrix3::from_fn(|r, c| wide(start.poinsot[r][c])),
-        };
-        let initial = FreeBodyInitial {
-            Λ: Rotation::identity(),
-            body_momentum: BodyMomentum(Vector3::from(start.body_momentum.map(wide))),
-        };
-        let Ok(model) = FreeBody::new(parameters) else {
+        let body = body_of(&start);
+        let bodies = std::iter::repeat_n(body, LANES);
+        let Ok(mut ensemble) = Ensemble::<FreeBody, LANES>::start_with(bodies, h, order) else {
             return nowhere();
         };
-        let Ok((mut state, mut work)) = model.start_of_order(initial, wide(h), order) else {
-            return nowhere();
-        };
-        if model
-            .advance_many(&mut state, &mut work, u64::from(count))
-            .is_err()
-        {
+        if ensemble.run(u64::from(count)).is_err() {
             return nowhere();
         }
-        let momentum: [Wide; 3] = state.body_momentum().0.into();
-        (
-            state.Λ().quaternion().map(Wide::value),
-            momentum.map(Wide::value),
-        )
+        let Some((_, state)) = ensemble.body(0) else {
+            return nowhere();
+        };
+        (state.Λ().quaternion(), state.body_momentum().0.into())
     };
     run(
         &format!("generated, order {order}, lanes"),
