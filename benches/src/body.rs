@@ -3,7 +3,7 @@
 
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::solvers::Method;
-use clebsch::{BodyMomentum, Order, Rotation};
+use clebsch::{BodyMomentum, Order, Rotation, StartError};
 use clebsch_comparisons::body::{BodyMotion, Start};
 use clebsch_comparisons::handwritten::Unsolvable;
 use clebsch_comparisons::handwritten::attitude::Quaternion;
@@ -50,23 +50,24 @@ pub struct Generated {
 impl Generated {
     /// Starts a motion that is known to be solvable.
     pub fn start(start: &Start, order: Order) -> Self {
-        Self::solved_by(start, order, Method::Kappa)
+        Self::solved_by(start, order, Method::Kappa).expect("solvable")
     }
 
     /// The same, its steps solved by the solver named.
-    pub fn solved_by(start: &Start, order: Order, method: Method) -> Self {
+    ///
+    /// # Errors
+    /// When that does not solve this body's first step.
+    pub fn solved_by(start: &Start, order: Order, method: Method) -> Result<Self, StartError> {
         let (parameters, initial) = body_of(start);
         let model = FreeBody::new(parameters)
             .expect("a body")
             .with_solver(method);
-        let (state, workspace) = model
-            .start_of_order(initial, start.h, order)
-            .expect("solvable");
-        Self {
+        let (state, workspace) = model.start_of_order(initial, start.h, order)?;
+        Ok(Self {
             model,
             state,
             workspace,
-        }
+        })
     }
 
     /// A block of so many steps, as a user writes the loop.
