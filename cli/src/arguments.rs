@@ -103,6 +103,11 @@ fn planned(command: Command, every: &'static str, out: &'static str) -> Command 
             )
             .value_parser(value_parser!(u32)),
         )
+        .arg(flag(
+            "compensated",
+            "Make steps of order 4, 6 or 8 of a free body symplectic with the attitude, by a \
+             constant turn about the momentum",
+        ))
         .arg(option(
             "solver",
             "NAME",

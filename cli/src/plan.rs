@@ -27,6 +27,8 @@ pub struct Plan {
     pub arguments: Value,
     /// The solver asked for.
     pub solver: Option<Method>,
+    /// Whether steps with modified moments are compensated.
+    pub compensated: bool,
     /// For a case read from a file: its name, and the line of each key.
     origin: Option<(String, BTreeMap<String, usize>)>,
 }
@@ -42,6 +44,7 @@ impl Plan {
         let h = matches.get_one::<f64>("h").copied();
         let every = matches.get_one::<u64>("every").copied();
         let order = matches.get_one::<u32>("order").copied();
+        let compensated = matches.get_flag("compensated");
         let solver = match matches.get_one::<String>("solver") {
             None => None,
             Some(name) => match name.parse::<Method>() {
@@ -72,9 +75,11 @@ impl Plan {
                 "order": order,
                 "every": every,
                 "solver": solver.map(Method::name),
+                "compensated": compensated,
                 "dim": size,
             }),
             solver,
+            compensated,
             origin,
         })
     }
@@ -88,6 +93,7 @@ impl Plan {
             every: every.max(1),
             arguments: Value::Null,
             solver: None,
+            compensated: false,
             origin: None,
         }
     }
@@ -108,6 +114,7 @@ impl Plan {
             h: *h,
             order: self.order,
             solver: self.solver,
+            compensated: self.compensated,
         };
         (card.open)(parameters, initial, settings).map_err(|error| match error {
             OpenError::Parameter(wrong) | OpenError::Start(StartError::Initial(wrong)) => {
@@ -118,6 +125,7 @@ impl Plan {
                 Failure::Failed(format!("cannot take the first step: {cause}"))
             }
             OpenError::Solver { .. } => Failure::Usage(format!("--solver: {error}")),
+            OpenError::Compensation { .. } => Failure::Usage(format!("--compensated: {error}")),
             OpenError::Count { .. } | OpenError::Order { .. } => Failure::Usage(error.to_string()),
         })
     }

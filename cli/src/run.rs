@@ -140,7 +140,7 @@ fn introduce(out: &mut dyn Write, card: &Card, plan: &Plan) -> Result<(), Failur
     let order = plan.order.unwrap_or(card.order);
     writeln!(out, "solver: {}; order {order}, {reversible}", card.solver)?;
     if order > card.order {
-        writeln!(out, "{}", card.method_of_order(order))?;
+        writeln!(out, "{}", card.method_of_order(order, plan.compensated))?;
     }
     let doc = first_line(&case.doc);
     let colon = if doc.is_empty() { "" } else { ": " };

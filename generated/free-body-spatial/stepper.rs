@@ -731,6 +731,7 @@ pub mod free_body_spatial {
             };
             let order = preprocessing_order(settings, Self::CARD.orders)?;
             let (state, work) = model.start_of_order(initial, settings.h, order)?;
+            let work = if settings.compensated { work.compensated() } else { work };
             Ok(
                 Box::new(FreeBodySpatialTrajectory {
                     model,

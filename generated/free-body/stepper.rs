@@ -603,6 +603,7 @@ pub mod free_body {
             };
             let order = preprocessing_order(settings, Self::CARD.orders)?;
             let (state, work) = model.start_of_order(initial, settings.h, order)?;
+            let work = if settings.compensated { work.compensated() } else { work };
             Ok(
                 Box::new(FreeBodyTrajectory {
                     model,

@@ -102,9 +102,16 @@ pub struct Settings {
     pub order: Option<u32>,
     /// The solver of the implicit step, one of [`Card::solvers`]; the model's own where none is given.
     pub solver: Option<Method>,
+    /// Whether steps with modified moments are made symplectic with the attitude by a constant turn
+    /// about the momentum; only for the orders of [`Settings::COMPENSATED`].
+    pub compensated: bool,
 }
 
 impl Settings {
+    /// The orders of steps with modified moments that can be compensated: of order two nothing is
+    /// missing, of order ten nothing that is known.
+    pub const COMPENSATED: [u32; 3] = [4, 6, 8];
+
     /// Plain steps of `h`.
     #[must_use]
     pub fn step(h: f64) -> Self {
@@ -112,6 +119,7 @@ impl Settings {
             h,
             order: None,
             solver: None,
+            compensated: false,
         }
     }
 
@@ -198,8 +206,13 @@ pub struct Card {
 impl Card {
     /// How steps of an order above the plain one are made, and what that costs in structure.
     #[must_use]
-    pub fn method_of_order(&self, order: u32) -> String {
-        if self.preprocessed {
+    pub fn method_of_order(&self, order: u32, compensated: bool) -> String {
+        if self.preprocessed && compensated {
+            format!(
+                "order {order} by modified moments, compensated: Poisson in the momentum; \
+                 symplectic with the attitude up to terms of h^11"
+            )
+        } else if self.preprocessed {
             format!(
                 "order {order} by modified moments: Poisson in the momentum; symplectic with the \
                  attitude only up to the error of a step"
@@ -283,6 +296,13 @@ pub enum OpenError {
         /// What there is.
         offered: &'static [u32],
     },
+    /// Steps of this kind are not compensated.
+    Compensation {
+        /// The order of the steps.
+        order: u32,
+        /// Whether the model's orders above the plain one come from modified moments.
+        preprocessed: bool,
+    },
 }
 
 impl fmt::Display for OpenError {
@@ -305,6 +325,32 @@ impl fmt::Display for OpenError {
                 expected,
                 found,
             } => write!(f, "`{field}` takes {expected} numbers, found {found}"),
+            Self::Compensation {
+                order,
+                preprocessed,
+            } => {
+                write!(
+                    f,
+                    "steps of order {order} of this model are not compensated: "
+                )?;
+                match (preprocessed, order) {
+                    (false, _) => write!(
+                        f,
+                        "they are made of its plain steps, and symplectic where those are; leave \
+                         the compensation out"
+                    ),
+                    (true, 2) => write!(
+                        f,
+                        "they are symplectic as they are; leave the compensation out, or ask for \
+                         order 4, 6 or 8"
+                    ),
+                    (true, _) => write!(
+                        f,
+                        "the series that is known ends there; leave the compensation out, or ask \
+                         for order 4, 6 or 8"
+                    ),
+                }
+            }
             Self::Order { asked, offered } => {
                 let list: Vec<String> = offered.iter().map(u32::to_string).collect();
                 write!(
@@ -330,7 +376,10 @@ impl std::error::Error for OpenError {
         match self {
             Self::Parameter(error) => Some(error),
             Self::Start(error) => Some(error),
-            Self::Solver { .. } | Self::Count { .. } | Self::Order { .. } => None,
+            Self::Solver { .. }
+            | Self::Count { .. }
+            | Self::Order { .. }
+            | Self::Compensation { .. } => None,
         }
     }
 }

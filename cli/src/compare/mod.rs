@@ -16,7 +16,7 @@ use crate::plan::Plan;
 use crate::plots;
 use crate::record::{LARGEST, Record};
 use clap::ArgMatches;
-use clebsch::card::Card;
+use clebsch::card::{Card, Settings};
 use clebsch::solvers::Method;
 use clebsch_comparisons::gallery::{Offer, Role, offers};
 use course::Course;
@@ -147,9 +147,13 @@ pub(crate) fn against_all(card: &Card, plan: &Plan, progress: bool) -> Result<Co
     for &higher in card.orders.iter().filter(|higher| **higher > order) {
         let mut plan = plan.clone();
         plan.order = Some(higher);
+        plan.compensated &= Settings::COMPENSATED.contains(&higher);
         let course = course_or_why(card, &plan);
         let time = clock::generated(card, &plan);
-        let doc = format!("the same, {}", card.method_of_order(higher));
+        let doc = format!(
+            "the same, {}",
+            card.method_of_order(higher, plan.compensated)
+        );
         scores.push(score(
             &format!("generated-{higher}"),
             doc,

@@ -9,13 +9,31 @@ use crate::{StepError, validate};
 /// The order of modified moments that the settings ask for.
 ///
 /// # Errors
-/// When there is none.
+/// When there is none, or it is to be compensated and cannot be.
 pub fn preprocessing_order(settings: Settings, orders: &'static [u32]) -> Result<Order, OpenError> {
     let asked = settings.order.unwrap_or(2);
-    Order::of_number(asked).ok_or(OpenError::Order {
+    let order = Order::of_number(asked).ok_or(OpenError::Order {
         asked,
         offered: orders,
-    })
+    })?;
+    if settings.compensated && !Settings::COMPENSATED.contains(&asked) {
+        return Err(OpenError::Compensation {
+            order: asked,
+            preprocessed: true,
+        });
+    }
+    Ok(order)
+}
+
+/// Plain and composed steps are not compensated.
+fn uncompensated(settings: Settings, orders: &'static [u32]) -> Result<(), OpenError> {
+    match settings.compensated {
+        false => Ok(()),
+        true => Err(OpenError::Compensation {
+            order: settings.order.or(orders.first().copied()).unwrap_or(2),
+            preprocessed: false,
+        }),
+    }
 }
 
 /// What makes the steps of one trajectory.
@@ -31,7 +49,7 @@ impl<S: Stepper<Scalar = f64>> Steps<S> {
     /// Plain steps, whatever the model; no other order is offered.
     ///
     /// # Errors
-    /// For another order, a step that is not positive, or a first step that cannot be made.
+    /// For another order, a compensation, a step that is not positive, or a first step that cannot be made.
     pub fn plain(
         model: &S,
         state: &S::State,
@@ -44,6 +62,7 @@ impl<S: Stepper<Scalar = f64>> Steps<S> {
                 offered: orders,
             });
         }
+        uncompensated(settings, orders)?;
         validate::positive_step(settings.h)?;
         Ok(Self::Plain(model.workspace(state, settings.h)?))
     }
@@ -75,6 +94,7 @@ impl<S: Reversible<Scalar = f64>> Steps<S> {
         let Some(order) = composed else {
             return Self::plain(model, state, settings, orders);
         };
+        uncompensated(settings, orders)?;
         validate::positive_step(settings.h)?;
         let composition = Composition::start(model, state, settings.h, order)?;
         Ok(Self::Composed(composition))

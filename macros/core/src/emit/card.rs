@@ -275,6 +275,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
             quote! {
                 let order = preprocessing_order(settings, Self::CARD.orders)?;
                 let (state, work) = model.start_of_order(initial, settings.h, order)?;
+                let work = if settings.compensated { work.compensated() } else { work };
                 Ok(Box::new(#trajectory #turbofish { model, state, work, start: state }))
             },
         )
