@@ -56,7 +56,7 @@ fn what_the_readme_quotes_was_measured() {
         let other = format!("{figure}7");
         assert!(!known.contains(other.as_str()), "{other}");
     }
-    for program in ["--bin peers", "--bin work_precision", "--bin dimensions"] {
+    for program in ["--bin peers", "--bin dimensions"] {
         assert!(results.contains(program), "no command for {program}");
     }
 }
