@@ -12,6 +12,7 @@ use clebsch::{BodyMomentum, DoubleDouble, Real, Rotation};
 use clebsch_models::coupled_bodies::{
     CoupledBodies, CoupledBodiesInitial, CoupledBodiesParameters, CoupledBodiesState,
 };
+use clebsch_models::free_body::FreeBody;
 use clebsch_models::heavy_top::{HeavyTop, HeavyTopInitial, HeavyTopParameters, HeavyTopState};
 
 type Quad = DoubleDouble;
@@ -293,4 +294,49 @@ fn one_sided_models_offer_no_composition() {
             "{order}"
         );
     }
+}
+
+#[test]
+fn compensation_is_made_where_it_is_known_and_refused_elsewhere() {
+    let matrix = |m: Matrix3<f64>| m.transpose().as_slice().to_vec();
+    let free = [matrix(poinsot())];
+    let initial = [matrix(Matrix3::identity()), vec![0.2, -0.4, 0.9]];
+    let card = FreeBody::CARD;
+    let open = |order: u32, compensated: bool| {
+        let settings = Settings {
+            compensated,
+            ..Settings::step(0.1).of_order(order)
+        };
+        (card.open)(&free, &initial, settings)
+    };
+    for order in Settings::COMPENSATED {
+        // The turn moves the body: by less than the error of a step, and more than rounding at order four.
+        let ends = [false, true].map(|compensated| {
+            let mut trajectory = open(order, compensated).expect("solvable");
+            for _ in 0..100 {
+                trajectory.step().expect("solvable");
+            }
+            let mut out = vec![0.0; card.observable_count()];
+            trajectory.observe(&mut out);
+            out
+        });
+        let [plain, turned] = &ends;
+        let apart = plain.iter().zip(turned).map(|(a, b)| (a - b).abs());
+        let apart = apart.fold(0.0, f64::max);
+        assert!(apart < 1e-4, "{order}: {apart}");
+        assert!(order > 4 || apart > 1e-12, "{order}: {apart}");
+    }
+    for order in [2, 10] {
+        let refused = open(order, true).map(|_| ()).unwrap_err();
+        assert!(matches!(refused, OpenError::Compensation { .. }), "{order}");
+        assert!(refused.to_string().contains("leave the compensation out"));
+    }
+    // A composition is symplectic as it is.
+    let top = [matrix(poinsot()), vec![0.1, -0.2, 0.6], vec![0.0, 0.0, 1.0]];
+    let settings = Settings {
+        compensated: true,
+        ..Settings::step(0.1).of_order(4)
+    };
+    let refused = (HeavyTop::CARD.open)(&top, &initial, settings).map(|_| ());
+    assert!(matches!(refused, Err(OpenError::Compensation { .. })));
 }
