@@ -216,12 +216,6 @@ fn gaps<M: Model<Scalar = f64>>(
     four.max(eight)
 }
 
-/// What rounding may do to a Newton step side by side: lanes share the number of iterations and the
-/// order of elimination, so each step may differ from the one alone by what its solver leaves, a
-/// few roundings; they add up over the steps, and tops of this kind part by a factor of less than
-/// ten in the hundred steps run.
-const NEWTON: f64 = 100.0 * 64.0 * f64::EPSILON;
-
 #[test]
 fn explicit_steps_side_by_side_are_those_alone_bit_for_bit() {
     let bodies = free_bodies(BODIES);
@@ -245,12 +239,36 @@ fn quartics_side_by_side_are_those_alone_bit_for_bit() {
 }
 
 #[test]
-fn newton_steps_side_by_side_are_those_alone_to_rounding() {
-    let hinged = gaps::<HingedTop>(&hinged_tops(BODIES), (), 100);
-    let coupled = gaps::<CoupledBodies>(&coupled_bodies(BODIES), (), 100);
-    println!("hinged {hinged:.1e}, coupled {coupled:.1e}");
-    assert!(hinged <= NEWTON, "{hinged:e}");
-    assert!(coupled <= NEWTON, "{coupled:e}");
+fn newton_steps_in_ensembles_are_those_alone_bit_for_bit() {
+    assert_eq!(gaps::<HingedTop>(&hinged_tops(BODIES), (), 100), 0.0);
+    assert_eq!(gaps::<CoupledBodies>(&coupled_bodies(BODIES), (), 100), 0.0);
+    // Their iterations are their own; the two kinds that need none share lanes.
+    let apart = [
+        HingedTop::<f64>::SIDE_BY_SIDE,
+        CoupledBodies::<f64>::SIDE_BY_SIDE,
+    ];
+    let together = [FreeBody::<f64>::SIDE_BY_SIDE, HeavyTop::<f64>::SIDE_BY_SIDE];
+    assert_eq!((apart, together), ([false; 2], [true; 2]));
+}
+
+#[test]
+fn bodies_that_step_alone_fail_as_those_in_lanes_do() {
+    let mut bodies = hinged_tops(BODIES);
+    bodies[17].0.K *= 300.0;
+    let mut ensemble = Ensemble::<HingedTop, 4>::start(bodies.clone(), H).expect("slow at first");
+    let before = states(&ensemble);
+    let refused = ensemble.run(200).expect_err("too stiff");
+    assert_eq!((refused.body, refused.among, refused.failed), (17, 1, 1));
+    for (i, state) in states(&ensemble).iter().enumerate() {
+        let stays = (16..20).contains(&i);
+        assert_eq!(*state == before[i], stays, "body {i}");
+    }
+    // Energies are looked at in lanes.
+    let energies: Vec<f64> = ensemble.observe(|m, s| m.energy(s)).collect();
+    for (i, (parameters, state)) in ensemble.bodies().enumerate() {
+        let model = HingedTop::new(parameters).expect("admissible");
+        assert_eq!(energies[i], model.energy(&state), "body {i}");
+    }
 }
 
 #[test]
@@ -303,8 +321,7 @@ fn every_group_is_gathered_and_scattered() {
         ("SE(3)", gaps::<KirchhoffBody>(&motions, (), 100)),
         ("SO(4)", gaps::<BodyN<4>>(&matrices, (), 100)),
     ] {
-        println!("{name} {gap:.1e}");
-        assert!(gap <= NEWTON, "{name}: {gap:e}");
+        assert_eq!(gap, 0.0, "{name}");
     }
 }
 
@@ -323,13 +340,14 @@ fn a_wrong_lane_is_seen() {
     let found = together::<FreeBody, 8>(&nudged, Order::Two, steps);
     let wrong: Vec<usize> = (0..BODIES).filter(|i| found[*i] != right[*i]).collect();
     assert_eq!(wrong, [13]);
-    // A thousandth of the mass of one top is far beyond the bound of Newton's steps.
+    // Bodies that step one by one are told apart, too.
     let bodies = hinged_tops(BODIES);
     let right = alone::<HingedTop>(&bodies, (), 100);
     let mut nudged = bodies;
     nudged[20].0.K *= 1.0 + 1e-9;
     let found = together::<HingedTop, 8>(&nudged, (), 100);
-    assert!(gap(&found, &right) > NEWTON);
+    let wrong: Vec<usize> = (0..BODIES).filter(|i| found[*i] != right[*i]).collect();
+    assert_eq!(wrong, [20]);
 }
 
 #[test]

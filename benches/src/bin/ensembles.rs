@@ -237,6 +237,59 @@ fn equations<const N: usize>(count: usize) -> Vec<(Poinsot<Lanes<N>>, Vector3<La
     (0..count / N).map(group).collect()
 }
 
+/// A group of free bodies: the body, its momentum in the body frame and its attitude.
+type Turning<const N: usize> = (Poinsot<Lanes<N>>, Vector3<Lanes<N>>, Rotation<Lanes<N>>);
+
+/// Free bodies whose root is found anew at every step.
+struct Anew<'a, const N: usize>(&'a mut [Turning<N>], usize);
+impl<const N: usize> Work for Anew<'_, N> {
+    type Output = ();
+    #[inline(always)]
+    fn done(self) {
+        let h = Lanes([H; N]);
+        for (body, momentum, attitude) in self.0 {
+            let (mut m, mut a) = (*momentum, *attitude);
+            for _ in 0..self.1 {
+                if let Ok(rotation) = forced(body, &Vector3::new(m.x * h, m.y * h, m.z * h)) {
+                    m = rotation.inverse_rotate(&m);
+                    a = a * rotation;
+                }
+            }
+            (*momentum, *attitude) = (m, a);
+        }
+    }
+}
+fn turning<const N: usize>(count: usize) -> Vec<Turning<N>> {
+    let group = |at: usize| {
+        let body = Poinsot::new(gather(|i| poinsot(at * N + i))).expect("a body");
+        (
+            body,
+            gather(|i| vector(at * N + i, 3)),
+            gather(|i| Rotation::exp(&vector(at * N + i, 6))),
+        )
+    };
+    (0..count / N).map(group).collect()
+}
+fn way<const N: usize>(ways: &mut Vec<Way<'_>>, count: usize, steps: usize) {
+    for (name, set) in SETS {
+        let mut list = turning::<N>(count);
+        ways.push(Way::new(format!("{N} lanes, {name}"), move || {
+            set.run(Anew(&mut list, steps));
+            black_box(&list);
+        }));
+    }
+}
+fn anew(count: usize, steps: usize) {
+    let mut ways = vec![];
+    way::<1>(&mut ways, count, steps);
+    ways.truncate(1);
+    way::<8>(&mut ways, count, steps);
+    way::<16>(&mut ways, count, steps);
+    let title =
+        format!("free body, its root anew at every step: {count} bodies, {steps} steps a call");
+    race(&title, (count * steps) as f64, ways);
+}
+
 fn quartic(count: usize) {
     const REPEATS: usize = 64;
     let (one, eight, sixteen) = (
@@ -265,7 +318,7 @@ fn quartic(count: usize) {
             }
         }));
     }
-    let title = format!("quartic alone, with its quaternion: {count} equations");
+    let title = format!("quartic with its quaternion, normalised: {count} equations");
     race(&title, (count * REPEATS) as f64, ways);
 }
 
@@ -285,6 +338,7 @@ fn main() {
     table::<FreeBody>("free body, order 10", free_body, Order::Ten, [100_000, 64]);
     quartic(256);
     quartic(4096);
+    anew(256, 64);
     table::<HeavyTop>("heavy top", heavy_top, (), [256, 64]);
     table::<HeavyTop>("heavy top", heavy_top, (), [100_000, 64]);
     table::<StiffTop>("stiff top, by Newton", stiff_top, (), [256, 64]);

@@ -17,6 +17,10 @@ pub trait Model:
     /// What may be chosen about the steps; the order of a free body, nothing for most models.
     type Choice: Copy + Debug + Default + Send + Sync;
 
+    /// Whether an ensemble steps its bodies side by side in lanes: explicit steps and those with a
+    /// quartic gain by it. Iterations of which each body needs its own number do not.
+    const SIDE_BY_SIDE: bool;
+
     /// The same model over another scalar.
     type Over<U: Real>: Model<
             Scalar = U,

@@ -6,6 +6,7 @@ use super::names::{Names, item, own, per_configuration};
 use super::sizes::Generics;
 use crate::check::spec::Side;
 use crate::derive::Derivation;
+use crate::derive::recognise::Method;
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
@@ -56,6 +57,10 @@ pub fn over_any_scalar(d: &Derivation, names: &Names) -> TokenStream {
 
     let (name, given) = (item(d, ""), item(d, "Parameters"));
     let (initial, state) = (item(d, "Initial"), item(d, "State"));
+    let side_by_side = matches!(
+        d.solve.method,
+        Method::FreeMoserVeselov | Method::ForcedMoserVeselov
+    );
     let (choice, chosen, passed) = if super::stepper::preprocessed(d) {
         (quote!(Order), quote!(order), Some(quote!(, order)))
     } else {
@@ -69,6 +74,7 @@ pub fn over_any_scalar(d: &Derivation, names: &Names) -> TokenStream {
             type Initial = #initial #used;
             type Choice = #choice;
             type Over<#other: Real> = #name #other_used;
+            const SIDE_BY_SIDE: bool = #side_by_side;
             fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
                 Self::new(parameters)
             }

@@ -25,11 +25,32 @@ pub(super) struct Steps<C> {
 /// `N` bodies.
 #[derive(Clone, Debug)]
 pub(super) struct Group<M: Model<Scalar = f64>, const N: usize> {
-    pub(super) model: Wide<M, N>,
-    pub(super) state: <Wide<M, N> as Stepper>::State,
-    workspace: <Wide<M, N> as Stepper>::Workspace,
-    /// Where each body was when the group was at its node 0.
-    begun: [u64; N],
+    model: Wide<M, N>,
+    moving: Together<M, N>,
+}
+
+/// What moves, and what is kept between its steps.
+#[derive(Clone, Debug)]
+enum Together<M: Model<Scalar = f64>, const N: usize> {
+    /// In the lanes.
+    Lanes {
+        state: <Wide<M, N> as Stepper>::State,
+        workspace: <Wide<M, N> as Stepper>::Workspace,
+        /// Where each body was when the group was at its node 0.
+        begun: [u64; N],
+    },
+    /// One by one.
+    Alone(Vec<Single<M>>),
+}
+
+/// A body that steps alone.
+#[derive(Clone, Debug)]
+struct Single<M: Model<Scalar = f64>> {
+    model: M,
+    state: M::State,
+    workspace: M::Workspace,
+    /// Where it was before the steps that are being made.
+    before: M::State,
 }
 
 impl<M: Model<Scalar = f64>, const N: usize> Group<M, N> {
@@ -42,35 +63,58 @@ impl<M: Model<Scalar = f64>, const N: usize> Group<M, N> {
     ) -> Option<Result<Self, EnsembleError<StartError>>> {
         let last = bodies.last()?;
         let body = |i: usize| bodies.get(i).unwrap_or(last);
-        let begun = || {
-            let model = Wide::<M, N>::of(gather(|i| body(i).0))?;
-            let state = gather::<M::State, N>(|i| M::at_node(body(i).1, 0));
-            let workspace = model.prepare(&state, Lanes([steps.h; N]), steps.choice)?;
-            Ok(Self {
+        let alone = |(parameters, state): &Body<M>| {
+            let model = M::of(*parameters)?;
+            let workspace = model.prepare(state, steps.h, steps.choice)?;
+            Ok(Single {
                 model,
-                state,
+                state: *state,
                 workspace,
-                begun: from_fn(|i| M::node(&body(i).1)),
+                before: *state,
             })
         };
-        Some(begun().map_err(|cause| {
-            let alone = |(parameters, state): &Body<M>| {
-                let model = M::of(*parameters)?;
-                model.prepare(state, steps.h, steps.choice).map(|_| ())
+        let begun = || {
+            let model = Wide::<M, N>::of(gather(|i| body(i).0))?;
+            // A constant: of the two only one is compiled.
+            let moving = if M::SIDE_BY_SIDE {
+                let state = gather(|i| M::at_node(body(i).1, 0));
+                let workspace = model.prepare(&state, Lanes([steps.h; N]), steps.choice)?;
+                Together::Lanes {
+                    state,
+                    workspace,
+                    begun: from_fn(|i| M::node(&body(i).1)),
+                }
+            } else {
+                Together::Alone(
+                    bodies
+                        .iter()
+                        .map(alone)
+                        .collect::<Result<_, StartError>>()?,
+                )
             };
-            told(bodies.iter().map(alone), first, cause)
-        }))
+            Ok(Self { model, moving })
+        };
+        Some(
+            begun()
+                .map_err(|cause| told(bodies.iter().map(|b| alone(b).map(|_| ())), first, cause)),
+        )
     }
 
-    /// Steps of all bodies; those of the first `bodies` lanes count. After an error the state is
-    /// what it was.
+    /// Steps of all bodies. After an error the states are what they were.
     #[inline(always)]
     pub(super) fn advance(&mut self, count: u64) -> Result<(), StepError> {
-        let mut moving = self.state;
-        self.model
-            .advance_many(&mut moving, &mut self.workspace, count)?;
-        self.state = moving;
-        Ok(())
+        match &mut self.moving {
+            Together::Lanes {
+                state, workspace, ..
+            } if M::SIDE_BY_SIDE => {
+                let mut moving = *state;
+                self.model.advance_many(&mut moving, workspace, count)?;
+                *state = moving;
+                Ok(())
+            }
+            Together::Lanes { .. } => Ok(()),
+            Together::Alone(bodies) => one_by_one(bodies, count),
+        }
     }
 
     /// Which of the `bodies` bodies is to blame for `cause`: each is run alone.
@@ -84,7 +128,7 @@ impl<M: Model<Scalar = f64>, const N: usize> Group<M, N> {
         cause: StepError,
     ) -> EnsembleError<StepError> {
         let alone = |at: usize| {
-            let (parameters, mut state) = self.body(at);
+            let (parameters, mut state) = self.body(at).ok_or(cause)?;
             let node = M::node(&state);
             let refused = |e: StartError| match e {
                 StartError::Refused(cause) => cause.at_node(node),
@@ -99,16 +143,51 @@ impl<M: Model<Scalar = f64>, const N: usize> Group<M, N> {
         told((0..bodies).map(alone), first, cause)
     }
 
-    /// The body in a lane.
-    pub(super) fn body(&self, at: usize) -> Body<M> {
-        let begun = self.begun.get(at).copied().unwrap_or(0);
-        let node = begun.saturating_add(Wide::<M, N>::node(&self.state));
-        let state = lane::<M::State, N>(&self.state, at);
-        (
-            lane::<M::Parameters, N>(self.model.given(), at),
-            M::at_node(state, node),
-        )
+    /// The model and the state in the lanes, to be looked at.
+    pub(super) fn shown(&self) -> (&Wide<M, N>, <Wide<M, N> as Stepper>::State) {
+        let state = match &self.moving {
+            Together::Lanes { state, .. } => *state,
+            Together::Alone(bodies) => gather(|i| {
+                let last = bodies.len().saturating_sub(1);
+                M::at_node(bodies[i.min(last)].state, 0)
+            }),
+        };
+        (&self.model, state)
     }
+
+    /// The body in a lane.
+    pub(super) fn body(&self, at: usize) -> Option<Body<M>> {
+        let state = match &self.moving {
+            Together::Lanes { state, begun, .. } => {
+                let begun = begun.get(at).copied()?;
+                let node = begun.saturating_add(Wide::<M, N>::node(state));
+                M::at_node(lane::<M::State, N>(state, at), node)
+            }
+            Together::Alone(bodies) => bodies.get(at)?.state,
+        };
+        Some((lane::<M::Parameters, N>(self.model.given(), at), state))
+    }
+}
+
+/// Steps of each body. Not inlined, so that they are compiled once and not for each instruction set.
+#[inline(never)]
+fn one_by_one<M: Model<Scalar = f64>>(
+    bodies: &mut [Single<M>],
+    count: u64,
+) -> Result<(), StepError> {
+    for body in bodies.iter_mut() {
+        body.before = body.state;
+    }
+    let made = bodies.iter_mut().try_for_each(|body| {
+        let (model, state, workspace) = (&body.model, &mut body.state, &mut body.workspace);
+        model.advance_many(state, workspace, count)
+    });
+    if made.is_err() {
+        for body in bodies {
+            body.state = body.before;
+        }
+    }
+    made
 }
 
 /// The first body that fails alone, how many do, or all of them when none does.

@@ -31,9 +31,9 @@ const BLOCK: usize = 4;
 /// one the processor has is taken at run time; without, for that of the build. The results are the
 /// same bits: every lane rounds as plain numbers do, and products and sums are never fused.
 ///
-/// Explicit steps and those with a quartic are, bit for bit, those that [`Stepper::advance_many`]
-/// makes of each body alone. Steps by Newton's method differ by rounding: lanes share the number of
-/// iterations and the order of elimination.
+/// Steps are, bit for bit, those that [`Stepper::advance_many`] makes of each body alone. Bodies
+/// whose steps need iterations ([`Model::SIDE_BY_SIDE`]) are stepped one by one: in lanes all would
+/// wait for the slowest, and what they gain is less than what they lose.
 ///
 /// ```
 /// use clebsch::integrate::Ensemble;
@@ -183,7 +183,7 @@ impl<M: Model<Scalar = f64>, const N: usize> Ensemble<M, N> {
             return None;
         }
         let group = self.groups.get(index / N.max(1))?;
-        Some(group.body(index % N.max(1)))
+        group.body(index % N.max(1))
     }
 
     /// Parameters and states of all bodies, in the order they were given.
@@ -197,10 +197,10 @@ impl<M: Model<Scalar = f64>, const N: usize> Ensemble<M, N> {
         &self,
         number: impl Fn(&Wide<M, N>, &<Wide<M, N> as Stepper>::State) -> Lanes<N>,
     ) -> impl Iterator<Item = f64> {
-        let lanes = self
-            .groups
-            .iter()
-            .flat_map(move |group| number(&group.model, &group.state).0);
+        let lanes = self.groups.iter().flat_map(move |group| {
+            let (model, state) = group.shown();
+            number(model, &state).0
+        });
         lanes.take(self.bodies)
     }
 
