@@ -445,6 +445,7 @@ pub mod body_in_quadratic_field {
         type Initial = BodyInQuadraticFieldInitial<T>;
         type Choice = ();
         type Over<U: Real> = BodyInQuadraticField<U>;
+        const SIDE_BY_SIDE: bool = true;
         fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
             Self::new(parameters)
         }

@@ -446,6 +446,7 @@ pub mod body_in_two_fields {
         type Initial = BodyInTwoFieldsInitial<T>;
         type Choice = ();
         type Over<U: Real> = BodyInTwoFields<U>;
+        const SIDE_BY_SIDE: bool = true;
         fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
             Self::new(parameters)
         }

@@ -283,6 +283,7 @@ pub mod body_n {
         type Initial = BodyNInitial<N, T>;
         type Choice = ();
         type Over<U: Real> = BodyN<N, U>;
+        const SIDE_BY_SIDE: bool = false;
         fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
             Self::new(parameters)
         }

@@ -345,6 +345,7 @@ pub mod cayley_klein_spatial {
         type Initial = CayleyKleinSpatialInitial<T>;
         type Choice = ();
         type Over<U: Real> = CayleyKleinSpatial<U>;
+        const SIDE_BY_SIDE: bool = false;
         fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
             Self::new(parameters)
         }

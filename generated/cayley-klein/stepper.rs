@@ -311,6 +311,7 @@ pub mod cayley_klein {
         type Initial = CayleyKleinInitial<T>;
         type Choice = ();
         type Over<U: Real> = CayleyKlein<U>;
+        const SIDE_BY_SIDE: bool = false;
         fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
             Self::new(parameters)
         }

@@ -418,6 +418,7 @@ pub mod coupled_bodies {
         type Initial = CoupledBodiesInitial<T>;
         type Choice = ();
         type Over<U: Real> = CoupledBodies<U>;
+        const SIDE_BY_SIDE: bool = false;
         fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
             Self::new(parameters)
         }

@@ -331,6 +331,7 @@ pub mod free_body_spatial {
         type Initial = FreeBodySpatialInitial<T>;
         type Choice = Order;
         type Over<U: Real> = FreeBodySpatial<U>;
+        const SIDE_BY_SIDE: bool = true;
         fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
             Self::new(parameters)
         }

@@ -281,6 +281,7 @@ pub mod free_body {
         type Initial = FreeBodyInitial<T>;
         type Choice = Order;
         type Over<U: Real> = FreeBody<U>;
+        const SIDE_BY_SIDE: bool = true;
         fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
             Self::new(parameters)
         }

@@ -476,6 +476,7 @@ pub mod heavy_top_spatial {
         type Initial = HeavyTopSpatialInitial<T>;
         type Choice = ();
         type Over<U: Real> = HeavyTopSpatial<U>;
+        const SIDE_BY_SIDE: bool = true;
         fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
             Self::new(parameters)
         }

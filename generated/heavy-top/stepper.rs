@@ -417,6 +417,7 @@ pub mod heavy_top {
         type Initial = HeavyTopInitial<T>;
         type Choice = ();
         type Over<U: Real> = HeavyTop<U>;
+        const SIDE_BY_SIDE: bool = true;
         fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
             Self::new(parameters)
         }

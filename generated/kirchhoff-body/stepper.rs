@@ -498,6 +498,7 @@ pub mod kirchhoff_body {
         type Initial = KirchhoffBodyInitial<T>;
         type Choice = ();
         type Over<U: Real> = KirchhoffBody<U>;
+        const SIDE_BY_SIDE: bool = false;
         fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
             Self::new(parameters)
         }
