@@ -248,8 +248,7 @@ fn none_is_silent<D: Drawn>(count: u64) {
         solved += 1;
         let left = D::residual(&model, h, &past, 0.0);
         worst = worst.max(left);
-        // NaN counts.
-        silent += u64::from(!(left <= ROUNDING));
+        silent += u64::from(left.is_nan() || left > ROUNDING);
         turned += u64::from(D::residual(&model, h, &past, 1e-8) > ROUNDING);
     }
     println!(
