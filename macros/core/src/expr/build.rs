@@ -7,6 +7,7 @@ use super::symbol::{SymbolId, Symbols};
 use super::{Expr, Function, Inner, Letter, Map, Node, Part, Shift};
 use crate::algebra::Rational;
 use core::hash::{Hash, Hasher};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// A fixed hash (FNV-1a): the same on every machine and in every run.
@@ -87,7 +88,7 @@ pub fn unit(n: Dim, axis: u8) -> Expr {
     make(Node::Unit(n, axis), Shape::vector(n))
 }
 
-/// Sum of terms of one shape; `shape` serves the empty sum.
+/// Sum of terms of one shape; `shape` serves the empty sum. A term and its opposite both go.
 pub fn sum(terms: impl IntoIterator<Item = Expr>, shape: Shape) -> Expr {
     let mut flat: Vec<Expr> = Vec::new();
     let mut constant = Rational::ZERO;
@@ -107,6 +108,7 @@ pub fn sum(terms: impl IntoIterator<Item = Expr>, shape: Shape) -> Expr {
             }
         }
     }
+    without_opposites(&mut flat);
     if !constant.is_zero() {
         flat.push(number(constant));
     }
@@ -115,6 +117,31 @@ pub fn sum(terms: impl IntoIterator<Item = Expr>, shape: Shape) -> Expr {
         1 => flat.remove(0),
         _ => make(Node::Sum(flat), shape),
     }
+}
+
+/// Drops pairs of a term and its opposite, the earliest first. What stays keeps its order.
+fn without_opposites(terms: &mut Vec<Expr>) {
+    if !terms.iter().any(|t| matches!(t.node(), Node::Neg(_))) {
+        return;
+    }
+    // Looked up, never iterated: no order of it reaches the sum.
+    let mut places: HashMap<Expr, Vec<usize>> = HashMap::new();
+    for (i, term) in terms.iter().enumerate().rev() {
+        if !matches!(term.node(), Node::Neg(_)) {
+            places.entry(term.clone()).or_default().push(i);
+        }
+    }
+    let mut stays = vec![true; terms.len()];
+    for (i, term) in terms.iter().enumerate() {
+        if let Node::Neg(inner) = term.node()
+            && let Some(opposite) = places.get_mut(inner).and_then(Vec::pop)
+        {
+            stays[i] = false;
+            stays[opposite] = false;
+        }
+    }
+    let mut stays = stays.into_iter();
+    terms.retain(|_| stays.next().unwrap_or(true));
 }
 
 /// `a + b`.

@@ -13,6 +13,8 @@ pub mod shape;
 mod substitute;
 pub mod symbol;
 mod terms;
+#[cfg(test)]
+mod tests;
 
 use crate::algebra::Rational;
 use shape::{Dim, Shape};

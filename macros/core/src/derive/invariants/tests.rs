@@ -399,3 +399,32 @@ fn a_symmetric_factor_makes_the_step_reversible() {
         assert!(!other.reversible && other.limit.is_err());
     }
 }
+
+#[test]
+fn the_discrete_energy_has_no_term_that_is_zero() {
+    // The action at rest, which the energy takes off, has a term in the velocity less the identity.
+    let d = derive(
+        "model Body {
+            param J: Sym<3>; param d, g: Vec<3>;
+            group Λ: SO<3> velocity Ω; advected Γ: Vec<3> = Λ^T*g;
+            constraint next(Λ) = Λ*Ω; constraint next(Γ) = Ω^T*Γ;
+            lagrangian = (-tr(J*Ω) - dot((Ω - Id)*d, Γ)*dot((Ω - Id)*d, next(Γ)))/h;
+        }",
+    );
+    let s = &d.letters.symbols;
+    let value = &d.integrability.discrete_energy.value;
+    let still = crate::expr::substitute(
+        s,
+        value,
+        &[(
+            crate::expr::Letter {
+                symbol: d.spec.configurations[0].velocity,
+                shift: crate::expr::Shift::HERE,
+            },
+            crate::expr::identity(crate::expr::shape::Dim::Fixed(3)),
+        )],
+    );
+    // tr(J) off, tr(J Ω) and the coupling: three terms, and none is left at rest.
+    assert_eq!(value.children().len(), 3, "{value:?}");
+    assert!(still.is_zero(), "{still:?}");
+}

@@ -1,0 +1,53 @@
+//! The constructors keep no term beside its opposite, whatever surrounds them, and keep all else
+//! in its place.
+
+use super::shape::{Dim, Shape, Structure};
+use super::symbol::{Role, Symbols};
+use super::{Expr, add, dot, here, identity, integer, mul, neg, quotient, scale, sub, sum};
+use crate::algebra::Rational;
+
+const THREE: Dim = Dim::Fixed(3);
+
+fn letters() -> [Expr; 4] {
+    let mut s = Symbols::default();
+    let mut add = |name: &str, shape| s.add(name, shape, Structure::General, Role::Parameter);
+    let ids = [
+        add("A", Shape::square(THREE)),
+        add("B", Shape::square(THREE)),
+        add("d", Shape::vector(THREE)),
+        add("w", Shape::SCALAR),
+    ];
+    ids.map(|id| here(&s, id))
+}
+
+#[test]
+fn a_term_and_its_opposite_vanish_with_all_they_multiply() {
+    let [a, _, d, w] = letters();
+    let nothing = sub(identity(THREE), identity(THREE));
+    assert!(nothing.is_zero());
+    assert_eq!(nothing.shape(), Shape::square(THREE));
+    let vector = mul(nothing, d.clone());
+    assert!(vector.is_zero());
+    let number = dot(vector.clone(), mul(a.clone(), vector));
+    assert!(number.is_zero());
+    let term = quotient(mul(w.clone(), number), w.clone());
+    assert_eq!(add(w.clone(), term), w);
+    assert!(sub(scale(Rational::HALF, a.clone()), scale(Rational::HALF, a)).is_zero());
+}
+
+#[test]
+fn only_pairs_vanish_and_the_rest_keeps_its_order() {
+    let [a, b, ..] = letters();
+    let shape = a.shape();
+    let terms = [neg(a.clone()), b.clone(), a.clone(), a.clone(), b.clone()];
+    let left = sum(terms, shape);
+    assert_eq!(left, sum([b.clone(), a.clone(), b.clone()], shape));
+    assert_eq!(left.children(), [&b, &a, &b]);
+    let twice = sum([neg(a.clone()), neg(a.clone()), a.clone()], shape);
+    assert_eq!(twice, neg(a.clone()));
+    // Negative controls: equal signs, other factors, products in another order.
+    assert!(!add(a.clone(), a.clone()).is_zero());
+    assert!(!sub(scale(Rational::integer(2), a.clone()), a.clone()).is_zero());
+    assert!(!sub(mul(a.clone(), b.clone()), mul(b, a)).is_zero());
+    assert!(!sub(integer(2), integer(1)).is_zero());
+}
