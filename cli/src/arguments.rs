@@ -101,7 +101,7 @@ fn planned(command: Command, every: &'static str, out: &'static str) -> Command 
                 "Order of accuracy of a step, where the model offers more than one: 2 to 10 for a \
                  free body, 2 to 8 for other reversible steps",
             )
-            .value_parser(value_parser!(u32)),
+            .value_parser(order_number),
         )
         .arg(flag(
             "compensated",
@@ -185,8 +185,17 @@ fn option(name: &'static str, value: &'static str, help: &'static str) -> Arg {
 fn positive_count(text: &str) -> Result<u64, String> {
     match text.parse::<u64>() {
         Ok(count) if count > 0 => Ok(count),
-        _ => Err("give a whole number, at least 1".to_owned()),
+        _ => Err(format!(
+            "give a whole number, written in digits, at least 1 and at most {}",
+            u64::MAX
+        )),
     }
+}
+
+/// Which orders there are depends on the model, whose message lists them.
+fn order_number(text: &str) -> Result<u32, String> {
+    let order = text.parse::<u32>();
+    order.map_err(|_| "give a whole number: 2, 4, 6, 8, or 10 for a free body".to_owned())
 }
 
 fn positive_number(text: &str) -> Result<f64, String> {

@@ -49,7 +49,11 @@ impl Plan {
             None => None,
             Some(name) => match name.parse::<Method>() {
                 Ok(method) => Some(method),
-                Err(error) => return Err(Failure::Usage(format!("--solver {name}: {error}"))),
+                Err(_) => {
+                    let offered = entry.card.solvers;
+                    let error = OpenError::Solver { offered };
+                    return Err(Failure::Usage(format!("--solver {name}: {error}")));
+                }
             },
         };
         let size = matches.get_one::<u64>("dim").copied();
@@ -124,7 +128,10 @@ impl Plan {
             OpenError::Start(StartError::Refused(cause)) => {
                 Failure::Failed(format!("cannot take the first step: {cause}"))
             }
-            OpenError::Solver { .. } => Failure::Usage(format!("--solver: {error}")),
+            OpenError::Solver { .. } => {
+                let name = self.solver.map_or("", Method::name);
+                Failure::Usage(format!("--solver {name}: {error}"))
+            }
             OpenError::Compensation { .. } => Failure::Usage(format!("--compensated: {error}")),
             OpenError::Count { .. } | OpenError::Order { .. } => Failure::Usage(error.to_string()),
         })
@@ -132,6 +139,9 @@ impl Plan {
 
     /// Where the value that is wrong was given: `top.toml:7: parameters.J`.
     fn place(&self, card: &Card, wrong: &ParameterError) -> String {
+        if wrong.field == "h" && self.arguments.get("h").is_some_and(Value::is_number) {
+            return "--h".to_owned();
+        }
         let of = |table: &str, fields: &[Field]| {
             let named = |field: &&Field| field.name == wrong.field || field.ascii == wrong.field;
             let field = fields.iter().find(named)?;

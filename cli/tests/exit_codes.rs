@@ -140,6 +140,26 @@ fn every_wrong_request_is_named() {
             &["--steps", "whole number"],
         ),
         (
+            &["run", "harmonic-rotor", "--steps", "99999999999999999999"],
+            2,
+            &["--steps", "at most 18446744073709551615"],
+        ),
+        (
+            &["run", "harmonic-rotor", "--order", "four"],
+            2,
+            &["'four'", "--order", "whole number"],
+        ),
+        (
+            &["run", "harmonic-rotor", "--order", "-4"],
+            2,
+            &["'-4'", "--order", "whole number"],
+        ),
+        (
+            &["run", "harmonic-rotor", "--solver", "newton"],
+            2,
+            &["--solver newton: this model has one solver only"],
+        ),
+        (
             &["run", "harmonic-rotor", "--every", "0"],
             2,
             &["--every", "at least 1"],

@@ -355,6 +355,19 @@ pub mod coupled_bodies {
         ) -> Result<(), StepError> {
             self.step(state, work)
         }
+        #[cold]
+        fn attempt(&self, state: &Self::State, h: T) -> Option<Self::State> {
+            let (mut moving, search) = (*state, newton::Search::to_try());
+            self.step(
+                    &mut moving,
+                    &mut CoupledBodiesWorkspace {
+                        h,
+                        search,
+                    },
+                )
+                .ok()?;
+            Some(moving)
+        }
         fn node(state: &Self::State) -> u64 {
             state.node
         }

@@ -362,9 +362,17 @@ impl fmt::Display for OpenError {
                     [1] => write!(
                         f,
                         ": its step is not symmetric under time reversal, so a composition of it \
-                         would gain nothing; write `node symmetric;`"
+                         would gain nothing; `clebsch derive` shows which terms stand in the way: \
+                         change them, by `node symmetric;` where they are taken at one end of the \
+                         step, or by an assumption on the parameters"
                     ),
-                    _ => Ok(()),
+                    _ if asked % 2 == 1 => {
+                        write!(
+                            f,
+                            ": the order of a symmetric step is even; ask for one of these"
+                        )
+                    }
+                    _ => write!(f, "; ask for one of these"),
                 }
             }
         }

@@ -90,6 +90,11 @@ pub enum Problem {
         /// The number.
         value: f64,
     },
+    /// The number is so small that its inverse is infinite.
+    TooSmall {
+        /// The number.
+        value: f64,
+    },
     /// An assumption stated in the model does not hold.
     AssumptionFails {
         /// The assumption as the model writes it.
@@ -144,6 +149,9 @@ impl fmt::Display for Problem {
             } => write!(f, "not {elements}, off by {deviation:e}"),
             Self::NotInvertible => write!(f, "not invertible"),
             Self::NotPositive { value } => write!(f, "{value} is not positive"),
+            Self::TooSmall { value } => {
+                write!(f, "{value:e} is too small: its inverse is infinite")
+            }
             Self::AssumptionFails { text } => write!(f, "the assumption `{text}` does not hold"),
             Self::Poinsot(error) => write!(f, "{error}"),
             Self::LeftFactor(error) => write!(f, "{error}"),

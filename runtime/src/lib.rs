@@ -17,6 +17,7 @@ pub mod error;
 pub mod groups;
 pub mod integrate;
 pub mod linalg;
+mod said;
 pub mod scalar;
 pub mod solvers;
 pub mod validate;

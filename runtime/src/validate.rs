@@ -247,13 +247,24 @@ pub fn invertible<T: Real, const N: usize>(
 /// # Errors
 /// Carries the smallest lane.
 pub fn positive_step<T: Real>(h: T) -> Result<(), ParameterError> {
-    if h.least() > 0.0 && h.is_finite() {
+    let value = h.least();
+    // Steps divide by it.
+    let problem = if value > 0.0 && value.recip().is_infinite() {
+        Problem::TooSmall { value }
+    } else if value > 0.0 && h.is_finite() {
         return Ok(());
-    }
+    } else if value > 0.0 {
+        Problem::NotFinite {
+            index: 0,
+            value: h.greatest(),
+        }
+    } else {
+        Problem::NotPositive { value }
+    };
     Err(ParameterError {
         field: "h",
-        problem: Problem::NotPositive { value: h.least() },
-        remedy: "give a positive, finite step size",
+        problem,
+        remedy: "give a positive, finite step size, at least 1e-307",
     })
 }
 

@@ -171,9 +171,8 @@ fn feasible<S: Stepper>(model: &S, state: &S::State, h: S::Scalar, factors: &[f6
         for factor in factors {
             let part = h * S::Scalar::from_f64(share * factor);
             // A step of the whole must also start: each of its parts from the first state.
-            model.workspace(state, part).ok()?;
-            let mut workspace = model.workspace(&moving, part).ok()?;
-            model.advance(&mut moving, &mut workspace).ok()?;
+            model.attempt(state, part)?;
+            moving = model.attempt(&moving, part)?;
         }
         Some(0.0)
     };

@@ -32,6 +32,16 @@ pub trait Stepper {
         workspace: &mut Self::Workspace,
     ) -> Result<(), StepError>;
 
+    /// The state after one step of `h` in a workspace of its own, or none: for searches that try
+    /// many steps, to which the reason of a refusal is nothing.
+    #[must_use]
+    fn attempt(&self, state: &Self::State, h: Self::Scalar) -> Option<Self::State> {
+        let mut moving = *state;
+        let mut workspace = self.workspace(state, h).ok()?;
+        self.advance(&mut moving, &mut workspace).ok()?;
+        Some(moving)
+    }
+
     /// `count` steps, in place, with the same result as one by one, but for rounding where the
     /// model has a shorter way. How many are asked for at once makes no difference at all.
     ///

@@ -2,6 +2,7 @@
 //! Each takes numbers of one step and gives the discrete velocity, or a typed error with numbers.
 
 mod golden_section;
+pub(crate) mod largest_step;
 pub mod left_factor;
 mod method;
 pub mod moser_veselov;

@@ -172,6 +172,16 @@ pub fn traits(d: &Derivation, names: &Names) -> TokenStream {
             }
         })
     });
+    let attempt = matches!(d.solve.method, Method::Newton).then(|| {
+        quote! {
+            #[cold]
+            fn attempt(&self, state: &Self::State, h: T) -> Option<Self::State> {
+                let (mut moving, search) = (*state, newton::Search::to_try());
+                self.step(&mut moving, &mut #work { h, search }).ok()?;
+                Some(moving)
+            }
+        }
+    });
     let reversible = d
         .reversible
         .then(|| quote!(impl #bound Reversible for #name #used {}));
@@ -187,6 +197,7 @@ pub fn traits(d: &Derivation, names: &Names) -> TokenStream {
             fn advance(&self, state: &mut Self::State, work: &mut Self::Workspace) -> Result<(), StepError> {
                 self.step(state, work)
             }
+            #attempt
             #many
             fn node(state: &Self::State) -> u64 { state.#node }
             fn at_node(state: Self::State, node: u64) -> Self::State {

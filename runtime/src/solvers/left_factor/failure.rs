@@ -1,7 +1,9 @@
 //! Why the Moser-Veselov equation was not solved, with numbers.
 
 use crate::groups::Part;
+use crate::said::{Times, instead};
 use crate::solvers::Method;
+use crate::solvers::largest_step::largest_step;
 use core::fmt;
 
 /// What went wrong.
@@ -51,7 +53,7 @@ impl Unsolved {
     pub fn with_searched_step(self, h: f64, ratio: impl Fn(f64) -> Option<f64>) -> Self {
         Self {
             h: Some(h),
-            largest_step: Some(crate::solvers::moser_veselov::largest_step(h, ratio)),
+            largest_step: Some(largest_step(h, ratio)),
             ..self
         }
     }
@@ -65,9 +67,10 @@ impl fmt::Display for Unsolved {
         match self.refusal {
             Refusal::BeyondBound => write!(
                 f,
-                "the body turns too far in one step: the momentum is {:.9} times what the \
+                "the body turns too far in one step: the momentum is {} times what the \
                  Moser-Veselov equation can take ({} is the largest)",
-                self.ratio, self.fastest
+                Times(self.ratio),
+                self.fastest
             )?,
             Refusal::NotConverged => write!(
                 f,
@@ -92,12 +95,7 @@ impl fmt::Display for Unsolved {
             }
         }
         match (self.h, self.largest_step) {
-            (Some(h), Some(largest)) if largest < h => {
-                write!(
-                    f,
-                    "; reduce the step size from {h} to at most {largest:.6e}"
-                )
-            }
+            (Some(h), Some(largest)) if largest.abs() < h.abs() => instead(f, h, largest),
             _ => write!(f, "; reduce the step size"),
         }
     }

@@ -5,6 +5,7 @@ use super::forced::turn;
 use super::preprocess::preprocessed;
 use super::{Order, Poinsot, largest_step, reach};
 use crate::Real;
+use crate::said::{Times, instead};
 use crate::solvers::Method;
 use core::fmt;
 use nalgebra::Vector3;
@@ -190,11 +191,15 @@ fn fastest(body: &Poinsot<f64>, h_n: &Vector3<f64>) -> usize {
 impl fmt::Display for MoserVeselovError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.ratio.is_nan() {
-            return write!(
+            write!(
                 f,
                 "the momentum is NaN or infinite (component {})",
                 self.component
-            );
+            )?;
+            return match (self.h, self.largest_step) {
+                (Some(h), Some(largest)) if !largest.is_nan() => instead(f, h, largest),
+                _ => write!(f, "; check the values of the state and the parameters"),
+            };
         }
         if self.lane > 0 {
             write!(f, "lane {}: ", self.lane)?;
@@ -217,21 +222,17 @@ impl fmt::Display for MoserVeselovError {
         } else {
             write!(
                 f,
-                "the body turns too far in one step: the momentum is {:.6} times what the \
-             Moser-Veselov equation can take (component {} is the largest)",
-                self.ratio, self.component
+                "the body turns too far in one step: the momentum is {} times what the \
+                 Moser-Veselov equation can take (component {} is the largest)",
+                Times(self.ratio),
+                self.component
             )?;
             if self.order != Order::Two {
                 write!(f, ", with the moments of order {}", self.order)?;
             }
         }
         match (self.h, self.largest_step) {
-            (Some(h), Some(largest)) => {
-                write!(
-                    f,
-                    "; reduce the step size from {h} to at most {largest:.6e}"
-                )
-            }
+            (Some(h), Some(largest)) => instead(f, h, largest),
             _ => write!(f, "; reduce the step size"),
         }
     }

@@ -25,10 +25,11 @@ mod preprocess;
 mod principal;
 mod reach;
 
+pub use super::largest_step::largest_step;
 pub use edge::Edge;
 pub use failure::MoserVeselovError;
 pub use forced::forced;
 pub use free::Free;
 pub use poinsot::{Poinsot, PoinsotError};
 pub use preprocess::Order;
-pub use reach::{largest_step, reach};
+pub use reach::reach;

@@ -1,5 +1,5 @@
 //! Where the Moser-Veselov equation stops having a principal solution.
-//! Takes the body and `h N` (or a function of the step); gives the bound ratio, the largest step.
+//! Takes the body and `h N`; gives the bound ratio.
 
 use super::Poinsot;
 use crate::linalg::symmetric_eigenvalues;
@@ -49,39 +49,4 @@ pub fn reach(body: &Poinsot<f64>, h_n: &Vector3<f64>) -> f64 {
     // Equal peaks collapse the bracket to a point; rounding may shift a peak just outside.
     best = best.max(at(0)).max(at(count as i32));
     best.sqrt() * (length / body.unit)
-}
-
-/// The largest step not beyond `h` whose ratio is at most 1, by bisection.
-///
-/// `solvable` gives the [`reach`] ratio at a trial step, or `None` where it cannot be evaluated.
-/// For torques that depend on the step there is no closed form. The result is a hair (1e-12)
-/// inside the bound, so that the solver accepts it; it is 0 when no step above `h / 2^60` will do.
-#[must_use]
-pub fn largest_step(h: f64, solvable: impl Fn(f64) -> Option<f64>) -> f64 {
-    let fits = |trial: f64| solvable(trial).is_some_and(|ratio| ratio <= 1.0 - 1e-12);
-    if fits(h) {
-        return h;
-    }
-    let mut low = h;
-    let mut found = false;
-    for _ in 0..60 {
-        low *= 0.5;
-        if fits(low) {
-            found = true;
-            break;
-        }
-    }
-    if !found {
-        return 0.0;
-    }
-    let mut high = low + low;
-    for _ in 0..50 {
-        let middle = 0.5 * (low + high);
-        if fits(middle) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    low
 }

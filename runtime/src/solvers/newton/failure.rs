@@ -3,8 +3,9 @@
 //! Takes the last residual and a way to try other steps; gives the error.
 
 use crate::groups::{Coordinate, Group};
+use crate::said::{AtMost, Plain, Times, instead};
 use crate::scalar::Real;
-use crate::solvers::moser_veselov::largest_step;
+use crate::solvers::largest_step::largest_step;
 use crate::{StepCause, StepError};
 use core::cell::Cell;
 use core::fmt;
@@ -34,7 +35,7 @@ pub struct NewtonError {
     /// The step size refused, where the caller knows it.
     pub h: Option<f64>,
     /// The largest step that a fresh workspace takes from the same state, found by bisection, of
-    /// the sign of `h`; 0 when none above `h / 2^60` will do, `h` itself when only the workspace
+    /// the sign of `h`; 0 when none above `h / 2^380` will do, `h` itself when only the workspace
     /// led astray.
     pub largest_step: Option<f64>,
     /// The equation of the largest residual: a component of the momentum of a configuration, in
@@ -193,15 +194,13 @@ impl fmt::Display for NewtonError {
             ),
             (Some(h), Some(largest)) if largest != 0.0 => write!(
                 f,
-                "; the step is {:.6} times the largest that can be solved from this state: reduce \
-                 it from {h} to at most {largest:.6e}",
-                h / largest
+                "; the step is {} times the largest that can be solved from this state: reduce it \
+                 from {} to at most {}",
+                Times(h / largest),
+                Plain(h),
+                AtMost(largest)
             ),
-            (Some(h), Some(_)) => write!(
-                f,
-                "; no step shorter than {h} was solved from this state either: check its values \
-                 and the parameters"
-            ),
+            (Some(h), Some(largest)) => instead(f, h, largest),
             _ => write!(f, "; reduce the step size or check the values"),
         }
     }

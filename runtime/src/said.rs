@@ -1,0 +1,116 @@
+//! Numbers as messages say them: short, and such that what is offered can be typed in again.
+//! Takes a number; gives its text.
+
+use crate::solvers::largest_step::SHORTEST_SHARE;
+use core::fmt;
+
+/// The shortest decimals that read back as this number, with an exponent where they would be long.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Plain(pub f64);
+
+impl fmt::Display for Plain {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(x) = self;
+        if *x == 0.0 || (1e-4..1e7).contains(&x.abs()) {
+            write!(f, "{x}")
+        } else {
+            write!(f, "{x:e}")
+        }
+    }
+}
+
+/// Seven digits of a bound, rounded towards zero: a step that is too long by the last digit would
+/// be refused again.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AtMost(pub f64);
+
+/// More than half a unit of the seventh digit, whatever the first.
+const DIGIT: f64 = 1e-6;
+
+impl AtMost {
+    fn rounded(self) -> f64 {
+        let seven = |x: f64| format!("{x:.6e}").parse().unwrap_or(x);
+        let near: f64 = seven(self.0);
+        if near.abs() <= self.0.abs() {
+            return near;
+        }
+        seven(self.0 * (1.0 - DIGIT))
+    }
+}
+
+impl fmt::Display for AtMost {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        Plain(self.rounded()).fmt(f)
+    }
+}
+
+/// How many times a bound is exceeded; a hair above one is seen to be above.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Times(pub f64);
+
+impl fmt::Display for Times {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(x) = self;
+        let above = x - 1.0;
+        if above > 0.0 && above < 5e-7 {
+            write!(f, "1 + {above:.1e}")
+        } else if *x < 1e7 {
+            write!(f, "{x:.6}")
+        } else {
+            write!(f, "{x:.6e}")
+        }
+    }
+}
+
+/// What to do about a step of `h` when `largest`, of the same sign, is the largest that could be
+/// made from the same state: 0 when none was found.
+pub(crate) fn instead(f: &mut fmt::Formatter<'_>, h: f64, largest: f64) -> fmt::Result {
+    if largest == 0.0 {
+        let tried = h * SHORTEST_SHARE;
+        return write!(
+            f,
+            "; no step from {tried:.0e} to {} was solved from this state either: check the step, \
+             the values of the state, and the parameters",
+            Plain(h)
+        );
+    }
+    let h = Plain(h);
+    let largest = AtMost(largest);
+    write!(f, "; reduce the step size from {h} to at most {largest}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{AtMost, Plain, Times};
+
+    #[test]
+    fn what_is_offered_is_never_above_the_bound_and_hardly_below() {
+        let mut x: f64 = 1.0;
+        for _ in 0..10_000 {
+            // Powers of an irrational number have all leading digits.
+            x *= 1.618_033_988_749_895;
+            if x > 1e300 {
+                x = 1e-300;
+            }
+            let said: f64 = AtMost(x).to_string().parse().expect("a number");
+            assert!(said <= x && said >= x * (1.0 - 2.0e-6), "{x:e}: {said:e}");
+            let back: f64 = AtMost(-x).to_string().parse().expect("a number");
+            assert_eq!(back, -said);
+        }
+        // Rounding to the nearest would be above, so the test can fail.
+        assert_eq!(format!("{:.6e}", 0.095_999_999_99), "9.600000e-2");
+        assert_eq!(AtMost(0.095_999_999_99).to_string(), "0.0959999");
+        assert_eq!(AtMost(0.25).to_string(), "0.25");
+    }
+
+    #[test]
+    fn long_numbers_have_an_exponent() {
+        assert_eq!(Plain(30.0).to_string(), "30");
+        assert_eq!(Plain(1e300).to_string(), "1e300");
+        assert_eq!(Plain(-2.5e-9).to_string(), "-2.5e-9");
+        assert_eq!(Times(3.0).to_string(), "3.000000");
+        assert_eq!(Times(1.5e199).to_string(), "1.500000e199");
+        assert_eq!(Times(1.0 + 4e-7).to_string(), "1 + 4.0e-7");
+        assert_eq!(Times(f64::NAN).to_string(), "NaN");
+    }
+}

@@ -1,0 +1,144 @@
+//! The largest step that can be made instead of one that was refused.
+//! Takes a way to try steps; gives the step, by halving and bisection.
+
+/// Halvings of the step, one by one: most steps that are too long are so by a few powers of ten.
+const HALVINGS: u32 = 60;
+
+/// After those the step is divided by 2^16 at a time, this often.
+const LEAPS: u32 = 20;
+const LEAP: f64 = 1.0 / 65_536.0;
+
+/// What part of the step is tried last: `2^-380`.
+pub(crate) const SHORTEST_SHARE: f64 = f64::from_bits((1023 - 380) << 52);
+
+/// Halvings that must all do: a solution of another kind is sometimes met far beyond the bound.
+const CONFIRMED: u32 = 4;
+
+/// Shares of the largest step that must do as well.
+const SHORTER: [f64; 13] = [
+    1.0 - 1e-6,
+    0.999,
+    0.99,
+    0.98,
+    0.96,
+    0.94,
+    0.91,
+    0.88,
+    0.84,
+    0.8,
+    0.75,
+    0.7,
+    0.6,
+];
+
+/// How often the search goes below a shorter step that does not do.
+const RETURNS: usize = 8;
+
+/// The largest step not beyond `h` whose ratio is at most 1, by bisection.
+///
+/// `solvable` gives the bound ratio at a trial step, or `None` where it cannot be evaluated.
+/// For torques that depend on the step there is no closed form. The result is a hair (1e-12)
+/// inside the bound, so that the solver accepts it, and shorter steps are tried too, so that it is
+/// none that happens to be solved beyond others that are not; it is 0 when no step above
+/// `h / 2^380` will do.
+#[must_use]
+pub fn largest_step(h: f64, solvable: impl Fn(f64) -> Option<f64>) -> f64 {
+    let fits = |share: f64| solvable(h * share).is_some_and(|ratio| ratio <= 1.0 - 1e-12);
+    if fits(1.0) {
+        return h;
+    }
+    let mut refused = 1.0;
+    let mut found = 0.0;
+    for _ in 0..RETURNS {
+        let Some((low, high)) = bracket(refused, fits) else {
+            return 0.0;
+        };
+        found = between(low, high, fits);
+        let mut tried = SHORTER.iter().map(|share| found * share);
+        match tried.rfind(|share| !fits(*share)) {
+            None => break,
+            Some(shorter) => refused = shorter,
+        }
+    }
+    h * found
+}
+
+/// Two shares of the step below `refused`: one that does, as do some shorter ones, and a longer
+/// one that does not.
+fn bracket(refused: f64, fits: impl Fn(f64) -> bool) -> Option<(f64, f64)> {
+    let (mut share, mut shortest_refused) = (refused, refused);
+    let mut longest = None;
+    let mut confirmed = 0;
+    for i in 0..HALVINGS + LEAPS {
+        share *= if i < HALVINGS { 0.5 } else { LEAP };
+        if fits(share) {
+            longest = longest.or(Some(share));
+            confirmed += 1;
+            if confirmed > CONFIRMED {
+                break;
+            }
+        } else {
+            (longest, confirmed) = (None, 0);
+            shortest_refused = share;
+        }
+    }
+    Some((longest?, shortest_refused))
+}
+
+/// The boundary between a share that does and one that does not.
+fn between(mut low: f64, mut high: f64, fits: impl Fn(f64) -> bool) -> f64 {
+    // Octaves first; the rest is down to rounding.
+    while high > 4.0 * low {
+        let middle = (low * high).sqrt();
+        *if fits(middle) { &mut low } else { &mut high } = middle;
+    }
+    for _ in 0..50 {
+        let middle = 0.5 * (low + high);
+        *if fits(middle) { &mut low } else { &mut high } = middle;
+    }
+    low
+}
+
+#[cfg(test)]
+mod tests {
+    use super::largest_step;
+    use core::cell::Cell;
+
+    #[test]
+    fn the_shortest_step_is_tried_and_no_shorter() {
+        let least = Cell::new(1.0);
+        let refused = |h| {
+            least.set(h);
+            None
+        };
+        assert_eq!(largest_step(1.0, refused), 0.0);
+        assert_eq!(least.get(), super::SHORTEST_SHARE);
+        assert_eq!(super::SHORTEST_SHARE, 2.0_f64.powi(-380));
+    }
+
+    #[test]
+    fn far_too_long_steps_are_reduced_to_the_bound() {
+        for h in [1.1, 30.0, 1e6, 1e30, 1e100, -7.0] {
+            let found = largest_step(h, |h: f64| Some(h.abs()));
+            assert!((found.abs() - 1.0).abs() < 2e-12, "{h}: {found}");
+            assert_eq!(found > 0.0, h > 0.0);
+        }
+        assert_eq!(largest_step(0.5, Some), 0.5);
+        assert_eq!(largest_step(1.0, |h| Some(h * 1e300)), 0.0);
+        assert_eq!(largest_step(1.0, |_| Some(f64::NAN)), 0.0);
+    }
+
+    #[test]
+    fn solutions_beyond_the_bound_are_passed_over() {
+        let trials = Cell::new(0);
+        for island in [(1800.0, 3800.0), (1.3, 1.6), (1.06, 1.12), (5.0, 11.0)] {
+            let solvable = |h: f64| {
+                trials.set(trials.get() + 1);
+                (h < 1.0 || (h > island.0 && h < island.1)).then_some(0.0)
+            };
+            let found = largest_step(1e4, solvable);
+            assert!((found - 1.0).abs() < 1e-12, "{island:?}: {found}");
+        }
+        assert!(trials.get() < 4 * 250, "{}", trials.get());
+    }
+}
