@@ -65,6 +65,9 @@ impl fmt::Display for Times {
 /// What to do about a step of `h` when `largest`, of the same sign, is the largest that could be
 /// made from the same state: 0 when none was found.
 pub(crate) fn instead(f: &mut fmt::Formatter<'_>, h: f64, largest: f64) -> fmt::Result {
+    if !h.is_finite() {
+        return write!(f, "; the step size is {h}: give a finite one");
+    }
     if largest == 0.0 {
         let tried = h * SHORTEST_SHARE;
         return write!(

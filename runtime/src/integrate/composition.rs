@@ -9,6 +9,7 @@
 use super::{Reversible, Stepper};
 use crate::solvers::left_factor::Unsolved;
 use crate::solvers::moser_veselov::{MoserVeselovError, largest_step};
+use crate::solvers::newton::NewtonError;
 use crate::{Real, StartError, StepCause, StepError};
 use core::fmt;
 
@@ -125,7 +126,7 @@ impl<S: Reversible> Composition<S> {
                 .map_err(|e| match e {
                     StartError::Refused(cause) => {
                         let share = feasible(model, state, h, &factors);
-                        StartError::Refused(in_all(cause, factor, share))
+                        StartError::Refused(in_all(cause, h, share))
                     }
                     other => other,
                 })?;
@@ -150,10 +151,9 @@ impl<S: Stepper> Composition<S> {
         let mut moving = *state;
         for stage in &mut self.stages {
             if let Err(e) = model.advance(&mut moving, &mut stage.workspace) {
-                let factor = stage.factor;
                 let factors: Vec<f64> = self.stages.iter().map(|stage| stage.factor).collect();
                 let share = feasible(model, state, self.h, &factors);
-                return Err(in_all(e.cause, factor, share).at_node(node));
+                return Err(in_all(e.cause, self.h, share).at_node(node));
             }
         }
         *state = S::at_node(moving, node + 1);
@@ -181,20 +181,36 @@ fn feasible<S: Stepper>(model: &S, state: &S::State, h: S::Scalar, factors: &[f6
 
 /// The cause said of the composed step instead of the factor that failed, with the part of the step
 /// that can be made.
-fn in_all(cause: StepCause, factor: f64, share: f64) -> StepCause {
-    let whole = |h: Option<f64>| h.map(|h| h / factor);
+fn in_all<T: Real>(cause: StepCause, h: T, share: f64) -> StepCause {
+    let in_lane = |lane: usize| {
+        let h = h.lane(lane);
+        (Some(h), Some(h * share))
+    };
     match cause {
-        StepCause::MoserVeselov(e) => StepCause::MoserVeselov(MoserVeselovError {
-            h: whole(e.h),
-            largest_step: whole(e.h).map(|h| h * share),
-            ..e
-        }),
-        StepCause::LeftFactor(e) => StepCause::LeftFactor(Unsolved {
-            h: whole(e.h),
-            largest_step: whole(e.h).map(|h| h * share),
-            ..e
-        }),
-        StepCause::Newton(e) => StepCause::Newton(e.in_all(factor, share)),
+        StepCause::MoserVeselov(e) => {
+            let (h, largest_step) = in_lane(e.lane as usize);
+            StepCause::MoserVeselov(MoserVeselovError {
+                h,
+                largest_step,
+                ..e
+            })
+        }
+        StepCause::LeftFactor(e) => {
+            let (h, largest_step) = in_lane(usize::from(e.lane));
+            StepCause::LeftFactor(Unsolved {
+                h,
+                largest_step,
+                ..e
+            })
+        }
+        StepCause::Newton(e) => {
+            let (h, largest_step) = in_lane(usize::from(e.lane));
+            StepCause::Newton(NewtonError {
+                h,
+                largest_step,
+                ..e
+            })
+        }
         other => other,
     }
 }

@@ -1,12 +1,14 @@
 //! The largest step that can be made instead of one that was refused.
 //! Takes a way to try steps; gives the step, by halving and bisection.
 
-/// Halvings of the step, one by one: most steps that are too long are so by a few powers of ten.
-const HALVINGS: u32 = 60;
+use core::cell::Cell;
 
-/// After those the step is divided by 2^16 at a time, this often.
-const LEAPS: u32 = 20;
-const LEAP: f64 = 1.0 / 65_536.0;
+/// Halvings of the step, one by one: most steps that are too long are so by little.
+const HALVINGS: u32 = 8;
+
+/// After those the step is divided by 2^12 at a time, this often.
+const LEAPS: u32 = 31;
+const LEAP: f64 = 1.0 / 4096.0;
 
 /// What part of the step is tried last: `2^-380`.
 pub(crate) const SHORTEST_SHARE: f64 = f64::from_bits((1023 - 380) << 52);
@@ -40,9 +42,13 @@ const RETURNS: usize = 8;
 /// For torques that depend on the step there is no closed form. The result is a hair (1e-12)
 /// inside the bound, so that the solver accepts it, and shorter steps are tried too, so that it is
 /// none that happens to be solved beyond others that are not; it is 0 when no step above
-/// `h / 2^380` will do.
+/// `h / 2^380` will do. It is 0 as well inside a trial of another search, which asks whether a step
+/// can be made, not which could be made instead.
 #[must_use]
 pub fn largest_step(h: f64, solvable: impl Fn(f64) -> Option<f64>) -> f64 {
+    let Some(_search) = Search::begin() else {
+        return 0.0;
+    };
     let fits = |share: f64| solvable(h * share).is_some_and(|ratio| ratio <= 1.0 - 1e-12);
     if fits(1.0) {
         return h;
@@ -61,6 +67,28 @@ pub fn largest_step(h: f64, solvable: impl Fn(f64) -> Option<f64>) -> f64 {
         }
     }
     h * found
+}
+
+thread_local! {
+    static SEARCHING: Cell<bool> = const { Cell::new(false) };
+}
+
+/// A search on this thread, until it is dropped.
+struct Search;
+
+impl Search {
+    fn begin() -> Option<Self> {
+        if SEARCHING.replace(true) {
+            return None;
+        }
+        Some(Self)
+    }
+}
+
+impl Drop for Search {
+    fn drop(&mut self) {
+        SEARCHING.set(false);
+    }
 }
 
 /// Two shares of the step below `refused`: one that does, as do some shorter ones, and a longer
@@ -103,6 +131,25 @@ fn between(mut low: f64, mut high: f64, fits: impl Fn(f64) -> bool) -> f64 {
 mod tests {
     use super::largest_step;
     use core::cell::Cell;
+
+    #[test]
+    fn a_search_in_a_trial_of_another_is_left_out() {
+        let (trials, inner) = (Cell::new(0), Cell::new(0));
+        let found = largest_step(30.0, |h| {
+            trials.set(trials.get() + 1);
+            let none = largest_step(30.0, |h| {
+                inner.set(inner.get() + 1);
+                Some(h)
+            });
+            assert_eq!(none, 0.0);
+            Some(h)
+        });
+        assert!((found - 1.0).abs() < 2e-12);
+        assert_eq!(inner.get(), 0);
+        assert!(trials.get() < 100, "{}", trials.get());
+        // The next search is one of its own.
+        assert!(largest_step(2.0, Some) > 0.9);
+    }
 
     #[test]
     fn the_shortest_step_is_tried_and_no_shorter() {

@@ -47,7 +47,7 @@ pub struct NewtonError {
     /// The configurations of the model, in their order.
     pub(crate) configurations: &'static [&'static str],
     /// Whether the step was only tried.
-    pub(super) tried: bool,
+    pub(crate) tried: bool,
 }
 
 impl NewtonError {
@@ -129,19 +129,6 @@ impl NewtonError {
             worst,
             lane,
             configurations,
-            ..self
-        }
-    }
-
-    /// The same error, of a step composed of several: this one was `factor` of the whole, of which
-    /// only the part `share` can be made.
-    #[cold]
-    #[must_use]
-    pub(crate) fn in_all(self, factor: f64, share: f64) -> Self {
-        let h = self.h.map(|h| h / factor);
-        Self {
-            h,
-            largest_step: h.map(|h| h * share),
             ..self
         }
     }
