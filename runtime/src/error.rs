@@ -5,6 +5,7 @@ use crate::groups::{NotARigidMotion, NotARotation, NotInvertible};
 use crate::solvers::left_factor::{LeftFactorError, Unsolved};
 use crate::solvers::moser_veselov::{MoserVeselovError, PoinsotError};
 use crate::solvers::newton::NewtonError;
+use crate::solvers::unit_quaternions::QuaternionError;
 use core::fmt;
 
 /// A parameter or an initial value that the model cannot work with.
@@ -291,6 +292,8 @@ pub struct StepError {
 pub enum StepCause {
     /// The Moser-Veselov equation has no principal solution: the step is too long.
     MoserVeselov(MoserVeselovError),
+    /// The equation in unit quaternions has no principal solution: the step is too long.
+    Quaternions(QuaternionError),
     /// The solver of a left factor refuses: mostly the step is too long.
     LeftFactor(Unsolved),
     /// The left factor made of the state is none.
@@ -319,6 +322,13 @@ impl From<MoserVeselovError> for StepCause {
     }
 }
 
+impl From<QuaternionError> for StepCause {
+    #[cold]
+    fn from(error: QuaternionError) -> Self {
+        Self::Quaternions(error)
+    }
+}
+
 impl From<Unsolved> for StepCause {
     #[cold]
     fn from(error: Unsolved) -> Self {
@@ -337,6 +347,7 @@ impl fmt::Display for StepCause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::MoserVeselov(error) => write!(f, "{error}"),
+            Self::Quaternions(error) => write!(f, "{error}"),
             Self::LeftFactor(error) => write!(f, "{error}"),
             Self::Factor(error) => write!(f, "the left factor of this state: {error}"),
             Self::Newton(error) => write!(f, "{error}"),
@@ -352,6 +363,7 @@ impl std::error::Error for StepCause {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             Self::MoserVeselov(error) => Some(error),
+            Self::Quaternions(error) => Some(error),
             Self::LeftFactor(error) => Some(error),
             Self::Factor(error) => Some(error),
             Self::Newton(error) => Some(error),

@@ -66,6 +66,18 @@ impl<T: Real> UnitQuaternion<T> {
         self.0
     }
 
+    /// `q / |q|`, for any nonzero `q`.
+    #[inline]
+    pub(crate) fn normalised(q: [T; 4]) -> Self {
+        Self(Rotation::normalised(q))
+    }
+
+    /// The element that the rotation is kept by.
+    #[inline(always)]
+    pub(super) fn covering(rotation: Rotation<T>) -> Self {
+        Self(rotation)
+    }
+
     /// The inverse, which is the conjugate.
     #[inline]
     pub fn inverse(&self) -> Self {

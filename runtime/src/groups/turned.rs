@@ -1,8 +1,8 @@
 //! The product of a rotation with one whose quaternion has not been normalised yet.
 //! Takes both; gives the product's action on vectors and its matrix after one division, its quaternion after a root as well.
 
-use super::Rotation;
 use super::so3::{hamilton, norm_squared, times};
+use super::{Rotation, UnitQuaternion};
 use crate::Real;
 use core::ops::Mul;
 use nalgebra::{Matrix3, Vector3};
@@ -36,6 +36,12 @@ impl<T: Real> TurnedRotation<T> {
     pub fn rotation(&self) -> Rotation<T> {
         let scale = (T::from_f64(0.5) * self.scale).sqrt();
         Rotation::from_unit(times(self.q, scale))
+    }
+
+    /// The unit quaternion, of this sign.
+    #[inline(always)]
+    pub fn unit_quaternion(&self) -> UnitQuaternion<T> {
+        UnitQuaternion::covering(self.rotation())
     }
 
     /// The 3x3 matrix, body -> space, as it acts on vectors.

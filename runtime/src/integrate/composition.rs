@@ -10,6 +10,7 @@ use super::{Reversible, Stepper};
 use crate::solvers::left_factor::Unsolved;
 use crate::solvers::moser_veselov::{MoserVeselovError, largest_step};
 use crate::solvers::newton::NewtonError;
+use crate::solvers::unit_quaternions::QuaternionError;
 use crate::{Real, StartError, StepCause, StepError};
 use core::fmt;
 
@@ -190,6 +191,14 @@ fn in_all<T: Real>(cause: StepCause, h: T, share: f64) -> StepCause {
         StepCause::MoserVeselov(e) => {
             let (h, largest_step) = in_lane(e.lane as usize);
             StepCause::MoserVeselov(MoserVeselovError {
+                h,
+                largest_step,
+                ..e
+            })
+        }
+        StepCause::Quaternions(e) => {
+            let (h, largest_step) = in_lane(e.lane as usize);
+            StepCause::Quaternions(QuaternionError {
                 h,
                 largest_step,
                 ..e

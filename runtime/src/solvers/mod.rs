@@ -7,5 +7,6 @@ pub mod left_factor;
 mod method;
 pub mod moser_veselov;
 pub mod newton;
+pub mod unit_quaternions;
 
 pub use method::{Method, NoSuchMethod};

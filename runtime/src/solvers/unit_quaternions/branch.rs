@@ -1,0 +1,188 @@
+//! Long steps: more iterations for `s`, or the principal branch followed from small momenta.
+//! Takes the body and `u`; gives the quaternion lane by lane, or how much of `u` can be solved for.
+
+use super::body::QuaternionBody;
+use super::shift::Equation;
+use crate::linalg::{determinant, hat, solve};
+use crate::{Group, Real, UnitQuaternion};
+use nalgebra::{Matrix3, Vector3};
+
+/// Newton's method on the branch starts close to it: it converges at once or not at all.
+const MOST_ITERATIONS: usize = 10;
+
+/// Trials along the branch; to its very end about fifty halvings of the last advance are needed, each followed by a
+/// few advances.
+const MOST_TRIALS: usize = 2000;
+
+/// The branch is followed to within this part of `u`.
+const RESOLUTION: f64 = 1e-14;
+
+/// Parts of `u` by which the branch is followed, at most: others may pass close by.
+const LONGEST: f64 = 0.05;
+
+/// One or the other, lane by lane, as the mask is 1 or 0.
+fn choose<T: Real>(mask: T, then: T, otherwise: T) -> T {
+    mask.where_positive(then) + (T::one() - mask).where_positive(otherwise)
+}
+
+fn quaternions<T: Real>(mask: T, then: [T; 4], otherwise: [T; 4]) -> [T; 4] {
+    let [[a, b, c, d], [w, x, y, z]] = [then, otherwise];
+    [(a, w), (b, x), (c, y), (d, z)].map(|(then, otherwise)| choose(mask, then, otherwise))
+}
+
+/// The quaternion where one iteration for `s` does not do, of any length; nothing where some lane
+/// has none. What a lane finds does not depend on the others.
+#[cold]
+#[inline(never)]
+pub(super) fn turn<T: Real>(
+    body: &QuaternionBody<T>,
+    equation: &Equation<T>,
+    u: [T; 3],
+) -> Option<[T; 4]> {
+    let one = T::one();
+    let [x, y, z] = u;
+    let a = (x * x + y * y) + z * z;
+    if !a.is_finite() {
+        return None;
+    }
+    let easy = one - (a - body.easy).where_positive(one);
+    let long = (a - body.moderate).where_positive(one);
+    let mut once = equation.improved(equation.start());
+    let mut s = once;
+    for _ in 0..(1 + u32::from(wide::<T>()) + T::ORDER) {
+        s = equation.improved(s);
+    }
+    for _ in 0..T::ORDER {
+        once = equation.improved(once);
+    }
+    let near = equation.quaternion(choose(easy, once, s));
+    if long.nowhere_positive() {
+        return near.iter().all(|x| x.is_finite()).then_some(near);
+    }
+    let mut far = [T::zero(); 4];
+    for lane in 0..T::LANES {
+        if long.lane(lane) <= 0.0 {
+            continue;
+        }
+        let root = followed(&body.lane(lane), u.map(|x| x.lane(lane))).ok()?;
+        for (sum, x) in far.iter_mut().zip(root.components()) {
+            sum.set_lane(lane, T::One::from_f64(x));
+        }
+    }
+    let far = quaternions(long, far, UnitQuaternion::identity().components());
+    let far = polished(body, u, UnitQuaternion::from_components(far).ok()?)?;
+    Some(quaternions(long, far.components(), near))
+}
+
+/// Whether the scalar has more digits than `f64`.
+fn wide<T: Real>() -> bool {
+    T::EPSILON < 1e-20
+}
+
+/// `w A v + v x A v + β v - u` and its derivative along `W (ξ/2)`, at `W = w + v`.
+fn balance<T: Real>(
+    body: &QuaternionBody<T>,
+    u: [T; 3],
+    q: &UnitQuaternion<T>,
+) -> (Vector3<T>, Matrix3<T>) {
+    let ([x, y, z], [yz, xz, xy]) = (body.moments, body.products);
+    let number = Matrix3::from_diagonal_element(body.real);
+    let a = Matrix3::new(x, xy, xz, xy, y, yz, xz, yz, z) - number;
+    let (w, v) = (q.real(), q.imaginary());
+    let image = a * v;
+    let along = (a * w + hat(&v) * a + number) * v;
+    let change = (Matrix3::from_diagonal_element(w) + hat(&v)) * T::from_f64(0.5);
+    let tangent = (a * w + hat(&v) * a - hat(&image) + number) * change;
+    let tangent = tangent - image * v.transpose() * T::from_f64(0.5);
+    (along - Vector3::from(u), tangent)
+}
+
+/// Newton's method from a root of `f64`, for further digits and for derivatives. A tangent that is
+/// itself rounding leaves the root as it is.
+fn polished<T: Real>(
+    body: &QuaternionBody<T>,
+    u: [T; 3],
+    mut q: UnitQuaternion<T>,
+) -> Option<UnitQuaternion<T>> {
+    for _ in 0..(2 * u32::from(wide::<T>()) + T::ORDER) {
+        let (residual, tangent) = balance(body, u, &q);
+        q = q.retract((-solve(&tangent, &residual)?).as_slice());
+    }
+    q.components().iter().all(|x| x.is_finite()).then_some(q)
+}
+
+/// The root for `u`, along the branch that begins at zero; or the part of `u` at which that ends,
+/// where its tangent becomes singular.
+pub(super) fn followed(
+    body: &QuaternionBody<f64>,
+    u: [f64; 3],
+) -> Result<UnitQuaternion<f64>, f64> {
+    let scaled = |part: f64| u.map(|x| x * part);
+    let a = u.iter().fold(0.0, |sum, x| sum + x * x);
+    if !a.is_finite() {
+        return Err(f64::NAN);
+    }
+    let mut part = (body.moderate / a).sqrt().min(1.0);
+    let begin = Equation::new::<false>(body, scaled(part));
+    let s = begin.improved(begin.improved(begin.start()));
+    let mut q = UnitQuaternion::normalised(begin.quaternion(s));
+    let mut advance = LONGEST * part;
+    let (_, mut tangent) = balance(body, scaled(part), &q);
+    for _ in 0..MOST_TRIALS {
+        if part >= 1.0 {
+            return Ok(q);
+        }
+        let next = (part + advance).min(1.0);
+        let taken = next - part;
+        let found = solve(&tangent, &Vector3::from(scaled(taken)))
+            .and_then(|change| corrected(body, scaled(next), &q, &change));
+        match found {
+            // At its end the branch turns back, and its tangent changes sign; another one, which
+            // may go on beyond, is not this one.
+            Some((root, there))
+                if (0.7..1.4).contains(&(determinant(&there) / determinant(&tangent))) =>
+            {
+                (q, part, tangent) = (root, next, there);
+                advance = (1.5 * taken).min(LONGEST);
+            }
+            _ => advance = 0.5 * taken,
+        }
+        if advance < RESOLUTION * part {
+            return Err(part);
+        }
+    }
+    Err(part)
+}
+
+/// The root near what the tangent foresees, and the tangent there; nothing unless the corrections
+/// are much smaller than the change foreseen, and each than the one before.
+fn corrected(
+    body: &QuaternionBody<f64>,
+    u: [f64; 3],
+    q: &UnitQuaternion<f64>,
+    change: &Vector3<f64>,
+) -> Option<(UnitQuaternion<f64>, Matrix3<f64>)> {
+    let size = |v: &Vector3<f64>| v.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let moments = body.moments.iter().chain(&body.products);
+    let scale = body.real.abs() + moments.fold(0.0, |sum, x| sum + x.abs());
+    let mut last = size(change);
+    if !last.is_finite() || last > 0.5 {
+        return None;
+    }
+    let mut root = q.retract(change.as_slice());
+    for _ in 0..MOST_ITERATIONS {
+        let (residual, tangent) = balance(body, u, &root);
+        let correction = solve(&tangent, &residual)?;
+        let far = size(&correction);
+        // What is rounding of the equation, or of the root, is as good as it gets.
+        if size(&residual) <= 2.0 * f64::EPSILON * scale || far <= 2.0 * f64::EPSILON {
+            return Some((root, tangent));
+        }
+        if far > 0.2 * last {
+            return None;
+        }
+        root = root.retract((-correction).as_slice());
+        last = far;
+    }
+    None
+}

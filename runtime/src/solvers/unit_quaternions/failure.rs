@@ -1,0 +1,143 @@
+//! The error of a step that is too long for the equation in unit quaternions.
+//! Takes the refused momentum; gives how far beyond the bound it is and what step would do.
+
+use super::QuaternionBody;
+use super::branch::followed;
+use crate::Real;
+use crate::solvers::moser_veselov::largest_step;
+use core::fmt;
+use nalgebra::Vector3;
+
+/// The equation has no principal solution: the body would turn too far in one step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct QuaternionError {
+    /// The scaled momentum over its bound, along its direction: above 1 there is no solution. Of
+    /// several lanes, the worst. NaN when the momentum is not finite.
+    pub ratio: f64,
+    /// The step size refused, where the caller knows it.
+    pub h: Option<f64>,
+    /// The largest step size that can be solved from the same state, where it is known.
+    pub largest_step: Option<f64>,
+    /// Index (0, 1, 2) of the momentum component of largest `|h N_i| / I_ii`.
+    pub component: usize,
+    /// The lane all this is about. 0 for types without lanes.
+    pub lane: u32,
+}
+
+/// The step offered is this little inside the bound, where the root is double.
+const INSIDE: f64 = 1.0 - 1e-10;
+
+impl QuaternionError {
+    /// Diagnoses the refused `h N`; every lane is looked at.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn diagnose<T: Real>(body: &QuaternionBody<T>, h_n: &Vector3<T>) -> Self {
+        let mut worst = Self {
+            ratio: 0.0,
+            h: None,
+            largest_step: None,
+            component: 0,
+            lane: 0,
+        };
+        for lane in 0..T::LANES {
+            let (body, n) = (body.lane(lane), h_n.map(|x| x.lane(lane)));
+            let ratio = reach(&body, &n);
+            if ratio.is_nan() || ratio > worst.ratio {
+                worst.ratio = ratio;
+                worst.component = fastest(&body, &n);
+                worst.lane = u32::try_from(lane).unwrap_or(u32::MAX);
+            }
+            if ratio.is_nan() {
+                break;
+            }
+        }
+        worst
+    }
+
+    /// The same error with the step that was refused and the largest that would do, lane by lane,
+    /// the smallest of them; `edge_momentum` is `N` for a trial step.
+    #[cold]
+    #[must_use]
+    pub fn with_searched_step<T: Real>(
+        self,
+        body: &QuaternionBody<T>,
+        h: T,
+        edge_momentum: impl Fn(T) -> Vector3<T>,
+    ) -> Self {
+        let mut told = self;
+        for lane in 0..T::LANES {
+            let (body, h) = (body.lane(lane), h.lane(lane));
+            let at = |trial: f64| edge_momentum(T::from_f64(trial)).map(|x| x.lane(lane));
+            let solved = |trial: f64| reach(&body, &(at(trial) * trial)) < 1.0;
+            let largest = if at(h) == at(0.5 * h) {
+                // A momentum that does not depend on the step: the bound is linear in it.
+                h / reach(&body, &(at(h) * h)).max(1.0)
+            } else {
+                largest_step(h, |trial| Some(if solved(trial) { 0.0 } else { 2.0 }))
+            };
+            let largest = largest * INSIDE;
+            // NaN, which an infinite momentum gives, is told only if nothing else is.
+            if told.largest_step.is_none_or(|smallest| largest < smallest) {
+                told = Self {
+                    h: Some(h),
+                    largest_step: Some(largest),
+                    lane: u32::try_from(lane).unwrap_or(u32::MAX),
+                    ..told
+                };
+            }
+        }
+        told
+    }
+}
+
+/// The ratio of `h N` to its bound; 0 where there is a solution, NaN where it is not finite.
+fn reach(body: &QuaternionBody<f64>, h_n: &Vector3<f64>) -> f64 {
+    let [[x, y, z]] = h_n.data.0;
+    let s = body.half_over_unit;
+    match followed(body, [x * s, y * s, z * s]) {
+        Ok(_) => 0.0,
+        Err(part) => part.recip(),
+    }
+}
+
+/// The index of the largest `|h N_i| / I_ii`.
+fn fastest(body: &QuaternionBody<f64>, h_n: &Vector3<f64>) -> usize {
+    let (mut largest, mut component) = (-1.0, 0);
+    for (i, (x, moment)) in h_n.iter().zip(body.moments).enumerate() {
+        let angle = (x / moment).abs();
+        if angle > largest || angle.is_nan() {
+            (largest, component) = (angle, i);
+        }
+    }
+    component
+}
+
+impl fmt::Display for QuaternionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.ratio.is_nan() {
+            return write!(
+                f,
+                "the momentum is NaN or infinite (component {})",
+                self.component
+            );
+        }
+        if self.lane > 0 {
+            write!(f, "lane {}: ", self.lane)?;
+        }
+        write!(
+            f,
+            "the body turns too far in one step: the momentum is {:.6} times what the equation in \
+             unit quaternions can take (component {} is the largest)",
+            self.ratio, self.component
+        )?;
+        match (self.h, self.largest_step) {
+            (Some(h), Some(largest)) => write!(
+                f,
+                "; reduce the step size from {h} to at most {largest:.6e}"
+            ),
+            _ => write!(f, "; reduce the step size"),
+        }
+    }
+}
+
+impl std::error::Error for QuaternionError {}

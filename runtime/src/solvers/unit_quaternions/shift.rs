@@ -1,0 +1,226 @@
+//! The scalar unknown `s` of the equation in unit quaternions, and the velocity that follows.
+//! Takes the body and `u = h N / 2`; gives the quaternion, or nothing where there is none.
+//!
+//! All over `det I`: `Q(s) = β (|(det, n)| - det)` with the quartic `Q = u . n - s det` of the
+//! Moser-Veselov equation. `det` and `|n|^2` are polynomials of third and fourth degree in `s`.
+
+use super::body::QuaternionBody;
+use super::branch;
+use crate::Real;
+
+/// One iteration from the series is exact to rounding while `y = (1 + |β|/I) |u|^2 / I^2`, `I` the
+/// smallest moment, is below this: it leaves less than `7e-18 (y/0.02)^12` of `I` (the largest of
+/// thousands of random bodies, in fifty digits).
+pub(super) const EASY: f64 = 0.02;
+
+/// Two leave less than 1e-30 of `I` below this, and the principal branch is far from its end.
+pub(super) const MODERATE: f64 = 0.1;
+
+/// `|(det, n)|` and its derivatives need `det` and `|n|^2` as polynomials.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Equation<T> {
+    real: T,
+    /// `u . I u / det I`.
+    twice: T,
+    /// `tr I |u|^2 / det I`.
+    pull: T,
+    energy: T,
+    zeroth: T,
+    second: T,
+    /// `Q`, by powers of `s`, up to the third; the fourth is `zeroth`.
+    quartic: [T; 4],
+    /// `det`, up to the second; the third is `-zeroth`.
+    determinant: [T; 3],
+    /// `|n|^2`.
+    length: [T; 5],
+    /// `n = n_0 + s n_1 + s^2 u / det I`.
+    constant: [T; 3],
+    linear: [T; 3],
+    u: [T; 3],
+}
+
+#[inline(always)]
+fn dot<T: Real>([a, b, c]: [T; 3], [x, y, z]: [T; 3]) -> T {
+    (a * x + b * y) + c * z
+}
+
+#[inline(always)]
+fn symmetric_times<T: Real, const DIAGONAL: bool>(
+    [xx, yy, zz]: [T; 3],
+    [yz, xz, xy]: [T; 3],
+    [x, y, z]: [T; 3],
+) -> [T; 3] {
+    if DIAGONAL {
+        [xx * x, yy * y, zz * z]
+    } else {
+        [
+            (xx * x + xy * y) + xz * z,
+            (xy * x + yy * y) + yz * z,
+            (xz * x + yz * y) + zz * z,
+        ]
+    }
+}
+
+impl<T: Real> Equation<T> {
+    #[inline(always)]
+    pub(super) fn new<const DIAGONAL: bool>(body: &QuaternionBody<T>, u: [T; 3]) -> Self {
+        let (one, zeroth) = (T::one(), body.zeroth);
+        let a = dot(u, u);
+        let image = symmetric_times::<T, DIAGONAL>(body.moments, body.products, u);
+        let inverse =
+            symmetric_times::<T, DIAGONAL>(body.inverse_moments, body.inverse_products, u);
+        let linear = symmetric_times::<T, DIAGONAL>(body.linear_moments, body.linear_products, u);
+        let [x, y, z] = u;
+        // (I u) x u over det I: by differences it does not cancel when moments are nearly equal.
+        let gyro = if DIAGONAL {
+            let [p, q, r] = body.differences;
+            [p * (y * z), q * (z * x), r * (x * y)]
+        } else {
+            let [i, j, k] = image;
+            [j * z - k * y, k * x - i * z, i * y - j * x].map(|x| x * zeroth)
+        };
+        let square = zeroth * a;
+        let constant = [0, 1, 2].map(|i: usize| (inverse[i] + gyro[i]) + square * u[i]);
+        let energy = dot(u, inverse);
+        let start = energy + square * a;
+        let twice = zeroth * dot(u, image);
+        let pull = body.first * a;
+        let lead = one + twice;
+        let cross = square * lead - body.first * start;
+        let fourth = zeroth * square;
+        let third = zeroth * twice - body.first * square;
+        Self {
+            real: body.real,
+            twice,
+            pull,
+            energy,
+            zeroth,
+            second: body.second,
+            quartic: [
+                start,
+                -(one + pull),
+                body.second + (square + square),
+                -body.first,
+            ],
+            determinant: [lead, -(body.second + square), body.first],
+            length: [
+                dot(constant, constant),
+                cross + cross,
+                dot(linear, linear) + zeroth * (start + start),
+                third + third,
+                fourth,
+            ],
+            constant,
+            linear,
+            u: u.map(|x| x * zeroth),
+        }
+    }
+
+    /// The first terms of the series of `s`, up to the fourth degree in `u`.
+    #[inline(always)]
+    pub(super) fn start(&self) -> T {
+        let half = T::from_f64(0.5) * self.real;
+        let ([start, ..], [f, k, ..]) = (self.quartic, self.length);
+        let s = self.energy - half * f;
+        let bend = ((T::one() - self.twice) + s * self.second) - T::from_f64(0.25) * f;
+        (start + s * (self.second * s - self.pull)) - half * (f * bend + s * k)
+    }
+
+    /// The equation at `s` and its first three derivatives, the latter over their factorials.
+    #[inline(always)]
+    pub(super) fn taylor(&self, s: T) -> [T; 4] {
+        let (two, three, four, six) = (
+            T::from_f64(2.0),
+            T::from_f64(3.0),
+            T::from_f64(4.0),
+            T::from_f64(6.0),
+        );
+        let half = T::from_f64(0.5);
+        let square = s * s;
+        let z = self.zeroth;
+        let [q0, q1, q2, q3] = self.quartic;
+        let quartic = [
+            (q0 + q1 * s) + square * ((q2 + q3 * s) + z * square),
+            (q1 + (two * q2) * s) + square * (three * q3 + (four * z) * s),
+            (q2 + (three * q3) * s) + (six * z) * square,
+            q3 + (four * z) * s,
+        ];
+        let [d0, d1, d2] = self.determinant;
+        let det = [
+            (d0 + d1 * s) + square * (d2 - z * s),
+            (d1 + (two * d2) * s) - (three * z) * square,
+            d2 - (three * z) * s,
+            -z,
+        ];
+        let [m0, m1, m2, m3, m4] = self.length;
+        let n = [
+            (m0 + m1 * s) + square * ((m2 + m3 * s) + m4 * square),
+            (m1 + (two * m2) * s) + square * (three * m3 + (four * m4) * s),
+            (m2 + (three * m3) * s) + (six * m4) * square,
+            m3 + (four * m4) * s,
+        ];
+        // Half the Taylor coefficients of the square of the length.
+        let length = (det[0] * det[0] + n[0]).sqrt();
+        let inverse = T::one() / length;
+        let p1 = det[0] * det[1] + half * n[1];
+        let p2 = (half * (det[1] * det[1]) + det[0] * det[2]) + half * n[2];
+        let p3 = (det[1] * det[2] + det[0] * det[3]) + half * n[3];
+        let l1 = p1 * inverse;
+        let l2 = (p2 - half * (l1 * l1)) * inverse;
+        let l3 = (p3 - l1 * l2) * inverse;
+        let b = self.real;
+        [
+            quartic[0] - b * (length - det[0]),
+            quartic[1] - b * (l1 - det[1]),
+            quartic[2] - b * (l2 - det[2]),
+            quartic[3] - b * (l3 - det[3]),
+        ]
+    }
+
+    /// One step of fourth order: Newton's, and the next two terms of the inverse series.
+    #[inline(always)]
+    pub(super) fn improved(&self, s: T) -> T {
+        let [value, slope, second, third] = self.taylor(s);
+        let inverse = T::one() / slope;
+        let newton = -(value * inverse);
+        let bend = -(second * inverse);
+        let twist = (bend + bend) * bend - third * inverse;
+        let square = newton * newton;
+        (s + newton) + square * (bend + newton * twist)
+    }
+
+    /// The quaternion `(det, n)`, over `det I`; of any length.
+    #[inline(always)]
+    pub(super) fn quaternion(&self, s: T) -> [T; 4] {
+        let square = s * s;
+        let [d0, d1, d2] = self.determinant;
+        let det = (d0 + d1 * s) + square * (d2 - self.zeroth * s);
+        let n = |i: usize| (self.constant[i] + s * self.linear[i]) + square * self.u[i];
+        [det, n(0), n(1), n(2)]
+    }
+}
+
+/// The quaternion of the principal solution, not normalised, for `u = h N / (2 unit)`.
+#[inline(always)]
+pub(super) fn turn<T: Real>(body: &QuaternionBody<T>, u: [T; 3]) -> Option<[T; 4]> {
+    // One branch here, straight-line code on either side.
+    if body.diagonal {
+        principal::<T, true>(body, u)
+    } else {
+        principal::<T, false>(body, u)
+    }
+}
+
+#[inline(always)]
+fn principal<T: Real, const DIAGONAL: bool>(body: &QuaternionBody<T>, u: [T; 3]) -> Option<[T; 4]> {
+    let equation = Equation::new::<DIAGONAL>(body, u);
+    // Written so that NaN is not easy.
+    if (dot(u, u) - body.easy).nowhere_positive() {
+        let mut s = equation.improved(equation.start());
+        for _ in 0..T::ORDER {
+            s = equation.improved(s);
+        }
+        return Some(equation.quaternion(s));
+    }
+    branch::turn(body, &equation, u)
+}
