@@ -6,6 +6,7 @@ mod compose;
 mod motion;
 mod outlook;
 mod proof;
+mod quaternionic;
 mod sheet;
 mod solution;
 mod source;
@@ -73,6 +74,11 @@ pub fn summary(d: &Derivation) -> String {
     let riccati = d.solve.riccati.iter().map(|r| match r {
         Riccati::Exact(mv) => format!("exact, C = {}", show(&mv.factor)),
         Riccati::Coupled(mv) => format!("coupled, C = {}", show(&mv.factor)),
+        Riccati::Quaternionic(q) => format!(
+            "none; in unit quaternions, A = {}, β = {}",
+            show(&q.edge.factor),
+            show(&q.real)
+        ),
         Riccati::None(why) => format!("none: {why}"),
     });
     lines.push(format!(

@@ -14,6 +14,7 @@ pub mod lie;
 pub mod limit;
 pub mod momentum;
 pub mod parts;
+pub mod quaternionic;
 pub mod recognise;
 pub mod reduction;
 pub mod reversal;

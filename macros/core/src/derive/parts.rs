@@ -1,10 +1,10 @@
 //! Velocities by parts of three dimensions: a unit quaternion as a number and a vector, a rigid
 //! motion as a rotation and a vector. What is solved at each step is then written in vectors.
-//! Takes the derivation and expressions of it; gives the same in the parts.
+//! Takes the model and expressions of its derivation; gives the same in the parts.
 
-use super::Derivation;
+use super::Letters;
 use crate::algebra::Rational;
-use crate::check::spec::Group;
+use crate::check::spec::{Group, Spec};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Map, Node, Part, Shift};
@@ -45,15 +45,15 @@ fn at(symbol: SymbolId) -> Letter {
 
 impl Parts {
     /// Those of a model; `None` where a group is not one of space.
-    pub fn of(d: &Derivation) -> Option<Parts> {
-        let mut symbols = d.letters.symbols.clone();
+    pub fn of(spec: &Spec, letters: &Letters) -> Option<Parts> {
+        let mut symbols = letters.symbols.clone();
         let mut add = |name: &str, shape: Shape, structure: Structure| {
             let name = symbols.fresh_name(name);
             symbols.add(&name, shape, structure, Role::Derived)
         };
         let mut velocities = Vec::new();
-        for c in &d.spec.configurations {
-            let name = &d.letters.symbols.get(c.velocity).name;
+        for c in &spec.configurations {
+            let name = &letters.symbols.get(c.velocity).name;
             let named = |part: &str| format!("{name}_{part}");
             velocities.push(match c.group {
                 Group::SpecialOrthogonal(n) if n == THREE => Velocity::Rotation(c.velocity),
@@ -69,7 +69,7 @@ impl Parts {
             });
         }
         let direction = add("η", Shape::vector(THREE), Structure::General);
-        let whole = d.spec.configurations.iter().map(|c| at(c.velocity));
+        let whole = spec.configurations.iter().map(|c| at(c.velocity));
         Some(Parts {
             whole: whole.collect(),
             symbols,

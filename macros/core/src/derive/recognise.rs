@@ -4,10 +4,11 @@
 
 use super::Letters;
 use super::balance::{Balance, shorter};
+use super::quaternionic::{self, Quaternionic};
 use super::transport::Transport;
 use super::variation::at;
 use crate::algebra::{Algebra, Factor, Monomial, Poly, Rational, Source};
-use crate::check::spec::{Side, Spec};
+use crate::check::spec::{Configuration, Group, Side, Spec};
 use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Node, Shift};
@@ -19,6 +20,8 @@ pub enum Riccati {
     Exact(MoserVeselov),
     /// The same with a `C` that contains other velocities.
     Coupled(MoserVeselov),
+    /// None, but the equation of SU(2) that takes its place.
+    Quaternionic(Quaternionic),
     /// None, with the reason.
     None(String),
 }
@@ -53,6 +56,8 @@ pub enum Method {
     FreeMoserVeselov,
     /// Explicitly, one quartic a step, with the momentum of the next edge made at its first node.
     ForcedMoserVeselov,
+    /// Explicitly, one scalar equation a step, in the same way: SU(2).
+    UnitQuaternions,
     /// By a solver of left factors: `C` is constant, in the frame of the
     /// velocity or, where [`Solve::turned`] has it, in the other one.
     LeftFactor,
@@ -115,6 +120,18 @@ pub fn recognise(
         [Riccati::Exact(mv)] if three(0) && mv.symmetric && keeps_edge(mv) => (
             Method::ForcedMoserVeselov,
             format!("C is {} and symmetric: {kappa}", constancy(letters, mv)),
+        ),
+        [Riccati::Quaternionic(q)] if keeps_edge(&q.edge) => (
+            Method::UnitQuaternions,
+            format!(
+                "A is {} and symmetric, β constant: one equation for one number a step",
+                constancy(letters, &q.edge)
+            ),
+        ),
+        [Riccati::Quaternionic(_)] => (
+            Method::Newton,
+            "A depends on the step or changes along the motion: Newton on the derived residual"
+                .to_owned(),
         ),
         [Riccati::Exact(_)] if turned.is_some() => (
             Method::LeftFactor,
@@ -216,6 +233,15 @@ pub fn keeps_edge(mv: &MoserVeselov) -> bool {
     mv.in_body.is_some() && mv.arrive.is_some()
 }
 
+/// The rotation by which the body stands in space.
+fn frame(s: &Symbols, c: &Configuration) -> Expr {
+    let element = expr::here(s, c.element);
+    match c.group {
+        Group::UnitQuaternions => expr::rotation(s, element),
+        Group::SpecialOrthogonal(_) | Group::GeneralLinear(_) | Group::RigidMotions => element,
+    }
+}
+
 /// What acts at a node on both sides of it, seen from the body; see [`MoserVeselov::torque`].
 fn torque(
     spec: &Spec,
@@ -237,7 +263,7 @@ fn torque(
         false => expr::add(before, after),
     };
     let spatial = expr::substitute(s, &both, &carried(spec, transports));
-    let seen = from_body(s, algebra, c.element, &spatial);
+    let seen = from_body(s, algebra, &frame(s, c), &spatial);
     (!algebra.exhausted() && occurrences(&seen) <= occurrences(&spatial)).then_some(seen)
 }
 
@@ -249,7 +275,7 @@ fn occurrences(e: &Expr) -> u32 {
 }
 
 /// A vector seen from the body: the rotation passes through sums and vector products.
-fn from_body(s: &Symbols, algebra: &Algebra, element: SymbolId, e: &Expr) -> Expr {
+fn from_body(s: &Symbols, algebra: &Algebra, element: &Expr, e: &Expr) -> Expr {
     let of = |x: &Expr| from_body(s, algebra, element, x);
     match e.node() {
         Node::Sum(terms) => expr::sum(terms.iter().map(of), e.shape()),
@@ -269,8 +295,8 @@ fn from_body(s: &Symbols, algebra: &Algebra, element: SymbolId, e: &Expr) -> Exp
     }
 }
 
-fn turned_back(s: &Symbols, algebra: &Algebra, element: SymbolId, e: &Expr) -> Expr {
-    let back = expr::transpose(s, expr::here(s, element));
+fn turned_back(s: &Symbols, algebra: &Algebra, element: &Expr, e: &Expr) -> Expr {
+    let back = expr::transpose(s, element.clone());
     shorter(algebra, expr::mul(back, e.clone()))
 }
 
@@ -311,7 +337,7 @@ fn in_body(
     let seen = match c.side {
         Side::Body => carried,
         Side::Spatial => {
-            let element = expr::here(s, c.element);
+            let element = frame(s, c);
             expr::product([expr::transpose(s, element.clone()), carried, element])
         }
     };
@@ -362,6 +388,15 @@ fn riccati(
 ) -> Riccati {
     let s = &letters.symbols;
     let c = &spec.configurations[i];
+    if c.group == Group::UnitQuaternions {
+        return match quaternionic::form(spec, letters, b, i, algebra) {
+            Ok((factor, real, rest)) => {
+                let edge = with_node(spec, letters, b, i, factor, rest, transports, algebra);
+                Riccati::Quaternionic(Quaternionic { edge, real })
+            }
+            Err(why) => Riccati::None(why),
+        };
+    }
     if !c.group.is_orthogonal() {
         return Riccati::None("the group is not SO(n)".to_owned());
     }
@@ -381,10 +416,6 @@ fn riccati(
     // h N = Ω C^T - C Ω^T, and the balance carries 1/h.
     let transposed = expr::mul(step, algebra.raise(&factor));
     let factor = shorter(algebra, expr::transpose(s, transposed));
-    let symmetric = algebra.is_zero(&expr::sub(
-        factor.clone(),
-        expr::transpose(s, factor.clone()),
-    ));
     let rest = algebra.raise(&rest);
     // The node's own part, where that is all of it: it reads as the user would write it.
     let own = if n == Dim::Fixed(3) {
@@ -399,22 +430,38 @@ fn riccati(
     } else {
         rest
     };
+    let mv = with_node(spec, letters, b, i, factor, rest, transports, algebra);
+    let moving = |e: &Expr| expr::contains_role(s, e, Role::Velocity);
+    if moving(&mv.factor) || moving(&mv.rest) {
+        return Riccati::Coupled(mv);
+    }
+    Riccati::Exact(mv)
+}
+
+/// The equation with what acts at the nodes.
+#[allow(clippy::too_many_arguments)]
+fn with_node(
+    spec: &Spec,
+    letters: &Letters,
+    b: &Balance,
+    i: usize,
+    factor: Expr,
+    rest: Expr,
+    transports: &[Transport],
+    algebra: &Algebra,
+) -> MoserVeselov {
+    let flipped = expr::transpose(&letters.symbols, factor.clone());
     let arrive = arrive(spec, letters, i, b, &rest, transports, algebra);
-    let mv = MoserVeselov {
+    MoserVeselov {
+        symmetric: algebra.is_zero(&expr::sub(factor.clone(), flipped)),
         in_body: in_body(spec, letters, i, &factor, transports, algebra),
         torque: arrive
             .as_ref()
             .and_then(|a| torque(spec, letters, i, &rest, a, transports, algebra)),
         arrive,
-        factor: factor.clone(),
-        symmetric,
-        rest: rest.clone(),
-    };
-    let moving = |e: &Expr| expr::contains_role(s, e, Role::Velocity);
-    if moving(&factor) || moving(&rest) {
-        return Riccati::Coupled(mv);
+        factor,
+        rest,
     }
-    Riccati::Exact(mv)
 }
 
 /// Splits `Ω X - X^T Ω^T + rest`: returns `X` and the rest, or nothing if the velocity stands

@@ -31,6 +31,10 @@ pub fn moser_veselov(sheet: &Sheet, doc: &mut Document) {
                 ]);
                 continue;
             }
+            Riccati::Quaternionic(q) => {
+                super::quaternionic::equation(sheet, section, c, q, i);
+                continue;
+            }
             Riccati::Exact(mv) => (mv, false),
             Riccati::Coupled(mv) => (mv, true),
         };
@@ -287,14 +291,14 @@ fn method(sheet: &Sheet, section: &mut Section) {
     let why = why.split(": Newton on").next().unwrap_or(why);
     let letter = d.solve.riccati.first().and_then(|r| match r {
         Riccati::Exact(mv) | Riccati::Coupled(mv) => Some(factor(sheet, mv, 0).0),
-        Riccati::None(_) => None,
+        Riccati::Quaternionic(_) | Riccati::None(_) => None,
     });
     // What the motion carries stands still in the body.
     let carried = d.solve.riccati.iter().any(|r| match r {
         Riccati::Exact(mv) | Riccati::Coupled(mv) => {
             expr::contains_role(sheet.symbols(), &mv.factor, Role::Advected)
         }
-        Riccati::None(_) => false,
+        Riccati::Quaternionic(_) | Riccati::None(_) => false,
     });
     let constant = if carried {
         " is constant in the body, where it is solved"
@@ -318,6 +322,7 @@ fn method(sheet: &Sheet, section: &mut Section) {
                     "The stepper solves it for any left factor, by a solver chosen by name: "
                 }
                 Method::Davenport => "The stepper solves it as an eigenvalue problem at each node: ",
+                Method::UnitQuaternions => "The stepper solves it so: ",
                 Method::FreeMoserVeselov | Method::ForcedMoserVeselov | Method::Newton => {
                     "The stepper iterates with Newton's method on the group: "
                 }

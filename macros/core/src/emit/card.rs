@@ -173,6 +173,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                             let out = put(out, rows(momentum.0));
                         },
                         Method::ForcedMoserVeselov
+                        | Method::UnitQuaternions
                         | Method::LeftFactor
                         | Method::Davenport
                         | Method::Newton => {
@@ -233,6 +234,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
             | Method::ForcedMoserVeselov
             | Method::LeftFactor
             | Method::Davenport => "Moser-Veselov",
+            Method::UnitQuaternions => "Unit quaternions",
             Method::Newton => "Newton",
         },
         d.solve.reason

@@ -51,7 +51,7 @@ impl Equations<'_> {
     /// Blocks of three; nothing where a group has other coordinates, or no rule gives the tangent.
     fn in_blocks(&self, list: &[Expr], node: &[TokenStream]) -> Option<(TokenStream, Written)> {
         let (d, trial, mu) = (self.d, self.trial, self.momenta);
-        let parts = Parts::of(d)?;
+        let parts = Parts::of(&d.spec, &d.letters)?;
         let s = &parts.symbols;
         let list: Option<Vec<Expr>> = parts
             .covectors(list)

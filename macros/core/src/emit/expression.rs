@@ -15,6 +15,7 @@ use quote::{format_ident, quote};
 #[derive(Clone, Default)]
 pub struct Bindings {
     list: Vec<(Letter, Ident)>,
+    rotations: Vec<(Letter, Ident)>,
 }
 
 impl Bindings {
@@ -27,6 +28,18 @@ impl Bindings {
     pub fn bind(&mut self, letter: Letter, local: Ident) {
         self.list.retain(|(l, _)| *l != letter);
         self.list.push((letter, local));
+    }
+
+    /// Where the rotation is found that a unit quaternion covers.
+    pub fn bind_rotation(&mut self, letter: Letter, local: Ident) {
+        self.rotations.retain(|(l, _)| *l != letter);
+        self.rotations.push((letter, local));
+    }
+
+    /// The same, if it is.
+    pub fn rotation(&self, letter: Letter) -> Option<&Ident> {
+        let found = self.rotations.iter().find(|(l, _)| *l == letter);
+        found.map(|(_, local)| local)
     }
 
     fn find(&self, symbols: &Symbols, letter: Letter) -> Ident {
@@ -183,6 +196,10 @@ impl Writer<'_> {
                     Function::Log => quote!(#a.ln()),
                 }
             }
+            Node::Map(Map::Rotation, a) if self.turn(a).is_some() => {
+                let local = self.turn(a);
+                quote!(#local)
+            }
             Node::Map(map, a) => self.function(
                 match map {
                     Map::Rotation if expr::is_motion(self.symbols, a) => "motion_rotation",
@@ -195,6 +212,13 @@ impl Writer<'_> {
                 },
                 a,
             ),
+        }
+    }
+
+    fn turn(&self, a: &Expr) -> Option<&Ident> {
+        match a.node() {
+            Node::Letter(l) => self.bindings.rotation(*l),
+            _ => None,
         }
     }
 

@@ -1,6 +1,8 @@
-//! The step of a forced Moser-Veselov equation: one quartic, then the node's torques.
+//! The step of a forced Moser-Veselov equation, or of its like on SU(2): one equation for a number, then the node's
+//! torques.
 //! Takes the derivation; gives `step`, the edge momentum and the words of a refusal.
 
+use super::element::{Family, family};
 use super::expression::{Bindings, program};
 use super::items::{self, letters_of, node_locals, parameter_locals, with_transports};
 use super::names::{Names, item, own, per_configuration, tagged, variable};
@@ -12,7 +14,7 @@ use crate::derive::Derivation;
 use crate::derive::recognise::MoserVeselov;
 use crate::derive::transport::Transport;
 use crate::expr::symbol::{Role, SymbolId, Symbols};
-use crate::expr::{self, Expr, Letter, Node, Shift};
+use crate::expr::{self, Expr, Letter, Map, Node, Shift};
 use crate::schedule;
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
@@ -40,6 +42,11 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
     let state = item(d, "State");
     let node = names.local("node");
     let begin = begin(d, names, mv);
+    let kind = items::factor_type(d);
+    let error = match family(&d.spec.configurations[0]) {
+        Family::Quaternion => quote!(QuaternionError),
+        _ => quote!(MoserVeselovError),
+    };
     let used = Generics::of(d).used();
     let step = kept(
         d,
@@ -60,7 +67,7 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
 
         /// Says how far the step is beyond the bound, and which step could be solved.
         #[cold]
-        fn refused(&self, state: #state #used, factor: &Poinsot<T>, h: T, e: MoserVeselovError) -> StepError {
+        fn refused(&self, state: #state #used, factor: &#kind, h: T, e: #error) -> StepError {
             let e = e.with_searched_step(factor, h, |trial| self.edge(&state, trial).body());
             StepCause::from(e).at_node(state.#node)
         }
@@ -73,10 +80,19 @@ fn begin(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
     let state = item(d, "State");
     let c = &d.spec.configurations[0];
     let momentum = per_configuration(d, "momentum", 0);
-    let (element, own) = (variable(s, c.element), own(d, c.element));
+    let (mut element, own) = (variable(s, c.element), own(d, c.element));
     let mut bindings = Bindings::new();
     let mut needed = letters_of([&mv.rest]);
-    if c.side == Side::Body {
+    let quaternion = family(c) == Family::Quaternion;
+    let attitude = match quaternion {
+        true => quote!(state.#own.rotation()),
+        false => quote!(state.#own),
+    };
+    let mut turn = TokenStream::new();
+    if c.side == Side::Body && quaternion {
+        element = names.local("turn");
+        turn = quote!(let #element = #attitude.matrix(););
+    } else if c.side == Side::Body {
         needed.push(at(c.element, Shift::HERE));
     }
     let parameters = parameter_locals(d, quote!(self.parameters), &with_transports(d, &needed, 0));
@@ -88,6 +104,9 @@ fn begin(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
     let edge = match c.side {
         // The spatial momentum is not taken through the body frame and back: each way would leave
         // its rounding in what is conserved.
+        Side::Body if mv.rest.is_zero() => {
+            quote!(Edge::new(#element.tr_mul(&state.#momentum.0), state.#momentum.0))
+        }
         Side::Body => quote! {
             let #kick = #(#values)*;
             Edge::new(#element.tr_mul(&state.#momentum.0) - #kick, state.#momentum.0 - #element * #kick)
@@ -96,7 +115,7 @@ fn begin(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
             let rest = (!mv.rest.is_zero()).then(|| quote!(- (#(#values)*)));
             quote! {
                 let #space = state.#momentum.0 #rest;
-                Edge::new(state.#own.matrix().tr_mul(&#space), #space)
+                Edge::new(#attitude.matrix().tr_mul(&#space), #space)
             }
         }
     };
@@ -107,6 +126,7 @@ fn begin(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
         fn edge(&self, state: &#state #used, #step: T) -> Edge<T> {
             #parameters
             #locals
+            #turn
             #lets
             #edge
         }
@@ -119,7 +139,8 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
     let s = &d.letters.symbols;
     let c = &d.spec.configurations[0];
     let (element, momentum) = (own(d, c.element), per_configuration(d, "momentum", 0));
-    let [moved, next] = ["moved", "next"].map(|tag| tagged(d, names, c.element, tag));
+    let [moved, mut next] = ["moved", "next"].map(|tag| tagged(d, names, c.element, tag));
+    let quaternion = family(c) == Family::Quaternion;
     let [edge, following, space, momentum_next, node, turned] = [
         "edge",
         "edge_next",
@@ -139,7 +160,9 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
         vec![prescaled(s, arrive, &[]), prescaled(s, &leave, &[])]
     };
     let mut needed = letters_of(&wanted);
-    needed.push(at(c.element, Shift::NEXT));
+    if !quaternion {
+        needed.push(at(c.element, Shift::NEXT));
+    }
     let parameters = parameter_locals(d, quote!(self.parameters), &with_transports(d, &needed, 1));
     let mut bindings = Bindings::new();
     let reference = |id| {
@@ -148,7 +171,8 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
     };
     let (at_node, onwards) = (at(c.element, Shift::HERE), at(c.element, Shift::NEXT));
     // In the body its matrix is used three times: once formed, it costs less.
-    let on_vectors = c.side == Side::Spatial
+    let free = wanted.iter().all(Expr::is_zero);
+    let on_vectors = (c.side == Side::Spatial || free)
         && wanted.iter().all(|e| acts_on_vectors(e, onwards))
         && d.spec.advected.iter().zip(&d.transports).all(|(a, t)| {
             let unused = !needed.contains(&at(a.quantity, Shift::NEXT));
@@ -159,10 +183,27 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
         true => quote!(#moved.turning()),
         false => quote!(#moved.matrix()),
     };
+    let mut attitude = TokenStream::new();
+    if quaternion {
+        // Most quantities know of a quaternion its rotation only.
+        let own = std::mem::replace(&mut next, names.local("turn_next"));
+        let turn = solved(0);
+        attitude.extend(quote!(let #next = #turn;));
+        bindings.bind_rotation(onwards, next.clone());
+        let carried = d.transports.iter().any(|t| match t {
+            Transport::Defined(e) | Transport::Carried { value: e, .. } => stands_alone(e, at_node),
+            Transport::Advanced => false,
+        });
+        if carried || wanted.iter().any(|e| stands_alone(e, onwards)) {
+            attitude.extend(quote!(let #own = #moved.unit_quaternion().matrix();));
+            bindings.bind(onwards, own);
+        }
+    }
     let locals = node_locals(d, names, 1, &needed, &solved, &reference, &mut bindings);
     let p = schedule::program(s, &wanted, "t");
     let (lets, values) = program(&p, &bindings);
     let seen = torques.seen.as_ref();
+    let seen = seen.filter(|e| !(quaternion && stands_alone(e, at_node)));
     let seen = seen.map(|e| seen_from_body(d, names, e, &next, &needed));
     // Of a momentum in space that is known only at the end, the body would have to wait.
     let from_body = |left: TokenStream| match &seen {
@@ -171,6 +212,10 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
     };
     let seen_lets = seen.as_ref().map(|(lets, _)| lets);
     let act = match values.as_slice() {
+        _ if free => quote! {
+            let #momentum_next = #space;
+            let #following = Edge::new(#next.tr_mul(&#space), #space);
+        },
         [both] if c.side == Side::Body => {
             let [torque, kick] = ["torque", "kick"].map(|base| names.local(base));
             quote! {
@@ -235,19 +280,56 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
     // References do not change: what moves is written where it is, and not read back.
     let moved_away = moved_away(d);
     let next_edge = names.local("arrival");
-    let arrived = arrived(
-        d,
-        names,
-        &moved,
-        &quote! {
-            #parameters
-            #locals
-            #lets
-            let #space = #edge.space();
-            #act
-            Moving { attitude: #moved.rotation(), momentum: SpatialMomentum(#momentum_next), edge: #following }
+    let solution = match quaternion {
+        true => quote!(#edge.turn_in_quaternions(#factor, #step, &state.#element)),
+        false => quote! {
+            match work.method {
+                Method::Kappa => #edge.turn(#factor, #step, &state.#element),
+                method => #edge.turn_by(method, #factor, #step, &state.#element),
+            }
         },
-    );
+    };
+    let at_next = quote! {
+        #parameters
+        #attitude
+        #locals
+        #lets
+        let #space = #edge.space();
+        #act
+    };
+    let there = [
+        quote!(#next_edge.attitude),
+        quote!(#next_edge.momentum),
+        quote!(#next_edge.edge),
+    ];
+    let (follows, arrived, [there, momentum_there, edge_there]) = match quaternion {
+        true => (
+            quote! {
+                #at_next
+                let (#next_edge, #momentum_next) =
+                    (#moved.unit_quaternion(), SpatialMomentum(#momentum_next));
+            },
+            TokenStream::new(),
+            [
+                quote!(#next_edge),
+                quote!(#momentum_next),
+                quote!(#following),
+            ],
+        ),
+        false => (
+            quote!(let #next_edge = self.arrived(state, #edge, #step, #moved);),
+            arrived(
+                d,
+                names,
+                &moved,
+                &quote! {
+                    #at_next
+                    Moving { attitude: #moved.rotation(), momentum: SpatialMomentum(#momentum_next), edge: #following }
+                },
+            ),
+            there,
+        ),
+    };
     let step_of = step_signature(
         d,
         quote! {
@@ -258,22 +340,19 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
                 work.here = *state;
             }
             let #edge = &work.edge;
-            let #turned = match work.method {
-                Method::Kappa => #edge.turn(#factor, #step, &state.#element),
-                method => #edge.turn_by(method, #factor, #step, &state.#element),
-            };
+            let #turned = #solution;
             let #moved = match #turned {
                 Ok(turned) => turned,
                 Err(e) => return Err(self.refused(*state, #factor, #step, e)),
             };
-            let #next_edge = self.arrived(state, #edge, #step, #moved);
-            if !all_finite(&#next_edge.momentum.0) {
+            #follows
+            if !all_finite(&#momentum_there.0) {
                 return Err(StepCause::NotFinite { what: "momentum" }.at_node(state.#node));
             }
-            (state.#element, work.here.#element) = (#next_edge.attitude, #next_edge.attitude);
-            (state.#momentum, work.here.#momentum) = (#next_edge.momentum, #next_edge.momentum);
+            (state.#element, work.here.#element) = (#there, #there);
+            (state.#momentum, work.here.#momentum) = (#momentum_there, #momentum_there);
             state.#node += 1;
-            work.edge = #next_edge.edge;
+            work.edge = #edge_there;
             Ok(())
         },
     );
@@ -387,16 +466,31 @@ fn arrived(d: &Derivation, names: &Names, moved: &Ident, body: &TokenStream) -> 
     }
 }
 
+/// Whether a unit quaternion stands in an expression otherwise than by the rotation it covers.
+fn stands_alone(e: &Expr, element: Letter) -> bool {
+    let is_element = |e: &Expr| matches!(e.node(), Node::Letter(l) if *l == element);
+    match e.node() {
+        Node::Letter(_) => is_element(e),
+        Node::Map(Map::Rotation, a) if is_element(a) => false,
+        _ => e.children().iter().any(|c| stands_alone(c, element)),
+    }
+}
+
 /// Whether an element stands in an expression only where it, or its transpose, acts on a vector:
 /// its matrix is then not formed.
 fn acts_on_vectors(e: &Expr, element: Letter) -> bool {
-    let is_element = |e: &Expr| matches!(e.node(), Node::Letter(l) if *l == element);
+    let is_letter = |e: &Expr| matches!(e.node(), Node::Letter(l) if *l == element);
+    // A unit quaternion acts by the rotation it covers.
+    let is_element = |e: &Expr| match e.node() {
+        Node::Map(Map::Rotation, a) => is_letter(a),
+        _ => is_letter(e),
+    };
     let acts = |e: &Expr| match e.node() {
         Node::Transpose(a) => is_element(a),
         _ => is_element(e),
     };
     match e.node() {
-        Node::Letter(_) => !is_element(e),
+        _ if is_element(e) => false,
         Node::Product(factors) if e.shape().is_vector() => factors
             .iter()
             .all(|f| acts(f) || acts_on_vectors(f, element)),
@@ -425,10 +519,12 @@ fn seen_from_body(
     let e = prescaled(s, e, &items::kept(d));
     let torque = names.local("torque");
     let mut bindings = Bindings::new();
-    bindings.bind(
-        at(d.spec.configurations[0].element, Shift::HERE),
-        next.clone(),
-    );
+    let c = &d.spec.configurations[0];
+    let here = at(c.element, Shift::HERE);
+    match family(c) {
+        Family::Quaternion => bindings.bind_rotation(here, next.clone()),
+        _ => bindings.bind(here, next.clone()),
+    }
     let letters = expr::letters(&e);
     let mut references = TokenStream::new();
     for id in items::kept(d) {

@@ -30,10 +30,52 @@ pub fn factor(d: &Derivation) -> Option<&Expr> {
         (Method::FreeMoserVeselov | Method::ForcedMoserVeselov, Some(Riccati::Exact(mv))) => {
             Some(mv.in_body.as_ref().unwrap_or(&mv.factor))
         }
+        (Method::UnitQuaternions, Some(Riccati::Quaternionic(q))) => q.edge.in_body.as_ref(),
         (Method::LeftFactor, Some(Riccati::Exact(mv))) if d.solve.turned.is_none() => {
             Some(&mv.factor)
         }
         _ => None,
+    }
+}
+
+/// The number that goes with the factor on SU(2); made of parameters.
+fn real(d: &Derivation) -> Option<&Expr> {
+    match (&d.solve.method, d.solve.riccati.first()) {
+        (Method::UnitQuaternions, Some(Riccati::Quaternionic(q))) => Some(&q.real),
+        _ => None,
+    }
+}
+
+/// The type of the prepared factor, and its constructor applied to the factor.
+fn prepared(d: &Derivation, e: &Expr) -> (TokenStream, TokenStream) {
+    let none = Bindings::new();
+    let write = |e: &Expr| {
+        let writer = Writer {
+            symbols: &d.letters.symbols,
+            bindings: &none,
+        };
+        writer.write(e)
+    };
+    let (value, label) = (write(e), text(d, e));
+    let named = |name: TokenStream| quote!(#name::new(#value).map_err(|e| e.in_field(#label)));
+    match (real(d), &d.solve.method) {
+        (Some(real), _) => {
+            let real = write(real);
+            (
+                quote!(QuaternionBody<T>),
+                quote!(QuaternionBody::new(#label, #value, #real)),
+            )
+        }
+        (None, Method::LeftFactor) => (super::left_factor::ty(d), named(quote!(LeftFactor))),
+        (None, _) => (quote!(Poinsot<T>), named(quote!(Poinsot))),
+    }
+}
+
+/// The type of the factor that steps are solved with.
+pub fn factor_type(d: &Derivation) -> TokenStream {
+    match real(d) {
+        Some(_) => quote!(QuaternionBody<T>),
+        None => quote!(Poinsot<T>),
     }
 }
 
@@ -54,26 +96,21 @@ pub fn factor_of_state(d: &Derivation) -> TokenStream {
     };
     let s = &d.letters.symbols;
     let state = item(d, "State");
-    let none = Bindings::new();
-    let value = Writer {
-        symbols: s,
-        bindings: &none,
-    }
-    .write(e);
-    let parameters = parameter_locals(d, quote!(self.parameters), &letters_of([e]));
+    let (kind, made) = prepared(d, e);
+    let needed = letters_of([e].into_iter().chain(real(d)));
+    let parameters = parameter_locals(d, quote!(self.parameters), &needed);
     let locals = references.iter().map(|id| {
         let (own, local) = (own(d, *id), variable(s, *id));
         quote!(let #local = state.#own;)
     });
-    let label = text(d, e);
     let used = Generics::of(d).used();
     quote! {
         /// The body behind the quantities of a state.
         #[inline(never)]
-        fn factor(&self, state: &#state #used) -> Result<Poinsot<T>, ParameterError> {
+        fn factor(&self, state: &#state #used) -> Result<#kind, ParameterError> {
             #parameters
             #(#locals)*
-            Poinsot::new(#value).map_err(|e| e.in_field(#label))
+            #made
         }
     }
 }
@@ -223,7 +260,7 @@ pub fn node_locals(
             symbol: c.element,
             shift,
         };
-        if needed.contains(&letter) {
+        if needed.contains(&letter) && bindings.rotation(letter).is_none() {
             let (name, value) = (local(c.element), element(i));
             out.extend(quote!(let #name = #value;));
             bindings.bind(letter, name);
@@ -373,25 +410,16 @@ pub fn model(d: &Derivation, documented: bool) -> TokenStream {
         .iter()
         .flat_map(|a| [&a.left, &a.right])
         .collect();
-    let needed = letters_of(constant.into_iter().chain(assumed));
+    let numbers = constant.and_then(|_| real(d));
+    let needed = letters_of(constant.into_iter().chain(numbers).chain(assumed));
     let locals = parameter_locals(d, quote!(parameters), &needed);
     let assumptions = d.spec.assumptions.iter().map(|a| assumption(d, a));
     let (field, build, init) = match constant {
         Some(e) => {
-            let none = Bindings::new();
-            let value = Writer {
-                symbols: s,
-                bindings: &none,
-            }
-            .write(e);
-            let label = text(d, e);
-            let (kind, name) = match d.solve.method {
-                Method::LeftFactor => (super::left_factor::ty(d), quote!(LeftFactor)),
-                _ => (quote!(Poinsot<T>), quote!(Poinsot)),
-            };
+            let (kind, made) = prepared(d, e);
             (
                 quote!(factor: #kind,),
-                quote!(let factor = #name::new(#value).map_err(|e| e.in_field(#label))?;),
+                quote!(let factor = #made?;),
                 quote!(factor,),
             )
         }

@@ -30,7 +30,7 @@ fn chooses(d: &Derivation) -> bool {
         | Method::ForcedMoserVeselov
         | Method::LeftFactor
         | Method::Davenport => true,
-        Method::Newton => false,
+        Method::UnitQuaternions | Method::Newton => false,
     }
 }
 

@@ -89,6 +89,14 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
             quote!(method: Method, edge: Edge<T>, here: #state #used,),
             " The step, the solver's name, and the momentum of the edge that begins at the state `here`. Made anew for any other state.",
         ),
+        Method::UnitQuaternions => {
+            let kind = super::items::factor_type(d);
+            let factor = (!factor_references(d).is_empty()).then(|| quote!(factor: #kind,));
+            (
+                quote!(#factor edge: Edge<T>, here: #state #used,),
+                " The step and the momentum of the edge that begins at the state `here`. Made anew for any other state.",
+            )
+        }
         Method::LeftFactor | Method::Davenport => super::left_factor::work(d),
         Method::Newton => (
             quote!(search: newton::Search<T, #elements, #dimension>,),

@@ -53,6 +53,9 @@ pub fn start_and_step(d: &Derivation, names: &Names) -> TokenStream {
     let step = match (&d.solve.method, d.solve.riccati.first()) {
         (Method::FreeMoserVeselov, _) => free_step(d, names),
         (Method::ForcedMoserVeselov, Some(Riccati::Exact(mv))) => super::forced::step(d, names, mv),
+        (Method::UnitQuaternions, Some(Riccati::Quaternionic(q))) => {
+            super::forced::step(d, names, &q.edge)
+        }
         (Method::LeftFactor | Method::Davenport, Some(Riccati::Exact(mv))) => {
             super::left_factor::step(d, names, mv)
         }
@@ -171,6 +174,11 @@ fn start(d: &Derivation, names: &Names) -> TokenStream {
             let factor = (!items::factor_references(d).is_empty())
                 .then(|| quote!(factor: self.factor(&state)?,));
             quote!(method, #factor edge: self.edge(&state, h), here: state)
+        }
+        Method::UnitQuaternions => {
+            let factor = (!items::factor_references(d).is_empty())
+                .then(|| quote!(factor: self.factor(&state)?,));
+            quote!(#factor edge: self.edge(&state, h), here: state)
         }
         Method::LeftFactor | Method::Davenport => super::left_factor::work_init(d),
         Method::Newton => quote!(search: newton::Search::from_rest(),),

@@ -1,7 +1,7 @@
 //! The constants of the equation in unit quaternions.
 //! Takes `A` and `β`; gives them validated, with the invariants of the inertia `I = A + β`.
 
-use super::shift::{EASY, MODERATE};
+use super::shift::{EASY, EXACT, MODERATE, QUICK};
 use crate::Real;
 use crate::error::{ParameterError, Problem};
 use crate::linalg::{determinant, symmetric_eigenvalues};
@@ -37,6 +37,10 @@ pub struct QuaternionBody<T = f64> {
     pub(super) zeroth: T,
     pub(super) first: T,
     pub(super) second: T,
+    /// The largest `|u|^2` for which Newton's method may be exact in one step, and the largest square
+    /// of that step for which it is.
+    pub(super) quick: T,
+    pub(super) exact: T,
     /// The largest `|u|^2` for which one iteration from the series is exact to rounding.
     pub(super) easy: T,
     /// The largest for which a few are.
@@ -95,6 +99,10 @@ impl<T: Real> QuaternionBody<T> {
         let unit = largest.log2().floor().clamp(-400.0, 400.0).exp2();
         let per_unit = T::from_f64(1.0 / unit);
         // |u|^2 over this is the square of the largest half angle, times 1 + |β| / I.
+        let smallest = by_lane(|lane| {
+            let [small, ..] = eigenvalues(lane);
+            small / unit
+        });
         let bound = by_lane(|lane| {
             let [small, ..] = eigenvalues(lane);
             let moment = small / unit;
@@ -104,12 +112,12 @@ impl<T: Real> QuaternionBody<T> {
             inertia.map(|x| x * per_unit),
             real * per_unit,
             unit,
-            bound,
+            [bound, smallest],
         ))
     }
 
     /// From `I / unit` and `β / unit`.
-    fn prepared(inertia: Matrix3<T>, real: T, unit: f64, bound: T) -> Self {
+    fn prepared(inertia: Matrix3<T>, real: T, unit: f64, [bound, smallest]: [T; 2]) -> Self {
         let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = inertia.data.0;
         let adjugate = [yy * zz - yz * yz, zz * xx - xz * xz, xx * yy - xy * xy];
         let adjugate_products = [xy * xz - xx * yz, xy * yz - yy * xz, xz * yz - zz * xy];
@@ -133,6 +141,8 @@ impl<T: Real> QuaternionBody<T> {
             zeroth,
             first: trace * zeroth,
             second: (ax + ay + az) * zeroth,
+            quick: bound * T::from_f64(QUICK),
+            exact: smallest * smallest * T::from_f64(EXACT * EXACT),
             easy: bound * T::from_f64(EASY * precision),
             moderate: bound * T::from_f64(MODERATE),
             diagonal: yz.is_zero() && xz.is_zero() && xy.is_zero(),
@@ -156,6 +166,8 @@ impl<T: Real> QuaternionBody<T> {
             zeroth: self.zeroth.lane(lane),
             first: self.first.lane(lane),
             second: self.second.lane(lane),
+            quick: self.quick.lane(lane),
+            exact: self.exact.lane(lane),
             easy: self.easy.lane(lane),
             moderate: self.moderate.lane(lane),
             diagonal: self.diagonal,

@@ -2,7 +2,7 @@
 //! Takes the body and `u`; gives the quaternion lane by lane, or how much of `u` can be solved for.
 
 use super::body::QuaternionBody;
-use super::shift::Equation;
+use super::shift::{Equation, quick};
 use crate::linalg::{determinant, hat, solve};
 use crate::{Group, Real, UnitQuaternion};
 use nalgebra::{Matrix3, Vector3};
@@ -30,9 +30,8 @@ fn quaternions<T: Real>(mask: T, then: [T; 4], otherwise: [T; 4]) -> [T; 4] {
     [(a, w), (b, x), (c, y), (d, z)].map(|(then, otherwise)| choose(mask, then, otherwise))
 }
 
-/// The quaternion where one iteration for `s` does not do, of any length; nothing where some lane
+/// The quaternion where one step of Newton's method does not do, of any length; nothing where some lane
 /// has none. What a lane finds does not depend on the others.
-#[cold]
 #[inline(never)]
 pub(super) fn turn<T: Real>(
     body: &QuaternionBody<T>,
@@ -47,15 +46,25 @@ pub(super) fn turn<T: Real>(
     }
     let easy = one - (a - body.easy).where_positive(one);
     let long = (a - body.moderate).where_positive(one);
-    let mut once = equation.improved(equation.start());
-    let mut s = once;
-    for _ in 0..(1 + u32::from(wide::<T>()) + T::ORDER) {
+    let start = equation.start();
+    let mut s = equation.improved(start);
+    for _ in 0..T::ORDER {
         s = equation.improved(s);
     }
-    for _ in 0..T::ORDER {
-        once = equation.improved(once);
+    if easy.least() <= 0.0 {
+        let mut more = s;
+        for _ in 0..(1 + u32::from(wide::<T>())) {
+            more = equation.improved(more);
+        }
+        s = choose(easy, s, more);
     }
-    let near = equation.quaternion(choose(easy, once, s));
+    let mut near = equation.quaternion(s);
+    if T::LANES > 1 && quick::<T>() {
+        let (change, found) = equation.quick(start);
+        let exact = one - (change * change - body.exact).where_positive(one);
+        let small = one - (a - body.quick).where_positive(one);
+        near = quaternions(exact * small, found, near);
+    }
     if long.nowhere_positive() {
         return near.iter().all(|x| x.is_finite()).then_some(near);
     }

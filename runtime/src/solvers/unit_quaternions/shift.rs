@@ -13,6 +13,13 @@ use crate::Real;
 /// thousands of random bodies, in fifty digits).
 pub(super) const EASY: f64 = 0.02;
 
+/// Below this one step of Newton's method will do, if that is small.
+pub(super) const QUICK: f64 = 0.002;
+
+/// So small, in parts of the smallest moment: what it leaves is of its square, and of it times the
+/// error of its slope, 9 y^3.
+pub(super) const EXACT: f64 = 1e-9;
+
 /// Two leave less than 1e-30 of `I` below this, and the principal branch is far from its end.
 pub(super) const MODERATE: f64 = 0.1;
 
@@ -25,6 +32,9 @@ pub(super) struct Equation<T> {
     /// `tr I |u|^2 / det I`.
     pull: T,
     energy: T,
+    /// `|I^-1 u|^2`, the leading part of `|n|^2`, and that of its derivative.
+    leading: T,
+    leaning: T,
     zeroth: T,
     second: T,
     /// `Q`, by powers of `s`, up to the third; the fourth is `zeroth`.
@@ -94,6 +104,8 @@ impl<T: Real> Equation<T> {
             twice,
             pull,
             energy,
+            leading: dot(inverse, inverse),
+            leaning: (square - body.first * energy) * T::from_f64(2.0),
             zeroth,
             second: body.second,
             quartic: [
@@ -116,14 +128,48 @@ impl<T: Real> Equation<T> {
         }
     }
 
-    /// The first terms of the series of `s`, up to the fourth degree in `u`.
+    /// The first terms of the series of `s`: what it leaves is of sixth degree in `u`.
     #[inline(always)]
     pub(super) fn start(&self) -> T {
         let half = T::from_f64(0.5) * self.real;
-        let ([start, ..], [f, k, ..]) = (self.quartic, self.length);
+        let ([start, ..], [length, ..], f) = (self.quartic, self.length, self.leading);
         let s = self.energy - half * f;
-        let bend = ((T::one() - self.twice) + s * self.second) - T::from_f64(0.25) * f;
-        (start + s * (self.second * s - self.pull)) - half * (f * bend + s * k)
+        let bend = s * self.second - (self.twice + T::from_f64(0.25) * f);
+        let fourth = s * (s * self.second - self.pull) - half * (f * bend + s * self.leaning);
+        // The leading terms are exact, and the last to be known.
+        (start - half * length) + fourth
+    }
+
+    /// One step of Newton's method from `s`: its change, and the quaternion there, of any length.
+    ///
+    /// The slope is that of the series of `|(det, n)|`: off by a part of `9 y^3`. To first degree in
+    /// the change the quaternion need not wait for it.
+    #[inline(always)]
+    pub(super) fn quick(&self, s: T) -> (T, [T; 4]) {
+        let (two, three, four) = (T::from_f64(2.0), T::from_f64(3.0), T::from_f64(4.0));
+        let (half, quarter) = (T::from_f64(0.5), T::from_f64(0.25));
+        let (square, z, b) = (s * s, self.zeroth, self.real);
+        let [d0, d1, d2] = self.determinant;
+        let det = (d0 + d1 * s) + square * (d2 - z * s);
+        let fall = (d1 + (two * d2) * s) - (three * z) * square;
+        let [m0, m1, m2, m3, m4] = self.length;
+        let n = (m0 + m1 * s) + square * ((m2 + m3 * s) + m4 * square);
+        let rise = (m1 + (two * m2) * s) + square * (three * m3 + (four * m4) * s);
+        let [q0, q1, q2, q3] = self.quartic;
+        let quartic = (q0 + q1 * s) + square * ((q2 + q3 * s) + z * square);
+        let along = (q1 + (two * q2) * s) + square * (three * q3 + (four * z) * s);
+        // |(det, n)| - det, for a determinant near 1.
+        let excess = (half * n) * ((two - det) - quarter * n);
+        let near = det + excess;
+        let slope = along * near + b * (fall * excess - half * rise);
+        let per_slope = near / slope;
+        let value = (quartic + b * det) - b * (det * det + n).sqrt();
+        let change = -(value * per_slope);
+        let at = |i: usize| {
+            let here = (self.constant[i] + s * self.linear[i]) + square * self.u[i];
+            here + change * (self.linear[i] + (s + s) * self.u[i])
+        };
+        (change, [det + change * fall, at(0), at(1), at(2)])
     }
 
     /// The equation at `s` and its first three derivatives, the latter over their factorials.
@@ -214,13 +260,18 @@ pub(super) fn turn<T: Real>(body: &QuaternionBody<T>, u: [T; 3]) -> Option<[T; 4
 #[inline(always)]
 fn principal<T: Real, const DIAGONAL: bool>(body: &QuaternionBody<T>, u: [T; 3]) -> Option<[T; 4]> {
     let equation = Equation::new::<DIAGONAL>(body, u);
-    // Written so that NaN is not easy.
-    if (dot(u, u) - body.easy).nowhere_positive() {
-        let mut s = equation.improved(equation.start());
-        for _ in 0..T::ORDER {
-            s = equation.improved(s);
+    if quick::<T>() {
+        let (change, quaternion) = equation.quick(equation.start());
+        // Written so that NaN is neither small nor exact.
+        let small = (dot(u, u) - body.quick).nowhere_positive();
+        if small & (change * change - body.exact).nowhere_positive() {
+            return Some(quaternion);
         }
-        return Some(equation.quaternion(s));
     }
     branch::turn(body, &equation, u)
+}
+
+/// Whether one step of Newton's method with an approximate slope may be exact to rounding.
+pub(super) const fn quick<T: Real>() -> bool {
+    T::ORDER == 0 && T::EPSILON > 1e-20
 }

@@ -1,0 +1,108 @@
+//! The equation of a step on SU(2) that comes down to one for a number: with the velocity `w + v`
+//! the balance reads `w A v + v x A v + β v = h N / 2`, `A` symmetric. Takes the balance; gives `A`, `β` and
+//! what of the node's momentum is none of the edge's, or why the balance is not of this form.
+
+use super::Letters;
+use super::balance::{Balance, shorter};
+use super::parts::{Parts, Velocity};
+use super::recognise::MoserVeselov;
+use super::tangent::Direction;
+use super::variation::at;
+use crate::algebra::{Algebra, Rational};
+use crate::check::spec::Spec;
+use crate::expr::shape::{Dim, Shape};
+use crate::expr::symbol::Role;
+use crate::expr::{self, Expr, Shift};
+
+/// The parts of such an equation.
+#[derive(Clone, Debug)]
+pub struct Quaternionic {
+    /// What it shares with a Moser-Veselov equation: the factor is `A`.
+    pub edge: MoserVeselov,
+    /// `β`, made of parameters.
+    pub real: Expr,
+}
+
+/// `A`, `β` and the rest of the node momentum.
+///
+/// Both are read off derivatives of the balance, that by `w` and that by `v` at zero; then it is
+/// proved that the balance is what they make, for any numbers `w` and `v`.
+pub(super) fn form(
+    spec: &Spec,
+    letters: &Letters,
+    b: &Balance,
+    i: usize,
+    algebra: &Algebra,
+) -> Result<(Expr, Expr, Expr), String> {
+    let refused = "the momentum is not that of a quadratic form and a multiple of the real part";
+    let name = &letters.symbols.get(spec.configurations[i].velocity).name;
+    read(spec, letters, b, algebra).ok_or_else(|| format!("{refused} of {name}"))
+}
+
+/// The parts of the only velocity.
+fn single(parts: &Parts) -> Option<Velocity> {
+    match parts.velocities.as_slice() {
+        [only] => Some(*only),
+        _ => None,
+    }
+}
+
+fn read(
+    spec: &Spec,
+    letters: &Letters,
+    b: &Balance,
+    algebra: &Algebra,
+) -> Option<(Expr, Expr, Expr)> {
+    let parts = Parts::of(spec, letters)?;
+    let Some(Velocity::Quaternion(re, im)) = single(&parts) else {
+        // Velocities of several bodies are found together.
+        return None;
+    };
+    let s = &parts.symbols;
+    let outgoing = expr::substitute(&letters.symbols, &b.outgoing, &spec.end_of_edge());
+    let momentum = parts.write(&outgoing)?;
+    let inner = algebra.over(s);
+    let (w, v) = (expr::here(s, re), expr::here(s, im));
+    let [re, im] = [re, im].map(|id| at(id, Shift::HERE));
+    let free = |e: &Expr| !expr::contains(e, re) && !expr::contains(e, im);
+    let vector = Shape::vector(Dim::Fixed(3));
+    let (nothing, zero) = (expr::integer(0), expr::zero(vector));
+    let by_number = expr::directional(s, &momentum, &[(re, expr::integer(1))]);
+    let by_number = expr::collect(s, &by_number);
+    let of = |letter| Direction { symbols: s, letter };
+    let a = of(im.symbol).matrix(&by_number)?;
+    let still = expr::substitute(s, &momentum, &[(re, nothing.clone())]);
+    let eta = expr::here(s, parts.direction);
+    let by_vector = expr::directional(s, &still, &[(im, eta)]);
+    let by_vector = expr::substitute(s, &by_vector, &[(im, zero.clone())]);
+    let multiple = of(parts.direction).matrix(&expr::collect(s, &by_vector))?;
+    let real = expr::scale(Rational::new(1, 3)?, expr::trace(multiple));
+    let rest = expr::substitute(s, &still, &[(im, zero)]);
+    let raised = |e: &Expr| shorter(&inner, e.clone());
+    let (a, real, rest) = (raised(&a), raised(&real), raised(&rest));
+    if ![&a, &real, &rest].into_iter().all(free) || a.is_zero() {
+        return None;
+    }
+    let image = expr::mul(a.clone(), v.clone());
+    let terms = [
+        expr::mul(w, image.clone()),
+        expr::cross(v.clone(), image),
+        expr::mul(real.clone(), v),
+        rest.clone(),
+    ];
+    let difference = expr::sub(momentum, expr::sum(terms, vector));
+    let symmetric = expr::sub(a.clone(), expr::transpose(s, a.clone()));
+    let proved = inner.is_zero(&difference) && inner.is_zero(&symmetric);
+    algebra.charge(&inner);
+    // h N / 2: the balance carries 2/h.
+    let half = expr::scale(Rational::HALF, expr::here(&letters.symbols, spec.step));
+    let scaled = |e: Expr| {
+        let e = expr::mul(half.clone(), e);
+        shorter(algebra, algebra.raise(&algebra.lower(&e)))
+    };
+    let (a, real) = (scaled(a), scaled(real));
+    let constant = |l: &expr::Letter| letters.symbols.get(l.symbol).role == Role::Parameter;
+    let own = algebra.equal(&b.node_out, &rest);
+    let rest = if own { b.node_out.clone() } else { rest };
+    (proved && expr::letters(&real).iter().all(constant)).then_some((a, real, rest))
+}
