@@ -78,17 +78,13 @@ pub mod cayley_klein_spatial {
             self.node
         }
     }
-    /// The step and the last velocities, from which the next solve starts.
+    /// The step and the momentum of the edge that begins at the state `here`. Made anew for any other state.
     #[derive(Clone, Copy, Debug)]
     pub struct CayleyKleinSpatialWorkspace<T = f64> {
         h: T,
-        search: newton::Search<T, [UnitQuaternion<T>; 1], 3>,
-    }
-    impl<T: Real> CayleyKleinSpatialWorkspace<T> {
-        /// How the last step was solved: tangents, corrections, and the residual before the last.
-        pub fn solved(&self) -> newton::Summary {
-            self.search.last()
-        }
+        factor: QuaternionBody<T>,
+        edge: Edge<T>,
+        here: CayleyKleinSpatialState<T>,
     }
     impl<T: Real> CayleyKleinSpatial<T> {
         /// Starts a trajectory with step `h` from data at node 0.
@@ -140,18 +136,29 @@ pub mod cayley_klein_spatial {
             let state = *state;
             let work = CayleyKleinSpatialWorkspace {
                 h,
-                search: newton::Search::from_rest(),
+                factor: self.factor(&state)?,
+                edge: self.edge(&state, h),
+                here: state,
             };
             let (mut trial, mut scratch) = (state, work);
             self.step(&mut trial, &mut scratch)
                 .map_err(|e| StartError::Refused(e.cause))?;
             Ok(work)
         }
-        /// One step, in place. Solved thus: the group is not SO(n): Newton on the derived residual.
+        /// The body behind the quantities of a state.
+        #[inline(never)]
+        fn factor(
+            &self,
+            state: &CayleyKleinSpatialState<T>,
+        ) -> Result<QuaternionBody<T>, ParameterError> {
+            let CayleyKleinSpatialParameters { c, .. } = self.parameters;
+            let I = state.I;
+            QuaternionBody::new("I_k - c Id", I - SMatrix::<T, 3, 3>::identity() * c, c)
+        }
+        /// One step, in place. Solved thus: A is carried by the motion, constant in the body, and symmetric, β constant: one equation for one number a step.
         ///
         /// # Errors
-        /// When the iteration does not converge: which equation is worst, and which step could be
-        /// solved; the state is then unchanged.
+        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
         #[inline]
         pub fn step(
             &self,
@@ -159,104 +166,50 @@ pub mod cayley_klein_spatial {
             work: &mut CayleyKleinSpatialWorkspace<T>,
         ) -> Result<(), StepError> {
             let h = work.h;
-            let CayleyKleinSpatialParameters { c, .. } = self.parameters;
-            let q = state.q.matrix();
-            let I_reference = state.I;
-            let I = quaternion_rotation(&q)
-                * (I_reference * quaternion_rotation(&q).transpose());
-            let momenta: [SVector<T, 3>; 1] = [state.momentum.0];
-            let s1 = h.powi(-1);
-            let k2 = T::from_f64(2.0) * s1;
-            let k3 = T::from_f64(2.0) * c * s1;
-            let k4 = c * s1;
-            let momentum = size_of(&momenta[0]);
-            let mut iteration = work.search.begin(state.node, momentum);
-            let found: newton::Solved<[UnitQuaternion<T>; 1]> = loop {
-                let trial = iteration.trial();
-                if iteration.wants_scale() {
-                    let w = trial[0].matrix();
-                    let t1 = pure_quaternion(
-                        &(((I - SMatrix::<T, 3, 3>::identity() * c)
-                            * quaternion_imaginary(&w) * T::from_f64(2.0)) / h),
-                    ) * T::from_f64(0.25);
-                    iteration
-                        .set_scale(
-                            length(&(t1 - (SMatrix::<T, 4, 4>::identity() * c) / h + t1))
-                                .magnitude(),
+            if work.here.q != state.q || work.here.momentum != state.momentum
+                || !(same(&work.here.I, &state.I))
+            {
+                work.factor = match self.factor(state) {
+                    Ok(factor) => factor,
+                    Err(_) => {
+                        return Err(
+                            StepCause::NotFinite {
+                                what: "body",
+                            }
+                                .at_node(state.node),
                         );
-                }
-                let (w_re, w_im) = (trial[0].real(), trial[0].imaginary());
-                if iteration
-                    .assess({
-                        let t1 = I * w_im;
-                        ((w_im.cross(&t1) * T::from_f64(4.0)
-                            + t1.cross(&w_im) * T::from_f64(2.0)) * s1
-                            + I * w_im * k2 * w_re + w_im * (k3 - k3 * w_re))
-                            - momenta[0]
-                    })
-                {
-                    iteration
-                        .set_tangent(
-                            &{
-                                let t1 = crossed(&w_im, &I);
-                                let t2 = SMatrix::<T, 3, 3>::identity() * w_re + hat(&w_im);
-                                let t3 = k4 * w_re;
-                                (((t1 - hat(&(I * w_im))) * T::from_f64(2.0) - t1
-                                    + hat(&(I * w_im))) * t2 - (I * w_im) * w_im.transpose())
-                                    * s1 + I * t2 * s1 * w_re
-                                    + SMatrix::<T, 3, 3>::identity() * (t3 - k4 * (w_re * w_re))
-                                    + hat(&w_im) * (k4 - t3) + w_im * w_im.transpose() * k4
-                            },
-                        );
-                }
-                match iteration.correct() {
-                    newton::Progress::Continue => {}
-                    newton::Progress::Solved(solved) => break solved,
-                    newton::Progress::Failed(e) => return Err(self.refused(*state, h, e)),
-                }
-            };
-            let solved = found.element;
-            let w_matrix = solved[0].matrix();
-            let q_moved = solved[0] * state.q;
-            let momentum_next = state.momentum.0;
-            if !(all_finite(&momentum_next)) {
-                return Err(
-                    StepCause::NotFinite {
-                        what: "momentum",
                     }
-                        .at_node(state.node),
-                );
+                };
+                work.edge = self.edge(state, h);
+                work.here = *state;
             }
-            state.q = q_moved;
-            state.momentum = SpatialMomentum(momentum_next);
+            let solved = work.edge.free_in_quaternions(&work.factor, h, &state.q);
+            let (q_next, edge_next) = match solved {
+                Ok(next) => next,
+                Err(e) => return Err(self.refused(*state, &work.factor, h, e)),
+            };
+            (state.q, work.here.q) = (q_next, q_next);
             state.node += 1;
-            work.search.remember(state.node - 1, &found);
+            work.edge = edge_next;
             Ok(())
         }
-        /// Says which equation is worst, and which step could be solved.
-        #[cold]
+        /// The edge that begins at this state, for a step `h`.
         #[inline(never)]
+        fn edge(&self, state: &CayleyKleinSpatialState<T>, h: T) -> Edge<T> {
+            let space = state.momentum.0;
+            Edge::new(state.q.rotation().matrix().tr_mul(&space), space)
+        }
+        /// Says how far the step is beyond the bound, and which step could be solved.
+        #[cold]
         fn refused(
             &self,
             state: CayleyKleinSpatialState<T>,
+            factor: &QuaternionBody<T>,
             h: T,
-            e: newton::NewtonError,
+            e: QuaternionError,
         ) -> StepError {
             let e = e
-                .explained(
-                    h,
-                    &["q"],
-                    |h| {
-                        let (mut trial, search) = (state, newton::Search::to_try());
-                        self.step(
-                            &mut trial,
-                            &mut CayleyKleinSpatialWorkspace {
-                                h,
-                                search,
-                            },
-                        )
-                    },
-                );
+                .with_searched_step(factor, h, |trial| self.edge(&state, trial).body());
             StepCause::from(e).at_node(state.node)
         }
         /// `I` at the node of this state.
@@ -619,8 +572,8 @@ pub mod cayley_klein_spatial {
             doc: "Free rigid body in unit quaternions, spatial representation.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   -4 c re(w_k)/h + 2 im(w_k)·((I_k - c Id) im(w_k))/h\nmomentum of q        2 im((-c Id/h + ½ quat(2 (I_k - c Id) im(w_k)/h)) w_kᵀ)\nRiccati form         none: the group is not SO(n)\ninvariants           energy, spatial_momentum, trace_I1, trace_I2, trace_I3\ntime reversal        symmetric: second order\ncertificate          10 identities proved by normal form, 6 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
-            solver: "Newton: the group is not SO(n): Newton on the derived residual",
+            summary: "action of one step   -4 c re(w_k)/h + 2 im(w_k)·((I_k - c Id) im(w_k))/h\nmomentum of q        2 im((-c Id/h + ½ quat(2 (I_k - c Id) im(w_k)/h)) w_kᵀ)\nRiccati form         none; in unit quaternions, A = I_k - c Id, β = c\ninvariants           energy, spatial_momentum, trace_I1, trace_I2, trace_I3\ntime reversal        symmetric: second order\ncertificate          10 identities proved by normal form, 6 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
+            solver: "Unit quaternions: A is carried by the motion, constant in the body, and symmetric, β constant: one equation for one number a step",
             order: 2u32,
             orders: &[2, 4, 6, 8],
             preprocessed: false,

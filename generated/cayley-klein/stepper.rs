@@ -23,6 +23,7 @@ pub mod cayley_klein {
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct CayleyKlein<T = f64> {
         parameters: CayleyKleinParameters<T>,
+        factor: QuaternionBody<T>,
     }
     impl<T: Real> CayleyKlein<T> {
         /// The model as it was stated.
@@ -40,7 +41,13 @@ pub mod cayley_klein {
             validate::finite_entries("I", &parameters.I)?;
             validate::diagonal("I", &parameters.I)?;
             validate::finite("c", &[parameters.c])?;
-            Ok(Self { parameters })
+            let CayleyKleinParameters { I, c, .. } = parameters;
+            let factor = QuaternionBody::new(
+                "I - c Id",
+                I - SMatrix::<T, 3, 3>::identity() * c,
+                c,
+            )?;
+            Ok(Self { parameters, factor })
         }
         /// The parameters.
         pub fn parameters(&self) -> &CayleyKleinParameters<T> {
@@ -80,17 +87,12 @@ pub mod cayley_klein {
             self.node
         }
     }
-    /// The step and the last velocities, from which the next solve starts.
+    /// The step and the momentum of the edge that begins at the state `here`. Made anew for any other state.
     #[derive(Clone, Copy, Debug)]
     pub struct CayleyKleinWorkspace<T = f64> {
         h: T,
-        search: newton::Search<T, [UnitQuaternion<T>; 1], 3>,
-    }
-    impl<T: Real> CayleyKleinWorkspace<T> {
-        /// How the last step was solved: tangents, corrections, and the residual before the last.
-        pub fn solved(&self) -> newton::Summary {
-            self.search.last()
-        }
+        edge: Edge<T>,
+        here: CayleyKleinState<T>,
     }
     impl<T: Real> CayleyKlein<T> {
         /// Starts a trajectory with step `h` from data at node 0.
@@ -132,18 +134,18 @@ pub mod cayley_klein {
             let state = *state;
             let work = CayleyKleinWorkspace {
                 h,
-                search: newton::Search::from_rest(),
+                edge: self.edge(&state, h),
+                here: state,
             };
             let (mut trial, mut scratch) = (state, work);
             self.step(&mut trial, &mut scratch)
                 .map_err(|e| StartError::Refused(e.cause))?;
             Ok(work)
         }
-        /// One step, in place. Solved thus: the group is not SO(n): Newton on the derived residual.
+        /// One step, in place. Solved thus: A is constant and symmetric, β constant: one equation for one number a step.
         ///
         /// # Errors
-        /// When the iteration does not converge: which equation is worst, and which step could be
-        /// solved; the state is then unchanged.
+        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
         #[inline]
         pub fn step(
             &self,
@@ -151,91 +153,37 @@ pub mod cayley_klein {
             work: &mut CayleyKleinWorkspace<T>,
         ) -> Result<(), StepError> {
             let h = work.h;
-            let CayleyKleinParameters { I, c, .. } = self.parameters;
-            let momenta: [SVector<T, 3>; 1] = [state.momentum.to_body(&state.q).0];
-            let s1 = h.powi(-1);
-            let k1 = T::from_f64(2.0) * s1;
-            let k2 = T::from_f64(2.0) * c * s1;
-            let k4 = c * s1;
-            let momentum = size_of(&momenta[0]);
-            let mut iteration = work.search.begin(state.node, momentum);
-            let found: newton::Solved<[UnitQuaternion<T>; 1]> = loop {
-                let trial = iteration.trial();
-                if iteration.wants_scale() {
-                    let W = trial[0].matrix();
-                    let t1 = pure_quaternion(
-                        &(((I - SMatrix::<T, 3, 3>::identity() * c)
-                            * quaternion_imaginary(&W) * T::from_f64(2.0)) / h),
-                    ) * T::from_f64(0.25);
-                    iteration
-                        .set_scale(
-                            length(&(t1 - (SMatrix::<T, 4, 4>::identity() * c) / h + t1))
-                                .magnitude(),
-                        );
-                }
-                let (W_re, W_im) = (trial[0].real(), trial[0].imaginary());
-                if iteration
-                    .assess({
-                        (diagonal_times(&I, &W_im) * k1 * W_re
-                            + W_im.cross(&(diagonal_times(&I, &W_im))) * k1
-                            + W_im * (k2 - k2 * W_re)) - momenta[0]
-                    })
-                {
-                    iteration
-                        .set_tangent(
-                            &{
-                                let t1 = SMatrix::<T, 3, 3>::identity() * W_re + hat(&W_im);
-                                let t2 = k4 * W_re;
-                                ((crossed(&W_im, &I) - hat(&(diagonal_times(&I, &W_im))))
-                                    * t1 - diagonal_times(&I, &W_im) * W_im.transpose()) * s1
-                                    + diagonal_times(&I, &t1) * s1 * W_re
-                                    + SMatrix::<T, 3, 3>::identity() * (t2 - k4 * (W_re * W_re))
-                                    + hat(&W_im) * (k4 - t2) + W_im * W_im.transpose() * k4
-                            },
-                        );
-                }
-                match iteration.correct() {
-                    newton::Progress::Continue => {}
-                    newton::Progress::Solved(solved) => break solved,
-                    newton::Progress::Failed(e) => return Err(self.refused(*state, h, e)),
-                }
-            };
-            let solved = found.element;
-            let W_matrix = solved[0].matrix();
-            let q_moved = state.q * solved[0];
-            let momentum_next = state.momentum.0;
-            if !(all_finite(&momentum_next)) {
-                return Err(
-                    StepCause::NotFinite {
-                        what: "momentum",
-                    }
-                        .at_node(state.node),
-                );
+            if work.here.q != state.q || work.here.momentum != state.momentum {
+                work.edge = self.edge(state, h);
+                work.here = *state;
             }
-            state.q = q_moved;
-            state.momentum = SpatialMomentum(momentum_next);
+            let solved = work.edge.free_in_quaternions(&self.factor, h, &state.q);
+            let (q_next, edge_next) = match solved {
+                Ok(next) => next,
+                Err(e) => return Err(self.refused(*state, &self.factor, h, e)),
+            };
+            (state.q, work.here.q) = (q_next, q_next);
             state.node += 1;
-            work.search.remember(state.node - 1, &found);
+            work.edge = edge_next;
             Ok(())
         }
-        /// Says which equation is worst, and which step could be solved.
-        #[cold]
+        /// The edge that begins at this state, for a step `h`.
         #[inline(never)]
+        fn edge(&self, state: &CayleyKleinState<T>, h: T) -> Edge<T> {
+            let turn = state.q.rotation().matrix();
+            Edge::new(turn.tr_mul(&state.momentum.0), state.momentum.0)
+        }
+        /// Says how far the step is beyond the bound, and which step could be solved.
+        #[cold]
         fn refused(
             &self,
             state: CayleyKleinState<T>,
+            factor: &QuaternionBody<T>,
             h: T,
-            e: newton::NewtonError,
+            e: QuaternionError,
         ) -> StepError {
             let e = e
-                .explained(
-                    h,
-                    &["q"],
-                    |h| {
-                        let (mut trial, search) = (state, newton::Search::to_try());
-                        self.step(&mut trial, &mut CayleyKleinWorkspace { h, search })
-                    },
-                );
+                .with_searched_step(factor, h, |trial| self.edge(&state, trial).body());
             StepCause::from(e).at_node(state.node)
         }
     }
@@ -519,8 +467,8 @@ pub mod cayley_klein {
             doc: "Free rigid body in unit quaternions. The body momentum is the map q -> q* m q of Hopf: its fibres over the sphere of body momenta are circles.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   -4 c re(W_k)/h + 2 im(W_k)·((I - c Id) im(W_k))/h\nmomentum of q        2 im((-c Id/h + ½ quat(2 (I - c Id) im(W_k)/h)) W_kᵀ)\nRiccati form         none: the group is not SO(n)\ninvariants           energy, spatial_momentum, momentum_squared\ntime reversal        symmetric: second order\ncertificate          4 identities proved by normal form, 6 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
-            solver: "Newton: the group is not SO(n): Newton on the derived residual",
+            summary: "action of one step   -4 c re(W_k)/h + 2 im(W_k)·((I - c Id) im(W_k))/h\nmomentum of q        2 im((-c Id/h + ½ quat(2 (I - c Id) im(W_k)/h)) W_kᵀ)\nRiccati form         none; in unit quaternions, A = I - c Id, β = c\ninvariants           energy, spatial_momentum, momentum_squared\ntime reversal        symmetric: second order\ncertificate          4 identities proved by normal form, 6 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
+            solver: "Unit quaternions: A is constant and symmetric, β constant: one equation for one number a step",
             order: 2u32,
             orders: &[2, 4, 6, 8],
             preprocessed: false,

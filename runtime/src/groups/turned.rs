@@ -28,6 +28,17 @@ impl<T: Real> Rotation<T> {
             scale: (correction + correction) / norm_squared(omega),
         }
     }
+
+    /// The same where the inverse of the square of the length of `omega` is known.
+    #[inline(always)]
+    pub(crate) fn turned_at(&self, omega: [T; 4], per_square: T) -> TurnedRotation<T> {
+        let q = self.quaternion();
+        let correction = T::from_f64(2.0) - norm_squared(q);
+        TurnedRotation {
+            q: hamilton(q, omega),
+            scale: (correction + correction) * per_square,
+        }
+    }
 }
 
 impl<T: Real> TurnedRotation<T> {

@@ -30,7 +30,7 @@ struct Torques {
 }
 
 /// The body to solve with.
-fn body(d: &Derivation) -> TokenStream {
+pub(super) fn body(d: &Derivation) -> TokenStream {
     match items::factor_references(d).is_empty() {
         true => quote!(&self.factor),
         false => quote!(&work.factor),
@@ -48,19 +48,20 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
         _ => quote!(MoserVeselovError),
     };
     let used = Generics::of(d).used();
-    let step = kept(
-        d,
-        names,
-        &Torques {
-            leave: expr::neg(mv.rest.clone()),
-            // Known wherever this method is chosen.
-            arrive: mv
-                .arrive
-                .clone()
-                .unwrap_or_else(|| expr::neg(mv.rest.clone())),
-            seen: mv.torque.clone(),
-        },
-    );
+    let torques = Torques {
+        leave: expr::neg(mv.rest.clone()),
+        // Known wherever this method is chosen.
+        arrive: mv
+            .arrive
+            .clone()
+            .unwrap_or_else(|| expr::neg(mv.rest.clone())),
+        seen: mv.torque.clone(),
+    };
+    // On SO(3) such a body has a solver of its own.
+    let step = match torques.leave.is_zero() && torques.arrive.is_zero() {
+        true => super::quaternionic::free(d, names),
+        false => kept(d, names, &torques),
+    };
     quote! {
         #step
         #begin
@@ -171,8 +172,7 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
     };
     let (at_node, onwards) = (at(c.element, Shift::HERE), at(c.element, Shift::NEXT));
     // In the body its matrix is used three times: once formed, it costs less.
-    let free = wanted.iter().all(Expr::is_zero);
-    let on_vectors = (c.side == Side::Spatial || free)
+    let on_vectors = c.side == Side::Spatial
         && wanted.iter().all(|e| acts_on_vectors(e, onwards))
         && d.spec.advected.iter().zip(&d.transports).all(|(a, t)| {
             let unused = !needed.contains(&at(a.quantity, Shift::NEXT));
@@ -212,10 +212,6 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
     };
     let seen_lets = seen.as_ref().map(|(lets, _)| lets);
     let act = match values.as_slice() {
-        _ if free => quote! {
-            let #momentum_next = #space;
-            let #following = Edge::new(#next.tr_mul(&#space), #space);
-        },
         [both] if c.side == Side::Body => {
             let [torque, kick] = ["torque", "kick"].map(|base| names.local(base));
             quote! {
@@ -269,16 +265,8 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
         }
     };
     let factor = body(d);
-    let another = (!items::factor_references(d).is_empty()).then(|| {
-        quote! {
-            work.factor = match self.factor(state) {
-                Ok(factor) => factor,
-                Err(_) => return Err(StepCause::NotFinite { what: "body" }.at_node(state.#node)),
-            };
-        }
-    });
     // References do not change: what moves is written where it is, and not read back.
-    let moved_away = moved_away(d);
+    let follow = follow(d, names);
     let next_edge = names.local("arrival");
     let solution = match quaternion {
         true => quote!(#edge.turn_in_quaternions(#factor, #step, &state.#element)),
@@ -333,12 +321,7 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
     let step_of = step_signature(
         d,
         quote! {
-            let #step = work.h;
-            if #moved_away {
-                #another
-                work.edge = self.edge(state, #step);
-                work.here = *state;
-            }
+            #follow
             let #edge = &work.edge;
             let #turned = #solution;
             let #moved = match #turned {
@@ -359,6 +342,31 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
     quote! {
         #step_of
         #arrived
+    }
+}
+
+/// The step size, and the workspace made anew where it is that of another state.
+pub(super) fn follow(d: &Derivation, names: &Names) -> TokenStream {
+    let (node, step) = (
+        names.local("node"),
+        variable(&d.letters.symbols, d.spec.step),
+    );
+    let another = (!items::factor_references(d).is_empty()).then(|| {
+        quote! {
+            work.factor = match self.factor(state) {
+                Ok(factor) => factor,
+                Err(_) => return Err(StepCause::NotFinite { what: "body" }.at_node(state.#node)),
+            };
+        }
+    });
+    let moved_away = moved_away(d);
+    quote! {
+        let #step = work.h;
+        if #moved_away {
+            #another
+            work.edge = self.edge(state, #step);
+            work.here = *state;
+        }
     }
 }
 

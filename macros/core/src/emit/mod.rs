@@ -15,6 +15,7 @@ mod lanes;
 mod left_factor;
 mod names;
 mod newton;
+mod quaternionic;
 mod residual;
 mod sizes;
 mod state;

@@ -2,7 +2,7 @@
 //! Takes the body and `u`; gives the quaternion lane by lane, or how much of `u` can be solved for.
 
 use super::body::QuaternionBody;
-use super::shift::{Equation, quick};
+use super::shift::{Equation, Turn, quick};
 use crate::linalg::{determinant, hat, solve};
 use crate::{Group, Real, UnitQuaternion};
 use nalgebra::{Matrix3, Vector3};
@@ -30,14 +30,16 @@ fn quaternions<T: Real>(mask: T, then: [T; 4], otherwise: [T; 4]) -> [T; 4] {
     [(a, w), (b, x), (c, y), (d, z)].map(|(then, otherwise)| choose(mask, then, otherwise))
 }
 
-/// The quaternion where one step of Newton's method does not do, of any length; nothing where some lane
-/// has none. What a lane finds does not depend on the others.
+fn turns<T: Real>(mask: T, then: Turn<T>, otherwise: Turn<T>) -> Turn<T> {
+    Turn {
+        omega: quaternions(mask, then.omega, otherwise.omega),
+        per_square: choose(mask, then.per_square, otherwise.per_square),
+    }
+}
+
+/// The turn where one step of Newton's method does not do; nothing where some lane has none. What a lane finds does not depend on the others.
 #[inline(never)]
-pub(super) fn turn<T: Real>(
-    body: &QuaternionBody<T>,
-    equation: &Equation<T>,
-    u: [T; 3],
-) -> Option<[T; 4]> {
+pub(super) fn turn<T: Real>(body: &QuaternionBody<T>, u: [T; 3]) -> Option<Turn<T>> {
     let one = T::one();
     let [x, y, z] = u;
     let a = (x * x + y * y) + z * z;
@@ -46,6 +48,8 @@ pub(super) fn turn<T: Real>(
     }
     let easy = one - (a - body.easy).where_positive(one);
     let long = (a - body.moderate).where_positive(one);
+    // Made anew: for the short steps it would have to be put in memory.
+    let equation = Equation::new::<false>(body, u);
     let start = equation.start();
     let mut s = equation.improved(start);
     for _ in 0..T::ORDER {
@@ -58,15 +62,15 @@ pub(super) fn turn<T: Real>(
         }
         s = choose(easy, s, more);
     }
-    let mut near = equation.quaternion(s);
+    let mut near = Turn::new(equation.quaternion(s));
     if T::LANES > 1 && quick::<T>() {
         let (change, found) = equation.quick(start);
         let exact = one - (change * change - body.exact).where_positive(one);
         let small = one - (a - body.quick).where_positive(one);
-        near = quaternions(exact * small, found, near);
+        near = turns(exact * small, found, near);
     }
     if long.nowhere_positive() {
-        return near.iter().all(|x| x.is_finite()).then_some(near);
+        return near.omega.iter().all(|x| x.is_finite()).then_some(near);
     }
     let mut far = [T::zero(); 4];
     for lane in 0..T::LANES {
@@ -80,7 +84,7 @@ pub(super) fn turn<T: Real>(
     }
     let far = quaternions(long, far, UnitQuaternion::identity().components());
     let far = polished(body, u, UnitQuaternion::from_components(far).ok()?)?;
-    Some(quaternions(long, far.components(), near))
+    Some(turns(long, Turn::new(far.components()), near))
 }
 
 /// Whether the scalar has more digits than `f64`.

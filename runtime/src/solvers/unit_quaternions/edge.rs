@@ -1,11 +1,17 @@
 //! The edge that begins at a node of a motion in unit quaternions, and the node where it ends.
 //! Takes the edge's momentum; gives the next attitude as soon as it can be used.
 
-use super::shift::turn;
+use super::shift::{Turn, change, turn};
 use super::{QuaternionBody, QuaternionError};
 use crate::solvers::moser_veselov::Edge;
 use crate::{Real, TurnedRotation, UnitQuaternion};
 use nalgebra::Vector3;
+
+/// The attitude at the next node.
+#[inline(always)]
+fn turned<T: Real>(attitude: &UnitQuaternion<T>, turn: &Turn<T>) -> TurnedRotation<T> {
+    attitude.rotation().turned_at(turn.omega, turn.per_square)
+}
 
 impl<T: Real> Edge<T> {
     /// The attitude where the edge ends, given that where it begins, in unit quaternions: the
@@ -23,7 +29,37 @@ impl<T: Real> Edge<T> {
         let scale = h * body.half_over_unit;
         let [[x, y, z]] = self.body().data.0;
         match turn(body, [x * scale, y * scale, z * scale]) {
-            Some(omega) => Ok(attitude.rotation().turned(omega)),
+            Some(turn) => Ok(turned(attitude, &turn)),
+            None => Err(QuaternionError::diagnose(
+                body,
+                &Vector3::new(x * h, y * h, z * h),
+            )),
+        }
+    }
+
+    /// A step on which nothing else acts: the attitude where the edge ends, and the edge that begins there.
+    ///
+    /// In the body the momentum changes by `-(4/h) v x A v`. This is added to what the attitude where the edge begins
+    /// makes of the momentum in space: no rounding gathers, and the next step waits for `v` only.
+    ///
+    /// # Errors
+    /// As [`Edge::turn_in_quaternions`].
+    #[inline(always)]
+    pub fn free_in_quaternions(
+        &self,
+        body: &QuaternionBody<T>,
+        h: T,
+        attitude: &UnitQuaternion<T>,
+    ) -> Result<(UnitQuaternion<T>, Self), QuaternionError> {
+        let scale = h * body.half_over_unit;
+        let ([[x, y, z]], space) = (self.body().data.0, self.space());
+        let before = attitude.rotation().inverse_rotate(&space);
+        match turn(body, [x * scale, y * scale, z * scale]) {
+            Some(turn) => {
+                let momentum = before + Vector3::from(change(body, scale, &turn));
+                let next = turned(attitude, &turn).unit_quaternion();
+                Ok((next, Self::new(momentum, space)))
+            }
             None => Err(QuaternionError::diagnose(
                 body,
                 &Vector3::new(x * h, y * h, z * h),

@@ -23,6 +23,26 @@ pub(super) const EXACT: f64 = 1e-9;
 /// Two leave less than 1e-30 of `I` below this, and the principal branch is far from its end.
 pub(super) const MODERATE: f64 = 0.1;
 
+/// A rotation from one node to the next, as it is found.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Turn<T> {
+    /// The quaternion, of any length.
+    pub(super) omega: [T; 4],
+    /// The inverse of the square of its length.
+    pub(super) per_square: T,
+}
+
+impl<T: Real> Turn<T> {
+    #[inline(always)]
+    pub(super) fn new(omega: [T; 4]) -> Self {
+        let [w, x, y, z] = omega;
+        Self {
+            omega,
+            per_square: T::one() / ((w * w + x * x) + (y * y + z * z)),
+        }
+    }
+}
+
 /// `|(det, n)|` and its derivatives need `det` and `|n|^2` as polynomials.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Equation<T> {
@@ -71,6 +91,37 @@ fn symmetric_times<T: Real, const DIAGONAL: bool>(
     }
 }
 
+/// `(I u) x u` over `det I`, with `I u` for bodies not given in principal axes: by differences it does not cancel when
+/// moments are nearly equal.
+#[inline(always)]
+fn gyroscopic<T: Real, const DIAGONAL: bool>(
+    body: &QuaternionBody<T>,
+    [x, y, z]: [T; 3],
+    [i, j, k]: [T; 3],
+) -> [T; 3] {
+    if DIAGONAL {
+        let [p, q, r] = body.differences;
+        [p * (y * z), q * (z * x), r * (x * y)]
+    } else {
+        [j * z - k * y, k * x - i * z, i * y - j * x].map(|x| x * body.zeroth)
+    }
+}
+
+/// What the momentum `N` in the body changes by, `-(4/h) v x A v`, with `scale = h / (2 unit)`.
+#[inline(always)]
+pub(super) fn change<T: Real>(body: &QuaternionBody<T>, scale: T, turn: &Turn<T>) -> [T; 3] {
+    let [_, x, y, z] = turn.omega;
+    let n = [x, y, z];
+    let gyro = if body.diagonal {
+        gyroscopic::<T, true>(body, n, n)
+    } else {
+        let image = symmetric_times::<T, false>(body.moments, body.products, n);
+        gyroscopic::<T, false>(body, n, image)
+    };
+    let factor = T::from_f64(2.0) / (scale * body.zeroth) * turn.per_square;
+    gyro.map(|x| factor * x)
+}
+
 impl<T: Real> Equation<T> {
     #[inline(always)]
     pub(super) fn new<const DIAGONAL: bool>(body: &QuaternionBody<T>, u: [T; 3]) -> Self {
@@ -80,15 +131,7 @@ impl<T: Real> Equation<T> {
         let inverse =
             symmetric_times::<T, DIAGONAL>(body.inverse_moments, body.inverse_products, u);
         let linear = symmetric_times::<T, DIAGONAL>(body.linear_moments, body.linear_products, u);
-        let [x, y, z] = u;
-        // (I u) x u over det I: by differences it does not cancel when moments are nearly equal.
-        let gyro = if DIAGONAL {
-            let [p, q, r] = body.differences;
-            [p * (y * z), q * (z * x), r * (x * y)]
-        } else {
-            let [i, j, k] = image;
-            [j * z - k * y, k * x - i * z, i * y - j * x].map(|x| x * zeroth)
-        };
+        let gyro = gyroscopic::<T, DIAGONAL>(body, u, image);
         let square = zeroth * a;
         let constant = [0, 1, 2].map(|i: usize| (inverse[i] + gyro[i]) + square * u[i]);
         let energy = dot(u, inverse);
@@ -140,12 +183,12 @@ impl<T: Real> Equation<T> {
         (start - half * length) + fourth
     }
 
-    /// One step of Newton's method from `s`: its change, and the quaternion there, of any length.
+    /// One step of Newton's method from `s`: its change, and the turn there.
     ///
     /// The slope is that of the series of `|(det, n)|`: off by a part of `9 y^3`. To first degree in
-    /// the change the quaternion need not wait for it.
+    /// the change the quaternion need not wait for it, nor the division by its length.
     #[inline(always)]
-    pub(super) fn quick(&self, s: T) -> (T, [T; 4]) {
+    pub(super) fn quick(&self, s: T) -> (T, Turn<T>) {
         let (two, three, four) = (T::from_f64(2.0), T::from_f64(3.0), T::from_f64(4.0));
         let (half, quarter) = (T::from_f64(0.5), T::from_f64(0.25));
         let (square, z, b) = (s * s, self.zeroth, self.real);
@@ -163,13 +206,20 @@ impl<T: Real> Equation<T> {
         let near = det + excess;
         let slope = along * near + b * (fall * excess - half * rise);
         let per_slope = near / slope;
-        let value = (quartic + b * det) - b * (det * det + n).sqrt();
+        let length = det * det + n;
+        let per_length = T::one() / length;
+        let stretch = ((det + det) * fall + rise) * per_length;
+        let value = (quartic + b * det) - b * length.sqrt();
         let change = -(value * per_slope);
         let at = |i: usize| {
             let here = (self.constant[i] + s * self.linear[i]) + square * self.u[i];
             here + change * (self.linear[i] + (s + s) * self.u[i])
         };
-        (change, [det + change * fall, at(0), at(1), at(2)])
+        let turn = Turn {
+            omega: [det + change * fall, at(0), at(1), at(2)],
+            per_square: per_length * (T::one() - change * stretch),
+        };
+        (change, turn)
     }
 
     /// The equation at `s` and its first three derivatives, the latter over their factorials.
@@ -246,9 +296,9 @@ impl<T: Real> Equation<T> {
     }
 }
 
-/// The quaternion of the principal solution, not normalised, for `u = h N / (2 unit)`.
+/// The principal solution for `u = h N / (2 unit)`.
 #[inline(always)]
-pub(super) fn turn<T: Real>(body: &QuaternionBody<T>, u: [T; 3]) -> Option<[T; 4]> {
+pub(super) fn turn<T: Real>(body: &QuaternionBody<T>, u: [T; 3]) -> Option<Turn<T>> {
     // One branch here, straight-line code on either side.
     if body.diagonal {
         principal::<T, true>(body, u)
@@ -258,17 +308,20 @@ pub(super) fn turn<T: Real>(body: &QuaternionBody<T>, u: [T; 3]) -> Option<[T; 4
 }
 
 #[inline(always)]
-fn principal<T: Real, const DIAGONAL: bool>(body: &QuaternionBody<T>, u: [T; 3]) -> Option<[T; 4]> {
-    let equation = Equation::new::<DIAGONAL>(body, u);
+fn principal<T: Real, const DIAGONAL: bool>(
+    body: &QuaternionBody<T>,
+    u: [T; 3],
+) -> Option<Turn<T>> {
     if quick::<T>() {
-        let (change, quaternion) = equation.quick(equation.start());
+        let equation = Equation::new::<DIAGONAL>(body, u);
+        let (change, turn) = equation.quick(equation.start());
         // Written so that NaN is neither small nor exact.
         let small = (dot(u, u) - body.quick).nowhere_positive();
         if small & (change * change - body.exact).nowhere_positive() {
-            return Some(quaternion);
+            return Some(turn);
         }
     }
-    branch::turn(body, &equation, u)
+    branch::turn(body, u)
 }
 
 /// Whether one step of Newton's method with an approximate slope may be exact to rounding.
