@@ -177,7 +177,7 @@ fn difference(a: &Matrix, b: &Matrix) -> f64 {
 /// and of tangents; `flaw` is done to the tangent first.
 fn worst(source: &str, flaw: fn(Expr) -> Expr) -> [f64; 2] {
     let d = derive_source(source).expect("a model");
-    let parts = Parts::of(&d).expect("groups of space");
+    let parts = Parts::of(&d.spec, &d.letters).expect("groups of space");
     let derived = momenta(&d);
     let split = parts.covectors(&derived);
     let written: Vec<Expr> = split

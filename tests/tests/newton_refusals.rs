@@ -16,7 +16,7 @@ use clebsch_models::coupled_bodies::{
     CoupledBodies, CoupledBodiesInitial, CoupledBodiesParameters, CoupledBodiesState,
 };
 use clebsch_tests::physics::draws::Draws;
-use drawn::{Coupled, Drawn, Fluid, InFourDimensions, Mixed, Quaternion, Rough};
+use drawn::{Coupled, Drawn, Fluid, InFourDimensions, Mixed, Quaternion, Rough, Stiff};
 
 /// The refusal of steps of `h` from this state.
 fn refusal<M: Model<Scalar = f64>>(model: &M, state: &M::State, h: f64) -> Option<NewtonError> {
@@ -73,7 +73,7 @@ fn offers<D: Drawn>(count: u64) -> [u64; 2] {
 fn the_step_offered_is_taken_and_a_longer_one_is_not() {
     for [offered, refused] in [
         offers::<Coupled>(200),
-        offers::<Quaternion>(200),
+        offers::<Stiff>(200),
         offers::<Rough>(200),
         offers::<Mixed>(200),
         offers::<InFourDimensions>(40),
@@ -175,7 +175,7 @@ where
 #[test]
 fn compositions_offer_a_step_too() {
     composed::<Coupled>(1);
-    composed::<Quaternion>(2);
+    composed::<Stiff>(2);
     composed::<Fluid>(3);
 }
 
@@ -274,6 +274,7 @@ fn no_failure_is_silent() {
     let count = problems();
     none_is_silent::<Coupled>(count);
     none_is_silent::<Quaternion>(count);
+    none_is_silent::<Stiff>(count);
     none_is_silent::<Fluid>(count);
     none_is_silent::<Rough>(count);
     none_is_silent::<Mixed>(count);

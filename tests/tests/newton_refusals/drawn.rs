@@ -37,6 +37,17 @@ clebsch::model! {
 }
 
 clebsch::model! {
+    /// In unit quaternions, with a momentum that is no quadratic form's.
+    pub model StiffQuaternion {
+        param S: Sym<3>;
+        param c: Real;
+        group q: SU<2> velocity W;
+        constraint next(q) = q*W;
+        lagrangian = (2/h)*dot(im(W), S*im(W)) + (2*c/h)*dot(im(W), S*im(W))^2 - (4*c/h)*re(W);
+    }
+}
+
+clebsch::model! {
     /// Bodies kept in different groups.
     pub model MixedPair {
         param J, S: Sym<3>;
@@ -176,7 +187,7 @@ impl Drawn for Coupled {
     }
 }
 
-/// A body in unit quaternions.
+/// A body in unit quaternions; Newton's method has no part in it.
 pub struct Quaternion;
 
 impl Drawn for Quaternion {
@@ -209,6 +220,50 @@ impl Drawn for Quaternion {
         let residual = model.balance(h, &at(0, 0.0), &at(1, 0.0), &at(2, angle));
         let momentum = states[1].spatial_momentum().0.norm();
         largest(&residual, 4.0 * (p.I.norm() + p.c) / h + momentum)
+    }
+}
+
+/// [`StiffQuaternion`].
+pub struct Stiff;
+
+impl Drawn for Stiff {
+    type M = StiffQuaternion;
+    const NAMES: &'static [&'static str] = &["q"];
+
+    fn draw(draws: &mut Draws) -> (StiffQuaternion, StiffQuaternionState, f64) {
+        let s = positive(draws);
+        let model = StiffQuaternion::new(StiffQuaternionParameters {
+            S: s,
+            c: draws.uniform(0.1, 0.5),
+        });
+        let model = model.expect("valid");
+        let length = length(draws);
+        let state = model.begin(StiffQuaternionInitial {
+            q: UnitQuaternion::from_components(draws.attitude().0).expect("unit"),
+            body_momentum: BodyMomentum(vector(draws, length)),
+        });
+        (model, state.expect("valid"), s.trace() / length)
+    }
+
+    fn residual(
+        model: &StiffQuaternion,
+        h: f64,
+        states: &[StiffQuaternionState; 3],
+        angle: f64,
+    ) -> f64 {
+        let p = model.parameters();
+        let at = |i: usize, angle: f64| {
+            let turn = Rotation::exp(&small(angle)).quaternion();
+            StiffQuaternionConfiguration {
+                q: states[i].q() * UnitQuaternion::from_components(turn).expect("unit"),
+            }
+        };
+        let residual = model.balance(h, &at(0, 0.0), &at(1, 0.0), &at(2, angle));
+        let momentum = states[1].spatial_momentum().0.norm();
+        largest(
+            &residual,
+            4.0 * (p.S.norm() * (1.0 + p.S.norm()) + p.c) / h + momentum,
+        )
     }
 }
 
