@@ -53,9 +53,9 @@ impl<T: Real> Edge<T> {
     ) -> Result<(UnitQuaternion<T>, Self), QuaternionError> {
         let scale = h * body.half_over_unit;
         let ([[x, y, z]], space) = (self.body().data.0, self.space());
-        let before = attitude.rotation().inverse_rotate(&space);
         match turn(body, [x * scale, y * scale, z * scale]) {
             Some(turn) => {
+                let before = attitude.rotation().inverse_rotate(&space);
                 let momentum = before + Vector3::from(change(body, scale, &turn));
                 let next = turned(attitude, &turn).unit_quaternion();
                 Ok((next, Self::new(momentum, space)))
