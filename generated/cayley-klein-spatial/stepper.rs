@@ -169,17 +169,19 @@ pub mod cayley_klein_spatial {
             if work.here.q != state.q || work.here.momentum != state.momentum
                 || !(same(&work.here.I, &state.I))
             {
-                work.factor = match self.factor(state) {
-                    Ok(factor) => factor,
-                    Err(_) => {
-                        return Err(
-                            StepCause::NotFinite {
-                                what: "body",
-                            }
-                                .at_node(state.node),
-                        );
-                    }
-                };
+                if !(same(&work.here.I, &state.I)) {
+                    work.factor = match self.factor(state) {
+                        Ok(factor) => factor,
+                        Err(_) => {
+                            return Err(
+                                StepCause::NotFinite {
+                                    what: "body",
+                                }
+                                    .at_node(state.node),
+                            );
+                        }
+                    };
+                }
                 work.edge = self.edge(state, h);
                 work.here = *state;
             }

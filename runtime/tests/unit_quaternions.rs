@@ -203,10 +203,44 @@ fn bodies_without_positive_inertia_are_refused() {
         text(-0.5)
     );
     assert!(text(f64::NAN).contains("entry (0, 0)"));
+    // A small difference of large numbers is as symmetric as those are.
+    let rounded = Matrix3::new(0.0, 1e-15, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    assert!(QuaternionBody::new("A", rounded, 1.0).is_ok());
+    assert!(QuaternionBody::new("A", rounded * 1e6, 1.0).is_err());
     let skew = a + Matrix3::new(0.0, 0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     let error = QuaternionBody::new("A", skew, 1.0).expect_err("refused");
     assert!(error.to_string().contains("not symmetric"));
     assert!(QuaternionBody::new("A", a, -0.4).is_ok());
+}
+
+#[test]
+fn a_free_step_keeps_both_momenta_one() {
+    let mut random = Random(6);
+    let (mut worst, mut before): (f64, f64) = (0.0, 0.0);
+    for case in 0..60 {
+        let (a, real) = random_body(&mut random, case);
+        let body = QuaternionBody::new("A", a, real).expect("a body");
+        let space = random.vector().normalize();
+        let h = bound(&a, real, &space).min(2.0) * [0.003, 0.05, 0.3][(case % 3) as usize];
+        let mut q = UnitQuaternion::identity();
+        let mut edge = Edge::new(space, space);
+        for _ in 0..2000 {
+            // Elsewhere on its way the body may turn faster than where it begins.
+            let Ok((next, following)) = edge.free_in_quaternions(&body, h, &q) else {
+                break;
+            };
+            let turned = edge.turn_in_quaternions(&body, h, &q).expect("the same");
+            assert_eq!(turned.unit_quaternion(), next, "case {case}");
+            assert_eq!(following.space(), space, "case {case}");
+            let seen = |q: &UnitQuaternion<f64>| q.rotation().inverse_rotate(&space);
+            worst = worst.max(largest(&(following.body() - seen(&next))));
+            before = before.max(largest(&(edge.body() - seen(&next))));
+            (q, edge) = (next, following);
+        }
+    }
+    println!("{worst:e}, without the change {before:e}");
+    // A few roundings of one step, however many were made; over h, as the equation is solved for h N.
+    assert!(worst < 1e-12 && before > 0.1, "{worst:e} {before:e}");
 }
 
 #[test]

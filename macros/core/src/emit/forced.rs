@@ -351,12 +351,19 @@ pub(super) fn follow(d: &Derivation, names: &Names) -> TokenStream {
         names.local("node"),
         variable(&d.letters.symbols, d.spec.step),
     );
-    let another = (!items::factor_references(d).is_empty()).then(|| {
-        quote! {
+    let references = items::factor_references(d);
+    let another = (!references.is_empty()).then(|| {
+        let prepare = quote! {
             work.factor = match self.factor(state) {
                 Ok(factor) => factor,
                 Err(_) => return Err(StepCause::NotFinite { what: "body" }.at_node(state.#node)),
             };
+        };
+        // Compositions move the attitude in every step, and the body is the same.
+        let same = unmoved(d, &references);
+        match family(&d.spec.configurations[0]) {
+            Family::Quaternion => quote!(if !(#(#same)&*) { #prepare }),
+            _ => prepare,
         }
     });
     let moved_away = moved_away(d);
@@ -370,21 +377,24 @@ pub(super) fn follow(d: &Derivation, names: &Names) -> TokenStream {
     }
 }
 
+/// Whether each of these is in the state what it is in the workspace.
+fn unmoved(d: &Derivation, references: &[SymbolId]) -> Vec<TokenStream> {
+    let one = |id: &SymbolId| {
+        let field = own(d, *id);
+        match d.letters.symbols.get(*id).shape.is_scalar() {
+            true => quote!((work.here.#field == state.#field)),
+            false => quote!(same(&work.here.#field, &state.#field)),
+        }
+    };
+    references.iter().map(one).collect()
+}
+
 /// Whether the workspace is that of another state.
 fn moved_away(d: &Derivation) -> TokenStream {
     let element = own(d, d.spec.configurations[0].element);
     let momentum = per_configuration(d, "momentum", 0);
-    let references: Vec<_> = items::kept(d)
-        .into_iter()
-        .map(|id| (d.letters.symbols.get(id).shape, own(d, id)))
-        .collect();
-    let equal = references
-        .iter()
-        .map(|(shape, field)| match shape.is_scalar() {
-            true => quote!((work.here.#field == state.#field)),
-            false => quote!(same(&work.here.#field, &state.#field)),
-        });
-    let others = (!references.is_empty()).then(|| quote!(|| !(#(#equal)&*)));
+    let equal = unmoved(d, &items::kept(d));
+    let others = (!equal.is_empty()).then(|| quote!(|| !(#(#equal)&*)));
     quote! {
         work.here.#element != state.#element || work.here.#momentum != state.#momentum #others
     }

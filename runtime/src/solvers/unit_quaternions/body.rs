@@ -72,7 +72,9 @@ impl<T: Real> QuaternionBody<T> {
                 }
             }
         }
-        mirrored_difference(&a).map_err(|(row, column, upper, lower)| {
+        // `A = I - β` may be a small difference, its rounding is that of `I` and `β`.
+        let both = Matrix3::from_diagonal_element(T::from_f64(2.0 * real.magnitude()));
+        mirrored_difference(&(a + both)).map_err(|(row, column, upper, lower)| {
             let problem = Problem::NotSymmetric {
                 row,
                 column,
