@@ -1,5 +1,4 @@
-//! The step of a forced Moser-Veselov equation, or of its like on SU(2): one equation for a number, then the node's
-//! torques.
+//! The step of a forced Moser-Veselov equation, or of its like on SU(2): a number is found, then the node's torques act.
 //! Takes the derivation; gives `step`, the edge momentum and the words of a refusal.
 
 use super::element::{Family, family};
@@ -103,8 +102,7 @@ fn begin(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
     let (lets, values) = program(&p, &bindings);
     let [kick, space] = ["kick", "space"].map(|base| names.local(base));
     let edge = match c.side {
-        // The spatial momentum is not taken through the body frame and back: each way would leave
-        // its rounding in what is conserved.
+        // The spatial momentum is not taken through the body frame and back: that would leave rounding in it.
         Side::Body if mv.rest.is_zero() => {
             quote!(Edge::new(#element.tr_mul(&state.#momentum.0), state.#momentum.0))
         }
