@@ -243,19 +243,6 @@ pub mod cayley_klein_spatial {
         ) -> Result<(), StepError> {
             self.step(state, work)
         }
-        #[cold]
-        fn attempt(&self, state: &Self::State, h: T) -> Option<Self::State> {
-            let (mut moving, search) = (*state, newton::Search::to_try());
-            self.step(
-                    &mut moving,
-                    &mut CayleyKleinSpatialWorkspace {
-                        h,
-                        search,
-                    },
-                )
-                .ok()?;
-            Some(moving)
-        }
         fn node(state: &Self::State) -> u64 {
             state.node
         }
