@@ -4,6 +4,7 @@
 use super::QuaternionBody;
 use super::branch::followed;
 use crate::Real;
+use crate::said::{Times, instead};
 use crate::solvers::moser_veselov::largest_step;
 use core::fmt;
 use nalgebra::Vector3;
@@ -69,9 +70,10 @@ impl QuaternionError {
             let (body, h) = (body.lane(lane), h.lane(lane));
             let at = |trial: f64| edge_momentum(T::from_f64(trial)).map(|x| x.lane(lane));
             let solved = |trial: f64| reach(&body, &(at(trial) * trial)) < 1.0;
-            let largest = if at(h) == at(0.5 * h) {
+            let ratio = reach(&body, &(at(h) * h));
+            let largest = if at(h) == at(0.5 * h) && ratio.is_finite() {
                 // A momentum that does not depend on the step: the bound is linear in it.
-                h / reach(&body, &(at(h) * h)).max(1.0)
+                h / ratio.max(1.0)
             } else {
                 largest_step(h, |trial| Some(if solved(trial) { 0.0 } else { 2.0 }))
             };
@@ -115,26 +117,28 @@ fn fastest(body: &QuaternionBody<f64>, h_n: &Vector3<f64>) -> usize {
 impl fmt::Display for QuaternionError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.ratio.is_nan() {
-            return write!(
+            write!(
                 f,
                 "the momentum is NaN or infinite (component {})",
                 self.component
-            );
+            )?;
+            return match (self.h, self.largest_step) {
+                (Some(h), Some(largest)) if !largest.is_nan() => instead(f, h, largest),
+                _ => write!(f, "; check the values of the state and the parameters"),
+            };
         }
         if self.lane > 0 {
             write!(f, "lane {}: ", self.lane)?;
         }
         write!(
             f,
-            "the body turns too far in one step: the momentum is {:.6} times what the equation in \
+            "the body turns too far in one step: the momentum is {} times what the equation in \
              unit quaternions can take (component {} is the largest)",
-            self.ratio, self.component
+            Times(self.ratio),
+            self.component
         )?;
         match (self.h, self.largest_step) {
-            (Some(h), Some(largest)) => write!(
-                f,
-                "; reduce the step size from {h} to at most {largest:.6e}"
-            ),
+            (Some(h), Some(largest)) => instead(f, h, largest),
             _ => write!(f, "; reduce the step size"),
         }
     }
