@@ -261,7 +261,7 @@ pub mod heavy_top_spatial {
             Λ_moved: TurnedRotation<T>,
         ) -> Moving<T> {
             let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
-            let Λ_next = Λ_moved.turning();
+            let Λ_next = Λ_moved.matrix();
             let χ_reference = state.χ;
             let χ_next = Λ_next * χ_reference;
             let space = edge.space();

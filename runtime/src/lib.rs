@@ -26,7 +26,7 @@ pub use error::{ParameterError, Problem, StartError, StepCause, StepError};
 pub use groups::{
     BodyImpulse, BodyMomentum, BodyMomentumMatrix, Coadjoint, Group, Linear, NotARigidMotion,
     NotARotation, NotInvertible, Orthogonal, RigidMotion, Rotation, SpatialImpulse,
-    SpatialMomentum, SpatialMomentumMatrix, TurnedRotation, Turning, UnitQuaternion,
+    SpatialMomentum, SpatialMomentumMatrix, TurnedRotation, UnitQuaternion,
 };
 pub use scalar::{DoubleDouble, Dual, Lanes, OfScalars, Real};
 pub use solvers::moser_veselov::{MoserVeselovError, Order, Poinsot, PoinsotError};

@@ -18,7 +18,7 @@ pub use orthogonal::Orthogonal;
 pub use se3::{BodyImpulse, NotARigidMotion, RigidMotion, SpatialImpulse};
 pub use so3::{BodyMomentum, NotARotation, Rotation, SpatialMomentum};
 pub use su2::UnitQuaternion;
-pub use turned::{TurnedRotation, Turning};
+pub use turned::TurnedRotation;
 
 /// The operations of [`Group`] that an element has by itself already, by the same names.
 macro_rules! own_operations {

@@ -4,7 +4,6 @@
 use super::so3::{hamilton, norm_squared, times};
 use super::{Rotation, UnitQuaternion};
 use crate::Real;
-use core::ops::Mul;
 use nalgebra::{Matrix3, Vector3};
 
 /// A rotation on its way: what follows a step may begin before its length is known.
@@ -55,22 +54,6 @@ impl<T: Real> TurnedRotation<T> {
         UnitQuaternion::covering(self.rotation())
     }
 
-    /// The 3x3 matrix, body -> space, as it acts on vectors.
-    #[inline(always)]
-    pub fn turning(&self) -> Turning<T> {
-        let ([w, x, y, z], scale) = (self.q, self.scale);
-        let (xx, yy, zz) = (x * x, y * y, z * z);
-        let (xy, xz, yz) = (x * y, x * z, y * z);
-        let (wx, wy, wz) = (w * x, w * y, w * z);
-        #[rustfmt::skip]
-        let deviation = [
-            [-(yy + zz), xy - wz, xz + wy],
-            [xy + wz, -(xx + zz), yz - wx],
-            [xz - wy, yz + wx, -(xx + yy)],
-        ];
-        Turning { deviation, scale }
-    }
-
     /// The 3x3 matrix, body -> space.
     #[inline(always)]
     pub fn matrix(&self) -> Matrix3<T> {
@@ -87,43 +70,20 @@ impl<T: Real> TurnedRotation<T> {
         );
         matrix
     }
-}
-
-/// The matrix `1 + s E` of a rotation, body -> space, which acts on a vector without being formed:
-/// `v + s (E v)`, where only the last step waits for the division that `s` is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turning<T = f64> {
-    /// `E`, by rows.
-    deviation: [[T; 3]; 3],
-    scale: T,
-}
-
-impl<T: Real> Turning<T> {
-    /// The inverse rotation of a vector, space -> body.
+    /// The inverse rotation of a vector, space -> body: `v + s (E^T v)`, where only the last step waits for the division
+    /// that `s` is. For one vector less than the matrix, for several more.
     #[inline(always)]
-    pub fn tr_mul(&self, v: &Vector3<T>) -> Vector3<T> {
-        let ([[a, b, c], [d, e, f], [g, h, i]], s) = (self.deviation, self.scale);
-        let [[x, y, z]] = v.data.0;
-        Vector3::new(
-            x + s * ((a * x + d * y) + g * z),
-            y + s * ((b * x + e * y) + h * z),
-            z + s * ((c * x + f * y) + i * z),
-        )
-    }
-}
-
-impl<T: Real> Mul<Vector3<T>> for Turning<T> {
-    type Output = Vector3<T>;
-
-    /// The rotation of a vector, body -> space.
-    #[inline(always)]
-    fn mul(self, v: Vector3<T>) -> Vector3<T> {
-        let ([[a, b, c], [d, e, f], [g, h, i]], s) = (self.deviation, self.scale);
-        let [[x, y, z]] = v.data.0;
-        Vector3::new(
-            x + s * ((a * x + b * y) + c * z),
-            y + s * ((d * x + e * y) + f * z),
-            z + s * ((g * x + h * y) + i * z),
-        )
+    pub fn inverse_rotate(&self, v: &Vector3<T>) -> Vector3<T> {
+        let ([w, x, y, z], s) = (self.q, self.scale);
+        let (xx, yy, zz) = (x * x, y * y, z * z);
+        let (xy, xz, yz) = (x * y, x * z, y * z);
+        let (wx, wy, wz) = (w * x, w * y, w * z);
+        // By columns of `E`.
+        let first = [-(yy + zz), xy + wz, xz - wy];
+        let second = [xy - wz, -(xx + zz), yz + wx];
+        let third = [xz + wy, yz - wx, -(xx + yy)];
+        let [v] = v.data.0;
+        let turned = |at: usize, [a, b, c]: [T; 3]| v[at] + s * ((a * v[0] + b * v[1]) + c * v[2]);
+        Vector3::new(turned(0, first), turned(1, second), turned(2, third))
     }
 }

@@ -193,7 +193,7 @@ impl BodyMotion for Solved {
         let turned = self.edge.turn(&self.body, self.h, &self.attitude);
         let turned = turned.map_err(|_| Unsolvable)?;
         let space = self.edge.space();
-        self.edge = Edge::new(turned.matrix().tr_mul(&space), space);
+        self.edge = Edge::new(turned.inverse_rotate(&space), space);
         self.attitude = turned.rotation();
         Ok(())
     }

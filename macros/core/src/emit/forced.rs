@@ -169,18 +169,8 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
         quote!(state.#r)
     };
     let (at_node, onwards) = (at(c.element, Shift::HERE), at(c.element, Shift::NEXT));
-    // In the body its matrix is used three times: once formed, it costs less.
-    let on_vectors = c.side == Side::Spatial
-        && wanted.iter().all(|e| acts_on_vectors(e, onwards))
-        && d.spec.advected.iter().zip(&d.transports).all(|(a, t)| {
-            let unused = !needed.contains(&at(a.quantity, Shift::NEXT));
-            unused || carries_vectors(t, at_node)
-        })
-        && torques.seen.iter().all(|e| acts_on_vectors(e, at_node));
-    let solved = |_| match on_vectors {
-        true => quote!(#moved.turning()),
-        false => quote!(#moved.matrix()),
-    };
+    // Used two times and more: once formed, the matrix costs less than turning each vector.
+    let solved = |_| quote!(#moved.matrix());
     let mut attitude = TokenStream::new();
     if quaternion {
         // Most quantities know of a quaternion its rotation only.
@@ -489,36 +479,6 @@ fn stands_alone(e: &Expr, element: Letter) -> bool {
         Node::Letter(_) => is_element(e),
         Node::Map(Map::Rotation, a) if is_element(a) => false,
         _ => e.children().iter().any(|c| stands_alone(c, element)),
-    }
-}
-
-/// Whether an element stands in an expression only where it, or its transpose, acts on a vector:
-/// its matrix is then not formed.
-fn acts_on_vectors(e: &Expr, element: Letter) -> bool {
-    let is_letter = |e: &Expr| matches!(e.node(), Node::Letter(l) if *l == element);
-    // A unit quaternion acts by the rotation it covers.
-    let is_element = |e: &Expr| match e.node() {
-        Node::Map(Map::Rotation, a) => is_letter(a),
-        _ => is_letter(e),
-    };
-    let acts = |e: &Expr| match e.node() {
-        Node::Transpose(a) => is_element(a),
-        _ => is_element(e),
-    };
-    match e.node() {
-        _ if is_element(e) => false,
-        Node::Product(factors) if e.shape().is_vector() => factors
-            .iter()
-            .all(|f| acts(f) || acts_on_vectors(f, element)),
-        _ => e.children().iter().all(|c| acts_on_vectors(c, element)),
-    }
-}
-
-/// The same of what carries a quantity along.
-fn carries_vectors(t: &Transport, element: Letter) -> bool {
-    match t {
-        Transport::Defined(e) | Transport::Carried { value: e, .. } => acts_on_vectors(e, element),
-        Transport::Advanced => false,
     }
 }
 

@@ -87,6 +87,8 @@ pub(super) fn principal_at_once<T: Real, const DIAGONAL: bool>(
 /// `u` and its quadratic forms.
 struct Momentum<T> {
     u: [T; 3],
+    /// The squares of its components.
+    squares: [T; 3],
     /// `|u|^2`.
     a: T,
     energy: T,
@@ -100,6 +102,7 @@ impl<T: Real> Momentum<T> {
         let products = [u[1] * u[2], u[2] * u[0], u[0] * u[1]];
         Self {
             u,
+            squares,
             a: (squares[0] + squares[1]) + squares[2],
             energy: body.energy.value::<DIAGONAL>(squares, products),
             deviation: body.deviation.value::<DIAGONAL>(squares, products),
@@ -112,18 +115,20 @@ impl<T: Real> Momentum<T> {
         let Self { u, a, .. } = *self;
         // adj(I - kappa) u = adj(I) u + kappa (I - s1) u + kappa^2 u and det(I - kappa), sorted by
         // powers so that little is left to do once kappa is known.
-        let inertia_u = body.inertia_times::<DIAGONAL>(u);
-        let adjugate_u = body.adjugate_times::<DIAGONAL>(u);
+        let rest_u = body.rest_times::<DIAGONAL>(u);
+        let adjugate_u = body.adjugate_and_times::<DIAGONAL>(a, u);
         let gyro = gyroscopic::<T, DIAGONAL>(body, u);
-        let p = dot(u, inertia_u);
+        let p = if DIAGONAL {
+            dot(body.moments, self.squares)
+        } else {
+            dot(u, body.inertia_times::<DIAGONAL>(u))
+        };
         let square = kappa * kappa;
         let det = ((body.s3 + p) - kappa * (body.s2 + a)) + square * (body.s1 - kappa);
         // A loop, since closures are not always inlined.
         let mut n = u;
         for i in 0..3 {
-            let constant = (adjugate_u[i] + gyro[i]) + a * u[i];
-            let linear = inertia_u[i] - body.s1 * u[i];
-            n[i] = (constant + kappa * linear) + square * u[i];
+            n[i] = ((adjugate_u[i] + gyro[i]) + kappa * rest_u[i]) + square * u[i];
         }
         [det, n[0], n[1], n[2]]
     }

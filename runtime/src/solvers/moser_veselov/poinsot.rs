@@ -26,6 +26,8 @@ pub struct Poinsot<T = f64> {
     pub(super) moments: [T; 3],
     /// `I / unit`, entries (2,3), (3,1), (1,2).
     pub(super) products: [T; 3],
+    /// Diagonal entries of `I / unit - s1`: minus the sums of the two other moments.
+    pub(super) rest: [T; 3],
     /// `I2 - I3`, `I3 - I1`, `I1 - I2` of the diagonal entries.
     pub(super) differences: [T; 3],
     /// Adjugate of `I / unit`, diagonal entries.
@@ -55,7 +57,7 @@ pub(super) struct Form<T> {
 
 in_lanes!(Form { squares, products });
 in_lanes!(Poinsot {
-    j, half_over_unit, moments, products, differences, adjugate_moments, adjugate_products,
+    j, half_over_unit, moments, products, rest, differences, adjugate_moments, adjugate_products,
     s1, s2, s3, symmetric, energy, deviation; unit, diagonal
 });
 
@@ -213,6 +215,7 @@ impl<T: Real> Poinsot<T> {
             half_over_unit: T::from_f64(0.5 / unit),
             moments: [xx, yy, zz],
             products: [yz, xz, xy],
+            rest: [-(yy + zz), -(zz + xx), -(xx + yy)],
             differences: [yy - zz, zz - xx, xx - yy],
             adjugate_moments,
             adjugate_products,
@@ -279,6 +282,19 @@ impl<T: Real> Poinsot<T> {
     #[inline(always)]
     pub(super) fn adjugate_times<const DIAGONAL: bool>(&self, v: [T; 3]) -> [T; 3] {
         symmetric_times::<T, DIAGONAL>(self.adjugate_moments, self.adjugate_products, v)
+    }
+
+    /// `(adj(I / unit) + a) v`.
+    #[inline(always)]
+    pub(super) fn adjugate_and_times<const DIAGONAL: bool>(&self, a: T, v: [T; 3]) -> [T; 3] {
+        let [x, y, z] = self.adjugate_moments;
+        symmetric_times::<T, DIAGONAL>([x + a, y + a, z + a], self.adjugate_products, v)
+    }
+
+    /// `(I / unit - s1) v`.
+    #[inline(always)]
+    pub(super) fn rest_times<const DIAGONAL: bool>(&self, v: [T; 3]) -> [T; 3] {
+        symmetric_times::<T, DIAGONAL>(self.rest, self.products, v)
     }
 
     /// `u = h N / (2 unit)`.
