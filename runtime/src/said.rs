@@ -82,6 +82,29 @@ pub(crate) fn instead(f: &mut fmt::Formatter<'_>, h: f64, largest: f64) -> fmt::
     write!(f, "; reduce the step size from {h} to at most {largest}")
 }
 
+/// What to do about a step that is too long; `steps` are it and the largest that could be made,
+/// where they are known.
+pub(crate) fn shorter(f: &mut fmt::Formatter<'_>, steps: Option<(f64, f64)>) -> fmt::Result {
+    match steps {
+        Some((h, largest)) => instead(f, h, largest),
+        None => write!(f, "; reduce the step size"),
+    }
+}
+
+/// That a component of the momentum is no number, and what to do about it; `steps` as in
+/// [`shorter`].
+pub(crate) fn not_finite(
+    f: &mut fmt::Formatter<'_>,
+    component: usize,
+    steps: Option<(f64, f64)>,
+) -> fmt::Result {
+    write!(f, "the momentum is NaN or infinite (component {component})")?;
+    match steps {
+        Some((h, largest)) if !largest.is_nan() => instead(f, h, largest),
+        _ => write!(f, "; check the values of the state and the parameters"),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::{AtMost, Plain, Times};

@@ -5,7 +5,7 @@ use super::forced::turn;
 use super::preprocess::preprocessed;
 use super::{Order, Poinsot, largest_step, reach};
 use crate::Real;
-use crate::said::{Times, instead};
+use crate::said::{Times, not_finite, shorter};
 use crate::solvers::Method;
 use core::fmt;
 use nalgebra::Vector3;
@@ -56,7 +56,7 @@ impl MoserVeselovError {
             let ratio = reach(&body, &n);
             if ratio.is_nan() || ratio > worst.ratio {
                 worst.ratio = ratio;
-                worst.component = fastest(&body, &n);
+                worst.component = fastest(body.moments, &n);
                 worst.lane = index(lane);
             }
             if ratio.is_nan() {
@@ -101,7 +101,7 @@ impl MoserVeselovError {
                     ratio,
                     h: Some(h),
                     largest_step: Some(largest),
-                    component: fastest(&body, &n),
+                    component: fastest(body.moments, &n),
                     order,
                     solver: Method::Kappa,
                     lane: index(lane),
@@ -175,11 +175,9 @@ fn index(lane: usize) -> u32 {
 }
 
 /// The index of the largest `|h N_i| / I_ii`.
-fn fastest(body: &Poinsot<f64>, h_n: &Vector3<f64>) -> usize {
-    let inertia = body.inertia();
+pub(in crate::solvers) fn fastest(moments: [f64; 3], h_n: &Vector3<f64>) -> usize {
     let (mut largest, mut component) = (-1.0, 0);
-    for (i, x) in h_n.iter().enumerate() {
-        let moment = inertia.get((i, i)).copied().unwrap_or(1.0);
+    for (i, (x, moment)) in h_n.iter().zip(moments).enumerate() {
         let angle = (x / moment).abs();
         if angle > largest || angle.is_nan() {
             (largest, component) = (angle, i);
@@ -191,15 +189,7 @@ fn fastest(body: &Poinsot<f64>, h_n: &Vector3<f64>) -> usize {
 impl fmt::Display for MoserVeselovError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.ratio.is_nan() {
-            write!(
-                f,
-                "the momentum is NaN or infinite (component {})",
-                self.component
-            )?;
-            return match (self.h, self.largest_step) {
-                (Some(h), Some(largest)) if !largest.is_nan() => instead(f, h, largest),
-                _ => write!(f, "; check the values of the state and the parameters"),
-            };
+            return not_finite(f, self.component, self.h.zip(self.largest_step));
         }
         if self.lane > 0 {
             write!(f, "lane {}: ", self.lane)?;
@@ -231,10 +221,7 @@ impl fmt::Display for MoserVeselovError {
                 write!(f, ", with the moments of order {}", self.order)?;
             }
         }
-        match (self.h, self.largest_step) {
-            (Some(h), Some(largest)) => instead(f, h, largest),
-            _ => write!(f, "; reduce the step size"),
-        }
+        shorter(f, self.h.zip(self.largest_step))
     }
 }
 

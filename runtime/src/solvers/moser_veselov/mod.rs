@@ -28,6 +28,7 @@ mod reach;
 pub use super::largest_step::largest_step;
 pub use edge::Edge;
 pub use failure::MoserVeselovError;
+pub(in crate::solvers) use failure::fastest;
 pub use forced::forced;
 pub use free::Free;
 pub use poinsot::{Poinsot, PoinsotError};

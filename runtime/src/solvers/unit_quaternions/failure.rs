@@ -4,8 +4,8 @@
 use super::QuaternionBody;
 use super::branch::followed;
 use crate::Real;
-use crate::said::{Times, instead};
-use crate::solvers::moser_veselov::largest_step;
+use crate::said::{Times, not_finite, shorter};
+use crate::solvers::moser_veselov::{fastest, largest_step};
 use core::fmt;
 use nalgebra::Vector3;
 
@@ -45,7 +45,7 @@ impl QuaternionError {
             let ratio = reach(&body, &n);
             if ratio.is_nan() || ratio > worst.ratio {
                 worst.ratio = ratio;
-                worst.component = fastest(&body, &n);
+                worst.component = fastest(body.moments, &n);
                 worst.lane = u32::try_from(lane).unwrap_or(u32::MAX);
             }
             if ratio.is_nan() {
@@ -102,30 +102,10 @@ fn reach(body: &QuaternionBody<f64>, h_n: &Vector3<f64>) -> f64 {
     }
 }
 
-/// The index of the largest `|h N_i| / I_ii`.
-fn fastest(body: &QuaternionBody<f64>, h_n: &Vector3<f64>) -> usize {
-    let (mut largest, mut component) = (-1.0, 0);
-    for (i, (x, moment)) in h_n.iter().zip(body.moments).enumerate() {
-        let angle = (x / moment).abs();
-        if angle > largest || angle.is_nan() {
-            (largest, component) = (angle, i);
-        }
-    }
-    component
-}
-
 impl fmt::Display for QuaternionError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.ratio.is_nan() {
-            write!(
-                f,
-                "the momentum is NaN or infinite (component {})",
-                self.component
-            )?;
-            return match (self.h, self.largest_step) {
-                (Some(h), Some(largest)) if !largest.is_nan() => instead(f, h, largest),
-                _ => write!(f, "; check the values of the state and the parameters"),
-            };
+            return not_finite(f, self.component, self.h.zip(self.largest_step));
         }
         if self.lane > 0 {
             write!(f, "lane {}: ", self.lane)?;
@@ -137,10 +117,7 @@ impl fmt::Display for QuaternionError {
             Times(self.ratio),
             self.component
         )?;
-        match (self.h, self.largest_step) {
-            (Some(h), Some(largest)) => instead(f, h, largest),
-            _ => write!(f, "; reduce the step size"),
-        }
+        shorter(f, self.h.zip(self.largest_step))
     }
 }
 
