@@ -49,16 +49,14 @@ fn variations_keep_the_reconstruction() {
     // Λ = Λ[-1] Ω[-1] with δΩ[-1] = Ω[-1] ξ, δΛ[-1] = 0.
     let before = |e: &Expr| letter(&d.symbols, at(e).symbol, Shift::PREVIOUS);
     let (l0, o0) = (before(&l), before(&o));
-    let known = sub(
+    let on_shell = |e: &Expr| substitute(&d.symbols, e, &[(at(&l), mul(l0.clone(), o0.clone()))]);
+    let (moved, varied) = (
         product([l0.clone(), o0.clone(), x.clone()]),
         mul(l.clone(), x.clone()),
     );
-    let on_shell = substitute(&d.symbols, &known, &[(at(&l), mul(l0.clone(), o0.clone()))]);
-    let lines = d.proves("incoming", &trace(mul(pt.clone(), on_shell)), &integer(0));
-    assert!(
-        lines.iter().any(|line| line.contains("Λ[-1] Ω[-1] ξ")),
-        "{lines:?}"
-    );
+    // Written alike they need no proof: a sum drops a term beside its opposite.
+    assert!(on_shell(&sub(moved.clone(), varied.clone())).is_zero());
+    assert!(!on_shell(&sub(moved, neg(varied))).is_zero());
     let left = trace(product([pt.clone(), l0.clone(), o0.clone(), x.clone()]));
     let lt = d.t(&mul(l0, o0));
     let right = neg(trace(product([x.clone(), lt, p])));
