@@ -79,3 +79,45 @@ fn no_wrong_sided_action_is_derived() {
     }
     assert!(tried >= 6, "only {tried} constraints were turned");
 }
+
+/// On every group, in the body and in space: what carries a quantity the wrong way, and the right one.
+const OFFERED: [[&str; 5]; 7] = [
+    ["SO<3>", "G*V", "Vec<3>", "V*P", "V^T * P"],
+    ["SO<3>", "V*G", "Vec<3>", "V^T*P", "V * P"],
+    ["SU<2>", "G*V", "Vec<3>", "rot(V)*P", "rot(V)^T * P"],
+    [
+        "SU<2>",
+        "V*G",
+        "Sym<3>",
+        "rot(V)^T*P*rot(V)",
+        "rot(V) * P * rot(V)^T",
+    ],
+    ["SE<3>", "G*V", "Vec<4>", "V*P", "V^-1 * P"],
+    ["SE<3>", "G*V", "Vec<3>", "rot(V)*P", "rot(V)^T * P"],
+    ["GL<3>", "G*V", "Vec<3>", "V*P", "V^-1 * P"],
+];
+
+#[test]
+fn what_is_offered_instead_is_derived() {
+    for [group, reconstruction, kind, wrong, right] in OFFERED {
+        let weight = if kind == "Sym<3>" {
+            "tr(P)"
+        } else {
+            "dot(a, P)"
+        };
+        let space = kind.replace("Sym<3>", "Vec<3>");
+        let model = |update: &str| {
+            format!(
+                "model Carried {{ param a: {space}; group G: {group} velocity V; advected P: {kind}; \
+                 constraint next(G) = {reconstruction}; constraint next(P) = {update}; \
+                 lagrangian = -tr(V)/h - h*{weight}; }}"
+            )
+        };
+        let refused = derive_source(&model(wrong)).expect_err(wrong).to_string();
+        let offer = format!("`constraint next(P) = {right};`");
+        assert!(refused.contains(&offer), "{group}: {refused}");
+        if let Err(e) = derive_source(&model(right)) {
+            panic!("{group}: {right}: {e}");
+        }
+    }
+}

@@ -5,7 +5,7 @@
 use super::Letters;
 use super::lie;
 use crate::algebra::{Algebra, Factor, Poly, Rational, Source};
-use crate::check::spec::{Advected, Configuration, Side, Spec};
+use crate::check::spec::{Advected, Configuration, Group, Side, Spec};
 use crate::diagnostic::{Diagnostic, Errors};
 use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::SymbolId;
@@ -264,22 +264,27 @@ fn wrong_side(
         &style,
         crate::print::Format::Text,
     );
-    let (g, w) = match spec.configurations.first() {
-        Some(c) => (
-            s.get(c.element).name.clone(),
-            s.get(c.velocity).name.clone(),
-        ),
-        None => (String::new(), String::new()),
+    // The group that the constraint already names.
+    let moved = |c: &&Configuration| {
+        let letters = crate::expr::letters(&a.update);
+        letters.iter().any(|l| l.symbol == c.velocity)
     };
-    let body = spec
-        .configurations
-        .first()
-        .is_none_or(|c| c.side == Side::Body);
+    let all = &spec.configurations;
+    let acting = all.iter().find(moved).or(all.first());
+    let text = |of: fn(&Configuration) -> SymbolId| {
+        acting.map_or(String::new(), |c| s.get(of(c)).name.clone())
+    };
+    let (g, w) = (text(|c| c.element), text(|c| c.velocity));
+    let body = acting.is_none_or(|c| c.side == Side::Body);
+    let (there, back) = acting.map_or_else(
+        || (w.clone(), format!("{w}^T")),
+        |c| action(c.group, &w, shape.rows),
+    );
     let example = match (shape.is_vector(), body) {
-        (true, true) => format!("next({name}) = {w}^T * {name}"),
-        (true, false) => format!("next({name}) = {w} * {name}"),
-        (false, true) => format!("next({name}) = {w}^T * {name} * {w}"),
-        (false, false) => format!("next({name}) = {w} * {name} * {w}^T"),
+        (true, true) => format!("next({name}) = {back} * {name}"),
+        (true, false) => format!("next({name}) = {there} * {name}"),
+        (false, true) => format!("next({name}) = {back} * {name} * {there}"),
+        (false, false) => format!("next({name}) = {there} * {name} * {back}"),
     };
     let reconstruction = if body {
         format!("next({g}) = {g} * {w}")
@@ -295,4 +300,16 @@ fn wrong_side(
     .help(format!(
         "with this reconstruction an advected quantity is carried on the other side, for example `constraint {example};`"
     ))
+}
+
+/// How an element `w` of a group and its inverse act on quantities of so many rows, as one writes
+/// it: vectors in space are turned by quaternions and motions as by the rotation these cover.
+fn action(group: Group, w: &str, rows: Dim) -> (String, String) {
+    let turned = rows == Dim::Fixed(3);
+    let inverse = |w: String, mark: &str| (w.clone(), format!("{w}^{mark}"));
+    match group {
+        Group::UnitQuaternions | Group::RigidMotions if turned => inverse(format!("rot({w})"), "T"),
+        Group::SpecialOrthogonal(_) | Group::UnitQuaternions => inverse(w.to_owned(), "T"),
+        Group::GeneralLinear(_) | Group::RigidMotions => inverse(w.to_owned(), "-1"),
+    }
 }
