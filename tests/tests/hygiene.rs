@@ -143,7 +143,7 @@ macro_rules! awkward_names {
                 all_finite axial_of_difference basis determinant diagonal_part forced
                 inverse_or_nan largest_step length matrix_of number_of put reach rotation_of rows
                 skew_part solve solve_or_nan symmetric_part unit BodyMomentum SpatialMomentum
-                Rotation Poinsot Free newton validate emitted
+                Rotation Poinsot QuaternionBody Edge Moving Free newton validate emitted
                 // Locals and parameters of functions.
                 after axis before body e edge found guess h_ here i inertia initial j kinetic
                 matrix model momenta momentum momentum_next n node out parameters parts potential

@@ -44,7 +44,7 @@ pub fn own(d: &Derivation, id: SymbolId) -> Ident {
 }
 
 /// Types, traits and variants that emitted code calls by a plain name: no model can bear one.
-const TYPES: [&str; 52] = [
+const TYPES: [&str; 54] = [
     "BodyImpulse",
     "BodyMomentum",
     "BodyMomentumMatrix",
@@ -71,6 +71,8 @@ const TYPES: [&str; 52] = [
     "Orthogonal",
     "ParameterError",
     "Poinsot",
+    "QuaternionBody",
+    "QuaternionError",
     "Real",
     "Result",
     "Reversible",
@@ -172,7 +174,7 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
 
 /// What emitted functions call by a plain name, and what they name themselves: a local of the
 /// model under such a name would hide it. The test of hygiene states a model with all of them.
-const INSIDE: [&str; 115] = [
+const INSIDE: [&str; 116] = [
     "BodyImpulse",
     "BodyMomentum",
     "BodyMomentumMatrix",
@@ -182,6 +184,7 @@ const INSIDE: [&str; 115] = [
     "Ok",
     "Orthogonal",
     "Poinsot",
+    "QuaternionBody",
     "RigidMotion",
     "Rotation",
     "Some",

@@ -6,7 +6,7 @@ use crate::Real;
 
 /// Vectors of the solver are plain arrays: three numbers in registers.
 #[inline(always)]
-pub(super) fn dot<T: Real>([a, b, c]: [T; 3], [x, y, z]: [T; 3]) -> T {
+pub(in crate::solvers) fn dot<T: Real>([a, b, c]: [T; 3], [x, y, z]: [T; 3]) -> T {
     (a * x + b * y) + c * z
 }
 

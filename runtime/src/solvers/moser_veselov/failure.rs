@@ -170,7 +170,7 @@ impl MoserVeselovError {
 }
 
 /// The number of a lane; there are a few of them.
-fn index(lane: usize) -> u32 {
+pub(in crate::solvers) fn index(lane: usize) -> u32 {
     u32::try_from(lane).unwrap_or(u32::MAX)
 }
 

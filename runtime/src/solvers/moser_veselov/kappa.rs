@@ -260,6 +260,6 @@ fn hard<T: Real>(body: &Symmetric<T>, a: T, energy: T, deviation: T) -> Option<T
 
 /// One or the other, lane by lane, as the mask is 1 or 0.
 #[inline(always)]
-pub(super) fn choose<T: Real>(mask: T, then: T, otherwise: T) -> T {
+pub(in crate::solvers) fn choose<T: Real>(mask: T, then: T, otherwise: T) -> T {
     mask.where_positive(then) + (T::one() - mask).where_positive(otherwise)
 }

@@ -26,11 +26,14 @@ mod principal;
 mod reach;
 
 pub use super::largest_step::largest_step;
+pub(in crate::solvers) use cayley::dot;
 pub use edge::Edge;
 pub use failure::MoserVeselovError;
-pub(in crate::solvers) use failure::fastest;
+pub(in crate::solvers) use failure::{fastest, index};
 pub use forced::forced;
 pub use free::Free;
+pub(in crate::solvers) use kappa::choose;
+pub(in crate::solvers) use poinsot::symmetric_times;
 pub use poinsot::{Poinsot, PoinsotError};
 pub use preprocess::Order;
 pub use reach::reach;

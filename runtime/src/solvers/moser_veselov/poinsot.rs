@@ -306,8 +306,9 @@ impl<T: Real> Poinsot<T> {
     }
 }
 
+/// A symmetric matrix, by its diagonal entries and those at (2,3), (3,1), (1,2), times a vector.
 #[inline(always)]
-fn symmetric_times<T: Real, const DIAGONAL: bool>(
+pub(in crate::solvers) fn symmetric_times<T: Real, const DIAGONAL: bool>(
     [xx, yy, zz]: [T; 3],
     [yz, xz, xy]: [T; 3],
     [x, y, z]: [T; 3],

@@ -4,6 +4,7 @@
 use super::body::QuaternionBody;
 use super::shift::{Equation, Turn, quick};
 use crate::linalg::{determinant, hat, solve};
+use crate::solvers::moser_veselov::choose;
 use crate::{Group, Real, UnitQuaternion};
 use nalgebra::{Matrix3, Vector3};
 
@@ -19,11 +20,6 @@ const RESOLUTION: f64 = 1e-14;
 
 /// Parts of `u` by which the branch is followed, at most: others may pass close by.
 const LONGEST: f64 = 0.05;
-
-/// One or the other, lane by lane, as the mask is 1 or 0.
-fn choose<T: Real>(mask: T, then: T, otherwise: T) -> T {
-    mask.where_positive(then) + (T::one() - mask).where_positive(otherwise)
-}
 
 fn quaternions<T: Real>(mask: T, then: [T; 4], otherwise: [T; 4]) -> [T; 4] {
     let [[a, b, c, d], [w, x, y, z]] = [then, otherwise];

@@ -5,7 +5,7 @@ use super::QuaternionBody;
 use super::branch::followed;
 use crate::Real;
 use crate::said::{Times, not_finite, shorter};
-use crate::solvers::moser_veselov::{fastest, largest_step};
+use crate::solvers::moser_veselov::{fastest, index, largest_step};
 use core::fmt;
 use nalgebra::Vector3;
 
@@ -46,7 +46,7 @@ impl QuaternionError {
             if ratio.is_nan() || ratio > worst.ratio {
                 worst.ratio = ratio;
                 worst.component = fastest(body.moments, &n);
-                worst.lane = u32::try_from(lane).unwrap_or(u32::MAX);
+                worst.lane = index(lane);
             }
             if ratio.is_nan() {
                 break;
@@ -83,7 +83,7 @@ impl QuaternionError {
                 told = Self {
                     h: Some(h),
                     largest_step: Some(largest),
-                    lane: u32::try_from(lane).unwrap_or(u32::MAX),
+                    lane: index(lane),
                     ..told
                 };
             }

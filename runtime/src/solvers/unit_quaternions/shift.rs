@@ -7,6 +7,7 @@
 use super::body::QuaternionBody;
 use super::branch;
 use crate::Real;
+use crate::solvers::moser_veselov::{dot, symmetric_times};
 
 /// One iteration from the series is exact to rounding while `y = (1 + |β|/I) |u|^2 / I^2`, `I` the
 /// smallest moment, is below this: it leaves less than `7e-18 (y/0.02)^12` of `I` (the largest of
@@ -67,28 +68,6 @@ pub(super) struct Equation<T> {
     constant: [T; 3],
     linear: [T; 3],
     u: [T; 3],
-}
-
-#[inline(always)]
-fn dot<T: Real>([a, b, c]: [T; 3], [x, y, z]: [T; 3]) -> T {
-    (a * x + b * y) + c * z
-}
-
-#[inline(always)]
-fn symmetric_times<T: Real, const DIAGONAL: bool>(
-    [xx, yy, zz]: [T; 3],
-    [yz, xz, xy]: [T; 3],
-    [x, y, z]: [T; 3],
-) -> [T; 3] {
-    if DIAGONAL {
-        [xx * x, yy * y, zz * z]
-    } else {
-        [
-            (xx * x + xy * y) + xz * z,
-            (xy * x + yy * y) + yz * z,
-            (xz * x + yz * y) + zz * z,
-        ]
-    }
 }
 
 /// `(I u) x u` over `det I`, with `I u` for bodies not given in principal axes: by differences it does not cancel when
