@@ -213,17 +213,19 @@ pub mod heavy_top_spatial {
             if work.here.Λ != state.Λ || work.here.momentum != state.momentum
                 || !(same(&work.here.J, &state.J) & same(&work.here.χ, &state.χ))
             {
-                work.factor = match self.factor(state) {
-                    Ok(factor) => factor,
-                    Err(_) => {
-                        return Err(
-                            StepCause::NotFinite {
-                                what: "body",
-                            }
-                                .at_node(state.node),
-                        );
-                    }
-                };
+                if !(same(&work.here.J, &state.J)) {
+                    work.factor = match self.factor(state) {
+                        Ok(factor) => factor,
+                        Err(_) => {
+                            return Err(
+                                StepCause::NotFinite {
+                                    what: "body",
+                                }
+                                    .at_node(state.node),
+                            );
+                        }
+                    };
+                }
                 work.edge = self.edge(state, h);
                 work.here = *state;
             }

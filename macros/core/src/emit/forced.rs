@@ -341,17 +341,15 @@ pub(super) fn follow(d: &Derivation, names: &Names) -> TokenStream {
     );
     let references = items::factor_references(d);
     let another = (!references.is_empty()).then(|| {
-        let prepare = quote! {
-            work.factor = match self.factor(state) {
-                Ok(factor) => factor,
-                Err(_) => return Err(StepCause::NotFinite { what: "body" }.at_node(state.#node)),
-            };
-        };
         // Compositions move the attitude in every step, and the body is the same.
         let same = unmoved(d, &references);
-        match family(&d.spec.configurations[0]) {
-            Family::Quaternion => quote!(if !(#(#same)&*) { #prepare }),
-            _ => prepare,
+        quote! {
+            if !(#(#same)&*) {
+                work.factor = match self.factor(state) {
+                    Ok(factor) => factor,
+                    Err(_) => return Err(StepCause::NotFinite { what: "body" }.at_node(state.#node)),
+                };
+            }
         }
     });
     let moved_away = moved_away(d);
