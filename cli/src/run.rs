@@ -94,7 +94,7 @@ pub fn run(
         }
     }
     if !left.is_empty() {
-        let message = format!("left the bound of the case: {}", left.join(", "));
+        let message = format!("bound exceeded: {}", left.join(", "));
         // The exit code says the same; nothing is lost when this cannot be written.
         let _ = writeln!(streams.err, "clebsch: {message}");
     }

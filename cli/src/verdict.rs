@@ -4,6 +4,7 @@
 use crate::gallery::Case;
 use clebsch::card::{Card, Conserved, Invariant};
 use clebsch::integrate::Drift;
+use clebsch::scalar::larger;
 use serde_json::{Value, json};
 
 /// Drift allowed to an exactly conserved invariant when the case names no bound. Rounding adds up to
@@ -26,9 +27,9 @@ impl Verdict {
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
-            Self::Kept => "kept",
-            Self::Left => "LEFT ITS BOUND",
-            Self::Bounded => "bounded",
+            Self::Kept => "within bound",
+            Self::Left => "EXCEEDED",
+            Self::Bounded => "no bound",
         }
     }
 }
@@ -42,9 +43,9 @@ pub struct Outcome {
     pub components: Vec<Drift>,
     /// Largest natural scale of a component.
     pub scale: f64,
-    /// Largest drift of a component at any node, relative to its scale.
+    /// Largest drift of a component at any node, relative to its scale or absolute without one.
     pub worst: f64,
-    /// Drift at the last node of the component that moved most, relative to its scale, with its sign.
+    /// Drift at the last node of the component that moved most, measured alike, with its sign.
     pub last: f64,
     /// Bound on the drift, if there is one.
     pub bound: Option<f64>,
@@ -78,14 +79,12 @@ pub fn judge(card: &Card, case: &Case, drifts: &[Drift]) -> Vec<Outcome> {
     card.invariants.iter().map(one).collect()
 }
 
-/// The larger number; NaN wins, so that it cannot hide.
-fn larger(a: f64, b: f64) -> f64 {
-    if b.is_nan() || b > a { b } else { a }
-}
-
 /// The number farther from zero; NaN wins.
 fn farther(a: f64, b: f64) -> f64 {
-    if b.is_nan() || b.abs() > a.abs() {
+    let most = larger(a.abs(), b.abs());
+    if most.is_nan() {
+        most
+    } else if b.abs() == most && a.abs() < most {
         b
     } else {
         a
@@ -105,8 +104,7 @@ impl Outcome {
     /// The outcome for files.
     #[must_use]
     pub fn json(&self) -> Value {
-        let parts: fn(&Drift) -> Value =
-            |drift| json!({"scale": drift.scale, "worst": drift.worst, "last": drift.last});
+        let parts: fn(&Drift) -> Value = |drift| json!({"scale": drift.scale, "absolute": drift.is_absolute(), "worst": drift.worst, "last": drift.last});
         json!({
             "name": self.invariant.name,
             "formula": self.invariant.formula,
@@ -115,6 +113,7 @@ impl Outcome {
                 Conserved::Boundedly => "boundedly",
             },
             "scale": self.scale,
+            "absolute": self.components.iter().any(Drift::is_absolute),
             "worst_drift": self.worst,
             "last_drift": self.last,
             "bound": self.bound,
@@ -125,6 +124,21 @@ impl Outcome {
             },
             "components": self.components.iter().map(parts).collect::<Vec<_>>(),
         })
+    }
+
+    /// The name, with the components where only some have no scale, if drift and bound are absolute.
+    fn absolute(&self) -> Option<String> {
+        let name = self.invariant.name;
+        let components = self.components.iter().enumerate();
+        let without: Vec<String> = components
+            .filter(|(_, drift)| drift.is_absolute())
+            .map(|(index, _)| (index + 1).to_string())
+            .collect();
+        match without.len() {
+            0 => None,
+            all if all == self.components.len() => Some(name.to_owned()),
+            _ => Some(format!("{name} (components {})", without.join(", "))),
+        }
     }
 
     fn cells(&self) -> Vec<String> {
@@ -148,19 +162,28 @@ impl Outcome {
     }
 }
 
-/// The table of all outcomes; drifts are relative to the natural scale.
+/// The table of all outcomes, and a line on those that are measured absolutely; drifts are relative to
+/// the natural scale where there is one.
 #[must_use]
 pub fn table(outcomes: &[Outcome]) -> String {
     let head = [
         "invariant",
         "formula",
         "scale",
-        "worst drift",
-        "last drift",
+        "max drift",
+        "final drift",
         "bound",
         "verdict",
     ];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
     rows.extend(outcomes.iter().map(Outcome::cells));
-    crate::columns::aligned(&rows, &[2, 3, 4, 5])
+    let mut text = crate::columns::aligned(&rows, &[2, 3, 4, 5]);
+    let absolute: Vec<String> = outcomes.iter().filter_map(Outcome::absolute).collect();
+    if !absolute.is_empty() {
+        text.push_str(&format!(
+            "\nabsolute, as the scale at the start is zero: {}\n",
+            absolute.join(", ")
+        ));
+    }
+    text
 }

@@ -73,7 +73,7 @@ fn generated_steppers_tend_to_the_hand_written_equations() {
                 let fields = fields.as_object().expect("fields").values();
                 fields
                     .map(|field| field["worst"].as_f64().expect("a number"))
-                    .fold(0.0, f64::max)
+                    .fold(0.0, clebsch::scalar::larger)
             });
             // The velocity tends to the rotation in the left factor, not to the identity: no limit.
             if (model, case.name.as_str()) == ("body-n", "turned") {
@@ -106,7 +106,7 @@ fn errors(object: &serde_json::Value, name: &str) -> Vec<f64> {
 fn apart(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
     let differences = a.iter().zip(b).map(|(x, y)| (x - y).abs());
-    differences.fold(0.0, f64::max)
+    differences.fold(0.0, clebsch::scalar::larger)
 }
 
 /// What was written by hand is the generated scheme: it is as far from the truth, but for the rounding of 200 steps.

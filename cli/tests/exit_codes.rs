@@ -30,9 +30,9 @@ fn a_run_prints_what_was_derived_and_a_table() {
         "solver: explicit; order 2, reversible\n",
         "case swing: Swings \"widely\".\n",
         "h = 0.05, 2000 steps, to time 100\n",
-        "invariant  formula                    scale  worst drift  last drift  bound  verdict\n",
+        "invariant  formula                    scale  max drift  final drift  bound  verdict\n",
         "energy     ½ p²/I + κ (1 - cos θ)  5.625e-1",
-        "across     (μ₁, μ₂)                 1.000e0            0           0  1e-12  kept\n",
+        "across     (μ₁, μ₂)                 1.000e0          0            0  1e-12  within bound\n",
     ] {
         assert!(
             done.out.contains(words),
@@ -46,7 +46,7 @@ fn a_run_prints_what_was_derived_and_a_table() {
 fn an_oscillating_invariant_without_bound_gets_no_verdict() {
     let done = clebsch(&["run", "HarmonicRotor", "--case", "quiet"]);
     assert_eq!(done.code, 0);
-    assert!(done.out.contains("-  bounded\n"), "{}", done.out);
+    assert!(done.out.contains("-  no bound\n"), "{}", done.out);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The closed form of the free body against a Taylor series in double-double, and every other way to
 //! move a free body against the closed form: orders, equality of maps, what is conserved.
 
+use clebsch::scalar::larger;
 use clebsch::{DoubleDouble, Real};
 use clebsch_comparisons::body::exact::Exact;
 use clebsch_comparisons::body::implicit::{FixedPoint, Newton};
@@ -150,7 +151,7 @@ fn taylor(start: &Start, time: f64) -> ([Dd; 4], [Dd; 3]) {
 fn distance(a: &(Quaternion, Vector), b: &(Quaternion, Vector)) -> f64 {
     let along = |s: f64| {
         let pairs = a.0.0.iter().zip(b.0.0);
-        pairs.map(|(x, y)| (x - s * y).abs()).fold(0.0, f64::max)
+        pairs.map(|(x, y)| (x - s * y).abs()).fold(0.0, larger)
     };
     let momenta = a.1.iter().zip(b.1).map(|(x, y)| (x - y).abs());
     momenta.fold(along(1.0).min(along(-1.0)), f64::max)
@@ -309,7 +310,7 @@ fn splitting_keeps_spatial_momentum_and_swings_in_energy() {
             .iter()
             .zip(after)
             .map(|(a, b)| (a - b).abs())
-            .fold(0.0, f64::max);
+            .fold(0.0, larger);
         // 25000 roundings at most, as a random walk.
         assert!(drift < 1e-13, "{drift:e}");
         assert!(swing > 1e-11 && swing < 1e-3, "{swing:e}");

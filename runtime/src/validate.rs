@@ -5,6 +5,7 @@ use crate::linalg::{
     columns_from, determinant, inverse, left_multiplication, quaternion_imaginary, quaternion_real,
     rows_from,
 };
+use crate::scalar::largest;
 use crate::{ParameterError, Problem, Real};
 use nalgebra::SMatrix;
 
@@ -145,7 +146,7 @@ pub fn orthogonal<T: Real, const N: usize>(
     matrix: &SMatrix<T, N, N>,
 ) -> Result<(), ParameterError> {
     let defect = matrix.tr_mul(matrix) - SMatrix::identity();
-    let deviation = defect.iter().fold(0.0, |m: f64, x| m.max(x.magnitude()));
+    let deviation = largest(defect.iter().map(|x| x.magnitude()));
     let determinant = determinant(matrix);
     // Entries of a rotation are at most 1. Written so that NaN is refused.
     if deviation <= ROUNDINGS * T::EPSILON && determinant.least() > 0.0 {
@@ -207,9 +208,8 @@ fn in_group<T: Real, const R: usize, const C: usize>(
     length: T,
     elements: &'static str,
 ) -> Result<(), ParameterError> {
-    let deviation = difference
-        .iter()
-        .fold(length.magnitude(), |m: f64, x| m.max(x.magnitude()));
+    let entries = difference.iter().map(|x| x.magnitude());
+    let deviation = largest(entries.chain([length.magnitude()]));
     // Written so that NaN is refused.
     if deviation <= ROUNDINGS * T::EPSILON {
         return Ok(());
@@ -296,8 +296,8 @@ fn mirrored<T: Real, const N: usize>(
     defect: impl Fn(T, T) -> T,
     offset: usize,
 ) -> Result<(), (usize, usize, f64, f64)> {
-    let largest = matrix.iter().fold(0.0, |m: f64, x| m.max(x.magnitude()));
-    let allowed = ROUNDINGS * T::EPSILON * largest;
+    let size = largest(matrix.iter().map(|x| x.magnitude()));
+    let allowed = ROUNDINGS * T::EPSILON * size;
     for row in 0..N {
         for column in row + offset..N {
             let (Some(&upper), Some(&lower)) =

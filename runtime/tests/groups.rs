@@ -5,7 +5,8 @@ mod common;
 use clebsch::linalg::hat;
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{
-    BodyMomentum, DoubleDouble, Dual, Group, Lanes, NotARotation, Real, Rotation, SpatialMomentum,
+    BodyMomentum, DoubleDouble, Dual, Group, Lanes, NotARotation, Orthogonal, Real, Rotation,
+    SpatialMomentum,
 };
 use common::{Random, dd, largest, lift};
 
@@ -180,4 +181,23 @@ fn derivatives_pass_through_rotations() {
     let one = dd(1.0);
     assert!(largest(&Rotation::exp(&Vector3::new(one, one, one)).rotate(&lift(&v))) < 1.0);
     assert_eq!(one.value(), 1.0);
+}
+
+#[test]
+fn an_element_that_is_no_number_is_far_from_its_group() {
+    let own = Orthogonal::<4>::identity();
+    let lost = own.retract(&[f64::NAN; 6]);
+    assert!(Group::<f64>::distance_from_group(&lost).is_nan());
+    for place in 0..2 {
+        let mut pair = [own, own];
+        pair[place] = lost;
+        assert!(Group::<f64>::distance_from_group(&pair).is_nan(), "{place}");
+    }
+    assert!(Group::<f64>::distance_from_group(&(lost, own)).is_nan());
+    assert!(Group::<f64>::distance_from_group(&(own, lost)).is_nan());
+    // Finite entries whose products are not.
+    let overflowing =
+        Matrix3::from_row_slice(&[1e200, -1e200, 0.0, 1e200, 1e200, 0.0, 0.0, 0.0, 1.0]);
+    assert!(Rotation::from_matrix(&overflowing).is_err());
+    assert!(Orthogonal::<3>::from_matrix(&overflowing).is_err());
 }

@@ -1,7 +1,7 @@
 //! The loop: samples where they belong, drift at every step, errors where they happen.
 
 use clebsch::card::{Card, Conserved, Field, Invariant, Kind, OpenError, Settings, Trajectory};
-use clebsch::integrate::{Observer, run};
+use clebsch::integrate::{Observer, RunError, Watched, run};
 use clebsch::{StepCause, StepError};
 
 static CARD: Card = Card {
@@ -137,7 +137,7 @@ fn an_error_stops_the_run_at_its_node() {
     let mut counter = Counter { node: 0, stop: 7 };
     let mut notes = Notes::default();
     let error = run(&mut counter, 10, 1, &mut notes).expect_err("stops");
-    assert_eq!(error.node, 7);
+    assert_eq!(error.node(), 7);
     assert_eq!(counter.node, 7);
     assert_eq!(notes.nodes, [0, 1, 2, 3, 4, 5, 6, 7]);
     assert_eq!(
@@ -158,4 +158,200 @@ fn errors_say_what_was_expected() {
     // A result is copied out of every step: ten words hold the numbers of every refusal.
     let size = std::mem::size_of::<StepError>();
     assert!(size <= 80, "{size}");
+}
+
+/// Fails in one way each: by a number of an invariant, of a scale or of an observable.
+struct Failing {
+    node: u64,
+    at: u64,
+    watched: Watched,
+    value: f64,
+}
+
+static TWO: Card = Card {
+    observables: &[
+        Field {
+            name: "t",
+            ascii: "t",
+            rows: 1,
+            cols: 1,
+            kind: Kind::Scalar,
+            doc: "",
+        },
+        Field {
+            name: "Λ",
+            ascii: "Lambda",
+            rows: 2,
+            cols: 3,
+            kind: Kind::Matrix,
+            doc: "",
+        },
+    ],
+    invariants: &[
+        Invariant {
+            name: "level",
+            formula: "",
+            rows: 1,
+            conserved: Conserved::Boundedly,
+        },
+        Invariant {
+            name: "pair",
+            formula: "",
+            rows: 2,
+            conserved: Conserved::Exactly,
+        },
+    ],
+    ..CARD
+};
+
+impl Failing {
+    fn fill(&self, watched: Watched, out: &mut [f64]) {
+        out.fill(1.0);
+        if watched == self.watched && self.node == self.at {
+            let last = out.len() - 1;
+            out[last] = self.value;
+        }
+    }
+}
+
+impl Trajectory for Failing {
+    fn node(&self) -> u64 {
+        self.node
+    }
+
+    fn time(&self) -> f64 {
+        self.node as f64 * 0.5
+    }
+
+    fn step(&mut self) -> Result<(), StepError> {
+        self.node += 1;
+        Ok(())
+    }
+
+    fn card(&self) -> &'static Card {
+        &TWO
+    }
+
+    fn observe(&self, out: &mut [f64]) {
+        self.fill(Watched::Observable, out);
+    }
+
+    fn invariants(&self, out: &mut [f64]) {
+        self.fill(Watched::Invariant, out);
+    }
+
+    fn scales(&self, out: &mut [f64]) {
+        self.fill(Watched::Scale, out);
+    }
+}
+
+#[test]
+fn a_number_that_is_none_stops_the_run_at_its_node() {
+    for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for (watched, at, words) in [
+            // The invariants are looked at on every node, sampled or not.
+            (
+                Watched::Invariant,
+                0,
+                "at node 0 (time 0) component 2 of the invariant `pair` is ",
+            ),
+            (
+                Watched::Invariant,
+                5,
+                "at node 5 (time 2.5) component 2 of the invariant `pair` is ",
+            ),
+            (
+                Watched::Scale,
+                0,
+                "at node 0 (time 0) component 2 of the natural scale of the invariant `pair` is ",
+            ),
+            (
+                Watched::Observable,
+                4,
+                "at node 4 (time 2) entry (2, 3) of `Λ` is ",
+            ),
+        ] {
+            let mut trajectory = Failing {
+                node: 0,
+                at,
+                watched,
+                value,
+            };
+            let mut notes = Notes::default();
+            let error =
+                run(&mut trajectory, 10, 4, &mut NoShape(&mut notes)).expect_err("no number");
+            assert_eq!(error.node(), at);
+            assert_eq!(trajectory.node, at);
+            assert!(
+                notes.nodes.iter().all(|node| *node < at),
+                "{:?}",
+                notes.nodes
+            );
+            let words = format!("{words}{value}: ");
+            assert!(error.to_string().starts_with(&words), "{error}");
+            let RunError::NotFinite(found) = error else {
+                panic!("{error}");
+            };
+            assert_eq!((found.watched, found.node), (watched, at));
+            assert_eq!(found.value.to_bits(), value.to_bits());
+        }
+    }
+    // Large is not infinite, and what is not sampled is not observed.
+    for (watched, at, value) in [
+        (Watched::Invariant, 5, f64::MAX),
+        (Watched::Observable, 5, f64::NAN),
+    ] {
+        let mut trajectory = Failing {
+            node: 0,
+            at,
+            watched,
+            value,
+        };
+        run(&mut trajectory, 10, 4, &mut NoShape(&mut Notes::default())).expect("runs");
+    }
+}
+
+/// Notes of samples of any shape.
+struct NoShape<'a>(&'a mut Notes);
+
+impl Observer for NoShape<'_> {
+    fn sample(&mut self, node: u64, _: f64, _: &[f64], _: &[f64]) {
+        self.0.nodes.push(node);
+    }
+}
+
+#[test]
+fn an_invariant_of_scale_zero_is_measured_absolutely() {
+    struct Resting(Counter);
+    impl Trajectory for Resting {
+        fn node(&self) -> u64 {
+            self.0.node()
+        }
+        fn time(&self) -> f64 {
+            self.0.time()
+        }
+        fn step(&mut self) -> Result<(), StepError> {
+            self.0.step()
+        }
+        fn card(&self) -> &'static Card {
+            &CARD
+        }
+        fn observe(&self, out: &mut [f64]) {
+            self.0.observe(out);
+        }
+        fn invariants(&self, out: &mut [f64]) {
+            out.fill(if self.0.node == 5 { -1e-15 } else { 0.0 });
+        }
+        fn scales(&self, out: &mut [f64]) {
+            out.fill(0.0);
+        }
+    }
+    let mut resting = Resting(Counter {
+        node: 0,
+        stop: u64::MAX,
+    });
+    let summary = run(&mut resting, 10, 4, &mut Notes::default()).expect("runs");
+    let drift = summary.drifts[0];
+    assert_eq!((drift.worst, drift.last, drift.scale), (1e-15, 0.0, 0.0));
+    assert!(drift.is_absolute());
 }

@@ -47,7 +47,9 @@ fn residual<T: Real, const N: usize>(
 ) -> f64 {
     let a = omega.matrix() * c.transpose();
     let f = a - a.transpose() - v;
-    f.iter().map(|x| x.magnitude()).fold(0.0, f64::max)
+    f.iter()
+        .map(|x| x.magnitude())
+        .fold(0.0, clebsch::scalar::larger)
 }
 
 /// Random factors and momenta at this fraction of the exact bound.

@@ -280,7 +280,7 @@ fn distance(a: &Rotation, b: &Rotation) -> f64 {
     let (a, b) = (a.quaternion(), b.quaternion());
     let worst = |sign: f64| {
         let gaps = a.iter().zip(&b).map(|(x, y)| (x - sign * y).abs());
-        gaps.fold(0.0, f64::max)
+        gaps.fold(0.0, clebsch::scalar::larger)
     };
     worst(1.0).min(worst(-1.0))
 }

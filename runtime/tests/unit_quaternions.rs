@@ -105,7 +105,7 @@ fn the_solution_grows_out_of_the_neutral_element() {
                 .iter()
                 .zip(q)
                 .map(|(x, y)| (x - y).abs())
-                .fold(0.0, f64::max);
+                .fold(0.0, clebsch::scalar::larger);
             // Of 400 steps along one branch none is that long; another branch is of order one away.
             assert!(jump < 0.2, "case {case}, {i}: {jump}");
             last = q;

@@ -1,4 +1,5 @@
-//! The maps are true: every path that ARCHITECTURE.md, README.md and docs/errata.md name exists.
+//! The maps are true: every path that ARCHITECTURE.md, README.md and docs/errata.md name exists. And a rule that
+//! no compiler keeps: no largest deviation is folded by `f64::max`, which passes over a NaN.
 
 use std::fs;
 use std::path::Path;
@@ -32,4 +33,38 @@ fn every_named_path_exists() {
         }
     }
     assert!(named > 40, "the maps name {named} paths only");
+}
+
+/// Every Rust source below `folder`.
+fn sources(folder: &Path, found: &mut Vec<std::path::PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        if path.is_dir() && name != "target" && !name.starts_with('.') {
+            sources(&path, found);
+        } else if name.ends_with(".rs") {
+            found.push(path);
+        }
+    }
+}
+
+#[test]
+fn no_nan_is_passed_over_when_deviations_are_folded() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut found = Vec::new();
+    sources(&root, &mut found);
+    assert!(found.len() > 300, "{} sources only", found.len());
+    // Put together here, so that this file is none of them.
+    let folds = ["0.0", "0.0_f64", "0.0f64"].map(|from| format!("fold({from}, {})", "f64::max"));
+    for path in found {
+        let text = fs::read_to_string(&path).unwrap();
+        let here = folds.iter().find(|fold| text.contains(fold.as_str()));
+        assert!(
+            here.is_none(),
+            "{}: {}: with a NaN among the numbers this gives the largest of the others; take \
+             clebsch::scalar::largest, or worse of the tests",
+            path.display(),
+            here.unwrap()
+        );
+    }
 }

@@ -15,6 +15,7 @@ use clebsch_tests::oracle::action::{DiscreteAction, momentum_out, sensitivity, s
 use clebsch_tests::oracle::dual::Number;
 use clebsch_tests::oracle::points::Source;
 use clebsch_tests::oracle::square::Square;
+use clebsch_tests::physics::measure::worse;
 use std::array::from_fn;
 
 const H: f64 = 0.1;
@@ -108,7 +109,7 @@ fn residual_and_steps<const N: usize>() {
         for (i, found) in found.iter().enumerate() {
             // Components beyond the coordinates of this size are zero.
             let expected = oracle.derivative.get(i).copied().unwrap_or(0.0);
-            worst[0] = worst[0].max((found - expected).abs() / oracle.scale);
+            worst[0] = worse(worst[0], (found - expected).abs() / oracle.scale);
         }
         // Steps from a state solve the equations of the unreduced action.
         let (model, initial) = at_fraction(&mut source, c, 0.6);
@@ -124,13 +125,13 @@ fn residual_and_steps<const N: usize>() {
             stationarity(&system, n, &basis).derivative
         });
         for r in &residual.derivative {
-            worst[1] = worst[1].max(r.abs() / (residual.scale + sensitive));
+            worst[1] = worse(worst[1], r.abs() / (residual.scale + sensitive));
         }
         let out = momentum_out(&system, &nodes[0], &nodes[1], &basis);
         let pairs = (0..N).flat_map(|i| (i + 1..N).map(move |j| (i, j)));
         for (found, (i, j)) in out.derivative.iter().zip(pairs) {
             let given = initial.body_momentum.0[(j, i)];
-            worst[2] = worst[2].max((found - given).abs() / (out.scale + sensitive));
+            worst[2] = worse(worst[2], (found - given).abs() / (out.scale + sensitive));
         }
     }
     println!("n = {N}: {worst:?}");
@@ -174,12 +175,12 @@ fn keeps_spectrum<const N: usize>() {
         run(&model, &mut state, &mut work, 1);
         let m = state.body_momentum().0;
         for (a, b) in spectrum(&m, &j).iter().zip(&first) {
-            worst = worst.max((a - b).abs());
+            worst = worse(worst, (a - b).abs());
         }
         for (a, b) in spectrum(&m, &wrong).iter().zip(&before) {
-            other = other.max((a - b).abs());
+            other = worse(other, (a - b).abs());
         }
-        moved = moved.max((m - initial.body_momentum.0).amax());
+        moved = worse(moved, (m - initial.body_momentum.0).amax());
     }
     println!("n = {N}: spectrum {worst:e}, of another matrix {other:e}, momentum {moved:e}");
     assert!(worst < 1e-12, "n = {N}: {worst:e}");
@@ -211,9 +212,9 @@ fn spatial_momentum_of_the_edges_is_kept_for_a_million_steps() {
                 // From the configurations alone, not from what the state keeps.
                 let a = before.transpose() * state.Λ().matrix() * c.transpose() / H;
                 let m = before * (a - a.transpose()) * before.transpose();
-                worst = worst.max((m - first).amax() / first.amax());
+                worst = worse(worst, (m - first).amax() / first.amax());
                 let gram = before.transpose() * before - SMatrix::<f64, 4, 4>::identity();
-                group = group.max(gram.amax());
+                group = worse(group, gram.amax());
             }
         }
         println!("momentum {worst:e}, group {group:e}");
@@ -281,7 +282,7 @@ fn with_a_factor_assumed_symmetric_steps_are_reversible_and_compose() {
     for (order, steps) in [(2, [0.05, 0.025]), (4, [0.1, 0.05])] {
         let [coarse, fine] = steps.map(|h| {
             let pairs = end(order, h).into_iter().zip(exact.clone());
-            pairs.fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()))
+            pairs.fold(0.0_f64, |m, (a, b)| worse(m, (a - b).abs()))
         });
         let found = (coarse / fine).log2();
         println!("order {order}: {found}, {coarse:e}, {fine:e}");

@@ -10,6 +10,7 @@ use clebsch_core::derive::invariants::Family;
 use clebsch_core::interpret::{Assignment, Matrix, evaluate};
 use clebsch_core::{Derivation, derive_source, expr};
 use clebsch_tests::physics::draws::Draws;
+use clebsch_tests::physics::measure::worse;
 
 clebsch::model! {
     model Body {
@@ -96,14 +97,10 @@ fn defect(step: &Step, change: impl Fn(&mut Matrix)) -> f64 {
                     sum += d[i][k] * b.get(k, l) * d[j][l];
                 }
             }
-            worst = if sum.is_nan() {
-                f64::INFINITY
-            } else {
-                worst.max(sum.abs())
-            };
+            worst = worse(worst, sum.abs());
         }
     }
-    let size = values(&image).iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    let size = values(&image).iter().fold(0.0f64, |m, x| worse(m, x.abs()));
     worst / size
 }
 
@@ -416,7 +413,7 @@ fn casimirs_commute_with_everything() {
             }
             let images =
                 (0..b.rows).map(|i| (0..b.cols).map(|j| b.get(i, j) * gradient[j]).sum::<f64>());
-            let worst = images.fold(0.0f64, |m, x: f64| m.max(x.abs()));
+            let worst = images.fold(0.0f64, |m, x: f64| worse(m, x.abs()));
             // A few dozen products of numbers of order one to ten.
             assert!(worst < 1e-12, "{}: {worst:e}", v.name);
             assert!(gradient.iter().any(|x| x.abs() > 1e-3), "{}", v.name);

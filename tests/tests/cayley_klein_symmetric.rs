@@ -8,6 +8,7 @@ use clebsch_tests::handwritten::attitude::{Quaternion, Vector, dot};
 use clebsch_tests::handwritten::cayley_klein::CayleyKlein as Implicit;
 use clebsch_tests::handwritten::cayley_klein_symmetric::SymmetricCayleyKlein as Explicit;
 use clebsch_tests::oracle::points::Source;
+use clebsch_tests::physics::measure::worse;
 
 const H: f64 = 0.1;
 
@@ -22,10 +23,7 @@ fn state(source: &mut Source, axis: usize) -> (Vector, f64, Quaternion, Vector) 
 }
 
 fn apart(a: &[f64], b: &[f64]) -> f64 {
-    a.iter()
-        .zip(b)
-        .map(|(x, y)| (x - y).abs())
-        .fold(0.0, f64::max)
+    a.iter().zip(b).map(|(x, y)| (x - y).abs()).fold(0.0, worse)
 }
 
 #[test]

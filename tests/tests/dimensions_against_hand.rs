@@ -9,6 +9,7 @@ use clebsch::{BodyMomentumMatrix, Orthogonal};
 use clebsch_tests::handwritten::body_n::BodyN as Written;
 use clebsch_tests::oracle::points::Source;
 use clebsch_tests::oracle::square::Square;
+use clebsch_tests::physics::measure::worse;
 use std::array::from_fn;
 
 clebsch::model! {
@@ -101,9 +102,9 @@ fn single_steps<const N: usize>(count: u32, mistaken: f64) -> f64 {
                 let condition = [(NUDGE, 0.0), (0.0, NUDGE)]
                     .into_iter()
                     .filter_map(|(m, j)| Some(apart(&state.nudged(m, j).by_hand()?, &hand) / NUDGE))
-                    .fold(1.0, f64::max);
-                hardest = hardest.max(condition);
-                worst = worst.max(apart(&generated, &hand) / condition);
+                    .fold(1.0, worse);
+                hardest = worse(hardest, condition);
+                worst = worse(worst, apart(&generated, &hand) / condition);
             }
             (None, None) => refused += 1,
             (generated, hand) => panic!(

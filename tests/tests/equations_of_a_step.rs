@@ -12,6 +12,7 @@ use clebsch_core::print::{Format, Style, expression};
 use clebsch_core::schedule::Known;
 use clebsch_core::{Derivation, derive_source};
 use clebsch_tests::physics::draws::Draws;
+use clebsch_tests::physics::measure::worse;
 
 /// Each a statement whose velocities are coupled, not linear in them, or of another group.
 const MODELS: [(&str, &str); 6] = [
@@ -168,8 +169,8 @@ impl Point {
 fn difference(a: &Matrix, b: &Matrix) -> f64 {
     assert_eq!((a.rows, a.cols), (b.rows, b.cols));
     let pairs = a.data.iter().zip(&b.data);
-    let worst = pairs.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
-    let size = a.data.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
+    let worst = pairs.map(|(x, y)| (x - y).abs()).fold(0.0, worse);
+    let size = a.data.iter().fold(1.0_f64, |m, x| worse(m, x.abs()));
     worst / size
 }
 
@@ -226,7 +227,7 @@ fn worst(source: &str, flaw: fn(Expr) -> Expr) -> [f64; 2] {
                 point.at(&parts.symbols, whole),
                 point.at(&known.symbols, own),
             );
-            worst[0] = worst[0].max(difference(&a, &b));
+            worst[0] = worse(worst[0], difference(&a, &b));
         }
         for axis in 0..3 {
             let unit = [0, 1, 2].map(|i| f64::from(u8::from(i == axis)));
@@ -241,7 +242,7 @@ fn worst(source: &str, flaw: fn(Expr) -> Expr) -> [f64; 2] {
                     cols: 1,
                     data,
                 };
-                worst[1] = worst[1].max(difference(&column, &own));
+                worst[1] = worse(worst[1], difference(&column, &own));
             }
         }
     }

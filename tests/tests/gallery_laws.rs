@@ -103,7 +103,7 @@ fn components(card: &Card, case: &Case, h: f64, steps: u64, fault: Fault) -> Vec
 
 /// The largest of some numbers.
 fn largest(numbers: &[f64]) -> f64 {
-    numbers.iter().fold(0.0, |m: f64, x| m.max(x.abs()))
+    numbers.iter().fold(0.0, |m: f64, x| worse(m, x.abs()))
 }
 
 /// Whether a series that should oscillate does so without a drift.
@@ -148,7 +148,7 @@ fn stays_among_neighbours(
         .map(|t| (t.change - mean).powi(2))
         .sum::<f64>()
         / (count - 1.0);
-    let amplitude = trends.iter().fold(0.0_f64, |m, t| m.max(t.amplitude));
+    let amplitude = trends.iter().fold(0.0_f64, |m, t| worse(m, t.amplitude));
     println!("mean change {mean:e}, error {:e}", (spread / count).sqrt());
     mean.abs() <= 3.0 * (spread / count).sqrt() && mean.abs() <= WANDER * amplitude
 }

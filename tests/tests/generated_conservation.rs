@@ -11,6 +11,7 @@ use clebsch_tests::physics::cases::Start;
 use clebsch_tests::physics::cases::{
     asymmetric_body, flat_body, generic_top, hanging_top, lagrange_top, steady_body, symmetric_body,
 };
+use clebsch_tests::physics::measure::worse;
 use clebsch_tests::physics::measure::{energies, free_drift, top_drift};
 use clebsch_tests::physics::motion::Motion;
 use clebsch_tests::physics::trend::trend;
@@ -62,14 +63,14 @@ fn rounding(start: &Start, projects: bool) -> (f64, [f64; 2]) {
         let mu = body.workspace.solver().body_momentum().0.into();
         let seen = apply(&body.attitude(), &mu);
         let away: [f64; 3] = std::array::from_fn(|i| seen[i] - spatial[i]);
-        error = error.max(dot(&away, &away).sqrt() / length);
+        error = worse(error, dot(&away, &away).sqrt() / length);
         if body.state.node().is_multiple_of(64) {
             let velocity = apply(&inverse, &mu);
             let product = cross(&mu, &velocity);
             let sine = (dot(&product, &product) / dot(&velocity, &velocity)).sqrt() / length;
             let made = body.workspace.solver().correction();
-            corrections[0] = corrections[0].max(made.momentum * sine);
-            corrections[1] = corrections[1].max(made.attitude * sine);
+            corrections[0] = worse(corrections[0], made.momentum * sine);
+            corrections[1] = worse(corrections[1], made.attitude * sine);
         }
     }
     (error, corrections)

@@ -13,6 +13,7 @@ use clebsch_models::heavy_top::{HeavyTop, HeavyTopInitial, HeavyTopParameters};
 use clebsch_tests::handwritten::attitude::Vector;
 use clebsch_tests::physics::cases::Start;
 use clebsch_tests::physics::draws::Draws;
+use clebsch_tests::physics::measure::worse;
 use clebsch_tests::physics::symplectic::{Jacobian, defect};
 use generated_motion::{column, matrix, rotation};
 
@@ -103,7 +104,7 @@ fn scaled_defect(d: &Jacobian, before: &Vector, after: &Vector) -> f64 {
     let size = before
         .iter()
         .chain(after)
-        .fold(1.0_f64, |m, c| m.max(c.abs()));
+        .fold(1.0_f64, |m, c| worse(m, c.abs()));
     defect(d, before, after) / size
 }
 

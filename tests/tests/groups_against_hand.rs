@@ -7,6 +7,7 @@ use clebsch_tests::handwritten::attitude::{Quaternion, Vector, apply};
 use clebsch_tests::handwritten::cayley_klein::CayleyKlein;
 use clebsch_tests::handwritten::kirchhoff_body::{KirchhoffBody, Momentum, Submerged};
 use clebsch_tests::oracle::points::Source;
+use clebsch_tests::physics::measure::worse;
 use std::array::from_fn;
 
 /// Some thirty roundings of numbers of order one, for data that are not magnified.
@@ -69,7 +70,7 @@ trait System: Sized {
 fn conditioning<S: System>(state: &S, result: &[f64]) -> f64 {
     (0..S::KINDS)
         .filter_map(|kind| Some(apart(&state.nudged(kind, NUDGE).by_hand()?, result) / NUDGE))
-        .fold(1.0, f64::max)
+        .fold(1.0, worse)
 }
 
 /// Largest difference over conditioning. With `mistaken`, the generated stepper gets that kind of datum wrong.
@@ -86,9 +87,9 @@ fn single_steps<S: System>(name: &str, count: u32, mistaken: Option<usize>) -> f
             (Some(generated), Some(hand)) => {
                 let condition = conditioning(&state, &hand);
                 let off = apart(&generated, &hand);
-                hardest = hardest.max(condition);
-                bare = bare.max(off);
-                worst = worst.max(off / condition);
+                hardest = worse(hardest, condition);
+                bare = worse(bare, off);
+                worst = worse(worst, off / condition);
             }
             (None, None) => refused += 1,
             (generated, hand) => panic!(

@@ -87,7 +87,7 @@ fn coupled_reference() {
             pair.step().expect("solvable");
             node += 1;
             low = low.min(pair.energy() - coupled_sym::ENERGY_0);
-            high = high.max(pair.energy() - coupled_sym::ENERGY_0);
+            high = worse(high, pair.energy() - coupled_sym::ENERGY_0);
         }
         let [one, two] = pair.body_momenta();
         let seen = add_scaled(&one, 1.0, &apply(&relative(&pair), &two));
@@ -124,7 +124,7 @@ fn coupled_newton_needs_few_iterations() {
             if step >= 4 {
                 later = later.max(pair.iterations());
             }
-            residual = residual.max(pair.residual());
+            residual = worse(residual, pair.residual());
         }
         println!("{most} iterations at most, {later} once on its way; residual {residual:.1e}");
         assert!(most <= MOST_ITERATIONS && later <= 2 && residual <= RESIDUAL);

@@ -4,6 +4,7 @@
 #![allow(mixed_script_confusables)]
 
 use clebsch::card::{Card, Conserved, Settings};
+use clebsch_tests::physics::measure::worse;
 
 clebsch::model! {
     /// Lagrange's top by what is assumed of its parameters.
@@ -119,18 +120,14 @@ fn drifts(
         run.invariants(&mut now);
         for i in 0..count {
             let off = (now[i] - first[i]).abs() / scales[i];
-            worst[i] = if off.is_nan() {
-                f64::INFINITY
-            } else {
-                worst[i].max(off)
-            };
+            worst[i] = worse(worst[i], off);
         }
     }
     let mut at = 0;
     card.invariants
         .iter()
         .map(|v| {
-            let own = worst[at..at + v.rows].iter().copied().fold(0.0, f64::max);
+            let own = worst[at..at + v.rows].iter().copied().fold(0.0, worse);
             at += v.rows;
             (
                 v.name.to_owned(),

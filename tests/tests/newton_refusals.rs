@@ -16,6 +16,7 @@ use clebsch_models::coupled_bodies::{
     CoupledBodies, CoupledBodiesInitial, CoupledBodiesParameters, CoupledBodiesState,
 };
 use clebsch_tests::physics::draws::Draws;
+use clebsch_tests::physics::measure::worse;
 use drawn::{Coupled, Drawn, Fluid, InFourDimensions, Mixed, Quaternion, Rough, Stiff};
 
 /// The refusal of steps of `h` from this state.
@@ -254,7 +255,7 @@ fn none_is_silent<D: Drawn>(count: u64) {
         }
         solved += 1;
         let left = D::residual(&model, h, &past, 0.0);
-        worst = worst.max(left);
+        worst = worse(worst, left);
         silent += u64::from(left.is_nan() || left > ROUNDING);
         turned += u64::from(D::residual(&model, h, &past, 1e-8) > ROUNDING);
     }

@@ -23,6 +23,7 @@ use clebsch_tests::oracle::points::{Given, Source};
 use clebsch_tests::oracle::random::RandomLagrangian;
 use clebsch_tests::oracle::random::sample::Sample;
 use clebsch_tests::oracle::square::Square;
+use clebsch_tests::physics::measure::worse;
 use oracle_typed::*;
 use std::array::from_fn;
 
@@ -221,7 +222,7 @@ fn residuals_agree<M: Compiled, S: System>(draw: impl Fn(&mut Source) -> S) {
                 oracle.scale,
                 oracle.derivative
             );
-            worst = worst.max(difference);
+            worst = worse(worst, difference);
         }
     }
     println!("worst residual {worst:e}");
@@ -233,13 +234,7 @@ fn rounded(what: &str, expected: &[f64], found: &[f64], allowance: f64) -> f64 {
         .iter()
         .zip(found)
         .map(|(a, b)| (a - b).abs() / allowance)
-        .fold(0.0, |worst: f64, next| {
-            if next.is_nan() {
-                f64::NAN
-            } else {
-                worst.max(next)
-            }
-        });
+        .fold(0.0, worse);
     assert!(
         worst <= ROUNDING,
         "{what}: {worst:e} of {allowance:e}\noracle {expected:?}\nemitted {found:?}"
@@ -275,35 +270,29 @@ fn steps_are_stationary<M: Compiled, S: System>(largest: f64, draw: impl Fn(&mut
         });
         let allowance = residual.scale + sensitive;
         let zero = [0.0; 3];
-        worst[0] = worst[0].max(rounded(
-            "stationarity",
-            &residual.derivative,
-            &zero,
-            allowance,
-        ));
+        worst[0] = worse(
+            worst[0],
+            rounded("stationarity", &residual.derivative, &zero, allowance),
+        );
         let edge = [nodes[0], nodes[1]];
         let out = momentum_out(&system, &edge[0], &edge[1], &basis);
         let sensitive = sensitivity(&edge, &basis, |[tail, head]| {
             momentum_out(&system, tail, head, &basis).derivative
         });
         let allowance = out.scale + sensitive;
-        worst[1] = worst[1].max(rounded(
-            "momentum out",
-            &out.derivative,
-            &momenta[0],
-            allowance,
-        ));
+        worst[1] = worse(
+            worst[1],
+            rounded("momentum out", &out.derivative, &momenta[0], allowance),
+        );
         let into = momentum_in(&system, &edge[0], &edge[1], &basis);
         let sensitive = sensitivity(&edge, &basis, |[tail, head]| {
             momentum_in(&system, tail, head, &basis).derivative
         });
         let allowance = into.scale + sensitive;
-        worst[2] = worst[2].max(rounded(
-            "momentum in",
-            &into.derivative,
-            &momenta[1],
-            allowance,
-        ));
+        worst[2] = worse(
+            worst[2],
+            rounded("momentum in", &into.derivative, &momenta[1], allowance),
+        );
     }
     let [stationary, out, into] = worst;
     println!("worst {stationary:e}, momentum out {out:e}, momentum in {into:e}; {refused} refused");

@@ -10,6 +10,7 @@ use clebsch_tests::oracle::action::quaternions::{self, CayleyKlein, QuaternionSu
 use clebsch_tests::oracle::action::{DiscreteAction, Side, stationarity};
 use clebsch_tests::oracle::points::{Given, Source};
 use clebsch_tests::oracle::square::Square;
+use clebsch_tests::physics::measure::worse;
 use oracle_bridge::{AGREEMENT, assignment, disagreement};
 use std::array::from_fn;
 
@@ -42,7 +43,7 @@ fn worst<A: DiscreteAction<4, 1>>(
         let oracle = stationarity(&action, &nodes, basis);
         let values = assignment(&given(&action, &nodes), ("h", h));
         let engine = d.residual(&values).expect("all values are given");
-        worst = worst.max(disagreement(&oracle, &engine));
+        worst = worse(worst, disagreement(&oracle, &engine));
     }
     worst
 }
@@ -161,11 +162,11 @@ fn random_lagrangians_on_both_groups_and_sides() {
         let terms = QuaternionSum::choice(&mut source);
         let found = quaternion_sum(&terms, side, n % 3 == 0, n as u64, POINTS_EACH);
         assert!(found < AGREEMENT, "SU(2), {terms:?}, {side:?}: {found:e}");
-        worst = worst.max(found);
+        worst = worse(worst, found);
         let terms = MotionSum::choice(&mut source);
         let found = motion_sum(&terms, side, n % 3 == 0, n as u64, POINTS_EACH);
         assert!(found < AGREEMENT, "SE(3), {terms:?}, {side:?}: {found:e}");
-        worst = worst.max(found);
+        worst = worse(worst, found);
     }
     println!("worst {worst:e}");
 }

@@ -17,6 +17,7 @@ use clebsch_tests::oracle::random::RandomLagrangian;
 use clebsch_tests::oracle::random::sample::Sample;
 use clebsch_tests::oracle::random::tree::{Kind, Role};
 use clebsch_tests::oracle::square::Square;
+use clebsch_tests::physics::measure::worse;
 use oracle_bridge::{AGREEMENT, assignment, disagreement};
 use std::array::from_fn;
 use std::panic::catch_unwind;
@@ -44,7 +45,7 @@ fn agrees<const N: usize, const G: usize, S: Stated<N, G>>(basis: &[Square<f64, 
             Err(error) => panic!("{text}\ncannot be evaluated: {error}"),
         };
         let difference = disagreement(&oracle, &engine);
-        worst = worst.max(difference);
+        worst = worse(worst, difference);
         assert!(
             difference <= AGREEMENT,
             "{text}\npoint {point}: off by {difference:e} of {:e}\noracle {:?}\nengine {engine:?}",
@@ -159,7 +160,7 @@ fn random_disagreement(seed: u64) -> Result<f64, String> {
                 oracle.scale, oracle.derivative
             ));
         }
-        worst = worst.max(difference);
+        worst = worse(worst, difference);
     }
     Ok(worst)
 }
@@ -170,7 +171,7 @@ fn random_lagrangians_agree(seeds: impl Iterator<Item = u64>) {
     for seed in seeds {
         // A panic of one seed must not hide what is wrong with the others.
         match catch_unwind(|| random_disagreement(seed)) {
-            Ok(Ok(difference)) => worst = worst.max(difference),
+            Ok(Ok(difference)) => worst = worse(worst, difference),
             Ok(Err(failure)) => failures.push(failure),
             Err(_) => failures.push(format!(
                 "seed {seed}\n{}\npanics",

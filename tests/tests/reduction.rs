@@ -15,6 +15,7 @@ use clebsch_tests::oracle::action::{DiscreteAction, Side, rotations, stationarit
 use clebsch_tests::oracle::dual::Number;
 use clebsch_tests::oracle::points::Source;
 use clebsch_tests::oracle::square::Square;
+use clebsch_tests::physics::measure::worse;
 use oracle_bridge::{AGREEMENT, assignment, disagreement};
 use std::array::from_fn;
 
@@ -56,7 +57,7 @@ fn worst<const N: usize, const G: usize, S: Stated<N, G>>(
             Ok(engine) => engine,
             Err(error) => panic!("{text}\ncannot be evaluated: {error}"),
         };
-        worst = worst.max(disagreement(&oracle, &engine));
+        worst = worse(worst, disagreement(&oracle, &engine));
     }
     worst
 }

@@ -21,6 +21,7 @@ use clebsch_tests::oracle::action::{
 };
 use clebsch_tests::oracle::points::Source;
 use clebsch_tests::oracle::square::Square;
+use clebsch_tests::physics::measure::worse;
 use oracle_bridge::{AGREEMENT, assignment, disagreement};
 use std::array::from_fn;
 
@@ -107,13 +108,13 @@ fn worst<const G: usize, A: DiscreteAction<4, G>>(
         let values = assignment(&given(&action, &nodes), ("h", h));
         let wanted = oracle(&action, &nodes);
         let found = d.residual(&values).expect("all values are given");
-        from_oracle = from_oracle.max(disagreement(&wanted, &found));
+        from_oracle = worse(from_oracle, disagreement(&wanted, &found));
         let second = other.residual(&values).expect("all values are given");
         let against = Variation {
             derivative: second,
             scale: wanted.scale,
         };
-        from_other = from_other.max(disagreement(&against, &found));
+        from_other = worse(from_other, disagreement(&against, &found));
     }
     println!("oracle {from_oracle:e}, the other statement {from_other:e}");
     (from_oracle, from_other)
@@ -366,8 +367,8 @@ fn steps_on_different_groups_make_the_action_stationary() {
     for three in nodes.windows(3) {
         let three: [[Square<f64, 4>; 3]; 3] = from_fn(|i| three[i]);
         let v = stationarity_along(&action, &three, bases.each_ref().map(Vec::as_slice));
-        let largest = v.derivative.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        worst = worst.max(largest / v.scale);
+        let largest = v.derivative.iter().fold(0.0_f64, |m, x| worse(m, x.abs()));
+        worst = worse(worst, largest / v.scale);
     }
     println!("stationary to {worst:e}");
     assert!(worst < 1e-13, "{worst:e}");

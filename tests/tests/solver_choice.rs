@@ -5,6 +5,7 @@ use clebsch::card::{Card, OpenError, Settings, Trajectory};
 use clebsch::solvers::Method;
 use clebsch::{StartError, StepCause};
 use clebsch_models::gallery;
+use clebsch_tests::physics::measure::worse;
 
 /// Nodes that are compared: long enough for a wrong solution to show, too short for the motion to amplify rounding.
 const STEPS: usize = 50;
@@ -30,9 +31,9 @@ fn difference(card: &Card, a: &mut dyn Trajectory, b: &mut dyn Trajectory) -> f6
         a.step().expect("solvable");
         b.step().expect("solvable");
         let (x, y) = (observed(a, card), observed(b, card));
-        let size = x.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        let size = x.iter().fold(0.0_f64, |m, v| worse(m, v.abs()));
         let apart = x.iter().zip(&y).map(|(v, w)| (v - w).abs());
-        worst = worst.max(apart.fold(0.0, f64::max) / size);
+        worst = worse(worst, apart.fold(0.0, worse) / size);
     }
     worst
 }

@@ -61,7 +61,7 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
 fn conditioning<S: System>(state: &S, result: &[f64]) -> f64 {
     (0..3)
         .filter_map(|kind| Some(apart(&state.nudged(kind, NUDGE).by_hand()?, result) / NUDGE))
-        .fold(1.0, f64::max)
+        .fold(1.0, worse)
 }
 
 /// Largest difference over the conditioning of each state; both steppers must refuse the same states.
@@ -80,7 +80,7 @@ fn single_steps<S: System>(name: &str, mistaken: f64) -> f64 {
                 let off = apart(&generated, &hand);
                 let condition = conditioning(&state, &hand);
                 bare = worse(bare, off);
-                hardest = hardest.max(condition);
+                hardest = worse(hardest, condition);
                 worst = worse(worst, off / condition);
             }
             (None, None) => refused += 1,

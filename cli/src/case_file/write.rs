@@ -52,7 +52,7 @@ fn bounds(text: &mut String, card: &Card, case: &Case) {
     let _ = writeln!(text, "\n[bounds]");
     comment(
         text,
-        "Largest drift |I(t) - I(0)| / scale at any node; beyond it the exit code is 3.",
+        "Largest drift |I(t) - I(0)| / scale at any node (absolute if the scale is 0); beyond it the exit code is 3.",
     );
     for invariant in card.invariants {
         comment(text, &format!("{}: {}", invariant.name, invariant.formula));

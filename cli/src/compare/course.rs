@@ -6,7 +6,8 @@ use crate::failure::Failure;
 use crate::plan::Plan;
 use crate::record::{Record, Recorder, Table};
 use clebsch::card::{Card, Settings, Trajectory};
-use clebsch::integrate;
+use clebsch::integrate::{self, Drift};
+use clebsch::scalar::largest;
 use clebsch_comparisons::gallery::{Offer, Problem};
 
 /// Steps of the extrapolated reference: h over each of these.
@@ -76,7 +77,7 @@ fn follow(
             // The model itself says what it would observe there.
             let here = (card.open)(&case.parameters, &method.shown(), Settings::step(case.h))
                 .map_err(|error| (node, format!("no state of the model: {error}")))?;
-            push(record, node, case.h, here.as_ref());
+            push(record, node, case.h, here.as_ref()).map_err(|what| (node, what))?;
         }
     }
     Ok(())
@@ -103,8 +104,8 @@ pub(crate) fn extrapolated(card: &Card, plan: &Plan) -> Result<(Course, f64), Fa
     let places: Vec<f64> = PARTS.map(|part| f64::from(part).powi(-power)).to_vec();
     let (observables, last) = neville(&records, &places, |record| &record.observables);
     let (invariants, _) = neville(&records, &places, |record| &record.invariants);
-    let largest = |table: &Table| table.numbers.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
-    let accuracy = largest(&last) / largest(&observables).max(f64::MIN_POSITIVE);
+    let size = |table: &Table| largest(table.numbers.iter().copied());
+    let accuracy = Drift::of(size(&last), size(&observables));
     let Some(first) = records.into_iter().next() else {
         return Err(Failure::Failed("no step to extrapolate from".to_owned()));
     };
@@ -178,14 +179,23 @@ fn empty(card: &Card) -> Record {
     }
 }
 
+/// Adds a sample, unless it holds what is no number.
 #[allow(clippy::cast_precision_loss)]
-fn push(record: &mut Record, node: u64, h: f64, here: &dyn Trajectory) {
-    record.nodes.push(node);
-    record.times.push(node as f64 * h);
+fn push(record: &mut Record, node: u64, h: f64, here: &dyn Trajectory) -> Result<(), String> {
     let mut observables = vec![0.0; record.observables.width];
     here.observe(&mut observables);
-    record.observables.numbers.extend(observables);
     let mut invariants = vec![0.0; record.invariants.width];
     here.invariants(&mut invariants);
+    if let Some(wrong) = observables
+        .iter()
+        .chain(&invariants)
+        .find(|x| !x.is_finite())
+    {
+        return Err(format!("an observable or invariant is {wrong}"));
+    }
+    record.nodes.push(node);
+    record.times.push(node as f64 * h);
+    record.observables.numbers.extend(observables);
     record.invariants.numbers.extend(invariants);
+    Ok(())
 }

@@ -3,6 +3,8 @@
 
 use crate::record::Record;
 use clebsch::card::{Card, Field};
+use clebsch::integrate::Drift;
+use clebsch::scalar::larger;
 use clebsch_comparisons::gallery::Role;
 use serde_json::{Map, Value, json};
 use std::ops::Range;
@@ -20,7 +22,7 @@ impl Curve {
     /// The largest value; NaN if there is one.
     pub fn worst(&self) -> f64 {
         let values = self.points.iter().map(|point| point.1);
-        values.fold(0.0, |a, b| if b.is_nan() || b > a { b } else { a })
+        values.fold(0.0, larger)
     }
 
     /// The last value.
@@ -38,7 +40,8 @@ pub(crate) struct Score {
     pub doc: String,
     /// What it is for; `None` for the generated stepper.
     pub role: Option<Role>,
-    /// Error of each state field: distance to the reference over the reference's largest norm.
+    /// Error of each state field: distance to the reference over the reference's largest norm, or
+    /// absolute where that is zero.
     pub errors: Vec<Curve>,
     /// Drift of each invariant over its natural scale.
     pub drifts: Vec<Curve>,
@@ -74,20 +77,18 @@ fn norm(values: impl Iterator<Item = f64>) -> f64 {
     values.map(|value| value * value).sum::<f64>().sqrt()
 }
 
-/// Errors of `record` against `truth`, one curve a field.
+/// Errors of `record` against `truth`, one curve a field; absolute where the reference is zero.
 pub(crate) fn errors(card: &Card, record: &Record, truth: &Record) -> Vec<Curve> {
     let part =
         |row: &[f64], columns: &Range<usize>| row.get(columns.clone()).unwrap_or_default().to_vec();
     let curve = |(field, columns): (&'static Field, Range<usize>)| {
         let truths = || truth.observables.rows().map(|row| part(row, &columns));
-        let scale = truths()
-            .map(|row| norm(row.into_iter()))
-            .fold(0.0, f64::max);
-        let scale = if scale > 0.0 { scale } else { 1.0 };
+        let scale = truths().map(|row| norm(row.into_iter())).fold(0.0, larger);
         let rows = record.observables.rows().map(|row| part(row, &columns));
         let distances = rows
             .zip(truths())
-            .map(|(here, there)| norm(here.into_iter().zip(there).map(|(a, b)| a - b)) / scale);
+            .map(|(here, there)| norm(here.into_iter().zip(there).map(|(a, b)| a - b)))
+            .map(|distance| Drift::of(distance, scale));
         let points = record.times.iter().copied().zip(distances);
         Curve {
             name: field.ascii,
@@ -97,7 +98,8 @@ pub(crate) fn errors(card: &Card, record: &Record, truth: &Record) -> Vec<Curve>
     state(card).into_iter().map(curve).collect()
 }
 
-/// Drifts of the invariants of `record`, the largest component of each, over the natural scales.
+/// Drifts of the invariants of `record`, the largest component of each, over the natural scales;
+/// absolute where they are zero.
 pub(crate) fn drifts(card: &Card, record: &Record, scales: &[f64]) -> Vec<Curve> {
     let mut from = 0;
     let curve = |invariant: &'static clebsch::card::Invariant| {
@@ -114,12 +116,7 @@ pub(crate) fn drifts(card: &Card, record: &Record, scales: &[f64]) -> Vec<Curve>
         let largest = rows().map(|row| {
             let each = row.iter().zip(start).zip(scales);
             each.fold(0.0_f64, |most, ((now, then), scale)| {
-                let drift = ((now - then) / scale).abs();
-                if drift.is_nan() || drift > most {
-                    drift
-                } else {
-                    most
-                }
+                larger(most, Drift::of(now - then, *scale).abs())
             })
         });
         let points = record.times.iter().copied().zip(largest);

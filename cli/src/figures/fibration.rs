@@ -234,11 +234,7 @@ mod tests {
             let one = taking(&point, &m);
             let apart = |q: Quaternion| {
                 let image = apply_transposed(&q.matrix(), &m);
-                image
-                    .iter()
-                    .zip(point)
-                    .map(|(a, b)| (a - b).abs())
-                    .fold(0.0, f64::max)
+                clebsch::scalar::largest(image.iter().zip(point).map(|(a, b)| a - b))
             };
             for k in 0..7 {
                 assert!(apart(turned(&one, &m, f64::from(k))) < 1e-14);

@@ -10,6 +10,7 @@ use crate::plots::axis::{Axis, FLOOR};
 use crate::plots::curve::Curve;
 use crate::plots::figure::{Figure, Panel};
 use crate::record::Record;
+use clebsch::scalar;
 use clebsch_comparisons::gallery::{Offer, Problem, offers};
 use std::time::Instant;
 
@@ -110,7 +111,7 @@ fn put(all: &mut [Series], index: usize, point: (f64, f64)) {
 }
 
 fn largest(series: &Series) -> f64 {
-    series.iter().map(|point| point.1.abs()).fold(0.0, f64::max)
+    scalar::largest(series.iter().map(|point| point.1))
 }
 
 /// (tr J - tr(Omega J)) / h^2 of the first step, a constant of the scheme.

@@ -15,6 +15,7 @@ use crate::record::{Record, Samples};
 use crate::run::end;
 use axis::{Axis, FLOOR, superscript};
 use clebsch::card::{Field, Kind};
+use clebsch::integrate::Drift;
 use curve::{Curve, Stroke};
 use figure::{Figure, Panel};
 use std::ops::Range;
@@ -50,11 +51,15 @@ pub(crate) fn invariants(run: &Finished<'_>, record: &Record) -> Plot {
         from += outcome.components.len();
         let points = reduce::envelope(&drift);
         let logarithm = |(time, drift): (f64, f64)| (time, drift.max(FLOOR).log10());
+        let absolute = match outcome.components.iter().any(Drift::is_absolute) {
+            true => ", absolute: scale 0",
+            false => "",
+        };
         curves.push(Curve {
             label: outcome.invariant.name.to_owned(),
             note: match outcome.bound {
-                Some(bound) => Some(format!("bound {bound:e} (dashed)")),
-                None => Some("no bound".to_owned()),
+                Some(bound) => Some(format!("bound {bound:e} (dashed){absolute}")),
+                None => Some(format!("no bound{absolute}")),
             },
             points: points.into_iter().map(logarithm).collect(),
             stroke: Stroke::number(index),
@@ -81,8 +86,8 @@ pub(crate) fn invariants(run: &Finished<'_>, record: &Record) -> Plot {
     }
     let group = reduce::group(record.times.len().saturating_sub(1));
     let caption = match group {
-        1 => "relative drift at each sample".to_owned(),
-        group => format!("relative drift, each point the largest of about {group} samples"),
+        1 => "drift at each sample".to_owned(),
+        group => format!("drift, each point the largest of about {group} samples"),
     };
     let panel = Panel {
         caption,

@@ -3,6 +3,7 @@
 
 use crate::record::Record;
 use clebsch::integrate::Drift;
+use clebsch::scalar::larger;
 
 /// Stretches of a curve. A plot is about 650 pixels wide and drawn four times finer; two points a
 /// stretch then leave no visible gap, and files stay small.
@@ -39,7 +40,7 @@ pub(crate) fn extremes(times: &[f64], values: impl Iterator<Item = f64>) -> Vec<
     kept
 }
 
-/// Largest relative drift of the components that begin at column `from`, at every sample after the
+/// Largest drift of the components that begin at column `from`, at every sample after the
 /// first, where it is zero by definition.
 pub(super) fn drift(record: &Record, from: usize, components: &[Drift]) -> Vec<(f64, f64)> {
     let rows = || record.invariants.rows().map(|row| row.iter().skip(from));
@@ -49,7 +50,7 @@ pub(super) fn drift(record: &Record, from: usize, components: &[Drift]) -> Vec<(
     let largest = |row: std::iter::Skip<std::slice::Iter<'_, f64>>| {
         let each = row.zip(&start).zip(components);
         each.fold(0.0, |most: f64, ((now, then), drift)| {
-            most.max(((now - then) / drift.scale).abs())
+            larger(most, Drift::of(now - then, drift.scale).abs())
         })
     };
     let drifts = rows().map(largest);

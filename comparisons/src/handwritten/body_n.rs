@@ -234,7 +234,9 @@ impl<const N: usize> BodyN<N> {
             let f = |i: usize, k: usize| a[i][k] - a[k][i] - self.v[i][k];
             let size = pairs
                 .iter()
-                .fold(0.0_f64, |m, (i, k)| m.max(f(*i, *k).abs()));
+                .map(|(i, k)| f(*i, *k).abs())
+                // Written so that NaN stays.
+                .fold(0.0_f64, |a, b| if b <= a || a.is_nan() { a } else { b });
             let scale = self.j.iter().fold(0.0_f64, |m, x| m.max(*x));
             if size <= 8.0 * f64::EPSILON * scale {
                 return Ok(a);

@@ -176,6 +176,9 @@ impl CayleyKlein {
         let image = [0, 1, 2].map(|i| self.moments[i] * q[i]);
         let left = [0, 1, 2].map(|i| self.c * q[i] + q0 * (image[i] - self.c * q[i]));
         let left = add_scaled(&left, 1.0, &super::attitude::cross(&q, &image));
-        Ok((0..3).map(|i| (left[i] - u[i]).abs()).fold(0.0, f64::max))
+        // Written so that NaN stays.
+        Ok((0..3)
+            .map(|i| (left[i] - u[i]).abs())
+            .fold(0.0, |a: f64, b| if b <= a || a.is_nan() { a } else { b }))
     }
 }

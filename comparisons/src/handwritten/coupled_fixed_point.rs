@@ -65,7 +65,8 @@ impl FixedPoint {
                     let (i, r, c) = (n / 9, n % 9 / 3, n % 3);
                     (found.turns[i][r][c] - before[i][r][c]).abs()
                 })
-                .fold(0.0, f64::max);
+                // Written so that NaN stays.
+                .fold(0.0_f64, |a, b| if b <= a || a.is_nan() { a } else { b });
             found.changes.push(change);
             if change <= 4.0 * f64::EPSILON {
                 return Ok(found);

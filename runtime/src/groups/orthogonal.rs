@@ -5,7 +5,7 @@
 use super::{Coadjoint, Coordinate, Group, NotARotation, Part};
 use crate::Real;
 use crate::linalg::{determinant, orthonormalised, product, skew_from, solve_many};
-use crate::scalar::of_scalars;
+use crate::scalar::{largest, of_scalars};
 use nalgebra::SMatrix;
 
 /// A rotation of n-dimensional space, by convention from body to space: `v_space = R v_body`.
@@ -45,7 +45,9 @@ impl<const N: usize, T: Real> Orthogonal<N, T> {
             return Err(NotARotation::NotFinite);
         }
         let defect = defect(a);
-        if defect > ALLOWED_DEFECT {
+        // Written so that NaN is refused: products of finite entries may overflow.
+        let near = defect <= ALLOWED_DEFECT;
+        if !near {
             return Err(NotARotation::NotOrthogonal { defect });
         }
         if determinant(a).least() < 0.0 {
@@ -137,7 +139,7 @@ impl<const N: usize, T: Real> Group<T> for Orthogonal<N, T> {
 
     fn distance_from_group(&self) -> f64 {
         let gram = self.matrix.tr_mul(&self.matrix) - SMatrix::identity();
-        gram.iter().fold(0.0, |worst, x| worst.max(x.magnitude()))
+        largest(gram.iter().map(|x| x.magnitude()))
     }
 }
 

@@ -2,6 +2,7 @@
 //! Takes arrays or tuples of elements; the algebra coordinates are those of the factors, one after another.
 
 use super::{Coordinate, Group, Part};
+use crate::scalar::largest;
 
 impl<T, G: Group<T>, const COUNT: usize> Group<T> for [G; COUNT] {
     const DIMENSION: usize = COUNT * G::DIMENSION;
@@ -46,9 +47,7 @@ impl<T, G: Group<T>, const COUNT: usize> Group<T> for [G; COUNT] {
 
     #[inline]
     fn distance_from_group(&self) -> f64 {
-        self.iter()
-            .map(Group::distance_from_group)
-            .fold(0.0, f64::max)
+        largest(self.iter().map(Group::distance_from_group))
     }
 }
 
@@ -103,9 +102,7 @@ macro_rules! product_of {
 
             #[inline]
             fn distance_from_group(&self) -> f64 {
-                let mut worst = 0.0_f64;
-                $(worst = worst.max(self.$index.distance_from_group());)+
-                worst
+                largest([$(self.$index.distance_from_group()),+])
             }
         }
     };

@@ -3,7 +3,7 @@
 
 use super::{Coadjoint, Coordinate, Group, NotARotation, Part, Rotation};
 use crate::Real;
-use crate::scalar::of_scalars;
+use crate::scalar::{largest, of_scalars};
 use core::fmt;
 use core::ops::Mul;
 use nalgebra::{Matrix4, SVector, Vector3};
@@ -70,7 +70,7 @@ impl<T: Real> RigidMotion<T> {
     pub fn from_matrix(a: &Matrix4<T>) -> Result<Self, NotARigidMotion> {
         let translation = Vector3::new(a.m14, a.m24, a.m34);
         let row = [a.m41, a.m42, a.m43, a.m44 - T::one()];
-        let defect = row.iter().fold(0.0_f64, |m, x| m.max(x.magnitude()));
+        let defect = largest(row.iter().map(|x| x.magnitude()));
         let finite = translation.iter().chain(&row).all(|x| x.is_finite());
         if defect != 0.0 || !finite {
             return Err(NotARigidMotion::LastRow {

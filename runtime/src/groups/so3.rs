@@ -3,8 +3,8 @@
 
 use super::{Coadjoint, Group};
 use crate::Real;
-use crate::scalar::of_scalars;
 use crate::scalar::one::{in_lanes, set_all};
+use crate::scalar::{larger, largest, of_scalars};
 use core::fmt;
 use core::ops::Mul;
 use nalgebra::{Matrix3, Vector3};
@@ -118,7 +118,9 @@ impl<T: Real> Rotation<T> {
             return Err(NotARotation::NotFinite);
         }
         let defect = largest_real_part(square - T::one());
-        if defect > ALLOWED_DEFECT {
+        // Written so that NaN is refused: products of finite entries may overflow.
+        let near = defect <= ALLOWED_DEFECT;
+        if !near {
             return Err(NotARotation::NotOrthogonal { defect });
         }
         Ok(Self::normalised(q))
@@ -134,10 +136,10 @@ impl<T: Real> Rotation<T> {
             return Err(NotARotation::NotFinite);
         }
         let gram = a.transpose() * *a - Matrix3::identity();
-        let defect = gram
-            .iter()
-            .fold(0.0_f64, |worst, x| worst.max(largest_real_part(*x)));
-        if defect > ALLOWED_DEFECT {
+        let defect = largest(gram.iter().map(|x| largest_real_part(*x)));
+        // Written so that NaN is refused: products of finite entries may overflow.
+        let near = defect <= ALLOWED_DEFECT;
+        if !near {
             return Err(NotARotation::NotOrthogonal { defect });
         }
         if crate::linalg::determinant(a).least() < 0.0 {
@@ -299,7 +301,7 @@ fn half_angle_series<T: Real>(square: T) -> (T, T) {
 
 /// The largest absolute real part over the lanes.
 fn largest_real_part<T: Real>(x: T) -> f64 {
-    x.greatest().abs().max(x.least().abs())
+    larger(x.greatest().abs(), x.least().abs())
 }
 
 /// A quaternion, not normalised, of an orthogonal matrix (Shepperd, 1978): the columns of

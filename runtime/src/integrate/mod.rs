@@ -15,7 +15,7 @@ pub use composition::{Composition, CompositionOrder};
 pub use drift::Drift;
 pub use ensemble::{Ensemble, EnsembleError, InstructionSet, Work};
 pub use model::Model;
-pub use run::{Observer, Summary, run};
+pub use run::{NotFinite, Observer, RunError, Summary, Watched, run};
 pub use side_by_side::{Moving, SideBySide, advance_side_by_side};
 pub use stepper::{Reversible, Stepper};
 pub use steps::{Steps, preprocessing_order};

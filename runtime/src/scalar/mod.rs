@@ -5,12 +5,14 @@ mod double;
 mod double_double;
 mod dual;
 mod lanes;
+mod largest;
 pub(crate) mod one;
 mod over;
 
 pub use double_double::DoubleDouble;
 pub use dual::Dual;
 pub use lanes::Lanes;
+pub use largest::{larger, largest};
 pub use one::InLanes;
 pub(crate) use over::of_scalars;
 pub use over::{OfScalars, gather, lane};

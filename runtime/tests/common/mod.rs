@@ -70,7 +70,9 @@ pub fn residual<T: Real>(j: &Matrix3<T>, omega: &Rotation<T>, h_n: &Vector3<T>) 
 
 /// Largest entry, derivative parts and lanes included.
 pub fn largest<T: Real>(v: &Vector3<T>) -> f64 {
-    v.iter().map(|x| x.magnitude()).fold(0.0, f64::max)
+    v.iter()
+        .map(|x| x.magnitude())
+        .fold(0.0, clebsch::scalar::larger)
 }
 
 pub fn lift<T: Real>(v: &Vector3<f64>) -> Vector3<T> {

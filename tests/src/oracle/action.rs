@@ -12,6 +12,7 @@ pub mod spatial;
 
 use super::dual::{Dual, Number};
 use super::square::{Square, hat};
+use crate::physics::measure::worse;
 use std::array::from_fn;
 
 /// On which side of the group element a variation acts.
@@ -161,7 +162,7 @@ pub fn sensitivity<const N: usize, const G: usize, const M: usize>(
                     .iter()
                     .zip(changes)
                     .map(|(a, b)| (a - b).abs() / epsilon)
-                    .fold(0.0, f64::max);
+                    .fold(0.0, worse);
             }
         }
     }

@@ -2,6 +2,7 @@
 //! Takes a seed; gives the same draws on every machine.
 
 use super::cases::Start;
+use super::measure::worse;
 use crate::handwritten::attitude::{
     Matrix, Quaternion, Vector, add_scaled, apply_transposed, cross, dot,
 };
@@ -126,6 +127,6 @@ pub fn reach(j: &Vector, v: &Vector) -> f64 {
     // The maximum is flat: a grid of one percent in nu finds it to better than one part in 10^4.
     let largest = (-800..=800)
         .map(|n| at(f64::from(n) * 0.01))
-        .fold(0.0, f64::max);
+        .fold(0.0, worse);
     largest.sqrt()
 }

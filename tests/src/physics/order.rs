@@ -1,6 +1,7 @@
 //! Order of convergence by step halving, against the continuous motion.
 //! Takes errors at steps h, h/2, h/4, ...; gives the orders between neighbours, and the errors themselves.
 
+use super::measure::worse;
 use super::motion::Motion;
 use super::truth::Phase;
 
@@ -33,13 +34,13 @@ pub fn errors<M: Motion>(
         momentum.push(
             (0..3)
                 .map(|i| (mu[i] - truth.body_momentum[i]).abs())
-                .fold(0.0, f64::max),
+                .fold(0.0, worse),
         );
         let r = motion.attitude();
         attitude.push(
             (0..9)
                 .map(|i| (r[i / 3][i % 3] - exact[i / 3][i % 3]).abs())
-                .fold(0.0, f64::max),
+                .fold(0.0, worse),
         );
     }
     Ok(Errors { momentum, attitude })

@@ -15,6 +15,7 @@ mod waters;
 use clebsch_tests::oracle::action::{DiscreteAction, rotations, stationarity};
 use clebsch_tests::oracle::points::Source;
 use clebsch_tests::oracle::square::Square;
+use clebsch_tests::physics::measure::worse;
 use std::array::from_fn;
 
 type Matrix = Square<f64, 3>;
@@ -50,11 +51,11 @@ fn ad_star(g: &Matrix, m: &Matrix) -> Matrix {
 }
 
 fn size(a: &Matrix) -> f64 {
-    a.0.iter().flatten().fold(0.0, |m, x| f64::max(m, x.abs()))
+    a.0.iter().flatten().fold(0.0, |m, x| worse(m, x.abs()))
 }
 
 fn length(v: &Vector) -> f64 {
-    v.iter().fold(0.0, |m, x| f64::max(m, x.abs()))
+    v.iter().fold(0.0, |m, x| worse(m, x.abs()))
 }
 
 fn minus(a: &Vector, b: &Vector) -> Vector {

@@ -4,6 +4,7 @@
 use super::{Vector, judge, judge_within, length, minus};
 use clebsch_tests::oracle::points::Source;
 use clebsch_tests::oracle::square::{cross, dot};
+use clebsch_tests::physics::measure::worse;
 use std::array::from_fn;
 
 /// A complex number.
@@ -35,7 +36,7 @@ fn apart(a: &Spin, b: &Spin) -> f64 {
         let (x, y) = (a[k / 2][k % 2], b[k / 2][k % 2]);
         [x[0] - y[0], x[1] - y[1]]
     });
-    entries.fold(0.0, |m, x| m.max(x.abs()))
+    entries.fold(0.0, |m, x| worse(m, x.abs()))
 }
 
 fn difference(a: &Spin, b: &Spin) -> Spin {

@@ -3,6 +3,7 @@
 
 use super::judge;
 use clebsch_tests::oracle::points::Source;
+use clebsch_tests::physics::measure::worse;
 use std::array::from_fn;
 
 /// A particle of mass `m` on the f-plane with `R = f0 (-y, x)/2`.
@@ -63,7 +64,7 @@ fn c_5_turns_the_wrong_way() {
         let rate = [q.f0 * q.u[1], -q.f0 * q.u[0]];
         let turned = [-q.u[1], q.u[0]].map(|x| q.f0 * x);
         let off = |sign: f64| {
-            f64::max(
+            worse(
                 (sign * turned[0] - rate[0]).abs(),
                 (sign * turned[1] - rate[1]).abs(),
             )
@@ -73,7 +74,7 @@ fn c_5_turns_the_wrong_way() {
     judge("(C.5), velocity", |s| {
         let q = Particle::random(s);
         let (p, r) = (q.momentum(), q.r());
-        let off = |v: [f64; 2]| f64::max((v[0] - q.u[0]).abs(), (v[1] - q.u[1]).abs());
+        let off = |v: [f64; 2]| worse((v[0] - q.u[0]).abs(), (v[1] - q.u[1]).abs());
         let printed = off(p.map(|x| x / q.mass));
         (printed, off(from_fn(|i| p[i] / q.mass - r[i])))
     });

@@ -4,6 +4,7 @@
 use clebsch_core::Assignment;
 use clebsch_tests::oracle::action::Variation;
 use clebsch_tests::oracle::points::Given;
+use clebsch_tests::physics::measure::worse;
 
 /// Agreement asked of a residual, relative to the sum of the sizes of its summands. Rounding leaves about
 /// 1e-14; inverses and quotients of random matrices lose some digits more.
@@ -37,7 +38,7 @@ pub fn disagreement(oracle: &Variation, engine: &[f64]) -> f64 {
         if !difference.is_finite() {
             return f64::INFINITY;
         }
-        worst = worst.max(difference);
+        worst = worse(worst, difference);
     }
     worst
 }

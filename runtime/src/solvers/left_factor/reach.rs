@@ -4,6 +4,7 @@
 use super::factor::LeftFactor;
 use crate::Real;
 use crate::groups::Part;
+use crate::scalar::largest;
 use crate::solvers::golden_section::peak;
 use nalgebra::{SMatrix, SVector};
 
@@ -147,5 +148,5 @@ fn largest_singular_value<const N: usize>(w: &SMatrix<f64, N, N>) -> f64 {
     let gram = w.tr_mul(w);
     let frame = crate::linalg::principal_frame(&gram);
     let diagonal = frame.tr_mul(&(gram * frame));
-    (0..N).map(|i| diagonal[(i, i)]).fold(0.0, f64::max).sqrt()
+    largest((0..N).map(|i| diagonal[(i, i)])).sqrt()
 }

@@ -10,6 +10,7 @@ use super::{Refusal, Unsolved};
 use crate::Real;
 use crate::groups::Orthogonal;
 use crate::linalg::{inverse, inverse_leading, solve_many};
+use crate::scalar::largest;
 use crate::solvers::Method;
 use nalgebra::SMatrix;
 
@@ -50,8 +51,8 @@ pub(super) fn finish<T: Real, const N: usize>(
     let omega = Orthogonal::nearby(&(a * back.transpose()));
     let product = omega.matrix() * c.transpose();
     let f = product - product.transpose() - h_n;
-    let residual = f.iter().fold(0.0, |m: f64, x| m.max(x.magnitude()));
-    let unit = c.iter().fold(0.0, |m: f64, x| m.max(x.magnitude()));
+    let residual = largest(f.iter().map(|x| x.magnitude()));
+    let unit = largest(c.iter().map(|x| x.magnitude()));
     // The subspace is exact to rounding times its condition; more is no solution.
     if residual <= 1e6 * T::EPSILON * unit && omega_is_rotation(&omega) {
         return Ok(omega);

@@ -4,6 +4,7 @@
 use super::body::QuaternionBody;
 use super::shift::{Equation, Turn, quick};
 use crate::linalg::{determinant, hat, solve};
+use crate::scalar::largest;
 use crate::solvers::moser_veselov::choose;
 use crate::{Group, Real, UnitQuaternion};
 use nalgebra::{Matrix3, Vector3};
@@ -171,7 +172,7 @@ fn corrected(
     q: &UnitQuaternion<f64>,
     change: &Vector3<f64>,
 ) -> Option<(UnitQuaternion<f64>, Matrix3<f64>)> {
-    let size = |v: &Vector3<f64>| v.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let size = |v: &Vector3<f64>| largest(v.iter().copied());
     let moments = body.moments.iter().chain(&body.products);
     let scale = body.real.abs() + moments.fold(0.0, |sum, x| sum + x.abs());
     let mut last = size(change);
