@@ -225,6 +225,20 @@ pub fn diagonal_part<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T
     SMatrix::from_diagonal(&a.diagonal())
 }
 
+/// The matrix with this vector on its diagonal.
+#[inline]
+#[must_use]
+pub fn diagonal<T: Real, const N: usize>(v: &SVector<T, N>) -> SMatrix<T, N, N> {
+    SMatrix::from_diagonal(v)
+}
+
+/// The diagonal of `A`, as a vector.
+#[inline]
+#[must_use]
+pub fn diagonal_of<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SVector<T, N> {
+    a.diagonal()
+}
+
 /// The length of all entries together.
 #[inline]
 #[must_use]

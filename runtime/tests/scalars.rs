@@ -41,12 +41,23 @@ fn double_double_has_thirty_digits() {
     assert_eq!(dd(1000.0).exp().value(), f64::INFINITY);
     assert_eq!(dd(-1000.0).exp().value(), 0.0);
     assert_eq!((-dd(2.5)).abs(), dd(2.5));
+    for i in -20..=20 {
+        // On both sides of where the series gives way to exponentials.
+        let x = DoubleDouble::from_ratio(i, 13);
+        let (sinh, cosh) = (x.sinh(), x.cosh());
+        assert!(off(sinh + cosh, x.exp()) < 1e-30);
+        assert!(off(cosh * cosh - sinh * sinh, dd(1.0)) < 1e-29);
+        assert!((x.tanh() * cosh - sinh).magnitude() < 1e-30);
+        assert!((dd(2.0) * sinh * cosh - (x + x).sinh()).magnitude() < 1e-29);
+    }
+    assert_eq!(dd(-1000.0).tanh(), dd(-1.0));
+    assert!(dd(f64::NAN).tanh().value().is_nan());
 }
 
 /// Every function of a dual number against the central difference quotient in double-double.
 #[test]
 fn dual_numbers_follow_the_chain_rule() {
-    fn all<T: Real>(x: T) -> [T; 14] {
+    fn all<T: Real>(x: T) -> [T; 19] {
         let c = T::from_f64(0.7);
         [
             x + c * x,
@@ -63,6 +74,11 @@ fn dual_numbers_follow_the_chain_rule() {
             x.powi(-3),
             x.powr(2, 3),
             x.powr(-3, 2),
+            (x - c).sinh(),
+            (x - c).cosh(),
+            (x - c).tanh(),
+            (x - c).abs(),
+            (x - c).sign(),
         ]
     }
     for x in [0.2, 1.0, 1.3, 4.0] {
@@ -127,11 +143,23 @@ fn lanes_round_as_doubles_do() {
         assert_eq!((x / y).0[i], a[i] / b[i]);
         assert_eq!(y.sqrt().0[i], b[i].sqrt());
         assert_eq!(y.ln().0[i], b[i].ln());
+        assert_eq!(y.sinh().0[i], b[i].sinh());
+        assert_eq!(y.cosh().0[i], b[i].cosh());
+        assert_eq!(y.tanh().0[i], b[i].tanh());
+        assert_eq!(x.abs().0[i], a[i].abs());
+        assert_eq!(x.sign().0[i], a[i].signum());
     }
     assert_eq!(
         [1.0, 2.0].into_iter().collect::<Lanes<3>>(),
         Lanes([1.0, 2.0, 0.0])
     );
+}
+
+#[test]
+fn signs_of_zero_and_of_no_number() {
+    assert_eq!((Real::sign(0.0), Real::sign(-0.0)), (0.0, 0.0));
+    assert!(Real::sign(f64::NAN).is_nan() && Real::abs(f64::NAN).is_nan());
+    assert_eq!(Real::abs(Dual::<1>::variable(-2.0, 0)).dual, [-1.0]);
 }
 
 #[test]

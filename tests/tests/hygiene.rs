@@ -140,7 +140,8 @@ macro_rules! awkward_names {
         $then! {
             [
                 // Functions and types.
-                all_finite axial_of_difference basis determinant diagonal_part forced
+                all_finite axial_of_difference basis determinant diagonal diagonal_of
+                diagonal_part forced
                 inverse_or_nan largest_step length matrix_of number_of put reach rotation_of rows
                 skew_part solve solve_or_nan symmetric_part unit BodyMomentum SpatialMomentum
                 Rotation Poinsot QuaternionBody Edge Moving Free newton validate emitted

@@ -273,13 +273,21 @@ pub fn evaluate(symbols: &Symbols, e: &Expr, values: &Assignment) -> Result<Matr
             Matrix::scalar(match function {
                 Function::Exp => x.exp(),
                 Function::Log => x.ln(),
+                Function::Sin => x.sin(),
+                Function::Cos => x.cos(),
+                Function::Sinh => x.sinh(),
+                Function::Cosh => x.cosh(),
+                Function::Tanh => x.tanh(),
+                Function::Abs => x.abs(),
+                Function::Sign if x == 0.0 => 0.0,
+                Function::Sign => x.signum(),
             })
         }
         Node::Map(map, a) => mapped(symbols, *map, a, &go(a)?),
     })
 }
 
-/// A map of quaternions or rigid motions.
+/// A map of quaternions, rigid motions or diagonals.
 fn mapped(symbols: &Symbols, map: Map, argument: &Expr, a: &Matrix) -> Matrix {
     let column = |data: Vec<f64>| Matrix {
         rows: data.len(),
@@ -312,6 +320,11 @@ fn mapped(symbols: &Symbols, map: Map, argument: &Expr, a: &Matrix) -> Matrix {
             Matrix::from_fn(3, 3, |i, j| a.get(i, j))
         }
         Map::Translation => Matrix::from_fn(3, 1, |i, _| a.get(i, 3)),
+        Map::Diagonal => {
+            let n = a.rows;
+            Matrix::from_fn(n, n, |i, j| if i == j { a.get(i, 0) } else { 0.0 })
+        }
+        Map::DiagonalOf => Matrix::from_fn(a.rows, 1, |i, _| a.get(i, i)),
         Map::Twist => {
             let turn = hat(a);
             Matrix::from_fn(4, 4, |i, j| match (i, j) {

@@ -73,6 +73,21 @@ impl Real for f64 {
         f64::cos(self)
     }
 
+    #[inline]
+    fn sinh(self) -> Self {
+        f64::sinh(self)
+    }
+
+    #[inline]
+    fn cosh(self) -> Self {
+        f64::cosh(self)
+    }
+
+    #[inline]
+    fn tanh(self) -> Self {
+        f64::tanh(self)
+    }
+
     #[inline(always)]
     fn is_finite(self) -> bool {
         f64::is_finite(self)

@@ -327,6 +327,35 @@ impl Real for DoubleDouble {
         self.sin_cos().1
     }
 
+    fn sinh(self) -> Self {
+        if self.high.abs() > 0.5 {
+            let growing = self.exp();
+            return (growing - Self::one() / growing).scaled(0.5);
+        }
+        // The exponentials would cancel: 0.5^31 / 31! is below 1e-43.
+        let square = self * self;
+        let (mut sum, mut term) = (self, self);
+        for k in 1..=15_i32 {
+            let n = f64::from(2 * k);
+            term = term * square / Self::from_f64(n * (n + 1.0));
+            sum += term;
+        }
+        sum
+    }
+
+    fn cosh(self) -> Self {
+        let growing = self.exp();
+        (growing + Self::one() / growing).scaled(0.5)
+    }
+
+    fn tanh(self) -> Self {
+        // Beyond, the difference from 1 is below the last digit, and the exponentials overflow.
+        if self.high.abs() > 40.0 {
+            return Self::from_f64(self.high.signum());
+        }
+        self.sinh() / self.cosh()
+    }
+
     #[inline(always)]
     fn is_finite(self) -> bool {
         self.high.is_finite() && self.low.is_finite()

@@ -252,6 +252,22 @@ impl<const N: usize> Real for Dual<N> {
     }
 
     #[inline]
+    fn sinh(self) -> Self {
+        self.chain(self.real.sinh(), self.real.cosh())
+    }
+
+    #[inline]
+    fn cosh(self) -> Self {
+        self.chain(self.real.cosh(), self.real.sinh())
+    }
+
+    #[inline]
+    fn tanh(self) -> Self {
+        let value = self.real.tanh();
+        self.chain(value, 1.0 - value * value)
+    }
+
+    #[inline]
     fn is_finite(self) -> bool {
         self.real.is_finite() && self.dual.iter().all(|d| d.is_finite())
     }

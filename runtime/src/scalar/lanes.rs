@@ -190,6 +190,21 @@ impl<const N: usize> Real for Lanes<N> {
         self.map(f64::cos)
     }
 
+    #[inline]
+    fn sinh(self) -> Self {
+        self.map(f64::sinh)
+    }
+
+    #[inline]
+    fn cosh(self) -> Self {
+        self.map(f64::cosh)
+    }
+
+    #[inline]
+    fn tanh(self) -> Self {
+        self.map(f64::tanh)
+    }
+
     #[inline(always)]
     fn is_finite(self) -> bool {
         self.0.iter().fold(true, |all, x| all & x.is_finite())

@@ -124,6 +124,31 @@ pub trait Real:
     /// Cosine of an angle in radians.
     fn cos(self) -> Self;
 
+    /// Hyperbolic sine.
+    fn sinh(self) -> Self;
+
+    /// Hyperbolic cosine.
+    fn cosh(self) -> Self;
+
+    /// Hyperbolic tangent.
+    fn tanh(self) -> Self;
+
+    /// -1, 0 or 1 by the sign of the real part in each lane, without derivatives; NaN where it is not
+    /// finite.
+    #[inline]
+    fn sign(self) -> Self {
+        let one = Self::one();
+        let sign = self.where_positive(one) - (-self).where_positive(one);
+        // Adds nothing to a number, and NaN to what is none.
+        sign + Self::from_f64(0.0) * self
+    }
+
+    /// Absolute value; its derivative is the sign.
+    #[inline]
+    fn abs(self) -> Self {
+        self * self.sign()
+    }
+
     /// Integer power, by repeated squaring; `x.powi(0)` is 1.
     #[inline]
     fn powi(self, exponent: i32) -> Self {

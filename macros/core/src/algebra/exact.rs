@@ -362,6 +362,10 @@ impl<'a> Point<'a> {
                     }
                     Map::Rotation => rotation(&quaternion(&a).map(|x| mul(quarter, x))),
                     Map::Translation => Matrix::from_fn(3, 1, |i, _| a.at(i, 3)),
+                    Map::Diagonal => {
+                        Matrix::from_fn(rows, cols, |i, j| if i == j { a.at(i, 0) } else { 0 })
+                    }
+                    Map::DiagonalOf => Matrix::from_fn(rows, 1, |i, _| a.at(i, i)),
                     Map::Twist => {
                         let turn = hat(&a);
                         Matrix::from_fn(4, 4, |i, j| match (i, j) {
@@ -372,15 +376,61 @@ impl<'a> Point<'a> {
                     }
                 }
             }
-            // A function of which nothing but its being one is used.
-            Node::Call(function, a) => {
-                let tag = match function {
-                    Function::Exp => 1,
-                    Function::Log => 2,
-                };
-                Matrix::number(mix(number(a)? ^ mix(self.seed.wrapping_add(tag))))
-            }
+            Node::Call(function, a) => Matrix::number(self.called(*function, number(a)?)?),
         })
+    }
+
+    /// A function of a number, of which this alone is used: that it is one, its parity, and what
+    /// trigonometric and hyperbolic functions of one argument have to do with one another. They
+    /// are rational in `t = tan(x/2)` and in `t = tanh(x/2)`, and `t` is odd in `x`. The sign is
+    /// some odd function: that its square is 1 would make false identities of signs too likely.
+    fn called(&self, function: Function, x: u64) -> Option<u64> {
+        let odd = |tag: u64| {
+            let (size, minus) = match x > PRIME / 2 {
+                true => (negate(x), true),
+                false => (x, false),
+            };
+            let value = mix(size ^ mix(self.seed.wrapping_add(tag)));
+            match (size, minus) {
+                (0, _) => 0,
+                (_, true) => negate(value),
+                (_, false) => value,
+            }
+        };
+        let circular = || odd(3);
+        let hyperbolic = || odd(1);
+        let square = |t: u64, sign: u64| mul(sign, mul(t, t));
+        let (one, minus) = (1, negate(1));
+        let over = |a: u64, b: u64| Some(mul(a, inverse(b)?));
+        match function {
+            Function::Log => Some(mix(x ^ mix(self.seed.wrapping_add(2)))),
+            Function::Exp => {
+                let t = hyperbolic();
+                over(add(one, t), add(one, negate(t)))
+            }
+            Function::Sinh => {
+                let t = hyperbolic();
+                over(mul(2, t), add(one, square(t, minus)))
+            }
+            Function::Cosh => {
+                let t = hyperbolic();
+                over(add(one, square(t, one)), add(one, square(t, minus)))
+            }
+            Function::Tanh => {
+                let t = hyperbolic();
+                over(mul(2, t), add(one, square(t, one)))
+            }
+            Function::Sin => {
+                let t = circular();
+                over(mul(2, t), add(one, square(t, one)))
+            }
+            Function::Cos => {
+                let t = circular();
+                over(add(one, square(t, minus)), add(one, square(t, one)))
+            }
+            Function::Sign => Some(odd(4)),
+            Function::Abs => Some(mul(odd(4), x)),
+        }
     }
 
     fn powered(&self, base: u64, q: Rational) -> Option<u64> {

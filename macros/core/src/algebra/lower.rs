@@ -9,7 +9,7 @@ use super::rational::Rational;
 use super::rigid::translation_of;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Role;
-use crate::expr::{self, Expr, Function, Map, Node, Part};
+use crate::expr::{self, Expr, Function, Map, Node, Parity, Part};
 
 impl Algebra<'_> {
     /// The normal form of an expression.
@@ -114,6 +114,8 @@ impl Algebra<'_> {
                 Map::Imaginary => self.linear(&self.lower(a), shape, |w| self.imaginary_word(w)),
                 Map::Pure => self.linear(&self.lower(a), shape, |w| self.pure_word(w)),
                 Map::Twist => self.twist(&self.lower(a)),
+                Map::Diagonal => self.diagonal(&self.lower(a), e),
+                Map::DiagonalOf => self.diagonal_of(&self.lower(a)),
                 Map::Translation => match a.node() {
                     Node::Letter(at) => self.one_factor(shape, translation_of(*at)),
                     _ => {
@@ -309,13 +311,13 @@ impl Algebra<'_> {
     fn is_positive(&self, atom: &Atom) -> bool {
         match atom {
             Atom::Letter(at) => self.symbols.get(at.symbol).role == Role::Step,
-            Atom::Exp(_) | Atom::Dimension(_) => true,
+            Atom::Call(function, _) => matches!(function, Function::Exp | Function::Cosh),
+            Atom::Dimension(_) => true,
             Atom::Trace(_)
             | Atom::Bracket(_)
             | Atom::Det(_)
             | Atom::OpaqueDet(_)
-            | Atom::Base(_)
-            | Atom::Log(_) => false,
+            | Atom::Base(_) => false,
         }
     }
 
@@ -476,14 +478,96 @@ impl Algebra<'_> {
         out
     }
 
-    fn call(&self, function: Function, a: Poly, meaning: &Expr) -> Poly {
-        if a.is_zero() && function == Function::Exp {
-            return Poly::constant(Shape::SCALAR, Rational::ONE);
+    /// `sum of E_i (E_i^T v) E_i^T`, and one letter where the size has only a name.
+    fn diagonal(&self, v: &Poly, whole: &Expr) -> Poly {
+        let mut out = Poly::zero(whole.shape());
+        let Dim::Fixed(n) = v.shape.rows else {
+            let mut key = v.clone();
+            key.symmetric = true;
+            let id = self.intern(&self.matrices, key, || whole.clone());
+            let source = Source::Opaque(id);
+            return self.one_factor(
+                out.shape,
+                Factor::Letter {
+                    source,
+                    transposed: false,
+                    inverted: false,
+                },
+            );
+        };
+        for axis in 0..n.min(64) as u8 {
+            let unit = |transposed| unit(v.shape.rows, axis, transposed);
+            for (t, c) in &v.terms {
+                let word = [&[unit(true)][..], &t.word].concat();
+                let mut one = Poly::zero(Shape::SCALAR);
+                self.push_reduced(&mut one, *c, &t.monomial, word);
+                let frame = Poly::term(
+                    out.shape,
+                    Rational::ONE,
+                    Term {
+                        monomial: Monomial::new(),
+                        word: vec![unit(false), unit(true)],
+                    },
+                );
+                self.accumulate(&mut out, &self.mul(&one, &frame), Rational::ONE);
+            }
         }
-        let id = self.intern(&self.numbers, a, || meaning.clone());
-        self.scalar_atom(match function {
-            Function::Exp => Atom::Exp(id),
-            Function::Log => Atom::Log(id),
-        })
+        out
+    }
+
+    /// `sum of E_i (E_i^T A E_i)`. A matrix whose size has only a name is refused before.
+    fn diagonal_of(&self, a: &Poly) -> Poly {
+        let mut out = Poly::zero(Shape::vector(a.shape.rows));
+        let Dim::Fixed(n) = a.shape.rows else {
+            self.exhaust();
+            return out;
+        };
+        for axis in 0..n.min(64) as u8 {
+            let unit = |transposed| unit(a.shape.rows, axis, transposed);
+            for (t, c) in &a.terms {
+                let word = [&[unit(false), unit(true)][..], &t.word, &[unit(false)]].concat();
+                self.push_reduced(&mut out, *c, &t.monomial, word);
+            }
+        }
+        out
+    }
+
+    /// One letter for each function and argument; the argument's leading sign comes out of odd and
+    /// even functions.
+    fn call(&self, function: Function, a: Poly, meaning: &Expr) -> Poly {
+        let minus = a.terms.values().next().is_some_and(|c| c.is_negative());
+        let parity = function.parity();
+        if a.is_zero() {
+            match function {
+                Function::Exp | Function::Cos | Function::Cosh => {
+                    return Poly::constant(Shape::SCALAR, Rational::ONE);
+                }
+                Function::Log => {}
+                _ => return Poly::zero(Shape::SCALAR),
+            }
+        }
+        let turned = minus && parity != Parity::None;
+        let (key, meaning) = match turned {
+            true => (
+                self.scaled(&a, Rational::MINUS_ONE),
+                expr::neg(meaning.clone()),
+            ),
+            false => (a, meaning.clone()),
+        };
+        let id = self.intern(&self.numbers, key, || meaning);
+        let value = self.scalar_atom(Atom::Call(function, id));
+        match turned && parity == Parity::Odd {
+            true => self.scaled(&value, Rational::MINUS_ONE),
+            false => value,
+        }
+    }
+}
+
+/// A unit vector, as a column or a row.
+fn unit(dim: Dim, axis: u8, transposed: bool) -> Factor {
+    Factor::Unit {
+        dim,
+        axis,
+        transposed,
     }
 }

@@ -3,7 +3,7 @@
 
 use super::factor::{Source, Word};
 use super::rational::Rational;
-use crate::expr::Letter;
+use crate::expr::{Function, Letter};
 
 /// A number that the normal form does not open further.
 #[derive(Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
@@ -22,10 +22,8 @@ pub enum Atom {
     OpaqueDet(u32),
     /// A sum that stands under a power.
     Base(u32),
-    /// The exponential of an interned number.
-    Exp(u32),
-    /// The logarithm of an interned number.
-    Log(u32),
+    /// A function of an interned number.
+    Call(Function, u32),
 }
 
 /// A product of powers of atoms, sorted by atom, no zero exponents.

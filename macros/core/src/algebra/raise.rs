@@ -7,7 +7,7 @@ use super::monomial::{Atom, Monomial};
 use super::poly::{Poly, Term};
 use super::rational::Rational;
 use crate::expr::shape::Dim;
-use crate::expr::{self, Expr, Function};
+use crate::expr::{self, Expr};
 
 impl Algebra<'_> {
     /// The polynomial as an expression, terms in canonical order.
@@ -206,8 +206,7 @@ impl Algebra<'_> {
             Atom::Det(source) => expr::det(self.raise_source(*source)),
             Atom::OpaqueDet(i) => expr::det(self.matrices.borrow()[*i as usize].meaning.clone()),
             Atom::Base(i) => number(*i),
-            Atom::Exp(i) => expr::call(Function::Exp, number(*i)),
-            Atom::Log(i) => expr::call(Function::Log, number(*i)),
+            Atom::Call(function, i) => expr::call(*function, number(*i)),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! From syntax to shaped expressions: names become symbols, every operation checks its shapes,
 //! `Id`, `0` and `E1 E2 E3` take theirs from the context.
 
+mod components;
 mod functions;
 mod names;
 mod products;
@@ -31,6 +32,7 @@ pub fn terms(e: &Expression) -> Vec<&Expression> {
         | Kind::Product(_)
         | Kind::Transpose(_)
         | Kind::Power(..)
+        | Kind::Component(..)
         | Kind::Call(..) => vec![e],
     }
 }
@@ -164,9 +166,6 @@ impl<'a> Elaborator<'a> {
                 }
             }
             Kind::Call(name, args) => {
-                if let Some(product) = self.hidden(name, args) {
-                    return self.hint(&product);
-                }
                 let first = || args.first().and_then(|a| self.hint(a));
                 match name.text.as_str() {
                     "hat" => first().map(|s| Shape::square(s.rows)),
@@ -174,10 +173,12 @@ impl<'a> Elaborator<'a> {
                     "im" | "pos" => Some(Shape::vector(Dim::Fixed(3))),
                     "rot" => Some(Shape::square(Dim::Fixed(3))),
                     "quat" => Some(Shape::square(Dim::Fixed(4))),
-                    "inv" | "sym" | "skew" | "diag" | "cross" | "next" | "prev" => first(),
+                    "diag" => first().map(|s| Shape::square(s.rows)),
+                    "inv" | "sym" | "skew" | "cross" | "next" | "prev" => first(),
                     _ => Some(Shape::SCALAR),
                 }
             }
+            Kind::Component(..) => Some(Shape::SCALAR),
         }
     }
 
@@ -232,6 +233,7 @@ impl<'a> Elaborator<'a> {
                 }
             }
             Kind::Call(name, args) => self.call(name, args, e.place, expected),
+            Kind::Component(a, indices) => self.component(a, indices, e.place),
         }
     }
 }

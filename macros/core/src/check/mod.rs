@@ -7,6 +7,8 @@ mod elaborate;
 mod messages;
 mod shapes;
 pub mod spec;
+#[cfg(test)]
+mod tests;
 
 use crate::diagnostic::{Diagnostic, Errors};
 use crate::expr::symbol::Role;

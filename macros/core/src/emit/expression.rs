@@ -173,8 +173,18 @@ impl Writer<'_> {
             }
             Node::Dot(a, b) => match b.node() {
                 Node::Unit(_, axis) => {
-                    let (a, axis) = (go(a), Literal::usize_unsuffixed(*axis as usize));
-                    quote!(#a[#axis])
+                    let row = Literal::usize_unsuffixed(*axis as usize);
+                    // One entry, not a column of which one entry is taken.
+                    if let Node::Product(factors) = a.node()
+                        && let [matrix, last] = factors.as_slice()
+                        && !matrix.shape().is_scalar()
+                        && let Node::Unit(_, axis) = last.node()
+                    {
+                        let (matrix, col) = (go(matrix), Literal::usize_unsuffixed(*axis as usize));
+                        return quote!(#matrix[(#row, #col)]);
+                    }
+                    let a = go(a);
+                    quote!(#a[#row])
                 }
                 _ => self.method(a, "dot", b),
             },
@@ -191,10 +201,14 @@ impl Writer<'_> {
             }
             Node::Call(function, a) => {
                 let a = go(a);
-                match function {
-                    Function::Exp => quote!(#a.exp()),
-                    Function::Log => quote!(#a.ln()),
-                }
+                let method = format_ident!(
+                    "{}",
+                    match function {
+                        Function::Log => "ln",
+                        _ => function.word(),
+                    }
+                );
+                quote!(#a.#method())
             }
             Node::Map(Map::Rotation, a) if self.turn(a).is_some() => {
                 let local = self.turn(a);
@@ -205,6 +219,8 @@ impl Writer<'_> {
                     Map::Rotation if expr::is_motion(self.symbols, a) => "motion_rotation",
                     Map::Translation => "motion_translation",
                     Map::Twist => "twist",
+                    Map::Diagonal => "diagonal",
+                    Map::DiagonalOf => "diagonal_of",
                     Map::Real => "quaternion_real",
                     Map::Imaginary => "quaternion_imaginary",
                     Map::Pure => "pure_quaternion",

@@ -174,7 +174,7 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
 
 /// What emitted functions call by a plain name, and what they name themselves: a local of the
 /// model under such a name would hide it. The test of hygiene states a model with all of them.
-const INSIDE: [&str; 116] = [
+const INSIDE: [&str; 118] = [
     "BodyImpulse",
     "BodyMomentum",
     "BodyMomentumMatrix",
@@ -207,6 +207,8 @@ const INSIDE: [&str; 116] = [
     "crossing",
     "trace_complement",
     "determinant",
+    "diagonal",
+    "diagonal_of",
     "diagonal_part",
     "diagonal_times",
     "times_diagonal",

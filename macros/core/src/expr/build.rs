@@ -2,6 +2,7 @@
 //! drop neutral elements and move transposes to the leaves, so that equal things look equal.
 //! Shapes must already fit: `check` has verified the user's, the derivation builds its own.
 
+use super::function::Parity;
 use super::shape::{Dim, Shape, Structure};
 use super::symbol::{SymbolId, Symbols};
 use super::{Expr, Function, Inner, Letter, Map, Node, Part, Shift};
@@ -333,6 +334,7 @@ pub fn transpose(symbols: &Symbols, a: Expr) -> Expr {
         Node::Quotient(x, y) => quotient(transpose(symbols, x.clone()), y.clone()),
         Node::Transpose(inner) => inner.clone(),
         Node::Hat(_) | Node::Map(Map::Pure, _) => neg(a),
+        Node::Map(Map::Diagonal, _) => a,
         Node::Part(part, _) => match part {
             Part::Symmetric | Part::Diagonal => a,
             Part::Skew => neg(a),
@@ -513,6 +515,8 @@ pub fn part(which: Part, a: Expr) -> Expr {
         (Node::Identity(_), Part::Skew) => zero(shape),
         (Node::Hat(_), Part::Skew) => a,
         (Node::Hat(_), Part::Symmetric | Part::Diagonal) => zero(shape),
+        (Node::Map(Map::Diagonal, _), Part::Symmetric | Part::Diagonal) => a,
+        (Node::Map(Map::Diagonal, _), Part::Skew) => zero(shape),
         (Node::Neg(x), _) => neg(part(which, x.clone())),
         _ => make(Node::Part(which, a), shape),
     }
@@ -520,5 +524,15 @@ pub fn part(which: Part, a: Expr) -> Expr {
 
 /// A function of a number.
 pub fn call(function: Function, a: Expr) -> Expr {
+    if let Some(value) = function.at(&a) {
+        return value;
+    }
+    if let Node::Neg(x) = a.node() {
+        match function.parity() {
+            Parity::Even => return call(function, x.clone()),
+            Parity::Odd => return neg(call(function, x.clone())),
+            Parity::None => {}
+        }
+    }
     make(Node::Call(function, a), Shape::SCALAR)
 }

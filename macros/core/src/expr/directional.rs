@@ -92,7 +92,7 @@ pub fn directional(symbols: &Symbols, e: &Expr, changes: &[(Letter, Expr)]) -> E
             }
             match function {
                 Function::Exp => mul(e.clone(), da),
-                Function::Log => quotient(da, a.clone()),
+                _ => function.chain(e, a, da),
             }
         }
         Node::Map(map, a) => match map {
@@ -101,6 +101,8 @@ pub fn directional(symbols: &Symbols, e: &Expr, changes: &[(Letter, Expr)]) -> E
             Map::Pure => pure(d(a)),
             Map::Rotation if is_motion(symbols, a) => block(symbols, &d(a)),
             Map::Translation => column(symbols, &d(a)),
+            Map::Diagonal => diagonal(d(a)),
+            Map::DiagonalOf => diagonal_of(d(a)),
             Map::Twist => twist(d(a)),
             // Right along the group, which is all that a letter of SU(2) moves along.
             Map::Rotation => {

@@ -100,10 +100,7 @@ fn pull_back(symbols: &Symbols, e: &Expr, seed: Expr, wrt: Letter, out: &mut Vec
                 go(inner, mul(seed, back));
             }
         }
-        Node::Call(function, a) => match function {
-            Function::Exp => go(a, mul(seed, e.clone())),
-            Function::Log => go(a, quotient(seed, a.clone())),
-        },
+        Node::Call(function, a) => go(a, function.chain(e, a, seed)),
         Node::Map(map, a) => match map {
             Map::Real => go(
                 a,
@@ -114,6 +111,8 @@ fn pull_back(symbols: &Symbols, e: &Expr, seed: Expr, wrt: Letter, out: &mut Vec
             Map::Pure => go(a, scale(Rational::integer(4), imaginary(seed))),
             Map::Rotation if is_motion(symbols, a) => go(a, rigid::in_block(symbols, seed)),
             Map::Translation => go(a, rigid::in_column(symbols, seed)),
+            Map::Diagonal => go(a, diagonal_of(seed)),
+            Map::DiagonalOf => go(a, diagonal(seed)),
             // <S, twist(x)> = 2 vee(block(S)) . ω + column(S) . v
             Map::Twist => {
                 let turn = vee(block(symbols, &seed));

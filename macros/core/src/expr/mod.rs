@@ -3,8 +3,10 @@
 
 mod build;
 mod collect;
+mod diagonal;
 mod directional;
 mod factored;
+mod function;
 mod gradient;
 mod projection;
 mod quaternion;
@@ -23,8 +25,10 @@ use symbol::SymbolId;
 
 pub use build::*;
 pub use collect::{collect, positive_first};
+pub use diagonal::{diagonal, diagonal_of};
 pub use directional::directional;
 pub use factored::{axial_of_outer, factored};
+pub use function::{Function, Parity};
 pub use gradient::gradient;
 pub use projection::projected;
 pub use quaternion::{imaginary, pure, real, rotation};
@@ -68,15 +72,6 @@ pub struct Letter {
     pub shift: Shift,
 }
 
-/// Functions of one number.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
-pub enum Function {
-    /// Exponential.
-    Exp,
-    /// Natural logarithm.
-    Log,
-}
-
 /// Parts of a square matrix, linear in it.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub enum Part {
@@ -88,8 +83,8 @@ pub enum Part {
     Diagonal,
 }
 
-/// Maps of quaternions, as 4 x 4 matrices of left multiplication, and of rigid motions, as 4 x 4
-/// homogeneous matrices.
+/// Maps of quaternions, as 4 x 4 matrices of left multiplication, of rigid motions, as 4 x 4
+/// homogeneous matrices, and between vectors and diagonals.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub enum Map {
     /// The real part, `tr(A)/4`.
@@ -104,6 +99,10 @@ pub enum Map {
     Translation,
     /// The element `[hat(ω) v; 0 0]` of the Lie algebra of SE(3) of a vector `(ω, v)`.
     Twist,
+    /// The matrix with a vector on its diagonal and zeros elsewhere.
+    Diagonal,
+    /// The diagonal of a square matrix, as a vector.
+    DiagonalOf,
 }
 
 /// One node of an expression. Shapes of children are checked by the constructors in `build`.
@@ -154,7 +153,7 @@ pub enum Node {
     Part(Part, Expr),
     /// A function of a number.
     Call(Function, Expr),
-    /// A map of quaternions or rigid motions.
+    /// A map of quaternions, rigid motions or diagonals.
     Map(Map, Expr),
 }
 

@@ -110,6 +110,8 @@ pub fn rebuild(symbols: &Symbols, e: &Expr, go: &mut dyn FnMut(&Expr) -> Expr) -
             Map::Rotation => rotation(symbols, go(a)),
             Map::Translation => column(symbols, &go(a)),
             Map::Twist => twist(go(a)),
+            Map::Diagonal => diagonal(go(a)),
+            Map::DiagonalOf => diagonal_of(go(a)),
         },
     }
 }

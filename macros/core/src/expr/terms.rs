@@ -72,7 +72,10 @@ fn is_linear(e: &Expr, child: usize) -> bool {
         | Node::Hat(_)
         | Node::Vee(_)
         | Node::Part(..)
-        | Node::Map(Map::Real | Map::Imaginary | Map::Pure | Map::Twist, _) => true,
+        | Node::Map(
+            Map::Real | Map::Imaginary | Map::Pure | Map::Twist | Map::Diagonal | Map::DiagonalOf,
+            _,
+        ) => true,
         Node::Quotient(..) => child == 0,
         Node::Number(_)
         | Node::Letter(_)

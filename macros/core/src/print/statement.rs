@@ -6,7 +6,7 @@ use super::Style;
 use crate::algebra::Rational;
 use crate::expr::shape::Dim;
 use crate::expr::symbol::Symbols;
-use crate::expr::{Expr, Function, Map, Node, Part};
+use crate::expr::{Expr, Map, Node, Part};
 
 /// An expression as model text, e.g. `-(tr(J*Ω)/h) - h*dot(gU, Γ)`. Time offsets are written
 /// `next(...)` and `prev(...)`, label offsets with the name of the label from `style`. `Id`, `0`
@@ -14,6 +14,10 @@ use crate::expr::{Expr, Function, Map, Node, Part};
 pub fn statement(e: &Expr, symbols: &Symbols, style: &Style) -> String {
     Writer { symbols, style }.write(e).text
 }
+
+/// Axes whose unit vectors have names, `E1` to `E3`; a component along another is written by its
+/// index.
+const NAMED_AXES: u32 = 3;
 
 /// How tightly the text holds together for the parser, loosest first.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -91,7 +95,10 @@ impl Writer<'_> {
             Node::Adjugate(a) => {
                 operand(format!("(det({})*{}^-1)", self.write(a).text, self.base(a)))
             }
-            Node::Dot(a, b) => operand(self.call("dot", &[a, b])),
+            Node::Dot(a, b) => match self.component(a, b) {
+                Some(text) => Written::new(text, Postfix),
+                None => operand(self.call("dot", &[a, b])),
+            },
             Node::Cross(a, b) => operand(self.call("cross", &[a, b])),
             Node::Hat(a) => operand(self.call("hat", &[a])),
             Node::Vee(a) => operand(self.call("vee", &[a])),
@@ -103,13 +110,7 @@ impl Writer<'_> {
                 },
                 &[a],
             )),
-            Node::Call(function, a) => operand(self.call(
-                match function {
-                    Function::Exp => "exp",
-                    Function::Log => "log",
-                },
-                &[a],
-            )),
+            Node::Call(function, a) => operand(self.call(function.word(), &[a])),
             Node::Map(map, a) => operand(self.call(
                 match map {
                     Map::Real => "re",
@@ -118,6 +119,9 @@ impl Writer<'_> {
                     Map::Rotation => "rot",
                     Map::Translation => "pos",
                     Map::Twist => "twist",
+                    Map::Diagonal => "diag",
+                    // Derived expressions hold it, statements do not.
+                    Map::DiagonalOf => "diagonal",
                 },
                 &[a],
             )),
@@ -127,6 +131,24 @@ impl Writer<'_> {
     fn call(&self, name: &str, arguments: &[&Expr]) -> String {
         let texts: Vec<String> = arguments.iter().map(|a| self.write(a).text).collect();
         format!("{name}({})", texts.join(", "))
+    }
+
+    /// A component along an axis that has no name of its own.
+    fn component(&self, a: &Expr, axis: &Expr) -> Option<String> {
+        let count = |e: &Expr| match e.node() {
+            Node::Unit(_, axis) => Some(u32::from(*axis) + 1),
+            _ => None,
+        };
+        let i = count(axis)?;
+        if let Node::Product(factors) = a.node()
+            && let [rest @ .., last] = factors.as_slice()
+            && let Some(j) = count(last)
+            && i.max(j) > NAMED_AXES
+        {
+            let rest = crate::expr::product(rest.to_vec());
+            return Some(format!("{}[{i}, {j}]", self.base(&rest)));
+        }
+        (i > NAMED_AXES).then(|| format!("{}[{i}]", self.base(a)))
     }
 
     fn base(&self, a: &Expr) -> String {

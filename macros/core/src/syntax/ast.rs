@@ -41,8 +41,10 @@ pub enum Kind {
     Transpose(Box<Expression>),
     /// `x^q`.
     Power(Box<Expression>, Rational),
-    /// A function of the language.
+    /// A name with arguments in parentheses.
     Call(Name, Vec<Expression>),
+    /// `v[i]` or `A[i, j]`, counted from 1.
+    Component(Box<Expression>, Vec<u64>),
 }
 
 /// A size: a number or the name of a declared dimension.

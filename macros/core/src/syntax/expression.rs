@@ -1,7 +1,7 @@
 //! Expressions: a Pratt parser with the precedence of mathematics, lowest first: `+ -`, then
-//! `* /` and juxtaposition, then unary `-`, then postfix `^T ^-1 ^number`.
+//! `* /` and juxtaposition, then unary `-`, then postfix `^T ^-1 ^number [i] [i, j]`. What could be
+//! read in two ways is refused: `2h`, and juxtaposition after a divisor.
 
-use super::FUNCTIONS;
 use super::ast::{Expression, Kind};
 use super::token::{Cursor, Token};
 use crate::algebra::Rational;
@@ -51,7 +51,7 @@ pub fn expression(c: &mut Cursor) -> Parsed {
 fn starts_operand(c: &Cursor) -> bool {
     match c.peek() {
         Some(Token::Name(n)) => !FOLLOWING.contains(&n.as_str()) && !c.starts_statement(),
-        Some(Token::Number(_)) => true,
+        Some(Token::Number(_) | Token::Glued(..)) => true,
         Some(Token::Open(d)) => *d == '(',
         Some(Token::Literal(_) | Token::Punct(..) | Token::Close(_)) | None => false,
     }
@@ -65,6 +65,9 @@ fn product(c: &mut Cursor) -> Parsed {
         } else if c.take_punct('/') {
             let numerator = joined(factors);
             let divisor = signed(c)?;
+            if starts_operand(c) {
+                return Err(after_divisor(c, &divisor));
+            }
             let place = numerator.place.to(divisor.place);
             factors = vec![Expression {
                 kind: Kind::Quotient(Box::new(numerator), Box::new(divisor)),
@@ -76,6 +79,50 @@ fn product(c: &mut Cursor) -> Parsed {
             return Ok(joined(factors));
         }
     }
+}
+
+/// What a message calls an operand: as it was written where that is one word.
+fn spelled(e: &Expression) -> &str {
+    match &e.kind {
+        Kind::Name(name) => name,
+        _ => "a",
+    }
+}
+
+/// `x/a b`: nobody knows whether `b` is above or below the line.
+fn after_divisor(c: &Cursor, divisor: &Expression) -> Diagnostic {
+    let next = match c.peek() {
+        Some(Token::Glued(number, name)) => return glued(c, number, name),
+        Some(Token::Name(n)) => n.clone(),
+        Some(Token::Number(n)) => n.clone(),
+        _ => "(...)".to_owned(),
+    };
+    let a = match &divisor.kind {
+        Kind::Number(q) if q.denominator() == 1 => q.numerator().to_string(),
+        _ => spelled(divisor).to_owned(),
+    };
+    Diagnostic::new(
+        divisor.place.to(c.place()),
+        "after `/` a product without `*` can be read in two ways",
+    )
+    .help(format!(
+        "write `/({a}*{next})` to divide by both, or `/{a}*{next}` to multiply by what follows"
+    ))
+}
+
+/// `2h`: no product, and after `/` read in two ways.
+fn glued(c: &Cursor, number: &str, name: &str) -> Diagnostic {
+    let divides = c.follows_punct('/');
+    let d = Diagnostic::new(
+        c.place(),
+        format!("`{number}{name}` is a number glued to a name"),
+    );
+    d.help(match divides {
+        true => format!(
+            "write `/({number}*{name})` to divide by both, or `/{number}*{name}` to multiply by `{name}`"
+        ),
+        false => format!("write `{number}*{name}`"),
+    })
 }
 
 fn joined(mut factors: Vec<Expression>) -> Expression {
@@ -119,12 +166,19 @@ fn signed(c: &mut Cursor) -> Parsed {
 fn postfix(c: &mut Cursor) -> Parsed {
     let mut e = operand(c)?;
     let mut count = 0;
-    while c.take_punct('^') {
+    loop {
+        let component = matches!(c.peek(), Some(Token::Open('[')));
+        if !component && !c.is_punct('^') {
+            break;
+        }
         count += 1;
         if count > MOST_POSTFIXES {
             return Err(c.unexpected("fewer than 16 postfixes on one operand"));
         }
-        let kind = if c.take_word("T") {
+        c.advance();
+        let kind = if component {
+            Kind::Component(Box::new(e.clone()), indices(c)?)
+        } else if c.take_word("T") {
             Kind::Transpose(Box::new(e.clone()))
         } else {
             Kind::Power(Box::new(e.clone()), exponent(c)?)
@@ -140,6 +194,20 @@ fn postfix(c: &mut Cursor) -> Parsed {
     Ok(e)
 }
 
+/// After `[`: one index or two, counted from 1.
+fn indices(c: &mut Cursor) -> Result<Vec<u64>, Diagnostic> {
+    let remedy = "components are counted from 1: `v[1]` of a vector, `A[1, 2]` of a matrix";
+    let mut list = Vec::new();
+    loop {
+        list.push(c.whole_number().map_err(|e| e.help(remedy))?);
+        if !c.take_punct(',') {
+            break;
+        }
+    }
+    c.delimiter(']').map_err(|e| e.help(remedy))?;
+    Ok(list)
+}
+
 /// After `^`: a number, `-1`, or a fraction in parentheses.
 fn exponent(c: &mut Cursor) -> Result<Rational, Diagnostic> {
     let parenthesis = c.take_delimiter('(');
@@ -150,6 +218,7 @@ fn exponent(c: &mut Cursor) -> Result<Rational, Diagnostic> {
             c.advance();
             value
         }
+        Some(Token::Glued(number, name)) => return Err(glued(c, number, name)),
         _ => {
             return Err(c.unexpected("`T`, `-1` or a number after `^`").help(
                 "`x^T` is the transpose, `x^-1` the inverse, `x^2` and `x^(1/2)` are powers",
@@ -214,6 +283,7 @@ fn operand(c: &mut Cursor) -> Parsed {
                 place: start,
             })
         }
+        Some(Token::Glued(number, name)) => Err(glued(c, &number, &name)),
         Some(Token::Open('(')) => {
             c.advance();
             let mut inner = expression(c)?;
@@ -223,9 +293,8 @@ fn operand(c: &mut Cursor) -> Parsed {
         }
         Some(Token::Name(_)) => {
             let name = c.name("a name")?;
-            let called = FUNCTIONS.contains(&name.text.as_str())
-                && matches!(c.peek(), Some(Token::Open('(')));
-            if !called {
+            // Whether it is a function is decided by `check`, which knows what is declared.
+            if !matches!(c.peek(), Some(Token::Open('('))) {
                 return Ok(Expression {
                     place: name.place,
                     kind: Kind::Name(name.text),

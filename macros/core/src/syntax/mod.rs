@@ -11,14 +11,18 @@ use ast::Model;
 use proc_macro2::TokenStream;
 use token::Cursor;
 
-/// Functions of the language: the only names that a parenthesis turns into a call.
-pub const FUNCTIONS: [&str; 26] = [
-    "tr", "det", "log", "exp", "sqrt", "inv", "sym", "skew", "diag", "hat", "vee", "dot", "cross",
-    "perp", "re", "im", "I1", "I2", "next", "prev", "rate", "sum", "Tr", "quat", "rot", "pos",
+/// Functions of the language.
+pub const FUNCTIONS: [&str; 33] = [
+    "tr", "det", "log", "exp", "sqrt", "sin", "cos", "sinh", "cosh", "tanh", "abs", "sign", "inv",
+    "sym", "skew", "diag", "hat", "vee", "dot", "cross", "perp", "re", "im", "I1", "I2", "next",
+    "prev", "rate", "sum", "Tr", "quat", "rot", "pos",
 ];
 
 /// Functions that a declared name hides: models without these groups use the words freely.
 pub const HIDEABLE: [&str; 3] = ["quat", "rot", "pos"];
+
+/// The functions that models of this version can use, as a message lists them.
+pub const AVAILABLE: &str = "tr det log exp sqrt sin cos sinh cosh tanh abs sign inv sym skew diag hat vee dot cross re im quat rot pos I1 I2 next";
 
 /// Parses one model: `[pub] model NAME { ... }`, documentation before it.
 pub fn parse(tokens: TokenStream) -> Result<Model, Errors> {

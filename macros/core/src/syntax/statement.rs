@@ -110,7 +110,11 @@ fn skip_statement(c: &mut Cursor) {
                 c.advance();
                 return;
             }
-            Token::Name(_) | Token::Number(_) | Token::Literal(_) | Token::Punct(..) => {}
+            Token::Name(_)
+            | Token::Number(_)
+            | Token::Glued(..)
+            | Token::Literal(_)
+            | Token::Punct(..) => {}
         }
         c.advance();
     }

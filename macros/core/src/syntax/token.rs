@@ -1,5 +1,6 @@
-//! Tokens as a flat list with a cursor. Groups become opening and closing tokens, `2Ω` becomes a
-//! number and a name; depth and length are bounded, so that no input exhausts the stack.
+//! Tokens as a flat list with a cursor. Groups become opening and closing tokens, `2Ω` is kept as
+//! what it is, a number glued to a name, which the parser refuses; depth and length are bounded, so
+//! that no input exhausts the stack.
 
 use super::ast::Name;
 use crate::diagnostic::{Diagnostic, Errors, Place};
@@ -40,6 +41,8 @@ pub enum Token {
     Name(String),
     /// A number literal, without suffix.
     Number(String),
+    /// A number and a name with nothing between them, `2h`.
+    Glued(String, String),
     /// A string or other literal.
     Literal(String),
     /// One character of punctuation; `true` when the next one touches it.
@@ -55,6 +58,7 @@ impl Token {
     pub fn text(&self) -> String {
         match self {
             Token::Name(s) | Token::Number(s) | Token::Literal(s) => s.clone(),
+            Token::Glued(number, name) => format!("{number}{name}"),
             Token::Punct(c, _) | Token::Open(c) | Token::Close(c) => c.to_string(),
         }
     }
@@ -76,7 +80,7 @@ fn delimiters(d: Delimiter) -> Option<(char, char)> {
     }
 }
 
-/// Splits `2e3x` into its number and its suffix.
+/// Where the number of `2e3x` ends.
 fn split_number(text: &str) -> usize {
     let bytes = text.as_bytes();
     let digits = |mut i: usize| {
@@ -152,10 +156,13 @@ impl Cursor {
                     let text = literal.to_string();
                     if text.starts_with(|c: char| c.is_ascii_digit()) {
                         let (number, suffix) = text.split_at(split_number(&text));
-                        tokens.push((Token::Number(number.to_owned()), span));
-                        if !suffix.is_empty() {
-                            tokens.push((Token::Name(suffix.to_owned()), span));
-                        }
+                        tokens.push((
+                            match suffix.is_empty() {
+                                true => Token::Number(number.to_owned()),
+                                false => Token::Glued(number.to_owned(), suffix.to_owned()),
+                            },
+                            span,
+                        ));
                     } else {
                         tokens.push((Token::Literal(text), span));
                     }
@@ -185,6 +192,12 @@ impl Cursor {
     pub fn last_place(&self) -> Place {
         let before = self.at.checked_sub(1).and_then(|i| self.tokens.get(i));
         Place::token(before.map_or(self.end, |(_, s)| *s))
+    }
+
+    /// Whether the token just read is this punctuation.
+    pub fn follows_punct(&self, c: char) -> bool {
+        let before = self.at.checked_sub(1).and_then(|i| self.tokens.get(i));
+        matches!(before, Some((Token::Punct(p, _), _)) if *p == c)
     }
 
     /// Steps over one token.

@@ -99,14 +99,18 @@ impl Names<'_> {
         )
     }
 
-    /// A product without a star, unless two numbers or a minus would then be read otherwise.
+    /// A product without a star, unless the language would read it otherwise or refuse it: two
+    /// numbers, what follows a divisor, and parentheses after a name.
     fn juxtaposed(&self, a: &Expr, b: &Expr) -> String {
         let (left, right) = (
             self.write(a, Binding::Product),
             self.write(b, Binding::Postfix),
         );
         let digit = |text: &str| text.starts_with(|first: char| first.is_ascii_digit());
-        if digit(&right) {
+        let call = right.starts_with('(')
+            && !left.ends_with("^T")
+            && left.ends_with(|last: char| last.is_alphanumeric() || last == '_');
+        if digit(&right) || call || matches!(a, Expr::Quotient(..)) {
             format!("{left}*{right}")
         } else {
             format!("{left} {right}")

@@ -1,15 +1,15 @@
-//! The functions of the language, and the words that are functions only where nothing of that name is
-//! declared. Takes a call; gives the expression.
+//! The functions of the language, and what is written like one and is none. Takes a call; gives the
+//! expression.
 
 use super::{Elaborated, Elaborator, fail};
 use crate::algebra::Rational;
 use crate::check::messages::{self, shape_text};
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::{Diagnostic, Place, closest};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Function, Node, Part, Shift};
-use crate::syntax::HIDEABLE;
-use crate::syntax::ast::{Expression, Kind, Name};
+use crate::syntax::ast::{Expression, Name};
+use crate::syntax::{AVAILABLE, FUNCTIONS, HIDEABLE};
 
 /// Whether an expression is an element of the group of this structure whatever its letters are.
 fn is_element(symbols: &Symbols, e: &Expr, structure: Structure) -> bool {
@@ -25,23 +25,45 @@ fn is_element(symbols: &Symbols, e: &Expr, structure: Structure) -> bool {
 }
 
 impl Elaborator<'_> {
-    /// A word that is declared is no function: `rot (a)` is then a product.
-    pub(super) fn hidden(&self, name: &Name, args: &[Expression]) -> Option<Expression> {
+    /// Whether the name means a quantity of the model.
+    fn is_quantity(&self, n: &str) -> bool {
+        self.names.symbols.find(n).is_some()
+            || self.names.was_declared(n)
+            || self.bindings.iter().any(|(bound, _)| bound == n)
+            || self.unbound.iter().any(|(name, _)| name == n)
+            || n == "Id"
+            || super::UNITS.contains(&n)
+    }
+
+    /// Parentheses after a name that is no function, or that the model has declared as something
+    /// else.
+    fn no_function(&self, name: &Name) -> Option<Diagnostic> {
         let n = name.text.as_str();
-        let declared = self.names.symbols.find(n).is_some()
-            || self.bindings.iter().any(|(bound, _)| bound == n);
-        let [argument] = args else { return None };
-        if !HIDEABLE.contains(&n) || !declared {
+        let function = FUNCTIONS.contains(&n);
+        if self.is_quantity(n) && (!function || HIDEABLE.contains(&n)) {
+            let message = match function {
+                true => format!("`{n}` is declared here as a quantity, which hides the function"),
+                false => format!("`{n}` is a quantity, no function"),
+            };
+            let d = Diagnostic::new(name.place, message);
+            let d = d.help(format!("write `{n}*(...)` for the product"));
+            return Some(match function {
+                true => d.help(format!("rename the quantity to use the function `{n}`")),
+                false => d.help(format!("functions: {AVAILABLE}")),
+            });
+        }
+        if function {
             return None;
         }
-        let factor = Expression {
-            kind: Kind::Name(n.to_owned()),
-            place: name.place,
+        let d = Diagnostic::new(name.place, format!("`{n}` is no function of the language"));
+        let d = match super::names::otherwise(n) {
+            Some(written) => d.help(format!("the language writes `{written}`")),
+            None => match closest(n, AVAILABLE.split(' ')) {
+                Some(near) => d.help(format!("did you mean `{near}`?")),
+                None => d,
+            },
         };
-        Some(Expression {
-            place: name.place.to(argument.place),
-            kind: Kind::Product(vec![factor, argument.clone()]),
-        })
+        Some(d.help(format!("functions: {AVAILABLE}")))
     }
 
     /// Parts of elements of SU(2) and SE(3).
@@ -81,8 +103,8 @@ impl Elaborator<'_> {
         place: Place,
         expected: Option<Shape>,
     ) -> Elaborated {
-        if let Some(product) = self.hidden(name, args) {
-            return self.elaborate(&product, expected);
+        if let Some(d) = self.no_function(name) {
+            return fail(d);
         }
         let symbols = &self.names.symbols;
         let f = name.text.as_str();
@@ -108,8 +130,9 @@ impl Elaborator<'_> {
         let first = &args[0];
         let argument = |context: Option<Shape>| self.elaborate(first, context);
         match f {
-            "tr" | "Tr" | "det" | "I1" | "I2" | "inv" | "sym" | "skew" | "diag" => {
-                let context = if matches!(f, "inv" | "sym" | "skew" | "diag") {
+            "diag" => self.diagonal(first, expected),
+            "tr" | "Tr" | "det" | "I1" | "I2" | "inv" | "sym" | "skew" => {
+                let context = if matches!(f, "inv" | "sym" | "skew") {
                     expected
                 } else {
                     None
@@ -129,17 +152,16 @@ impl Elaborator<'_> {
                     ),
                     "inv" => self.inverse(a, first.place)?,
                     "sym" => expr::part(Part::Symmetric, a),
-                    "skew" => expr::part(Part::Skew, a),
-                    _ => expr::part(Part::Diagonal, a),
+                    _ => expr::part(Part::Skew, a),
                 })
             }
-            "log" | "exp" | "sqrt" => {
+            "sqrt" => Ok(expr::power(
+                self.of_shape(first, Shape::SCALAR)?,
+                Rational::HALF,
+            )),
+            _ if Function::named(f).is_some() => {
                 let a = self.of_shape(first, Shape::SCALAR)?;
-                Ok(match f {
-                    "log" => expr::call(Function::Log, a),
-                    "exp" => expr::call(Function::Exp, a),
-                    _ => expr::power(a, Rational::HALF),
-                })
+                Ok(Function::named(f).map_or(a.clone(), |function| expr::call(function, a)))
             }
             "hat" | "quat" => {
                 let a = argument(Some(Shape::vector(Dim::Fixed(3))))?;
@@ -219,9 +241,7 @@ impl Elaborator<'_> {
                     name.place,
                     format!("`{f}` belongs to models that this version does not derive yet"),
                 )
-                .help(
-                    "available: tr det log exp sqrt inv sym skew diag hat vee dot cross re im quat rot pos I1 I2 next",
-                ),
+                .help(format!("functions: {AVAILABLE}")),
             ),
         }
     }

@@ -9,7 +9,7 @@ use crate::expr::shape::Shape;
 use crate::syntax::FUNCTIONS;
 
 /// What the functions of the language are called elsewhere.
-const OTHERWISE: [(&str, &str); 8] = [
+const OTHERWISE: [(&str, &str); 13] = [
     ("trace", "tr(A)"),
     ("determinant", "det(A)"),
     ("inverse", "inv(A)"),
@@ -18,7 +18,18 @@ const OTHERWISE: [(&str, &str); 8] = [
     ("inner", "dot(a, b)"),
     ("norm", "sqrt(dot(a, a))"),
     ("previous", "prev(a)"),
+    ("tan", "sin(a)/cos(a)"),
+    ("pow", "a^2, a^(1/2)"),
+    ("sq", "a^2"),
+    ("fabs", "abs(a)"),
+    ("transposed", "A^T"),
 ];
+
+/// How the language writes what this name means elsewhere.
+pub(super) fn otherwise(name: &str) -> Option<&'static str> {
+    let found = OTHERWISE.iter().find(|(other, _)| *other == name);
+    found.map(|(_, written)| *written)
+}
 
 impl Elaborator<'_> {
     pub(super) fn name(&self, n: &str, place: Place, expected: Option<Shape>) -> Elaborated {
@@ -66,7 +77,7 @@ impl Elaborator<'_> {
                 .help(format!("write `{n}(...)`"));
         } else if let Some(near) = closest(n, declared.chain(bound).map(String::as_str)) {
             d = d.help(format!("did you mean `{near}`?"));
-        } else if let Some((_, written)) = OTHERWISE.iter().find(|(other, _)| *other == n) {
+        } else if let Some(written) = otherwise(n) {
             d = d.help(format!("the language writes `{written}`"));
         } else if let Some(near) = closest(n, FUNCTIONS) {
             d = d.help(format!("did you mean the function `{near}`?"));

@@ -8,7 +8,7 @@ use crate::algebra::{Algebra, Atom, Factor, Poly, Rational, Source, Term};
 use crate::check::spec::{Configuration, Spec};
 use crate::expr::shape::{Shape, Structure};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
-use crate::expr::{self, Expr, Function, Letter, Node};
+use crate::expr::{self, Expr, Letter, Node};
 
 /// A quantity that the reduction found.
 pub(super) struct Carried {
@@ -190,8 +190,7 @@ impl<'a> Reducer<'a> {
             }
             Atom::OpaqueDet(i) => expr::det(self.opaque_matrix(*i)?),
             Atom::Base(i) => self.opaque_number(*i)?,
-            Atom::Exp(i) => expr::call(Function::Exp, self.opaque_number(*i)?),
-            Atom::Log(i) => expr::call(Function::Log, self.opaque_number(*i)?),
+            Atom::Call(function, i) => expr::call(*function, self.opaque_number(*i)?),
             Atom::Letter(_) | Atom::Dimension(_) | Atom::Det(_) => {
                 let term = Term {
                     monomial: vec![(atom.clone(), Rational::ONE)],

@@ -3,7 +3,7 @@
 use super::{Composer, transposition};
 use crate::algebra::Rational;
 use crate::expr::{self, Expr, Function, Map, Node, Part};
-use crate::print::layout::{Layout, Sign};
+use crate::print::layout::{Fence, Layout, Sign};
 use crate::print::level::{Laid, Level};
 
 /// Width, in tenths of a letter, from which a numerator stands beside its denominator,
@@ -116,13 +116,11 @@ impl Composer<'_> {
                 };
                 self.call(word, self.expression(a))
             }
-            Node::Call(function, a) => {
-                let word = match function {
-                    Function::Exp => "exp",
-                    Function::Log => "log",
-                };
-                self.call(word, self.expression(a))
+            Node::Call(Function::Abs, a) => {
+                let inner = self.expression(a).layout;
+                Laid::atom(Layout::fenced(Fence::Bars, inner))
             }
+            Node::Call(function, a) => self.call(function.word(), self.expression(a)),
             Node::Map(map, a) => {
                 let word = match map {
                     Map::Real => "re",
@@ -131,6 +129,8 @@ impl Composer<'_> {
                     Map::Rotation => "rot",
                     Map::Translation => "pos",
                     Map::Twist => "twist",
+                    Map::Diagonal => "diag",
+                    Map::DiagonalOf => "diagonal",
                 };
                 self.call(word, self.expression(a))
             }

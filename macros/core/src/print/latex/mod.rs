@@ -122,16 +122,19 @@ fn brackets(fence: Fence) -> (&'static str, &'static str) {
 fn word(s: &str, dialect: Dialect) -> String {
     let escaped = text(s);
     match (s, dialect) {
-        ("det" | "exp" | "log", _) => format!("\\{s}"),
+        ("det" | "exp" | "log" | "sin" | "cos" | "sinh" | "cosh" | "tanh", _) => format!("\\{s}"),
         ("T", _) => "T".to_owned(),
         (
-            "tr" | "sym" | "skew" | "diag" | "vee" | "hat" | "Ad" | "ad" | "adj",
+            "tr" | "sym" | "skew" | "diag" | "vee" | "hat" | "Ad" | "ad" | "adj" | "sign",
             Dialect::Amsmath,
         ) => {
             format!("\\operatorname{{{escaped}}}")
         }
         // An operator would carry its scripts below and above.
-        ("tr" | "sym" | "skew" | "diag" | "vee" | "hat" | "Ad" | "ad" | "adj", Dialect::GitHub) => {
+        (
+            "tr" | "sym" | "skew" | "diag" | "vee" | "hat" | "Ad" | "ad" | "adj" | "sign",
+            Dialect::GitHub,
+        ) => {
             format!("\\mathop{{\\mathrm{{{escaped}}}}}\\nolimits")
         }
         _ => format!("\\mathrm{{{escaped}}}"),

@@ -156,6 +156,25 @@ impl Sample {
             expr::part(Part::Diagonal, v("A")),
             expr::call(Function::Exp, scalars()),
             expr::call(Function::Log, expr::det(v("Q"))),
+            expr::sum(
+                Function::ALL.map(|f| expr::call(f, scalars())),
+                scalars().shape(),
+            ),
+            expr::call(Function::Abs, v("c")),
+            expr::diagonal(v("gU")),
+            expr::dot(v("gU"), expr::unit(THREE, 1)),
+            expr::dot(
+                expr::mul(v("A"), expr::unit(THREE, 0)),
+                expr::unit(THREE, 2),
+            ),
+            expr::dot(
+                expr::product([v("q"), v("G"), expr::unit(Dim::Fixed(4), 3)]),
+                expr::unit(Dim::Fixed(4), 1),
+            ),
+            expr::dot(
+                expr::product([v("G"), expr::inclusion(Dim::Fixed(4), THREE, 0), v("z")]),
+                expr::unit(Dim::Fixed(4), 3),
+            ),
             expr::product([v("h"), expr::mul(row(), v("gU")), v("A")]),
             expr::product([v("h"), row(), v("gU")]),
             expr::product([row(), v("A"), v("gU"), row(), v("gU")]),

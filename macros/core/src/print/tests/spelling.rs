@@ -83,6 +83,15 @@ fn brackets_are_minimal_in_text() {
         "diag(A)",
         "exp(c + x_{ref})",
         "log(det(Q_k))",
+        "exp(c + x_{ref}) + log(c + x_{ref}) + sin(c + x_{ref}) + cos(c + x_{ref}) \
+         + sinh(c + x_{ref}) + cosh(c + x_{ref}) + tanh(c + x_{ref}) + |c + x_{ref}| \
+         + sign(c + x_{ref})",
+        "|c|",
+        "diag(gU)",
+        "gU·E₂",
+        "(A E₁)·E₃",
+        "(q_k G_k E₄)·E₂",
+        "(G_k ι₄₁ z)·E₄",
         "h (zᵀ gU) A",
         "h zᵀ gU",
         "zᵀ A gU zᵀ gU",

@@ -1,0 +1,194 @@
+//! What could be read in two ways is refused on its tokens, with how to write it; components and
+//! diagonals mean what unit vectors say.
+
+use super::check;
+use super::spec::Spec;
+use crate::algebra::Algebra;
+use crate::diagnostic::Errors;
+use crate::expr::Expr;
+use crate::syntax::{parse, tokens};
+
+fn checked(declarations: &str, potential: &str) -> Result<Spec, Errors> {
+    let source = format!(
+        "model Top {{ param J: Sym<3>; param m, g: Real; param v: Vec<3>; param F: Mat<3, 2>; \
+         param w: Vec<4>; {declarations} group Λ: SO<3> velocity Ω; advected Γ: Vec<3>; \
+         constraint next(Λ) = Λ*Ω; constraint next(Γ) = Ω^T*Γ; \
+         lagrangian = -tr(J*Ω)/h - h*({potential}); }}"
+    );
+    check(&tokens(&source).and_then(parse)?)
+}
+
+/// The message and its remedies.
+fn refused(declarations: &str, potential: &str) -> String {
+    match checked(declarations, potential) {
+        Ok(_) => format!("`{potential}` is accepted"),
+        Err(errors) => errors.to_string(),
+    }
+}
+
+fn accepted(potential: &str) -> Expr {
+    checked("", potential).map_or_else(|e| panic!("{potential}: {e}"), |s| s.typed)
+}
+
+/// Asserts that both texts are one expression.
+fn same(a: &str, b: &str) {
+    let spec = checked("", a).unwrap_or_else(|e| panic!("{a}: {e}"));
+    let algebra = Algebra::new(&spec.symbols);
+    assert!(algebra.equal(&spec.typed, &accepted(b)), "{a} is not {b}");
+}
+
+#[test]
+fn numbers_glued_to_names_are_refused() {
+    for (text, spelled, remedies) in [
+        ("2m", "2m", vec!["`2*m`"]),
+        ("2.5m*g", "2.5m", vec!["`2.5*m`"]),
+        ("1e3m", "1e3m", vec!["`1e3*m`"]),
+        ("2(g) + 3m", "3m", vec!["`3*m`"]),
+        ("m/2g", "2g", vec!["`/(2*g)`", "`/2*g`"]),
+        ("m/-2g", "2g", vec!["`2*g`"]),
+        ("m 2g", "2g", vec!["`2*g`"]),
+        ("m^2g", "2g", vec!["`2*g`"]),
+        ("sin(2m)", "2m", vec!["`2*m`"]),
+        ("2h", "2h", vec!["`2*h`"]),
+    ] {
+        let message = refused("", text);
+        let said = format!("`{spelled}` is a number glued to a name");
+        assert!(message.contains(&said), "{text}: {message}");
+        for remedy in remedies {
+            assert!(message.contains(remedy), "{text}: {message}");
+        }
+    }
+    same("2*m + 3 g", "3*g + m*2");
+}
+
+#[test]
+fn juxtaposition_after_a_divisor_is_refused() {
+    for (text, below, beside) in [
+        ("m/g Γ[1]", "`/(g*Γ)`", "`/g*Γ`"),
+        ("m/2 g", "`/(2*g)`", "`/2*g`"),
+        ("m/2 (g + m)", "`/(2*(...))`", "`/2*(...)`"),
+        ("m/(g) m", "`/(g*m)`", "`/g*m`"),
+        ("m/g^2 m", "`/(a*m)`", "`/a*m`"),
+        ("m/-g m", "`/(a*m)`", "`/a*m`"),
+        ("m*g/m g/2", "`/(m*g)`", "`/m*g`"),
+        ("m/g 2", "`/(g*2)`", "`/g*2`"),
+        ("m/sqrt(g) m", "`/(a*m)`", "`/a*m`"),
+    ] {
+        let message = refused("", text);
+        assert!(message.contains("read in two ways"), "{text}: {message}");
+        assert!(message.contains(below), "{text}: {message}");
+        assert!(message.contains(beside), "{text}: {message}");
+    }
+    same("m g/2*m", "m*g*m/2");
+    same("m g/(2 m)", "g/2");
+}
+
+#[test]
+fn parentheses_after_what_is_no_function_are_refused() {
+    for (text, said) in [
+        ("m(g + 1)", "`m` is a quantity, no function"),
+        ("m (g + 1)", "`m*(...)`"),
+        ("h(g)", "`h*(...)`"),
+        ("dot(Λ(v), Γ)", "`Λ*(...)`"),
+        ("dot(E1(m), Γ)", "`E1*(...)`"),
+        ("foo(m)", "`foo` is no function of the language"),
+        ("tan(m)", "`sin(a)/cos(a)`"),
+        ("sine(m)", "did you mean `sin`?"),
+        ("trace(J)", "`tr(A)`"),
+        ("part(m)", "`part*(...)`"),
+    ] {
+        let message = refused("let part = m*g;", text);
+        assert!(message.contains(said), "{text}: {message}");
+        // The list, in full.
+        assert!(message.contains("functions: tr det log exp sqrt sin cos"));
+    }
+    for word in ["sin", "cos", "sinh", "cosh", "tanh", "abs", "sign", "exp"] {
+        let message = refused(&format!("param {word}: Real;"), &format!("{word}(m)"));
+        let said = format!("`{word}` has a fixed meaning in the language");
+        assert!(message.contains(&said), "{message}");
+    }
+    let message = refused("param rot: Real;", "rot(m)");
+    assert!(message.contains("hides the function") && message.contains("`rot*(...)`"));
+    assert!(checked("param rot: Real;", "rot*(m)").is_ok());
+}
+
+#[test]
+fn components_are_counted_from_one() {
+    same("Γ[1]", "dot(E1, Γ)");
+    same("Γ[3]^2", "dot(Γ, E3)^2");
+    same("J[1, 2]", "dot(E1, J*E2)");
+    same("(Λ*Γ)[2]", "dot(E2, Λ*Γ)");
+    same("(Γ*v^T)[2, 3]", "Γ[2]*v[3]");
+    same("J^T[1, 3]", "J[3, 1]");
+    for (text, said) in [
+        ("Γ[0]", "counted from 1 to 3"),
+        ("Γ[4]", "there is no component 4"),
+        ("w[5]", "counted from 1 to 4"),
+        ("F[1, 3]", "counted from 1 to 2"),
+        ("F[4, 1]", "counted from 1 to 3"),
+        ("Γ[1, 1]", "a vector of length 3"),
+        ("J[1]", "`A[1, 2]`"),
+        ("m[1]", "a number has no components"),
+        ("Γ[k]", "counted from 1"),
+        ("Γ[]", "counted from 1"),
+        ("Γ[-1]", "counted from 1"),
+        ("v^T[1]", "has no component with one index"),
+    ] {
+        let message = refused("", text);
+        assert!(message.contains(said), "{text}: {message}");
+    }
+    assert_eq!(accepted("w[4]").shape(), crate::expr::shape::Shape::SCALAR);
+}
+
+#[test]
+fn a_size_with_a_name_has_the_components_of_its_smallest() {
+    let model = |index: u32| {
+        format!(
+            "model Body {{ dim n in 3..=8; param J: Sym<n>; param v: Vec<n>; \
+             group Λ: SO<n> velocity Ω; constraint next(Λ) = Λ*Ω; \
+             lagrangian = -tr((J + diag(v))*Ω)/h - v[{index}]; }}"
+        )
+    };
+    let checked = |index| check(&tokens(&model(index)).and_then(parse)?);
+    assert!(checked(3).is_ok());
+    let message = checked(4).map_or_else(|e| e.to_string(), |_| "accepted".to_owned());
+    assert!(message.contains("the smallest `n`"), "{message}");
+}
+
+#[test]
+fn functions_have_their_parities_and_relations() {
+    same("sin(-m)", "-sin(m)");
+    same("cos(g - m)", "cos(m - g)");
+    same("abs(m - g)", "abs(g - m)");
+    same("cosh(m)^2 - sinh(m)^2", "1");
+    same("sin(m)^2 + cos(m)^2", "1");
+    same("tanh(m)*cosh(m)", "sinh(m)");
+    same("exp(m) - exp(-m)", "2*sinh(m)");
+    same("abs(m)", "sign(m)*m");
+    let different = |a: &str, b: &str| {
+        let spec = checked("", a).unwrap_or_else(|e| panic!("{a}: {e}"));
+        let algebra = Algebra::new(&spec.symbols);
+        assert!(!algebra.equal(&spec.typed, &accepted(b)), "{a} is not {b}");
+    };
+    different("sin(m)", "sin(g)");
+    different("sin(m)", "cos(m)");
+    different("sinh(m)", "sin(m)");
+    different("sign(m)", "sign(g)");
+    different("abs(m)", "m");
+    different("exp(m)", "exp(-m)");
+    different("cosh(m)^2 + sinh(m)^2", "1");
+}
+
+#[test]
+fn a_diagonal_is_that_of_a_vector_or_of_a_matrix() {
+    same(
+        "tr(diag(Γ)*J)",
+        "Γ[1]*J[1, 1] + Γ[2]*J[2, 2] + Γ[3]*J[3, 3]",
+    );
+    same("tr(diag(J)*J)", "J[1, 1]^2 + J[2, 2]^2 + J[3, 3]^2");
+    same(
+        "dot(v, diag(v)*Γ)",
+        "v[1]^2*Γ[1] + v[2]^2*Γ[2] + v[3]^2*Γ[3]",
+    );
+    assert!(refused("", "tr(diag(F))").contains("square matrix"));
+}
