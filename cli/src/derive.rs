@@ -1,6 +1,7 @@
 //! `clebsch derive`: the equations of a model, from its text.
 //! Takes a model of the gallery or a file; gives text, LaTeX, Markdown, Rust or JSON.
 
+use crate::Streams;
 use crate::failure::Failure;
 use crate::gallery::Gallery;
 use crate::suggestion::did_you_mean;
@@ -14,15 +15,22 @@ use std::path::Path;
 ///
 /// # Errors
 /// Usage: neither a model nor a readable file, or a text that does not derive.
-pub fn derive(gallery: &Gallery, matches: &ArgMatches, out: &mut dyn Write) -> Result<(), Failure> {
+pub fn derive(
+    gallery: &Gallery,
+    matches: &ArgMatches,
+    streams: &mut Streams<'_>,
+) -> Result<(), Failure> {
     let text = |key: &str| matches.get_one::<String>(key).map_or("", String::as_str);
     if matches.get_flag("write") {
         return write_all(gallery, Path::new("generated"));
     }
     let (name, source) = source(gallery, text("model"))?;
-    let derivation = derive_text(&name, &source, text("format"), matches.get_flag("explain"))
-        .map_err(Failure::Usage)?;
-    out.write_all(derivation.as_bytes())?;
+    let (derivation, warnings) =
+        derive_text(&name, &source, text("format"), matches.get_flag("explain"))
+            .map_err(Failure::Usage)?;
+    streams.out.write_all(derivation.as_bytes())?;
+    // What cannot be written there is in the derivation too.
+    let _ = streams.err.write_all(warnings.as_bytes());
     Ok(())
 }
 
@@ -49,6 +57,7 @@ fn source(gallery: &Gallery, name: &str) -> Result<(String, String), Failure> {
 
 /// The derivation of the model text `source` (of the file or model `name`) in the form `format`:
 /// text, latex, markdown, rust or json. `explain` adds the proof, in all forms but rust and json.
+/// Beside it the warnings, with line, column and caret.
 ///
 /// # Errors
 /// The engine's message with line, column and caret.
@@ -57,11 +66,12 @@ pub fn derive_text(
     source: &str,
     format: &str,
     explain: bool,
-) -> Result<String, String> {
+) -> Result<(String, String), String> {
     let derivation =
         derive_source(source).map_err(|errors| format!("\n{}", errors.render(source, name)))?;
+    let warnings = derivation.render_warnings(source, name);
     let format = match format {
-        "rust" => return generated::rust(&derivation),
+        "rust" => return Ok((generated::rust(&derivation)?, warnings)),
         "latex" => Format::Latex,
         "markdown" => Format::Markdown,
         "json" => Format::Json,
@@ -78,7 +88,7 @@ pub fn derive_text(
             Format::Text | Format::MathMl | Format::Json => printed.push_str(&format!("\n{proof}")),
         }
     }
-    Ok(printed)
+    Ok((printed, warnings))
 }
 
 /// The proof by normal form, and what equality saturation makes of each of its steps.

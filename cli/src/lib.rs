@@ -106,7 +106,7 @@ fn dispatch(
         Some(("compare", matches)) => compare::compare(gallery, matches, streams),
         Some(("figures", matches)) => figures::figures(gallery, matches, streams),
         Some(("derive", matches)) => {
-            derive::derive(gallery, matches, streams.out)?;
+            derive::derive(gallery, matches, streams)?;
             Ok(DONE)
         }
         // clap demands a subcommand and knows no other.

@@ -24,6 +24,17 @@ impl Place {
         }
     }
 
+    /// Line and column of its start, counted from 1, where tokens know where they stand.
+    pub fn line_and_column(self) -> Option<(usize, usize)> {
+        #[cfg(feature = "locations")]
+        {
+            let start = self.first.start();
+            Some((start.line, start.column + 1))
+        }
+        #[cfg(not(feature = "locations"))]
+        None
+    }
+
     /// From the start of one range to the end of another.
     pub fn to(self, end: Place) -> Place {
         Place {
@@ -91,6 +102,23 @@ impl Diagnostic {
         }
         text
     }
+
+    /// The diagnostic for a terminal, with a word on how grave it is: file, line, column, the line
+    /// itself and carets.
+    #[cfg(feature = "locations")]
+    pub fn render(&self, level: &str, source: &str, file: &str) -> String {
+        let mut out = format!("{level}: {}\n", self.message);
+        out.push_str(&snippet(source, file, self.place));
+        for (place, text) in &self.also {
+            out.push_str(&format!("  note: {text}\n"));
+            out.push_str(&snippet(source, file, *place));
+        }
+        for line in &self.help {
+            out.push_str(&format!("  = help: {line}\n"));
+        }
+        out.push('\n');
+        out
+    }
 }
 
 /// All mistakes found before a stage gave up; never empty when returned as an error.
@@ -152,20 +180,10 @@ impl Errors {
     /// The mistakes as text for a terminal: file, line, column, the line itself and carets.
     #[cfg(feature = "locations")]
     pub fn render(&self, source: &str, file: &str) -> String {
-        let mut out = String::new();
-        for d in &self.list {
-            out.push_str(&format!("error: {}\n", d.message));
-            out.push_str(&snippet(source, file, d.place));
-            for (place, text) in &d.also {
-                out.push_str(&format!("  note: {text}\n"));
-                out.push_str(&snippet(source, file, *place));
-            }
-            for line in &d.help {
-                out.push_str(&format!("  = help: {line}\n"));
-            }
-            out.push('\n');
-        }
-        out
+        self.list
+            .iter()
+            .map(|d| d.render("error", source, file))
+            .collect()
     }
 }
 

@@ -137,6 +137,7 @@ impl std::error::Error for EvalError {}
 #[derive(Clone, Default, Debug)]
 pub struct Assignment {
     values: Vec<(String, i8, Matrix)>,
+    sizes: Vec<usize>,
 }
 
 impl Assignment {
@@ -162,9 +163,22 @@ impl Assignment {
         }
     }
 
+    /// Gives every dimension that has only a name its size, in the order of declaration.
+    #[must_use]
+    pub fn sized(mut self, sizes: Vec<usize>) -> Assignment {
+        self.sizes = sizes;
+        self
+    }
+
     /// Sets a number that does not change in time.
     pub fn set_scalar(&mut self, name: &str, value: f64) {
         self.set(name, 0, 1, 1, &[value]);
+    }
+
+    /// The value that does not change in time, under this name.
+    pub(crate) fn value(&self, name: &str) -> Option<&Matrix> {
+        let found = self.values.iter().find(|(n, s, _)| n == name && *s == 0);
+        found.map(|(_, _, value)| value)
     }
 
     fn get(&self, symbols: &Symbols, l: Letter) -> Result<Matrix, EvalError> {
@@ -179,8 +193,8 @@ impl Assignment {
                 symbol.name, l.shift.time
             )));
         };
-        let fits = dim(symbol.shape.rows)? == value.rows
-            && dim(symbol.shape.cols)? == value.cols
+        let fits = self.dim(symbol.shape.rows)? == value.rows
+            && self.dim(symbol.shape.cols)? == value.cols
             && value.data.len() == value.rows * value.cols;
         if fits {
             Ok(value.clone())
@@ -188,12 +202,15 @@ impl Assignment {
             Err(EvalError::Shape(symbol.name.clone()))
         }
     }
-}
 
-fn dim(d: Dim) -> Result<usize, EvalError> {
-    match d {
-        Dim::Fixed(n) => Ok(n as usize),
-        Dim::Named(_) => Err(EvalError::NamedDimension),
+    fn dim(&self, d: Dim) -> Result<usize, EvalError> {
+        match d {
+            Dim::Fixed(n) => Ok(n as usize),
+            Dim::Named(i) => {
+                let size = self.sizes.get(i as usize).copied();
+                size.ok_or(EvalError::NamedDimension)
+            }
+        }
     }
 }
 
@@ -201,7 +218,7 @@ fn dim(d: Dim) -> Result<usize, EvalError> {
 pub fn evaluate(symbols: &Symbols, e: &Expr, values: &Assignment) -> Result<Matrix, EvalError> {
     let go = |x: &Expr| evaluate(symbols, x, values);
     let number = |x: &Expr| go(x).map(|m| m.get(0, 0));
-    let (rows, cols) = (dim(e.shape().rows)?, dim(e.shape().cols)?);
+    let (rows, cols) = (values.dim(e.shape().rows)?, values.dim(e.shape().cols)?);
     Ok(match e.node() {
         Node::Number(q) => Matrix::scalar(q.value()),
         Node::Letter(l) => values.get(symbols, *l)?,

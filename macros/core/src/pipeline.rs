@@ -30,7 +30,11 @@ pub fn expand(tokens: TokenStream) -> TokenStream {
         None => Ok(d),
     });
     match derived {
-        Ok(d) => emit::emit(&d, true),
+        Ok(d) => {
+            let mut items = emit::emit(&d, true);
+            items.extend(emit::notes(&d));
+            items
+        }
         Err(errors) => emit::fallback(&tokens, &errors),
     }
 }

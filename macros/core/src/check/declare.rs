@@ -41,6 +41,7 @@ pub struct Declared {
     pub step: SymbolId,
     pub dimensions: Vec<Dimension>,
     pub parameters: Vec<SymbolId>,
+    pub parameter_places: Vec<Place>,
     pub configurations: Vec<DeclaredGroup>,
     pub advected: Vec<DeclaredAdvected>,
     places: Vec<(String, Place)>,
@@ -122,6 +123,7 @@ pub fn declare(model: &Model, errors: &mut Errors) -> Declared {
         step,
         dimensions: Vec::new(),
         parameters: Vec::new(),
+        parameter_places: Vec::new(),
         configurations: Vec::new(),
         advected: Vec::new(),
         places: Vec::new(),
@@ -162,6 +164,7 @@ impl Declared {
                             .symbols
                             .add(&name.text, shape, structure, Role::Parameter);
                         self.parameters.push(id);
+                        self.parameter_places.push(name.place);
                     }
                 }
             }

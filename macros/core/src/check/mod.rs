@@ -65,6 +65,7 @@ pub fn check(model: &Model) -> Result<Spec, Errors> {
                         left: l,
                         relation: *relation,
                         right: r,
+                        place: *place,
                     });
                 }
                 Err(e) => errors.push(*e),
@@ -219,6 +220,7 @@ fn finish(
         step: declared.step,
         dimensions: declared.dimensions,
         parameters: declared.parameters,
+        parameter_places: declared.parameter_places,
         assumptions,
         configurations,
         advected,

@@ -125,6 +125,8 @@ pub struct Assumption {
     pub relation: Comparison,
     /// Right side.
     pub right: Expr,
+    /// Where it stands.
+    pub place: Place,
 }
 
 /// A named range `dim n in from..=to`.
@@ -159,6 +161,8 @@ pub struct Spec {
     pub dimensions: Vec<Dimension>,
     /// Parameters in order.
     pub parameters: Vec<SymbolId>,
+    /// Where their names stand in their declarations.
+    pub parameter_places: Vec<Place>,
     /// Conditions on them.
     pub assumptions: Vec<Assumption>,
     /// Configurations in order.

@@ -10,6 +10,7 @@ pub mod certificate;
 pub mod clebsch;
 pub mod continuous;
 pub mod invariants;
+pub mod kinetic;
 pub mod lie;
 pub mod limit;
 pub mod momentum;
@@ -21,6 +22,7 @@ pub mod reversal;
 pub mod tangent;
 pub mod transport;
 pub mod variation;
+pub mod warnings;
 
 use crate::algebra::Algebra;
 use crate::check::spec::{Group, Side, Spec};
@@ -89,12 +91,16 @@ pub struct Derivation {
     pub limit: Result<limit::Limit, String>,
     /// The equations of motion of that limit, where there is one.
     pub continuous: Option<continuous::Continuous>,
+    /// The kinetic energy, also of an action that has no limit as a whole.
+    pub kinetic: Option<kinetic::Kinetic>,
     /// The Lie-Poisson bracket of the reduced space.
     pub bracket: bracket::Bracket,
     /// Conserved quantities.
     pub invariants: Vec<invariants::Invariant>,
     /// How many there are, and the Lax form.
     pub integrability: invariants::Integrability,
+    /// What derives but is hardly meant.
+    pub warnings: Vec<warnings::Warning>,
     /// The scheduled residual, once it has been asked for.
     pub(crate) residual: OnceLock<Program>,
 }
@@ -242,6 +248,7 @@ pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
     let assumed = assumptions::equations(&spec, &letters.symbols);
     let reversal = reversal::reversal(&spec, &action, &assumed, &algebra);
     let limit = limit::limit(&spec, &letters, &action, &variations, &assumed, &algebra);
+    let kinetic = kinetic::kinetic(&spec, &letters, &action, limit.as_ref().ok(), &assumed);
     let continuous = limit
         .as_ref()
         .ok()
@@ -254,11 +261,25 @@ pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
         balances: &balances,
         bracket: &bracket,
         solve: &solve,
-        limit: limit.as_ref().ok(),
+        // Momenta that do not determine the velocities have no energy.
+        limit: limit.as_ref().ok().filter(|_| {
+            let rank = kinetic.as_ref().and_then(|k| k.rank);
+            rank.is_none_or(|(rank, n)| rank == n)
+        }),
         assumed: &assumed,
         algebra: &algebra,
     });
     bounded(&algebra)?;
+    let warnings = warnings::warnings(&warnings::Inputs {
+        spec: &spec,
+        letters: &letters,
+        action: &action,
+        variations: &variations,
+        reversal: &reversal,
+        limit: &limit,
+        kinetic: kinetic.as_ref(),
+        assumed: &assumed,
+    });
     Ok(Derivation {
         spec,
         letters,
@@ -274,9 +295,11 @@ pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
         reversal,
         limit,
         continuous,
+        kinetic,
         bracket,
         invariants,
         integrability,
+        warnings,
         residual: OnceLock::new(),
     })
 }

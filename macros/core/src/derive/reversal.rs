@@ -29,8 +29,8 @@ impl Reversal {
 /// Largest left-over that is shown.
 const LARGEST: u32 = 40;
 
-/// Whether `ℓ(q0, q1, h) = -ℓ(q1, q0, -h)` up to constants, `assumed` being what vanishes.
-pub fn reversal(spec: &Spec, action: &Action, assumed: &[Expr], algebra: &Algebra) -> Reversal {
+/// `ℓ(q0, q1, h) + ℓ(q1, q0, -h)`, written by the velocities and what stands at the start of the edge.
+pub(crate) fn sum(spec: &Spec, action: &Action) -> Expr {
     let s = &spec.symbols;
     let mut swap: Vec<(Letter, Expr)> = vec![(
         at(spec.step, Shift::HERE),
@@ -48,7 +48,13 @@ pub fn reversal(spec: &Spec, action: &Action, assumed: &[Expr], algebra: &Algebr
     }
     let reversed = expr::substitute(s, &action.total, &swap);
     let sum = expr::add(action.total.clone(), reversed);
-    let sum = expr::substitute(s, &sum, &forward);
+    expr::substitute(s, &sum, &forward)
+}
+
+/// Whether `ℓ(q0, q1, h) = -ℓ(q1, q0, -h)` up to constants, `assumed` being what vanishes.
+pub fn reversal(spec: &Spec, action: &Action, assumed: &[Expr], algebra: &Algebra) -> Reversal {
+    let s = &spec.symbols;
+    let sum = sum(spec, action);
     let constant = |e: &Expr| {
         expr::letters(e)
             .iter()

@@ -6,6 +6,7 @@ use super::{motion, outlook, solution, source, structure};
 use crate::check::spec::{Group, Side};
 use crate::derive::Derivation;
 use crate::derive::clebsch::constraint_terms;
+use crate::derive::warnings::Warning;
 use crate::expr::shape::{Shape, Structure};
 use crate::expr::{self, Expr, Node, Shift};
 use crate::print::document::{Document, Inline, Section};
@@ -17,6 +18,7 @@ pub fn document(d: &Derivation) -> Document {
     let sheet = Sheet::new(d);
     let mut doc = Document::titled(format!("{}: discrete equations of motion", d.spec.name));
     model(&sheet, &mut doc);
+    warnings(&sheet, &mut doc);
     structure::reduction(&sheet, &mut doc);
     constraints(&sheet, &mut doc);
     action(&sheet, &mut doc);
@@ -48,6 +50,32 @@ fn model(sheet: &Sheet, doc: &mut Document) {
             "By its structure this is the system of section {number} of M. F. Dixon, Geometric integrators for continuum dynamics (2007), the thesis cited below; its Lagrangian and momenta are {factor} times those printed here, and its velocities bear the index of the end of their edge."
         ));
     }
+}
+
+/// What derives but is hardly meant; no section where there is nothing.
+fn warnings(sheet: &Sheet, doc: &mut Document) {
+    let list = &sheet.d.warnings;
+    if list.is_empty() {
+        return;
+    }
+    doc.remarks = list.iter().map(Warning::remark).collect();
+    let items = list.iter().map(|w| {
+        let mut words = Inline::marked(&w.diagnostic.message);
+        words.push(".".into());
+        for help in &w.diagnostic.help {
+            words.push(" ".into());
+            words.extend(Inline::marked(&capitalised(help)));
+            words.push(".".into());
+        }
+        words
+    });
+    doc.section("Warnings").list(items.collect());
+}
+
+fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().into_iter().flat_map(char::to_uppercase);
+    first.chain(letters).collect()
 }
 
 fn constraints(sheet: &Sheet, doc: &mut Document) {

@@ -312,8 +312,8 @@ pub fn node_locals(
 
 /// A number that no value of the expression exceeds, from the lengths of its letters: what its
 /// rounding is measured by.
-fn size(s: &Symbols, e: &Expr) -> Expr {
-    let of = |x: &Expr| size(s, x);
+pub(crate) fn magnitude(s: &Symbols, e: &Expr) -> Expr {
+    let of = |x: &Expr| magnitude(s, x);
     let own = |x: &Expr| {
         let square = if x.shape().is_scalar() {
             expr::mul(x.clone(), x.clone())
@@ -363,7 +363,7 @@ fn assumption(d: &Derivation, a: &Assumption) -> TokenStream {
     let holds = shown.unwrap_or_else(|| {
         // Equal to the rounding of a few operations on numbers of the size of the terms, which may
         // cancel: a difference of large terms is no small number.
-        let bound = w.operand(&size(s, &expr::sub(a.left.clone(), a.right.clone())));
+        let bound = w.operand(&magnitude(s, &expr::sub(a.left.clone(), a.right.clone())));
         let gap = if a.left.shape().is_scalar() {
             quote!(#difference.magnitude())
         } else {

@@ -15,6 +15,7 @@ mod lanes;
 mod left_factor;
 mod names;
 mod newton;
+mod notes;
 mod quaternionic;
 mod residual;
 mod sizes;
@@ -23,6 +24,9 @@ mod step;
 mod stepper;
 #[cfg(test)]
 mod tests;
+
+pub(crate) use items::magnitude;
+pub(crate) use notes::notes;
 
 use crate::derive::Derivation;
 use crate::diagnostic::{Diagnostic, Errors};

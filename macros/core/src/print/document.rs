@@ -8,8 +8,23 @@ use super::formula::Formula;
 pub struct Document {
     /// Title.
     pub title: String,
+    /// Remarks on the model as data, for what reads documents by program.
+    pub remarks: Vec<Remark>,
     /// Sections in order.
     pub sections: Vec<Section>,
+}
+
+/// What is remarked of a model, at which of its tokens.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Remark {
+    /// A word for what it is about, fixed over versions.
+    pub topic: &'static str,
+    /// What is the matter.
+    pub message: String,
+    /// What to do.
+    pub help: Vec<String>,
+    /// Line and column, counted from 1, in the text of the model, where they are known.
+    pub at: Option<(usize, usize)>,
 }
 
 /// A section.
@@ -48,6 +63,8 @@ pub enum Block {
 pub enum Inline {
     /// Words.
     Plain(String),
+    /// A piece of a model's text.
+    Code(String),
     /// Mathematics.
     Math(Formula),
     /// The number of an equation.
@@ -78,6 +95,18 @@ impl From<Formula> for Inline {
 }
 
 impl Inline {
+    /// A sentence in which pieces of a model's text stand between backticks.
+    pub fn marked(text: &str) -> Vec<Inline> {
+        let pieces = text.split('`').enumerate();
+        pieces
+            .filter(|(_, piece)| !piece.is_empty())
+            .map(|(i, piece)| match i % 2 {
+                0 => Inline::Plain(piece.to_owned()),
+                _ => Inline::Code(piece.to_owned()),
+            })
+            .collect()
+    }
+
     /// The number of the equation with this label.
     pub fn reference(label: &str) -> Inline {
         Inline::Reference {
@@ -123,6 +152,7 @@ impl Document {
     pub fn titled(title: impl Into<String>) -> Document {
         Document {
             title: title.into(),
+            remarks: Vec::new(),
             sections: Vec::new(),
         }
     }

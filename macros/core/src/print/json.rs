@@ -1,7 +1,7 @@
 //! JSON: the structure of a document, every formula as Unicode, LaTeX and MathML. Written by hand
 //! with keys in a fixed order, so that equal documents give equal bytes.
 
-use super::document::{Block, Document, Inline};
+use super::document::{Block, Document, Inline, Remark};
 use super::formula::Formula;
 use super::latex::{self, Dialect};
 use super::{Page, mathml, unicode};
@@ -34,12 +34,28 @@ pub(super) fn document(page: &Page, document: &Document) -> String {
         .collect();
     let root = Value::Object(vec![
         ("title", Value::Text(document.title.clone())),
+        (
+            "warnings",
+            Value::List(document.remarks.iter().map(remark).collect()),
+        ),
         ("sections", Value::List(sections)),
     ]);
     let mut out = String::new();
     write(&root, 0, &mut out);
     out.push('\n');
     out
+}
+
+fn remark(remark: &Remark) -> Value {
+    let help = remark.help.iter().cloned().map(Value::Text).collect();
+    let number = |n: Option<usize>| n.map_or(Value::Null, Value::Number);
+    Value::Object(vec![
+        ("topic", Value::Text(remark.topic.to_owned())),
+        ("message", Value::Text(remark.message.clone())),
+        ("help", Value::List(help)),
+        ("line", number(remark.at.map(|(line, _)| line))),
+        ("column", number(remark.at.map(|(_, column)| column))),
+    ])
 }
 
 /// One formula.
@@ -95,6 +111,7 @@ fn block(page: &Page, block: &Block, number: &mut usize) -> Value {
 fn sentence(page: &Page, parts: &[Inline]) -> Value {
     let part = |part: &Inline| match part {
         Inline::Plain(words) => Value::Object(vec![("text", Value::Text(words.clone()))]),
+        Inline::Code(code) => Value::Object(vec![("code", Value::Text(code.clone()))]),
         Inline::Math(f) => Value::Object(spellings(page, f)),
         Inline::Reference { number, .. } => {
             Value::Object(vec![("reference", Value::Number(*number))])

@@ -253,6 +253,7 @@ fn words(page: &Page, parts: &[Inline]) -> String {
     for part in parts {
         match part {
             Inline::Plain(words) => text.push_str(words),
+            Inline::Code(code) => text.push_str(&format!("`{code}`")),
             Inline::Reference { number, .. } => text.push_str(&format!("({number})")),
             Inline::Math(f) => {
                 let math = line(&page.linear(f));

@@ -1,0 +1,166 @@
+//! The kinetic energy of a step: the part of its action in 1/h, to second order in velocities
+//! `Ω = exp(s ξ)` at the identity. Takes the action; gives the quadratic form in `ξ`, whether or not
+//! the whole action has a limit of small steps, and its rank for general parameters.
+
+use super::Letters;
+use super::action::Action;
+use super::bracket;
+use super::lie;
+use super::limit::Limit;
+use super::variation::at;
+use crate::algebra::exact::{Matrix, Point, negate};
+use crate::algebra::{Algebra, Atom, Poly, Rational, assumed};
+use crate::check::spec::Spec;
+use crate::expr::shape::Shape;
+use crate::expr::{self, Expr, Letter, Shift};
+
+/// The quadratic form of the kinetic energy and how many velocities it sees.
+#[derive(Clone, Debug)]
+pub struct Kinetic {
+    /// The kinetic energy in the letters of [`Letters::variation`].
+    pub energy: Expr,
+    /// The rank of the form at a point in general position of parameters and configurations, and
+    /// the number of velocities; nothing where the form is too large to be evaluated.
+    pub rank: Option<(usize, usize)>,
+}
+
+/// Largest expression that is differentiated a second time.
+const LARGEST: u32 = 20_000;
+
+/// Most nodes that are evaluated for the rank.
+const EVALUATED: u64 = 400_000;
+
+/// Points in general position that are tried: the rank is the largest found.
+const POINTS: u64 = 3;
+
+/// The kinetic energy, where the step stands outside functions and roots.
+pub fn kinetic(
+    spec: &Spec,
+    letters: &Letters,
+    action: &Action,
+    limit: Option<&Limit>,
+    assumed: &[Expr],
+) -> Option<Kinetic> {
+    let energy = match limit {
+        Some(l) => l.kinetic.clone(),
+        None => expanded(spec, letters, action)?,
+    };
+    let rank = rank(spec, letters, &energy, assumed);
+    Some(Kinetic { energy, rank })
+}
+
+/// The second-order part in 1/h of an action that has no limit as a whole.
+fn expanded(spec: &Spec, letters: &Letters, action: &Action) -> Option<Expr> {
+    let s = &letters.symbols;
+    let algebra = Algebra::new(s);
+    let (mut identity, mut first, mut second) = (Vec::new(), Vec::new(), Vec::new());
+    for (c, xi) in spec.configurations.iter().zip(&letters.variation) {
+        let xi = lie::element(s, c.group, *xi);
+        let w = at(c.velocity, Shift::HERE);
+        identity.push((w, expr::identity(c.group.size())));
+        first.push((w, xi.clone()));
+        second.push((w, expr::mul(xi.clone(), xi)));
+    }
+    let l = expr::substitute(s, &action.total, &spec.end_of_edge());
+    let once = expr::directional(s, &l, &first);
+    if once.size() > LARGEST {
+        return None;
+    }
+    let twice = expr::add(
+        expr::directional(s, &once, &first),
+        expr::directional(s, &l, &second),
+    );
+    let twice = algebra.lower(&expr::substitute(s, &twice, &identity));
+    let h = Atom::Letter(at(spec.step, Shift::HERE));
+    let mut form = Poly::zero(Shape::SCALAR);
+    for (term, coefficient) in &twice.terms {
+        let mut term = term.clone();
+        let Some(i) = term.monomial.iter().position(|(a, _)| *a == h) else {
+            continue;
+        };
+        let (_, order) = term.monomial.remove(i);
+        if order == Rational::MINUS_ONE && !form.push(term, *coefficient) {
+            return None;
+        }
+    }
+    let form = algebra.raise(&form);
+    let inside = expr::contains(&form, at(spec.step, Shift::HERE));
+    (!algebra.exhausted() && !inside).then(|| expr::scale(Rational::HALF, form))
+}
+
+/// One letter of variation for each basis element of its Lie algebra.
+pub(crate) fn basis(
+    spec: &Spec,
+    letters: &Letters,
+    size: &dyn Fn(crate::expr::shape::Dim) -> usize,
+) -> Vec<(Letter, bracket::Element)> {
+    let mut out = Vec::new();
+    for (c, xi) in spec.configurations.iter().zip(&letters.variation) {
+        let elements = bracket::basis(c.group, size(c.group.size()));
+        out.extend(elements.into_iter().map(|e| (at(*xi, Shift::HERE), e)));
+    }
+    out
+}
+
+/// The gradients of the form, one for each configuration: columns of its matrix cost one
+/// evaluation each.
+pub(crate) fn gradients(letters: &Letters, form: &Expr) -> Vec<Expr> {
+    let list = letters.variation.iter();
+    list.map(|xi| expr::gradient(&letters.symbols, form, at(*xi, Shift::HERE)))
+        .collect()
+}
+
+fn rank(spec: &Spec, letters: &Letters, form: &Expr, equations: &[Expr]) -> Option<(usize, usize)> {
+    let s = &letters.symbols;
+    let gradients = gradients(letters, form);
+    let cost: u64 = gradients.iter().map(|g| u64::from(g.size())).sum();
+    let (mut best, mut found) = (None, 0);
+    for attempt in 0..crate::algebra::exact::ATTEMPTS {
+        let Some(mut point) = assumed::point(s, attempt, equations) else {
+            continue;
+        };
+        let basis = basis(spec, letters, &|n| point.dim(n));
+        if cost * basis.len() as u64 > EVALUATED {
+            return None;
+        }
+        let still = |p: &mut Point| {
+            for xi in &letters.variation {
+                let shape = s.get(*xi).shape;
+                let zero = Matrix::zeros(p.dim(shape.rows), p.dim(shape.cols));
+                p.set(at(*xi, Shift::HERE), zero);
+            }
+        };
+        let element = |p: &Point, letter: Letter, e: &bracket::Element| {
+            let shape = s.get(letter.symbol).shape;
+            let mut m = Matrix::zeros(p.dim(shape.rows), p.dim(shape.cols));
+            let cols = m.cols;
+            for (i, j, x) in e {
+                m.data[i * cols + j] = if *x < 0 { negate(1) } else { 1 };
+            }
+            m
+        };
+        let mut rows = Vec::with_capacity(basis.len());
+        for (letter, e) in &basis {
+            still(&mut point);
+            point.set(*letter, element(&point, *letter, e));
+            let values: Option<Vec<Matrix>> = gradients.iter().map(|g| point.value(g)).collect();
+            let Some(values) = values else { break };
+            let along = basis.iter().map(|(other, f)| {
+                let i = letters.variation.iter().position(|x| *x == other.symbol);
+                let value = i.and_then(|i| values.get(i));
+                value.map_or(0, |v| v.pairing(&element(&point, *other, f)))
+            });
+            rows.push(along.collect::<Vec<u64>>());
+        }
+        if rows.len() < basis.len() {
+            continue;
+        }
+        let n = basis.len();
+        best = best.max(Some((assumed::rank(&rows), n)));
+        found += 1;
+        if found == POINTS || best.is_some_and(|(r, n)| r == n) {
+            break;
+        }
+    }
+    best
+}

@@ -1,0 +1,132 @@
+//! Real values of letters by their structure, from a fixed seed: what a user would give, with
+//! symmetric matrices positive definite and numbers positive. Takes symbols; gives assignments for
+//! [`interpret`](crate::interpret).
+
+use crate::expr::shape::{Dim, Structure};
+use crate::expr::symbol::{SymbolId, Symbols};
+use crate::interpret::Assignment;
+
+/// A source of numbers that gives the same ones in every run (SplitMix64).
+pub(super) struct Draw(u64);
+
+impl Draw {
+    /// From a seed.
+    pub(super) fn new(seed: u64) -> Draw {
+        Draw(seed)
+    }
+
+    /// A number in [-1, 1).
+    pub(super) fn number(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut x = self.0;
+        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        x ^= x >> 31;
+        (x >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    /// A positive number between 1/e and e.
+    fn positive(&mut self) -> f64 {
+        self.number().exp()
+    }
+}
+
+/// The size that a dimension has here: its smallest.
+pub(super) fn size(symbols: &Symbols, d: Dim) -> usize {
+    symbols.sizes(d).0
+}
+
+/// No values yet; dimensions that have only a name take their smallest size.
+pub(super) fn nothing(symbols: &Symbols) -> Assignment {
+    let sizes = (0..symbols.dim_count()).map(|i| size(symbols, Dim::Named(i)));
+    Assignment::new().sized(sizes.collect())
+}
+
+/// A value of a letter as a user would give it: positive numbers, symmetric matrices positive
+/// definite, elements of groups. Vectors and skew matrices are multiplied by `scale`, and so is
+/// what a matrix without structure has beside a positive definite one.
+pub(super) fn natural(symbols: &Symbols, id: SymbolId, scale: f64, draw: &mut Draw) -> Vec<f64> {
+    let symbol = symbols.get(id);
+    let (n, m) = (
+        size(symbols, symbol.shape.rows),
+        size(symbols, symbol.shape.cols),
+    );
+    if symbol.shape.is_scalar() {
+        return vec![draw.positive()];
+    }
+    let free = |draw: &mut Draw, count: usize| -> Vec<f64> {
+        (0..count).map(|_| scale * draw.number()).collect()
+    };
+    match symbol.structure {
+        Structure::Symmetric => positive_definite(n, draw),
+        Structure::Diagonal => {
+            let mut d = vec![0.0; n * n];
+            d.iter_mut()
+                .step_by(n + 1)
+                .for_each(|x| *x = draw.positive());
+            d
+        }
+        Structure::Skew => skew(n, scale, draw),
+        Structure::General | Structure::Invertible if symbol.shape.is_square() => {
+            let rest = free(draw, n * n);
+            let base = positive_definite(n, draw);
+            base.iter().zip(rest).map(|(a, b)| a + 0.1 * b).collect()
+        }
+        Structure::General | Structure::Invertible => free(draw, n * m),
+        Structure::Orthogonal => rotation(n, draw),
+        Structure::UnitQuaternion => {
+            let q: Vec<f64> = (0..4).map(|_| draw.number()).collect();
+            let norm = q.iter().map(|x| x * x).sum::<f64>().sqrt().max(1e-3);
+            let [w, x, y, z] = [0, 1, 2, 3].map(|i| q[i] / norm);
+            vec![w, -x, -y, -z, x, w, -z, y, y, z, w, -x, z, -y, x, w]
+        }
+        Structure::RigidMotion => {
+            let r = rotation(3, draw);
+            let x = free(draw, 3);
+            let entry = |i: usize, j: usize| match (i, j) {
+                (3, j) => f64::from(u8::from(j == 3)),
+                (i, 3) => x[i],
+                (i, j) => r[i * 3 + j],
+            };
+            (0..16).map(|k| entry(k / 4, k % 4)).collect()
+        }
+    }
+}
+
+fn skew(n: usize, scale: f64, draw: &mut Draw) -> Vec<f64> {
+    let mut a = vec![0.0; n * n];
+    for i in 0..n {
+        for j in i + 1..n {
+            let x = scale * draw.number();
+            (a[i * n + j], a[j * n + i]) = (x, -x);
+        }
+    }
+    a
+}
+
+/// `A A^T + Id/2`.
+fn positive_definite(n: usize, draw: &mut Draw) -> Vec<f64> {
+    let a: Vec<f64> = (0..n * n).map(|_| draw.number()).collect();
+    let entry = |i: usize, j: usize| {
+        let half = if i == j { 0.5 } else { 0.0 };
+        (0..n).map(|k| a[i * n + k] * a[j * n + k]).sum::<f64>() + half
+    };
+    (0..n * n).map(|k| entry(k / n, k % n)).collect()
+}
+
+/// A product of one turn in every coordinate plane.
+fn rotation(n: usize, draw: &mut Draw) -> Vec<f64> {
+    let mut r: Vec<f64> = (0..n * n)
+        .map(|k| f64::from(u8::from(k / n == k % n)))
+        .collect();
+    for i in 0..n {
+        for j in i + 1..n {
+            let (sin, cos) = (3.0 * draw.number()).sin_cos();
+            for row in 0..n {
+                let (a, b) = (r[row * n + i], r[row * n + j]);
+                (r[row * n + i], r[row * n + j]) = (cos * a - sin * b, sin * a + cos * b);
+            }
+        }
+    }
+    r
+}

@@ -1,0 +1,36 @@
+//! Whether the action of a step has a limit of small steps. Takes the limit as derived; gives the
+//! warning that there is none, with what keeps it from having one.
+
+use super::{Inputs, Topic, Warning};
+use crate::algebra::Algebra;
+use crate::derive::limit;
+use crate::diagnostic::Diagnostic;
+
+/// The warning, if there is no limit.
+pub(super) fn limit(x: &Inputs) -> Option<Warning> {
+    let why = x.limit.as_ref().err()?;
+    // Of a model for all matrices those that are symmetric may have one.
+    if let Some(action) = x.for_symmetric_matrices(x.action) {
+        let algebra = Algebra::new(&x.letters.symbols);
+        let special = limit::limit(
+            x.spec,
+            x.letters,
+            &action,
+            x.variations,
+            x.assumed,
+            &algebra,
+        );
+        if special.is_ok() && !algebra.exhausted() {
+            return None;
+        }
+    }
+    let d = Diagnostic::new(
+        x.spec.lagrangian_place,
+        format!("the discrete Lagrangian has no limit of small steps: {why}"),
+    )
+    .help(
+        "the Lagrangian states (kinetic - potential energy) times the step: kinetic terms are \
+         divided by `h`, potentials multiplied by `h`, as in `-tr(J*Ω)/h - h*dot(gU, Γ)`",
+    );
+    Some(Warning::new(Topic::NoLimit, d))
+}

@@ -1,0 +1,177 @@
+//! What derives but is hardly meant: no kinetic energy, a wrong sign, a step of first order that
+//! looks symmetric, parameters and terms without effect, assumptions that say nothing. Takes a
+//! derivation's parts; gives warnings, each with its tokens and a way out. Nothing here changes
+//! what is derived, and work is bounded: what is too large to decide is not warned of.
+
+mod assumptions;
+mod draw;
+mod effect;
+mod feasible;
+mod limit;
+mod order;
+mod sign;
+#[cfg(test)]
+mod tests;
+
+use super::action::Action;
+use super::kinetic::Kinetic;
+use super::limit::Limit;
+use super::reversal::Reversal;
+use super::variation::Variation;
+use super::{Derivation, Letters};
+use crate::algebra::assumed;
+use crate::check::spec::Spec;
+use crate::diagnostic::Diagnostic;
+use crate::expr::shape::Structure;
+use crate::expr::{self, Expr, Letter, Part, Shift};
+use crate::print::document::Remark;
+
+/// What a warning is about.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub enum Topic {
+    /// The action of a step has no limit of small steps.
+    NoLimit,
+    /// The kinetic energy does not depend on every velocity.
+    DegenerateKineticEnergy,
+    /// The kinetic energy is not positive.
+    SignOfKineticEnergy,
+    /// The step is not symmetric under time reversal, though no rule of one side was asked for.
+    FirstOrder,
+    /// A parameter that is used nowhere.
+    UnusedParameter,
+    /// A potential, or a term, that is constant along every motion.
+    ConstantTerm,
+    /// An assumption that every choice of the parameters meets, or none.
+    Assumption,
+}
+
+impl Topic {
+    /// The name in JSON.
+    pub fn name(self) -> &'static str {
+        match self {
+            Topic::NoLimit => "no-limit",
+            Topic::DegenerateKineticEnergy => "degenerate-kinetic-energy",
+            Topic::SignOfKineticEnergy => "sign-of-kinetic-energy",
+            Topic::FirstOrder => "first-order",
+            Topic::UnusedParameter => "unused-parameter",
+            Topic::ConstantTerm => "constant-term",
+            Topic::Assumption => "assumption",
+        }
+    }
+}
+
+/// One warning.
+#[derive(Clone, Debug)]
+pub struct Warning {
+    /// What it is about.
+    pub topic: Topic,
+    /// Its tokens, its words and the way out.
+    pub diagnostic: Diagnostic,
+}
+
+impl Warning {
+    /// A warning.
+    pub fn new(topic: Topic, diagnostic: Diagnostic) -> Warning {
+        Warning { topic, diagnostic }
+    }
+
+    /// The warning as data.
+    pub fn remark(&self) -> Remark {
+        Remark {
+            topic: self.topic.name(),
+            message: self.diagnostic.message.clone(),
+            help: self.diagnostic.help.clone(),
+            at: self.diagnostic.place.line_and_column(),
+        }
+    }
+}
+
+/// The parts of a derivation that warnings are made from.
+pub(crate) struct Inputs<'a> {
+    pub(crate) spec: &'a Spec,
+    pub(crate) letters: &'a Letters,
+    pub(crate) action: &'a Action,
+    pub(crate) variations: &'a [Variation],
+    pub(crate) reversal: &'a Reversal,
+    pub(crate) limit: &'a Result<Limit, String>,
+    pub(crate) kinetic: Option<&'a Kinetic>,
+    pub(crate) assumed: &'a [Expr],
+}
+
+/// Largest expression that is evaluated at points.
+const LARGEST: u32 = 20_000;
+
+impl Inputs<'_> {
+    /// Whether an expression vanishes for all admitted parameters: at exact points. What is too
+    /// large counts as not vanishing.
+    fn vanishes(&self, e: &Expr) -> bool {
+        e.size() <= LARGEST && assumed::vanishes(&self.letters.symbols, self.assumed, e)
+    }
+
+    /// An expression as text.
+    fn text(&self, e: &Expr) -> String {
+        let style = crate::print::Style::new(&self.spec.time_index);
+        let e = expr::collect(&self.letters.symbols, e);
+        crate::print::expression(
+            &e,
+            &self.letters.symbols,
+            &style,
+            crate::print::Format::Text,
+        )
+    }
+
+    /// The action with the symmetric part in place of every square matrix among the parameters
+    /// that has no structure: a model for all matrices, as a general left factor, is judged by
+    /// those. Nothing where there is no such parameter.
+    fn for_symmetric_matrices(&self, action: &Action) -> Option<Action> {
+        let s = &self.letters.symbols;
+        let symmetric: Vec<(Letter, Expr)> = self
+            .spec
+            .parameters
+            .iter()
+            .filter(|p| {
+                let symbol = s.get(**p);
+                symbol.structure == Structure::General
+                    && symbol.shape.is_square()
+                    && !symbol.shape.is_scalar()
+            })
+            .map(|p| {
+                let letter = Letter {
+                    symbol: *p,
+                    shift: Shift::HERE,
+                };
+                (letter, expr::part(Part::Symmetric, expr::here(s, *p)))
+            })
+            .collect();
+        let with = |e: &Expr| expr::substitute(s, e, &symmetric);
+        (!symmetric.is_empty()).then(|| Action {
+            total: with(&action.total),
+            edge: with(&action.edge),
+            nodal: with(&action.nodal),
+            distributed: with(&action.distributed),
+        })
+    }
+}
+
+/// All warnings of a model, in the order of their topics.
+pub(crate) fn warnings(x: &Inputs) -> Vec<Warning> {
+    let mut all = Vec::new();
+    all.extend(limit::limit(x));
+    all.extend(sign::degenerate(x));
+    all.extend(sign::sign(x));
+    all.extend(order::order(x));
+    all.extend(effect::parameters(x));
+    all.extend(effect::terms(x));
+    all.extend(assumptions::assumptions(x));
+    all
+}
+
+impl Derivation {
+    /// The warnings as text for a terminal: file, line, column, the line itself and carets.
+    #[cfg(feature = "locations")]
+    pub fn render_warnings(&self, source: &str, file: &str) -> String {
+        let list = self.warnings.iter();
+        list.map(|w| w.diagnostic.render("warning", source, file))
+            .collect()
+    }
+}

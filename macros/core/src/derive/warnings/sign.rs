@@ -1,0 +1,188 @@
+//! The sign of the kinetic energy. Takes the quadratic form; gives the warnings that it does not
+//! see every velocity, or is not positive for parameters as a user would give them. For given
+//! parameters the emitted code says the same of the state it starts from.
+
+use super::draw::{self, Draw};
+use super::{Inputs, Topic, Warning, assumptions};
+use crate::derive::kinetic;
+use crate::derive::variation::at;
+use crate::diagnostic::Diagnostic;
+use crate::expr::symbol::Role;
+use crate::expr::{self, Expr, Shift};
+use crate::interpret::{Assignment, evaluate};
+
+/// What is said of signs, wherever a sign is wrong.
+pub const CONVENTION: &str = "the Lagrangian states kinetic minus potential energy: of a body with \
+     second moments J write `-tr(J*Ω)/h`, which is +½ ω·Iω times the step with I = tr(J) Id - J; \
+     if what is typed is another multiple of the action, say which by `scale`";
+
+/// The warning that the kinetic energy does not depend on every velocity.
+pub(super) fn degenerate(x: &Inputs) -> Option<Warning> {
+    let (rank, n) = x.kinetic?.rank?;
+    if rank == n {
+        return None;
+    }
+    let message = match rank {
+        0 => "the Lagrangian has no kinetic energy: no term is quadratic in the velocities and \
+              divided by `h`"
+            .to_owned(),
+        _ => format!(
+            "the kinetic energy is degenerate: its Hessian in all velocities has rank {rank} of \
+             {n} whatever the parameters, so that momenta do not determine velocities and there \
+             is no energy"
+        ),
+    };
+    let help = match rank {
+        0 => "did you forget `/h`? Kinetic terms are divided by the step, as in `-tr(J*Ω)/h`",
+        _ => {
+            "give every velocity a kinetic energy; did you forget `/h` in one of the terms? A body \
+             needs I = tr(J) Id - J > 0: a single point mass has no inertia about its own direction"
+        }
+    };
+    let d = Diagnostic::new(x.spec.lagrangian_place, message).help(help);
+    Some(Warning::new(Topic::DegenerateKineticEnergy, d))
+}
+
+/// Parameters that are tried.
+const DRAWS: u64 = 24;
+
+/// Most nodes that are evaluated for one of them.
+const EVALUATED: u64 = 20_000;
+
+/// The warning that the kinetic energy is positive for none of the parameters that are tried.
+pub(super) fn sign(x: &Inputs) -> Option<Warning> {
+    let kinetic = x.kinetic?;
+    match kinetic.rank? {
+        (rank, n) if rank < n => return None,
+        _ => {}
+    }
+    let gradients = kinetic::gradients(x.letters, &kinetic.energy);
+    let s = &x.letters.symbols;
+    let basis = kinetic::basis(x.spec, x.letters, &|n| draw::size(s, n));
+    let cost: u64 = gradients.iter().map(|g| u64::from(g.size())).sum();
+    if cost.saturating_mul(basis.len() as u64) > EVALUATED {
+        return None;
+    }
+    let (mut tried, mut negative) = (0, true);
+    for seed in 0..DRAWS {
+        let Some(values) = draw_state(x, &kinetic.energy, seed) else {
+            continue;
+        };
+        let Some(matrix) = hessian(x, &gradients, &values) else {
+            continue;
+        };
+        if is_positive_definite(&matrix) {
+            return None;
+        }
+        let opposite: Vec<Vec<f64>> = matrix
+            .iter()
+            .map(|row| row.iter().map(|v| -v).collect())
+            .collect();
+        negative &= is_positive_definite(&opposite);
+        tried += 1;
+    }
+    if tried == 0 {
+        return None;
+    }
+    let how = if negative { "negative" } else { "not positive" };
+    let d = Diagnostic::new(
+        x.spec.lagrangian_place,
+        format!(
+            "the kinetic energy, {}, is {how} definite: so it came out for all of {tried} random \
+             parameters with positive numbers and positive definite matrices",
+            x.text(&kinetic.energy)
+        ),
+    )
+    .help(CONVENTION);
+    Some(Warning::new(Topic::SignOfKineticEnergy, d))
+}
+
+/// Values for the letters of the form, parameters among them admitted by the assumptions.
+fn draw_state(x: &Inputs, energy: &Expr, seed: u64) -> Option<Assignment> {
+    let s = &x.letters.symbols;
+    let mut source = Draw::new(seed);
+    let mut values = draw::nothing(s);
+    // Coupling terms are small at some of the points.
+    let scale = [1.0, 0.1, 0.01, 0.001][(seed % 4) as usize];
+    let mut letters: Vec<_> = expr::letters(energy).iter().map(|l| l.symbol).collect();
+    letters.extend(x.spec.parameters.iter().copied());
+    letters.sort();
+    letters.dedup();
+    for id in letters {
+        if s.get(id).role == Role::Variation {
+            continue;
+        }
+        let symbol = s.get(id);
+        let data = draw::natural(s, id, scale, &mut source);
+        let (rows, cols) = (
+            draw::size(s, symbol.shape.rows),
+            draw::size(s, symbol.shape.cols),
+        );
+        values.set(&symbol.name, 0, rows, cols, &data);
+    }
+    assumptions::admitted(x, values)
+}
+
+/// The matrix of the form: column by column the gradient at a basis element.
+fn hessian(x: &Inputs, gradients: &[Expr], values: &Assignment) -> Option<Vec<Vec<f64>>> {
+    let s = &x.letters.symbols;
+    let basis = kinetic::basis(x.spec, x.letters, &|n| draw::size(s, n));
+    let mut values = values.clone();
+    let element = |id, e: &[(usize, usize, i64)]| {
+        let shape = s.get(id).shape;
+        let (rows, cols) = (draw::size(s, shape.rows), draw::size(s, shape.cols));
+        let mut data = vec![0.0; rows * cols];
+        for (i, j, v) in e {
+            data[i * cols + j] = *v as f64;
+        }
+        (rows, cols, data)
+    };
+    let mut columns = Vec::with_capacity(basis.len());
+    for (letter, e) in &basis {
+        for xi in &x.letters.variation {
+            let (rows, cols, data) = element(*xi, &[]);
+            values.set(&s.get(*xi).name, 0, rows, cols, &data);
+        }
+        let (rows, cols, data) = element(letter.symbol, e);
+        values.set(&s.get(letter.symbol).name, 0, rows, cols, &data);
+        let parts: Vec<_> = gradients
+            .iter()
+            .map(|g| evaluate(s, g, &values).ok())
+            .collect::<Option<_>>()?;
+        let along = basis.iter().map(|(other, f)| {
+            let i = x
+                .letters
+                .variation
+                .iter()
+                .position(|v| at(*v, Shift::HERE) == *other);
+            let part = i.and_then(|i| parts.get(i));
+            let entries = f.iter();
+            part.map_or(0.0, |m| {
+                entries.map(|(r, c, v)| m.get(*r, *c) * *v as f64).sum()
+            })
+        });
+        columns.push(along.collect::<Vec<f64>>());
+    }
+    let finite = columns.iter().flatten().all(|v| v.is_finite());
+    finite.then_some(columns)
+}
+
+/// Cholesky's elimination: all pivots are positive, to the rounding of the diagonal.
+fn is_positive_definite(matrix: &[Vec<f64>]) -> bool {
+    let n = matrix.len();
+    let mut a = matrix.to_vec();
+    for k in 0..n {
+        let size = matrix[k][k].abs();
+        if a[k][k] <= 1e-12 * size || a[k][k] <= 0.0 {
+            return false;
+        }
+        let pivot = a[k].clone();
+        for row in &mut a[k + 1..] {
+            let f = row[k] / pivot[k];
+            for (x, p) in row.iter_mut().zip(&pivot).skip(k) {
+                *x -= f * p;
+            }
+        }
+    }
+    true
+}

@@ -1,0 +1,261 @@
+//! Models that derive but are hardly meant, and their sound neighbours, which are not warned of.
+
+use super::Topic::{self, *};
+use crate::pipeline::derive_source;
+
+fn model(body: &str) -> String {
+    format!("model M {{ {body} }}")
+}
+
+fn topics(body: &str) -> Vec<Topic> {
+    match derive_source(&model(body)) {
+        Ok(d) => d.warnings.iter().map(|w| w.topic).collect(),
+        Err(e) => panic!("{body}\n{e}"),
+    }
+}
+
+fn words(body: &str) -> String {
+    match derive_source(&model(body)) {
+        Ok(d) => {
+            let list = d.warnings.iter().map(|w| w.diagnostic.text());
+            list.collect::<Vec<_>>().join("\n")
+        }
+        Err(e) => panic!("{body}\n{e}"),
+    }
+}
+
+const BODY: &str = "param J: Sym<3>; group Λ: SO<3> velocity Ω; constraint next(Λ) = Λ*Ω; ";
+const TOP: &str = "param J: Sym<3>; param gU, z: Vec<3>; group Λ: SO<3> velocity Ω; \
+     advected Γ: Vec<3> = Λ^T*z; constraint next(Λ) = Λ*Ω; constraint next(Γ) = Ω^T*Γ; ";
+const POINT: &str = "param J: Sym<3>; param m: Real; group G: SE<3> velocity V; \
+     constraint next(G) = G*V; ";
+
+fn body(lagrangian: &str) -> Vec<Topic> {
+    topics(&format!("{BODY} lagrangian = {lagrangian};"))
+}
+
+fn top(lagrangian: &str) -> Vec<Topic> {
+    topics(&format!("{TOP} lagrangian = {lagrangian};"))
+}
+
+#[test]
+fn sound_models_have_none() {
+    assert_eq!(body("-tr(J*Ω)/h"), []);
+    assert_eq!(body("tr(J)/h - tr(J*Ω)/h"), []);
+    assert_eq!(top("-tr(J*Ω)/h - h*dot(gU, Γ)"), []);
+    assert_eq!(top("-tr(J*Ω)/h - h*(dot(gU, Γ) - dot(gU, gU))"), []);
+    assert_eq!(top("-(tr(J*Ω)/h + h*dot(gU, Γ))"), []);
+}
+
+#[test]
+fn a_forgotten_step_is_said() {
+    let forgotten = top("-tr(J*Ω) - h*dot(gU, Γ)");
+    assert!(
+        forgotten.contains(&DegenerateKineticEnergy),
+        "{forgotten:?}"
+    );
+    let text = words(&format!("{TOP} lagrangian = -tr(J*Ω) - h*dot(gU, Γ);"));
+    assert!(text.contains("did you forget `/h`?"), "{text}");
+    // Without any kinetic energy, and with one that vanishes too fast.
+    assert!(top("-h*dot(gU, Γ) + h*tr(J*Ω)").contains(&DegenerateKineticEnergy));
+    // The step in the wrong power.
+    assert!(body("-tr(J*Ω)/h^2").contains(&NoLimit));
+    assert_eq!(top("-tr(J*Ω)/h - dot(gU, Γ)"), [NoLimit, FirstOrder]);
+}
+
+#[test]
+fn no_energy_is_listed_without_kinetic_energy() {
+    let d = derive_source(&model(&format!(
+        "{TOP} lagrangian = -tr(J*Ω) - h*dot(gU, Γ);"
+    )));
+    let names: Vec<String> = d.map_or(Vec::new(), |d| {
+        d.invariants.iter().map(|v| v.name.clone()).collect()
+    });
+    assert!(
+        !names.is_empty() && !names.contains(&"energy".to_owned()),
+        "{names:?}"
+    );
+}
+
+#[test]
+fn degenerate_kinetic_energy_is_told_from_none() {
+    // A point mass on a rod: nothing turns it about the rod.
+    let rod = "param a: Vec<3>; param m: Real; group Λ: SO<3> velocity Ω; \
+               constraint next(Λ) = Λ*Ω; lagrangian = m/(2*h)*dot((Ω - Id)*a, (Ω - Id)*a);";
+    assert_eq!(topics(rod), [DegenerateKineticEnergy]);
+    assert!(words(rod).contains("rank 2 of 3"), "{}", words(rod));
+    // The translation of a body has none.
+    let still =
+        format!("{POINT} param e: Vec<3>; lagrangian = -tr(J*rot(V))/h - h*m*dot(e, pos(G));");
+    assert_eq!(topics(&still), [DegenerateKineticEnergy]);
+    assert!(words(&still).contains("rank 3 of 6"), "{}", words(&still));
+    // One body of two.
+    let two = "param J: Sym<3>; group A: SO<3> velocity V; group B: SO<3> velocity W; \
+               constraint next(A) = A*V; constraint next(B) = B*W; \
+               lagrangian = -tr(J*V)/h - tr(J*W);";
+    assert!(topics(two).contains(&DegenerateKineticEnergy));
+    // An assumption takes the inertia away.
+    let flat = "param J: Sym<3>; assume J == -J; group Λ: SO<3> velocity Ω; \
+                constraint next(Λ) = Λ*Ω; lagrangian = -tr(J*Ω)/h;";
+    assert!(topics(flat).contains(&DegenerateKineticEnergy));
+}
+
+#[test]
+fn the_sign_of_the_kinetic_energy_is_said() {
+    assert_eq!(body("tr(J*Ω)/h"), [SignOfKineticEnergy]);
+    assert_eq!(top("tr(J*Ω)/h + h*dot(gU, Γ)"), [SignOfKineticEnergy]);
+    assert!(words(&format!("{BODY} lagrangian = tr(J*Ω)/h;")).contains("negative"));
+    // Typed as another multiple of the action.
+    assert_eq!(
+        topics(&format!("{BODY} scale -h; lagrangian = tr(J*Ω);")),
+        []
+    );
+    assert_eq!(
+        topics(&format!("{BODY} scale h; lagrangian = tr(J*Ω);")),
+        [SignOfKineticEnergy]
+    );
+    // One of two velocities, which makes the form indefinite.
+    let mixed = format!(
+        "{POINT} let x = pos(G^-1*next(G)); \
+        lagrangian = -tr(J*rot(G^-1*next(G)))/h - m*dot(x, x)/(2*h);"
+    );
+    assert_eq!(topics(&mixed), [SignOfKineticEnergy]);
+    let sound = mixed.replace("- m*dot", "+ m*dot");
+    assert_eq!(topics(&sound), []);
+    // A sign that the parameters carry is theirs.
+    let carried = format!("{BODY} param c: Real; assume c < 0; lagrangian = c*tr(J*Ω)/h;");
+    assert_eq!(topics(&carried), []);
+    let other = format!("{BODY} param c: Real; assume c == 2; lagrangian = c*tr(J*Ω)/h;");
+    assert_eq!(topics(&other), [SignOfKineticEnergy]);
+    // I > 0, not J > 0.
+    let inertia = "param I: Sym<3>; group Λ: SO<3> velocity Ω; constraint next(Λ) = Λ*Ω; \
+                   lagrangian = -tr((tr(I)/2*Id - I)*Ω)/h;";
+    assert_eq!(topics(inertia), []);
+}
+
+#[test]
+fn first_order_that_is_not_asked_for_is_said() {
+    // A magnetic term taken at one end of the step: linear in the velocity.
+    let plane = |term: &str| {
+        format!(
+            "{POINT} param f: Real; param a, b: Vec<3>; let X = dot(a, pos(G)); \
+             let Y = dot(b, pos(G)); \
+             let d = pos(next(G)) - pos(G); \
+             lagrangian = -tr(J*rot(G)^T*rot(next(G)))/h + m*dot(d, d)/(2*h) + {term};"
+        )
+    };
+    let sided = topics(&plane("m*f*X*(next(Y) - Y)"));
+    assert_eq!(sided, [FirstOrder]);
+    assert_eq!(topics(&plane("m*f*(X + next(X))/2*(next(Y) - Y)")), []);
+    // A potential with an even power of the step.
+    assert_eq!(top("-tr(J*Ω)/h - h^2*dot(gU, Γ)"), [FirstOrder]);
+    // Total differences, of either parity, leave the scheme as it is.
+    assert_eq!(top("-tr(J*Ω)/h - h*dot(gU, Γ) + dot(gU, next(Γ) - Γ)"), []);
+    assert_eq!(
+        top("-tr(J*Ω)/h - h*dot(gU, Γ) + h*dot(gU, next(Γ) - Γ)"),
+        []
+    );
+    // What is asked for is not warned of, but what else is of first order is.
+    for rule in ["incoming", "outgoing"] {
+        let rule = |l: &str| topics(&format!("{TOP} node {rule}; lagrangian = {l};"));
+        assert_eq!(rule("-tr(J*Ω)/h - h*dot(gU, Γ)"), []);
+        assert_eq!(rule("-tr(J*Ω)/h - h*dot(gU, Γ)*dot(z, z)"), []);
+        let sided = rule("-tr(J*Ω)/h - h*dot(gU, Γ)*dot(gU, next(Γ))^2");
+        assert_eq!(sided, [FirstOrder]);
+    }
+    // A general left factor is symmetric where it is a symmetric matrix.
+    let general = "param C: Mat<3>; group Λ: SO<3> velocity Ω; constraint next(Λ) = Λ*Ω; \
+                   lagrangian = -tr(C*Ω)/h;";
+    assert_eq!(topics(general), []);
+}
+
+#[test]
+fn what_has_no_effect_is_said() {
+    assert_eq!(
+        topics(&format!(
+            "{BODY} param a, b: Vec<3>; lagrangian = -tr(J*Ω)/h;"
+        )),
+        [UnusedParameter, UnusedParameter]
+    );
+    let assumed = format!("{BODY} param a: Real; assume a > 0; lagrangian = -tr(J*Ω)/h;");
+    assert_eq!(topics(&assumed), [UnusedParameter]);
+    assert!(words(&assumed).contains("an assumption only"));
+    let hidden = format!("{BODY} param a: Real; let w = a*a; lagrangian = -tr(J*Ω)/h;");
+    assert_eq!(topics(&hidden), [UnusedParameter]);
+    // Used in a scale, or in the definition of what is carried.
+    let scaled = format!("{BODY} param c: Real; scale c; lagrangian = -c*tr(J*Ω)/h;");
+    assert_eq!(topics(&scaled), []);
+}
+
+#[test]
+fn constant_potentials_are_said() {
+    assert_eq!(top("-tr(J*Ω)/h - h*dot(gU, gU)*dot(Γ, Γ)"), [ConstantTerm]);
+    // Constant only as a sum.
+    let sum = top("-tr(J*Ω)/h - h*dot(gU, gU)*(dot(E1, Γ)^2 + dot(E2, Γ)^2 + dot(E3, Γ)^2)");
+    assert_eq!(sum, [ConstantTerm]);
+    // One term of several.
+    assert_eq!(
+        top("-tr(J*Ω)/h - h*dot(gU, Γ) - h*dot(Γ, Γ)"),
+        [ConstantTerm]
+    );
+    assert_eq!(
+        top("-tr(J*Ω)/h - h*dot(gU, Γ) + h*tr(Ω*Ω^T)"),
+        [ConstantTerm]
+    );
+    // Without any configuration.
+    let flat = topics(&format!(
+        "{BODY} param m, g, l: Real; lagrangian = -tr(J*Ω)/h - h*m*g*l;"
+    ));
+    assert_eq!(flat, [ConstantTerm]);
+}
+
+#[test]
+fn assumptions_that_say_nothing_are_told() {
+    let with = |assumption: &str| {
+        topics(&format!(
+            "{BODY} param m: Real; param a, b: Vec<3>; {assumption} \
+             lagrangian = -m*(1 + dot(a, a) + dot(b, b))*tr(J*Ω)/h;"
+        ))
+    };
+    for empty in [
+        "assume dot(a, a) >= 0;",
+        "assume m*m >= 0;",
+        "assume 1 < 2;",
+        "assume 1 == 1;",
+        "assume tr(J*J) >= 0;",
+        "assume 1 + m*m > 0;",
+        "assume cross(a, a) == 0;",
+        "assume dot(a, b)^2 <= dot(a, a)*dot(b, b);",
+        "assume dot(a, a) >= -1;",
+    ] {
+        assert_eq!(with(empty), [Assumption], "{empty}");
+    }
+    for impossible in [
+        "assume 1 == 2;",
+        "assume 2 < 1;",
+        "assume dot(a, a) < 0;",
+        "assume dot(a, a) == -1;",
+        "assume dot(a, b)^2 > dot(a, a)*dot(b, b);",
+        "assume m > 0; assume m < 0;",
+        "assume m > 2; assume dot(a, a) == 1; assume m*dot(a, a) < 1;",
+    ] {
+        assert_eq!(with(impossible), [Assumption], "{impossible}");
+    }
+    for sound in [
+        "assume m > 0;",
+        "assume m > 1000;",
+        "assume m < 0.001; assume m > 0;",
+        "assume dot(a, a) == 1;",
+        "assume dot(a, a) > 0;",
+        "assume cross(a, E3) == 0;",
+        "assume J*hat(E3) == hat(E3)*J; assume cross(a, E3) == 0;",
+        "assume dot(a, a) == 1; assume dot(b, b) == 1; assume dot(a, b) == 0;",
+        "assume m*m > 4; assume m > 0;",
+        "assume det(J) > 0;",
+        "assume dot(a, b)^2 < 0.999*dot(a, a)*dot(b, b);",
+        "assume tr(J) == 1;",
+    ] {
+        let found = with(sound);
+        assert!(!found.contains(&Assumption), "{sound}: {found:?}");
+    }
+}

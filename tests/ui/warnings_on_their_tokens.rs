@@ -1,0 +1,18 @@
+//! What derives but is hardly meant is a warning of rustc on the tokens concerned; denied here, so
+//! that it is an error.
+#![deny(deprecated)]
+
+clebsch::model! {
+    model Forgotten {
+        param J: Sym<3>;
+        param gU, z: Vec<3>;
+        param spare: Real;
+        group R: SO<3> velocity V;
+        advected Y: Vec<3> = R^T*z;
+        constraint next(R) = R*V;
+        constraint next(Y) = V^T*Y;
+        lagrangian = -tr(J*V) - h*dot(gU, Y);
+    }
+}
+
+fn main() {}
