@@ -8,7 +8,6 @@ use crate::suggestion::did_you_mean;
 use clap::ArgMatches;
 use clebsch_core::print::Format;
 use clebsch_core::{Derivation, derive_source, document, generated};
-use std::io::Write;
 use std::path::Path;
 
 /// Runs the command.

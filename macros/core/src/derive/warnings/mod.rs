@@ -159,7 +159,12 @@ pub(crate) fn warnings(x: &Inputs) -> Vec<Warning> {
     all.extend(limit::limit(x));
     all.extend(sign::degenerate(x));
     all.extend(sign::sign(x));
-    all.extend(order::order(x));
+    // Of a power of the step that is wrong one warning is enough.
+    let power_is_wrong =
+        x.limit.is_err() || x.kinetic.is_some_and(|k| k.rank.is_some_and(|r| r.0 == 0));
+    if !power_is_wrong {
+        all.extend(order::order(x));
+    }
     all.extend(effect::parameters(x));
     all.extend(effect::terms(x));
     all.extend(assumptions::assumptions(x));

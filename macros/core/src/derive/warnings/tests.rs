@@ -60,7 +60,7 @@ fn a_forgotten_step_is_said() {
     assert!(top("-h*dot(gU, Γ) + h*tr(J*Ω)").contains(&DegenerateKineticEnergy));
     // The step in the wrong power.
     assert!(body("-tr(J*Ω)/h^2").contains(&NoLimit));
-    assert_eq!(top("-tr(J*Ω)/h - dot(gU, Γ)"), [NoLimit, FirstOrder]);
+    assert_eq!(top("-tr(J*Ω)/h - dot(gU, Γ)"), [NoLimit]);
 }
 
 #[test]
