@@ -259,3 +259,78 @@ fn assumptions_that_say_nothing_are_told() {
         assert!(!found.contains(&Assumption), "{sound}: {found:?}");
     }
 }
+
+/// The texts that ship: the gallery, and the models of the description of the language.
+fn shipped() -> Vec<(String, String)> {
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+    let files = std::fs::read_dir(format!("{root}/models/src")).map_or(Vec::new(), |list| {
+        let paths = list.filter_map(|entry| Some(entry.ok()?.path()));
+        paths.collect::<Vec<_>>()
+    });
+    let mut all: Vec<(String, String)> = files
+        .iter()
+        .filter_map(|path| {
+            Some((
+                path.display().to_string(),
+                std::fs::read_to_string(path).ok()?,
+            ))
+        })
+        .filter(|(_, text)| text.contains("clebsch::model! {"))
+        .collect();
+    let language = std::fs::read_to_string(format!("{root}/docs/language.md")).unwrap_or_default();
+    let blocks = language.split("```clebsch\n").skip(1);
+    all.extend(
+        blocks.filter_map(|b| Some(("language.md".to_owned(), b.split("```").next()?.to_owned()))),
+    );
+    all.sort();
+    all
+}
+
+#[test]
+fn what_ships_has_no_warnings() {
+    let shipped = shipped();
+    assert!(shipped.len() > 18, "{}", shipped.len());
+    for (name, text) in shipped {
+        match derive_source(&text) {
+            Ok(d) => {
+                let found: Vec<String> = d.warnings.iter().map(|w| w.diagnostic.text()).collect();
+                assert!(found.is_empty(), "{name}: {found:?}\n{text}");
+            }
+            Err(e) => panic!("{name}\n{e}"),
+        }
+    }
+}
+
+#[test]
+fn warnings_are_printed_in_every_form() {
+    let source = model(&format!(
+        "{TOP} param spare: Real; lagrangian = -tr(J*Ω) - h*dot(gU, Γ);"
+    ));
+    let d = match derive_source(&source) {
+        Ok(d) => d,
+        Err(e) => panic!("{e}"),
+    };
+    use crate::print::Format;
+    for format in [
+        Format::Text,
+        Format::Latex,
+        Format::Markdown,
+        Format::MathMl,
+        Format::Json,
+    ] {
+        let printed = crate::document::printed(&d, format);
+        for words in ["Warnings", "is never used", "did you forget"] {
+            let found = printed.to_lowercase().contains(&words.to_lowercase());
+            assert!(found, "{format:?}: {words}\n{printed}");
+        }
+    }
+    let json = crate::document::printed(&d, Format::Json);
+    for entry in [
+        "\"warnings\": [",
+        "\"topic\": \"unused-parameter\"",
+        "\"line\": ",
+        "\"column\": ",
+    ] {
+        assert!(json.contains(entry), "{entry}");
+    }
+}
