@@ -1,18 +1,24 @@
 //! The command line: subcommands, options and the checks that need no model.
-//! Takes nothing; gives the clap command, whose matches the commands read.
+//! Takes the width of the terminal; gives the clap command, whose matches the commands read.
 
+use clap::builder::PossibleValue;
 use clap::{Arg, ArgAction, Command, value_parser};
 
-/// The whole command line.
+/// Help is made no wider than this: longer lines are hard to read.
+const WIDEST: usize = 100;
+
+/// The whole command line; help fits `width` letters where that is given.
 #[must_use]
-pub fn command() -> Command {
+pub fn command(width: Option<usize>) -> Command {
     Command::new("clebsch")
+        .term_width(width.unwrap_or(WIDEST).min(WIDEST))
         .version(env!("CARGO_PKG_VERSION"))
         .about(
             "Discrete Clebsch variational integrators: derived from a Lagrangian, run from a case",
         )
         .after_help(
-            "Exit codes: 0 done, 1 failed, 2 usage, 3 an invariant left the bound of its case \
+            "Examples:\n  clebsch list\n  clebsch run heavy-top\n  clebsch derive heavy-top\n\n\
+             Exit codes: 0 done, 1 failed, 2 usage, 3 an invariant exceeded the bound of its case \
              (results are written).",
         )
         .subcommand_required(true)
@@ -20,11 +26,15 @@ pub fn command() -> Command {
         .subcommand(
             Command::new("list")
                 .about("List the models and their cases")
+                .after_help("Examples:\n  clebsch list\n  clebsch list --json")
                 .arg(json()),
         )
         .subcommand(
             Command::new("case")
                 .about("Print a complete case as TOML, to start your own from")
+                .after_help(
+                    "Examples:\n  clebsch case heavy-top > my-top.toml\n  clebsch case heavy-top --case general",
+                )
                 .arg(model())
                 .arg(option(
                     "case",
@@ -40,7 +50,12 @@ pub fn command() -> Command {
 
 fn run() -> Command {
     planned(
-        Command::new("run").about("Run a case and check what it conserves"),
+        Command::new("run")
+            .about("Run a case and check what it conserves")
+            .after_help(
+                "Examples:\n  clebsch run heavy-top\n  clebsch run free-body --order 6 --steps 1e6\n  \
+                 clebsch run heavy-top --case my-top.toml --out out/my-top",
+            ),
         "Write every N-th node; by default such that at most 10000 are written. Invariants are \
          watched at every node in any case",
         "Write trajectory.csv, trajectory.npz, run.json and plots into this new folder",
@@ -49,9 +64,14 @@ fn run() -> Command {
 
 fn compare() -> Command {
     planned(
-        Command::new("compare").about(
-            "Run a case by the generated stepper, the hand-written one and other methods, side by side",
-        ),
+        Command::new("compare")
+            .about(
+                "Run a case by the generated stepper, the hand-written one and other methods, side \
+                 by side",
+            )
+            .after_help(
+                "Examples:\n  clebsch compare free-body\n  clebsch compare heavy-top --steps 1000 --out out/compared",
+            ),
         "Compare at every N-th node; by default such that at most 10000 are compared",
         "Write comparison.csv, comparison.json and comparison.svg into this new folder",
     )
@@ -60,6 +80,7 @@ fn compare() -> Command {
 fn figures() -> Command {
     Command::new("figures")
         .about("Draw the figures of the thesis's second chapter from the cases of the gallery")
+        .after_help("Examples:\n  clebsch figures --out out/figures")
         .arg(
             option(
                 "out",
@@ -83,8 +104,12 @@ fn planned(command: Command, every: &'static str, out: &'static str) -> Command 
             "Case of the model, or a file ending in .toml; the model's first case by default",
         ))
         .arg(
-            option("steps", "N", "Number of steps instead of the case's")
-                .value_parser(positive_count),
+            option(
+                "steps",
+                "N",
+                "Number of steps instead of the case's, such as 20000 or 2e4",
+            )
+            .value_parser(positive_count),
         )
         .arg(
             option(
@@ -131,20 +156,36 @@ fn planned(command: Command, every: &'static str, out: &'static str) -> Command 
 fn derive() -> Command {
     Command::new("derive")
         .about("Derive the equations of a model")
+        .after_help(
+            "Examples:\n  clebsch derive heavy-top\n  clebsch derive heavy-top --format latex > top.tex\n  \
+             clebsch derive my-top.clebsch --explain\n  clebsch derive - < my-top.clebsch",
+        )
         .arg(
             Arg::new("model")
                 .value_name("MODEL|FILE")
                 .required_unless_present("write")
-                .help("Model of the gallery, or a file that holds a model's text"),
+                .help(
+                    "Model of the gallery, or a file that holds a model's text; - for standard input",
+                ),
         )
         .arg(
             option("format", "FORMAT", "What to print")
-                .value_parser(["text", "latex", "markdown", "rust", "json"])
+                .value_parser([
+                    PossibleValue::new("text").alias("txt"),
+                    PossibleValue::new("latex").alias("tex"),
+                    PossibleValue::new("markdown").alias("md"),
+                    PossibleValue::new("rust").alias("rs"),
+                    PossibleValue::new("json"),
+                ])
                 .default_value("text"),
         )
         .arg(flag(
             "explain",
             "Show why each step of the derivation holds",
+        ))
+        .arg(flag(
+            "second-proof",
+            "Prove each step a second time, by equality saturation, which takes longer",
         ))
         .arg(flag(
             "write",
@@ -183,13 +224,27 @@ fn option(name: &'static str, value: &'static str, help: &'static str) -> Arg {
 }
 
 fn positive_count(text: &str) -> Result<u64, String> {
-    match text.parse::<u64>() {
-        Ok(count) if count > 0 => Ok(count),
+    match whole(text) {
+        Some(count) if count > 0 => Ok(count),
         _ => Err(format!(
-            "give a whole number, written in digits, at least 1 and at most {}",
+            "give a whole number, such as 20000 or 2e4, at least 1 and at most {}",
             u64::MAX
         )),
     }
+}
+
+/// Above this a number of type f64 may stand for another whole one.
+const EXACT: f64 = 9_007_199_254_740_992.0;
+
+/// A whole number in digits, or as `2e4` and `1.5e3`, up to where that is exact.
+pub(crate) fn whole(text: &str) -> Option<u64> {
+    if let Ok(count) = text.parse::<u64>() {
+        return Some(count);
+    }
+    let number = text.parse::<f64>().ok()?;
+    // A whole number of this size is converted without loss.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    ((0.0..=EXACT).contains(&number) && number.fract() == 0.0).then_some(number as u64)
 }
 
 /// Which orders there are depends on the model, whose message lists them.
@@ -207,8 +262,29 @@ fn positive_number(text: &str) -> Result<f64, String> {
 
 #[cfg(test)]
 mod tests {
+    use super::whole;
+
     #[test]
     fn clap_finds_no_contradiction() {
-        super::command().debug_assert();
+        super::command(None).debug_assert();
+    }
+
+    #[test]
+    fn whole_numbers_may_have_an_exponent() {
+        for (text, number) in [
+            ("0", 0),
+            ("1e6", 1_000_000),
+            ("1.5e3", 1500),
+            ("2E4", 20_000),
+            ("9007199254740992.0", 1 << 53),
+            ("18446744073709551615", u64::MAX),
+        ] {
+            assert_eq!(whole(text), Some(number), "{text}");
+        }
+        for text in [
+            "1.5", "1e-3", "-1e3", "1e300", "1e16", "inf", "nan", "", "1 000",
+        ] {
+            assert_eq!(whole(text), None, "{text}");
+        }
     }
 }

@@ -1,13 +1,16 @@
 //! `clebsch derive`: the equations of a model, from its text.
-//! Takes a model of the gallery or a file; gives text, LaTeX, Markdown, Rust or JSON.
+//! Takes a model of the gallery, a file or standard input; gives text, LaTeX, Markdown, Rust or JSON.
 
 use crate::Streams;
+use crate::asked::case_file;
 use crate::failure::Failure;
 use crate::gallery::Gallery;
+use crate::plain::shown;
 use crate::suggestion::did_you_mean;
 use clap::ArgMatches;
 use clebsch_core::print::Format;
 use clebsch_core::{Derivation, derive_source, document, generated};
+use std::io::Read;
 use std::path::Path;
 
 /// Runs the command.
@@ -23,40 +26,78 @@ pub fn derive(
     if matches.get_flag("write") {
         return write_all(gallery, Path::new("generated"));
     }
-    let (name, source) = source(gallery, text("model"))?;
+    let (name, source) = source(gallery, text("model"), streams.input)?;
+    let proofs = Proofs {
+        explain: matches.get_flag("explain"),
+        second: matches.get_flag("second-proof"),
+    };
+    let name = shown(&name).to_string();
     let (derivation, warnings) =
-        derive_text(&name, &source, text("format"), matches.get_flag("explain"))
-            .map_err(Failure::Usage)?;
+        derive_text(&name, &source, text("format"), proofs).map_err(Failure::Usage)?;
     streams.out.write_all(derivation.as_bytes())?;
     // What cannot be written there is in the derivation too.
     let _ = streams.err.write_all(warnings.as_bytes());
     Ok(())
 }
 
-/// The text of a model: of the gallery when there is one of that name, else of the file.
-fn source(gallery: &Gallery, name: &str) -> Result<(String, String), Failure> {
-    let unknown = match gallery.find(name) {
-        Ok(entry) => return Ok((entry.card.kebab.to_owned(), entry.card.source.to_owned())),
-        Err(unknown) => unknown,
-    };
+/// Largest text that is read of a model: more than the engine derives, and no device without end.
+const LARGEST: u64 = 1 << 24;
+
+/// The text of a model: of the gallery when there is one of that name, else of the file; `-` is standard
+/// input.
+fn source(
+    gallery: &Gallery,
+    name: &str,
+    input: &mut dyn Read,
+) -> Result<(String, String), Failure> {
+    if name == "-" {
+        let mut text = String::new();
+        input
+            .take(LARGEST)
+            .read_to_string(&mut text)
+            .map_err(|error| Failure::Usage(format!("cannot read standard input: {error}")))?;
+        if text.trim().is_empty() {
+            return Err(Failure::Usage(
+                "standard input is empty; `-` reads a model's text from there".to_owned(),
+            ));
+        }
+        return Ok(("standard input".to_owned(), text));
+    }
+    if let Ok(entry) = gallery.find(name) {
+        return Ok((entry.card.kebab.to_owned(), entry.card.source.to_owned()));
+    }
+    if let Some(failure) = case_file(gallery, name, "derive takes a model or its text") {
+        return Err(failure);
+    }
     if !Path::new(name).exists() {
         let known = gallery.entries.iter().map(|entry| entry.card.kebab);
-        return Err(match unknown {
-            Failure::Usage(_) => Failure::Usage(format!(
-                "`{name}` is neither a model nor a file{}",
-                did_you_mean(name, known)
-            )),
-            other => other,
-        });
+        return Err(Failure::Usage(format!(
+            "`{}` is neither a model nor a file{}",
+            shown(name),
+            did_you_mean(name, known)
+        )));
     }
-    let text = std::fs::read_to_string(name)
-        .map_err(|error| Failure::Usage(format!("cannot read the model file {name}: {error}")))?;
+    let text = std::fs::read_to_string(name).map_err(|error| {
+        Failure::Usage(format!(
+            "cannot read the model file {}: {error}",
+            shown(name)
+        ))
+    })?;
     Ok((name.to_owned(), text))
 }
 
+/// What is printed beside a derivation, in all forms but rust and json.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Proofs {
+    /// The proof by normal forms.
+    pub explain: bool,
+    /// What equality saturation makes of each step of it, which takes longer than all the rest.
+    pub second: bool,
+}
+
 /// The derivation of the model text `source` (of the file or model `name`) in the form `format`:
-/// text, latex, markdown, rust or json. `explain` adds the proof, in all forms but rust and json.
-/// Beside it the warnings, with line, column and caret.
+/// text, latex, markdown, rust or json, or the ending of such a file, with the proofs asked for. Beside
+/// it the warnings, with line, column and caret.
 ///
 /// # Errors
 /// The engine's message with line, column and caret.
@@ -64,38 +105,46 @@ pub fn derive_text(
     name: &str,
     source: &str,
     format: &str,
-    explain: bool,
+    proofs: Proofs,
 ) -> Result<(String, String), String> {
     let derivation =
         derive_source(source).map_err(|errors| format!("\n{}", errors.render(source, name)))?;
     let warnings = derivation.render_warnings(source, name);
     let format = match format {
-        "rust" => return Ok((generated::rust(&derivation)?, warnings)),
-        "latex" => Format::Latex,
-        "markdown" => Format::Markdown,
+        "rust" | "rs" => return Ok((generated::rust(&derivation)?, warnings)),
+        "latex" | "tex" => Format::Latex,
+        "markdown" | "md" => Format::Markdown,
         "json" => Format::Json,
         _ => Format::Text,
     };
     let mut printed = document::printed(&derivation, format);
-    if explain && format != Format::Json {
-        let proof = explanation(&derivation);
-        match format {
-            Format::Latex => {
-                printed.push_str(&format!("\\begin{{verbatim}}\n{proof}\\end{{verbatim}}\n"));
-            }
-            Format::Markdown => printed.push_str(&format!("\n```text\n{proof}```\n")),
-            Format::Text | Format::MathMl | Format::Json => printed.push_str(&format!("\n{proof}")),
+    let proof = explanation(&derivation, proofs);
+    match format {
+        _ if proof.is_empty() => {}
+        Format::Latex => {
+            printed.push_str(&format!("\\begin{{verbatim}}\n{proof}\\end{{verbatim}}\n"));
         }
+        Format::Markdown => printed.push_str(&format!("\n```text\n{proof}```\n")),
+        Format::Text | Format::MathMl => printed.push_str(&format!("\n{proof}")),
+        Format::Json => {}
     }
     Ok((printed, warnings))
 }
 
 /// The proof by normal form, and what equality saturation makes of each of its steps.
-fn explanation(derivation: &Derivation) -> String {
-    let mut text = document::proof(derivation);
-    text.push_str("\nSecond proof, by equality saturation (egg), step by step:\n");
-    for (i, line) in document::second_proof(derivation).into_iter().enumerate() {
-        text.push_str(&format!("\n{:>3}. {line}\n", i + 1));
+fn explanation(derivation: &Derivation, proofs: Proofs) -> String {
+    let mut text = String::new();
+    if proofs.explain {
+        text.push_str(&document::proof(derivation));
+    }
+    if proofs.second {
+        if proofs.explain {
+            text.push('\n');
+        }
+        text.push_str("Second proof, by equality saturation (egg), step by step:\n");
+        for (i, line) in document::second_proof(derivation).into_iter().enumerate() {
+            text.push_str(&format!("\n{:>3}. {line}\n", i + 1));
+        }
     }
     text
 }
@@ -114,7 +163,7 @@ fn write_all(gallery: &Gallery, folder: &Path) -> Result<(), Failure> {
         let files = generated::files(&derivation).map_err(Failure::Failed)?;
         let target = folder.join(kebab);
         std::fs::create_dir_all(&target)
-            .map_err(|error| Failure::io(&format!("cannot make {}", target.display()), &error))?;
+            .map_err(|error| Failure::io(&format!("cannot make {}", shown(&target)), &error))?;
         for (file, contents) in files {
             replace_file(&target, &file, &contents)?;
         }
@@ -127,5 +176,5 @@ fn replace_file(folder: &Path, file: &str, contents: &str) -> Result<(), Failure
     let (partial, target) = (folder.join(format!(".{file}.partial")), folder.join(file));
     std::fs::write(&partial, contents)
         .and_then(|()| std::fs::rename(&partial, &target))
-        .map_err(|error| Failure::io(&format!("cannot write {}", target.display()), &error))
+        .map_err(|error| Failure::io(&format!("cannot write {}", shown(&target)), &error))
 }

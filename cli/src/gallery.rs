@@ -2,6 +2,7 @@
 //! Takes a list of entries; gives look-up by name, with a suggestion when there is none.
 
 use crate::failure::Failure;
+use crate::plain::shown;
 use crate::suggestion::did_you_mean;
 pub use clebsch_models::{Case, Entry};
 
@@ -31,7 +32,11 @@ impl Gallery {
             .find(|entry| entry.card.kebab == name || entry.card.name == name)
             .ok_or_else(|| {
                 let known = self.entries.iter().map(|entry| entry.card.kebab);
-                Failure::Usage(format!("no model `{name}`{}", did_you_mean(name, known)))
+                Failure::Usage(format!(
+                    "no model `{}`{}",
+                    shown(name),
+                    did_you_mean(name, known)
+                ))
             })
     }
 }
@@ -51,7 +56,8 @@ pub fn case<'a>(entry: &'a Entry, name: Option<&str>) -> Result<&'a Case, Failur
         Failure::Usage(match name {
             None => format!("model `{model}` has no case of its own; give one: --case FILE.toml"),
             Some(name) => format!(
-                "model `{model}` has no case `{name}`{} (a case file ends in .toml)",
+                "model `{model}` has no case `{}`{} (a case file ends in .toml)",
+                shown(name),
                 did_you_mean(name, names)
             ),
         })

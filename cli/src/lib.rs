@@ -6,6 +6,7 @@
 //! Results go to standard output, progress and messages to standard error. Exit codes: [`failure`].
 
 pub mod arguments;
+mod asked;
 pub mod case_file;
 mod columns;
 pub mod compare;
@@ -15,43 +16,56 @@ mod figures;
 pub mod gallery;
 mod list;
 mod output;
+mod plain;
 mod plan;
 pub mod plots;
 mod record;
 mod run;
 mod suggestion;
 mod verdict;
+mod width;
 
 use clap::ArgMatches;
 use failure::{DONE, FAILED, Failure, USAGE};
 use gallery::Gallery;
+use plain::Plain;
 use std::ffi::OsString;
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, IsTerminal, Read, Write};
 use std::process::ExitCode;
 
-/// Where a command writes.
+/// Where a command reads and writes.
 pub struct Streams<'a> {
+    /// What `-` stands for where a file is asked for.
+    pub input: &'a mut dyn Read,
     /// Results.
     pub out: &'a mut dyn Write,
     /// Messages.
     pub err: &'a mut dyn Write,
     /// Whether to draw progress on the process's standard error.
     pub progress: bool,
+    /// How many letters a line of help or of a table may have; `None` where nothing limits them, as in
+    /// a file.
+    pub width: Option<usize>,
 }
 
 /// Runs the process's own arguments on the shipped models.
 #[must_use]
 pub fn run_process() -> ExitCode {
+    run_process_on(&Gallery::shipped())
+}
+
+/// Runs the process's own arguments on the models of `gallery`: all that the `main` of a command line
+/// of one's own needs to call.
+#[must_use]
+pub fn run_process_on(gallery: &Gallery) -> ExitCode {
     let mut streams = Streams {
+        input: &mut io::stdin(),
         out: &mut io::stdout(),
         err: &mut io::stderr(),
         progress: io::stderr().is_terminal(),
+        width: width::of_the_terminal(),
     };
-    ExitCode::from(execute(
-        std::env::args_os(),
-        &Gallery::shipped(),
-        &mut streams,
-    ))
+    ExitCode::from(execute(std::env::args_os(), gallery, &mut streams))
 }
 
 /// Runs `arguments` (the first is the program's name) and gives the exit code.
@@ -60,7 +74,17 @@ pub fn execute(
     gallery: &Gallery,
     streams: &mut Streams<'_>,
 ) -> u8 {
-    let matches = match arguments::command().try_get_matches_from(arguments) {
+    // Names come from files and arguments, and nothing that they hold reaches a terminal unwritten.
+    let (mut out, mut err) = (Plain(streams.out), Plain(streams.err));
+    let streams = &mut Streams {
+        input: streams.input,
+        out: &mut out,
+        err: &mut err,
+        progress: streams.progress,
+        width: streams.width,
+    };
+    let command = arguments::command(streams.width);
+    let matches = match command.try_get_matches_from(arguments) {
         Ok(matches) => matches,
         Err(error) => return answer_clap(&error, streams),
     };
@@ -91,12 +115,12 @@ fn dispatch(
 ) -> Result<u8, Failure> {
     match matches.subcommand() {
         Some(("list", matches)) => {
-            list::list(gallery, matches.get_flag("json"), streams.out)?;
+            list::list(gallery, matches.get_flag("json"), streams)?;
             Ok(DONE)
         }
         Some(("case", matches)) => {
             let text = |key: &str| matches.get_one::<String>(key).map(String::as_str);
-            let entry = gallery.find(text("model").unwrap_or_default())?;
+            let entry = asked::model(gallery, text("model").unwrap_or_default())?;
             let case = gallery::case(entry, text("case"))?;
             let toml = case_file::write(&entry.card_of(case), case);
             streams.out.write_all(toml.as_bytes())?;

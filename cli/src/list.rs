@@ -1,18 +1,19 @@
 //! `clebsch list`: the models and their cases.
 //! Takes the gallery; gives a table, or one JSON object.
 
+use crate::Streams;
 use crate::columns::aligned;
 use crate::failure::Failure;
 use crate::gallery::{Case, Entry, Gallery};
 use clebsch::card::Conserved;
 use serde_json::{Value, json};
-use std::io::Write;
 
 /// Runs the command.
 ///
 /// # Errors
-/// Those of writing to `out`.
-pub fn list(gallery: &Gallery, as_json: bool, out: &mut dyn Write) -> Result<(), Failure> {
+/// Those of writing.
+pub fn list(gallery: &Gallery, as_json: bool, streams: &mut Streams<'_>) -> Result<(), Failure> {
+    let out = &mut *streams.out;
     if as_json {
         let models: Vec<Value> = gallery.entries.iter().map(model).collect();
         writeln!(out, "{}", json!({ "models": models }))?;
@@ -24,7 +25,7 @@ pub fn list(gallery: &Gallery, as_json: bool, out: &mut dyn Write) -> Result<(),
         let doc = first_line(entry.card.doc);
         vec![entry.card.kebab.to_owned(), cases.join(", "), doc]
     }));
-    out.write_all(aligned(&rows, &[]).as_bytes())?;
+    out.write_all(aligned(&rows, &[], streams.width).as_bytes())?;
     Ok(())
 }
 

@@ -4,6 +4,7 @@
 use crate::case_file::{self, Located};
 use crate::failure::Failure;
 use crate::gallery::{self, Case, Entry};
+use crate::plain::shown;
 use clap::ArgMatches;
 use clebsch::card::{Card, Field, OpenError, Settings, Trajectory};
 use clebsch::solvers::Method;
@@ -52,7 +53,7 @@ impl Plan {
                 Err(_) => {
                     let offered = entry.card.solvers;
                     let error = OpenError::Solver { offered };
-                    return Err(Failure::Usage(format!("--solver {name}: {error}")));
+                    return Err(Failure::Usage(format!("--solver {}: {error}", shown(name))));
                 }
             },
         };
@@ -130,7 +131,7 @@ impl Plan {
             }
             OpenError::Solver { .. } => {
                 let name = self.solver.map_or("", Method::name);
-                Failure::Usage(format!("--solver {name}: {error}"))
+                Failure::Usage(format!("--solver {}: {error}", shown(name)))
             }
             OpenError::Compensation { .. } => Failure::Usage(format!("--compensated: {error}")),
             OpenError::Count { .. } | OpenError::Order { .. } => Failure::Usage(error.to_string()),
@@ -151,10 +152,10 @@ impl Plan {
             .or_else(|| of("initial", card.initial))
             .unwrap_or_else(|| wrong.field.to_owned());
         match &self.origin {
-            None => format!("case `{}`: {key}", self.case.name),
+            None => format!("case `{}`: {key}", shown(&self.case.name)),
             Some((file, lines)) => match lines.get(&key) {
-                Some(line) => format!("{file}:{line}: {key}"),
-                None => format!("{file}: {key}"),
+                Some(line) => format!("{}:{line}: {key}", shown(file)),
+                None => format!("{}: {key}", shown(file)),
             },
         }
     }
@@ -168,8 +169,12 @@ fn is_file(name: &str) -> bool {
 
 /// The case of a file, by the first card whose fields it fits; the message is that of the first.
 fn read(file: &str, cards: &[Card]) -> Result<Located, Failure> {
-    let text = std::fs::read_to_string(file)
-        .map_err(|error| Failure::Usage(format!("cannot read the case file {file}: {error}")))?;
+    let text = std::fs::read_to_string(file).map_err(|error| {
+        Failure::Usage(format!(
+            "cannot read the case file {}: {error}",
+            shown(file)
+        ))
+    })?;
     let mut first = None;
     for card in cards {
         match case_file::read(file, &text, card) {
@@ -177,7 +182,7 @@ fn read(file: &str, cards: &[Card]) -> Result<Located, Failure> {
             Err(error) => first = first.or(Some(error)),
         }
     }
-    Err(first.unwrap_or_else(|| Failure::Usage(format!("{file}: the model has no card"))))
+    Err(first.unwrap_or_else(|| Failure::Usage(format!("{}: the model has no card", shown(file)))))
 }
 
 /// The cards of the model, all or those of one size.
@@ -219,7 +224,8 @@ fn case_of_size<'a>(
         (Some(name), Some(n)) => match gallery::case(entry, asked)? {
             case if has(&case) => Ok(case),
             _ => Err(Failure::Usage(format!(
-                "--dim {n}: case `{name}` has another size"
+                "--dim {n}: case `{}` has another size",
+                shown(name)
             ))),
         },
         (_, None) => gallery::case(entry, asked),

@@ -2,24 +2,29 @@
 //! Takes the gallery and the options; gives files, a table of what was conserved, and the exit code.
 
 use crate::Streams;
+use crate::asked;
 use crate::failure::{BOUND_LEFT, DONE, Failure};
 use crate::gallery::Gallery;
 use crate::list::first_line;
 use crate::output::{self, Finished, Staging, run_json};
+use crate::plain::shown;
 use crate::plan::Plan;
 use crate::record::{LARGEST, Record, Recorder, Samples};
 use crate::verdict::{Verdict, judge, table};
+use crate::width::paragraph;
 use clap::ArgMatches;
 use clebsch::card::Card;
 use clebsch::integrate;
 use serde_json::json;
-use std::io::Write;
 use std::path::PathBuf;
 
 /// Steps whose every node is kept for the plots: all the swings there is room for, of 150 steps each.
 const OPENING: u64 = 10_000;
 
-/// Runs the command; the code is 0, or 3 when an invariant left its bound.
+/// Where the texts of a summary begin, behind their names.
+const SUMMARY: usize = 21;
+
+/// Runs the command; the code is 0, or 3 when an invariant exceeded its bound.
 ///
 /// # Errors
 /// Usage for a wrong request, failed when the solver or the file system gives up. Nothing is left
@@ -32,7 +37,7 @@ pub fn run(
     let model = matches
         .get_one::<String>("model")
         .map_or("", String::as_str);
-    let entry = gallery.find(model)?;
+    let entry = asked::model(gallery, model)?;
     let plan = Plan::new(entry, matches)?;
     let card = &entry.card_of(&plan.case);
     let target = matches.get_one::<PathBuf>("out");
@@ -50,7 +55,7 @@ pub fn run(
     };
     let mut trajectory = plan.open(card)?;
     if !as_json {
-        introduce(streams.out, card, &plan)?;
+        introduce(streams, card, &plan)?;
     }
     let steps = plan.case.steps;
     let mut recorder = Recorder::new(card, steps, staging.is_some(), streams.progress);
@@ -87,10 +92,11 @@ pub fn run(
         }
         writeln!(streams.out, "{object}")?;
     } else {
-        write!(streams.out, "\n{}", table(&outcomes))?;
+        write!(streams.out, "\n{}", table(&outcomes, streams.width))?;
         if let Some(target) = target {
-            let shown = target.display();
-            writeln!(streams.out, "\nwritten to {shown}: {}", files.join(", "))?;
+            let written = format!("written to {}: {}", shown(target), files.join(", "));
+            let written = paragraph(&written, streams.width, 2);
+            write!(streams.out, "\n{written}")?;
         }
     }
     if !left.is_empty() {
@@ -128,29 +134,36 @@ fn fits(card: &Card, plan: &Plan) -> Result<(), Failure> {
 }
 
 /// What runs, and what was derived for it.
-fn introduce(out: &mut dyn Write, card: &Card, plan: &Plan) -> Result<(), Failure> {
-    let case = &plan.case;
-    writeln!(out, "{}: {}", card.kebab, first_line(card.doc))?;
-    writeln!(out, "{}", card.summary.trim())?;
+fn introduce(streams: &mut Streams<'_>, card: &Card, plan: &Plan) -> Result<(), Failure> {
+    let (case, width) = (&plan.case, streams.width);
+    let mut say = |text: &str, indent: usize| {
+        let text = paragraph(text, width, indent);
+        streams.out.write_all(text.as_bytes())
+    };
+    say(&format!("{}: {}", card.kebab, first_line(card.doc)), 2)?;
+    for line in card.summary.trim().lines() {
+        say(line, SUMMARY)?;
+    }
     let reversible = if card.reversible {
         "reversible"
     } else {
         "not reversible"
     };
     let order = plan.order.unwrap_or(card.order);
-    writeln!(out, "solver: {}; order {order}, {reversible}", card.solver)?;
+    say(
+        &format!("solver: {}; order {order}, {reversible}", card.solver),
+        2,
+    )?;
     if order > card.order {
-        writeln!(out, "{}", card.method_of_order(order, plan.compensated))?;
+        say(&card.method_of_order(order, plan.compensated), 2)?;
     }
     let doc = first_line(&case.doc);
     let colon = if doc.is_empty() { "" } else { ": " };
-    writeln!(out, "case {}{colon}{doc}", case.name)?;
-    writeln!(
-        out,
-        "h = {}, {} steps, to time {}",
-        case.h,
-        case.steps,
-        end(case.h, case.steps)
+    say(&format!("case {}{colon}{doc}", shown(&case.name)), 2)?;
+    let end = end(case.h, case.steps);
+    say(
+        &format!("h = {}, {} steps, to time {end}", case.h, case.steps),
+        2,
     )?;
     Ok(())
 }

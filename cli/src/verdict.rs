@@ -2,6 +2,7 @@
 //! Takes the drifts of all components; gives one outcome per invariant and the table to print.
 
 use crate::gallery::Case;
+use crate::width::paragraph;
 use clebsch::card::{Card, Conserved, Invariant};
 use clebsch::integrate::Drift;
 use clebsch::scalar::larger;
@@ -165,7 +166,7 @@ impl Outcome {
 /// The table of all outcomes, and a line on those that are measured absolutely; drifts are relative to
 /// the natural scale where there is one.
 #[must_use]
-pub fn table(outcomes: &[Outcome]) -> String {
+pub fn table(outcomes: &[Outcome], width: Option<usize>) -> String {
     let head = [
         "invariant",
         "formula",
@@ -177,13 +178,15 @@ pub fn table(outcomes: &[Outcome]) -> String {
     ];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
     rows.extend(outcomes.iter().map(Outcome::cells));
-    let mut text = crate::columns::aligned(&rows, &[2, 3, 4, 5]);
+    let mut text = crate::columns::aligned(&rows, &[2, 3, 4, 5], width);
     let absolute: Vec<String> = outcomes.iter().filter_map(Outcome::absolute).collect();
     if !absolute.is_empty() {
-        text.push_str(&format!(
-            "\nabsolute, as the scale at the start is zero: {}\n",
+        let said = format!(
+            "absolute, as the scale at the start is zero: {}",
             absolute.join(", ")
-        ));
+        );
+        text.push('\n');
+        text.push_str(&paragraph(&said, width, 2));
     }
     text
 }

@@ -105,12 +105,20 @@ fn every_mistake_is_named_with_file_and_line() {
             "\"0.1\"",
             "h: expected a number, found a value of type string",
         ),
-        ("steps", "0", "steps: must be at least 1, found 0"),
-        ("steps", "-7", "steps: must be at least 1, found -7"),
         (
             "steps",
-            "10.0",
-            "steps: expected a whole number, found a value of type float",
+            "0",
+            "steps: must be a whole number, at least 1, found 0",
+        ),
+        (
+            "steps",
+            "-7",
+            "steps: must be a whole number, at least 1, found -7",
+        ),
+        (
+            "steps",
+            "10.5",
+            "steps: must be a whole number, at least 1, found 10.5",
         ),
         (
             "kappa",

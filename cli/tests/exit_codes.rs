@@ -261,9 +261,11 @@ fn a_reader_that_goes_away_is_not_an_error_message() {
     }
     let mut err = Vec::new();
     let mut streams = clebsch_cli::Streams {
+        input: &mut std::io::empty(),
         out: &mut Gone,
         err: &mut err,
         progress: false,
+        width: None,
     };
     let arguments = ["clebsch", "list"].map(std::ffi::OsString::from);
     assert_eq!(

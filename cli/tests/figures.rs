@@ -11,9 +11,11 @@ use std::ffi::OsString;
 fn shipped(arguments: &[&str]) -> (u8, String, String) {
     let (mut out, mut err) = (Vec::new(), Vec::new());
     let mut streams = Streams {
+        input: &mut std::io::empty(),
         out: &mut out,
         err: &mut err,
         progress: false,
+        width: None,
     };
     let words = std::iter::once("clebsch").chain(arguments.iter().copied());
     let code = execute(words.map(OsString::from), &Gallery::shipped(), &mut streams);

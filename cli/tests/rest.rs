@@ -5,30 +5,10 @@ mod common;
 
 use clebsch::card::Kind;
 use clebsch_cli::gallery::Gallery;
-use clebsch_cli::{Streams, execute};
-use common::{Done, Folder, clebsch};
-use std::ffi::OsString;
+use common::{Folder, clebsch, on};
 
 /// Steps of each run: enough for forces to set a body at rest in motion.
 const STEPS: &str = "100";
-
-fn on(gallery: &Gallery, arguments: &[&str]) -> Done {
-    let (mut out, mut err) = (Vec::new(), Vec::new());
-    let code = execute(
-        ["clebsch"].iter().chain(arguments).map(OsString::from),
-        gallery,
-        &mut Streams {
-            out: &mut out,
-            err: &mut err,
-            progress: false,
-        },
-    );
-    Done {
-        code,
-        out: String::from_utf8(out).expect("UTF-8"),
-        err: String::from_utf8(err).expect("UTF-8"),
-    }
-}
 
 /// Every shipped model with its momenta set to zero, or with its vectors and numbers among the
 /// parameters (weights, fields, couplings) set to zero, or both.

@@ -77,9 +77,11 @@ fn the_figures_are_what_the_command_writes() {
         arguments,
         &Gallery::shipped(),
         &mut Streams {
+            input: &mut std::io::empty(),
             out: &mut out,
             err: &mut err,
             progress: false,
+            width: None,
         },
     );
     assert_eq!(code, 0, "{}", String::from_utf8_lossy(&err));

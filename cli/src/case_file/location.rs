@@ -3,6 +3,7 @@
 
 use crate::failure::Failure;
 use crate::gallery::Case;
+use crate::plain::shown;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -33,8 +34,8 @@ impl File<'_> {
     /// A usage failure at `span` (or for the file as a whole).
     pub fn wrong(&self, span: Option<&Range<usize>>, message: &str) -> Failure {
         Failure::Usage(match span {
-            Some(span) => format!("{}:{}: {message}", self.name, self.line(span)),
-            None => format!("{}: {message}", self.name),
+            Some(span) => format!("{}:{}: {message}", shown(self.name), self.line(span)),
+            None => format!("{}: {message}", shown(self.name)),
         })
     }
 }

@@ -3,8 +3,10 @@
 
 use super::location::{File, Located};
 use super::value::{expected, number, numbers};
+use crate::arguments::whole;
 use crate::failure::Failure;
 use crate::gallery::Case;
+use crate::plain::shown;
 use crate::suggestion::did_you_mean;
 use clebsch::card::{Card, Field};
 use std::collections::BTreeMap;
@@ -51,7 +53,8 @@ pub fn read(name: &str, text: &str, card: &Card) -> Result<Located, Failure> {
         return Err(file.wrong(
             Some(&model.span()),
             &format!(
-                "model: this case is for `{asked}`, but `{}` is to run",
+                "model: this case is for `{}`, but `{}` is to run",
+                shown(&asked),
                 card.kebab
             ),
         ));
@@ -108,7 +111,7 @@ fn known_keys(
         };
         return Err(file.wrong(
             Some(&key.span()),
-            &format!("unknown key `{name}` {place}{hint}"),
+            &format!("unknown key `{}` {place}{hint}", shown(name)),
         ));
     }
     Ok(())
@@ -158,15 +161,25 @@ fn step_size(file: &File<'_>, value: &Spanned<DeValue<'_>>) -> Result<f64, Failu
 
 fn steps(file: &File<'_>, value: &Spanned<DeValue<'_>>) -> Result<u64, Failure> {
     let wrong = |message: &str| file.wrong(Some(&value.span()), &format!("steps: {message}"));
-    let DeValue::Integer(text) = value.get_ref() else {
-        let found = value.get_ref().type_str();
-        return Err(wrong(&format!(
-            "expected a whole number, found a value of type {found}"
-        )));
+    let (text, steps) = match value.get_ref() {
+        DeValue::Integer(text) => {
+            let steps = u64::from_str_radix(text.as_str(), text.radix());
+            (text.to_string(), steps.ok())
+        }
+        // `1e6` is a whole number, too.
+        DeValue::Float(text) => (text.to_string(), whole(text.as_str())),
+        other => {
+            let found = other.type_str();
+            return Err(wrong(&format!(
+                "expected a whole number, found a value of type {found}"
+            )));
+        }
     };
-    match u64::from_str_radix(text.as_str(), text.radix()) {
-        Ok(steps) if steps > 0 => Ok(steps),
-        _ => Err(wrong(&format!("must be at least 1, found {text}"))),
+    match steps {
+        Some(steps) if steps > 0 => Ok(steps),
+        _ => Err(wrong(&format!(
+            "must be a whole number, at least 1, found {text}"
+        ))),
     }
 }
 

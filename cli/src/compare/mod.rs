@@ -8,13 +8,17 @@ mod score;
 pub(crate) use score::{Curve, Score};
 
 use crate::Streams;
+use crate::asked;
+use crate::columns::aligned;
 use crate::failure::{DONE, Failure};
 use crate::gallery::Gallery;
 use crate::list::first_line;
 use crate::output::Staging;
+use crate::plain::shown;
 use crate::plan::Plan;
 use crate::plots;
 use crate::record::{LARGEST, Record};
+use crate::width::paragraph;
 use clap::ArgMatches;
 use clebsch::card::{Card, Settings};
 use clebsch::solvers::Method;
@@ -48,7 +52,7 @@ pub fn compare(
     let model = matches
         .get_one::<String>("model")
         .map_or("", String::as_str);
-    let entry = gallery.find(model)?;
+    let entry = asked::model(gallery, model)?;
     let plan = Plan::new(entry, matches)?;
     let card = &entry.card_of(&plan.case);
     let as_json = matches.get_flag("json");
@@ -74,10 +78,11 @@ pub fn compare(
         writeln!(streams.out, "{object}")?;
         return Ok(DONE);
     }
-    print(streams.out, card, &plan, &done)?;
+    print(streams.out, card, &plan, &done, streams.width)?;
     if let Some(target) = target {
-        let shown = target.display();
-        writeln!(streams.out, "\nwritten to {shown}: {}", files.join(", "))?;
+        let written = format!("written to {}: {}", shown(target), files.join(", "));
+        let written = paragraph(&written, streams.width, 2);
+        write!(streams.out, "\n{written}")?;
     }
     Ok(DONE)
 }
@@ -199,34 +204,46 @@ fn course_or_why(card: &Card, plan: &Plan) -> Course {
     })
 }
 
-fn print(out: &mut dyn Write, card: &Card, plan: &Plan, done: &Comparison) -> io::Result<()> {
+fn print(
+    out: &mut dyn Write,
+    card: &Card,
+    plan: &Plan,
+    done: &Comparison,
+    width: Option<usize>,
+) -> io::Result<()> {
+    let mut say = |text: String| out.write_all(paragraph(&text, width, 2).as_bytes());
     let case = &plan.case;
     let doc = first_line(&case.doc);
     let colon = if doc.is_empty() { "" } else { ": " };
-    writeln!(out, "{}: {}", card.kebab, first_line(card.doc))?;
-    writeln!(out, "case {}{colon}{doc}", case.name)?;
+    say(format!("{}: {}", card.kebab, first_line(card.doc)))?;
+    say(format!("case {}{colon}{doc}", shown(&case.name)))?;
     let end = crate::run::end(case.h, case.steps);
-    writeln!(out, "h = {}, {} steps, to time {end}", case.h, case.steps)?;
-    writeln!(out, "reference {}", done.reference)?;
-    writeln!(
-        out,
-        "errors |x - reference| / largest |reference|, drifts |I - I(0)| / scale: the largest at {}\n",
+    say(format!(
+        "h = {}, {} steps, to time {end}",
+        case.h, case.steps
+    ))?;
+    say(format!("reference {}", done.reference))?;
+    say(format!(
+        "errors |x - reference| / largest |reference|, drifts |I - I(0)| / scale: the largest at {}",
         match plan.every {
             1 => "any node".to_owned(),
             every => format!("every {every}th node"),
         }
-    )?;
-    out.write_all(score::table(&done.scores).as_bytes())?;
+    ))?;
     writeln!(out)?;
-    let width = done.scores.iter().map(|score| score.name.len()).max();
-    let width = width.unwrap_or(0);
+    out.write_all(score::table(&done.scores, width).as_bytes())?;
+    writeln!(out)?;
+    let mut rows = Vec::new();
     for score in &done.scores {
-        writeln!(out, "{:<width$}  {}", score.name, score.doc)?;
+        rows.push(vec![score.name.clone(), score.doc.clone()]);
         if let Some((node, why)) = &score.stopped {
-            writeln!(out, "{:<width$}  gave up at node {node}: {why}", "")?;
+            rows.push(vec![
+                String::new(),
+                format!("gave up at node {node}: {why}"),
+            ]);
         }
     }
-    Ok(())
+    out.write_all(aligned(&rows, &[], width).as_bytes())
 }
 
 fn comparison_json(card: &Card, plan: &Plan, done: &Comparison) -> Value {

@@ -156,7 +156,7 @@ impl Score {
 }
 
 /// The table: one line a method.
-pub(crate) fn table(scores: &[Score]) -> String {
+pub(crate) fn table(scores: &[Score], width: Option<usize>) -> String {
     let number = |x: f64| {
         if x == 0.0 {
             "0".to_owned()
@@ -183,5 +183,5 @@ pub(crate) fn table(scores: &[Score]) -> String {
         }));
         rows.push(row);
     }
-    crate::columns::aligned(&rows, &right)
+    crate::columns::aligned(&rows, &right, width)
 }

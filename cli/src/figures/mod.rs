@@ -11,6 +11,7 @@ use crate::Streams;
 use crate::failure::{DONE, Failure};
 use crate::gallery::Gallery;
 use crate::output::Staging;
+use crate::plain::shown;
 use clap::ArgMatches;
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -164,6 +165,6 @@ pub fn figures(
             figure.number, figure.model
         )?;
     }
-    writeln!(streams.out, "\nwritten to {}", target.display())?;
+    writeln!(streams.out, "\nwritten to {}", shown(target))?;
     Ok(DONE)
 }

@@ -6,6 +6,7 @@ mod names;
 mod npz;
 mod run_json;
 mod staging;
+mod standing;
 
 pub use run_json::run_json;
 pub use staging::Staging;

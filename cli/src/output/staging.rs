@@ -1,19 +1,31 @@
-//! A folder that appears complete or not at all.
-//! Takes the folder's final name; gives a hidden sibling to write into, renamed at the end and
-//! removed when anything fails before.
+//! A folder that appears complete or not at all, and in place of nothing else.
+//! Takes the folder's final name; gives a hidden sibling to write into, which takes the name at the end
+//! if nobody else has, and another one beside it otherwise.
+//!
+//! What stands under the name is looked at twice: at the start, so that a run that could not be written
+//! is refused before it computes, and at the end, when only the file system's own operations decide: a
+//! folder is made only if it is not there ([`fs::create_dir`]), and renamed only over an empty one. So
+//! of any number of runs into one folder one takes the name, and each of the others keeps its results.
 
+use super::standing::{self, Standing};
 use crate::failure::Failure;
+use crate::plain::{Shown, shown};
 use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+
+/// Names tried before giving up; each attempt goes on only where a name is taken.
+const ATTEMPTS: u32 = 10_000;
 
 /// The folder in the making. Dropping it uncommitted removes all traces.
 #[derive(Debug)]
 pub struct Staging {
     target: PathBuf,
     hidden: PathBuf,
-    aside: PathBuf,
+    /// What `--force` is to replace, as it stood at the start.
+    standing: Option<Standing>,
+    known: Vec<&'static str>,
     /// Parents of the target that did not exist, innermost first.
     created: Vec<PathBuf>,
     committed: bool,
@@ -25,33 +37,24 @@ impl Staging {
     /// # Errors
     /// Usage: it exists and `force` is not given, or it is not the folder of an earlier run (empty, or
     /// nothing but the files `known` of a run): such a folder is never replaced. Failed: no permission.
-    pub fn new(target: &Path, force: bool, known: &[&str]) -> Result<Self, Failure> {
-        let shown = target.display();
-        let Some(name) = target.file_name() else {
+    pub fn new(target: &Path, force: bool, known: &[&'static str]) -> Result<Self, Failure> {
+        if target.file_name().is_none() {
             return Err(Failure::Usage(format!(
-                "--out {shown}: this names no new folder"
+                "--out {}: this names no new folder",
+                shown(target)
             )));
-        };
-        if let Some(obstacle) = obstacle(target, force, known)? {
-            return Err(Failure::Usage(format!("--out {shown}: {obstacle}")));
         }
-        // The process id keeps simultaneous runs apart; it appears in no file.
-        let sibling = |role: &str| {
-            let mut hidden = OsString::from(".");
-            hidden.push(name);
-            hidden.push(format!(".{role}-{}", std::process::id()));
-            target.with_file_name(hidden)
-        };
         let mut staging = Self {
             target: target.to_owned(),
-            hidden: sibling("partial"),
-            aside: sibling("replaced"),
+            hidden: PathBuf::new(),
+            standing: standing::at(target, force, known)?,
+            known: known.to_vec(),
             created: Vec::new(),
             committed: false,
         };
-        staging
-            .make()
-            .map_err(|error| Failure::io(&format!("cannot make the folder {shown}"), &error))?;
+        staging.make().map_err(|error| {
+            Failure::io(&format!("cannot make the folder {}", shown(target)), &error)
+        })?;
         Ok(staging)
     }
 
@@ -60,14 +63,32 @@ impl Staging {
         let missing = missing.take_while(|path| !path.as_os_str().is_empty() && !path.exists());
         let missing: Vec<PathBuf> = missing.map(Path::to_owned).collect();
         for parent in missing.iter().rev() {
-            fs::create_dir(parent)?;
-            self.created.insert(0, parent.clone());
+            match fs::create_dir(parent) {
+                Ok(()) => self.created.insert(0, parent.clone()),
+                // Another run has just made it.
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+                Err(error) => return Err(error),
+            }
         }
-        // One of this name was left by an interrupted run whose process id has come round again.
-        match fs::remove_dir_all(&self.hidden) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
-            _ => fs::create_dir(&self.hidden),
-        }
+        self.hidden = self.fresh("partial")?;
+        Ok(())
+    }
+
+    /// Makes a hidden sibling that was not there. The process id only keeps the search short.
+    fn fresh(&self, role: &str) -> io::Result<PathBuf> {
+        let id = std::process::id();
+        first_free(|count| {
+            let path = self.sibling(".", &format!(".{role}-{id}-{count}"));
+            fs::create_dir(&path).map(|()| path)
+        })
+    }
+
+    /// `target` with something before and behind its name.
+    fn sibling(&self, before: &str, behind: &str) -> PathBuf {
+        let mut name = OsString::from(before);
+        name.push(self.target.file_name().unwrap_or_default());
+        name.push(behind);
+        self.target.with_file_name(name)
     }
 
     /// Writes one file and sees it to the disk.
@@ -86,45 +107,135 @@ impl Staging {
         };
         put().map_err(|error| {
             let path = self.target.join(name);
-            Failure::io(&format!("cannot write {}", path.display()), &error)
+            Failure::io(&format!("cannot write {}", shown(&path)), &error)
         })
     }
 
-    /// Gives the folder its name. An earlier one is moved aside, and removed once that is done.
+    /// Gives the folder its name, in place of what stood there at the start, which is removed once that
+    /// is done.
     ///
     /// # Errors
-    /// Failed: the file system refuses; the earlier folder is then where it was.
+    /// Failed: the name was taken meanwhile, what stood there has changed, or the file system refuses.
+    /// What stands there is then left as it is, and the results are kept beside it; the message says
+    /// where.
     pub fn commit(mut self) -> Result<(), Failure> {
-        let replaces = self.target.exists();
-        let rename = || {
-            if replaces {
-                fs::rename(&self.target, &self.aside)?;
-            }
-            fs::rename(&self.hidden, &self.target).inspect_err(|_| {
-                if replaces {
-                    // The first error is the one to report.
-                    let _ = fs::rename(&self.aside, &self.target);
-                }
-            })
-        };
-        rename().map_err(|error| {
-            Failure::io(
-                &format!("cannot put {} in place", self.target.display()),
-                &error,
-            )
-        })?;
+        // From here on the results are complete: whatever happens, they are not removed.
         self.committed = true;
-        if replaces {
-            fs::remove_dir_all(&self.aside).map_err(|error| {
-                let aside = self.aside.display();
-                Failure::io(
-                    &format!("cannot remove the earlier results, now in {aside}"),
-                    &error,
-                )
-            })?;
+        let target = shown(&self.target);
+        let earlier = match self.set_aside() {
+            Ok(earlier) => earlier,
+            Err(why) => return Err(self.keep_beside(&why)),
+        };
+        if let Err(error) = place(&self.hidden, &self.target) {
+            let mut why = match taken(&error) {
+                true => {
+                    "this was made by someone else during the run, and is left as it is".to_owned()
+                }
+                false => format!("cannot put the results there: {error}"),
+            };
+            if let Some(aside) = earlier {
+                why.push_str(&self.give_back(&aside));
+            }
+            return Err(self.keep_beside(&why));
         }
-        Ok(())
+        let (Some(aside), Some(standing)) = (earlier, &self.standing) else {
+            return Ok(());
+        };
+        standing.remove(&aside).map_err(|error| {
+            Failure::Failed(format!(
+                "--out {target}: the results are there; what stood there before cannot be removed \
+                 whole ({error}), the rest is in {}",
+                shown(&aside)
+            ))
+        })
     }
+
+    /// Moves what is to be replaced aside, if it is still what it was at the start. Gives where to, or
+    /// nothing when there is nothing to replace.
+    fn set_aside(&self) -> Result<Option<PathBuf>, String> {
+        let Some(standing) = &self.standing else {
+            return Ok(None);
+        };
+        let why = |error: io::Error| format!("cannot move what stands there aside: {error}");
+        let aside = self.fresh("replaced").map_err(why)?;
+        if let Err(error) = rename(&self.target, &aside) {
+            // It is empty and ours; when it cannot be removed, nothing is lost.
+            let _ = fs::remove_dir(&aside);
+            return match error.kind() {
+                io::ErrorKind::NotFound => Ok(None),
+                _ => Err(why(error)),
+            };
+        }
+        // Looked at after the move, so that no run can exchange it between the look and the move.
+        match standing::look(&aside, &self.known) {
+            Ok(Ok(now)) if now == *standing => Ok(Some(aside)),
+            _ => Err(format!(
+                "what stands there changed during the run, and is not replaced{}",
+                self.give_back(&aside)
+            )),
+        }
+    }
+
+    /// Moves what was set aside back where it was, or beside it when the place is taken; what to say
+    /// then.
+    fn give_back(&self, aside: &Path) -> String {
+        match place(aside, &self.target) {
+            Ok(()) => String::new(),
+            Err(_) => format!("; what stood there before is in {}", self.beside(aside)),
+        }
+    }
+
+    /// Gives the results a name of their own beside the target, and says so.
+    fn keep_beside(&self, why: &str) -> Failure {
+        let target = shown(&self.target);
+        let place = self.beside(&self.hidden);
+        Failure::Failed(format!("--out {target}: {why}; the results are in {place}"))
+    }
+
+    /// Renames a folder to the first free of `target-2`, `target-3` and so on; says where it is now.
+    fn beside(&self, folder: &Path) -> Shown {
+        let kept = first_free(|count| {
+            let path = self.sibling("", &format!("-{}", count + 2));
+            place(folder, &path).map(|()| path)
+        });
+        shown(&kept.unwrap_or_else(|_| folder.to_owned()))
+    }
+}
+
+/// The first of many names that is not taken.
+fn first_free(mut attempt: impl FnMut(u32) -> io::Result<PathBuf>) -> io::Result<PathBuf> {
+    let mut count = 0;
+    loop {
+        match attempt(count) {
+            Err(error) if taken(&error) && count < ATTEMPTS => count += 1,
+            other => return other,
+        }
+    }
+}
+
+/// Whether the name was there already.
+fn taken(error: &io::Error) -> bool {
+    use io::ErrorKind::{AlreadyExists, DirectoryNotEmpty};
+    matches!(error.kind(), AlreadyExists | DirectoryNotEmpty)
+}
+
+/// Renames the folder `from`, if nothing is called `to`.
+fn place(from: &Path, to: &Path) -> io::Result<()> {
+    // Only one of all who try makes the empty folder, and a rename replaces no other one: should
+    // someone put a file into it before, the rename is refused.
+    fs::create_dir(to)?;
+    rename(from, to).inspect_err(|_| {
+        let _ = fs::remove_dir(to);
+    })
+}
+
+/// Renames the folder `from` over the empty folder `to`.
+fn rename(from: &Path, to: &Path) -> io::Result<()> {
+    if cfg!(windows) {
+        // A folder is renamed over no other one there; this removes it only while it is empty.
+        fs::remove_dir(to)?;
+    }
+    fs::rename(from, to)
 }
 
 impl Drop for Staging {
@@ -133,41 +244,11 @@ impl Drop for Staging {
             return;
         }
         // Nothing can be done about errors here; the failure that led here is the one reported.
-        let _ = fs::remove_dir_all(&self.hidden);
+        if !self.hidden.as_os_str().is_empty() {
+            let _ = fs::remove_dir_all(&self.hidden);
+        }
         for parent in &self.created {
             let _ = fs::remove_dir(parent);
         }
     }
-}
-
-/// Why `target` may not be written, if so.
-fn obstacle(target: &Path, force: bool, known: &[&str]) -> Result<Option<String>, Failure> {
-    let found = match fs::symlink_metadata(target) {
-        Ok(found) => found,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-        Err(error) => {
-            return Err(Failure::io(
-                &format!("cannot look at {}", target.display()),
-                &error,
-            ));
-        }
-    };
-    if !found.is_dir() {
-        return Ok(Some("this exists and is no folder".to_owned()));
-    }
-    if !force {
-        return Ok(Some("this exists; give --force to replace it".to_owned()));
-    }
-    let looking =
-        |error: io::Error| Failure::io(&format!("cannot look into {}", target.display()), &error);
-    for entry in fs::read_dir(target).map_err(looking)? {
-        let name = entry.map_err(looking)?.file_name();
-        if !known.iter().any(|file| name == **file) {
-            return Ok(Some(format!(
-                "not replaced, as it holds `{}`, which no run wrote; remove it or name another folder",
-                name.display()
-            )));
-        }
-    }
-    Ok(None)
 }

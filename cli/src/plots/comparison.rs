@@ -6,6 +6,7 @@ use super::curve::{Curve, Stroke};
 use super::figure::{Figure, Panel};
 use super::reduce;
 use crate::compare::{Comparison, Score};
+use crate::plain::shown;
 use crate::plan::Plan;
 use crate::run::end;
 use clebsch::card::Card;
@@ -46,7 +47,11 @@ pub(crate) fn comparison(card: &Card, plan: &Plan, done: &Comparison) -> Result<
         ));
     }
     let figure = Figure {
-        title: format!("{}, case {}: methods compared", card.kebab, case.name),
+        title: format!(
+            "{}, case {}: methods compared",
+            card.kebab,
+            shown(&case.name)
+        ),
         subtitle: format!(
             "h = {}, {} steps, to time {}; reference {}",
             case.h,

@@ -84,10 +84,15 @@ pub(crate) fn invariants(run: &Finished<'_>, record: &Record) -> Plot {
             },
         });
     }
+    let mut components = run.outcomes.iter().flat_map(|outcome| &outcome.components);
+    let relative = match components.any(Drift::is_absolute) {
+        true => "",
+        false => "relative ",
+    };
     let group = reduce::group(record.times.len().saturating_sub(1));
     let caption = match group {
-        1 => "drift at each sample".to_owned(),
-        group => format!("drift, each point the largest of about {group} samples"),
+        1 => format!("{relative}drift at each sample"),
+        group => format!("{relative}drift, each point the largest of about {group} samples"),
     };
     let panel = Panel {
         caption,
@@ -115,7 +120,11 @@ fn figure(run: &Finished<'_>, shown: Window<'_>, what: &str, panels: Vec<Panel>)
         String::new()
     };
     let figure = Figure {
-        title: format!("{}, case {}: {what}", run.card.kebab, case.name),
+        title: format!(
+            "{}, case {}: {what}",
+            run.card.kebab,
+            crate::plain::shown(&case.name)
+        ),
         subtitle: format!(
             "h = {}, {} steps, to time {}; order {}{part}",
             case.h,

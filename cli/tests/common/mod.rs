@@ -255,15 +255,27 @@ pub struct Done {
 
 /// Runs `clebsch` on the gallery above.
 pub fn clebsch(arguments: &[&str]) -> Done {
+    on(&gallery(), arguments)
+}
+
+/// Runs `clebsch` on any gallery.
+pub fn on(gallery: &Gallery, arguments: &[&str]) -> Done {
+    with(gallery, arguments, "", None)
+}
+
+/// Runs `clebsch` with a standard input and a width of the terminal.
+pub fn with(gallery: &Gallery, arguments: &[&str], input: &str, width: Option<usize>) -> Done {
     let (mut out, mut err) = (Vec::new(), Vec::new());
     let arguments = ["clebsch"].iter().chain(arguments).map(OsString::from);
     let code = execute(
         arguments,
-        &gallery(),
+        gallery,
         &mut Streams {
+            input: &mut input.as_bytes(),
             out: &mut out,
             err: &mut err,
             progress: false,
+            width,
         },
     );
     Done {

@@ -1,0 +1,78 @@
+//! What stands where results are to go: nothing, the folder of an earlier run, or something else.
+//! Takes a path; gives what `--force` may replace, or why nothing may be.
+
+use crate::failure::Failure;
+use crate::plain::shown;
+use std::ffi::OsString;
+use std::fs::{self, DirEntry};
+use std::io;
+use std::path::Path;
+use std::time::SystemTime;
+
+/// One file as it stood: name, size, time of its last change.
+type Entry = (OsString, u64, Option<SystemTime>);
+
+/// The files of an earlier run, by name. Two folders are told apart by it: no run changes a file.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Standing(Vec<Entry>);
+
+/// Whether results may go to `target`: `None` where nothing stands, else what is to be replaced.
+///
+/// # Errors
+/// Usage: something stands there and `force` is not given, or it is no folder with nothing but files
+/// that are `known` to be of a run. Failed: no permission to look.
+pub(super) fn at(target: &Path, force: bool, known: &[&str]) -> Result<Option<Standing>, Failure> {
+    let wrong = |words: String| Failure::Usage(format!("--out {}: {words}", shown(target)));
+    let found = match fs::symlink_metadata(target) {
+        Ok(found) => found,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        Err(error) => {
+            return Err(Failure::io(
+                &format!("cannot look at {}", shown(target)),
+                &error,
+            ));
+        }
+    };
+    if !found.is_dir() {
+        return Err(wrong("this exists and is no folder".to_owned()));
+    }
+    if !force {
+        return Err(wrong("this exists; give --force to replace it".to_owned()));
+    }
+    match look(target, known) {
+        Ok(Ok(standing)) => Ok(Some(standing)),
+        Ok(Err(foreign)) => Err(wrong(format!(
+            "not replaced, as it holds `{}`, which no run wrote; remove it or name another folder",
+            shown(foreign)
+        ))),
+        Err(error) => Err(Failure::io(
+            &format!("cannot look into {}", shown(target)),
+            &error,
+        )),
+    }
+}
+
+/// The files in `folder`, or the name of one that no run wrote.
+pub(super) fn look(folder: &Path, known: &[&str]) -> io::Result<Result<Standing, OsString>> {
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder)? {
+        let entry: DirEntry = entry?;
+        let (name, found) = (entry.file_name(), entry.metadata()?);
+        if !found.is_file() || !known.iter().any(|file| name == **file) {
+            return Ok(Err(name));
+        }
+        files.push((name, found.len(), found.modified().ok()));
+    }
+    files.sort();
+    Ok(Ok(Standing(files)))
+}
+
+impl Standing {
+    /// Removes these files from `folder`, and the folder when nothing else is in it.
+    pub(super) fn remove(&self, folder: &Path) -> io::Result<()> {
+        for (name, ..) in &self.0 {
+            fs::remove_file(folder.join(name))?;
+        }
+        fs::remove_dir(folder)
+    }
+}
