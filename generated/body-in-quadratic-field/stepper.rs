@@ -13,9 +13,9 @@ pub mod body_in_quadratic_field {
     /// Parameters of [`BodyInQuadraticField`](struct@BodyInQuadraticField), as given.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct BodyInQuadraticFieldParameters<T = f64> {
-        /// `J`: a 3 x 3 matrix, symmetric.
+        /// `J`: Poinsot (second-moment) matrix; a 3 x 3 matrix, symmetric.
         pub J: SMatrix<T, 3, 3>,
-        /// `K`: a 3 x 3 matrix, symmetric.
+        /// `K`: the field: energy ½ Γ·KΓ; a 3 x 3 matrix, symmetric.
         pub K: SMatrix<T, 3, 3>,
     }
     /// Rigid body in a quadratic field.
@@ -27,9 +27,9 @@ pub mod body_in_quadratic_field {
     }
     impl<T: Real> BodyInQuadraticField<T> {
         /// The model as it was stated.
-        pub const SOURCE: &'static str = "/// Rigid body in a quadratic field.\npub model BodyInQuadraticField {\n    param J: Sym<3>;\n    param K: Sym<3>;\n    group Λ: SO<3> velocity Ω;\n    advected Γ: Vec<3>;\n    constraint next(Λ) = Λ*Ω;\n    constraint next(Γ) = Ω^T*Γ;\n    lagrangian = -tr(J*Ω)/h - (1/2)*h*dot(Γ, K*Γ);\n}";
+        pub const SOURCE: &'static str = "/// Rigid body in a quadratic field.\npub model BodyInQuadraticField {\n    /// Poinsot (second-moment) matrix\n    param J: Sym<3>;\n    /// the field: energy ½ Γ·KΓ\n    param K: Sym<3>;\n    /// attitude, body to space\n    group Λ: SO<3> velocity Ω;\n    /// axis of the field seen from the body\n    advected Γ: Vec<3>;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    /// the axis is fixed in space\n    constraint next(Γ) = Ω^T*Γ;\n    lagrangian = -tr(J*Ω)/h - (1/2)*h*dot(Γ, K*Γ);\n}";
         /// A number that changes when the model or its derivation does.
-        pub const FINGERPRINT: u64 = 8113186643604666594u64;
+        pub const FINGERPRINT: u64 = 17218949872786232600u64;
         /// Checks the parameters.
         ///
         /// # Errors
@@ -665,7 +665,7 @@ pub mod body_in_quadratic_field {
                     rows: 3,
                     cols: 3,
                     kind: Kind::Symmetric,
-                    doc: "",
+                    doc: "Poinsot (second-moment) matrix",
                 },
                 Field {
                     name: "K",
@@ -673,7 +673,7 @@ pub mod body_in_quadratic_field {
                     rows: 3,
                     cols: 3,
                     kind: Kind::Symmetric,
-                    doc: "",
+                    doc: "the field: energy ½ Γ·KΓ",
                 },
             ],
             initial: &[
@@ -699,7 +699,7 @@ pub mod body_in_quadratic_field {
                     rows: 3,
                     cols: 1,
                     kind: Kind::Vector,
-                    doc: "value at node 0",
+                    doc: "axis of the field seen from the body",
                 },
             ],
             observables: &[
@@ -733,7 +733,7 @@ pub mod body_in_quadratic_field {
                     rows: 3,
                     cols: 1,
                     kind: Kind::Vector,
-                    doc: "",
+                    doc: "axis of the field seen from the body",
                 },
             ],
             invariants: &[

@@ -13,15 +13,15 @@ pub mod body_in_two_fields {
     /// Parameters of [`BodyInTwoFields`](struct@BodyInTwoFields), as given.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct BodyInTwoFieldsParameters<T = f64> {
-        /// `J`: a 3 x 3 matrix, symmetric.
+        /// `J`: Poinsot (second-moment) matrix; a 3 x 3 matrix, symmetric.
         pub J: SMatrix<T, 3, 3>,
-        /// `gU`: a vector of 3 components.
+        /// `gU`: weight times support -> centre of mass, body frame; a vector of 3 components.
         pub gU: SVector<T, 3>,
-        /// `p`: a vector of 3 components.
+        /// `p`: dipole moment, body frame; a vector of 3 components.
         pub p: SVector<T, 3>,
-        /// `z`: a vector of 3 components.
+        /// `z`: vertical (up), space frame; a vector of 3 components.
         pub z: SVector<T, 3>,
-        /// `b`: a vector of 3 components.
+        /// `b`: field that acts on the dipole, space frame; a vector of 3 components.
         pub b: SVector<T, 3>,
     }
     /// Rigid body about a fixed point in two uniform fields.
@@ -33,9 +33,9 @@ pub mod body_in_two_fields {
     }
     impl<T: Real> BodyInTwoFields<T> {
         /// The model as it was stated.
-        pub const SOURCE: &'static str = "/// Rigid body about a fixed point in two uniform fields.\npub model BodyInTwoFields {\n    param J: Sym<3>;\n    param gU: Vec<3>;\n    param p: Vec<3>;\n    param z: Vec<3>;\n    param b: Vec<3>;\n    group Λ: SO<3> velocity Ω;\n    advected Γ: Vec<3> = Λ^T*z;\n    advected B: Vec<3> = Λ^T*b;\n    constraint next(Λ) = Λ*Ω;\n    constraint next(Γ) = Ω^T*Γ;\n    constraint next(B) = Ω^T*B;\n    lagrangian = -tr(J*Ω)/h - h*(dot(gU, Γ) - dot(p, B));\n}";
+        pub const SOURCE: &'static str = "/// Rigid body about a fixed point in two uniform fields.\npub model BodyInTwoFields {\n    /// Poinsot (second-moment) matrix\n    param J: Sym<3>;\n    /// weight times support -> centre of mass, body frame\n    param gU: Vec<3> as \"m g \\chi\";\n    /// dipole moment, body frame\n    param p: Vec<3>;\n    /// vertical (up), space frame\n    param z: Vec<3>;\n    /// field that acts on the dipole, space frame\n    param b: Vec<3>;\n    /// attitude, body to space\n    group Λ: SO<3> velocity Ω;\n    /// the vertical seen from the body\n    advected Γ: Vec<3> = Λ^T*z;\n    /// the field seen from the body\n    advected B: Vec<3> = Λ^T*b;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    /// both are fixed in space\n    constraint next(Γ) = Ω^T*Γ;\n    constraint next(B) = Ω^T*B;\n    lagrangian = -tr(J*Ω)/h - h*(dot(gU, Γ) - dot(p, B));\n}";
         /// A number that changes when the model or its derivation does.
-        pub const FINGERPRINT: u64 = 5123335770211329113u64;
+        pub const FINGERPRINT: u64 = 2584914887519986145u64;
         /// Checks the parameters.
         ///
         /// # Errors
@@ -682,7 +682,7 @@ pub mod body_in_two_fields {
                     rows: 3,
                     cols: 3,
                     kind: Kind::Symmetric,
-                    doc: "",
+                    doc: "Poinsot (second-moment) matrix",
                 },
                 Field {
                     name: "gU",
@@ -690,7 +690,7 @@ pub mod body_in_two_fields {
                     rows: 3,
                     cols: 1,
                     kind: Kind::Vector,
-                    doc: "",
+                    doc: "weight times support -> centre of mass, body frame",
                 },
                 Field {
                     name: "p",
@@ -698,7 +698,7 @@ pub mod body_in_two_fields {
                     rows: 3,
                     cols: 1,
                     kind: Kind::Vector,
-                    doc: "",
+                    doc: "dipole moment, body frame",
                 },
                 Field {
                     name: "z",
@@ -706,7 +706,7 @@ pub mod body_in_two_fields {
                     rows: 3,
                     cols: 1,
                     kind: Kind::Vector,
-                    doc: "",
+                    doc: "vertical (up), space frame",
                 },
                 Field {
                     name: "b",
@@ -714,7 +714,7 @@ pub mod body_in_two_fields {
                     rows: 3,
                     cols: 1,
                     kind: Kind::Vector,
-                    doc: "",
+                    doc: "field that acts on the dipole, space frame",
                 },
             ],
             initial: &[
@@ -766,7 +766,7 @@ pub mod body_in_two_fields {
                     rows: 3,
                     cols: 1,
                     kind: Kind::Vector,
-                    doc: "",
+                    doc: "the vertical seen from the body",
                 },
                 Field {
                     name: "B",
@@ -774,7 +774,7 @@ pub mod body_in_two_fields {
                     rows: 3,
                     cols: 1,
                     kind: Kind::Vector,
-                    doc: "",
+                    doc: "the field seen from the body",
                 },
             ],
             invariants: &[

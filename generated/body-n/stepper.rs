@@ -13,7 +13,7 @@ pub mod body_n {
     /// Parameters of [`BodyN`](struct@BodyN), as given.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct BodyNParameters<const N: usize, T = f64> {
-        /// `C`: a n x n matrix.
+        /// `C`: second moments; any matrix of positive determinant; a n x n matrix.
         pub C: SMatrix<T, N, N>,
     }
     /// Free rigid body in n dimensions.
@@ -29,9 +29,9 @@ pub mod body_n {
             ::core::assert!(3 <= N && N <= 8, "`n` is from 3 to 8 in this model");
         };
         /// The model as it was stated.
-        pub const SOURCE: &'static str = "/// Free rigid body in n dimensions.\npub model BodyN {\n    dim n in 3..=8;\n    param C: Mat<n>;\n    group Λ: SO<n> velocity Ω;\n    constraint next(Λ) = Λ*Ω;\n    lagrangian = -tr(C^T*Ω)/h;\n}";
+        pub const SOURCE: &'static str = "/// Free rigid body in n dimensions.\npub model BodyN {\n    dim n in 3..=8;\n    /// second moments; any matrix of positive determinant\n    param C: Mat<n>;\n    /// attitude, body to space\n    group Λ: SO<n> velocity Ω;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    lagrangian = -tr(C^T*Ω)/h;\n}";
         /// A number that changes when the model or its derivation does.
-        pub const FINGERPRINT: u64 = 1713821277233177237u64;
+        pub const FINGERPRINT: u64 = 2002699665632125461u64;
         /// Checks the parameters.
         ///
         /// # Errors
@@ -511,7 +511,7 @@ pub mod body_n {
                     rows: N,
                     cols: N,
                     kind: Kind::Matrix,
-                    doc: "",
+                    doc: "second moments; any matrix of positive determinant",
                 },
             ],
             initial: &[

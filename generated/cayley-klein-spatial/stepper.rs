@@ -13,7 +13,7 @@ pub mod cayley_klein_spatial {
     /// Parameters of [`CayleyKleinSpatial`](struct@CayleyKleinSpatial), as given.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct CayleyKleinSpatialParameters<T = f64> {
-        /// `c`: a number.
+        /// `c`: 0: Moser-Veselov; 1: as in the thesis; a number.
         pub c: T,
     }
     /// Free rigid body in unit quaternions, spatial representation.
@@ -23,9 +23,9 @@ pub mod cayley_klein_spatial {
     }
     impl<T: Real> CayleyKleinSpatial<T> {
         /// The model as it was stated.
-        pub const SOURCE: &'static str = "/// Free rigid body in unit quaternions, spatial representation.\npub model CayleyKleinSpatial {\n    param c: Real;\n    group q: SU<2> velocity w;\n    advected I: Sym<3>;\n    constraint next(q) = w*q;\n    constraint next(I) = rot(w)*I*rot(w)^T;\n    lagrangian = -4*c*re(w)/h + 2*dot(im(w), (I - c*Id)*im(w))/h;\n}";
+        pub const SOURCE: &'static str = "/// Free rigid body in unit quaternions, spatial representation.\npub model CayleyKleinSpatial {\n    /// 0: Moser-Veselov; 1: as in the thesis\n    param c: Real;\n    /// attitude, body to space\n    group q: SU<2> velocity w;\n    /// inertia, space frame\n    advected I: Sym<3>;\n    constraint next(q) = w*q;\n    constraint next(I) = rot(w)*I*rot(w)^T;\n    lagrangian = -4*c*re(w)/h + 2*dot(im(w), (I - c*Id)*im(w))/h;\n}";
         /// A number that changes when the model or its derivation does.
-        pub const FINGERPRINT: u64 = 1248640724265325111u64;
+        pub const FINGERPRINT: u64 = 15826824904394337109u64;
         /// Checks the parameters.
         ///
         /// # Errors
@@ -574,7 +574,7 @@ pub mod cayley_klein_spatial {
                     rows: 1,
                     cols: 1,
                     kind: Kind::Scalar,
-                    doc: "",
+                    doc: "0: Moser-Veselov; 1: as in the thesis",
                 },
             ],
             initial: &[
@@ -584,7 +584,7 @@ pub mod cayley_klein_spatial {
                     rows: 4,
                     cols: 1,
                     kind: Kind::UnitQuaternion,
-                    doc: "attitude (w, x, y, z), body to space",
+                    doc: "attitude, body to space",
                 },
                 Field {
                     name: "spatial_momentum",
@@ -600,7 +600,7 @@ pub mod cayley_klein_spatial {
                     rows: 3,
                     cols: 3,
                     kind: Kind::Symmetric,
-                    doc: "value at node 0",
+                    doc: "inertia, space frame",
                 },
             ],
             observables: &[
@@ -610,7 +610,7 @@ pub mod cayley_klein_spatial {
                     rows: 4,
                     cols: 1,
                     kind: Kind::UnitQuaternion,
-                    doc: "attitude (w, x, y, z), body to space",
+                    doc: "attitude, body to space",
                 },
                 Field {
                     name: "body_momentum",
@@ -634,7 +634,7 @@ pub mod cayley_klein_spatial {
                     rows: 3,
                     cols: 3,
                     kind: Kind::Symmetric,
-                    doc: "",
+                    doc: "inertia, space frame",
                 },
             ],
             invariants: &[

@@ -13,9 +13,9 @@ pub mod cayley_klein {
     /// Parameters of [`CayleyKlein`](struct@CayleyKlein), as given.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct CayleyKleinParameters<T = f64> {
-        /// `I`: a 3 x 3 matrix, diagonal.
+        /// `I`: principal moments of inertia; a 3 x 3 matrix, diagonal.
         pub I: SMatrix<T, 3, 3>,
-        /// `c`: a number.
+        /// `c`: 0: Moser-Veselov; 1: as in the thesis; a number.
         pub c: T,
     }
     /// Free rigid body in unit quaternions. The body momentum is the map q -> q* m q of Hopf: its
@@ -27,9 +27,9 @@ pub mod cayley_klein {
     }
     impl<T: Real> CayleyKlein<T> {
         /// The model as it was stated.
-        pub const SOURCE: &'static str = "/// Free rigid body in unit quaternions. The body momentum is the map q -> q* m q of Hopf: its\n/// fibres over the sphere of body momenta are circles.\npub model CayleyKlein {\n    param I: Diag<3>;\n    param c: Real;\n    group q: SU<2> velocity W;\n    constraint next(q) = q*W;\n    lagrangian = -4*c*re(W)/h + 2*dot(im(W), (I - c*Id)*im(W))/h;\n}";
+        pub const SOURCE: &'static str = "/// Free rigid body in unit quaternions. The body momentum is the map q -> q* m q of Hopf: its\n/// fibres over the sphere of body momenta are circles.\npub model CayleyKlein {\n    /// principal moments of inertia\n    param I: Diag<3>;\n    /// 0: Moser-Veselov; 1: as in the thesis\n    param c: Real;\n    /// attitude, body to space\n    group q: SU<2> velocity W;\n    constraint next(q) = q*W;\n    lagrangian = -4*c*re(W)/h + 2*dot(im(W), (I - c*Id)*im(W))/h;\n}";
         /// A number that changes when the model or its derivation does.
-        pub const FINGERPRINT: u64 = 3803721495529054158u64;
+        pub const FINGERPRINT: u64 = 6338969864124962405u64;
         /// Checks the parameters.
         ///
         /// # Errors
@@ -474,7 +474,7 @@ pub mod cayley_klein {
                     rows: 3,
                     cols: 3,
                     kind: Kind::Diagonal,
-                    doc: "",
+                    doc: "principal moments of inertia",
                 },
                 Field {
                     name: "c",
@@ -482,7 +482,7 @@ pub mod cayley_klein {
                     rows: 1,
                     cols: 1,
                     kind: Kind::Scalar,
-                    doc: "",
+                    doc: "0: Moser-Veselov; 1: as in the thesis",
                 },
             ],
             initial: &[
@@ -492,7 +492,7 @@ pub mod cayley_klein {
                     rows: 4,
                     cols: 1,
                     kind: Kind::UnitQuaternion,
-                    doc: "attitude (w, x, y, z), body to space",
+                    doc: "attitude, body to space",
                 },
                 Field {
                     name: "body_momentum",
@@ -510,7 +510,7 @@ pub mod cayley_klein {
                     rows: 4,
                     cols: 1,
                     kind: Kind::UnitQuaternion,
-                    doc: "attitude (w, x, y, z), body to space",
+                    doc: "attitude, body to space",
                 },
                 Field {
                     name: "body_momentum",

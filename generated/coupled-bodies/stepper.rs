@@ -13,15 +13,15 @@ pub mod coupled_bodies {
     /// Parameters of [`CoupledBodies`](struct@CoupledBodies), as given.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct CoupledBodiesParameters<T = f64> {
-        /// `J1`: a 3 x 3 matrix, symmetric.
+        /// `J1`: Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ; a 3 x 3 matrix, symmetric.
         pub J1: SMatrix<T, 3, 3>,
-        /// `J2`: a 3 x 3 matrix, symmetric.
+        /// `J2`: Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ; a 3 x 3 matrix, symmetric.
         pub J2: SMatrix<T, 3, 3>,
-        /// `d1`: a vector of 3 components.
+        /// `d1`: joint -> centre of mass, each in its body's axes; a vector of 3 components.
         pub d1: SVector<T, 3>,
-        /// `d2`: a vector of 3 components.
+        /// `d2`: joint -> centre of mass, each in its body's axes; a vector of 3 components.
         pub d2: SVector<T, 3>,
-        /// `eps`: a number.
+        /// `eps`: reduced mass m₁ m₂/(m₁ + m₂); a number.
         pub eps: T,
     }
     /// Two rigid bodies with a spherical joint.
@@ -31,9 +31,9 @@ pub mod coupled_bodies {
     }
     impl<T: Real> CoupledBodies<T> {
         /// The model as it was stated.
-        pub const SOURCE: &'static str = "/// Two rigid bodies with a spherical joint.\npub model CoupledBodies {\n    param J1: Sym<3>;\n    param J2: Sym<3>;\n    param d1: Vec<3>;\n    param d2: Vec<3>;\n    param eps: Real;\n    group Λ1: SO<3> velocity Ω1;\n    group Λ2: SO<3> velocity Ω2;\n    advected R: SO<3> = Λ1^T*Λ2;\n    constraint next(Λ1) = Λ1*Ω1;\n    constraint next(Λ2) = Λ2*Ω2;\n    constraint next(R) = Ω1^T*R*Ω2;\n    lagrangian = (-tr(J1*Ω1) - tr(J2*Ω2) - eps*dot((Ω1 - Id)*d1, R*(Ω2 - Id)*d2))/h;\n}";
+        pub const SOURCE: &'static str = "/// Two rigid bodies with a spherical joint.\npub model CoupledBodies {\n    /// Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ\n    param J1: Sym<3>;\n    /// Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ\n    param J2: Sym<3>;\n    /// joint -> centre of mass, each in its body's axes\n    param d1: Vec<3>;\n    /// joint -> centre of mass, each in its body's axes\n    param d2: Vec<3>;\n    /// reduced mass m₁ m₂/(m₁ + m₂)\n    param eps: Real as \"\\varepsilon\";\n    /// attitude of body 1, body to space\n    group Λ1: SO<3> velocity Ω1;\n    /// attitude of body 2, body to space\n    group Λ2: SO<3> velocity Ω2;\n    /// body 2 seen from body 1\n    advected R: SO<3> = Λ1^T*Λ2;\n    constraint next(Λ1) = Λ1*Ω1;\n    constraint next(Λ2) = Λ2*Ω2;\n    constraint next(R) = Ω1^T*R*Ω2;\n    lagrangian = (-tr(J1*Ω1) - tr(J2*Ω2) - eps*dot((Ω1 - Id)*d1, R*(Ω2 - Id)*d2))/h;\n}";
         /// A number that changes when the model or its derivation does.
-        pub const FINGERPRINT: u64 = 16093269774006103430u64;
+        pub const FINGERPRINT: u64 = 5825775932552019303u64;
         /// Checks the parameters.
         ///
         /// # Errors
@@ -711,7 +711,7 @@ pub mod coupled_bodies {
                     rows: 3,
                     cols: 3,
                     kind: Kind::Symmetric,
-                    doc: "",
+                    doc: "Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ",
                 },
                 Field {
                     name: "J2",
@@ -719,7 +719,7 @@ pub mod coupled_bodies {
                     rows: 3,
                     cols: 3,
                     kind: Kind::Symmetric,
-                    doc: "",
+                    doc: "Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ",
                 },
                 Field {
                     name: "d1",
@@ -727,7 +727,7 @@ pub mod coupled_bodies {
                     rows: 3,
                     cols: 1,
                     kind: Kind::Vector,
-                    doc: "",
+                    doc: "joint -> centre of mass, each in its body's axes",
                 },
                 Field {
                     name: "d2",
@@ -735,7 +735,7 @@ pub mod coupled_bodies {
                     rows: 3,
                     cols: 1,
                     kind: Kind::Vector,
-                    doc: "",
+                    doc: "joint -> centre of mass, each in its body's axes",
                 },
                 Field {
                     name: "eps",
@@ -743,7 +743,7 @@ pub mod coupled_bodies {
                     rows: 1,
                     cols: 1,
                     kind: Kind::Scalar,
-                    doc: "",
+                    doc: "reduced mass m₁ m₂/(m₁ + m₂)",
                 },
             ],
             initial: &[
@@ -753,7 +753,7 @@ pub mod coupled_bodies {
                     rows: 3,
                     cols: 3,
                     kind: Kind::Rotation,
-                    doc: "attitude, body to space",
+                    doc: "attitude of body 1, body to space",
                 },
                 Field {
                     name: "body_momentum_Λ1",
@@ -769,7 +769,7 @@ pub mod coupled_bodies {
                     rows: 3,
                     cols: 3,
                     kind: Kind::Rotation,
-                    doc: "attitude, body to space",
+                    doc: "attitude of body 2, body to space",
                 },
                 Field {
                     name: "body_momentum_Λ2",
@@ -787,7 +787,7 @@ pub mod coupled_bodies {
                     rows: 3,
                     cols: 3,
                     kind: Kind::Rotation,
-                    doc: "attitude, body to space",
+                    doc: "attitude of body 1, body to space",
                 },
                 Field {
                     name: "body_momentum_Λ1",
@@ -811,7 +811,7 @@ pub mod coupled_bodies {
                     rows: 3,
                     cols: 3,
                     kind: Kind::Rotation,
-                    doc: "attitude, body to space",
+                    doc: "attitude of body 2, body to space",
                 },
                 Field {
                     name: "body_momentum_Λ2",
@@ -835,7 +835,7 @@ pub mod coupled_bodies {
                     rows: 3,
                     cols: 3,
                     kind: Kind::Matrix,
-                    doc: "",
+                    doc: "body 2 seen from body 1",
                 },
             ],
             invariants: &[

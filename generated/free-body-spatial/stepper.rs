@@ -24,9 +24,9 @@ pub mod free_body_spatial {
     }
     impl<T: Real> FreeBodySpatial<T> {
         /// The model as it was stated.
-        pub const SOURCE: &'static str = "/// Free rigid body, spatial representation.\npub model FreeBodySpatial {\n    group Λ: SO<3> velocity ω;\n    advected J: Sym<3>;\n    constraint next(Λ) = ω*Λ;\n    constraint next(J) = ω*J*ω^T;\n    lagrangian = -tr(ω*J)/h;\n}";
+        pub const SOURCE: &'static str = "/// Free rigid body, spatial representation.\npub model FreeBodySpatial {\n    /// attitude, body to space\n    group Λ: SO<3> velocity ω;\n    /// Poinsot (second-moment) matrix in space axes\n    advected J: Sym<3>;\n    /// reconstruction\n    constraint next(Λ) = ω*Λ;\n    /// the body carries its second moments along\n    constraint next(J) = ω*J*ω^T;\n    lagrangian = -tr(ω*J)/h;\n}";
         /// A number that changes when the model or its derivation does.
-        pub const FINGERPRINT: u64 = 3576971191619919990u64;
+        pub const FINGERPRINT: u64 = 18057726445234217378u64;
         /// Checks the parameters.
         ///
         /// # Errors
@@ -606,7 +606,7 @@ pub mod free_body_spatial {
                     rows: 3,
                     cols: 3,
                     kind: Kind::Symmetric,
-                    doc: "value at node 0",
+                    doc: "Poinsot (second-moment) matrix in space axes",
                 },
             ],
             observables: &[
@@ -640,7 +640,7 @@ pub mod free_body_spatial {
                     rows: 3,
                     cols: 3,
                     kind: Kind::Symmetric,
-                    doc: "",
+                    doc: "Poinsot (second-moment) matrix in space axes",
                 },
             ],
             invariants: &[

@@ -13,7 +13,7 @@ pub mod free_body {
     /// Parameters of [`FreeBody`](struct@FreeBody), as given.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct FreeBodyParameters<T = f64> {
-        /// `J`: a 3 x 3 matrix, symmetric.
+        /// `J`: Poinsot (second-moment) matrix; a 3 x 3 matrix, symmetric.
         pub J: SMatrix<T, 3, 3>,
     }
     /// Free rigid body, body representation.
@@ -25,9 +25,9 @@ pub mod free_body {
     }
     impl<T: Real> FreeBody<T> {
         /// The model as it was stated.
-        pub const SOURCE: &'static str = "/// Free rigid body, body representation.\npub model FreeBody {\n    param J: Sym<3>;\n    group Λ: SO<3> velocity Ω;\n    constraint next(Λ) = Λ*Ω;\n    lagrangian = -tr(J*Ω)/h;\n}";
+        pub const SOURCE: &'static str = "/// Free rigid body, body representation.\npub model FreeBody {\n    /// Poinsot (second-moment) matrix\n    param J: Sym<3>;\n    /// attitude, body to space\n    group Λ: SO<3> velocity Ω;\n    constraint next(Λ) = Λ*Ω;\n    lagrangian = -tr(J*Ω)/h;\n}";
         /// A number that changes when the model or its derivation does.
-        pub const FINGERPRINT: u64 = 14906922296107499015u64;
+        pub const FINGERPRINT: u64 = 4354950754132218899u64;
         /// Checks the parameters.
         ///
         /// # Errors
@@ -481,7 +481,7 @@ pub mod free_body {
                     rows: 3,
                     cols: 3,
                     kind: Kind::Symmetric,
-                    doc: "",
+                    doc: "Poinsot (second-moment) matrix",
                 },
             ],
             initial: &[

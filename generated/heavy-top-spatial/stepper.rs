@@ -13,9 +13,9 @@ pub mod heavy_top_spatial {
     /// Parameters of [`HeavyTopSpatial`](struct@HeavyTopSpatial), as given.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct HeavyTopSpatialParameters<T = f64> {
-        /// `w`: a number.
+        /// `w`: weight; a number.
         pub w: T,
-        /// `z`: a vector of 3 components.
+        /// `z`: vertical (up), space frame; a vector of 3 components.
         pub z: SVector<T, 3>,
     }
     /// Heavy top, spatial representation.
@@ -26,9 +26,9 @@ pub mod heavy_top_spatial {
     }
     impl<T: Real> HeavyTopSpatial<T> {
         /// The model as it was stated.
-        pub const SOURCE: &'static str = "/// Heavy top, spatial representation.\npub model HeavyTopSpatial {\n    param w: Real;\n    param z: Vec<3>;\n    group Λ: SO<3> velocity ω;\n    advected J: Sym<3>;\n    advected χ: Vec<3>;\n    constraint next(Λ) = ω*Λ;\n    constraint next(J) = ω*J*ω^T;\n    constraint next(χ) = ω*χ;\n    lagrangian = -tr(ω*J)/h - h*w*dot(χ, z);\n}";
+        pub const SOURCE: &'static str = "/// Heavy top, spatial representation.\npub model HeavyTopSpatial {\n    /// weight\n    param w: Real;\n    /// vertical (up), space frame\n    param z: Vec<3>;\n    /// attitude, body to space\n    group Λ: SO<3> velocity ω;\n    /// Poinsot (second-moment) matrix in space axes\n    advected J: Sym<3>;\n    /// support -> centre of mass, space axes\n    advected χ: Vec<3>;\n    /// reconstruction\n    constraint next(Λ) = ω*Λ;\n    /// the body carries its second moments along\n    constraint next(J) = ω*J*ω^T;\n    /// and its centre of mass\n    constraint next(χ) = ω*χ;\n    lagrangian = -tr(ω*J)/h - h*w*dot(χ, z);\n}";
         /// A number that changes when the model or its derivation does.
-        pub const FINGERPRINT: u64 = 11181439863584159380u64;
+        pub const FINGERPRINT: u64 = 9639972943391398617u64;
         /// Checks the parameters.
         ///
         /// # Errors
@@ -806,7 +806,7 @@ pub mod heavy_top_spatial {
                     rows: 1,
                     cols: 1,
                     kind: Kind::Scalar,
-                    doc: "",
+                    doc: "weight",
                 },
                 Field {
                     name: "z",
@@ -814,7 +814,7 @@ pub mod heavy_top_spatial {
                     rows: 3,
                     cols: 1,
                     kind: Kind::Vector,
-                    doc: "",
+                    doc: "vertical (up), space frame",
                 },
             ],
             initial: &[
@@ -840,7 +840,7 @@ pub mod heavy_top_spatial {
                     rows: 3,
                     cols: 3,
                     kind: Kind::Symmetric,
-                    doc: "value at node 0",
+                    doc: "Poinsot (second-moment) matrix in space axes",
                 },
                 Field {
                     name: "χ",
@@ -848,7 +848,7 @@ pub mod heavy_top_spatial {
                     rows: 3,
                     cols: 1,
                     kind: Kind::Vector,
-                    doc: "value at node 0",
+                    doc: "support -> centre of mass, space axes",
                 },
             ],
             observables: &[
@@ -882,7 +882,7 @@ pub mod heavy_top_spatial {
                     rows: 3,
                     cols: 3,
                     kind: Kind::Symmetric,
-                    doc: "",
+                    doc: "Poinsot (second-moment) matrix in space axes",
                 },
                 Field {
                     name: "χ",
@@ -890,7 +890,7 @@ pub mod heavy_top_spatial {
                     rows: 3,
                     cols: 1,
                     kind: Kind::Vector,
-                    doc: "",
+                    doc: "support -> centre of mass, space axes",
                 },
             ],
             invariants: &[

@@ -13,11 +13,11 @@ pub mod heavy_top {
     /// Parameters of [`HeavyTop`](struct@HeavyTop), as given.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct HeavyTopParameters<T = f64> {
-        /// `J`: a 3 x 3 matrix, symmetric.
+        /// `J`: Poinsot (second-moment) matrix; a 3 x 3 matrix, symmetric.
         pub J: SMatrix<T, 3, 3>,
-        /// `gU`: a vector of 3 components.
+        /// `gU`: weight times support -> centre of mass, body frame; a vector of 3 components.
         pub gU: SVector<T, 3>,
-        /// `z`: a vector of 3 components.
+        /// `z`: vertical (up), space frame; a vector of 3 components.
         pub z: SVector<T, 3>,
     }
     /// Heavy top, body representation.
@@ -29,9 +29,9 @@ pub mod heavy_top {
     }
     impl<T: Real> HeavyTop<T> {
         /// The model as it was stated.
-        pub const SOURCE: &'static str = "/// Heavy top, body representation.\npub model HeavyTop {\n    param J: Sym<3>;\n    param gU: Vec<3>;\n    param z: Vec<3>;\n    group Λ: SO<3> velocity Ω;\n    advected Γ: Vec<3> = Λ^T*z;\n    constraint next(Λ) = Λ*Ω;\n    constraint next(Γ) = Ω^T*Γ;\n    lagrangian = -tr(J*Ω)/h - h*dot(gU, Γ);\n}";
+        pub const SOURCE: &'static str = "/// Heavy top, body representation.\npub model HeavyTop {\n    /// Poinsot (second-moment) matrix\n    param J: Sym<3>;\n    /// weight times support -> centre of mass, body frame\n    param gU: Vec<3> as \"m g \\chi\";\n    /// vertical (up), space frame\n    param z: Vec<3>;\n    /// attitude, body to space\n    group Λ: SO<3> velocity Ω;\n    /// the vertical seen from the body\n    advected Γ: Vec<3> = Λ^T*z;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    /// how Γ is carried\n    constraint next(Γ) = Ω^T*Γ;\n    lagrangian = -tr(J*Ω)/h - h*dot(gU, Γ);\n}";
         /// A number that changes when the model or its derivation does.
-        pub const FINGERPRINT: u64 = 8015446786651378801u64;
+        pub const FINGERPRINT: u64 = 13467537385938448784u64;
         /// Checks the parameters.
         ///
         /// # Errors
@@ -624,7 +624,7 @@ pub mod heavy_top {
                     rows: 3,
                     cols: 3,
                     kind: Kind::Symmetric,
-                    doc: "",
+                    doc: "Poinsot (second-moment) matrix",
                 },
                 Field {
                     name: "gU",
@@ -632,7 +632,7 @@ pub mod heavy_top {
                     rows: 3,
                     cols: 1,
                     kind: Kind::Vector,
-                    doc: "",
+                    doc: "weight times support -> centre of mass, body frame",
                 },
                 Field {
                     name: "z",
@@ -640,7 +640,7 @@ pub mod heavy_top {
                     rows: 3,
                     cols: 1,
                     kind: Kind::Vector,
-                    doc: "",
+                    doc: "vertical (up), space frame",
                 },
             ],
             initial: &[
@@ -692,7 +692,7 @@ pub mod heavy_top {
                     rows: 3,
                     cols: 1,
                     kind: Kind::Vector,
-                    doc: "",
+                    doc: "the vertical seen from the body",
                 },
             ],
             invariants: &[

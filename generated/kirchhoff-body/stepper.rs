@@ -13,15 +13,15 @@ pub mod kirchhoff_body {
     /// Parameters of [`KirchhoffBody`](struct@KirchhoffBody), as given.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct KirchhoffBodyParameters<T = f64> {
-        /// `J`: a 3 x 3 matrix, symmetric.
+        /// `J`: Poinsot matrix of the rotational inertia, fluid included; a 3 x 3 matrix, symmetric.
         pub J: SMatrix<T, 3, 3>,
-        /// `M`: a 3 x 3 matrix, symmetric.
+        /// `M`: mass and added masses; a 3 x 3 matrix, symmetric.
         pub M: SMatrix<T, 3, 3>,
-        /// `D`: a 3 x 3 matrix.
+        /// `D`: coupling of rotation and translation; a 3 x 3 matrix.
         pub D: SMatrix<T, 3, 3>,
-        /// `b`: a vector of 4 components.
+        /// `b`: (moment of weight less buoyancy, net weight), body frame; a vector of 4 components.
         pub b: SVector<T, 4>,
-        /// `Z`: a vector of 4 components.
+        /// `Z`: (vertical up, 0), the plane of height 0 in space; a vector of 4 components.
         pub Z: SVector<T, 4>,
     }
     /// Rigid body in an ideal fluid, with added masses, coupling, and net weight.
@@ -31,9 +31,9 @@ pub mod kirchhoff_body {
     }
     impl<T: Real> KirchhoffBody<T> {
         /// The model as it was stated.
-        pub const SOURCE: &'static str = "/// Rigid body in an ideal fluid, with added masses, coupling, and net weight.\npub model KirchhoffBody {\n    param J: Sym<3>;\n    param M: Sym<3>;\n    param D: Mat<3>;\n    param b: Vec<4>;\n    param Z: Vec<4>;\n    group G: SE<3> velocity V;\n    advected P: Vec<4> = G^T*Z;\n    constraint next(G) = G*V;\n    constraint next(P) = V^T*P;\n    lagrangian = -tr(J*rot(V))/h + dot((1/2)*(pos(V) + rot(V)^T*pos(V)), (1/2)*M*(pos(V) + rot(V)^T*pos(V)))/(2*h) + dot(vee(rot(V)), (1/2)*D*(pos(V) + rot(V)^T*pos(V)))/h - h*dot(b, P);\n}";
+        pub const SOURCE: &'static str = "/// Rigid body in an ideal fluid, with added masses, coupling, and net weight.\npub model KirchhoffBody {\n    /// Poinsot matrix of the rotational inertia, fluid included\n    param J: Sym<3>;\n    /// mass and added masses\n    param M: Sym<3>;\n    /// coupling of rotation and translation\n    param D: Mat<3>;\n    /// (moment of weight less buoyancy, net weight), body frame\n    param b: Vec<4>;\n    /// (vertical up, 0), the plane of height 0 in space\n    param Z: Vec<4>;\n    /// position, body to space\n    group G: SE<3> velocity V;\n    /// (vertical, height) seen from the body\n    advected P: Vec<4> = G^T*Z;\n    constraint next(G) = G*V;\n    constraint next(P) = V^T*P;\n    lagrangian = -tr(J*rot(V))/h + dot((1/2)*(pos(V) + rot(V)^T*pos(V)), (1/2)*M*(pos(V) + rot(V)^T*pos(V)))/(2*h) + dot(vee(rot(V)), (1/2)*D*(pos(V) + rot(V)^T*pos(V)))/h - h*dot(b, P);\n}";
         /// A number that changes when the model or its derivation does.
-        pub const FINGERPRINT: u64 = 6439501924344387072u64;
+        pub const FINGERPRINT: u64 = 10767151957343806239u64;
         /// Checks the parameters.
         ///
         /// # Errors
@@ -1112,7 +1112,7 @@ pub mod kirchhoff_body {
                     rows: 3,
                     cols: 3,
                     kind: Kind::Symmetric,
-                    doc: "",
+                    doc: "Poinsot matrix of the rotational inertia, fluid included",
                 },
                 Field {
                     name: "M",
@@ -1120,7 +1120,7 @@ pub mod kirchhoff_body {
                     rows: 3,
                     cols: 3,
                     kind: Kind::Symmetric,
-                    doc: "",
+                    doc: "mass and added masses",
                 },
                 Field {
                     name: "D",
@@ -1128,7 +1128,7 @@ pub mod kirchhoff_body {
                     rows: 3,
                     cols: 3,
                     kind: Kind::Matrix,
-                    doc: "",
+                    doc: "coupling of rotation and translation",
                 },
                 Field {
                     name: "b",
@@ -1136,7 +1136,7 @@ pub mod kirchhoff_body {
                     rows: 4,
                     cols: 1,
                     kind: Kind::Vector,
-                    doc: "",
+                    doc: "(moment of weight less buoyancy, net weight), body frame",
                 },
                 Field {
                     name: "Z",
@@ -1144,7 +1144,7 @@ pub mod kirchhoff_body {
                     rows: 4,
                     cols: 1,
                     kind: Kind::Vector,
-                    doc: "",
+                    doc: "(vertical up, 0), the plane of height 0 in space",
                 },
             ],
             initial: &[
@@ -1196,7 +1196,7 @@ pub mod kirchhoff_body {
                     rows: 4,
                     cols: 1,
                     kind: Kind::Vector,
-                    doc: "",
+                    doc: "(vertical, height) seen from the body",
                 },
             ],
             invariants: &[

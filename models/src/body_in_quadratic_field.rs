@@ -6,12 +6,18 @@ use crate::case::{Case, Entry, bounds, diagonal, poinsot, rotation};
 clebsch::model! {
     /// Rigid body in a quadratic field.
     pub model BodyInQuadraticField {
-        param J: Sym<3>;                  // Poinsot (second-moment) matrix
-        param K: Sym<3>;                  // the field: energy ½ Γ·KΓ
-        group Λ: SO<3> velocity Ω;        // attitude, body to space
-        advected Γ: Vec<3>;               // axis of the field seen from the body
-        constraint next(Λ) = Λ*Ω;         // reconstruction
-        constraint next(Γ) = Ω^T*Γ;       // the axis is fixed in space
+        /// Poinsot (second-moment) matrix
+        param J: Sym<3>;
+        /// the field: energy ½ Γ·KΓ
+        param K: Sym<3>;
+        /// attitude, body to space
+        group Λ: SO<3> velocity Ω;
+        /// axis of the field seen from the body
+        advected Γ: Vec<3>;
+        /// reconstruction
+        constraint next(Λ) = Λ*Ω;
+        /// the axis is fixed in space
+        constraint next(Γ) = Ω^T*Γ;
         lagrangian = -tr(J*Ω)/h - (h/2)*dot(Γ, K*Γ);
     }
 }

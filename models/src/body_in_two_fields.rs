@@ -6,16 +6,26 @@ use crate::case::{Case, Entry, bounds, diagonal, identity, poinsot};
 clebsch::model! {
     /// Rigid body about a fixed point in two uniform fields.
     pub model BodyInTwoFields {
-        param J: Sym<3>;                  // Poinsot (second-moment) matrix
-        param gU: Vec<3>;                 // weight times support -> centre of mass, body frame
-        param p: Vec<3>;                  // dipole moment, body frame
-        param z: Vec<3>;                  // vertical (up), space frame
-        param b: Vec<3>;                  // field that acts on the dipole, space frame
-        group Λ: SO<3> velocity Ω;        // attitude, body to space
-        advected Γ: Vec<3> = Λ^T*z;       // the vertical seen from the body
-        advected B: Vec<3> = Λ^T*b;       // the field seen from the body
-        constraint next(Λ) = Λ*Ω;         // reconstruction
-        constraint next(Γ) = Ω^T*Γ;       // both are fixed in space
+        /// Poinsot (second-moment) matrix
+        param J: Sym<3>;
+        /// weight times support -> centre of mass, body frame
+        param gU: Vec<3> as r"m g \chi";
+        /// dipole moment, body frame
+        param p: Vec<3>;
+        /// vertical (up), space frame
+        param z: Vec<3>;
+        /// field that acts on the dipole, space frame
+        param b: Vec<3>;
+        /// attitude, body to space
+        group Λ: SO<3> velocity Ω;
+        /// the vertical seen from the body
+        advected Γ: Vec<3> = Λ^T*z;
+        /// the field seen from the body
+        advected B: Vec<3> = Λ^T*b;
+        /// reconstruction
+        constraint next(Λ) = Λ*Ω;
+        /// both are fixed in space
+        constraint next(Γ) = Ω^T*Γ;
         constraint next(B) = Ω^T*B;
         lagrangian = -tr(J*Ω)/h - h*(dot(gU, Γ) - dot(p, B));
     }

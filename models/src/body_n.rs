@@ -9,9 +9,12 @@ clebsch::model! {
     /// Free rigid body in n dimensions.
     pub model BodyN {
         dim n in 3..=8;
-        param C: Mat<n>;                     // second moments; any matrix of positive determinant
-        group Λ: SO<n> velocity Ω;           // attitude, body to space
-        constraint next(Λ) = Λ * Ω;          // reconstruction
+        /// second moments; any matrix of positive determinant
+        param C: Mat<n>;
+        /// attitude, body to space
+        group Λ: SO<n> velocity Ω;
+        /// reconstruction
+        constraint next(Λ) = Λ * Ω;
         lagrangian = -tr(C^T*Ω)/h;
     }
 }

@@ -7,9 +7,12 @@ clebsch::model! {
     /// Free rigid body in unit quaternions. The body momentum is the map q -> q* m q of Hopf: its
     /// fibres over the sphere of body momenta are circles.
     pub model CayleyKlein {
-        param I: Diag<3>;                // principal moments of inertia
-        param c: Real;                   // 0: Moser-Veselov; 1: as in the thesis
-        group q: SU<2> velocity W;       // attitude, body to space
+        /// principal moments of inertia
+        param I: Diag<3>;
+        /// 0: Moser-Veselov; 1: as in the thesis
+        param c: Real;
+        /// attitude, body to space
+        group q: SU<2> velocity W;
         constraint next(q) = q*W;
         lagrangian = -(4*c/h)*re(W) + (2/h)*dot(im(W), (I - c*Id)*im(W));
     }

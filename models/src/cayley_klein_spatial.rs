@@ -7,9 +7,12 @@ use crate::cayley_klein::{MOMENTUM, SYMMETRIC};
 clebsch::model! {
     /// Free rigid body in unit quaternions, spatial representation.
     pub model CayleyKleinSpatial {
-        param c: Real;                   // 0: Moser-Veselov; 1: as in the thesis
-        group q: SU<2> velocity w;       // attitude, body to space
-        advected I: Sym<3>;              // inertia, space frame
+        /// 0: Moser-Veselov; 1: as in the thesis
+        param c: Real;
+        /// attitude, body to space
+        group q: SU<2> velocity w;
+        /// inertia, space frame
+        advected I: Sym<3>;
         constraint next(q) = w*q;
         constraint next(I) = rot(w)*I*rot(w)^T;
         lagrangian = -(4*c/h)*re(w) + (2/h)*dot(im(w), (I - c*Id)*im(w));

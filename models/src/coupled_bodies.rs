@@ -6,12 +6,18 @@ use crate::case::{Case, Entry, bounds, diagonal, identity, poinsot};
 clebsch::model! {
     /// Two rigid bodies with a spherical joint.
     pub model CoupledBodies {
-        param J1, J2: Sym<3>;             // Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ
-        param d1, d2: Vec<3>;             // joint -> centre of mass, each in its body's axes
-        param eps: Real;                  // reduced mass m₁ m₂/(m₁ + m₂)
-        group Λ1: SO<3> velocity Ω1;      // attitudes, body to space
+        /// Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ
+        param J1, J2: Sym<3>;
+        /// joint -> centre of mass, each in its body's axes
+        param d1, d2: Vec<3>;
+        /// reduced mass m₁ m₂/(m₁ + m₂)
+        param eps: Real as r"\varepsilon";
+        /// attitude of body 1, body to space
+        group Λ1: SO<3> velocity Ω1;
+        /// attitude of body 2, body to space
         group Λ2: SO<3> velocity Ω2;
-        advected R: SO<3> = Λ1^T*Λ2;      // body 2 seen from body 1
+        /// body 2 seen from body 1
+        advected R: SO<3> = Λ1^T*Λ2;
         constraint next(Λ1) = Λ1*Ω1;
         constraint next(Λ2) = Λ2*Ω2;
         constraint next(R) = Ω1^T*R*Ω2;

@@ -5,8 +5,10 @@ use crate::case::{Case, Entry, diagonal, identity, poinsot};
 clebsch::model! {
     /// Free rigid body, body representation.
     pub model FreeBody {
-        param J: Sym<3>;                 // Poinsot (second-moment) matrix
-        group Λ: SO<3> velocity Ω;       // attitude, body to space
+        /// Poinsot (second-moment) matrix
+        param J: Sym<3>;
+        /// attitude, body to space
+        group Λ: SO<3> velocity Ω;
         constraint next(Λ) = Λ*Ω;
         lagrangian = -tr(J*Ω)/h;
     }

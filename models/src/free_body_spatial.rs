@@ -6,10 +6,14 @@ use crate::case::{Case, Entry, bounds, carried, identity, poinsot, rotation, tur
 clebsch::model! {
     /// Free rigid body, spatial representation.
     pub model FreeBodySpatial {
-        group Λ: SO<3> velocity ω;        // attitude, body to space
-        advected J: Sym<3>;               // Poinsot (second-moment) matrix in space axes
-        constraint next(Λ) = ω*Λ;         // reconstruction
-        constraint next(J) = ω*J*ω^T;     // the body carries its second moments along
+        /// attitude, body to space
+        group Λ: SO<3> velocity ω;
+        /// Poinsot (second-moment) matrix in space axes
+        advected J: Sym<3>;
+        /// reconstruction
+        constraint next(Λ) = ω*Λ;
+        /// the body carries its second moments along
+        constraint next(J) = ω*J*ω^T;
         lagrangian = -tr(ω*J)/h;
     }
 }

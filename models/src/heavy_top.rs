@@ -5,13 +5,20 @@ use crate::case::{Case, Entry, diagonal, identity, poinsot};
 clebsch::model! {
     /// Heavy top, body representation.
     pub model HeavyTop {
-        param J: Sym<3>;                     // Poinsot (second-moment) matrix
-        param gU: Vec<3>;                    // weight times support -> centre of mass, body frame
-        param z: Vec<3>;                     // vertical (up), space frame
-        group Λ: SO<3> velocity Ω;           // attitude, body to space
-        advected Γ: Vec<3> = Λ^T * z;        // the vertical seen from the body
-        constraint next(Λ) = Λ * Ω;          // reconstruction
-        constraint next(Γ) = Ω^T * Γ;        // how Γ is carried
+        /// Poinsot (second-moment) matrix
+        param J: Sym<3>;
+        /// weight times support -> centre of mass, body frame
+        param gU: Vec<3> as r"m g \chi";
+        /// vertical (up), space frame
+        param z: Vec<3>;
+        /// attitude, body to space
+        group Λ: SO<3> velocity Ω;
+        /// the vertical seen from the body
+        advected Γ: Vec<3> = Λ^T * z;
+        /// reconstruction
+        constraint next(Λ) = Λ * Ω;
+        /// how Γ is carried
+        constraint next(Γ) = Ω^T * Γ;
         lagrangian = -tr(J*Ω)/h - h*dot(gU, Γ);
     }
 }

@@ -6,14 +6,22 @@ use crate::case::{Case, Entry, bounds, carried, poinsot, turned};
 clebsch::model! {
     /// Heavy top, spatial representation.
     pub model HeavyTopSpatial {
-        param w: Real;                    // weight
-        param z: Vec<3>;                  // vertical (up), space frame
-        group Λ: SO<3> velocity ω;        // attitude, body to space
-        advected J: Sym<3>;               // Poinsot (second-moment) matrix in space axes
-        advected χ: Vec<3>;               // support -> centre of mass, space axes
-        constraint next(Λ) = ω*Λ;         // reconstruction
-        constraint next(J) = ω*J*ω^T;     // the body carries its second moments along
-        constraint next(χ) = ω*χ;         // and its centre of mass
+        /// weight
+        param w: Real;
+        /// vertical (up), space frame
+        param z: Vec<3>;
+        /// attitude, body to space
+        group Λ: SO<3> velocity ω;
+        /// Poinsot (second-moment) matrix in space axes
+        advected J: Sym<3>;
+        /// support -> centre of mass, space axes
+        advected χ: Vec<3>;
+        /// reconstruction
+        constraint next(Λ) = ω*Λ;
+        /// the body carries its second moments along
+        constraint next(J) = ω*J*ω^T;
+        /// and its centre of mass
+        constraint next(χ) = ω*χ;
         lagrangian = -tr(ω*J)/h - h*w*dot(χ, z);
     }
 }

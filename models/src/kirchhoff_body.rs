@@ -8,13 +8,20 @@ use crate::case::{Case, Entry, bounds, diagonal};
 clebsch::model! {
     /// Rigid body in an ideal fluid, with added masses, coupling, and net weight.
     pub model KirchhoffBody {
-        param J: Sym<3>;                 // Poinsot matrix of the rotational inertia, fluid included
-        param M: Sym<3>;                 // mass and added masses
-        param D: Mat<3>;                 // coupling of rotation and translation
-        param b: Vec<4>;                 // (moment of weight less buoyancy, net weight), body frame
-        param Z: Vec<4>;                 // (vertical up, 0), the plane of height 0 in space
-        group G: SE<3> velocity V;       // position, body to space
-        advected P: Vec<4> = G^T*Z;      // (vertical, height) seen from the body
+        /// Poinsot matrix of the rotational inertia, fluid included
+        param J: Sym<3>;
+        /// mass and added masses
+        param M: Sym<3>;
+        /// coupling of rotation and translation
+        param D: Mat<3>;
+        /// (moment of weight less buoyancy, net weight), body frame
+        param b: Vec<4>;
+        /// (vertical up, 0), the plane of height 0 in space
+        param Z: Vec<4>;
+        /// position, body to space
+        group G: SE<3> velocity V;
+        /// (vertical, height) seen from the body
+        advected P: Vec<4> = G^T*Z;
         constraint next(G) = G*V;
         constraint next(P) = V^T*P;
         let u = (pos(V) - pos(V^-1))/2;

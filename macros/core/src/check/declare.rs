@@ -131,14 +131,14 @@ pub fn declare(model: &Model, errors: &mut Errors) -> Declared {
     if let Some(place) = step_place {
         d.places.push((step_name, place));
     }
-    for statement in &model.statements {
-        d.statement(statement, errors);
+    for (statement, docs) in model.statements.iter().zip(&model.remarks) {
+        d.statement(statement, docs, errors);
     }
     d
 }
 
 impl Declared {
-    fn statement(&mut self, statement: &Statement, errors: &mut Errors) {
+    fn statement(&mut self, statement: &Statement, docs: &[String], errors: &mut Errors) {
         match statement {
             Statement::Dim { name, from, to } => {
                 if self.admit(name, errors) {
@@ -163,6 +163,7 @@ impl Declared {
                         let id = self
                             .symbols
                             .add(&name.text, shape, structure, Role::Parameter);
+                        self.symbols.describe(id, name.typeset.clone(), docs);
                         self.parameters.push(id);
                         self.parameter_places.push(name.place);
                     }
@@ -184,12 +185,12 @@ impl Declared {
                 }
                 let shape = Shape::square(kind.size());
                 let structure = kind.structure();
-                let element = self
-                    .symbols
-                    .add(&name.text, shape, structure, Role::Element);
-                let velocity = self
-                    .symbols
-                    .add(&velocity.text, shape, structure, Role::Velocity);
+                let symbols = &mut self.symbols;
+                let element = symbols.add(&name.text, shape, structure, Role::Element);
+                symbols.describe(element, name.typeset.clone(), docs);
+                let typeset = velocity.typeset.clone();
+                let velocity = symbols.add(&velocity.text, shape, structure, Role::Velocity);
+                symbols.describe(velocity, typeset, &[]);
                 self.configurations.push(DeclaredGroup {
                     element,
                     velocity,
@@ -210,6 +211,7 @@ impl Declared {
                     let quantity = self
                         .symbols
                         .add(&name.text, shape, structure, Role::Advected);
+                    self.symbols.describe(quantity, name.typeset.clone(), docs);
                     self.advected.push(DeclaredAdvected {
                         quantity,
                         place: name.place,

@@ -18,7 +18,7 @@ pub(crate) use declare::is_rust_word;
 
 use declare::Declared;
 use elaborate::Elaborator;
-use spec::{Advected, Assumption, Configuration, Spec};
+use spec::{Advected, Assumption, Configuration, Spec, Subject};
 
 /// Largest expression tree the derivation takes on.
 const LARGEST: u32 = 1_000;
@@ -209,11 +209,13 @@ fn finish(
             })
         })
         .collect();
+    let remarks = remarks(model, &declared);
     errors.propagate()?;
     Ok(Spec {
         name: model.name.text.clone(),
         name_place: model.name.place,
         docs: model.docs.clone(),
+        remarks,
         public: model.public,
         symbols: declared.symbols,
         time_index: declared.time_index,
@@ -232,6 +234,40 @@ fn finish(
         node_rule,
         reduction: None,
     })
+}
+
+/// The documentation of statements that declare no symbol.
+fn remarks(model: &Model, declared: &Declared) -> Vec<(Subject, Vec<String>)> {
+    let (mut dimensions, mut assumptions) = (0, 0);
+    let mut out = Vec::new();
+    for (statement, docs) in model.statements.iter().zip(&model.remarks) {
+        let subject = match statement {
+            Statement::Dim { .. } => {
+                dimensions += 1;
+                Some(Subject::Dimension(dimensions - 1))
+            }
+            Statement::Assume { .. } => {
+                assumptions += 1;
+                Some(Subject::Assumption(assumptions - 1))
+            }
+            Statement::Time { .. } => Some(Subject::Time),
+            Statement::Constraint { name, .. } => {
+                declared.symbols.find(&name.text).map(Subject::Constraint)
+            }
+            Statement::Scale(_) => Some(Subject::Scale),
+            Statement::Node(..) => Some(Subject::Node),
+            Statement::Lagrangian(_) => Some(Subject::Lagrangian),
+            // An abbreviation is put in where it stands and leaves no trace.
+            Statement::Let { .. }
+            | Statement::Param { .. }
+            | Statement::Group { .. }
+            | Statement::Advected { .. } => None,
+        };
+        if let Some(subject) = subject.filter(|_| !docs.is_empty()) {
+            out.push((subject, docs.clone()));
+        }
+    }
+    out
 }
 
 /// What is declared must be used where the theory needs it, and only there.

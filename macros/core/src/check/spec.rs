@@ -140,6 +140,25 @@ pub struct Dimension {
     pub to: u64,
 }
 
+/// A statement that declares no symbol and may be documented.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Subject {
+    /// The dimension with this index.
+    Dimension(usize),
+    /// The names of index and step.
+    Time,
+    /// The assumption with this index.
+    Assumption(usize),
+    /// The constraint of a quantity.
+    Constraint(SymbolId),
+    /// The scale.
+    Scale,
+    /// The rule for nodal terms.
+    Node,
+    /// The Lagrangian.
+    Lagrangian,
+}
+
 /// A checked model.
 #[derive(Clone, Debug)]
 pub struct Spec {
@@ -149,6 +168,8 @@ pub struct Spec {
     pub name_place: Place,
     /// Documentation lines.
     pub docs: Vec<String>,
+    /// Documentation lines of statements that declare no symbol; those of symbols stand with them.
+    pub remarks: Vec<(Subject, Vec<String>)>,
     /// Whether it is `pub`.
     pub public: bool,
     /// Every symbol, in order of declaration; the derivation adds its own after these.
@@ -189,6 +210,12 @@ impl Spec {
     /// Shape of a symbol.
     pub fn shape(&self, id: SymbolId) -> Shape {
         self.symbols.get(id).shape
+    }
+
+    /// Documentation lines of a statement.
+    pub fn remark(&self, of: Subject) -> &[String] {
+        let found = self.remarks.iter().find(|(subject, _)| *subject == of);
+        found.map_or(&[], |(_, lines)| lines)
     }
 
     /// What stands at the end of an edge, elements and advected quantities, by its start and the

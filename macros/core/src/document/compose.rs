@@ -3,7 +3,7 @@
 
 use super::sheet::{Sheet, references};
 use super::{motion, outlook, solution, source, structure};
-use crate::check::spec::{Group, Side};
+use crate::check::spec::{Group, Side, Subject};
 use crate::derive::Derivation;
 use crate::derive::clebsch::constraint_terms;
 use crate::derive::warnings::Warning;
@@ -43,13 +43,68 @@ fn model(sheet: &Sheet, doc: &mut Document) {
         section.text(&words.join(" "));
     }
     let text = source(sheet.d);
-    let statement: Vec<&str> = text.lines().filter(|l| !l.starts_with("///")).collect();
+    let statement: Vec<&str> = text
+        .lines()
+        .filter(|l| !l.trim_start().starts_with("///"))
+        .collect();
     section.code(statement.join("\n"));
+    let meanings = meanings(sheet);
+    if !meanings.is_empty() {
+        section.list(meanings);
+    }
     if let Some((number, factor)) = sheet.thesis.section() {
         section.text(&format!(
             "By its structure this is the system of section {number} of M. F. Dixon, Geometric integrators for continuum dynamics (2007), the thesis cited below; its Lagrangian and momenta are {factor} times those printed here, and its velocities bear the index of the end of their edge."
         ));
     }
+}
+
+/// What the model says of its symbols and statements.
+fn meanings(sheet: &Sheet) -> Vec<Vec<Inline>> {
+    let spec = &sheet.d.spec;
+    let mut out: Vec<Vec<Inline>> = Vec::new();
+    // The letters that the derivation adds have no words.
+    for id in spec.symbols.ids() {
+        let symbol = spec.symbols.get(id);
+        let doc = symbol.doc();
+        if doc.is_empty() && symbol.typeset.is_none() {
+            continue;
+        }
+        // Without its index in time: it is named, not taken at a node.
+        let mut words: Vec<Inline> = vec![Formula::Continuous(Box::new(sheet.here(id))).into()];
+        if symbol.typeset.is_some() {
+            words.extend([" is ".into(), Inline::Code(symbol.name.clone())]);
+            words.push(" of the model".into());
+        }
+        if !doc.is_empty() {
+            words.push(": ".into());
+            words.extend(Inline::marked(&doc));
+        }
+        out.push(words);
+    }
+    for (subject, lines) in &spec.remarks {
+        let name = |id| &spec.symbols.get(id).name;
+        let statement = match subject {
+            Subject::Dimension(i) => match spec.dimensions.get(*i) {
+                Some(n) => n.name.clone(),
+                None => "dim".to_owned(),
+            },
+            Subject::Time => "time".to_owned(),
+            Subject::Assumption(i) => {
+                let a = spec.assumptions.get(*i);
+                a.map_or_else(|| "assume".to_owned(), |a| source::assumption(sheet.d, a))
+            }
+            Subject::Constraint(id) => format!("constraint next({})", name(*id)),
+            Subject::Scale => "scale".to_owned(),
+            Subject::Node => "node".to_owned(),
+            Subject::Lagrangian => "lagrangian".to_owned(),
+        };
+        let words: Vec<&str> = lines.iter().map(|l| l.trim()).collect();
+        let mut item = vec![Inline::Code(statement), ": ".into()];
+        item.extend(Inline::marked(words.join(" ").trim()));
+        out.push(item);
+    }
+    out
 }
 
 /// What derives but is hardly meant; no section where there is nothing.

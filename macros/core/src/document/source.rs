@@ -1,7 +1,7 @@
 //! The model as text of the language, in one canonical layout: what is stored with results, and
 //! what derives the same model again.
 
-use crate::check::spec::{Group, Spec};
+use crate::check::spec::{Assumption, Group, Spec, Subject};
 use crate::derive::Derivation;
 use crate::expr::Expr;
 use crate::expr::shape::Structure;
@@ -21,30 +21,39 @@ pub fn source(d: &Derivation) -> String {
     }
     let public = if spec.public { "pub " } else { "" };
     out.push_str(&format!("{public}model {} {{\n", spec.name));
-    let mut line = |text: String| out.push_str(&format!("    {text};\n"));
-    for n in &spec.dimensions {
-        line(format!("dim {} in {}..={}", n.name, n.from, n.to));
+    let mut line = |docs: &[String], text: String| {
+        for doc in docs {
+            out.push_str(&format!("    ///{doc}\n"));
+        }
+        out.push_str(&format!("    {text};\n"));
+    };
+    let docs = |id: SymbolId| spec.symbols.get(id).docs.as_slice();
+    let named = |id: SymbolId| match &spec.symbols.get(id).typeset {
+        Some(latex) => format!(" as \"{latex}\""),
+        None => String::new(),
+    };
+    let said = |subject| spec.remark(subject);
+    for (i, n) in spec.dimensions.iter().enumerate() {
+        line(
+            said(Subject::Dimension(i)),
+            format!("dim {} in {}..={}", n.name, n.from, n.to),
+        );
     }
     let step = name(spec.step);
     if spec.time_index != "k" || step != "h" {
-        line(format!("time {} step {step}", spec.time_index));
+        line(
+            said(Subject::Time),
+            format!("time {} step {step}", spec.time_index),
+        );
     }
     for p in &spec.parameters {
-        line(format!("param {}: {}", name(*p), shape(spec, *p)));
+        line(
+            docs(*p),
+            format!("param {}: {}{}", name(*p), shape(spec, *p), named(*p)),
+        );
     }
-    for a in &spec.assumptions {
-        let relation = match a.relation {
-            Comparison::Equal => "==",
-            Comparison::Greater => ">",
-            Comparison::AtLeast => ">=",
-            Comparison::Less => "<",
-            Comparison::AtMost => "<=",
-        };
-        line(format!(
-            "assume {} {relation} {}",
-            show(&a.left),
-            show(&a.right)
-        ));
+    for (i, a) in spec.assumptions.iter().enumerate() {
+        line(said(Subject::Assumption(i)), assumption(d, a));
     }
     for c in &spec.configurations {
         let group = match c.group {
@@ -53,42 +62,67 @@ pub fn source(d: &Derivation) -> String {
             Group::UnitQuaternions => "SU<2>".to_owned(),
             Group::RigidMotions => "SE<3>".to_owned(),
         };
-        line(format!(
-            "group {}: {group} velocity {}",
-            name(c.element),
-            name(c.velocity)
-        ));
+        line(
+            docs(c.element),
+            format!(
+                "group {}: {group}{} velocity {}{}",
+                name(c.element),
+                named(c.element),
+                name(c.velocity),
+                named(c.velocity)
+            ),
+        );
     }
     for a in spec.advected.iter().filter(|a| !a.found) {
         let definition = a.definition.as_ref().map(|e| format!(" = {}", show(e)));
         let definition = definition.unwrap_or_default();
-        line(format!(
-            "advected {}: {}{definition}",
-            name(a.quantity),
-            shape(spec, a.quantity)
-        ));
+        line(
+            docs(a.quantity),
+            format!(
+                "advected {}: {}{}{definition}",
+                name(a.quantity),
+                shape(spec, a.quantity),
+                named(a.quantity)
+            ),
+        );
     }
     let configurations = spec.configurations.iter().map(|c| (c.element, &c.update));
     let stated = spec.advected.iter().filter(|a| !a.found);
     let advected = stated.map(|a| (a.quantity, &a.update));
     for (quantity, update) in configurations.chain(advected) {
-        line(format!(
-            "constraint next({}) = {}",
-            name(quantity),
-            show(update)
-        ));
+        line(
+            said(Subject::Constraint(quantity)),
+            format!("constraint next({}) = {}", name(quantity), show(update)),
+        );
     }
     if let Some(scale) = &spec.scale {
-        line(format!("scale {}", show(scale)));
+        line(said(Subject::Scale), format!("scale {}", show(scale)));
     }
     match spec.node_rule {
         NodeRule::Symmetric => {}
-        NodeRule::Incoming => line("node incoming".to_owned()),
-        NodeRule::Outgoing => line("node outgoing".to_owned()),
+        NodeRule::Incoming => line(said(Subject::Node), "node incoming".to_owned()),
+        NodeRule::Outgoing => line(said(Subject::Node), "node outgoing".to_owned()),
     }
-    line(format!("lagrangian = {}", show(&spec.typed)));
+    line(
+        said(Subject::Lagrangian),
+        format!("lagrangian = {}", show(&spec.typed)),
+    );
     out.push('}');
     out
+}
+
+/// An assumption as a statement.
+pub(super) fn assumption(d: &Derivation, a: &Assumption) -> String {
+    let st = super::style(d);
+    let show = |e: &Expr| statement(e, &d.spec.symbols, &st);
+    let relation = match a.relation {
+        Comparison::Equal => "==",
+        Comparison::Greater => ">",
+        Comparison::AtLeast => ">=",
+        Comparison::Less => "<",
+        Comparison::AtMost => "<=",
+    };
+    format!("assume {} {relation} {}", show(&a.left), show(&a.right))
 }
 
 fn shape(spec: &Spec, id: SymbolId) -> String {

@@ -11,7 +11,7 @@ use crate::derive::Derivation;
 use crate::derive::invariants::Kind;
 use crate::derive::recognise::Method;
 use crate::expr::shape::{Shape, Structure};
-use crate::expr::symbol::{SymbolId, Symbols};
+use crate::expr::symbol::{Symbol, SymbolId, Symbols};
 use crate::syntax::ast::NodeRule;
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -57,7 +57,15 @@ fn of_symbol(d: &Derivation, id: SymbolId, when: &str) -> FieldOf {
         name: symbol.name.clone(),
         shape: symbol.shape,
         kind,
-        doc: when.to_owned(),
+        doc: said(symbol, when),
+    }
+}
+
+/// What the model says of a symbol, else what its place says.
+fn said(symbol: &Symbol, else_words: &str) -> String {
+    match symbol.doc() {
+        doc if doc.is_empty() => else_words.to_owned(),
+        doc => doc,
     }
 }
 
@@ -82,7 +90,7 @@ fn element_field(d: &Derivation, i: usize) -> FieldOf {
             _ => Shape::square(c.group.size()),
         },
         kind,
-        doc: doc.to_owned(),
+        doc: said(d.letters.symbols.get(c.element), doc),
     }
 }
 

@@ -144,12 +144,11 @@ pub fn parameters(d: &Derivation) -> TokenStream {
     let fields = d.spec.parameters.iter().map(|p| {
         let symbol = s.get(*p);
         let (field, t) = (own(d, *p), ty(s, symbol.shape));
-        let doc = format!(
-            " `{}`: {}{}.",
-            symbol.name,
-            shape_text(d, *p),
-            structure_text(symbol.structure)
-        );
+        let shape = format!("{}{}", shape_text(d, *p), structure_text(symbol.structure));
+        let doc = match symbol.doc() {
+            said if said.is_empty() => format!(" `{}`: {shape}.", symbol.name),
+            said => format!(" `{}`: {said}; {shape}.", symbol.name),
+        };
         quote!(#[doc = #doc] pub #field: #t)
     });
     let phantom = d.spec.parameters.is_empty().then(|| {

@@ -41,6 +41,10 @@ pub struct Symbol {
     pub structure: Structure,
     /// Role.
     pub role: Role,
+    /// How it is typeset, in LaTeX, where its declaration says so.
+    pub typeset: Option<String>,
+    /// Lines of the documentation of its declaration.
+    pub docs: Vec<String>,
 }
 
 /// All symbols of a model, in order of creation.
@@ -71,8 +75,18 @@ impl Symbols {
             shape,
             structure,
             role,
+            typeset: None,
+            docs: Vec::new(),
         });
         SymbolId((self.list.len() - 1) as u32)
+    }
+
+    /// Says how a symbol is typeset and what it means, as its declaration does.
+    pub fn describe(&mut self, id: SymbolId, typeset: Option<String>, docs: &[String]) {
+        if let Some(symbol) = self.list.get_mut(id.0 as usize) {
+            symbol.typeset = typeset;
+            symbol.docs = docs.to_vec();
+        }
     }
 
     /// Declares a named dimension, from this size to that.
@@ -148,6 +162,15 @@ impl Symbols {
             }
             n += 1;
         }
+    }
+}
+
+impl Symbol {
+    /// What it means, on one line; empty where nothing was said.
+    pub fn doc(&self) -> String {
+        let lines = self.docs.iter().map(|l| l.trim());
+        let words: Vec<&str> = lines.filter(|l| !l.is_empty()).collect();
+        words.join(" ")
     }
 }
 

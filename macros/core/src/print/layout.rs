@@ -8,6 +8,8 @@ use super::formula::Relation;
 pub(super) enum Layout {
     /// A letter in Unicode, or a name of several letters set as one.
     Identifier(String),
+    /// A name that its declaration typesets: in LaTeX, and as far as its signs are known.
+    Typeset(String, Box<Layout>),
     /// Digits, or a vulgar fraction.
     Number(String),
     /// An upright word: `tr`, `Id`, `Ad`.
@@ -149,7 +151,9 @@ impl Layout {
             Layout::Fraction(..) | Layout::Grid(_) => true,
             Layout::Row(parts) => parts.iter().any(Layout::is_tall),
             Layout::Script { base, .. } => base.is_tall(),
-            Layout::Root(a) | Layout::Hat(a) | Layout::Fenced(_, a) => a.is_tall(),
+            Layout::Root(a) | Layout::Hat(a) | Layout::Fenced(_, a) | Layout::Typeset(_, a) => {
+                a.is_tall()
+            }
             Layout::Identifier(_)
             | Layout::Number(_)
             | Layout::Word(_)
@@ -180,7 +184,7 @@ impl Layout {
             Layout::Script { base, sub, sup } => base.width() + small(sub).max(small(sup)),
             Layout::Fraction(a, b) => a.width().max(b.width()) + 4,
             Layout::Root(a) => a.width() + 12,
-            Layout::Hat(a) => a.width(),
+            Layout::Hat(a) | Layout::Typeset(_, a) => a.width(),
             Layout::Fenced(_, a) => a.width() + 14,
             Layout::Grid(rows) => {
                 let columns = rows.iter().map(Vec::len).max().unwrap_or(0);

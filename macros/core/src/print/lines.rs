@@ -121,6 +121,7 @@ fn flatten<'a>(layout: &'a Layout, depth: usize, out: &mut Vec<Piece<'a>>) {
         }
         Layout::Break(strength) => out.push(Piece::Break(*strength, depth)),
         Layout::Identifier(_)
+        | Layout::Typeset(..)
         | Layout::Number(_)
         | Layout::Word(_)
         | Layout::Text(_)

@@ -46,6 +46,7 @@ pub(super) fn display(page: &Page, f: &Formula) -> String {
 fn element(layout: &Layout) -> String {
     match layout {
         Layout::Identifier(s) => tagged("mi", s),
+        Layout::Typeset(_, shown) => element(shown),
         Layout::Number(s) => tagged("mn", s),
         Layout::Word(s) => tagged("mi", s),
         Layout::Text(s) => tagged("mtext", s),

@@ -19,6 +19,7 @@ mod name;
 mod statement;
 #[cfg(test)]
 mod tests;
+mod tex;
 mod unicode;
 
 use crate::expr::Expr;

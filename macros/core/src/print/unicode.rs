@@ -17,6 +17,7 @@ const MARGIN: usize = 8;
 pub(super) fn line(layout: &Layout) -> String {
     match layout {
         Layout::Identifier(s) | Layout::Number(s) | Layout::Word(s) | Layout::Text(s) => s.clone(),
+        Layout::Typeset(_, shown) => line(shown),
         Layout::Sign(s) => sign(*s),
         Layout::Row(parts) => parts.iter().map(line).collect(),
         Layout::Script { base, sub, sup } => {

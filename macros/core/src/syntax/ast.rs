@@ -11,6 +11,8 @@ pub struct Name {
     pub text: String,
     /// Its token.
     pub place: Place,
+    /// How it is typeset, in LaTeX, where a declaration says so.
+    pub typeset: Option<String>,
 }
 
 /// An expression.
@@ -183,4 +185,6 @@ pub struct Model {
     pub name: Name,
     /// Its statements in order.
     pub statements: Vec<Statement>,
+    /// Lines of the documentation of each statement.
+    pub remarks: Vec<Vec<String>>,
 }

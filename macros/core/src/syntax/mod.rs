@@ -4,7 +4,9 @@
 pub mod ast;
 mod expression;
 mod statement;
+mod text;
 mod token;
+mod typeset;
 
 use crate::diagnostic::{Diagnostic, Errors, Place};
 use ast::Model;
@@ -32,7 +34,7 @@ pub fn parse(tokens: TokenStream) -> Result<Model, Errors> {
 
 /// The tokens of a text.
 pub fn tokens(source: &str) -> Result<TokenStream, Errors> {
-    source.parse().map_err(|e: proc_macro2::LexError| {
+    text::with_plain_backslashes(source).parse().map_err(|e: proc_macro2::LexError| {
         Errors::from(
             Diagnostic::new(Place::token(e.span()), format!("this is not a token of the language: {e}"))
                 .help("write Λ^T for a transpose (not Λ'), a*b or a b for a product (not a·b), dot(a, b) for ⟨a, b⟩"),

@@ -4,6 +4,7 @@
 use super::ast::{Comparison, Kindred, Model, Name, NodeRule, Size, Statement};
 use super::expression::expression;
 use super::token::{Cursor, KEYWORDS, Token};
+use super::typeset::typeset;
 use crate::diagnostic::{Diagnostic, Errors, closest};
 
 /// Parses a whole model.
@@ -16,7 +17,7 @@ pub fn model(c: &mut Cursor) -> Result<Model, Errors> {
     let name = c.name("the name of the model")?;
     c.delimiter('{')?;
     let mut errors = Errors::new();
-    let mut statements = Vec::new();
+    let (mut statements, mut remarks) = (Vec::new(), Vec::new());
     while !c.take_delimiter('}') {
         if c.is_at_end() {
             errors.push(c.unexpected("`}`"));
@@ -25,8 +26,11 @@ pub fn model(c: &mut Cursor) -> Result<Model, Errors> {
         if c.take_punct(';') {
             continue;
         }
-        match statement(c) {
-            Ok(list) => statements.push(list),
+        match attributes(c).and_then(|docs| Ok((docs, statement(c)?))) {
+            Ok((docs, stated)) => {
+                remarks.push(docs);
+                statements.push(stated);
+            }
             Err(e) => {
                 errors.push(e);
                 skip_statement(c);
@@ -45,6 +49,7 @@ pub fn model(c: &mut Cursor) -> Result<Model, Errors> {
         public,
         name,
         statements,
+        remarks,
     })
 }
 
@@ -58,7 +63,7 @@ fn attributes(c: &mut Cursor) -> Result<Vec<String>, Diagnostic> {
         if !c.take_word("doc") {
             return Err(Diagnostic::new(
                 start.to(c.place()),
-                "only documentation (`/// ...`) may stand before a model",
+                "only documentation (`/// ...`) may stand before a model or a statement",
             )
             .help("put other attributes on the items of your own crate"));
         }
@@ -72,11 +77,12 @@ fn attributes(c: &mut Cursor) -> Result<Vec<String>, Diagnostic> {
     Ok(docs)
 }
 
+/// What a string literal of documentation says.
 fn unquoted(literal: &str) -> String {
-    let body = literal
-        .trim_start_matches('r')
-        .trim_matches('#')
-        .trim_matches('"');
+    let body = literal.trim_start_matches('r').trim_matches('#');
+    let body = body.strip_prefix('"').unwrap_or(body);
+    let body = body.strip_suffix('"').unwrap_or(body);
+    let body = body.replace(super::text::BACKSLASH, "\\");
     let mut out = String::new();
     let mut chars = body.chars();
     while let Some(ch) = chars.next() {
@@ -227,9 +233,10 @@ fn kindred(c: &mut Cursor) -> Result<Kindred, Diagnostic> {
 }
 
 fn param(c: &mut Cursor) -> Result<Statement, Diagnostic> {
-    let names = names(c)?;
+    let mut names = names(c)?;
     c.punct(':')?;
     let shape = kindred(c)?;
+    typeset(c, &mut names)?;
     Ok(Statement::Param { names, shape })
 }
 
@@ -267,12 +274,14 @@ fn assume(c: &mut Cursor) -> Result<Statement, Diagnostic> {
 }
 
 fn group(c: &mut Cursor) -> Result<Statement, Diagnostic> {
-    let name = c.name("the name of the configuration")?;
+    let mut name = c.name("the name of the configuration")?;
     c.punct(':')?;
     let group = kindred(c)?;
+    typeset(c, std::slice::from_mut(&mut name))?;
     c.word("velocity")
         .map_err(|e| e.help("write for example `group Λ: SO<3> velocity Ω;`"))?;
-    let velocity = c.name("the name of the discrete velocity")?;
+    let mut velocity = c.name("the name of the discrete velocity")?;
+    typeset(c, std::slice::from_mut(&mut velocity))?;
     Ok(Statement::Group {
         name,
         group,
@@ -281,9 +290,10 @@ fn group(c: &mut Cursor) -> Result<Statement, Diagnostic> {
 }
 
 fn advected(c: &mut Cursor) -> Result<Statement, Diagnostic> {
-    let name = c.name("the name of the advected quantity")?;
+    let mut name = c.name("the name of the advected quantity")?;
     c.punct(':')?;
     let shape = kindred(c)?;
+    typeset(c, std::slice::from_mut(&mut name))?;
     let definition = if c.take_punct('=') {
         Some(expression(c)?)
     } else {

@@ -304,6 +304,7 @@ impl Cursor {
                 let name = Name {
                     text: text.clone(),
                     place: self.place(),
+                    typeset: None,
                 };
                 self.advance();
                 Ok(name)

@@ -54,7 +54,16 @@ impl Composer<'_> {
     fn unsigned(&self, e: &Expr) -> Laid {
         match e.node() {
             Node::Number(q) => self.number(*q),
-            Node::Letter(at) => Laid::atom(self.letter(*at)),
+            Node::Letter(at) => {
+                let letter = self.letter(*at);
+                // Several letters side by side are bracketed under a superscript.
+                match &letter {
+                    Layout::Typeset(_, shown) if matches!(**shown, Layout::Row(_)) => {
+                        Laid::new(letter, Level::Prefix)
+                    }
+                    _ => Laid::atom(letter),
+                }
+            }
             Node::Identity(_) => Laid::atom(Layout::Word("Id".to_owned())),
             Node::Zero(_) => Laid::atom(Layout::Number("0".to_owned())),
             Node::Unit(_, axis) => {

@@ -7,7 +7,7 @@ mod formula;
 use super::Style;
 use super::layout::{Fence, Layout, Sign, Strength};
 use super::level::{Laid, Level};
-use super::name;
+use super::{name, tex};
 use crate::algebra::Rational;
 use crate::expr::Letter;
 use crate::expr::symbol::{Role, Symbols};
@@ -27,16 +27,29 @@ impl Composer<'_> {
     /// A letter with its indices.
     fn letter(&self, at: Letter) -> Layout {
         let symbol = self.symbols.get(at.symbol);
+        if let (true, Some(latex)) = (self.stacked, &symbol.typeset) {
+            let name = Layout::Typeset(latex.clone(), Box::new(tex::layout(latex)));
+            return self.indexed(name, Vec::new(), symbol.role, at);
+        }
         let parsed = name::parse(&symbol.name);
-        let mut subs: Vec<Layout> = parsed.subs.iter().map(|s| name::script(s)).collect();
-        if lives_in_time(symbol.role) {
+        let subs: Vec<Layout> = parsed.subs.iter().map(|s| name::script(s)).collect();
+        let layout = self.indexed(letters(parsed.base), subs, symbol.role, at);
+        match parsed.sup.as_deref() {
+            Some(text) => layout.superscript(name::script(text)),
+            None => layout,
+        }
+    }
+
+    /// A name with its own subscripts and those of the node and the labels.
+    fn indexed(&self, base: Layout, mut subs: Vec<Layout>, role: Role, at: Letter) -> Layout {
+        if lives_in_time(role) {
             subs.extend(offset(&self.style.time_index, at.shift.time));
             for (i, by) in at.shift.label.into_iter().enumerate() {
                 let index = self.style.label_indices.get(i).map_or("", String::as_str);
                 subs.extend(offset(index, by));
             }
         }
-        scripted(parsed.base, subs, parsed.sup.as_deref())
+        subscripted(base, subs)
     }
 
     /// A name with scripts given as text.
@@ -233,6 +246,23 @@ fn offset(index: &str, by: i8) -> Option<Layout> {
 }
 
 fn scripted(base: String, subs: Vec<Layout>, sup: Option<&str>) -> Layout {
+    let layout = subscripted(letters(base), subs);
+    match sup {
+        Some(text) => layout.superscript(name::script(text)),
+        None => layout,
+    }
+}
+
+/// A name, or a number that stands for one.
+fn letters(base: String) -> Layout {
+    if base.chars().all(|c| c.is_ascii_digit()) {
+        Layout::Number(base)
+    } else {
+        Layout::Identifier(base)
+    }
+}
+
+fn subscripted(base: Layout, subs: Vec<Layout>) -> Layout {
     let mut row = Vec::new();
     for sub in subs {
         if !row.is_empty() {
@@ -240,17 +270,9 @@ fn scripted(base: String, subs: Vec<Layout>, sup: Option<&str>) -> Layout {
         }
         row.push(sub);
     }
-    let mut layout = if base.chars().all(|c| c.is_ascii_digit()) {
-        Layout::Number(base)
-    } else {
-        Layout::Identifier(base)
-    };
-    if !row.is_empty() {
-        layout = layout.subscript(Layout::row(row));
-    }
-    match sup {
-        Some(text) => layout.superscript(name::script(text)),
-        None => layout,
+    match row.is_empty() {
+        true => base,
+        false => base.subscript(Layout::row(row)),
     }
 }
 

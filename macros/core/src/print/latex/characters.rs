@@ -30,6 +30,16 @@ pub(super) fn symbol_of(c: char, words: bool) -> String {
     if let Some((_, command)) = SYMBOLS.iter().find(|(s, _)| *s == c) {
         return math(command);
     }
+    // Small digits, and the small letters that index: scripts on nothing.
+    if let Some(digit) = (u32::from(c)).checked_sub(0x2080).filter(|d| *d < 10) {
+        return math(&format!("{{}}_{{{digit}}}"));
+    }
+    if let Some(digit) = (u32::from(c)).checked_sub(0x2070).filter(|d| *d < 10) {
+        return math(&format!("{{}}^{{{digit}}}"));
+    }
+    if let Some((_, index)) = INDICES.iter().find(|(i, _)| *i == c) {
+        return math(&format!("{{}}_{{{index}}}"));
+    }
     match c {
         '#' | '$' | '%' | '&' | '_' | '{' | '}' => format!("\\{c}"),
         '\\' if words => "\\textbackslash{}".to_owned(),
@@ -67,6 +77,9 @@ fn greek_command(word: &str) -> String {
     };
     format!("\\mathrm{{{latin}}}")
 }
+
+/// Small letters below the line.
+const INDICES: [(char, char); 4] = [('ᵢ', 'i'), ('ⱼ', 'j'), ('ₖ', 'k'), ('ₙ', 'n')];
 
 /// Signs that plain LaTeX knows only by command.
 const SYMBOLS: [(char, &str); 36] = [

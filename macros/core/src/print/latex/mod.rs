@@ -25,6 +25,7 @@ pub(super) fn line(layout: &Layout, dialect: Dialect) -> String {
     let go = |l: &Layout| line(l, dialect);
     match layout {
         Layout::Identifier(s) => identifier(s),
+        Layout::Typeset(latex, _) => format!("{{{latex}}}"),
         Layout::Number(s) => s.chars().map(|c| symbol_of(c, false)).collect(),
         Layout::Word(s) => word(s, dialect),
         Layout::Text(s) => format!("\\text{{{}}}", text(s)),

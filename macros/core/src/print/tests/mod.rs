@@ -7,3 +7,4 @@ mod sample;
 mod spelling;
 mod statements;
 mod structure;
+mod typeset;

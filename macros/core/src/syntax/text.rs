@@ -1,0 +1,116 @@
+//! The text of a model before it is split into tokens: in strings a backslash stands for itself, so
+//! that names in LaTeX are written as they are (`as "m g \chi"`), though the tokens are those of
+//! Rust, where `\c` is no escape. Columns stay what they are.
+
+/// Stands for a backslash that no escape of Rust begins with: a character of private use.
+pub(super) const BACKSLASH: char = '\u{e000}';
+
+/// The text with such backslashes in strings replaced; comments, raw strings and character literals
+/// are left alone.
+pub(super) fn with_plain_backslashes(source: &str) -> String {
+    let mut out = String::with_capacity(source.len());
+    let mut rest = source.chars().peekable();
+    let mut before = ' ';
+    while let Some(c) = rest.next() {
+        out.push(c);
+        match (c, rest.peek().copied()) {
+            ('/', Some('/')) => {
+                while let Some(d) = rest.next_if(|d| *d != '\n') {
+                    out.push(d);
+                }
+            }
+            ('/', Some('*')) => {
+                let (mut depth, mut last) = (0, c);
+                for d in rest.by_ref() {
+                    out.push(d);
+                    match (last, d) {
+                        ('/', '*') => (depth, last) = (depth + 1, ' '),
+                        ('*', '/') => (depth, last) = (depth - 1, ' '),
+                        _ => last = d,
+                    }
+                    if depth == 0 {
+                        break;
+                    }
+                }
+            }
+            ('\'', Some('"')) => out.extend(rest.next()),
+            ('r', Some('"' | '#')) if !before.is_alphanumeric() && before != '_' => {
+                raw(&mut rest, &mut out);
+            }
+            ('"', _) => string(&mut rest, &mut out),
+            _ => {}
+        }
+        before = c;
+    }
+    out
+}
+
+type Rest<'a> = std::iter::Peekable<std::str::Chars<'a>>;
+
+/// After `r`: hashes, and what stands between the quotes.
+fn raw(rest: &mut Rest, out: &mut String) {
+    let mut hashes = 0;
+    while rest.next_if_eq(&'#').is_some() {
+        out.push('#');
+        hashes += 1;
+    }
+    if rest.next_if_eq(&'"').is_none() {
+        return;
+    }
+    out.push('"');
+    let mut closing: Option<usize> = None;
+    for d in rest.by_ref() {
+        out.push(d);
+        closing = match (d, closing) {
+            ('"', _) => Some(0),
+            ('#', Some(n)) => Some(n + 1),
+            _ => None,
+        };
+        if closing == Some(hashes) {
+            return;
+        }
+    }
+}
+
+/// After the quote that opens a string.
+fn string(rest: &mut Rest, out: &mut String) {
+    while let Some(d) = rest.next() {
+        match (d, rest.peek().copied()) {
+            ('"', _) => {
+                out.push(d);
+                return;
+            }
+            ('\\', Some(e @ ('n' | 'r' | 't' | '\\' | '0' | '\'' | '"' | '\n'))) => {
+                out.extend([d, e]);
+                rest.next();
+            }
+            ('\\', _) => out.push(BACKSLASH),
+            _ => out.push(d),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::with_plain_backslashes as plain;
+
+    #[test]
+    fn only_what_rust_would_refuse_is_replaced() {
+        assert_eq!(
+            plain(r#"as "m \chi \nu \\xi""#),
+            "as \"m \u{e000}chi \\nu \\\\xi\""
+        );
+        let kept = [
+            "// \"a \\chi\n b",
+            "/* \"\\chi /* \" */ \\c */ a",
+            "r\"\\chi\" r#\"\\c\"\\c\"# x",
+            "'\"' \\c",
+            "a'b \"\\\" \\n\"",
+        ];
+        for text in kept {
+            assert_eq!(plain(text), text);
+        }
+        let x = plain("\"\\xi\"");
+        assert_eq!(x.chars().count(), 5);
+    }
+}
