@@ -739,7 +739,7 @@ pub mod body_in_quadratic_field {
             invariants: &[
                 Invariant {
                     name: "energy",
-                    formula: "½ μ·I⁻¹μ + ½ Γ_k·(K Γ_k)",
+                    formula: "½ μ_k·ζ + ½ Γ_k·(K Γ_k), where μ_k = -J ζ + tr(J) ζ",
                     rows: 1usize,
                     conserved: Conserved::Boundedly,
                 },

@@ -780,7 +780,7 @@ pub mod body_in_two_fields {
             invariants: &[
                 Invariant {
                     name: "energy",
-                    formula: "½ μ·I⁻¹μ + gU·Γ_k - p·B_k",
+                    formula: "½ μ_k·ζ + gU·Γ_k - p·B_k, where μ_k = -J ζ + tr(J) ζ",
                     rows: 1usize,
                     conserved: Conserved::Boundedly,
                 },

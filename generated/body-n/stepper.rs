@@ -561,7 +561,7 @@ pub mod body_n {
             invariants: &[
                 Invariant {
                     name: "spatial_momentum",
-                    formula: "Λ μ",
+                    formula: "Λ_k μ_k Λ_kᵀ",
                     rows: (N * (N - 1) / 2),
                     conserved: Conserved::Exactly,
                 },

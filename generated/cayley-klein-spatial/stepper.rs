@@ -640,13 +640,13 @@ pub mod cayley_klein_spatial {
             invariants: &[
                 Invariant {
                     name: "energy",
-                    formula: "½ μ·I⁻¹μ",
+                    formula: "½ m_k·ζ, where m_k = I_k ζ",
                     rows: 1usize,
                     conserved: Conserved::Boundedly,
                 },
                 Invariant {
                     name: "spatial_momentum",
-                    formula: "m",
+                    formula: "m_k",
                     rows: 3usize,
                     conserved: Conserved::Exactly,
                 },

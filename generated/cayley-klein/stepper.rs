@@ -532,13 +532,13 @@ pub mod cayley_klein {
             invariants: &[
                 Invariant {
                     name: "energy",
-                    formula: "½ μ·I⁻¹μ",
+                    formula: "½ μ_k·ζ, where μ_k = I ζ",
                     rows: 1usize,
                     conserved: Conserved::Boundedly,
                 },
                 Invariant {
                     name: "spatial_momentum",
-                    formula: "q μ",
+                    formula: "rot(q_k) μ_k",
                     rows: 3usize,
                     conserved: Conserved::Exactly,
                 },

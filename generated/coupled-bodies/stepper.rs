@@ -578,7 +578,7 @@ pub mod coupled_bodies {
             let (kinetic, potential) = self.energies(state);
             kinetic + potential
         }
-        /// `Λ1 μ1 + Λ2 μ2`: Noether: the action is invariant under rotations of space.
+        /// `Λ_{1,k} μ_{1,k} + Λ_{2,k} μ_{2,k}`: Noether: the action is invariant under rotations of space.
         pub fn total_momentum(&self, state: &CoupledBodiesState<T>) -> SVector<T, 3> {
             state.spatial_momentum_Λ1().0 + state.spatial_momentum_Λ2().0
         }
@@ -841,13 +841,13 @@ pub mod coupled_bodies {
             invariants: &[
                 Invariant {
                     name: "energy",
-                    formula: "½ μ·I⁻¹μ",
+                    formula: "½ μ_{1,k}·ζ₁ + ½ μ_{2,k}·ζ₂, where μ_{1,k} = -J₁ ζ₁ - eps (d₁·(R_k d₂)) R_k ζ₂ + eps (d₁·(R_k ζ₂)) R_k d₂ + tr(J₁) ζ₁, μ_{2,k} = -J₂ ζ₂ - eps (d₁·(R_k d₂)) R_kᵀ ζ₁ + eps (d₂·(R_kᵀ ζ₁)) R_kᵀ d₁ + tr(J₂) ζ₂",
                     rows: 1usize,
                     conserved: Conserved::Boundedly,
                 },
                 Invariant {
                     name: "total_momentum",
-                    formula: "Λ1 μ1 + Λ2 μ2",
+                    formula: "Λ_{1,k} μ_{1,k} + Λ_{2,k} μ_{2,k}",
                     rows: 3usize,
                     conserved: Conserved::Exactly,
                 },

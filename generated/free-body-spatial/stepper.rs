@@ -646,13 +646,13 @@ pub mod free_body_spatial {
             invariants: &[
                 Invariant {
                     name: "energy",
-                    formula: "½ μ·I⁻¹μ",
+                    formula: "½ m_k·ζ, where m_k = -J_k ζ + tr(J_k) ζ",
                     rows: 1usize,
                     conserved: Conserved::Exactly,
                 },
                 Invariant {
                     name: "spatial_momentum",
-                    formula: "m",
+                    formula: "m_k",
                     rows: 3usize,
                     conserved: Conserved::Exactly,
                 },

@@ -531,13 +531,13 @@ pub mod free_body {
             invariants: &[
                 Invariant {
                     name: "energy",
-                    formula: "½ μ·I⁻¹μ",
+                    formula: "½ μ_k·ζ, where μ_k = -J ζ + tr(J) ζ",
                     rows: 1usize,
                     conserved: Conserved::Exactly,
                 },
                 Invariant {
                     name: "spatial_momentum",
-                    formula: "Λ μ",
+                    formula: "Λ_k μ_k",
                     rows: 3usize,
                     conserved: Conserved::Exactly,
                 },

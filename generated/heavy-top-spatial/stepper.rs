@@ -896,7 +896,7 @@ pub mod heavy_top_spatial {
             invariants: &[
                 Invariant {
                     name: "energy",
-                    formula: "½ μ·I⁻¹μ + w z·χ_k",
+                    formula: "½ m_k·ζ + w z·χ_k, where m_k = -J_k ζ + tr(J_k) ζ",
                     rows: 1usize,
                     conserved: Conserved::Boundedly,
                 },

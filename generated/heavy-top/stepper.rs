@@ -698,7 +698,7 @@ pub mod heavy_top {
             invariants: &[
                 Invariant {
                     name: "energy",
-                    formula: "½ μ·I⁻¹μ + gU·Γ_k",
+                    formula: "½ μ_k·ζ + gU·Γ_k, where μ_k = -J ζ + tr(J) ζ",
                     rows: 1usize,
                     conserved: Conserved::Boundedly,
                 },

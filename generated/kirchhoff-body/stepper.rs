@@ -1202,7 +1202,7 @@ pub mod kirchhoff_body {
             invariants: &[
                 Invariant {
                     name: "energy",
-                    formula: "½ μ·I⁻¹μ + b·P_k",
+                    formula: "½ μ_k·ζ + b·P_k, where μ_k = ι₆₁ (-J ι₆₁ᵀ ζ + D ι₆₄ᵀ ζ + tr(J) ι₆₁ᵀ ζ) + ι₆₄ (M ι₆₄ᵀ ζ + Dᵀ ι₆₁ᵀ ζ)",
                     rows: 1usize,
                     conserved: Conserved::Boundedly,
                 },

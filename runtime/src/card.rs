@@ -72,7 +72,7 @@ pub enum Conserved {
 pub struct Invariant {
     /// The name in ASCII, such as `energy`.
     pub name: &'static str,
-    /// The formula, such as `½ μ·I⁻¹μ`.
+    /// What is computed, such as `½ μ_k·ζ, where μ_k = I ζ`.
     pub formula: &'static str,
     /// Number of components.
     pub rows: usize,

@@ -4,6 +4,7 @@
 pub use clebsch_comparisons::handwritten;
 pub mod oracle;
 pub mod physics;
+pub mod printed;
 pub mod reference;
 
 /// The README's example is compiled and run.

@@ -2,7 +2,8 @@
 //! way to run it without knowing its type. What the command line and the generic tests use.
 
 use super::element::{self, Family, family};
-use super::invariants::{Form, formula, scale};
+use super::formula::formula;
+use super::invariants::{Form, scale};
 use super::items::kept;
 use super::names::{Names, item, kebab, own, per_configuration};
 use super::sizes::{Generics, size};

@@ -2,7 +2,8 @@
 
 use super::element::{self, Family};
 use super::expression::{Bindings, Writer, dims, program, ty};
-use super::items::{letters_of, parameter_locals, text, with_transports};
+use super::formula::formula;
+use super::items::{letters_of, parameter_locals, with_transports};
 use super::names::{Names, item, per_configuration, variable};
 use super::sizes::{Generics, size};
 use super::step::{at, here};
@@ -13,40 +14,6 @@ use crate::expr::{Letter, Shift};
 use crate::schedule;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
-
-/// How an invariant is documented.
-pub fn formula(d: &Derivation, v: &Invariant) -> String {
-    match (&v.kind, &v.value, d.limit.as_ref()) {
-        (Kind::SpatialMomentum(i), _, _) => {
-            let c = &d.spec.configurations[*i];
-            let element = &d.letters.symbols.get(c.element).name;
-            match c.side {
-                Side::Body => format!("{element} μ"),
-                Side::Spatial => "m".to_owned(),
-            }
-        }
-        (Kind::TotalMomentum(set), _, _) => {
-            let parts = set.iter().map(|i| {
-                let c = &d.spec.configurations[*i];
-                let momentum = &d.letters.symbols.get(d.letters.node_momentum[*i]).name;
-                match c.side {
-                    Side::Body => format!("{} {momentum}", d.letters.symbols.get(c.element).name),
-                    Side::Spatial => momentum.clone(),
-                }
-            });
-            parts.collect::<Vec<_>>().join(" + ")
-        }
-        (Kind::Spectrum, _, _) => {
-            let factor = d.integrability.lax.as_ref();
-            let factor = factor.map_or_else(String::new, |lax| text(d, &lax.factor));
-            format!("coefficients of det(ν + μ + λ ({factor})²) that hold μ")
-        }
-        (Kind::Energy, _, Ok(limit)) if limit.potential.is_zero() => "½ μ·I⁻¹μ".to_owned(),
-        (Kind::Energy, _, Ok(limit)) => format!("½ μ·I⁻¹μ + {}", text(d, &limit.potential)),
-        (_, Some(value), _) => text(d, value),
-        (Kind::Value | Kind::Energy, _, _) => v.name.clone(),
-    }
-}
 
 /// Locals for the node momenta among the letters.
 fn momenta(d: &Derivation, needed: &[Letter], bindings: &mut Bindings) -> TokenStream {

@@ -9,6 +9,7 @@ mod energy;
 mod equations;
 mod expression;
 mod forced;
+mod formula;
 mod invariants;
 mod items;
 mod lanes;
@@ -30,6 +31,7 @@ pub(crate) use notes::notes;
 
 use crate::derive::Derivation;
 use crate::diagnostic::{Diagnostic, Errors};
+pub use formula::formula;
 use names::Names;
 use proc_macro2::{Ident, TokenStream, TokenTree};
 use quote::{format_ident, quote};
