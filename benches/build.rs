@@ -1,9 +1,16 @@
-//! Hands the version of the compiler to the benchmark, which prints it beside the times.
-//! Takes the compiler that cargo runs; gives the variable `RUSTC_VERSION`.
+//! Hands two things to the benchmarks: the version of the compiler, printed beside the times, and the path of this very
+//! program. A build script is built without optimisation in every profile, as a macro is: run again with an argument it
+//! expands the statement on its standard input and prints the microseconds.
 
+use clebsch_core::pipeline::expand;
+use std::io::Read as _;
 use std::process::Command;
+use std::time::Instant;
 
 fn main() {
+    if std::env::args().nth(1).is_some() {
+        return measure();
+    }
     println!("cargo::rerun-if-changed=build.rs");
     let compiler = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".into());
     let version = Command::new(compiler)
@@ -13,4 +20,24 @@ fn main() {
         .and_then(|output| String::from_utf8(output.stdout).ok())
         .unwrap_or_else(|| "unknown rustc".into());
     println!("cargo::rustc-env=RUSTC_VERSION={}", version.trim());
+    let this = std::env::current_exe().unwrap_or_default();
+    println!("cargo::rustc-env=UNOPTIMISED_ENGINE={}", this.display());
+}
+
+/// One expansion, the first of its process, as in rustc.
+fn measure() {
+    let mut source = String::new();
+    if std::io::stdin().read_to_string(&mut source).is_err() {
+        return;
+    }
+    let Ok(tokens) = source.parse() else {
+        return;
+    };
+    let start = Instant::now();
+    let expanded = expand(tokens);
+    let time = start.elapsed();
+    // The stepper, not an error message in its place.
+    if expanded.to_string().contains("fn step") {
+        println!("{}", time.as_micros());
+    }
 }

@@ -1,5 +1,5 @@
-//! A counting allocator: bytes alive and their peak, for each thread.
-//! Takes every allocation of this test binary; gives the peak since it was last reset. Beyond a hard limit
+//! A counting allocator: calls, bytes alive and their peak, for each thread.
+//! Takes every allocation of this test binary; gives calls and peak since they were last reset. Beyond a hard limit
 //! it refuses, so that a runaway ends the test and not the machine.
 
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -12,6 +12,7 @@ const REFUSED: isize = 2_000_000_000;
 thread_local! {
     static ALIVE: Cell<isize> = const { Cell::new(0) };
     static PEAK: Cell<isize> = const { Cell::new(0) };
+    static CALLS: Cell<u64> = const { Cell::new(0) };
 }
 
 /// The system allocator with counters.
@@ -25,6 +26,7 @@ fn count(change: isize) -> bool {
             let now = alive.get() + change;
             alive.set(now);
             PEAK.with(|peak| peak.set(peak.get().max(now)));
+            CALLS.with(|calls| calls.set(calls.get() + u64::from(change > 0)));
             now <= REFUSED || refuse()
         })
         .unwrap_or(true)
@@ -75,8 +77,14 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
+/// Allocations made on this thread since `begin`.
+pub fn calls() -> u64 {
+    CALLS.with(Cell::get)
+}
+
 /// Begins a measurement on this thread; returns the bytes alive at its beginning.
 pub fn begin() -> isize {
+    CALLS.with(|calls| calls.set(0));
     let alive = ALIVE.with(Cell::get);
     PEAK.with(|peak| peak.set(alive));
     alive

@@ -1,0 +1,354 @@
+//! Case files: what `clebsch case` prints reads back bit by bit, and every mistake is named with its
+//! file, line and key.
+
+use super::common::{CARD, Folder, case, clebsch};
+use clebsch_cli::case_file;
+use clebsch_cli::failure::Failure;
+
+/// Line of the printed case on which `key` stands.
+fn line_of(text: &str, key: &str) -> usize {
+    1 + text
+        .lines()
+        .position(|line| line.starts_with(key))
+        .expect("the key is there")
+}
+
+/// The printed case with the value of `key`, which may span lines, replaced.
+fn with(key: &str, value: &str) -> String {
+    let text = case_file::write(&CARD, &case());
+    let start = text.find(&format!("\n{key} = ")).expect("the key is there") + 1;
+    let rest = &text[start..];
+    let end = if rest[key.len()..].starts_with(" = [\n") {
+        rest.find("\n]\n").expect("the matrix ends") + 2
+    } else {
+        rest.find('\n').expect("the line ends")
+    };
+    format!("{}{key} = {value}{}", &text[..start], &rest[end..])
+}
+
+#[test]
+fn a_printed_case_reads_back_bit_by_bit() {
+    let done = clebsch(&["case", "harmonic-rotor"]);
+    assert_eq!(done.code, 0);
+    let read = case_file::read("x.toml", &done.out, &CARD).expect("it reads");
+    assert_eq!(read.case, case());
+    assert_eq!(read.lines["parameters.kappa"], line_of(&done.out, "kappa"));
+}
+
+#[test]
+fn a_file_runs_like_the_case_it_was_printed_from() {
+    let folder = Folder::new("file_like_case");
+    let printed = clebsch(&["case", "harmonic-rotor"]).out;
+    let file = folder.write("mine.toml", &printed);
+    let from_file = clebsch(&["run", "harmonic-rotor", "--case", &file]);
+    let named = clebsch(&["run", "harmonic-rotor"]);
+    assert_eq!(from_file.code, 0, "{}", from_file.err);
+    assert_eq!(from_file.out, named.out);
+}
+
+#[test]
+fn a_rotation_may_be_a_quaternion_and_a_number_an_integer() {
+    // A quarter turn about the first axis by 2 acos 0.8, as the matrix of the case has it.
+    let text = with("Lambda", "[0.894427190999916, 0.447213595499958, 0, 0]")
+        .replace("kappa = 1.0", "kappa = 1");
+    let read = case_file::read("x.toml", &text, &CARD).expect("it reads");
+    let matrix = &read.case.initial[0];
+    for (entry, expected) in matrix.iter().zip(&case().initial[0]) {
+        // Three products of numbers of size one.
+        assert!((entry - expected).abs() < 1e-15, "{matrix:?}");
+    }
+    assert_eq!(read.case.parameters[1], [1.0]);
+}
+
+#[test]
+fn name_doc_and_bounds_may_be_left_out() {
+    let text = clebsch(&["case", "harmonic-rotor"]).out;
+    let kept: Vec<&str> = text
+        .lines()
+        .take_while(|line| *line != "[bounds]")
+        .filter(|line| !line.starts_with("name") && !line.starts_with("doc"))
+        .collect();
+    let read = case_file::read("some/where.toml", &kept.join("\n"), &CARD).expect("it reads");
+    assert_eq!(read.case.name, "where");
+    assert_eq!(read.case.doc, "");
+    assert!(read.case.bounds.is_empty());
+}
+
+#[test]
+fn every_mistake_is_named_with_file_and_line() {
+    // Key replaced, its new value, what the message says after the place.
+    let wrong: &[(&str, &str, &str)] = &[
+        (
+            "model",
+            "\"other\"",
+            "model: this case is for `other`, but `harmonic-rotor` is to run",
+        ),
+        (
+            "model",
+            "3",
+            "model: expected a string, found a value of type integer",
+        ),
+        (
+            "name",
+            "[]",
+            "name: expected a string, found a value of type array",
+        ),
+        ("h", "-0.1", "h: the step size must be positive, found -0.1"),
+        ("h", "0", "h: the step size must be positive, found 0"),
+        ("h", "nan", "h: NaN is not a finite number"),
+        ("h", "inf", "h: inf is not a finite number"),
+        ("h", "1e999", "h: inf is not a finite number"),
+        (
+            "h",
+            "\"0.1\"",
+            "h: expected a number, found a value of type string",
+        ),
+        (
+            "steps",
+            "0",
+            "steps: must be a whole number, at least 1, found 0",
+        ),
+        (
+            "steps",
+            "-7",
+            "steps: must be a whole number, at least 1, found -7",
+        ),
+        (
+            "steps",
+            "10.5",
+            "steps: must be a whole number, at least 1, found 10.5",
+        ),
+        (
+            "kappa",
+            "[1.0]",
+            "parameters.kappa: expected a number, found a vector of 1 numbers",
+        ),
+        (
+            "kappa",
+            "true",
+            "parameters.kappa: expected a number, found a value of type boolean",
+        ),
+        (
+            "z",
+            "[1.0, 2.0]",
+            "parameters.z: expected a vector of 3 numbers [a, ..], found a vector of 2 numbers",
+        ),
+        (
+            "z",
+            "1.0",
+            "parameters.z: expected a vector of 3 numbers [a, ..], found one number",
+        ),
+        (
+            "z",
+            "[1.0, nan, 0.0]",
+            "parameters.z: NaN is not a finite number",
+        ),
+        (
+            "z",
+            "[1.0, \"a\", 0.0]",
+            "parameters.z: expected a vector of 3 numbers [a, ..], found an array that",
+        ),
+        (
+            "J",
+            "[1.0, 1.0, 1.0]",
+            "parameters.J: expected a symmetric 3x3 matrix [[..], ..], written in full, found a vector of 3",
+        ),
+        (
+            "J",
+            "[[1, 0], [0, 1]]",
+            "parameters.J: expected a symmetric 3x3 matrix [[..], ..], written in full, found a 2x2 matrix",
+        ),
+        (
+            "J",
+            "[[1, 0, 0], [0, 1], [0, 0, 1]]",
+            "parameters.J: expected a symmetric 3x3 matrix [[..], ..], written in full, found an array that",
+        ),
+        (
+            "Lambda",
+            "[1.0, 0.0, 0.0]",
+            "initial.Lambda: expected a 3x3 matrix [[..], [..], [..]] or a unit quaternion [w, x, y, z], found",
+        ),
+        (
+            "Lambda",
+            "[1.0, 1.0, 0.0, 0.0]",
+            "initial.Lambda: the quaternion has norm 1.414",
+        ),
+        (
+            "Lambda",
+            "[1.00001, 0.0, 0.0, 0.0]",
+            "initial.Lambda: the quaternion has norm 1.00001",
+        ),
+        (
+            "energy",
+            "-1",
+            "bounds.energy: a bound is never negative, found -1",
+        ),
+        ("energy", "inf", "bounds.energy: inf is not a finite number"),
+    ];
+    for (key, value, message) in wrong {
+        let text = with(key, value);
+        let place = format!(
+            "dir/a.toml:{}: {message}",
+            line_of(&text, &format!("{key} = "))
+        );
+        match case_file::read("dir/a.toml", &text, &CARD) {
+            Err(Failure::Usage(found)) => {
+                assert!(
+                    found.starts_with(&place),
+                    "expected\n{place}\nfound\n{found}"
+                );
+            }
+            other => panic!("{key} = {value}: {other:?}"),
+        }
+    }
+}
+
+#[test]
+fn unknown_and_missing_keys_are_named() {
+    let text = clebsch(&["case", "harmonic-rotor"]).out;
+    let line = |key: &str| line_of(&text, key);
+    let wrong = [
+        (
+            "\nh = ",
+            "\nstep = ",
+            format!(
+                "a.toml:{}: unknown key `step` at the top level; did you mean `steps`?",
+                line("h = ")
+            ),
+        ),
+        (
+            "\nkappa",
+            "\nkapa",
+            format!(
+                "a.toml:{}: unknown key `kapa` in [parameters]; did you mean `kappa`?",
+                line("kappa")
+            ),
+        ),
+        (
+            "\nLambda",
+            "\n\"Λ\"",
+            format!(
+                "a.toml:{}: unknown key `Λ` in [initial]; did you mean `Lambda`?",
+                line("Lambda")
+            ),
+        ),
+        (
+            "\nenergy",
+            "\nenrgy",
+            format!(
+                "a.toml:{}: unknown key `enrgy` in [bounds]; did you mean `energy`?",
+                line("energy")
+            ),
+        ),
+        (
+            "\n[initial]",
+            "\n[intial]",
+            format!(
+                "a.toml:{}: unknown key `intial` at the top level; did you mean `initial`?",
+                line("[initial]")
+            ),
+        ),
+        (
+            "\nh = ",
+            "\n# ",
+            "a.toml: missing key `h`: the step size".to_owned(),
+        ),
+        (
+            "\nmodel = ",
+            "\n# ",
+            "a.toml: missing key `model`: the model's name, \"harmonic-rotor\"".to_owned(),
+        ),
+        (
+            "\nkappa",
+            "\n# kappa",
+            format!(
+                "a.toml:{}: missing key `parameters.kappa`: a number",
+                line("[parameters]")
+            ),
+        ),
+        (
+            "\nbody",
+            "\n# body",
+            format!(
+                "a.toml:{}: missing key `initial.body_momentum`: a vector of 3 numbers [a, ..]",
+                line("[initial]")
+            ),
+        ),
+        (
+            "\nh = ",
+            "\nh == ",
+            format!("a.toml:{}: not TOML: ", line("h = ")),
+        ),
+        (
+            "\nsteps",
+            "\nh = 2\nsteps",
+            format!("a.toml:{}: not TOML: duplicate key", line("steps")),
+        ),
+    ];
+    for (old, new, message) in &wrong {
+        let changed = text.replacen(old, new, 1);
+        assert_ne!(&changed, &text);
+        match case_file::read("a.toml", &changed, &CARD) {
+            Err(Failure::Usage(found)) => {
+                assert!(
+                    found.starts_with(message),
+                    "expected\n{message}\nfound\n{found}"
+                );
+            }
+            other => panic!("{new:?}: {other:?}"),
+        }
+    }
+    let short = "model = \"harmonic-rotor\"\nh = 1\nsteps = 1\n";
+    let refused = |text: &str| {
+        case_file::read("a.toml", text, &CARD)
+            .expect_err("refused")
+            .to_string()
+    };
+    assert_eq!(
+        refused(short),
+        "a.toml: missing table [parameters] with keys J, kappa, z"
+    );
+    assert_eq!(
+        refused(&format!("{short}parameters = 3\n")),
+        "a.toml:4: parameters: expected a table [parameters], found a value of type integer"
+    );
+}
+
+#[test]
+fn data_that_the_model_refuses_are_placed_in_their_file() {
+    let folder = Folder::new("refused_data");
+    let wrong = [
+        ("J", "[[1, 0, 0], [0, 1, 0], [0, 0, -3]]", "parameters.J: "),
+        (
+            "J",
+            "[[1, 0.2, 0], [0, 1, 0], [0, 0, 1]]",
+            "parameters.J: not symmetric: ",
+        ),
+        (
+            "Lambda",
+            "[[1, 0, 0], [0, 1, 0], [0, 0, -1]]",
+            "initial.Lambda: ",
+        ),
+        (
+            "Lambda",
+            "[[1, 0, 0], [0, 1, 0], [0, 0, 1.1]]",
+            "initial.Lambda: ",
+        ),
+    ];
+    for (key, value, message) in wrong {
+        let text = with(key, value);
+        let file = folder.write("case.toml", &text);
+        let done = clebsch(&["run", "harmonic-rotor", "--case", &file]);
+        assert_eq!(done.code, 2, "{}", done.err);
+        let expected = format!(
+            "clebsch: {file}:{}: {message}",
+            line_of(&text, &format!("{key} = "))
+        );
+        assert!(
+            done.err.starts_with(&expected),
+            "expected\n{expected}\nfound\n{}",
+            done.err
+        );
+        assert_eq!(done.out, "");
+    }
+}

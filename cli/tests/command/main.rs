@@ -1,0 +1,15 @@
+//! The commands as a user types them: what they print, write and refuse. One binary, since linking is most of what a
+//! test costs.
+
+mod case_files;
+mod common;
+mod comparisons;
+mod exit_codes;
+mod figures;
+mod names;
+mod npz;
+mod own_models;
+mod rest;
+mod results;
+mod staging;
+mod terminal;

@@ -1,0 +1,141 @@
+//! Names from arguments and files reach neither the terminal nor a plot as commands.
+
+use super::common::{Done, Folder, clebsch, with};
+
+/// A colour, a cleared screen, a line that claims success, a bell, a C1 control, a turned direction.
+const NAME: &str = "x\u{1b}[31m\u{1b}[2J\nclebsch: done\r\u{7}\u{9b}1m\u{7f}\u{202e}y";
+
+/// The same written out.
+const SHOWN: &str =
+    "x\\u001b[31m\\u001b[2J\\u000aclebsch: done\\u000d\\u0007\\u009b1m\\u007f\\u202ey";
+
+fn acts(letter: char) -> bool {
+    letter != '\n' && (letter.is_control() || letter == '\u{202e}')
+}
+
+fn is_plain(done: &Done, what: &str) {
+    for stream in [&done.out, &done.err] {
+        assert!(!stream.contains(acts), "{what}: {stream:?}");
+        let faked = stream.lines().any(|line| line.starts_with("clebsch: done"));
+        assert!(!faked, "{what}: {stream:?}");
+    }
+}
+
+#[test]
+fn arguments() {
+    let folder = Folder::new("names_in_arguments");
+    let file = folder.path(&format!("{NAME}.clebsch"));
+    std::fs::write(&file, "model \u{1b}[2J {").expect("a file");
+    let toml = folder.path(&format!("{NAME}.toml"));
+    std::fs::write(&toml, "h = 1").expect("a file");
+    let out = folder.path(NAME);
+    let model = "harmonic-rotor";
+    let requests: &[&[&str]] = &[
+        &["run", NAME],
+        &["case", NAME],
+        &["compare", NAME],
+        &["derive", NAME],
+        &["derive", &file],
+        &["derive", &toml],
+        &["run", &file],
+        &["run", &toml],
+        &["case", model, "--case", NAME],
+        &["run", model, "--case", NAME],
+        &["run", model, "--case", &toml],
+        &["run", model, "--case", "\u{1b}none.toml"],
+        &["run", model, "--solver", NAME],
+        &["run", model, "--steps", "5", "--out", &out],
+        &["run", model, "--steps", "5", "--out", &out],
+    ];
+    for arguments in requests {
+        let done = clebsch(arguments);
+        is_plain(&done, &format!("{arguments:?}"));
+        if arguments.contains(&NAME) {
+            assert!(done.err.contains(SHOWN), "{arguments:?}: {}", done.err);
+        }
+    }
+    // What clap says of arguments it does not know, new lines apart.
+    let wrong = NAME.replace('\n', "");
+    for arguments in [
+        &["run", model, "--order", &wrong][..],
+        &["run", model, &wrong],
+        &[&wrong],
+        &["derive", model, "--format", &wrong],
+        &["run", model, &format!("--{wrong}")],
+    ] {
+        let done = clebsch(arguments);
+        assert_eq!(done.code, 2);
+        is_plain(&done, &format!("{arguments:?}"));
+    }
+    is_plain(
+        &with(
+            &super::common::gallery(),
+            &["derive", "-"],
+            "model \u{1b}[2J",
+            None,
+        ),
+        "input",
+    );
+}
+
+#[test]
+fn case_files() {
+    let folder = Folder::new("names_in_files");
+    let quoted = serde_json::to_string(NAME).expect("a string");
+    // TOML has no raw DEL in strings.
+    let quoted = quoted.replace('\u{7f}', "\\u007f");
+    let text = clebsch(&["case", "harmonic-rotor"]).out;
+    let changes = [
+        ("name = \"swing\"", format!("name = {quoted}")),
+        (
+            "doc = \"Swings",
+            format!("doc = {}Swings", &quoted[..quoted.len() - 1]),
+        ),
+        ("model = \"harmonic-rotor\"", format!("model = {quoted}")),
+        ("kappa = 1.0", format!("{quoted} = 1.0")),
+        ("h = 0.05", format!("h = 0.05\n{quoted} = 1")),
+    ];
+    for (index, (from, to)) in changes.iter().enumerate() {
+        let changed = text.replace(from, to);
+        assert_ne!(changed, text);
+        let file = folder.write("case.toml", &changed);
+        let out = folder.path(&format!("out{index}"));
+        let run = [
+            "run",
+            "harmonic-rotor",
+            "--case",
+            &file,
+            "--steps",
+            "5",
+            "--out",
+            &out,
+        ];
+        let done = clebsch(&run);
+        is_plain(&done, &changed);
+        assert_eq!(done.code, if index < 2 { 0 } else { 2 }, "{}", done.err);
+        if index != 1 {
+            let said = format!("{}{}", done.out, done.err);
+            assert!(said.contains(SHOWN), "{said}");
+        }
+        if done.code == 0 {
+            // XML allows no control characters, even written as entities.
+            let svg = std::fs::read_to_string(format!("{out}/momentum.svg")).expect("the plot");
+            assert!(
+                !svg.contains(|letter| acts(letter) && letter != '\r'),
+                "{svg:?}"
+            );
+            let json = std::fs::read_to_string(format!("{out}/run.json")).expect("run.json");
+            let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+            if index == 0 {
+                assert_eq!(json["case"], NAME);
+            }
+        }
+        // JSON stays JSON, with the same string.
+        let done = clebsch(&[&run[..6], &["--json"]].concat());
+        is_plain(&done, &changed);
+        let json: serde_json::Value = serde_json::from_str(&done.out).expect("JSON");
+        if index == 0 {
+            assert_eq!(json["case"], NAME);
+        }
+    }
+}

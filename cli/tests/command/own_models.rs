@@ -1,0 +1,58 @@
+//! A command line of one's own: the example that the README shows, compiled here and run.
+
+// What users write in their own crate has no documentation to check.
+#![allow(missing_docs)]
+
+#[allow(dead_code)]
+#[path = "../../examples/own_models.rs"]
+mod example;
+
+use self::example::gallery;
+use super::common::{Folder, on};
+use std::fs;
+
+#[test]
+fn it_lists_runs_and_derives_its_models() {
+    let done = on(&gallery(), &["list"]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert!(done.out.contains("\ncompass  swinging  "), "{}", done.out);
+
+    let folder = Folder::new("own_models");
+    let case = folder.write("my.toml", &on(&gallery(), &["case", "compass"]).out);
+    let out = folder.path("out");
+    let run = ["run", "compass", "--case", &case, "--out", &out];
+    let done = on(&gallery(), &run);
+    assert_eq!((done.code, done.err.as_str()), (0, ""), "{}", done.out);
+    // The energy oscillates in its bound, and is not constant: the body does swing.
+    let json = fs::read_to_string(format!("{out}/run.json")).expect("run.json");
+    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    let invariants = json["results"]["invariants"]
+        .as_array()
+        .expect("invariants");
+    let energy = invariants.iter().find(|one| one["name"] == "energy");
+    let drift = energy.expect("energy")["worst_drift"]
+        .as_f64()
+        .expect("a number");
+    assert!(drift > 1e-6 && drift < 1e-2, "{drift:e}");
+
+    let done = on(&gallery(), &["derive", "compass"]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert!(done.out.starts_with("Compass: "), "{}", done.out);
+    // The shipped models are not among them.
+    assert_eq!(on(&gallery(), &["run", "heavy-top"]).code, 2);
+}
+
+#[test]
+fn the_first_page_shows_it_whole() {
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+    let page = fs::read_to_string(format!("{root}/README.md")).expect("the page");
+    let section = page.split("A command line of your own\n").nth(1);
+    let block = section.and_then(|section| section.split("```rust,no_run\n").nth(1));
+    let block = block.and_then(|block| block.split("```").next());
+    let file =
+        fs::read_to_string(format!("{root}/cli/examples/own_models.rs")).expect("the example");
+    assert!(
+        block == Some(&file),
+        "README.md does not show cli/examples/own_models.rs"
+    );
+}

@@ -1,0 +1,97 @@
+//! Starts without size: at rest, or without forces. What has no scale is measured absolutely, and what
+//! is no number stops the run at its node.
+
+use super::common::{Folder, clebsch, on};
+use clebsch::card::Kind;
+use clebsch_cli::gallery::Gallery;
+
+/// Steps of each run: enough for forces to set a body at rest in motion.
+const STEPS: &str = "100";
+
+/// Every shipped model with its momenta set to zero, or with its vectors and numbers among the
+/// parameters (weights, fields, couplings) set to zero, or both.
+#[test]
+fn no_model_exceeds_a_bound_from_rest_or_without_forces() {
+    for (rest, free) in [(true, false), (false, true), (true, true)] {
+        let mut gallery = Gallery::shipped();
+        for entry in &mut gallery.entries {
+            entry.cases.truncate(1);
+            for case in &mut entry.cases {
+                case.bounds.clear();
+                let momenta = entry.card.initial.iter().zip(&mut case.initial);
+                for (field, values) in momenta {
+                    let momentum = matches!(field.kind, Kind::BodyMomentum | Kind::SpatialMomentum);
+                    if rest && momentum {
+                        values.fill(0.0);
+                    }
+                }
+                let parameters = entry.card.parameters.iter().zip(&mut case.parameters);
+                for (field, values) in parameters {
+                    if free && matches!(field.kind, Kind::Scalar | Kind::Vector) {
+                        values.fill(0.0);
+                    }
+                }
+            }
+        }
+        for entry in &gallery.entries {
+            let name = entry.card.kebab;
+            let what = format!("{name}, rest {rest}, free {free}");
+            let done = on(&gallery, &["run", name, "--steps", STEPS]);
+            assert_eq!(done.code, 0, "{what}: {}\n{}", done.err, done.out);
+            assert!(!done.out.contains("NaN"), "{what}: {}", done.out);
+            // A free body at rest has nothing that has a size.
+            if name == "free-body" && rest {
+                let words = "absolute, as the scale at the start is zero: ";
+                assert!(done.out.contains(words), "{what}: {}", done.out);
+            }
+        }
+    }
+}
+
+#[test]
+fn absolute_drifts_are_said_and_judged() {
+    let folder = Folder::new("absolute");
+    let text = clebsch(&["case", "harmonic-rotor"]).out;
+    let rest = text.replace(", 1.5]", ", 0.0]");
+    assert_ne!(rest, text);
+    let file = folder.write("rest.toml", &rest);
+    let run = ["run", "harmonic-rotor", "--case", &file, "--steps", "20"];
+    let done = clebsch(&run);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let words = "\nabsolute, as the scale at the start is zero: energy\n";
+    assert!(done.out.contains(words), "{}", done.out);
+    let done = clebsch(&[&run[..], &["--json"]].concat());
+    let json: serde_json::Value = serde_json::from_str(&done.out).expect("JSON");
+    let energy = &json["results"]["invariants"][0];
+    assert_eq!(energy["absolute"], true);
+    assert_eq!(energy["worst_drift"], 0.0);
+    assert_eq!(energy["verdict"], "kept");
+    assert_eq!(json["results"]["invariants"][1]["absolute"], false);
+}
+
+#[test]
+fn what_is_no_number_stops_the_run_at_its_node() {
+    let folder = Folder::new("no_number");
+    // The square of this momentum is infinite, and the step so short that it is made.
+    let text = clebsch(&["case", "harmonic-rotor"]).out;
+    let large = text
+        .replace(", 1.5]", ", 1e200]")
+        .replace("h = 0.05", "h = 1e-300");
+    let file = folder.write("large.toml", &large);
+    let out = folder.path("out");
+    let run = [
+        "run",
+        "harmonic-rotor",
+        "--case",
+        &file,
+        "--steps",
+        "5",
+        "--out",
+        &out,
+    ];
+    let done = clebsch(&run);
+    assert_eq!(done.code, 1, "{}\n{}", done.err, done.out);
+    let words = "clebsch: at node 0 (time 0) the invariant `energy` is inf: ";
+    assert!(done.err.starts_with(words), "{}", done.err);
+    assert_eq!(folder.names(), ["large.toml"]);
+}

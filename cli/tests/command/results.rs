@@ -1,0 +1,221 @@
+//! What a run leaves behind: complete, repeatable, readable files, or nothing.
+
+use super::common::{Folder, clebsch};
+use std::fs;
+
+const FILES: [&str; 6] = [
+    "advected.svg",
+    "invariants.svg",
+    "momentum.svg",
+    "run.json",
+    "trajectory.csv",
+    "trajectory.npz",
+];
+
+fn names(path: &str) -> Vec<String> {
+    let entries = fs::read_dir(path).expect("the folder is there");
+    let mut names: Vec<String> = entries
+        .map(|entry| {
+            entry
+                .expect("an entry")
+                .file_name()
+                .into_string()
+                .expect("UTF-8")
+        })
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn the_same_run_writes_the_same_bytes() {
+    let folder = Folder::new("same_bytes");
+    let (first, second) = (folder.path("first"), folder.path("deep/er/second"));
+    for out in [&first, &second] {
+        let done = clebsch(&["run", "harmonic-rotor", "--every", "7", "--out", out]);
+        assert_eq!(done.code, 0, "{}", done.err);
+        assert!(done.out.contains("\nwritten to "), "{}", done.out);
+    }
+    assert_eq!(names(&first), FILES);
+    for file in FILES {
+        let read = |out: &str| fs::read(format!("{out}/{file}")).expect("the file is there");
+        assert!(read(&first) == read(&second), "{file} differs");
+    }
+    assert_eq!(folder.names(), ["deep", "first"]);
+    assert_eq!(names(&folder.path("deep/er")), ["second"]);
+}
+
+#[test]
+fn run_json_says_what_ran_and_what_came_out() {
+    let folder = Folder::new("run_json");
+    let out = folder.path("out");
+    clebsch(&["run", "harmonic-rotor", "--steps", "50", "--out", &out]);
+    let text = fs::read_to_string(format!("{out}/run.json")).expect("run.json");
+    let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(json["version"], env!("CARGO_PKG_VERSION"));
+    assert_eq!(json["model"], "harmonic-rotor");
+    assert_eq!(json["fingerprint"], "0123456789abcdef");
+    assert_eq!(json["steps"], 50);
+    assert_eq!(json["h"], 0.05);
+    assert_eq!(json["arguments"]["steps"], 50);
+    assert_eq!(json["initial"]["Lambda"][2][1], 0.8);
+    assert_eq!(json["results"]["samples"], 51);
+    assert_eq!(json["results"]["kept"], true);
+    assert_eq!(json["results"]["invariants"][0]["verdict"], "kept");
+    assert!(
+        !text.contains(&out),
+        "the name of the folder is not part of the results"
+    );
+}
+
+#[test]
+fn a_left_bound_is_code_three_and_the_results_are_written() {
+    let folder = Folder::new("left_bound");
+    let text = clebsch(&["case", "harmonic-rotor"]).out;
+    let file = folder.write(
+        "tight.toml",
+        &text.replace("energy = 0.001", "energy = 1e-5"),
+    );
+    let out = folder.path("out");
+    let done = clebsch(&["run", "harmonic-rotor", "--case", &file, "--out", &out]);
+    assert_eq!(done.code, 3, "{}", done.err);
+    assert!(done.out.contains("1e-5  EXCEEDED\n"), "{}", done.out);
+    assert_eq!(done.err, "clebsch: bound exceeded: energy\n");
+    assert_eq!(names(&out), FILES);
+    let json = fs::read_to_string(format!("{out}/run.json")).expect("run.json");
+    assert!(json.contains("\"kept\": false"));
+}
+
+#[test]
+fn an_existing_folder_is_kept_unless_forced() {
+    let folder = Folder::new("existing");
+    let out = folder.path("out");
+    assert_eq!(clebsch(&["run", "harmonic-rotor", "--out", &out]).code, 0);
+    let before = fs::read(format!("{out}/trajectory.csv")).expect("csv");
+    let again = ["run", "harmonic-rotor", "--steps", "9", "--out", &out];
+    let done = clebsch(&again);
+    assert_eq!(done.code, 2);
+    assert!(
+        done.err.contains("this exists; give --force to replace it"),
+        "{}",
+        done.err
+    );
+    assert_eq!(
+        fs::read(format!("{out}/trajectory.csv")).expect("csv"),
+        before
+    );
+    let done = clebsch(&[&again[..], &["--force"]].concat());
+    assert_eq!(done.code, 0, "{}", done.err);
+    let after = fs::read_to_string(format!("{out}/trajectory.csv")).expect("csv");
+    assert_eq!(after.lines().count(), 11);
+    assert_eq!(names(&out), FILES);
+    assert_eq!(folder.names(), ["out"]);
+}
+
+#[test]
+fn force_never_removes_what_no_run_wrote() {
+    let folder = Folder::new("foreign");
+    let out = folder.path("out");
+    fs::create_dir(&out).expect("a folder");
+    fs::write(format!("{out}/thesis.tex"), "years of work").expect("a file");
+    let done = clebsch(&["run", "harmonic-rotor", "--out", &out, "--force"]);
+    assert_eq!(done.code, 2);
+    assert!(done.err.contains("it holds `thesis.tex`"), "{}", done.err);
+    assert_eq!(names(&out), ["thesis.tex"]);
+    let file = folder.write("file", "a file");
+    let done = clebsch(&["run", "harmonic-rotor", "--out", &file, "--force"]);
+    assert_eq!(done.code, 2);
+    assert!(
+        done.err.contains("this exists and is no folder"),
+        "{}",
+        done.err
+    );
+}
+
+/// A torque so stiff that the rotor outruns its step after some steps.
+fn failing(folder: &Folder) -> String {
+    let text = clebsch(&["case", "harmonic-rotor"]).out;
+    folder.write(
+        "failing.toml",
+        &text.replace("kappa = 1.0", "kappa = -400.0"),
+    )
+}
+
+#[test]
+fn a_failed_run_leaves_nothing() {
+    let folder = Folder::new("failed");
+    let file = failing(&folder);
+    let out = folder.path("new/out");
+    let done = clebsch(&["run", "harmonic-rotor", "--case", &file, "--out", &out]);
+    assert_eq!(done.code, 1);
+    assert!(done.err.contains("no step from node "), "{}", done.err);
+    assert_eq!(folder.names(), ["failing.toml"]);
+}
+
+#[test]
+fn a_failed_run_keeps_the_earlier_results() {
+    let folder = Folder::new("failed_force");
+    let file = failing(&folder);
+    let out = folder.path("out");
+    assert_eq!(clebsch(&["run", "harmonic-rotor", "--out", &out]).code, 0);
+    let before = fs::read(format!("{out}/run.json")).expect("run.json");
+    let done = clebsch(&[
+        "run",
+        "harmonic-rotor",
+        "--case",
+        &file,
+        "--out",
+        &out,
+        "--force",
+    ]);
+    assert_eq!(done.code, 1);
+    assert_eq!(
+        fs::read(format!("{out}/run.json")).expect("run.json"),
+        before
+    );
+    assert_eq!(folder.names(), ["failing.toml", "out"]);
+}
+
+#[test]
+fn a_refused_file_system_is_code_one() {
+    let folder = Folder::new("refused");
+    let file = folder.write("file", "not a folder");
+    let done = clebsch(&["run", "harmonic-rotor", "--out", &format!("{file}/out")]);
+    assert_eq!(done.code, 1);
+    assert!(done.err.contains("file/out"), "{}", done.err);
+    assert_eq!(folder.names(), ["file"]);
+}
+
+#[test]
+fn plots_are_plain_svg() {
+    let folder = Folder::new("plots");
+    let out = folder.path("out");
+    // A million swings: the plots show the first ones and say so.
+    clebsch(&["run", "harmonic-rotor", "--steps", "100000", "--out", &out]);
+    for (file, words) in [
+        (
+            "momentum.svg",
+            &["μ₃", "units of the case", "time t", "shown: time 0 to "][..],
+        ),
+        (
+            "invariants.svg",
+            &[
+                "energy",
+                "bound 1e-3",
+                "10⁻³",
+                "dimensionless",
+                "the largest of about 67 samples",
+            ],
+        ),
+        ("advected.svg", &["Γ₁", "vertical seen from the body"]),
+    ] {
+        let svg = fs::read_to_string(format!("{out}/{file}")).expect("the plot");
+        assert!(svg.starts_with("<svg width=\"860\" "), "{file}");
+        assert!(svg.trim_end().ends_with("</svg>"), "{file}");
+        assert!(svg.len() < 500_000, "{file} has {} bytes", svg.len());
+        assert!(!svg.contains("NaN"), "{file}");
+        for word in words {
+            assert!(svg.contains(word), "{file}: {word:?} is missing");
+        }
+    }
+}

@@ -1,0 +1,331 @@
+//! No order of events loses results: what someone else puts in the way during a run stays, and the
+//! results of the run stay, too.
+
+use super::common::{Done, Folder, clebsch, on};
+use clebsch::StepError;
+use clebsch::card::{Card, OpenError, Settings, Trajectory};
+use clebsch_cli::gallery::{Entry, Gallery};
+use std::cell::RefCell;
+use std::fs;
+use std::path::Path;
+use std::sync::Barrier;
+
+thread_local! {
+    /// What happens in the middle of a run on this thread.
+    static MEANWHILE: RefCell<Option<Box<dyn FnOnce()>>> = const { RefCell::new(None) };
+}
+
+/// The rotor of the other tests, in whose tenth step something happens.
+struct Interrupted(Box<dyn Trajectory>);
+
+impl Trajectory for Interrupted {
+    fn node(&self) -> u64 {
+        self.0.node()
+    }
+    fn time(&self) -> f64 {
+        self.0.time()
+    }
+    fn step(&mut self) -> Result<(), StepError> {
+        if self.0.node() == 9
+            && let Some(event) = MEANWHILE.with(|event| event.borrow_mut().take())
+        {
+            event();
+        }
+        self.0.step()
+    }
+    fn card(&self) -> &'static Card {
+        self.0.card()
+    }
+    fn observe(&self, out: &mut [f64]) {
+        self.0.observe(out);
+    }
+    fn invariants(&self, out: &mut [f64]) {
+        self.0.invariants(out);
+    }
+    fn scales(&self, out: &mut [f64]) {
+        self.0.scales(out);
+    }
+}
+
+fn open(
+    parameters: &[Vec<f64>],
+    initial: &[Vec<f64>],
+    settings: Settings,
+) -> Result<Box<dyn Trajectory>, OpenError> {
+    let own = (super::common::CARD.open)(parameters, initial, settings)?;
+    Ok(Box::new(Interrupted(own)))
+}
+
+/// Runs with `event` in the middle; 20 steps, so that the results are told from those of other runs.
+fn run_while(event: impl FnOnce() + 'static, out: &str, more: &[&str]) -> Done {
+    let mut card = super::common::CARD;
+    card.open = open;
+    let gallery = Gallery {
+        entries: vec![Entry {
+            card,
+            cases: vec![super::common::case()],
+        }],
+    };
+    MEANWHILE.with(|place| *place.borrow_mut() = Some(Box::new(event)));
+    let arguments = ["run", "harmonic-rotor", "--steps", "20", "--out", out];
+    let done = on(&gallery, &[&arguments[..], more].concat());
+    assert!(
+        MEANWHILE.with(|place| place.borrow().is_none()),
+        "the event happened"
+    );
+    done
+}
+
+/// The number of steps of the run whose complete results lie in `folder`.
+fn steps_in(folder: &str) -> u64 {
+    let text = fs::read_to_string(format!("{folder}/run.json")).expect("run.json");
+    let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    for file in json["results"]["files"].as_array().expect("files") {
+        let file = file.as_str().expect("a name");
+        assert!(
+            Path::new(folder).join(file).is_file(),
+            "{folder} lacks {file}"
+        );
+    }
+    json["steps"].as_u64().expect("a number")
+}
+
+/// An earlier run of 5 steps at `out`.
+fn earlier(out: &str) {
+    let done = clebsch(&["run", "harmonic-rotor", "--steps", "5", "--out", out]);
+    assert_eq!(done.code, 0, "{}", done.err);
+}
+
+/// The run stopped with code 1, its results are in `kept`, and the message says so.
+fn kept_beside(done: &Done, kept: &str) {
+    assert_eq!(done.code, 1, "{}", done.err);
+    let words = format!("; the results are in {kept}\n");
+    assert!(done.err.ends_with(&words), "{}", done.err);
+    assert_eq!(steps_in(kept), 20);
+}
+
+#[test]
+fn a_folder_made_meanwhile_is_left_as_it_is() {
+    let folder = Folder::new("made_meanwhile");
+    let out = folder.path("out");
+    let thesis = format!("{out}/thesis.tex");
+    let (made, written) = (out.clone(), thesis.clone());
+    let event = move || {
+        fs::create_dir(&made).expect("a folder");
+        fs::write(&written, "years of work").expect("a file");
+    };
+    let done = run_while(event, &out, &[]);
+    kept_beside(&done, &folder.path("out-2"));
+    assert!(
+        done.err.contains("made by someone else during the run"),
+        "{}",
+        done.err
+    );
+    assert_eq!(
+        fs::read_to_string(&thesis).expect("the file"),
+        "years of work"
+    );
+    assert_eq!(folder.names(), ["out", "out-2"]);
+}
+
+#[test]
+fn an_empty_folder_a_file_and_a_link_made_meanwhile_stay() {
+    let folder = Folder::new("empty_meanwhile");
+    for (index, what) in ["folder", "file", "link"].into_iter().enumerate() {
+        let out = folder.path(&format!("out-of-{what}"));
+        let (made, elsewhere) = (out.clone(), folder.path("elsewhere"));
+        let event = move || match index {
+            0 => fs::create_dir(&made).expect("a folder"),
+            1 => fs::write(&made, "mine").expect("a file"),
+            _ => std::os::unix::fs::symlink(&elsewhere, &made).expect("a link"),
+        };
+        let done = run_while(event, &out, &["--force"]);
+        kept_beside(&done, &format!("{out}-2"));
+        let now = fs::symlink_metadata(&out).expect("what was made");
+        let kind = now.file_type();
+        assert!(
+            [kind.is_dir(), kind.is_file(), kind.is_symlink()][index],
+            "{what}"
+        );
+        if kind.is_dir() {
+            assert!(fs::read_dir(&out).expect("the folder").next().is_none());
+        }
+    }
+}
+
+#[test]
+fn of_two_runs_into_one_folder_both_keep_their_results() {
+    let folder = Folder::new("two_runs");
+    // With and without --force: the other run's folder was not there at the start.
+    for more in [&[][..], &["--force"]] {
+        let out = folder.path(&format!("out{}", more.len()));
+        let other = out.clone();
+        let done = run_while(move || earlier(&other), &out, more);
+        kept_beside(&done, &format!("{out}-2"));
+        assert_eq!(steps_in(&out), 5);
+    }
+    // Again, with that name taken as well.
+    let out = folder.path("out0");
+    fs::remove_dir_all(&out).expect("removed");
+    let other = out.clone();
+    let done = run_while(move || earlier(&other), &out, &[]);
+    kept_beside(&done, &format!("{out}-3"));
+}
+
+#[test]
+fn force_replaces_only_what_stood_there_at_the_start() {
+    let folder = Folder::new("force_meanwhile");
+    // Nothing happens: replaced.
+    let out = folder.path("quiet");
+    earlier(&out);
+    let done = run_while(|| {}, &out, &["--force"]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert_eq!(steps_in(&out), 20);
+    // A foreign file is put into it.
+    let out = folder.path("foreign");
+    earlier(&out);
+    let note = format!("{out}/note.txt");
+    let made = note.clone();
+    let done = run_while(
+        move || fs::write(made, "mine").expect("a file"),
+        &out,
+        &["--force"],
+    );
+    kept_beside(&done, &format!("{out}-2"));
+    assert_eq!(fs::read_to_string(&note).expect("the note"), "mine");
+    assert_eq!(steps_in(&out), 5);
+    // A third run replaces it first.
+    let out = folder.path("replaced");
+    earlier(&out);
+    let other = out.clone();
+    let event = move || {
+        let arguments = [
+            "run",
+            "harmonic-rotor",
+            "--steps",
+            "7",
+            "--out",
+            &other,
+            "--force",
+        ];
+        assert_eq!(clebsch(&arguments).code, 0);
+    };
+    let done = run_while(event, &out, &["--force"]);
+    kept_beside(&done, &format!("{out}-2"));
+    assert_eq!(steps_in(&out), 7);
+    // It is gone: nothing is to be replaced.
+    let out = folder.path("gone");
+    earlier(&out);
+    let other = out.clone();
+    let done = run_while(
+        move || fs::remove_dir_all(other).expect("removed"),
+        &out,
+        &["--force"],
+    );
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert_eq!(steps_in(&out), 20);
+    assert_eq!(
+        folder.names(),
+        [
+            "foreign",
+            "foreign-2",
+            "gone",
+            "quiet",
+            "replaced",
+            "replaced-2"
+        ]
+    );
+}
+
+#[test]
+fn a_folder_of_the_name_of_a_file_of_a_run_is_not_replaced() {
+    let folder = Folder::new("folder_as_file");
+    let out = folder.path("out");
+    earlier(&out);
+    fs::remove_file(format!("{out}/run.json")).expect("removed");
+    fs::create_dir(format!("{out}/run.json")).expect("a folder");
+    let done = clebsch(&["run", "harmonic-rotor", "--out", &out, "--force"]);
+    assert_eq!(done.code, 2, "{}", done.err);
+    assert!(done.err.contains("it holds `run.json`"), "{}", done.err);
+    assert!(Path::new(&out).join("run.json").is_dir());
+}
+
+#[test]
+fn what_other_processes_left_hidden_stays() {
+    let folder = Folder::new("hidden");
+    let out = folder.path("out");
+    // The same process id comes round again, or counts in another machine of a shared disk.
+    let names: Vec<String> = ["partial", "replaced"]
+        .iter()
+        .flat_map(|role| {
+            let id = std::process::id();
+            [format!(".out.{role}-{id}"), format!(".out.{role}-{id}-0")]
+        })
+        .collect();
+    for name in &names {
+        fs::create_dir(folder.path(name)).expect("a folder");
+        fs::write(folder.path(&format!("{name}/trajectory.csv")), "theirs").expect("a file");
+    }
+    earlier(&out);
+    assert_eq!(run_while(|| {}, &out, &["--force"]).code, 0);
+    for name in &names {
+        let text = fs::read_to_string(folder.path(&format!("{name}/trajectory.csv")));
+        assert_eq!(text.expect("the file"), "theirs");
+    }
+    assert_eq!(folder.names().len(), 1 + names.len());
+}
+
+#[test]
+fn many_runs_at_once_lose_nothing() {
+    const RUNS: u64 = 8;
+    let folder = Folder::new("many");
+    for force in [false, true] {
+        let out = folder.path(&format!("out-{force}"));
+        if force {
+            earlier(&out);
+        }
+        let together = Barrier::new(usize::try_from(RUNS).expect("few"));
+        let codes: Vec<u8> = std::thread::scope(|scope| {
+            let start = |index: u64| {
+                let (out, together) = (&out, &together);
+                scope.spawn(move || {
+                    let steps = (100 + index).to_string();
+                    let mut arguments =
+                        vec!["run", "harmonic-rotor", "--steps", &steps, "--out", out];
+                    arguments.extend(force.then_some("--force"));
+                    together.wait();
+                    clebsch(&arguments).code
+                })
+            };
+            let runs: Vec<_> = (0..RUNS).map(start).collect();
+            runs.into_iter()
+                .map(|run| run.join().expect("no panic"))
+                .collect()
+        });
+        // A run that found the folder at its start was refused then, and computed nothing.
+        let computed = codes.iter().filter(|code| **code != 2).count();
+        assert!(codes.iter().any(|code| *code == 0), "{codes:?}");
+        let name = format!("out-{force}");
+        let folders = folder
+            .names()
+            .into_iter()
+            .filter(|one| one.starts_with(&name));
+        let mut steps: Vec<u64> = folders.map(|one| steps_in(&folder.path(&one))).collect();
+        steps.sort_unstable();
+        steps.dedup();
+        // With --force a run that starts when another has ended replaces it, as it was told to.
+        let replaced = codes.iter().filter(|code| **code == 0).count() - 1;
+        assert!(
+            steps.len() + replaced * usize::from(force) >= computed,
+            "{steps:?} {codes:?}"
+        );
+        // Set aside by one that found the name taken then, the earlier run may be beside, too.
+        steps.retain(|steps| !force || *steps != 5);
+        assert!(steps.iter().all(|steps| *steps >= 100), "{steps:?}");
+        let hidden = folder
+            .names()
+            .into_iter()
+            .filter(|one| one.starts_with('.'));
+        assert_eq!(hidden.count(), 0);
+    }
+}

@@ -1,0 +1,213 @@
+//! What fits a terminal, what helps at it, and what is read from it.
+
+use super::common::{Folder, clebsch, gallery, on, with};
+use clebsch_cli::gallery::Gallery;
+
+const COMMANDS: [&str; 6] = ["list", "case", "run", "compare", "figures", "derive"];
+
+/// Lines of at most so many letters.
+fn fits(text: &str, width: usize, what: &str) {
+    assert!(!text.is_empty(), "{what}");
+    for line in text.lines() {
+        let letters = line.chars().count();
+        assert!(
+            letters <= width,
+            "{what}, {letters} letters of {width}: {line}"
+        );
+    }
+}
+
+#[test]
+fn help_fits_and_has_examples() {
+    for width in [60, 80, 100, 200] {
+        let help = |arguments: &[&str]| {
+            let done = with(&gallery(), arguments, "", Some(width));
+            assert_eq!(done.code, 0);
+            fits(&done.out, width.min(100), &format!("{arguments:?}"));
+            done.out
+        };
+        let short = help(&["--help"]);
+        for command in COMMANDS {
+            assert!(short.contains(command), "{command}");
+            let long = help(&[command, "--help"]);
+            let examples = long.split("Examples:\n").nth(1).expect("examples");
+            let example = format!("\n  clebsch {command}");
+            assert!(format!("\n{examples}").contains(&example), "{long}");
+        }
+        assert!(short.contains("Examples:\n"));
+    }
+    // Without a terminal lines are those of a page.
+    fits(&clebsch(&["run", "--help"]).out, 100, "no terminal");
+}
+
+/// Every example of the help runs, on the shipped models.
+#[test]
+fn examples_of_the_help_are_understood() {
+    for command in COMMANDS {
+        let help = clebsch(&[command, "--help"]).out;
+        let examples = help.split("Examples:\n").nth(1).expect("examples");
+        for line in examples
+            .lines()
+            .filter(|line| line.starts_with("  clebsch "))
+        {
+            let words = line.split_whitespace().skip(1);
+            let words: Vec<&str> = words
+                .take_while(|word| !["<", ">"].contains(word))
+                .collect();
+            // Not the work itself: that they are arguments, of models that there are.
+            let matched = clebsch_cli::arguments::command(None)
+                .try_get_matches_from([&["clebsch"], &words[..]].concat());
+            assert!(matched.is_ok(), "{line}: {}", matched.unwrap_err());
+            let named = words
+                .get(1)
+                .is_some_and(|word| word.ends_with("-top") || word.ends_with("-body"));
+            if named {
+                assert!(Gallery::shipped().find(words[1]).is_ok(), "{line}");
+            }
+        }
+    }
+}
+
+#[test]
+fn tables_fit() {
+    for width in [60, 80, 120] {
+        let done = with(&Gallery::shipped(), &["list"], "", Some(width));
+        assert_eq!(done.code, 0);
+        fits(&done.out, width, "list");
+        for entry in Gallery::shipped().entries {
+            assert!(done.out.contains(entry.card.kebab));
+        }
+        for model in ["heavy-top", "kirchhoff-body", "coupled-bodies"] {
+            let run = ["run", model, "--steps", "20"];
+            let done = with(&Gallery::shipped(), &run, "", Some(width));
+            assert_eq!(done.code, 0, "{}", done.err);
+            fits(&done.out, width, model);
+            // The same words as without a limit.
+            let wide = on(&Gallery::shipped(), &run).out;
+            for word in wide
+                .split_whitespace()
+                .filter(|word| word.chars().count() < 14)
+            {
+                assert!(
+                    done.out.contains(word),
+                    "{model}, {width}: {word}\n{}",
+                    done.out
+                );
+            }
+        }
+        let compare = ["compare", "heavy-top", "--steps", "10"];
+        let done = with(&Gallery::shipped(), &compare, "", Some(width));
+        assert_eq!(done.code, 0, "{}", done.err);
+        fits(&done.out, width, "compare");
+    }
+}
+
+#[test]
+fn what_was_meant_is_understood_or_answered() {
+    let folder = Folder::new("meant");
+    let million = clebsch(&["run", "harmonic-rotor", "--steps", "2e3", "--json"]);
+    assert_eq!(million.code, 0, "{}", million.err);
+    assert!(million.out.contains("\"steps\":2000"), "{}", million.out);
+    let text = clebsch(&["case", "harmonic-rotor"]).out;
+    let file = folder.write("case.toml", &text.replace("steps = 2000", "steps = 1e2"));
+    let done = clebsch(&["run", "harmonic-rotor", "--case", &file, "--json"]);
+    assert!(done.out.contains("\"steps\":100"), "{}", done.err);
+    for wrong in ["1e-3", "1.5", "1e300", "1e"] {
+        let done = clebsch(&["run", "harmonic-rotor", "--steps", wrong]);
+        assert_eq!(done.code, 2, "{wrong}");
+        assert!(
+            done.err
+                .contains("give a whole number, such as 20000 or 2e4"),
+            "{}",
+            done.err
+        );
+    }
+
+    let run = format!("clebsch run harmonic-rotor --case {file}");
+    for command in ["derive", "run", "compare", "case"] {
+        let done = clebsch(&[command, &file]);
+        assert_eq!(done.code, 2);
+        assert!(done.err.contains("is a case file"), "{}", done.err);
+        assert!(done.err.contains(&run), "{}", done.err);
+    }
+    let done = clebsch(&["derive", "nowhere.toml"]);
+    assert!(
+        done.err.contains("clebsch run MODEL --case nowhere.toml"),
+        "{}",
+        done.err
+    );
+
+    let model = folder.write("my.clebsch", "model My {}");
+    for name in [model.as_str(), "nowhere.clebsch"] {
+        let done = clebsch(&["run", name]);
+        assert_eq!(done.code, 2);
+        for words in [
+            &format!("clebsch derive {name}"),
+            "clebsch::model!",
+            "A command line of your own",
+        ] {
+            assert!(
+                done.err.contains(words),
+                "{words} is missing in {}",
+                done.err
+            );
+        }
+    }
+}
+
+const SOURCE: &str = "model Body {
+    param J: Sym<3>;
+    group R: SO<3> velocity W;
+    constraint next(R) = R*W;
+    lagrangian = -tr(J*W)/h;
+}
+";
+
+#[test]
+fn a_model_is_read_from_standard_input() {
+    let derive = |arguments: &[&str], input: &str| {
+        let done = with(&gallery(), &[&["derive"], arguments].concat(), input, None);
+        (done.code, done.out, done.err)
+    };
+    let folder = Folder::new("standard_input");
+    let file = folder.write("body.clebsch", SOURCE);
+    let (code, out, err) = derive(&["-"], SOURCE);
+    assert_eq!((code, err.as_str()), (0, ""));
+    assert_eq!(out, derive(&[&file], "").1);
+    let (code, out, err) = derive(&["-"], &SOURCE.replace("*W)/h", "*V)/h"));
+    assert_eq!((code, out.as_str()), (2, ""));
+    assert!(err.contains("standard input:5:"), "{err}");
+    let (code, _, err) = derive(&["-"], " \n");
+    assert_eq!(code, 2);
+    assert!(err.contains("standard input is empty"), "{err}");
+
+    // Formats go by the endings of their files, too.
+    for (format, ending) in [
+        ("latex", "tex"),
+        ("markdown", "md"),
+        ("rust", "rs"),
+        ("text", "txt"),
+    ] {
+        let (code, long, _) = derive(&["-", "--format", format], SOURCE);
+        assert_eq!(code, 0);
+        assert_eq!(
+            derive(&["-", "--format", ending], SOURCE).1,
+            long,
+            "{format}"
+        );
+    }
+
+    // Each proof has its own flag.
+    let plain = derive(&["-"], SOURCE).1;
+    let second = "Second proof, by equality saturation";
+    let explained = derive(&["-", "--explain"], SOURCE).1;
+    assert!(explained.starts_with(&plain) && explained.len() > plain.len());
+    assert!(!explained.contains(second), "{explained}");
+    let proved = derive(&["-", "--second-proof"], SOURCE).1;
+    assert!(
+        proved.starts_with(&plain) && proved.contains(second),
+        "{proved}"
+    );
+    let both = derive(&["-", "--explain", "--second-proof"], SOURCE).1;
+    assert!(both.starts_with(&explained) && both.contains(second));
+}

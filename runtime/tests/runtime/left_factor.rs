@@ -1,0 +1,426 @@
+//! Solvers of the Moser-Veselov equation for any left factor in two to eight dimensions: residuals up
+//! to the exact bound, refusals beyond it, agreement with each other, other scalars.
+
+use super::common::Random;
+use clebsch::groups::Part;
+use clebsch::linalg::{hat, skew_from};
+use clebsch::nalgebra::{Matrix3, SMatrix, Vector3};
+use clebsch::solvers::Method;
+use clebsch::solvers::left_factor::{LeftFactor, LeftFactorError, Refusal, davenport};
+use clebsch::{DoubleDouble, Dual, Group, Lanes, Orthogonal, Poinsot, Real, Rotation};
+
+/// A residual of entries of size 2: eight products and their sum.
+const ROUNDING: f64 = 1e-14;
+
+fn skew<const N: usize>(random: &mut Random) -> SMatrix<f64, N, N> {
+    let list: Vec<f64> = (0..N * N).map(|_| random.symmetric()).collect();
+    skew_from(&list)
+}
+
+fn rotation<const N: usize>(random: &mut Random) -> Orthogonal<N> {
+    let list: Vec<f64> = (0..N * N).map(|_| 2.0 * random.symmetric()).collect();
+    Orthogonal::identity().retract(&list).retract(&list)
+}
+
+/// Diagonal, turned symmetric and turned nonsymmetric factors in turn, eigenvalues in (0.2, 2.2).
+fn matrix<const N: usize>(random: &mut Random, case: usize) -> SMatrix<f64, N, N> {
+    let diagonal = SMatrix::from_diagonal(&clebsch::nalgebra::SVector::from_fn(|_, _| {
+        0.2 + 2.0 * random.unit()
+    }));
+    match case % 3 {
+        0 => diagonal,
+        1 => {
+            let u = rotation::<N>(random).matrix();
+            let p = u * diagonal * u.transpose();
+            (p + p.transpose()) * 0.5
+        }
+        _ => rotation::<N>(random).matrix() * diagonal * rotation::<N>(random).matrix(),
+    }
+}
+
+fn residual<T: Real, const N: usize>(
+    c: &SMatrix<T, N, N>,
+    omega: &Orthogonal<N, T>,
+    v: &SMatrix<T, N, N>,
+) -> f64 {
+    let a = omega.matrix() * c.transpose();
+    let f = a - a.transpose() - v;
+    f.iter()
+        .map(|x| x.magnitude())
+        .fold(0.0, clebsch::scalar::larger)
+}
+
+/// Random factors and momenta at this fraction of the exact bound.
+fn at_fraction<const N: usize>(
+    fraction: f64,
+    count: usize,
+    mut check: impl FnMut(&LeftFactor<N>, &SMatrix<f64, N, N>),
+) {
+    let mut random = Random(40 + N as u64);
+    for case in 0..count {
+        let c = matrix::<N>(&mut random, case);
+        let factor = LeftFactor::new(c).expect("positive");
+        let v = skew::<N>(&mut random);
+        check(&factor, &(v * (fraction / factor.reach(&v))));
+    }
+}
+
+fn sizes(mut each: impl FnMut(usize)) {
+    (2..=8).for_each(&mut each);
+}
+
+/// Calls a function generic over the size.
+macro_rules! of_size {
+    ($n:expr, $function:ident($($argument:expr),*)) => {
+        match $n {
+            2 => $function::<2>($($argument),*),
+            3 => $function::<3>($($argument),*),
+            4 => $function::<4>($($argument),*),
+            5 => $function::<5>($($argument),*),
+            6 => $function::<6>($($argument),*),
+            7 => $function::<7>($($argument),*),
+            _ => $function::<8>($($argument),*),
+        }
+    };
+}
+
+fn solves<const N: usize>(fraction: f64, allowed: f64) {
+    at_fraction::<N>(fraction, 60, |factor, v| {
+        let omega = factor
+            .solve(v, Method::LieNewton)
+            .unwrap_or_else(|e| panic!("n = {N}, {fraction} of the bound: {e}"));
+        let found = residual(&factor.matrix(), &omega, v);
+        assert!(found <= allowed, "n = {N}, {fraction}: {found:e}");
+        assert!(omega.distance_from_group() < ROUNDING);
+        let again = factor.solve(v, Method::LieNewton).expect("as before");
+        assert_eq!(omega, again, "equal arguments, equal results");
+    });
+}
+
+#[test]
+fn lie_newton_solves_to_rounding_up_to_the_bound() {
+    sizes(|n| {
+        for fraction in [0.0, 1e-3, 0.05, 0.3, 0.6, 0.9, 0.95] {
+            of_size!(n, solves(fraction, ROUNDING));
+        }
+        // The root is double at the bound; the residual is not the worse for it.
+        for fraction in [0.999, 1.0 - 1e-6] {
+            of_size!(n, solves(fraction, ROUNDING));
+        }
+    });
+}
+
+/// The symmetric part is iterated down to a hundredth; below it, Newton alone.
+#[test]
+fn nearly_flat_factors_are_solved_to_rounding() {
+    let mut random = Random(77);
+    for smallest in [0.1, 0.0101, 0.0099, 1e-6, 0.0] {
+        let diagonal = clebsch::nalgebra::SVector::from([1.0, 0.8, 0.6, smallest]);
+        let factor = LeftFactor::new(SMatrix::<f64, 4, 4>::from_diagonal(&diagonal));
+        let factor = factor.expect("at most one is zero");
+        for fraction in [0.05, 0.3, 0.6, 0.95] {
+            let v = skew::<4>(&mut random);
+            let v = v * (fraction / factor.reach(&v));
+            let omega = factor.solve(&v, Method::LieNewton).expect("solvable");
+            let found = residual(&factor.matrix(), &omega, &v);
+            assert!(found < ROUNDING, "{smallest}, {fraction}: {found:e}");
+            assert!(omega.distance_from_group() < ROUNDING);
+        }
+    }
+}
+
+fn refuses<const N: usize>() {
+    at_fraction::<N>(1.0 + 1e-6, 30, |factor, v| {
+        for method in [Method::LieNewton, Method::Sign, Method::Schur] {
+            let error = factor.solve(v, method).expect_err("beyond the bound");
+            assert_eq!(error.refusal, Refusal::BeyondBound, "{error}");
+            assert!((error.ratio - 1.0 - 1e-6).abs() < 1e-9, "{error}");
+        }
+        let h = 0.1;
+        let ratio = |trial: f64| Some(factor.reach(&(v * (trial / h))));
+        let error = factor.solve(v, Method::LieNewton).expect_err("beyond");
+        let largest = error
+            .with_searched_step(h, ratio)
+            .largest_step
+            .expect("searched");
+        assert!((largest / h - 1.0 + 1e-6).abs() < 1e-9, "{largest}");
+        // That step is solved.
+        assert!(
+            factor
+                .solve(&(v * (largest / h)), Method::LieNewton)
+                .is_ok()
+        );
+    });
+}
+
+#[test]
+fn beyond_the_bound_every_solver_refuses_with_its_ratio() {
+    sizes(|n| of_size!(n, refuses()));
+}
+
+/// A momentum in one plane of one lane is too large: plane and lane are named.
+#[test]
+fn refusals_name_the_plane_and_the_lane() {
+    let four = LeftFactor::new(SMatrix::<f64, 4, 4>::from_diagonal(
+        &[0.5, 0.9, 0.7, 1.1].into(),
+    ));
+    let four = four.expect("a factor");
+    for (i, j) in [(0, 1), (1, 3), (2, 3)] {
+        let mut v = SMatrix::<f64, 4, 4>::repeat(0.01);
+        v[(i, j)] = 3.0;
+        v = v - v.transpose();
+        for method in [Method::LieNewton, Method::Sign, Method::Schur] {
+            let e = four.solve(&v, method).expect_err("too fast");
+            assert_eq!(e.fastest, Part::Plane(i as u8, j as u8), "{e}");
+            assert!(e.to_string().contains(&format!("plane ({i}, {j})")), "{e}");
+        }
+    }
+    let c = Matrix3::from_diagonal(&Vector3::new(0.5, 0.9, 0.7))
+        * Rotation::exp(&Vector3::z()).matrix();
+    let wide = |x: f64| Lanes([x; 4]);
+    let mut v = Vector3::new(0.01, 0.02, 0.01).map(wide);
+    v[1] = Lanes([0.1, 0.2, 9.0, 4.0]);
+    let e = davenport(&c.map(wide), &v).expect_err("too fast");
+    assert_eq!((e.fastest, e.lane), (Part::Axis(1), 2), "{e}");
+    let prepared = LeftFactor::new(c.map(wide)).expect("a factor");
+    let e = prepared
+        .rotation(&v, Method::LieNewton)
+        .expect_err("too fast");
+    assert_eq!((e.fastest, e.lane), (Part::Axis(1), 2), "{e}");
+    assert!(e.to_string().starts_with("lane 2: "), "{e}");
+    // Within the bound nothing is refused.
+    assert!(davenport(&c.map(wide), &v.map(|x| x * wide(0.01))).is_ok());
+}
+
+fn agree<const N: usize>(fraction: f64, allowed: f64) {
+    at_fraction::<N>(fraction, 40, |factor, v| {
+        let omega = factor
+            .solve(v, Method::LieNewton)
+            .expect("solvable")
+            .matrix();
+        for method in Method::ALL {
+            match factor.solve(v, method) {
+                Ok(other) => {
+                    let apart = (other.matrix() - omega).amax();
+                    assert!(apart <= allowed, "n = {N}, {fraction}, {method}: {apart:e}");
+                }
+                Err(e) => {
+                    let of_three = matches!(method, Method::Kappa | Method::Davenport);
+                    let other_size = of_three && N != 3;
+                    assert!(
+                        other_size && e.refusal == Refusal::DoesNotApply,
+                        "{N} {method} {e}"
+                    );
+                }
+            }
+        }
+    });
+}
+
+#[test]
+fn solvers_agree() {
+    sizes(|n| {
+        // The eigenvalue problems lose the condition of the invariant subspace, which grows towards
+        // the bound as the inverse root of the distance.
+        of_size!(n, agree(0.05, 2e-13));
+        of_size!(n, agree(0.3, 2e-13));
+        of_size!(n, agree(0.9, 2e-12));
+        of_size!(n, agree(0.999, 2e-10));
+    });
+}
+
+#[test]
+fn davenport_solves_any_factor_of_space() {
+    for (fraction, count) in [
+        (0.05, 400),
+        (0.5, 400),
+        (0.9, 400),
+        (0.999, 100),
+        (1.0 - 1e-6, 50),
+    ] {
+        at_fraction::<3>(fraction, count, |factor, v| {
+            let c = factor.matrix();
+            let vector = Vector3::new(v[(2, 1)], v[(0, 2)], v[(1, 0)]);
+            let omega = davenport(&c, &vector).unwrap_or_else(|e| panic!("{fraction}: {e}"));
+            let a = omega.matrix() * c.transpose();
+            assert!((a - a.transpose() - v).amax() < ROUNDING);
+        });
+    }
+    at_fraction::<3>(1.0 + 1e-6, 50, |factor, v| {
+        let vector = Vector3::new(v[(2, 1)], v[(0, 2)], v[(1, 0)]);
+        let error = davenport(&factor.matrix(), &vector).expect_err("beyond");
+        assert!((error.ratio - 1.0 - 1e-6).abs() < 1e-9, "{error}");
+    });
+}
+
+#[test]
+fn the_bound_is_that_of_space_where_both_are_known() {
+    let mut random = Random(51);
+    for case in 0..200 {
+        let j = random.poinsot(case);
+        let Ok(body) = Poinsot::new(j) else { continue };
+        let factor = LeftFactor::new(j).expect("a body");
+        let v = random.vector();
+        let (one, other) = (
+            factor.reach(&hat(&v)),
+            clebsch::solvers::moser_veselov::reach(&body, &v),
+        );
+        assert!((one / other - 1.0).abs() < 1e-9, "{one} {other}");
+    }
+}
+
+#[test]
+fn a_single_plane_turns_by_the_arc_sine() {
+    // Two axes turn as one: (c1 + c2) sin(theta) = v.
+    let c = SMatrix::<f64, 5, 5>::from_diagonal(&[0.4, 1.1, 0.7, 1.9, 1.3].into());
+    let factor = LeftFactor::new(c).expect("positive");
+    let mut v = SMatrix::<f64, 5, 5>::zeros();
+    (v[(1, 3)], v[(3, 1)]) = (-2.7, 2.7);
+    let theta = (2.7_f64 / 3.0).asin();
+    for method in [Method::LieNewton, Method::Sign, Method::Schur] {
+        let omega = factor.solve(&v, method).expect("0.9 of the bound").matrix();
+        assert!((omega[(3, 1)] - theta.sin()).abs() < 1e-13, "{method}");
+        assert!((omega[(1, 1)] - theta.cos()).abs() < 1e-13, "{method}");
+    }
+    assert!((factor.reach(&v) - 0.9).abs() < 1e-12);
+}
+
+#[test]
+fn what_is_no_left_factor_is_refused() {
+    let mut c = SMatrix::<f64, 4, 4>::from_diagonal(&[1.0, 2.0, 3.0, -4.0].into());
+    assert!(matches!(
+        LeftFactor::new(c),
+        Err(LeftFactorError::NotPositive { smallest, .. }) if smallest == -4.0
+    ));
+    c[(0, 1)] = 0.5;
+    assert!(matches!(
+        LeftFactor::new(c),
+        Err(LeftFactorError::Reflected { determinant }) if determinant < 0.0
+    ));
+    c[(0, 1)] = f64::NAN;
+    assert_eq!(LeftFactor::new(c), Err(LeftFactorError::NotFinite));
+    let flat = SMatrix::<f64, 4, 4>::from_diagonal(&[1.0, 2.0, 3.0, 0.0].into());
+    let factor = LeftFactor::new(flat).expect("a flat body");
+    let v = skew::<4>(&mut Random(7));
+    let v = v * (0.5 / factor.reach(&v));
+    let omega = factor
+        .solve(&v, Method::LieNewton)
+        .expect("within the bound");
+    assert!(residual(&flat, &omega, &v) < ROUNDING);
+    // Its inverse does not exist.
+    let error = factor.solve(&v, Method::Sign).expect_err("singular");
+    assert_eq!(error.refusal, Refusal::DoesNotApply);
+    let flatter = SMatrix::<f64, 4, 4>::from_diagonal(&[1.0, 2.0, 0.0, 0.0].into());
+    assert!(LeftFactor::new(flatter).is_err());
+    let error = factor
+        .solve(&(v * f64::NAN), Method::LieNewton)
+        .expect_err("NaN");
+    assert_eq!(error.refusal, Refusal::NotFinite);
+}
+
+#[test]
+fn other_scalars() {
+    let mut random = Random(61);
+    for case in 0..20 {
+        let c = matrix::<4>(&mut random, case);
+        let plain = LeftFactor::new(c).expect("positive");
+        let v = skew::<4>(&mut random);
+        let v = v * (0.4 / plain.reach(&v));
+        let omega = plain
+            .solve(&v, Method::LieNewton)
+            .expect("solvable")
+            .matrix();
+        // Thirty digits.
+        let wide = LeftFactor::new(c.map(DoubleDouble::from)).expect("positive");
+        for method in [Method::LieNewton, Method::Sign] {
+            let fine = wide
+                .solve(&v.map(DoubleDouble::from), method)
+                .expect("solvable");
+            let left = residual(&wide.matrix(), &fine, &v.map(DoubleDouble::from));
+            assert!(left < 1e-27, "{method} {left:e}");
+        }
+        // Lanes: a multiple of the momentum in each.
+        let lanes = LeftFactor::new(c.map(|x| Lanes([x; 3]))).expect("positive");
+        let momenta = v.map(|x| Lanes([x, 0.5 * x, -x]));
+        let three = lanes
+            .solve(&momenta, Method::LieNewton)
+            .expect("solvable")
+            .matrix();
+        assert!((three.map(|x| x.0[0]) - omega).amax() < ROUNDING);
+        assert!(
+            residual(
+                &lanes.matrix(),
+                &Orthogonal::from_matrix(&three).unwrap(),
+                &momenta
+            ) < ROUNDING
+        );
+        // Derivatives along a change of momentum and factor, by central differences.
+        let (dv, dc) = (skew::<4>(&mut random), skew::<4>(&mut random) * 0.3);
+        let dual = |x: f64, dx: f64| Dual::<1> {
+            real: x,
+            dual: [dx],
+        };
+        let moving = LeftFactor::new(c.zip_map(&dc, dual)).expect("positive");
+        let turned = moving
+            .solve(&v.zip_map(&dv, dual), Method::LieNewton)
+            .expect("solvable");
+        let derivative = turned.matrix().map(|x| x.dual[0]);
+        let at = |t: f64| {
+            let factor = LeftFactor::new(c + dc * t).expect("positive");
+            factor
+                .solve(&(v + dv * t), Method::LieNewton)
+                .expect("solvable")
+                .matrix()
+        };
+        let t = 1e-5;
+        let difference = (at(t) - at(-t)) / (2.0 * t);
+        // Differences are good to t^2 and rounding over t.
+        assert!((derivative - difference).amax() < 1e-8);
+    }
+}
+
+#[test]
+fn derivatives_pass_through_davenport() {
+    let mut random = Random(62);
+    for case in 0..20 {
+        let c = matrix::<3>(&mut random, case);
+        let (v, dv) = (random.vector() * 0.1, random.vector());
+        let dual = |x: f64, dx: f64| Dual::<1> {
+            real: x,
+            dual: [dx],
+        };
+        let turned = davenport(&c.map(|x| dual(x, 0.0)), &v.zip_map(&dv, dual)).expect("solvable");
+        let derivative = turned.matrix().map(|x| x.dual[0]);
+        let at = |t: f64| davenport(&c, &(v + dv * t)).expect("solvable").matrix();
+        let difference = (at(1e-5) - at(-1e-5)) / 2e-5;
+        assert!((derivative - difference).amax() < 1e-8);
+    }
+}
+
+#[test]
+fn a_turned_body_is_solved_by_vectors_too() {
+    let mut random = Random(63);
+    let c: Matrix3<f64> = matrix::<3>(&mut random, 2);
+    let factor = LeftFactor::new(c).expect("positive");
+    let v = Vector3::new(0.1, -0.2, 0.15);
+    let by_quartic: Rotation = factor.rotation(&v, Method::Kappa).expect("solvable");
+    for method in Method::ALL {
+        let other = factor.rotation(&v, method).expect("solvable");
+        assert!(
+            (other.matrix() - by_quartic.matrix()).amax() < 1e-13,
+            "{method}"
+        );
+    }
+}
+
+#[test]
+fn methods_have_names() {
+    for method in Method::ALL {
+        assert_eq!(method.name().parse(), Ok(method));
+    }
+    let error = "newton".parse::<Method>().expect_err("no such name");
+    assert_eq!(
+        error.to_string(),
+        "no such solver; the solvers are kappa, lie-newton, davenport, sign, schur"
+    );
+}

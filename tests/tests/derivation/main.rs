@@ -1,0 +1,28 @@
+//! What the engine derives, prints and refuses: against the oracle, against snapshots, against files of the repository.
+//! One binary, since linking is most of what a test costs.
+
+// Models are stated in Greek letters, as in the papers.
+#![allow(mixed_script_confusables)]
+
+#[path = "../common/allocations.rs"]
+mod allocations;
+mod architecture;
+mod bracket;
+mod compile_fail;
+mod continuous_limit;
+mod documents;
+mod equations_of_a_step;
+mod expansion;
+mod generated_fresh;
+mod invariants;
+mod latex;
+mod mutation;
+mod oracle_bridge;
+mod oracle_groups;
+mod oracle_interpreted;
+mod quoted_figures;
+mod reduction;
+mod reduction_of_motions;
+mod second_proof;
+mod snapshots;
+mod wrong_sides;

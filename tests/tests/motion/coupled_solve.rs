@@ -1,0 +1,139 @@
+//! How well and in how many iterations the emitted step of coupled bodies is solved: the residual of
+//! the derived equations at three consecutive states, in double-double arithmetic, in which the
+//! states are exact. Takes the cases of the gallery; states moved by a few roundings are noticed.
+
+use clebsch::nalgebra::{Matrix3, Vector3};
+use clebsch::{BodyMomentum, DoubleDouble, Real, Rotation};
+use clebsch_models::coupled_bodies::{
+    CoupledBodies, CoupledBodiesConfiguration, CoupledBodiesInitial, CoupledBodiesParameters,
+    CoupledBodiesState,
+};
+use clebsch_tests::physics::measure::worse;
+
+type Wide = DoubleDouble;
+
+fn wide<const R: usize, const C: usize>(
+    a: &clebsch::nalgebra::SMatrix<f64, R, C>,
+) -> clebsch::nalgebra::SMatrix<Wide, R, C> {
+    a.map(Wide::from_f64)
+}
+
+/// The configuration of a state, its quaternions made unit in double-double and one of them turned by an angle.
+fn configuration(state: &CoupledBodiesState, angle: f64) -> CoupledBodiesConfiguration<Wide> {
+    let lifted = |r: Rotation, angle: f64| {
+        let q = Rotation::<Wide>::from_quaternion(r.quaternion().map(Wide::from_f64));
+        let turn = Rotation::exp(&wide(&Vector3::new(angle, 0.0, 0.0)));
+        q.expect("unit to rounding") * turn
+    };
+    CoupledBodiesConfiguration {
+        Λ1: lifted(state.Λ1(), angle),
+        Λ2: lifted(state.Λ2(), 0.0),
+    }
+}
+
+struct Measured {
+    /// Most tangents of a step, and most corrections after the first six steps.
+    tangents: usize,
+    corrections: usize,
+    /// Largest residual over the size of the terms, at the states as they are.
+    residual: f64,
+    /// The same with one attitude turned by 1e-14.
+    turned: f64,
+}
+
+fn measure(parameters: CoupledBodiesParameters, initial: CoupledBodiesInitial) -> Measured {
+    let h = 0.1;
+    let model = CoupledBodies::new(parameters).expect("valid");
+    let exact = CoupledBodies::new(CoupledBodiesParameters {
+        J1: wide(&parameters.J1),
+        J2: wide(&parameters.J2),
+        d1: wide(&parameters.d1),
+        d2: wide(&parameters.d2),
+        eps: Wide::from_f64(parameters.eps),
+    })
+    .expect("valid");
+    let size = (parameters.J1.norm() + parameters.J2.norm()) / h;
+    let (mut state, mut work) = model.start(initial, h).expect("solvable");
+    let mut measured = Measured {
+        tangents: 0,
+        corrections: 0,
+        residual: 0.0,
+        turned: 0.0,
+    };
+    let mut past = [state; 3];
+    for step in 0..10_000 {
+        model.step(&mut state, &mut work).expect("solvable");
+        past = [past[1], past[2], state];
+        measured.tangents = measured.tangents.max(work.solved().tangents);
+        if step > 6 {
+            measured.corrections = measured.corrections.max(work.solved().corrections);
+        }
+        if step < 2 || step % 100 > 10 {
+            continue;
+        }
+        let residual = |angle: f64| {
+            let [before, here, after] = [0, 1, 2].map(|i| configuration(&past[i], 0.0));
+            let after = if angle == 0.0 {
+                after
+            } else {
+                configuration(&past[2], angle)
+            };
+            let residual = exact.balance(Wide::from_f64(h), &before, &here, &after);
+            residual.iter().map(|x| x.value().abs()).fold(0.0, worse) / size
+        };
+        measured.residual = worse(measured.residual, residual(0.0));
+        measured.turned = worse(measured.turned, residual(1e-14));
+    }
+    measured
+}
+
+fn cases() -> Vec<(String, CoupledBodiesParameters, CoupledBodiesInitial)> {
+    let entry = clebsch_models::find("coupled-bodies").expect("a model of the gallery");
+    let cases = entry.cases.iter();
+    cases
+        .map(|case| {
+            let matrix = |i: usize| Matrix3::from_row_slice(&case.parameters[i]);
+            let vector = |i: usize| Vector3::from_column_slice(&case.parameters[i]);
+            let turn = |i: usize| {
+                Rotation::from_matrix(&Matrix3::from_row_slice(&case.initial[i]))
+                    .expect("a rotation")
+            };
+            let momentum = |i: usize| BodyMomentum(Vector3::from_column_slice(&case.initial[i]));
+            let parameters = CoupledBodiesParameters {
+                J1: matrix(0),
+                J2: matrix(1),
+                d1: vector(2),
+                d2: vector(3),
+                eps: case.parameters[4][0],
+            };
+            let initial = CoupledBodiesInitial {
+                Λ1: turn(0),
+                body_momentum_Λ1: momentum(1),
+                Λ2: turn(2),
+                body_momentum_Λ2: momentum(3),
+            };
+            (case.name.clone(), parameters, initial)
+        })
+        .collect()
+}
+
+/// Attitudes and momenta are rounded to 1e-16; the equations magnify that by no more than the
+/// inertia over the step, the unit of the residual.
+const ROUNDING: f64 = 1e-15;
+
+#[test]
+fn few_iterations_and_a_residual_of_rounding() {
+    for (name, parameters, initial) in cases() {
+        let Measured {
+            tangents,
+            corrections,
+            residual,
+            turned,
+        } = measure(parameters, initial);
+        println!("{name}: {tangents} tangents, {corrections} corrections, residual {residual:.1e}");
+        assert!(tangents <= 4, "{name}: {tangents} tangents");
+        assert!(corrections <= 2, "{name}: {corrections} corrections");
+        assert!(residual <= ROUNDING, "{name}: {residual:.1e}");
+        assert!(turned > 2.0 * ROUNDING, "{name}: {turned:.1e} would pass");
+    }
+}

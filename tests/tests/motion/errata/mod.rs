@@ -1,0 +1,92 @@
+//! What the thesis prints wrongly, each with the right form beside it: the right one holds, the
+//! printed one does not. Takes random points that solve nothing; the judge is the variation of the
+//! unreduced action, a directional derivative, or what a rotation or a bracket must keep. The list is
+//! `docs/errata.md`; its Lagrangian and momenta are -h times ours.
+
+mod bodies;
+mod ellipsoids;
+mod quaternions;
+mod steps;
+mod waters;
+
+use clebsch_tests::oracle::action::{DiscreteAction, rotations, stationarity};
+use clebsch_tests::oracle::points::Source;
+use clebsch_tests::oracle::square::Square;
+use clebsch_tests::physics::measure::worse;
+use std::array::from_fn;
+
+type Matrix = Square<f64, 3>;
+type Vector = [f64; 3];
+
+/// Numbers of order one, a hundred roundings.
+const ROUNDING: f64 = 1e-12;
+/// A printed form that is wrong is wrong by a number of order one.
+const VISIBLE: f64 = 1e-3;
+/// Draws; at every one the right form must hold, at every one the printed one must fail.
+const DRAWS: u64 = 50;
+
+fn inner(a: &Matrix, b: &Matrix) -> f64 {
+    (a.transpose() * *b).trace()
+}
+
+/// `(A - Aᵀ)/2`, as the thesis uses it.
+fn skew(a: &Matrix) -> Matrix {
+    (*a - a.transpose()).scaled(0.5)
+}
+
+fn sym(a: &Matrix) -> Matrix {
+    (*a + a.transpose()).scaled(0.5)
+}
+
+fn bracket(a: &Matrix, b: &Matrix) -> Matrix {
+    *a * *b - *b * *a
+}
+
+/// `Ad*_g M = gᵀ M g⁻ᵀ` (2.88).
+fn ad_star(g: &Matrix, m: &Matrix) -> Matrix {
+    g.transpose() * *m * g.transpose().inverse()
+}
+
+fn size(a: &Matrix) -> f64 {
+    a.0.iter().flatten().fold(0.0, |m, x| worse(m, x.abs()))
+}
+
+fn length(v: &Vector) -> f64 {
+    v.iter().fold(0.0, |m, x| worse(m, x.abs()))
+}
+
+fn minus(a: &Vector, b: &Vector) -> Vector {
+    from_fn(|i| a[i] - b[i])
+}
+
+/// Judges a printed and a right form by how far each is off, at every draw.
+fn judge(what: &str, off: impl FnMut(&mut Source) -> (f64, f64)) {
+    judge_within(ROUNDING, what, off);
+}
+
+/// The same where the right form is found by differences.
+fn judge_within(tolerance: f64, what: &str, mut off: impl FnMut(&mut Source) -> (f64, f64)) {
+    for seed in 1..=DRAWS {
+        let (printed, right) = off(&mut Source::seeded(seed));
+        assert!(
+            right < tolerance,
+            "{what}: the right form is off by {right:e}"
+        );
+        assert!(
+            printed > VISIBLE,
+            "{what}: the printed form is off by {printed:e} only"
+        );
+    }
+}
+
+fn id() -> Matrix {
+    Square::identity()
+}
+
+/// The oracle's residual at the middle one of three nodes.
+fn residual<const G: usize>(
+    action: &impl DiscreteAction<3, G>,
+    nodes: &[[Matrix; G]; 3],
+) -> Vec<f64> {
+    stationarity(action, nodes, &rotations()).derivative
+}

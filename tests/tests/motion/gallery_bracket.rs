@@ -1,0 +1,563 @@
+//! The derived Lie-Poisson bracket against the emitted steps of the whole gallery: every step is a Poisson map,
+//! `D B D^T = B` at the image, with exact derivatives. Takes the data of the cases and random points of the reduced
+//! space; a list below says how each model is started, and must name every model; of a named size, sizes up to five
+//! are taken. A step whose length
+//! depends on the state, brackets of a wrong sign and the bracket at the wrong end of the step fail.
+
+use clebsch::nalgebra::{DMatrix, Matrix3, SMatrix, SVector, Vector3};
+use clebsch::{
+    BodyImpulse, BodyMomentum, BodyMomentumMatrix, Dual, Group, Orthogonal, RigidMotion, Rotation,
+    SpatialMomentum, UnitQuaternion,
+};
+use clebsch_core::derive::bracket::{Space, coordinates, skew_entries};
+use clebsch_core::expr::shape::Structure;
+use clebsch_core::interpret::{Assignment, Matrix};
+use clebsch_core::{Derivation, derive_source};
+use clebsch_models::Case;
+use clebsch_tests::physics::draws::Draws;
+use clebsch_tests::physics::measure::worse;
+
+/// Rounding of a product of three matrices of up to twelve rows with entries of order one to ten,
+/// over the largest entry, with a wide margin.
+const TOLERANCE: f64 = 1e-10;
+
+/// Random points of each case.
+const POINTS: u64 = 10;
+
+/// How much longer the step is for each unit of the first momentum component, where that is asked for.
+const WARP: f64 = 0.1;
+
+/// A quantity at a node: its value, and its change along each direction that was seeded.
+struct Quantity {
+    rows: usize,
+    cols: usize,
+    value: Vec<f64>,
+    change: Vec<Vec<f64>>,
+}
+
+fn quantity<const N: usize, const R: usize, const C: usize>(
+    m: &SMatrix<Dual<N>, R, C>,
+) -> Quantity {
+    let entries: Vec<Dual<N>> = (0..R * C).map(|k| m[(k / C, k % C)]).collect();
+    Quantity {
+        rows: R,
+        cols: C,
+        value: entries.iter().map(|x| x.real).collect(),
+        change: (0..N)
+            .map(|seed| entries.iter().map(|x| x.dual[seed]).collect())
+            .collect(),
+    }
+}
+
+/// Momenta, then advected quantities in order of declaration.
+type Node = Vec<Quantity>;
+
+/// A node and the next one.
+type Step = (Node, Node);
+
+/// One step of a case from a random point, with a step length that depends on the state by this share.
+type Start = fn(&Case, &mut Draws, f64) -> Step;
+
+fn number<const N: usize>(values: &[f64]) -> Dual<N> {
+    Dual::constant(values[0])
+}
+
+fn column<const N: usize, const R: usize>(values: &[f64]) -> SVector<Dual<N>, R> {
+    SVector::from_fn(|i, _| Dual::constant(values[i]))
+}
+
+fn matrix<const N: usize>(values: &[f64]) -> Matrix3<Dual<N>> {
+    Matrix3::from_fn(|r, c| Dual::constant(values[3 * r + c]))
+}
+
+/// Independent changes of all components, from seed `first` on.
+fn seeded<const N: usize, const R: usize>(value: [f64; R], first: usize) -> SVector<Dual<N>, R> {
+    SVector::from_fn(|i, _| Dual::variable(value[i], first + i))
+}
+
+fn attitude<const N: usize>(draws: &mut Draws) -> Rotation<Dual<N>> {
+    Rotation::from_quaternion(draws.attitude().0.map(Dual::constant)).expect("a unit quaternion")
+}
+
+fn quaternion<const N: usize>(draws: &mut Draws) -> UnitQuaternion<Dual<N>> {
+    let q = draws.attitude().0.map(Dual::constant);
+    UnitQuaternion::from_components(q).expect("a unit quaternion")
+}
+
+/// A tensor of the case as this attitude shows it, with independent changes from seed `first` on.
+fn tensor<const N: usize>(values: &[f64], r: &Rotation<Dual<N>>, first: usize) -> Matrix3<Dual<N>> {
+    let r = r.matrix().map(|x| x.real);
+    let turned = r * Matrix3::from_row_slice(values) * r.transpose();
+    let mut out = Matrix3::repeat(Dual::constant(0.0));
+    let upper = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+    for (k, (i, j)) in upper.into_iter().enumerate() {
+        out[(i, j)] = Dual::variable(turned[(i, j)], first + k);
+        out[(j, i)] = out[(i, j)];
+    }
+    out
+}
+
+/// A vector of length 0.9 with independent changes.
+fn vector<const N: usize>(draws: &mut Draws, first: usize) -> Vector3<Dual<N>> {
+    seeded(draws.direction().map(|x| 0.9 * x), first)
+}
+
+/// The step length, longer by the share `warp` of the first momentum component.
+fn length<const N: usize>(case: &Case, warp: f64, momentum: Dual<N>) -> Dual<N> {
+    Dual::constant(case.h) * (Dual::constant(1.0) + Dual::constant(warp) * momentum)
+}
+
+/// Starts a model, steps once, and gives both nodes: momenta by their accessors, then advected quantities by theirs.
+macro_rules! stepped {
+    ($model:ident, $parameters:ident { $($p:ident: $value:expr),* $(,)? },
+     $initial:ident { $($i:ident: $start:expr),* $(,)? }, $h:expr,
+     [$($momentum:ident),*], [$($advected:ident),*]) => {{
+        let model = $model::new($parameters { $($p: $value),* }).expect("parameters of a case");
+        let initial = $initial { $($i: $start),* };
+        let (mut state, mut workspace) = model.start(initial, $h).expect("solvable");
+        let before = vec![$(quantity(&state.$momentum().0),)* $(quantity(&model.$advected(&state))),*];
+        model.step(&mut state, &mut workspace).expect("solvable");
+        let after = vec![$(quantity(&state.$momentum().0),)* $(quantity(&model.$advected(&state))),*];
+        (before, after)
+    }};
+}
+
+fn free_body(case: &Case, draws: &mut Draws, warp: f64) -> Step {
+    use clebsch_models::free_body::*;
+    let mu = vector::<3>(draws, 0);
+    stepped!(
+        FreeBody,
+        FreeBodyParameters {
+            J: matrix(&case.parameters[0])
+        },
+        FreeBodyInitial {
+            Λ: attitude(draws),
+            body_momentum: BodyMomentum(mu)
+        },
+        length(case, warp, mu[0]),
+        [body_momentum],
+        []
+    )
+}
+
+fn free_body_spatial(case: &Case, draws: &mut Draws, warp: f64) -> Step {
+    use clebsch_models::free_body_spatial::*;
+    let (m, r) = (vector::<9>(draws, 0), attitude(draws));
+    stepped!(
+        FreeBodySpatial,
+        FreeBodySpatialParameters {
+            scalar: std::marker::PhantomData::<Dual<9>>
+        },
+        FreeBodySpatialInitial {
+            Λ: r,
+            spatial_momentum: SpatialMomentum(m),
+            J: tensor(&case.initial[2], &r, 3),
+        },
+        length(case, warp, m[0]),
+        [spatial_momentum],
+        [J]
+    )
+}
+
+fn heavy_top(case: &Case, draws: &mut Draws, warp: f64) -> Step {
+    use clebsch_models::heavy_top::*;
+    let (mu, gamma, r) = (vector::<6>(draws, 0), vector(draws, 3), attitude(draws));
+    // The vertical is chosen so that the body sees independent changes of it.
+    stepped!(
+        HeavyTop,
+        HeavyTopParameters {
+            J: matrix(&case.parameters[0]),
+            gU: column(&case.parameters[1]),
+            z: r.rotate(&gamma),
+        },
+        HeavyTopInitial {
+            Λ: r,
+            body_momentum: BodyMomentum(mu)
+        },
+        length(case, warp, mu[0]),
+        [body_momentum],
+        [Γ]
+    )
+}
+
+fn heavy_top_spatial(case: &Case, draws: &mut Draws, warp: f64) -> Step {
+    use clebsch_models::heavy_top_spatial::*;
+    let (m, r) = (vector::<12>(draws, 0), attitude(draws));
+    stepped!(
+        HeavyTopSpatial,
+        HeavyTopSpatialParameters {
+            w: number(&case.parameters[0]),
+            z: column(&case.parameters[1]),
+        },
+        HeavyTopSpatialInitial {
+            Λ: r,
+            spatial_momentum: SpatialMomentum(m),
+            J: tensor(&case.initial[2], &r, 3),
+            χ: vector(draws, 9),
+        },
+        length(case, warp, m[0]),
+        [spatial_momentum],
+        [J, χ]
+    )
+}
+
+fn body_in_quadratic_field(case: &Case, draws: &mut Draws, warp: f64) -> Step {
+    use clebsch_models::body_in_quadratic_field::*;
+    let mu = vector::<6>(draws, 0);
+    stepped!(
+        BodyInQuadraticField,
+        BodyInQuadraticFieldParameters {
+            J: matrix(&case.parameters[0]),
+            K: matrix(&case.parameters[1]),
+        },
+        BodyInQuadraticFieldInitial {
+            Λ: attitude(draws),
+            body_momentum: BodyMomentum(mu),
+            Γ: vector(draws, 3),
+        },
+        length(case, warp, mu[0]),
+        [body_momentum],
+        [Γ]
+    )
+}
+
+fn body_in_two_fields(case: &Case, draws: &mut Draws, warp: f64) -> Step {
+    use clebsch_models::body_in_two_fields::*;
+    let (mu, r) = (vector::<9>(draws, 0), attitude(draws));
+    let (vertical, field) = (vector(draws, 3), vector(draws, 6));
+    stepped!(
+        BodyInTwoFields,
+        BodyInTwoFieldsParameters {
+            J: matrix(&case.parameters[0]),
+            gU: column(&case.parameters[1]),
+            p: column(&case.parameters[2]),
+            z: r.rotate(&vertical),
+            b: r.rotate(&field),
+        },
+        BodyInTwoFieldsInitial {
+            Λ: r,
+            body_momentum: BodyMomentum(mu)
+        },
+        length(case, warp, mu[0]),
+        [body_momentum],
+        [Γ, B]
+    )
+}
+
+fn coupled_bodies(case: &Case, draws: &mut Draws, warp: f64) -> Step {
+    use clebsch_models::coupled_bodies::*;
+    let (first, second) = (vector::<9>(draws, 0), vector(draws, 3));
+    let turn = Rotation::exp(&seeded([0.0; 3], 6));
+    stepped!(
+        CoupledBodies,
+        CoupledBodiesParameters {
+            J1: matrix(&case.parameters[0]),
+            J2: matrix(&case.parameters[1]),
+            d1: column(&case.parameters[2]),
+            d2: column(&case.parameters[3]),
+            eps: number(&case.parameters[4]),
+        },
+        CoupledBodiesInitial {
+            Λ1: attitude(draws),
+            body_momentum_Λ1: BodyMomentum(first),
+            Λ2: attitude::<9>(draws) * turn,
+            body_momentum_Λ2: BodyMomentum(second),
+        },
+        length(case, warp, first[0]),
+        [body_momentum_Λ1, body_momentum_Λ2],
+        [R]
+    )
+}
+
+fn cayley_klein(case: &Case, draws: &mut Draws, warp: f64) -> Step {
+    use clebsch_models::cayley_klein::*;
+    let mu = vector::<3>(draws, 0);
+    stepped!(
+        CayleyKlein,
+        CayleyKleinParameters {
+            I: matrix(&case.parameters[0]),
+            c: number(&case.parameters[1]),
+        },
+        CayleyKleinInitial {
+            q: quaternion(draws),
+            body_momentum: BodyMomentum(mu)
+        },
+        length(case, warp, mu[0]),
+        [body_momentum],
+        []
+    )
+}
+
+fn cayley_klein_spatial(case: &Case, draws: &mut Draws, warp: f64) -> Step {
+    use clebsch_models::cayley_klein_spatial::*;
+    let (m, turn) = (vector::<9>(draws, 0), quaternion(draws));
+    stepped!(
+        CayleyKleinSpatial,
+        CayleyKleinSpatialParameters {
+            c: number(&case.parameters[0])
+        },
+        CayleyKleinSpatialInitial {
+            q: turn,
+            spatial_momentum: SpatialMomentum(m),
+            I: tensor(&case.initial[2], &turn.rotation(), 3),
+        },
+        length(case, warp, m[0]),
+        [spatial_momentum],
+        [I]
+    )
+}
+
+fn kirchhoff_body(case: &Case, draws: &mut Draws, warp: f64) -> Step {
+    use clebsch_models::kirchhoff_body::*;
+    let ([a, b, c], [d, e, f]) = (draws.direction(), draws.direction());
+    let mu = seeded::<10, 6>([a, b, c, d, e, f].map(|x| 0.9 * x), 0);
+    let g = RigidMotion {
+        rotation: attitude(draws),
+        translation: column(&draws.direction()),
+    };
+    let [x, y, z] = draws.direction();
+    // The plane is chosen so that the body sees independent changes of it: Z = G^-T P.
+    let seen = seeded::<10, 4>([x, y, z, 0.3], 6);
+    stepped!(
+        KirchhoffBody,
+        KirchhoffBodyParameters {
+            J: matrix(&case.parameters[0]),
+            M: matrix(&case.parameters[1]),
+            D: matrix(&case.parameters[2]),
+            b: column(&case.parameters[3]),
+            Z: g.inverse().matrix().transpose() * seen,
+        },
+        KirchhoffBodyInitial {
+            G: g,
+            body_momentum: BodyImpulse(mu)
+        },
+        length(case, warp, mu[0]),
+        [body_momentum],
+        [P]
+    )
+}
+
+/// `SEEDS` is the dimension of SO(N).
+fn body_of_size<const N: usize, const SEEDS: usize>(
+    case: &Case,
+    draws: &mut Draws,
+    warp: f64,
+) -> Step {
+    use clebsch_models::body_n::*;
+    let planes = skew_entries(N);
+    assert_eq!(planes.len(), SEEDS);
+    // Momenta in any direction; the largest of the cases is solvable in its own direction up to 0.95
+    // of the bound, in another one less.
+    let largest = case.initial[1]
+        .iter()
+        .fold(0.0_f64, |m, x| worse(m, x.abs()));
+    let size = 0.4 * largest;
+    let mut mu = SMatrix::<Dual<SEEDS>, N, N>::repeat(Dual::constant(0.0));
+    for (k, (r, c)) in planes.iter().enumerate() {
+        mu[(*r, *c)] = Dual::variable(draws.uniform(-size, size), k);
+        mu[(*c, *r)] = -mu[(*r, *c)];
+    }
+    let turn: Vec<Dual<SEEDS>> = (0..SEEDS)
+        .map(|_| Dual::constant(draws.uniform(-1.0, 1.0)))
+        .collect();
+    let model = BodyN::<N, Dual<SEEDS>>::new(BodyNParameters {
+        C: SMatrix::from_fn(|r, c| Dual::constant(case.parameters[0][N * r + c])),
+    })
+    .expect("parameters of a case");
+    let initial = BodyNInitial {
+        Λ: Orthogonal::identity().retract(&turn),
+        body_momentum: BodyMomentumMatrix(mu),
+    };
+    let h = length(case, warp / size, mu[planes[0]]);
+    let (mut state, mut workspace) = model.start(initial, h).expect("solvable");
+    // The bracket of three dimensions has a vector for its momentum.
+    let seen = |m: &SMatrix<Dual<SEEDS>, N, N>| match N {
+        3 => quantity(&SVector::<Dual<SEEDS>, 3>::from_fn(|i, _| m[planes[i]])),
+        _ => quantity(m),
+    };
+    let before = vec![seen(&state.body_momentum().0)];
+    model.step(&mut state, &mut workspace).expect("solvable");
+    (before, vec![seen(&state.body_momentum().0)])
+}
+
+fn body_n(case: &Case, draws: &mut Draws, warp: f64) -> Step {
+    match case.parameters[0].len() {
+        9 => body_of_size::<3, 3>(case, draws, warp),
+        16 => body_of_size::<4, 6>(case, draws, warp),
+        25 => body_of_size::<5, 10>(case, draws, warp),
+        entries => panic!("no start for {entries} entries"),
+    }
+}
+
+/// The statement of a model with numbers for its named sizes, as this case has them.
+fn of_size(source: &str, case: &Case) -> String {
+    let n = case.parameters[0].len().isqrt();
+    let sized = source.replace("dim n in 3..=8;", "");
+    assert_ne!(sized, source, "the statement of its size");
+    sized.replace("<n>", &format!("<{n}>"))
+}
+
+/// How each model is started.
+const MODELS: [(&str, Start); 11] = [
+    ("body-in-quadratic-field", body_in_quadratic_field),
+    ("body-in-two-fields", body_in_two_fields),
+    ("body-n", body_n),
+    ("cayley-klein", cayley_klein),
+    ("cayley-klein-spatial", cayley_klein_spatial),
+    ("coupled-bodies", coupled_bodies),
+    ("free-body", free_body),
+    ("free-body-spatial", free_body_spatial),
+    ("heavy-top", heavy_top),
+    ("heavy-top-spatial", heavy_top_spatial),
+    ("kirchhoff-body", kirchhoff_body),
+];
+
+/// Names and structures of the coordinates of the reduced space, in the order of the bracket.
+fn letters(d: &Derivation) -> Vec<(String, Structure)> {
+    let momenta = d.letters.node_momentum.iter().copied();
+    let advected = d.spec.advected.iter().map(|a| a.quantity);
+    let named = momenta.chain(advected).map(|id| {
+        let symbol = d.letters.symbols.get(id);
+        (symbol.name.clone(), symbol.structure)
+    });
+    named.collect()
+}
+
+/// The changes of a node in the coordinates of the bracket: a row for each, a column for each seed.
+fn changes(letters: &[(String, Structure)], node: &Node) -> DMatrix<f64> {
+    let mut rows: Vec<Vec<f64>> = Vec::new();
+    for ((_, structure), q) in letters.iter().zip(node) {
+        let seen = |change: &Vec<f64>| -> DMatrix<f64> {
+            let change = DMatrix::from_row_slice(q.rows, q.cols, change);
+            match structure {
+                // Elements of groups by X^-1 dX.
+                Structure::Orthogonal => {
+                    DMatrix::from_row_slice(q.rows, q.cols, &q.value).transpose() * change
+                }
+                _ => change,
+            }
+        };
+        let seen: Vec<_> = q.change.iter().map(seen).collect();
+        for (i, j) in coordinates(*structure, q.rows, q.cols) {
+            rows.push(seen.iter().map(|m| m[(i, j)]).collect());
+        }
+    }
+    DMatrix::from_fn(rows.len(), rows[0].len(), |i, j| rows[i][j])
+}
+
+fn bracket(d: &Derivation, letters: &[(String, Structure)], node: &Node) -> DMatrix<f64> {
+    let mut at = Assignment::new();
+    for ((name, _), q) in letters.iter().zip(node) {
+        at.set(name, 0, q.rows, q.cols, &q.value);
+    }
+    let b: Matrix = d
+        .bracket_matrix(Space::Reduced, &at)
+        .expect("all values are given");
+    DMatrix::from_row_slice(b.rows, b.cols, &b.data)
+}
+
+/// What is done to the brackets before they are compared.
+#[derive(Clone, Copy, PartialEq)]
+enum Spoilt {
+    Not,
+    /// Brackets of the first three coordinates among themselves with the other sign.
+    Sign,
+    /// The bracket at the start of the step instead of the one at its end.
+    End,
+}
+
+/// `D B D^T - B'`, the largest entry over that of `B'`.
+fn defect(d: &Derivation, (before, after): &Step, spoilt: Spoilt) -> f64 {
+    let letters = letters(d);
+    assert_eq!(
+        letters.len(),
+        before.len(),
+        "{}: every quantity of the reduced space",
+        d.spec.name
+    );
+    let own = changes(&letters, before)
+        .try_inverse()
+        .expect("seeds are coordinates");
+    let jacobian = changes(&letters, after) * own;
+    let at = |node: &Node| {
+        let mut b = bracket(d, &letters, node);
+        if spoilt == Spoilt::Sign {
+            let mut block = b.view_mut((0, 0), (3, 3));
+            block.neg_mut();
+        }
+        b
+    };
+    let image = at(if spoilt == Spoilt::End { before } else { after });
+    let off = &jacobian * at(before) * jacobian.transpose() - &image;
+    // NaN must not hide behind max.
+    match off.iter().all(|x| x.is_finite()) {
+        true => off.amax() / image.amax(),
+        false => f64::INFINITY,
+    }
+}
+
+/// Every case with its derivation, its start, and whether its reduced space has advected quantities.
+fn for_every_case(mut look: impl FnMut(&str, &Case, &Derivation, Start)) {
+    for entry in clebsch_models::gallery() {
+        let name = entry.card.kebab;
+        let derived = derive_source(entry.card.source).expect("derives");
+        let named = !derived.spec.dimensions.is_empty();
+        let (_, start) = MODELS
+            .iter()
+            .find(|(known, _)| *known == name)
+            .unwrap_or_else(|| panic!("say above how {name} is started"));
+        for case in &entry.cases {
+            if !named {
+                look(name, case, &derived, *start);
+            } else if case.parameters[0].len() <= 25 {
+                // A bracket of any dimension has no matrix.
+                let d = derive_source(&of_size(entry.card.source, case)).expect("derives");
+                look(name, case, &d, *start);
+            }
+        }
+    }
+}
+
+#[test]
+fn steps_are_poisson_maps() {
+    for_every_case(|name, case, d, start| {
+        let mut draws = Draws::new(61);
+        let worst = (0..POINTS)
+            .map(|_| defect(d, &start(case, &mut draws, 0.0), Spoilt::Not))
+            .fold(0.0, worse);
+        println!("{name} {}: {worst:.1e}", case.name);
+        assert!(worst < TOLERANCE, "{name} {}: {worst:e}", case.name);
+    });
+}
+
+#[test]
+fn wrong_brackets_are_noticed() {
+    for_every_case(|name, case, d, start| {
+        let mut draws = Draws::new(62);
+        let step = start(case, &mut draws, 0.0);
+        let late = defect(d, &step, Spoilt::End);
+        assert!(
+            late > 1e4 * TOLERANCE,
+            "{name} {}, wrong end: {late:e}",
+            case.name
+        );
+        // The bracket of one momentum alone is linear: its sign as a whole drops out.
+        if step.0.len() > 1 {
+            let sign = defect(d, &step, Spoilt::Sign);
+            assert!(
+                sign > 1e4 * TOLERANCE,
+                "{name} {}, wrong sign: {sign:e}",
+                case.name
+            );
+        }
+    });
+}
+
+#[test]
+fn a_step_that_depends_on_the_state_is_no_poisson_map() {
+    for_every_case(|name, case, d, start| {
+        let mut draws = Draws::new(63);
+        let found = defect(d, &start(case, &mut draws, WARP), Spoilt::Not);
+        assert!(found > 1e4 * TOLERANCE, "{name} {}: {found:e}", case.name);
+    });
+}

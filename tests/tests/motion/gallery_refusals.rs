@@ -1,0 +1,94 @@
+//! Steps that are too long, of every model, case and order of the gallery: what the message offers
+//! is read off and typed in again, and is taken; a step a little longer is refused.
+
+use clebsch::card::{Card, OpenError, Settings, Trajectory};
+use clebsch::{StartError, StepCause};
+use clebsch_models::{Case, gallery};
+
+const ORDERS: [u32; 6] = [1, 2, 4, 6, 8, 10];
+
+/// Begins a trajectory and makes one step: what refuses it says so.
+fn first_step(card: &Card, case: &Case, h: f64, order: Option<u32>) -> Result<(), String> {
+    let settings = Settings {
+        h,
+        order,
+        solver: None,
+        compensated: false,
+    };
+    let mut trajectory = match (card.open)(&case.parameters, &case.initial, settings) {
+        Ok(trajectory) => trajectory,
+        Err(OpenError::Start(StartError::Refused(cause))) => return Err(told(&cause)),
+        Err(other) => panic!("{}: {other}", card.kebab),
+    };
+    step(trajectory.as_mut())
+}
+
+fn step(trajectory: &mut dyn Trajectory) -> Result<(), String> {
+    trajectory.step().map_err(|e| told(&e.cause))
+}
+
+fn told(cause: &StepCause) -> String {
+    cause.to_string()
+}
+
+/// The step size that a refusal offers, as a reader types it.
+fn offered(said: &str) -> f64 {
+    let (_, rest) = said
+        .split_once("to at most ")
+        .unwrap_or_else(|| panic!("nothing is offered: {said}"));
+    rest.parse().unwrap_or_else(|_| panic!("no number: {said}"))
+}
+
+#[test]
+fn the_step_that_a_message_offers_is_taken() {
+    let mut refused = 0;
+    for entry in gallery() {
+        for case in &entry.cases {
+            let card = entry.card_of(case);
+            for order in ORDERS.into_iter().filter(|o| card.orders.contains(o)) {
+                for h in [3.0, 30.0, 1e4, 1e100] {
+                    let at = format!("{} {} {order} {h:e}", card.kebab, case.name);
+                    let Err(said) = first_step(&card, case, h, Some(order)) else {
+                        continue;
+                    };
+                    let largest = offered(&said);
+                    assert!(0.0 < largest && largest < h, "{at}: {said}");
+                    let taken = first_step(&card, case, largest, Some(order));
+                    assert_eq!(taken, Ok(()), "{at}: {said}");
+                    // The step offered is not merely a short one.
+                    let longer = first_step(&card, case, 1.01 * largest, Some(order));
+                    assert!(longer.is_err(), "{at}: {said}");
+                    refused += 1;
+                }
+            }
+        }
+    }
+    println!("{refused} refusals");
+    assert!(refused > 400);
+}
+
+#[test]
+fn steps_that_have_no_inverse_or_are_none_are_named() {
+    for entry in gallery() {
+        let case = &entry.cases[0];
+        let card = entry.card_of(case);
+        for h in [0.0, -0.1, f64::NAN, f64::INFINITY, 1e-320] {
+            let settings = Settings {
+                h,
+                order: None,
+                solver: None,
+                compensated: false,
+            };
+            let said = match (card.open)(&case.parameters, &case.initial, settings) {
+                Err(OpenError::Parameter(e) | OpenError::Start(StartError::Initial(e))) => {
+                    e.to_string()
+                }
+                other => panic!("{} {h}: {:?}", card.kebab, other.map(|_| ())),
+            };
+            assert!(
+                said.contains("`h`") && said.contains("positive, finite"),
+                "{said}"
+            );
+        }
+    }
+}

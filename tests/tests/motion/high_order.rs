@@ -1,0 +1,341 @@
+//! Orders above two of emitted steppers, in double-double by halving the step: compositions of a
+//! heavy top against its Taylor series, of coupled bodies and of a top in no gallery (Newton)
+//! against much finer steps; modified moments for a body in no gallery. One-sided models are refused.
+
+use clebsch::card::{OpenError, Settings};
+use clebsch::integrate::{Composition, CompositionOrder, Reversible};
+use clebsch::nalgebra::{Matrix3, SMatrix, Vector3};
+use clebsch::solvers::moser_veselov::Order;
+use clebsch::{BodyMomentum, DoubleDouble, Real, Rotation};
+use clebsch_models::coupled_bodies::{
+    CoupledBodies, CoupledBodiesInitial, CoupledBodiesParameters, CoupledBodiesState,
+};
+use clebsch_models::free_body::FreeBody;
+use clebsch_models::heavy_top::{HeavyTop, HeavyTopInitial, HeavyTopParameters, HeavyTopState};
+use clebsch_tests::physics::measure::worse;
+
+type Quad = DoubleDouble;
+
+clebsch::model! {
+    /// A top whose kinetic energy is not linear in the velocity.
+    model StiffTop {
+        param J: Sym<3>;
+        param K: Sym<3>;
+        param c: Real;
+        group Λ: SO<3> velocity Ω;
+        advected Γ: Vec<3>;
+        constraint next(Λ) = Λ*Ω;
+        constraint next(Γ) = Ω^T*Γ;
+        lagrangian = -tr(J*Ω)/h - h*dot(Γ, K*Γ)/2 + (c/h)*tr(Ω - Id)^2;
+    }
+}
+
+clebsch::model! {
+    /// A free body under another name and sign.
+    model Tumbler {
+        scale -h;
+        param P: Sym<3>;
+        group R: SO<3> velocity W;
+        constraint next(R) = R*W;
+        lagrangian = tr(W*P);
+    }
+}
+
+clebsch::model! {
+    /// The heavy top with its weight at the end of each step.
+    model LateTop {
+        param J: Sym<3>;
+        param gU: Vec<3>;
+        param z: Vec<3>;
+        group Λ: SO<3> velocity Ω;
+        advected Γ: Vec<3> = Λ^T*z;
+        constraint next(Λ) = Λ*Ω;
+        constraint next(Γ) = Ω^T*Γ;
+        node incoming;
+        lagrangian = -tr(J*Ω)/h - h*dot(gU, Γ);
+    }
+}
+
+fn quad<const R: usize, const C: usize>(a: SMatrix<f64, R, C>) -> SMatrix<Quad, R, C> {
+    a.map(Quad::from_f64)
+}
+
+fn poinsot() -> Matrix3<f64> {
+    Matrix3::new(0.9, 0.1, -0.05, 0.1, 1.2, 0.15, -0.05, 0.15, 0.7)
+}
+
+fn attitude() -> Rotation<Quad> {
+    Rotation::exp(&quad(Vector3::new(0.3, -0.2, 0.5)))
+}
+
+/// The numbers of a state, the sign of the quaternion fixed.
+fn numbers(list: &[(Rotation<Quad>, Vector3<Quad>)]) -> Vec<Quad> {
+    let mut out = Vec::new();
+    for (rotation, momentum) in list {
+        out.extend(rotation.matrix().iter());
+        out.extend(momentum.iter());
+    }
+    out
+}
+
+fn apart(a: &[Quad], b: &[Quad]) -> f64 {
+    a.iter()
+        .zip(b)
+        .fold(0.0, |m, (x, y)| worse(m, (*x - *y).magnitude()))
+}
+
+/// The end of a composed run over a time that is a power of two, hence with exact steps.
+fn end<S: Reversible<Scalar = Quad>>(
+    model: &S,
+    mut state: S::State,
+    (time, steps): (f64, u32),
+    order: CompositionOrder,
+    out: impl Fn(&S::State) -> Vec<Quad>,
+) -> Vec<Quad> {
+    let h = Quad::from_f64(time / f64::from(steps));
+    let mut composed = Composition::start(model, &state, h, order).expect("solvable");
+    for _ in 0..steps {
+        composed.step(model, &mut state).expect("solvable");
+    }
+    out(&state)
+}
+
+fn measured<S: Reversible<Scalar = Quad>>(
+    name: &str,
+    model: &S,
+    state: S::State,
+    (time, steps): (f64, u32),
+    out: impl Fn(&S::State) -> Vec<Quad>,
+    exact: &[Quad],
+) {
+    for order in [CompositionOrder::Four, CompositionOrder::Six] {
+        let [coarse, fine] =
+            [steps, 2 * steps].map(|n| apart(&end(model, state, (time, n), order, &out), exact));
+        let measured = (coarse / fine).log2();
+        println!("{name}, order {order}: {measured:.3} ({coarse:.1e}, {fine:.1e})");
+        // Factors of the composition are rounded to 1e-16 of a step.
+        assert!(fine > 1e-14, "{name}: {fine:e}");
+        let nominal = f64::from(order.number());
+        assert!((measured - nominal).abs() < 0.15, "{name}: {measured}");
+    }
+}
+
+/// Terms of the series.
+const TERMS: usize = 26;
+
+/// The motion of the heavy top `mu' = mu x w + Γ x gU`, `R' = R hat(w)`, `Γ = R^T z`, by its Taylor
+/// series; independent of everything above.
+fn series(
+    start: (Matrix3<Quad>, Vector3<Quad>),
+    top: &HeavyTopParameters<Quad>,
+    time: f64,
+) -> Vec<Quad> {
+    let inertia = Matrix3::from_diagonal_element(top.J.trace()) - top.J;
+    let inverse = clebsch::linalg::inverse(&inertia).expect("regular");
+    let (mut attitude, mut momentum) = start;
+    let pieces = 64;
+    let h = Quad::from_f64(time / f64::from(pieces));
+    for _ in 0..pieces {
+        let (mut r, mut m) = (vec![attitude], vec![momentum]);
+        for k in 0..TERMS {
+            let (mut dr, mut dm) = (Matrix3::zeros(), Vector3::zeros());
+            for j in 0..=k {
+                let w = inverse * m[k - j];
+                dr += r[j] * clebsch::linalg::hat(&w);
+                dm += m[j].cross(&w);
+            }
+            dm += r[k].tr_mul(&top.z).cross(&top.gU);
+            let over = Quad::from_f64(1.0) / Quad::from_f64((k + 1) as f64);
+            r.push(dr * over);
+            m.push(dm * over);
+        }
+        attitude = r.iter().rev().fold(Matrix3::zeros(), |s, x| s * h + x);
+        momentum = m.iter().rev().fold(Vector3::zeros(), |s, x| s * h + x);
+    }
+    attitude.iter().chain(momentum.iter()).copied().collect()
+}
+
+#[test]
+fn compositions_of_the_heavy_top() {
+    let parameters = HeavyTopParameters {
+        J: quad(poinsot()),
+        gU: quad(Vector3::new(0.1, -0.2, 0.6)),
+        z: quad(Vector3::z()),
+    };
+    let model = HeavyTop::new(parameters).unwrap();
+    let mu = quad(Vector3::new(0.2, -0.4, 0.9));
+    let initial = HeavyTopInitial {
+        Λ: attitude(),
+        body_momentum: BodyMomentum(mu),
+    };
+    let (state, _) = model.start(initial, Quad::from_f64(0.1)).unwrap();
+    let out = |s: &HeavyTopState<Quad>| numbers(&[(s.Λ(), s.body_momentum().0)]);
+    let exact = series((attitude().matrix(), mu), &parameters, 4.0);
+    measured("heavy top", &model, state, (4.0, 64), out, &exact);
+}
+
+#[test]
+fn compositions_of_the_free_body() {
+    let model = Tumbler::new(TumblerParameters { P: quad(poinsot()) }).unwrap();
+    let mu = quad(Vector3::new(0.2, -0.4, 0.9));
+    let initial = TumblerInitial {
+        R: attitude(),
+        body_momentum: BodyMomentum(mu),
+    };
+    let top = HeavyTopParameters {
+        J: quad(poinsot()),
+        gU: Vector3::zeros(),
+        z: quad(Vector3::z()),
+    };
+    let (state, _) = model.start(initial, Quad::from_f64(0.1)).unwrap();
+    let out = |s: &TumblerState<Quad>| numbers(&[(s.R(), s.body_momentum().0)]);
+    let exact = series((attitude().matrix(), mu), &top, 4.0);
+    measured("free body", &model, state, (4.0, 64), out, &exact);
+}
+
+#[test]
+fn compositions_of_coupled_bodies() {
+    let parameters = CoupledBodiesParameters {
+        J1: quad(poinsot()),
+        J2: quad(Matrix3::from_diagonal(&Vector3::new(1.1, 0.8, 0.9))),
+        d1: quad(Vector3::new(0.3, 0.1, 0.0)),
+        d2: quad(Vector3::new(-0.2, 0.4, 0.1)),
+        eps: Quad::from_f64(0.5),
+    };
+    let model = CoupledBodies::new(parameters).unwrap();
+    let initial = CoupledBodiesInitial {
+        Λ1: attitude(),
+        body_momentum_Λ1: BodyMomentum(quad(Vector3::new(0.2, -0.4, 0.9))),
+        Λ2: Rotation::identity(),
+        body_momentum_Λ2: BodyMomentum(quad(Vector3::new(-0.6, 0.1, 0.3))),
+    };
+    let (state, _) = model.start(initial, Quad::from_f64(0.1)).unwrap();
+    let out = |s: &CoupledBodiesState<Quad>| {
+        numbers(&[
+            (s.Λ1(), s.body_momentum_Λ1().0),
+            (s.Λ2(), s.body_momentum_Λ2().0),
+        ])
+    };
+    let exact = end(&model, state, (2.0, 512), CompositionOrder::Eight, out);
+    measured("coupled", &model, state, (2.0, 32), out, &exact);
+}
+
+#[test]
+fn compositions_of_a_model_in_no_gallery() {
+    let model = StiffTop::new(StiffTopParameters {
+        J: quad(poinsot()),
+        K: quad(Matrix3::new(0.4, 0.2, 0.0, 0.2, 0.9, 0.1, 0.0, 0.1, 0.2)),
+        c: Quad::from_f64(0.05),
+    })
+    .unwrap();
+    let initial = StiffTopInitial {
+        Λ: attitude(),
+        body_momentum: BodyMomentum(quad(Vector3::new(0.2, -0.4, 0.9))),
+        Γ: quad(Vector3::new(0.6, 0.0, 0.8)),
+    };
+    let (state, _) = model.start(initial, Quad::from_f64(0.1)).unwrap();
+    let out = |s: &StiffTopState<Quad>| numbers(&[(s.Λ(), s.body_momentum().0)]);
+    let exact = end(&model, state, (4.0, 512), CompositionOrder::Eight, out);
+    measured("in no gallery", &model, state, (4.0, 64), out, &exact);
+}
+
+#[test]
+fn modified_moments_for_a_model_in_no_gallery() {
+    let model = Tumbler::new(TumblerParameters { P: quad(poinsot()) }).unwrap();
+    let mu = quad(Vector3::new(0.2, -0.4, 0.9));
+    let top = HeavyTopParameters {
+        J: quad(poinsot()),
+        gU: Vector3::zeros(),
+        z: quad(Vector3::z()),
+    };
+    let exact = series((attitude().matrix(), mu), &top, 4.0);
+    for order in Order::ALL {
+        let error = |steps: u32| {
+            let initial = TumblerInitial {
+                R: attitude(),
+                body_momentum: BodyMomentum(mu),
+            };
+            let h = Quad::from_f64(4.0 / f64::from(steps));
+            let (mut state, mut work) = model.start_of_order(initial, h, order).unwrap();
+            for _ in 0..steps {
+                model.step(&mut state, &mut work).unwrap();
+            }
+            apart(&numbers(&[(state.R(), state.body_momentum().0)]), &exact)
+        };
+        let (coarse, fine) = (error(32), error(64));
+        let measured = (coarse / fine).log2();
+        println!("free, order {order}: {measured:.3} ({coarse:.1e}, {fine:.1e})");
+        assert!(
+            (measured - f64::from(order.number())).abs() < 0.15,
+            "{order}: {measured}"
+        );
+    }
+}
+
+#[test]
+fn one_sided_models_offer_no_composition() {
+    let card = LateTop::CARD;
+    assert_eq!((card.orders, card.reversible), (&[1][..], false));
+    let matrix = |m: Matrix3<f64>| m.transpose().as_slice().to_vec();
+    let parameters = [matrix(poinsot()), vec![0.1, -0.2, 0.6], vec![0.0, 0.0, 1.0]];
+    let initial = [matrix(Matrix3::identity()), vec![0.2, -0.4, 0.9]];
+    let open = |s: Settings| (card.open)(&parameters, &initial, s).map(|_| ());
+    assert_eq!(open(Settings::step(0.1)), Ok(()));
+    let refused = open(Settings::step(0.1).of_order(4)).unwrap_err();
+    assert!(matches!(refused, OpenError::Order { asked: 4, .. }));
+    assert!(refused.to_string().contains("node symmetric"), "{refused}");
+    // The same data with the weight split evenly go on.
+    let card = HeavyTop::CARD;
+    for order in card.orders {
+        let settings = Settings::step(0.1).of_order(*order);
+        assert!(
+            (card.open)(&parameters, &initial, settings).is_ok(),
+            "{order}"
+        );
+    }
+}
+
+#[test]
+fn compensation_is_made_where_it_is_known_and_refused_elsewhere() {
+    let matrix = |m: Matrix3<f64>| m.transpose().as_slice().to_vec();
+    let free = [matrix(poinsot())];
+    let initial = [matrix(Matrix3::identity()), vec![0.2, -0.4, 0.9]];
+    let card = FreeBody::CARD;
+    let open = |order: u32, compensated: bool| {
+        let settings = Settings {
+            compensated,
+            ..Settings::step(0.1).of_order(order)
+        };
+        (card.open)(&free, &initial, settings)
+    };
+    for order in Settings::COMPENSATED {
+        // The turn moves the body: by less than the error of a step, and more than rounding at order four.
+        let ends = [false, true].map(|compensated| {
+            let mut trajectory = open(order, compensated).expect("solvable");
+            for _ in 0..100 {
+                trajectory.step().expect("solvable");
+            }
+            let mut out = vec![0.0; card.observable_count()];
+            trajectory.observe(&mut out);
+            out
+        });
+        let [plain, turned] = &ends;
+        let apart = plain.iter().zip(turned).map(|(a, b)| (a - b).abs());
+        let apart = apart.fold(0.0, worse);
+        assert!(apart < 1e-4, "{order}: {apart}");
+        assert!(order > 4 || apart > 1e-12, "{order}: {apart}");
+    }
+    for order in [2, 10] {
+        let refused = open(order, true).map(|_| ()).unwrap_err();
+        assert!(matches!(refused, OpenError::Compensation { .. }), "{order}");
+        assert!(refused.to_string().contains("leave the compensation out"));
+    }
+    // A composition is symplectic as it is.
+    let top = [matrix(poinsot()), vec![0.1, -0.2, 0.6], vec![0.0, 0.0, 1.0]];
+    let settings = Settings {
+        compensated: true,
+        ..Settings::step(0.1).of_order(4)
+    };
+    let refused = (HeavyTop::CARD.open)(&top, &initial, settings).map(|_| ());
+    assert!(matches!(refused, Err(OpenError::Compensation { .. })));
+}

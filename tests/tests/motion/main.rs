@@ -1,0 +1,44 @@
+//! Steppers, emitted and written by hand, in motion: reference states, orders, what is conserved, symplecticity,
+//! solvers and their refusals, ensembles. One binary, since linking is most of what a test costs.
+
+// The fields of the models are Greek letters, as in the papers.
+#![allow(mixed_script_confusables, confusable_idents)]
+
+mod allocation;
+#[path = "../common/allocations.rs"]
+mod allocations;
+mod body_n;
+mod cayley_klein_symmetric;
+mod coupled_solve;
+mod dimensions_against_hand;
+mod ensembles;
+mod errata;
+mod gallery_bracket;
+mod gallery_laws;
+mod gallery_refusals;
+mod gallery_symplectic;
+mod generated_against_hand;
+mod generated_conservation;
+mod generated_groups;
+mod generated_motion;
+mod generated_order;
+mod generated_reference;
+mod generated_scalars;
+mod generated_symplectic;
+mod groups_against_hand;
+mod handwritten;
+mod handwritten_laws;
+mod handwritten_oracle;
+mod handwritten_systems;
+mod high_order;
+mod hygiene;
+mod newton_refusals;
+mod oracle_compiled;
+mod oracle_self;
+mod oracle_typed;
+mod printed_formulas;
+mod solver_choice;
+mod stated_any_dimension;
+mod stated_models;
+mod systems_against_hand;
+mod unit_quaternions;
