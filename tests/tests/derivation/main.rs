@@ -3,6 +3,8 @@
 
 // Models are stated in Greek letters, as in the papers.
 #![allow(mixed_script_confusables)]
+// Some models are of first order or without a limit on purpose, of which the macro warns by this lint.
+#![allow(deprecated)]
 
 #[path = "../common/allocations.rs"]
 mod allocations;

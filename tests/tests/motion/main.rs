@@ -3,6 +3,8 @@
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables, confusable_idents)]
+// Some models are of first order or without a limit on purpose, of which the macro warns by this lint.
+#![allow(deprecated)]
 
 mod allocation;
 #[path = "../common/allocations.rs"]
