@@ -708,7 +708,7 @@ pub mod kirchhoff_body {
             let (kinetic, potential) = self.energies(state);
             kinetic + potential
         }
-        /// `(ι₄₁ᵀ P_k)·(ι₄₁ᵀ P_k)`: Casimir: the group leaves it alone.
+        /// `P_k[1:3]·P_k[1:3]`: Casimir: the group leaves it alone.
         pub fn P_part_squared(&self, state: &KirchhoffBodyState<T>) -> T {
             let KirchhoffBodyParameters { Z, .. } = self.parameters;
             let G = state.G.matrix();
@@ -716,7 +716,7 @@ pub mod kirchhoff_body {
             let t1 = rows_from::<T, 4, 3, 1>(&P, 0);
             t1.dot(&t1)
         }
-        /// `((ι₆₄ᵀ μ_k) × (ι₄₁ᵀ P_k))·((ι₆₄ᵀ μ_k) × (ι₄₁ᵀ P_k))`: Casimir: the Kelvin-Noether quantity of what is advected.
+        /// `(lin(μ_k) × P_k[1:3])·(lin(μ_k) × P_k[1:3])`: Casimir: the Kelvin-Noether quantity of what is advected.
         pub fn momentum_linear_across_P_part_squared(
             &self,
             state: &KirchhoffBodyState<T>,
@@ -729,7 +729,7 @@ pub mod kirchhoff_body {
                 .cross(&(rows_from::<T, 4, 3, 1>(&P, 0)));
             t1.dot(&t1)
         }
-        /// `(ι₄₁ᵀ Z) × (ι₆₄ᵀ (ι₆₁ (rot(G_k) ι₆₁ᵀ μ_k + pos(G_k) × (rot(G_k) ι₆₄ᵀ μ_k)) + ι₆₄ rot(G_k) ι₆₄ᵀ μ_k))`: Noether: the action is invariant under what keeps the axis in space.
+        /// `Z[1:3] × (rot(G_k) lin(μ_k))`: Noether: the action is invariant under what keeps the axis in space.
         pub fn spatial_momentum_linear_across_Z(
             &self,
             state: &KirchhoffBodyState<T>,
@@ -767,7 +767,7 @@ pub mod kirchhoff_body {
                     )),
                 )
         }
-        /// `(ι₆₁ᵀ (ι₆₁ (rot(G_k) ι₆₁ᵀ μ_k + pos(G_k) × (rot(G_k) ι₆₄ᵀ μ_k)) + ι₆₄ rot(G_k) ι₆₄ᵀ μ_k))·(ι₄₁ᵀ Z)`: Noether: the action is invariant under what keeps the axis in space.
+        /// `(rot(G_k) ang(μ_k) + pos(G_k) × (rot(G_k) lin(μ_k)))·Z[1:3]`: Noether: the action is invariant under what keeps the axis in space.
         pub fn spatial_momentum_angular_Z(&self, state: &KirchhoffBodyState<T>) -> T {
             let KirchhoffBodyParameters { Z, .. } = self.parameters;
             let G = state.G.matrix();
@@ -1099,7 +1099,7 @@ pub mod kirchhoff_body {
             doc: "Rigid body in an ideal fluid, with added masses, coupling, and net weight.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   -tr(J rot(V_k))/h + ((½ (pos(V_k) + rot(V_k)ᵀ pos(V_k)))·(½ M (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/(2 h) + (vee(rot(V_k))·(½ D (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/h - ½ h b·P_k - ½ h b·P_{k+1}\nmomentum of G        ι₆₁ ((pos(V_k) × (M rot(V_k)ᵀ pos(V_k)))/(4 h) + (pos(V_k) × (M pos(V_k)))/(4 h) + (pos(V_k) × (Dᵀ vee(rot(V_k))))/(2 h) - 2 vee(J rot(V_k)ᵀ)/h + vee(rot(V_k) hat(D rot(V_k)ᵀ pos(V_k)))/(2 h) + vee(rot(V_k) hat(D pos(V_k)))/(2 h)) + ι₆₄ (M rot(V_k)ᵀ pos(V_k)/(4 h) + M pos(V_k)/(4 h) + Dᵀ vee(rot(V_k))/(2 h) + rot(V_k) M rot(V_k)ᵀ pos(V_k)/(4 h) + rot(V_k) M pos(V_k)/(4 h) + rot(V_k) Dᵀ vee(rot(V_k))/(2 h))\nRiccati form         none: the group is not SO(n)\ninvariants           energy, P_part_squared, momentum_linear_across_P_part_squared, spatial_momentum_linear_across_Z, spatial_momentum_angular_Z\ntime reversal        symmetric: second order\ncertificate          12 identities proved by normal form, 5 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
+            summary: "action of one step   -tr(J rot(V_k))/h + ((½ (pos(V_k) + rot(V_k)ᵀ pos(V_k)))·(½ M (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/(2 h) + (vee(rot(V_k))·(½ D (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/h - ½ h b·P_k - ½ h b·P_{k+1}\nmomentum of G        ((pos(V_k) × (M rot(V_k)ᵀ pos(V_k)))/(4 h) + (pos(V_k) × (M pos(V_k)))/(4 h) + (pos(V_k) × (Dᵀ vee(rot(V_k))))/(2 h) - 2 vee(J rot(V_k)ᵀ)/h + vee(rot(V_k) hat(D rot(V_k)ᵀ pos(V_k)))/(2 h) + vee(rot(V_k) hat(D pos(V_k)))/(2 h), M rot(V_k)ᵀ pos(V_k)/(4 h) + M pos(V_k)/(4 h) + Dᵀ vee(rot(V_k))/(2 h) + rot(V_k) M rot(V_k)ᵀ pos(V_k)/(4 h) + rot(V_k) M pos(V_k)/(4 h) + rot(V_k) Dᵀ vee(rot(V_k))/(2 h))\nRiccati form         none: the group is not SO(n)\ninvariants           energy, P_part_squared, momentum_linear_across_P_part_squared, spatial_momentum_linear_across_Z, spatial_momentum_angular_Z\ntime reversal        symmetric: second order\ncertificate          12 identities proved by normal form, 5 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
             solver: "Newton: the group is not SO(n): Newton on the derived residual",
             order: 2u32,
             orders: &[2, 4, 6, 8],
@@ -1202,31 +1202,31 @@ pub mod kirchhoff_body {
             invariants: &[
                 Invariant {
                     name: "energy",
-                    formula: "½ μ_k·ζ + b·P_k, where μ_k = ι₆₁ (-J ι₆₁ᵀ ζ + D ι₆₄ᵀ ζ + tr(J) ι₆₁ᵀ ζ) + ι₆₄ (M ι₆₄ᵀ ζ + Dᵀ ι₆₁ᵀ ζ)",
+                    formula: "½ μ_k·ζ + b·P_k, where μ_k = (-J ang(ζ) + D lin(ζ) + tr(J) ang(ζ), M lin(ζ) + Dᵀ ang(ζ))",
                     rows: 1usize,
                     conserved: Conserved::Boundedly,
                 },
                 Invariant {
                     name: "P_part_squared",
-                    formula: "(ι₄₁ᵀ P_k)·(ι₄₁ᵀ P_k)",
+                    formula: "P_k[1:3]·P_k[1:3]",
                     rows: 1usize,
                     conserved: Conserved::Exactly,
                 },
                 Invariant {
                     name: "momentum_linear_across_P_part_squared",
-                    formula: "((ι₆₄ᵀ μ_k) × (ι₄₁ᵀ P_k))·((ι₆₄ᵀ μ_k) × (ι₄₁ᵀ P_k))",
+                    formula: "(lin(μ_k) × P_k[1:3])·(lin(μ_k) × P_k[1:3])",
                     rows: 1usize,
                     conserved: Conserved::Exactly,
                 },
                 Invariant {
                     name: "spatial_momentum_linear_across_Z",
-                    formula: "(ι₄₁ᵀ Z) × (ι₆₄ᵀ (ι₆₁ (rot(G_k) ι₆₁ᵀ μ_k + pos(G_k) × (rot(G_k) ι₆₄ᵀ μ_k)) + ι₆₄ rot(G_k) ι₆₄ᵀ μ_k))",
+                    formula: "Z[1:3] × (rot(G_k) lin(μ_k))",
                     rows: 3 * 1,
                     conserved: Conserved::Exactly,
                 },
                 Invariant {
                     name: "spatial_momentum_angular_Z",
-                    formula: "(ι₆₁ᵀ (ι₆₁ (rot(G_k) ι₆₁ᵀ μ_k + pos(G_k) × (rot(G_k) ι₆₄ᵀ μ_k)) + ι₆₄ rot(G_k) ι₆₄ᵀ μ_k))·(ι₄₁ᵀ Z)",
+                    formula: "(rot(G_k) ang(μ_k) + pos(G_k) × (rot(G_k) lin(μ_k)))·Z[1:3]",
                     rows: 1usize,
                     conserved: Conserved::Exactly,
                 },

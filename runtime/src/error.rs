@@ -2,6 +2,7 @@
 //! Takes the numbers of the failure; gives messages that say what to change.
 
 use crate::groups::{NotARigidMotion, NotARotation, NotInvertible};
+use crate::said::place;
 use crate::solvers::left_factor::{LeftFactorError, Unsolved};
 use crate::solvers::moser_veselov::{MoserVeselovError, PoinsotError};
 use crate::solvers::newton::NewtonError;
@@ -19,7 +20,8 @@ pub struct ParameterError {
     pub remedy: &'static str,
 }
 
-/// What is wrong with a parameter. Rows and columns count from 0.
+/// What is wrong with a parameter. Positions, rows and columns count from 0 here, and from 1 in the
+/// message, as in files and plots.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Problem {
     /// A component is NaN or infinite.
@@ -112,9 +114,11 @@ pub enum Problem {
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NotFinite { index, value } => write!(f, "component {index} is {value}"),
+            Self::NotFinite { index, value } => {
+                write!(f, "component {} is {value}", index + 1)
+            }
             Self::EntryNotFinite { row, column, value } => {
-                write!(f, "entry ({row}, {column}) is {value}")
+                write!(f, "entry {} is {value}", place(*row, *column))
             }
             Self::NotSymmetric {
                 row,
@@ -123,7 +127,9 @@ impl fmt::Display for Problem {
                 lower,
             } => write!(
                 f,
-                "not symmetric: entry ({row}, {column}) is {upper} but ({column}, {row}) is {lower}"
+                "not symmetric: entry {} is {upper} but {} is {lower}",
+                place(*row, *column),
+                place(*column, *row)
             ),
             Self::NotSkew {
                 row,
@@ -132,10 +138,12 @@ impl fmt::Display for Problem {
                 lower,
             } => write!(
                 f,
-                "not skew: entry ({row}, {column}) is {upper} but ({column}, {row}) is {lower}"
+                "not skew: entry {} is {upper} but {} is {lower}",
+                place(*row, *column),
+                place(*column, *row)
             ),
             Self::NotDiagonal { row, column, value } => {
-                write!(f, "not diagonal: entry ({row}, {column}) is {value}")
+                write!(f, "not diagonal: entry {} is {value}", place(*row, *column))
             }
             Self::NotOrthogonal {
                 deviation,

@@ -91,13 +91,27 @@ pub(crate) fn shorter(f: &mut fmt::Formatter<'_>, steps: Option<(f64, f64)>) -> 
     }
 }
 
-/// That a component of the momentum is no number, and what to do about it; `steps` as in
+/// An entry of a matrix, from 1 as in files and plots.
+pub(crate) fn place(row: usize, column: usize) -> String {
+    format!("({}, {})", row + 1, column + 1)
+}
+
+/// Which lane a refusal is of, from 1; nothing for the first, which types without lanes have, too.
+pub(crate) fn in_lane(f: &mut fmt::Formatter<'_>, lane: impl Into<u32>) -> fmt::Result {
+    match lane.into() {
+        0 => Ok(()),
+        lane => write!(f, "lane {}: ", lane + 1),
+    }
+}
+
+/// That a component of the momentum, from 0 here, is no number, and what to do about it; `steps` as in
 /// [`shorter`].
 pub(crate) fn not_finite(
     f: &mut fmt::Formatter<'_>,
     component: usize,
     steps: Option<(f64, f64)>,
 ) -> fmt::Result {
+    let component = component + 1;
     write!(f, "the momentum is NaN or infinite (component {component})")?;
     match steps {
         Some((h, largest)) if !largest.is_nan() => instead(f, h, largest),

@@ -326,12 +326,12 @@ mod tests {
         let error = finite("x", &[1.0, f64::INFINITY]).expect_err("infinite");
         assert_eq!(
             error.to_string(),
-            "`x`: component 1 is inf; give finite numbers"
+            "`x`: component 2 is inf; give finite numbers"
         );
         let error = finite_entries("J", &Matrix2::new(1.0, f64::NAN, 3.0, 4.0)).expect_err("NaN");
         assert_eq!(
             error.to_string(),
-            "`J`: entry (0, 1) is NaN; give finite numbers"
+            "`J`: entry (1, 2) is NaN; give finite numbers"
         );
         assert!(symmetric("J", &Matrix2::new(1.0, 2.0, 2.0, 3.0)).is_ok());
         assert!(symmetric("J", &Matrix2::new(1.0, 2.0, 2.1, 3.0)).is_err());

@@ -70,6 +70,38 @@ impl Value {
         })
     }
 
+    fn entries(&self, rows: std::ops::Range<usize>, cols: std::ops::Range<usize>) -> Value {
+        Value::of(rows.len(), cols.len(), |i, j| {
+            self.at(rows.start + i, cols.start + j)
+        })
+    }
+
+    /// Blocks beside and below one another, where a number 0 stands for zeros of any size: of `rows` and `cols` rows
+    /// and columns.
+    fn blocks(parts: &[Vec<Value>], rows: &[usize], cols: &[usize]) -> Value {
+        let (height, width) = (rows.iter().sum(), cols.iter().sum());
+        let place = |sizes: &[usize], mut at: usize| {
+            let block = sizes.iter().position(|n| match at.checked_sub(*n) {
+                Some(rest) => {
+                    at = rest;
+                    false
+                }
+                None => true,
+            });
+            (block.expect("a block"), at)
+        };
+        Value::of(height, width, |i, j| {
+            let ((r, i), (c, j)) = (place(rows, i), place(cols, j));
+            match &parts[r][c] {
+                zero if zero.data == [0.0] => 0.0,
+                block => {
+                    assert_eq!((block.rows, block.cols), (rows[r], cols[c]));
+                    block.at(i, j)
+                }
+            }
+        })
+    }
+
     fn transposed(&self) -> Value {
         Value::of(self.cols, self.rows, |i, j| self.at(j, i))
     }
@@ -189,6 +221,8 @@ fn applied(function: &str, a: &Value) -> Value {
         "tanh" => Value::number(a.data[0].tanh()),
         "abs" => Value::number(a.data[0].abs()),
         "sign" => Value::number(a.data[0].signum()),
+        "ang" => a.entries(0..3, 0..1),
+        "lin" => a.entries(3..6, 0..1),
         "re" => Value::number(components(a)[0]),
         "im" => Value::new(3, 1, &components(a)[1..]),
         "quat" => quaternion([0.0, a.data[0], a.data[1], a.data[2]]),
@@ -206,9 +240,10 @@ fn applied(function: &str, a: &Value) -> Value {
     }
 }
 
-const FUNCTIONS: [&str; 25] = [
-    "sign", "tr", "det", "adj", "vee", "hat", "sym", "skew", "diag", "exp", "log", "sinh", "cosh",
-    "tanh", "sin", "cos", "abs", "re", "im", "quat", "rot", "pos", "twist", "sqrt", "Id",
+const FUNCTIONS: [&str; 27] = [
+    "ang", "lin", "sign", "tr", "det", "adj", "vee", "hat", "sym", "skew", "diag", "exp", "log",
+    "sinh", "cosh", "tanh", "sin", "cos", "abs", "re", "im", "quat", "rot", "pos", "twist", "sqrt",
+    "Id",
 ];
 
 /// Superscripts, subscripts and fractions of one character.
@@ -353,6 +388,12 @@ impl Reader<'_> {
         loop {
             if self.eat("ᵀ") {
                 out = Part::Known(out.fixed().transposed());
+            } else if self.eat("[1:3, 1:3]") {
+                out = Part::Known(out.fixed().entries(0..3, 0..3));
+            } else if self.eat("[1:3, 4]") {
+                out = Part::Known(out.fixed().entries(0..3, 3..4));
+            } else if self.eat("[1:3]") {
+                out = Part::Known(out.fixed().entries(0..3, 0..1));
             } else if self.eat("⁻ᵀ") {
                 out = Part::Known(out.fixed().inverted().0.transposed());
             } else if let Some(power) = self.superscript() {
@@ -395,8 +436,30 @@ impl Reader<'_> {
         }
         if self.eat("(") {
             let inside = self.sum();
+            if self.eat(", ") {
+                // The angular and the linear part of a vector of six.
+                let parts = [vec![inside.fixed()], vec![self.sum().fixed()]];
+                assert!(self.eat(")"), "no bracket closes before {:?}", self.rest);
+                return Part::Known(Value::blocks(&parts, &[3, 3], &[1]));
+            }
             assert!(self.eat(")"), "no bracket closes before {:?}", self.rest);
             return inside;
+        }
+        if self.eat("[") {
+            // Homogeneous coordinates, `[v; 0]` or `[A, v; 0, 0]`.
+            let mut rows = vec![Vec::new()];
+            loop {
+                let entry = self.sum().fixed();
+                rows.last_mut().expect("a row").push(entry);
+                if self.eat("; ") {
+                    rows.push(Vec::new());
+                } else if !self.eat(", ") {
+                    break;
+                }
+            }
+            assert!(self.eat("]"), "no bracket closes before {:?}", self.rest);
+            let cols: &[usize] = if rows[0].len() == 1 { &[1] } else { &[3, 1] };
+            return Part::Known(Value::blocks(&rows, &[3, 1], cols));
         }
         let first = self.rest.chars().next().expect("a factor");
         if let Some((_, top, bottom)) = FRACTIONS.iter().find(|(c, ..)| *c == first) {

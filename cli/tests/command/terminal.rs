@@ -211,3 +211,50 @@ fn a_model_is_read_from_standard_input() {
     let both = derive(&["-", "--explain", "--second-proof"], SOURCE).1;
     assert!(both.starts_with(&explained) && both.contains(second));
 }
+
+const MOTIONS: &str = "model Falling {
+    param J: Sym<3>;
+    param m: Real;
+    param Z: Vec<4>;
+    group G: SE<3> velocity V;
+    advected P: Vec<4> = G^T*Z;
+    constraint next(G) = G*V;
+    constraint next(P) = V^T*P;
+    lagrangian = -tr(J*rot(V))/h + m*dot(pos(V), pos(V))/(2*h) - h*m*dot(P, P);
+}
+";
+
+/// Rigid motions and rotations of any dimension are written on the terminal without the inclusion ι,
+/// vectors of six in parts; pages of a paper keep it.
+#[test]
+fn vectors_of_six_are_derived_in_parts() {
+    for (name, input) in [("kirchhoff-body", ""), ("body-n", ""), ("-", MOTIONS)] {
+        let derive = ["derive", name];
+        let done = with(&Gallery::shipped(), &derive, input, None);
+        assert_eq!(done.code, 0, "{}", done.err);
+        let inclusions: Vec<&str> = done.out.lines().filter(|line| line.contains('ι')).collect();
+        assert!(inclusions.is_empty(), "{name}: {inclusions:#?}");
+        if name != "body-n" {
+            for words in [
+                "ang(M_",
+                "lin(M_",
+                "ang(μ_k) = ",
+                "lin(μ_k) = ",
+                "ang and lin",
+            ] {
+                assert!(
+                    done.out.contains(words),
+                    "{name}: {words} is missing in\n{}",
+                    done.out
+                );
+            }
+            let page = [&derive[..], &["--format", "latex"]].concat();
+            let page = with(&Gallery::shipped(), &page, input, None).out;
+            assert!(page.contains("\\iota"), "{name}");
+        }
+    }
+    // The table of a run, too.
+    let run = ["run", "kirchhoff-body", "--steps", "3"];
+    let done = on(&Gallery::shipped(), &run);
+    assert!(!done.out.contains('ι'), "{}", done.out);
+}

@@ -3,7 +3,8 @@
 
 use core::fmt;
 
-/// One coordinate of a group, or of one factor of a product of groups. Everything counts from 0.
+/// One coordinate of a group, or of one factor of a product of groups. Everything counts from 0 here,
+/// and from 1 in messages, as in files and plots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Coordinate {
     /// The factor of a product of groups; 0 where there is one group.
@@ -90,14 +91,19 @@ impl Coordinate {
     }
 }
 
+/// As messages count.
+fn from_one(index: u8) -> u16 {
+    u16::from(index) + 1
+}
+
 impl fmt::Display for Part {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Axis(i) => write!(f, "component {i}"),
-            Self::Angular(i) => write!(f, "angular component {i}"),
-            Self::Linear(i) => write!(f, "linear component {i}"),
-            Self::Plane(i, j) => write!(f, "plane ({i}, {j})"),
-            Self::Entry(i, j) => write!(f, "entry ({i}, {j})"),
+            Self::Axis(i) => write!(f, "component {}", from_one(*i)),
+            Self::Angular(i) => write!(f, "angular component {}", from_one(*i)),
+            Self::Linear(i) => write!(f, "linear component {}", from_one(*i)),
+            Self::Plane(i, j) => write!(f, "plane ({}, {})", from_one(*i), from_one(*j)),
+            Self::Entry(i, j) => write!(f, "entry ({}, {})", from_one(*i), from_one(*j)),
         }
     }
 }

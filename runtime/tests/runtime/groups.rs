@@ -199,3 +199,66 @@ fn an_element_that_is_no_number_is_far_from_its_group() {
     assert!(Rotation::from_matrix(&overflowing).is_err());
     assert!(Orthogonal::<3>::from_matrix(&overflowing).is_err());
 }
+
+/// Messages count from 1, as files and plots do; the fields of errors are indices.
+#[test]
+fn messages_count_from_one() {
+    use clebsch::Problem;
+    use clebsch::groups::Part;
+    for (said, words) in [
+        (Part::axis(0).to_string(), "component 1"),
+        (Part::axis(usize::MAX).to_string(), "component 256"),
+        (Part::of_motion(2).to_string(), "angular component 3"),
+        (Part::of_motion(3).to_string(), "linear component 1"),
+        (Part::plane(0, 3, 4).to_string(), "plane (1, 4)"),
+        (Part::entry(5, 3).to_string(), "entry (2, 3)"),
+        (
+            Problem::NotFinite {
+                index: 0,
+                value: f64::INFINITY,
+            }
+            .to_string(),
+            "component 1 is inf",
+        ),
+        (
+            Problem::EntryNotFinite {
+                row: 0,
+                column: 2,
+                value: f64::NAN,
+            }
+            .to_string(),
+            "entry (1, 3) is NaN",
+        ),
+        (
+            Problem::NotSymmetric {
+                row: 0,
+                column: 1,
+                upper: 2.0,
+                lower: 3.0,
+            }
+            .to_string(),
+            "not symmetric: entry (1, 2) is 2 but (2, 1) is 3",
+        ),
+        (
+            Problem::NotSkew {
+                row: 1,
+                column: 1,
+                upper: 2.0,
+                lower: 2.0,
+            }
+            .to_string(),
+            "not skew: entry (2, 2) is 2 but (2, 2) is 2",
+        ),
+        (
+            Problem::NotDiagonal {
+                row: 2,
+                column: 0,
+                value: 1.0,
+            }
+            .to_string(),
+            "not diagonal: entry (3, 1) is 1",
+        ),
+    ] {
+        assert_eq!(said, words);
+    }
+}

@@ -187,7 +187,7 @@ fn refusals_name_the_plane_and_the_lane() {
         .rotation(&v, Method::LieNewton)
         .expect_err("too fast");
     assert_eq!((e.fastest, e.lane), (Part::Axis(1), 2), "{e}");
-    assert!(e.to_string().starts_with("lane 2: "), "{e}");
+    assert!(e.to_string().starts_with("lane 3: "), "{e}");
     // Within the bound nothing is refused.
     assert!(davenport(&c.map(wide), &v.map(|x| x * wide(0.01))).is_ok());
 }

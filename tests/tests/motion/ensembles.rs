@@ -428,7 +428,10 @@ fn the_body_that_fails_is_named() {
     bodies[18].0.gU.x = f64::NAN;
     let refused = Ensemble::<HeavyTop, 8>::start(bodies, H).expect_err("NaN");
     assert_eq!((refused.body, refused.failed), (18, 1));
-    assert!(refused.to_string().starts_with("body 18: "), "{refused}");
+    assert!(
+        refused.to_string().starts_with("body at index 18: "),
+        "{refused}"
+    );
     // Too fast for the step.
     let mut bodies = heavy_tops(BODIES);
     bodies[11].1.body_momentum.0 *= 1e3;

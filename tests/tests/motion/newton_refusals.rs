@@ -195,7 +195,10 @@ fn ensembles_name_the_body_and_its_equation() {
     };
     assert_eq!((e.worst.part, e.lane), (Part::Axis(2), 0));
     let said = error.to_string();
-    assert!(said.contains("body 3: ") && said.contains("`Λ2`"), "{said}");
+    assert!(
+        said.contains("body at index 3: ") && said.contains("`Λ2`"),
+        "{said}"
+    );
 }
 
 #[test]
@@ -217,7 +220,7 @@ fn lanes_are_named() {
     let (told, own) = (e.largest_step.expect("searched"), own.expect("searched"));
     assert_eq!((e.lane, e.worst.part), (2, Part::Axis(2)), "{e}");
     assert!((told / own - 1.0).abs() < 1e-9, "{e}: {own}");
-    assert!(e.to_string().starts_with("lane 2: "), "{e}");
+    assert!(e.to_string().starts_with("lane 3: "), "{e}");
 }
 
 /// What is taken solves the equations to this many times the size of their terms: the solver stops

@@ -358,5 +358,5 @@ fn compositions_and_ensembles_pass_a_refusal_on() {
         panic!("{error}");
     };
     assert_eq!((e.component, e.lane), (1, 0));
-    assert!(error.to_string().contains("body 3: "), "{error}");
+    assert!(error.to_string().contains("body at index 3: "), "{error}");
 }

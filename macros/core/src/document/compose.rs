@@ -308,17 +308,21 @@ fn variations(sheet: &Sheet, doc: &mut Document) {
             section.equation(Formula::equal(Formula::variation(x), sheet.derived(change)));
             section.labelled(&variation_label(i, j));
         }
-        let algebra = match d.spec.configurations.get(i).map(|c| c.group) {
-            Some(Group::GeneralLinear(_)) | None => " is an arbitrary matrix.",
-            Some(Group::SpecialOrthogonal(_)) => " is an arbitrary skew matrix.",
+        let algebra: Inline = match d.spec.configurations.get(i).map(|c| c.group) {
+            Some(Group::GeneralLinear(_)) | None => " is an arbitrary matrix.".into(),
+            Some(Group::SpecialOrthogonal(_)) => " is an arbitrary skew matrix.".into(),
             Some(Group::UnitQuaternions) => {
-                " is an arbitrary vector, an angular displacement; quat(v) is the left multiplication by the quaternion v."
+                " is an arbitrary vector, an angular displacement; quat(v) is the left multiplication by the quaternion v.".into()
             }
             Some(Group::RigidMotions) => {
-                " is an arbitrary angular and a linear displacement on top of each other; twist of it is the matrix of the Lie algebra, and ι puts a vector into a longer one, from the row that its second index tells."
+                let both = " is an arbitrary angular and a linear displacement on top of each other; twist of it is the matrix of the Lie algebra, and";
+                Inline::Notation {
+                    line: format!("{both} ang and lin take the angular and the linear part of such a vector, x[1:3] the first three entries of a longer one."),
+                    page: format!("{both} ι puts a vector into a longer one, from the row that its second index tells."),
+                }
             }
         };
-        section.paragraph(["Here ".into(), sheet.here(*xi).into(), algebra.into()]);
+        section.paragraph(["Here ".into(), sheet.here(*xi).into(), algebra]);
     }
 }
 

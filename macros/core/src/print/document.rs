@@ -65,6 +65,13 @@ pub enum Inline {
     Plain(String),
     /// A piece of a model's text.
     Code(String),
+    /// Words on notation that is another one on a terminal than on a page.
+    Notation {
+        /// On a terminal.
+        line: String,
+        /// On a page.
+        page: String,
+    },
     /// Mathematics.
     Math(Formula),
     /// The number of an equation.

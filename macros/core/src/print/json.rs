@@ -110,7 +110,9 @@ fn block(page: &Page, block: &Block, number: &mut usize) -> Value {
 
 fn sentence(page: &Page, parts: &[Inline]) -> Value {
     let part = |part: &Inline| match part {
-        Inline::Plain(words) => Value::Object(vec![("text", Value::Text(words.clone()))]),
+        Inline::Plain(words) | Inline::Notation { page: words, .. } => {
+            Value::Object(vec![("text", Value::Text(words.clone()))])
+        }
         Inline::Code(code) => Value::Object(vec![("code", Value::Text(code.clone()))]),
         Inline::Math(f) => Value::Object(spellings(page, f)),
         Inline::Reference { number, .. } => {

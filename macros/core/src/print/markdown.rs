@@ -88,7 +88,7 @@ fn sentence(page: &Page, parts: &[Inline], math: Math) -> String {
     parts
         .iter()
         .map(|part| match part {
-            Inline::Plain(words) => text(words),
+            Inline::Plain(words) | Inline::Notation { page: words, .. } => text(words),
             Inline::Code(code) => format!("`{}`", code.replace(['`', '\n'], " ")),
             Inline::Reference { number, .. } => format!("({number})"),
             Inline::Math(f) => inline_math(page, f, math),

@@ -2,6 +2,7 @@
 //! characters exist, `_{...}` and `^{...}` where not; documents wrapped for a terminal.
 
 use super::Page;
+use super::compose::parts::equations;
 use super::document::{Block, Document, Inline};
 use super::formula::{Formula, Relation};
 use super::layout::{Fence, Layout, Sign};
@@ -163,6 +164,10 @@ fn columns(text: &str) -> usize {
 
 /// A displayed formula in lines of at most `limit` columns, continued after the relation sign.
 pub(super) fn display(page: &Page, f: &Formula, limit: usize) -> Vec<String> {
+    if let Some(parts) = equations(f) {
+        let lines = parts.iter().flat_map(|part| display(page, part, limit));
+        return lines.collect();
+    }
     let layout = page.linear(f);
     let indent = |depth: usize, aligned: bool| 2 * depth + if aligned { 0 } else { 4 };
     let ruler = Ruler {
@@ -253,7 +258,7 @@ fn words(page: &Page, parts: &[Inline]) -> String {
     let mut text = String::new();
     for part in parts {
         match part {
-            Inline::Plain(words) => text.push_str(words),
+            Inline::Plain(words) | Inline::Notation { line: words, .. } => text.push_str(words),
             Inline::Code(code) => text.push_str(&format!("`{code}`")),
             Inline::Reference { number, .. } => text.push_str(&format!("({number})")),
             Inline::Math(f) => {

@@ -23,10 +23,10 @@ pub struct EnsembleError<E> {
 impl<E: fmt::Display> fmt::Display for EnsembleError<E> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.among {
-            0 | 1 => write!(f, "body {}: {}", self.body, self.cause)?,
+            0 | 1 => write!(f, "body at index {}: {}", self.body, self.cause)?,
             n => write!(
                 f,
-                "bodies {} to {}, side by side: {}",
+                "bodies at indices {} to {}, side by side: {}",
                 self.body,
                 self.body + n - 1,
                 self.cause

@@ -1,7 +1,7 @@
 //! Why the Moser-Veselov equation was not solved, with numbers.
 
 use crate::groups::Part;
-use crate::said::{Times, instead};
+use crate::said::{Times, in_lane, instead};
 use crate::solvers::Method;
 use crate::solvers::largest_step::largest_step;
 use core::fmt;
@@ -61,9 +61,7 @@ impl Unsolved {
 
 impl fmt::Display for Unsolved {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.lane > 0 {
-            write!(f, "lane {}: ", self.lane)?;
-        }
+        in_lane(f, self.lane)?;
         match self.refusal {
             Refusal::BeyondBound => write!(
                 f,

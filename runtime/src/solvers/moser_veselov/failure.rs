@@ -5,7 +5,7 @@ use super::forced::turn;
 use super::preprocess::preprocessed;
 use super::{Order, Poinsot, largest_step, reach};
 use crate::Real;
-use crate::said::{Times, not_finite, shorter};
+use crate::said::{Times, in_lane, not_finite, shorter};
 use crate::solvers::Method;
 use core::fmt;
 use nalgebra::Vector3;
@@ -191,9 +191,7 @@ impl fmt::Display for MoserVeselovError {
         if self.ratio.is_nan() {
             return not_finite(f, self.component, self.h.zip(self.largest_step));
         }
-        if self.lane > 0 {
-            write!(f, "lane {}: ", self.lane)?;
-        }
+        in_lane(f, self.lane)?;
         if self.solver != Method::Kappa && self.ratio <= 1.0 {
             return write!(
                 f,
@@ -215,7 +213,7 @@ impl fmt::Display for MoserVeselovError {
                 "the body turns too far in one step: the momentum is {} times what the \
                  Moser-Veselov equation can take (component {} is the largest)",
                 Times(self.ratio),
-                self.component
+                self.component + 1
             )?;
             if self.order != Order::Two {
                 write!(f, ", with the moments of order {}", self.order)?;

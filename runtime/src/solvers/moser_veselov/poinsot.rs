@@ -5,6 +5,7 @@ use super::cayley::dot;
 use super::kappa::Symmetric;
 use crate::Real;
 use crate::linalg::{determinant, symmetric_eigenvalues};
+use crate::said::place;
 use crate::scalar::one::in_lanes;
 use crate::validate::{ROUNDINGS, mirrored_difference};
 use core::fmt;
@@ -113,7 +114,7 @@ impl fmt::Display for PoinsotError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotFinite { row, column } => {
-                write!(f, "entry ({row}, {column}) is NaN or infinite")
+                write!(f, "entry {} is NaN or infinite", place(*row, *column))
             }
             Self::NotSymmetric {
                 row,
@@ -122,7 +123,9 @@ impl fmt::Display for PoinsotError {
                 lower,
             } => write!(
                 f,
-                "not symmetric: entry ({row}, {column}) is {upper} but ({column}, {row}) is {lower}"
+                "not symmetric: entry {} is {upper} but {} is {lower}",
+                place(*row, *column),
+                place(*column, *row)
             ),
             Self::Triangle {
                 smallest,

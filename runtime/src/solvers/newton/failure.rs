@@ -3,7 +3,7 @@
 //! Takes the last residual and a way to try other steps; gives the error.
 
 use crate::groups::{Coordinate, Group};
-use crate::said::{AtMost, Plain, Times, instead};
+use crate::said::{AtMost, Plain, Times, in_lane, instead};
 use crate::scalar::Real;
 use crate::solvers::largest_step::largest_step;
 use crate::{StepCause, StepError};
@@ -143,9 +143,7 @@ impl fmt::Display for NewtonError {
             worst,
             ..
         } = self;
-        if self.lane > 0 {
-            write!(f, "lane {}: ", self.lane)?;
-        }
+        in_lane(f, self.lane)?;
         match self.failure {
             NewtonFailure::NotConverged => write!(
                 f,
@@ -171,7 +169,8 @@ impl fmt::Display for NewtonError {
             None => write!(
                 f,
                 "; the worst is {} of factor {}",
-                worst.part, worst.factor
+                worst.part,
+                u16::from(worst.factor) + 1
             )?,
         }
         match (self.h, self.largest_step) {

@@ -4,7 +4,7 @@
 use super::QuaternionBody;
 use super::branch::followed;
 use crate::Real;
-use crate::said::{Times, not_finite, shorter};
+use crate::said::{Times, in_lane, not_finite, shorter};
 use crate::solvers::moser_veselov::{fastest, index, largest_step};
 use core::fmt;
 use nalgebra::Vector3;
@@ -107,15 +107,13 @@ impl fmt::Display for QuaternionError {
         if self.ratio.is_nan() {
             return not_finite(f, self.component, self.h.zip(self.largest_step));
         }
-        if self.lane > 0 {
-            write!(f, "lane {}: ", self.lane)?;
-        }
+        in_lane(f, self.lane)?;
         write!(
             f,
             "the body turns too far in one step: the momentum is {} times what the equation in \
              unit quaternions can take (component {} is the largest)",
             Times(self.ratio),
-            self.component
+            self.component + 1
         )?;
         shorter(f, self.h.zip(self.largest_step))
     }

@@ -18,6 +18,9 @@ impl Composer<'_> {
 
     /// The terms of an expression; `true` marks one that is subtracted.
     pub fn terms(&self, e: &Expr) -> Vec<(bool, Laid)> {
+        if let Some(parts) = self.parts(e) {
+            return vec![(false, parts)];
+        }
         match e.node() {
             Node::Sum(terms) => terms.iter().map(|t| self.signed(t)).collect(),
             _ => vec![self.signed(e)],
@@ -175,13 +178,21 @@ impl Composer<'_> {
         } else if numbered {
             parts.push(self.sum(vec![(true, self.number(q.negated()))]));
         }
-        for run in factors.chunk_by(|a, b| a == b && matches!(a.node(), Node::Letter(_))) {
-            match (run, i64::try_from(run.len())) {
-                ([first, _, ..], Ok(n)) => {
-                    parts.push(self.power(self.expression(first), Rational::integer(n)));
-                }
-                _ => parts.extend(run.iter().map(|f| self.expression(f))),
+        let mut rest = factors;
+        while let Some(first) = rest.first() {
+            if let Some((laid, used)) = self.included(rest) {
+                parts.push(laid);
+                rest = rest.get(used..).unwrap_or_default();
+                continue;
             }
+            let letter = matches!(first.node(), Node::Letter(_));
+            let same = rest.iter().take_while(|f| letter && *f == first).count();
+            let base = self.expression(first);
+            match i64::try_from(same) {
+                Ok(n) if n > 1 => parts.push(self.power(base, Rational::integer(n))),
+                _ => parts.push(base),
+            }
+            rest = rest.get(same.max(1)..).unwrap_or_default();
         }
         let last = parts.len().saturating_sub(1);
         if last == 0

@@ -3,6 +3,7 @@
 
 mod expression;
 mod formula;
+pub(super) mod parts;
 
 use super::Style;
 use super::layout::{Fence, Layout, Sign, Strength};

@@ -261,7 +261,7 @@ fn sentence(page: &Page, slug: &str, parts: &[Inline]) -> String {
     parts
         .iter()
         .map(|part| match part {
-            Inline::Plain(words) => text(words),
+            Inline::Plain(words) | Inline::Notation { page: words, .. } => text(words),
             Inline::Code(code) => format!("\\texttt{{{}}}", text(code)),
             Inline::Reference { number, .. } => format!("\\eqref{{eq:{slug}:{number}}}"),
             Inline::Math(f) => format!("${}$", line(&page.stacked(f), Dialect::Amsmath)),

@@ -91,7 +91,7 @@ fn brackets_are_minimal_in_text() {
         "gU·E₂",
         "(A E₁)·E₃",
         "(q_k G_k E₄)·E₂",
-        "(G_k ι₄₁ z)·E₄",
+        "(G_k [z; 0])·E₄",
         "h (zᵀ gU) A",
         "h zᵀ gU",
         "zᵀ A gU zᵀ gU",
@@ -105,7 +105,7 @@ fn brackets_are_minimal_in_text() {
         "rot(G_k)ᵀ rot(G_k)ᵀ",
         "pos(G_k)",
         "-pos(G_k)ᵀ rot(G_k)",
-        "twist(ι₆₄ z)",
+        "twist((0, z))",
     ];
     let printed: Vec<String> = s.expressions().iter().map(|e| text(&s, e)).collect();
     assert_eq!(printed, wanted);

@@ -1,0 +1,232 @@
+//! Vectors inside longer ones, for text on a line: in parts instead of by the inclusion ι, which a
+//! typeset page shows. A vector of six is its angular and its linear part, `(a, b)`, of which `ang` and
+//! `lin` take one; of homogeneous coordinates and matrices `x[1:3]` and `A[1:3, 4]` take entries, and
+//! `[v; 0]` and `[A, 0; 0, 0]` are made of blocks.
+
+use super::Composer;
+use crate::expr::shape::{Dim, Shape};
+use crate::expr::{self, Expr, Node};
+use crate::print::formula::Formula;
+use crate::print::layout::{Fence, Layout, Strength};
+use crate::print::level::Laid;
+
+/// The first row of the linear part.
+const LINEAR: u8 = 3;
+
+/// What an inclusion of space does in a product.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Inclusion {
+    /// Length of the longer vectors.
+    rows: u32,
+    /// The first row of the shorter one.
+    at: u8,
+    /// Whether it takes a part instead of putting it.
+    takes: bool,
+}
+
+/// The inclusion of vectors of three that a factor is.
+fn inclusion(factor: &Expr) -> Option<Inclusion> {
+    let (node, takes) = match factor.node() {
+        Node::Transpose(inner) => (inner.node(), true),
+        node => (node, false),
+    };
+    match node {
+        Node::Inclusion(
+            Shape {
+                rows: Dim::Fixed(rows),
+                cols: Dim::Fixed(3),
+            },
+            at,
+        ) => Some(Inclusion {
+            rows: *rows,
+            at: *at,
+            takes,
+        }),
+        _ => None,
+    }
+}
+
+/// Whether a factor is the last unit vector of homogeneous coordinates, or its transpose.
+fn is_last(factor: &Expr, transposed: bool) -> bool {
+    let node = match (factor.node(), transposed) {
+        (Node::Transpose(inner), true) => inner.node(),
+        (node, false) => node,
+        _ => return false,
+    };
+    matches!(node, Node::Unit(Dim::Fixed(4), 3))
+}
+
+/// The angular and the linear part of a vector of six that is written by inclusions, every term of it.
+pub(in crate::print) fn in_parts(e: &Expr) -> Option<[Expr; 2]> {
+    if e.shape() != Shape::vector(Dim::Fixed(6)) {
+        return None;
+    }
+    let terms = match e.node() {
+        Node::Sum(terms) => terms.as_slice(),
+        _ => std::slice::from_ref(e),
+    };
+    let (mut angular, mut linear) = (Vec::new(), Vec::new());
+    for term in terms {
+        match put(term)? {
+            (LINEAR, part) => linear.push(part),
+            (_, part) => angular.push(part),
+        }
+    }
+    let sum = |terms| expr::sum(terms, Shape::vector(Dim::Fixed(3)));
+    Some([sum(angular), sum(linear)])
+}
+
+/// The row at which a term stands, and the term without the inclusion that puts it there.
+fn put(term: &Expr) -> Option<(u8, Expr)> {
+    match term.node() {
+        Node::Neg(inner) => put(inner).map(|(at, part)| (at, expr::neg(part))),
+        Node::Quotient(top, bottom) => {
+            put(top).map(|(at, part)| (at, expr::quotient(part, bottom.clone())))
+        }
+        Node::Product(factors) => {
+            let first = factors.iter().position(|f| !f.shape().is_scalar())?;
+            let (before, after) = factors.split_at_checked(first)?;
+            let (head, rest) = after.split_first()?;
+            let found = inclusion(head).filter(|i| i.rows == 6 && !i.takes)?;
+            if rest.is_empty() {
+                return None;
+            }
+            let factors = before.iter().chain(rest).cloned();
+            Some((found.at, expr::product(factors)))
+        }
+        _ => None,
+    }
+}
+
+impl Composer<'_> {
+    /// A vector of six in parts, `(a, b)`; on the line only.
+    pub(super) fn parts(&self, e: &Expr) -> Option<Laid> {
+        if self.stacked {
+            return None;
+        }
+        let parts = in_parts(e)?;
+        Some(self.list(parts.iter().map(|p| self.expression(p).layout).collect()))
+    }
+
+    fn list(&self, parts: Vec<Layout>) -> Laid {
+        Laid::atom(Layout::fenced(Fence::Round, self.commas(parts)))
+    }
+
+    /// A matrix or a column by its blocks, `[A, v; 0, 0]`.
+    fn blocks(&self, [top, bottom]: [Vec<Layout>; 2]) -> Laid {
+        let rows = vec![
+            self.commas(top),
+            Layout::Word("; ".to_owned()),
+            Layout::Break(Strength::Term),
+            self.commas(bottom),
+        ];
+        Laid::atom(Layout::fenced(Fence::Square, Layout::Row(rows)))
+    }
+
+    /// What the inclusion at the front of these factors makes of those behind it, and how many it is
+    /// said for; `None` where it is shown as it is.
+    pub(super) fn included(&self, factors: &[Expr]) -> Option<(Laid, usize)> {
+        if self.stacked {
+            return None;
+        }
+        let (head, rest) = factors.split_first()?;
+        let found = inclusion(head)?;
+        let zero = || Layout::Number("0".to_owned());
+        let is = |wanted: Inclusion| move |f: &Expr| inclusion(f) == Some(wanted);
+        let inner = |count: usize| -> Option<Expr> {
+            let inner = rest.get(..count)?;
+            Some(match inner.is_empty() {
+                true => expr::identity(Dim::Fixed(if found.takes { 4 } else { 3 })),
+                false => expr::product(inner.iter().cloned()),
+            })
+        };
+        let whole = || inner(rest.len()).filter(|e| !rest.is_empty() && e.shape().is_vector());
+        match (found.rows, found.takes) {
+            (6, true) => {
+                let of = whole()?;
+                let part = usize::from(found.at == LINEAR);
+                let laid = match in_parts(&of) {
+                    Some(parts) => self.expression(parts.get(part)?),
+                    None => self.call(["ang", "lin"].get(part)?, self.expression(&of)),
+                };
+                Some((laid, factors.len()))
+            }
+            (6, false) => {
+                let part = self.expression(&whole()?).layout;
+                let parts = match found.at {
+                    LINEAR => vec![zero(), part],
+                    _ => vec![part, zero()],
+                };
+                Some((self.list(parts), factors.len()))
+            }
+            (4, true) => {
+                let closes = is(Inclusion {
+                    takes: false,
+                    ..found
+                });
+                let end = rest.iter().position(|f| closes(f) || is_last(f, false));
+                let (of, entries, used) = match end {
+                    Some(end) if is_last(rest.get(end)?, false) => (inner(end)?, "1:3, 4", end + 2),
+                    Some(end) => (inner(end)?, "1:3, 1:3", end + 2),
+                    None => (whole()?, "1:3", factors.len()),
+                };
+                let entries = Layout::fenced(Fence::Square, Layout::Word(entries.to_owned()));
+                let row = vec![self.expression(&of).base(), entries];
+                Some((Laid::atom(Layout::Row(row)), used))
+            }
+            (4, false) => {
+                let closes = is(Inclusion {
+                    takes: true,
+                    ..found
+                });
+                let end = rest.iter().position(|f| closes(f) || is_last(f, true));
+                let Some(end) = end else {
+                    let part = self.expression(&whole()?).layout;
+                    return Some((self.blocks([vec![part], vec![zero()]]), factors.len()));
+                };
+                let block = self.expression(&inner(end)?).layout;
+                let top = match is_last(rest.get(end)?, true) {
+                    true => vec![zero(), block],
+                    false => vec![block, zero()],
+                };
+                Some((self.blocks([top, vec![zero(), zero()]]), end + 2))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// What a displayed equation of vectors of six is on a terminal: one of their angular parts and one of
+/// their linear parts.
+pub(in crate::print) fn equations(f: &Formula) -> Option<[Formula; 2]> {
+    match f {
+        Formula::Continuous(inner) => {
+            Some(equations(inner)?.map(|f| Formula::Continuous(Box::new(f))))
+        }
+        Formula::Relation(members, relation) => {
+            let parts: Vec<Option<[Expr; 2]>> = members
+                .iter()
+                .map(|member| match member {
+                    Formula::Expr(e) => in_parts(e),
+                    _ => None,
+                })
+                .collect();
+            if parts.iter().all(Option::is_none) {
+                return None;
+            }
+            let of = |part: usize, word: &str| {
+                let member = |(member, parts): (&Formula, &Option<[Expr; 2]>)| match parts
+                    .as_ref()
+                    .and_then(|parts| parts.get(part))
+                {
+                    Some(e) => Formula::Expr(e.clone()),
+                    None => Formula::apply(Formula::name(word), vec![member.clone()]),
+                };
+                let members = members.iter().zip(&parts).map(member).collect();
+                Formula::Relation(members, *relation)
+            };
+            Some([of(0, "ang"), of(1, "lin")])
+        }
+        _ => None,
+    }
+}
