@@ -54,6 +54,11 @@ pub fn run(
         }
     };
     let mut trajectory = plan.open(card)?;
+    let warning = trajectory.kinetic_warning().map(|w| w.to_string());
+    if let Some(warning) = &warning {
+        // With `--json` it stands in the object as well; nothing is lost when it cannot be written.
+        let _ = writeln!(streams.err, "clebsch: warning: {warning}");
+    }
     if !as_json {
         introduce(streams, card, &plan)?;
     }
@@ -89,6 +94,10 @@ pub fn run(
                 json!(target.map(|path| path.display().to_string())),
             );
             object.insert("exit_code".to_owned(), json!(code));
+            object.insert(
+                "warnings".to_owned(),
+                json!(warning.iter().collect::<Vec<_>>()),
+            );
         }
         writeln!(streams.out, "{object}")?;
     } else {

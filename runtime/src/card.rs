@@ -2,6 +2,7 @@
 //! Emitted code gives one [`Card`] per model; it is read by whatever lists, starts and observes.
 
 use crate::integrate::CompositionOrder;
+use crate::kinetic::KineticWarning;
 use crate::solvers::Method;
 use crate::{ParameterError, StartError, StepError};
 use core::fmt;
@@ -15,6 +16,8 @@ pub enum Kind {
     Vector,
     /// A symmetric matrix.
     Symmetric,
+    /// The symmetric matrix J of the second moments of a body, whose inertia is `tr(J) Id - J`.
+    SecondMoments,
     /// A skew matrix.
     Skew,
     /// A diagonal matrix.
@@ -257,6 +260,12 @@ pub trait Trajectory: Send {
 
     /// The model's description; it tells how long the slices below must be.
     fn card(&self) -> &'static Card;
+
+    /// What is wrong with the kinetic energy where the trajectory started, if anything: a warning,
+    /// the trajectory runs all the same.
+    fn kinetic_warning(&self) -> Option<KineticWarning> {
+        None
+    }
 
     /// Writes all observables, each row-major, one after another.
     fn observe(&self, out: &mut [f64]);

@@ -13,6 +13,7 @@ pub use crate::groups::{
 pub use crate::integrate::{
     Moving, Reversible, SideBySide, Stepper, Steps, advance_side_by_side, preprocessing_order,
 };
+pub use crate::kinetic::KineticWarning;
 pub use crate::linalg::{
     axial_of_difference, columns_from, crossed, crossing, determinant, even_count, hat, inclusion,
     into_columns, into_rows, motion_rotation, motion_translation, pencil_coefficients,

@@ -16,6 +16,7 @@ pub mod emitted;
 pub mod error;
 pub mod groups;
 pub mod integrate;
+pub mod kinetic;
 pub mod linalg;
 mod said;
 pub mod scalar;

@@ -1,6 +1,7 @@
 //! Reads a case from a TOML file, for the model whose card is given.
 //! Takes the text; gives the case with the lines of its keys, or the first thing wrong with it.
 
+use super::inertia::{self, Given};
 use super::location::{File, Located};
 use super::value::{expected, number, numbers};
 use crate::arguments::whole;
@@ -221,16 +222,29 @@ fn fields(
             }
         };
     };
-    let known: Vec<&str> = fields.iter().map(|field| field.ascii).collect();
+    let inertias: Vec<String> = fields
+        .iter()
+        .filter_map(|field| inertia::key(field, fields))
+        .collect();
+    let known = fields.iter().map(|field| field.ascii);
+    let known: Vec<&str> = known.chain(inertias.iter().map(String::as_str)).collect();
     known_keys(file, table, &known, &format!("in [{name}]"), Some(fields))?;
     let mut values = Vec::with_capacity(fields.len());
     for field in fields {
         let key = format!("{name}.{}", field.ascii);
-        let Some(value) = table.get(field.ascii) else {
-            let message = format!("missing key `{key}`: {}", expected(field));
-            return Err(file.wrong(Some(&span), &message));
+        let (value, found) = match inertia::given(table, field, fields) {
+            Given::Own(value) => (value, numbers(field, value.get_ref())),
+            Given::Inertia(value) => (value, inertia::second_moments(field, value.get_ref())),
+            Given::Twice(value) => (
+                value,
+                Err("is given twice, by itself and by its inertia".to_owned()),
+            ),
+            Given::Missing => {
+                let message = format!("missing key `{key}`: {}", expected(field));
+                return Err(file.wrong(Some(&span), &message));
+            }
         };
-        let found = numbers(field, value.get_ref())
+        let found = found
             .map_err(|message| file.wrong(Some(&value.span()), &format!("{key}: {message}")))?;
         lines.insert(key, file.line(&value.span()));
         values.push(found);

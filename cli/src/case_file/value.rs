@@ -20,6 +20,10 @@ pub(super) fn expected(field: &Field) -> String {
             "a 3x3 matrix [[..], [..], [..]] or a unit quaternion [w, x, y, z]".to_owned()
         }
         Kind::Diagonal => format!("the {rows} diagonal entries [a, ..] or a {rows}x{cols} matrix"),
+        Kind::SecondMoments => format!(
+            "a symmetric {rows}x{cols} matrix [[..], ..], written in full{}",
+            super::inertia::words(field)
+        ),
         Kind::Symmetric => format!("a symmetric {rows}x{cols} matrix [[..], ..], written in full"),
         Kind::Skew => format!("a skew {rows}x{cols} matrix [[..], ..], written in full"),
         _ if cols == 1 => format!("a vector of {rows} numbers [a, ..]"),

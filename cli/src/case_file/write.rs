@@ -80,6 +80,11 @@ fn about(field: &Field) -> String {
         Kind::Scalar => "a number".to_owned(),
         Kind::Vector => format!("vector of {rows}"),
         Kind::Symmetric => format!("symmetric {rows}x{cols} matrix, written in full"),
+        Kind::SecondMoments => format!(
+            "symmetric {rows}x{cols} matrix of second moments, written in full; or by the inertia, \
+             {} = {{ I = [a, b, c] }} or a matrix, with I = tr(J) Id - J",
+            field.ascii
+        ),
         Kind::Skew => format!("skew {rows}x{cols} matrix, written in full"),
         Kind::Diagonal => format!("diagonal {rows}x{cols} matrix, or its {rows} entries"),
         Kind::Matrix => format!("{rows}x{cols} matrix, row by row"),

@@ -1,9 +1,10 @@
 //! Case files: what `clebsch case` prints reads back bit by bit, and every mistake is named with its
 //! file, line and key.
 
-use super::common::{CARD, Folder, case, clebsch};
+use super::common::{CARD, Folder, case, clebsch, on};
 use clebsch_cli::case_file;
 use clebsch_cli::failure::Failure;
+use clebsch_cli::gallery::Gallery;
 
 /// Line of the printed case on which `key` stands.
 fn line_of(text: &str, key: &str) -> usize {
@@ -350,5 +351,136 @@ fn data_that_the_model_refuses_are_placed_in_their_file() {
             done.err
         );
         assert_eq!(done.out, "");
+    }
+}
+
+/// The case of a shipped model with the value of one key replaced by a line of its own.
+fn shipped_with(model: &str, key: &str, line: &str) -> Result<Vec<Vec<f64>>, String> {
+    let gallery = Gallery::shipped();
+    let text = on(&gallery, &["case", model]).out;
+    let own = format!("{key} = ");
+    assert!(
+        text.lines().any(|l| l.starts_with(&own)),
+        "{model} has no {key}"
+    );
+    let lines = text
+        .lines()
+        .map(|l| if l.starts_with(&own) { line } else { l });
+    let text = lines.collect::<Vec<_>>().join("\n");
+    let card = gallery.find(model).expect("a model").card;
+    match case_file::read("a.toml", &text, &card) {
+        Ok(read) => Ok(read
+            .case
+            .parameters
+            .into_iter()
+            .chain(read.case.initial)
+            .collect()),
+        Err(failure) => Err(failure.to_string()),
+    }
+}
+
+#[test]
+fn the_inertia_may_stand_where_second_moments_are_asked_for() {
+    // I = tr(J) Id - J: moments (2, 3, 4) are those of J = (2.5, 1.5, 0.5).
+    let expected = vec![2.5, 0.0, 0.0, 0.0, 1.5, 0.0, 0.0, 0.0, 0.5];
+    let forms = [
+        "I = [2, 3, 4]",
+        "I = [[2, 0, 0], [0, 3, 0], [0, 0, 4]]",
+        "J = { I = [2.0, 3.0, 4.0] }",
+        "J = { I = [[2, 0, 0], [0, 3, 0], [0, 0, 4]] }",
+        "J = [[2.5, 0, 0], [0, 1.5, 0], [0, 0, 0.5]]",
+    ];
+    for model in [
+        "free-body",
+        "heavy-top",
+        "kirchhoff-body",
+        "free-body-spatial",
+    ] {
+        for form in forms {
+            let values = shipped_with(model, "J", form).expect(form);
+            assert!(values.contains(&expected), "{model}, {form}: {values:?}");
+        }
+    }
+    // Of several bodies each has its own.
+    let values = shipped_with("coupled-bodies", "J2", "I2 = [2, 3, 4]").expect("I2");
+    assert!(values.contains(&expected), "{values:?}");
+    // Products of inertia change their sign.
+    let line = "I = [[2, 0.1, 0], [0.1, 3, 0], [0, 0, 4]]";
+    let values = shipped_with("free-body", "J", line).expect(line);
+    assert_eq!(values[0], [2.5, -0.1, 0.0, -0.1, 1.5, 0.0, 0.0, 0.0, 0.5]);
+}
+
+#[test]
+fn wrong_inertias_are_named() {
+    for (line, what) in [
+        (
+            "J = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\nI = [1, 1, 1]",
+            "given twice",
+        ),
+        ("I = [1, 1]", "principal moments of inertia"),
+        ("I = 3", "principal moments of inertia"),
+        ("J = { I = [1, 1, 1], K = 2 }", "symmetric 3x3 matrix"),
+        ("I1 = [1, 1, 1]", "unknown key `I1`"),
+        ("", "missing key `parameters.J`"),
+    ] {
+        let found = shipped_with("free-body", "J", line).expect_err(line);
+        assert!(found.contains(what), "{line}: {found}");
+    }
+    // Inertia where the model asks for inertia is what it says.
+    let found = shipped_with("cayley-klein", "I", "I = { I = [1, 1, 1] }");
+    assert!(found.is_err());
+}
+
+#[test]
+fn a_kinetic_energy_that_is_not_positive_is_warned_of_at_the_start() {
+    let gallery = Gallery::shipped();
+    let folder = Folder::new("kinetic-warning");
+    let text = on(&gallery, &["case", "kirchhoff-body"]).out;
+    let with = |m: &str| {
+        let lines = text.lines().map(|l| match l.starts_with("M = ") {
+            true => format!("M = [[{m}, 0, 0], [0, 2, 0], [0, 0, 3]]"),
+            false => l.to_owned(),
+        });
+        let file = folder.write("a.toml", &lines.collect::<Vec<_>>().join("\n"));
+        let arguments = ["run", "kirchhoff-body", "--case", &file, "--steps", "1"];
+        let plain = on(&gallery, &arguments).err;
+        let json = on(&gallery, &[&arguments[..], &["--json"]].concat()).out;
+        (plain, json)
+    };
+    let (sound, json) = with("1.5");
+    assert!(!sound.contains("warning"), "{sound}");
+    assert!(json.contains("\"warnings\":[]"), "{json}");
+    let (negative, json) = with("-1.5");
+    for words in [
+        "negative in 1 of 6",
+        "I = tr(J) Id - J, not J",
+        "kinetic minus potential",
+    ] {
+        assert!(
+            negative.contains(words) && json.contains(words),
+            "{negative}\n{json}"
+        );
+    }
+    for model in &gallery.entries {
+        for case in &model.cases {
+            let run = on(
+                &gallery,
+                &[
+                    "run",
+                    model.card.kebab,
+                    "--case",
+                    &case.name,
+                    "--steps",
+                    "1",
+                ],
+            );
+            assert!(
+                !run.err.contains("warning"),
+                "{} {}: {}",
+                model.card.kebab,
+                case.name,
+                run.err
+            );
+        }
     }
 }

@@ -8,10 +8,11 @@ use super::bracket;
 use super::lie;
 use super::limit::Limit;
 use super::variation::at;
-use crate::algebra::exact::{Matrix, Point, negate};
+use crate::algebra::exact::{self, Matrix, Point, negate};
 use crate::algebra::{Algebra, Atom, Poly, Rational, assumed};
-use crate::check::spec::Spec;
-use crate::expr::shape::Shape;
+use crate::check::spec::{Group, Spec};
+use crate::expr::shape::{Dim, Shape};
+use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr, Letter, Shift};
 
 /// The quadratic form of the kinetic energy and how many velocities it sees.
@@ -86,6 +87,36 @@ fn expanded(spec: &Spec, letters: &Letters, action: &Action) -> Option<Expr> {
     let form = algebra.raise(&form);
     let inside = expr::contains(&form, at(spec.step, Shift::HERE));
     (!algebra.exhausted() && !inside).then(|| expr::scale(Rational::HALF, form))
+}
+
+/// Whether a symmetric 3 x 3 matrix enters the kinetic energy as the second moments of a body that
+/// turns: as `-½ tr(J X²)` with the angular velocity `X = hat(ω)` of one configuration, which is
+/// `½ ω·Iω` with `I = tr(J) Id - J`.
+pub fn is_second_moment(spec: &Spec, letters: &Letters, energy: &Expr, symbol: SymbolId) -> bool {
+    let s = &letters.symbols;
+    let three = Dim::Fixed(3);
+    let of_body = s.get(symbol).structure.is_symmetric()
+        && s.get(symbol).shape == Shape::square(three)
+        && energy.size() <= LARGEST;
+    let matrix = at(symbol, Shift::HERE);
+    if !of_body || !expr::contains(energy, matrix) {
+        return false;
+    }
+    let without = expr::substitute(s, energy, &[(matrix, expr::zero(Shape::square(three)))]);
+    let own = expr::sub(energy.clone(), without);
+    let mut turns = spec.configurations.iter().zip(&letters.variation);
+    turns.any(|(c, xi)| {
+        let xi = expr::here(s, *xi);
+        let turn = match c.group {
+            Group::SpecialOrthogonal(n) if n == three => xi,
+            Group::UnitQuaternions => expr::hat(xi),
+            Group::RigidMotions => expr::hat(expr::part_of_six(s, &xi, 0)),
+            Group::SpecialOrthogonal(_) | Group::GeneralLinear(_) => return false,
+        };
+        let word = expr::product([expr::here(s, symbol), turn.clone(), turn]);
+        let half = expr::scale(Rational::HALF, expr::trace(word));
+        exact::vanishes(s, &expr::add(own.clone(), half))
+    })
 }
 
 /// One letter of variation for each basis element of its Lie algebra.
@@ -163,4 +194,55 @@ fn rank(spec: &Spec, letters: &Letters, form: &Expr, equations: &[Expr]) -> Opti
         }
     }
     best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_second_moment;
+    use crate::pipeline::derive_source;
+
+    /// The symbols of a model that are second moments.
+    fn moments(body: &str) -> Vec<String> {
+        let text = format!("model M {{ {body} }}");
+        let d = match derive_source(&text) {
+            Ok(d) => d,
+            Err(e) => panic!("{text}\n{e}"),
+        };
+        let Some(form) = &d.kinetic else {
+            return Vec::new();
+        };
+        let s = &d.spec.symbols;
+        let found = s
+            .ids()
+            .filter(|id| is_second_moment(&d.spec, &d.letters, &form.energy, *id));
+        found.map(|id| s.get(id).name.clone()).collect()
+    }
+
+    #[test]
+    fn second_moments_are_told_by_what_they_do() {
+        let body = "group Λ: SO<3> velocity Ω; constraint next(Λ) = Λ*Ω;";
+        let of = |text: &str| moments(&format!("{body} {text}"));
+        assert_eq!(of("param J: Sym<3>; lagrangian = -tr(J*Ω)/h;"), ["J"]);
+        assert_eq!(
+            of("param A, B: Sym<3>; lagrangian = -tr((A + B)*Ω)/h;"),
+            ["A", "B"]
+        );
+        let field = "param J, K: Sym<3>; advected Γ: Vec<3>; constraint next(Γ) = Ω^T*Γ; \
+                     lagrangian = -tr(J*Ω)/h - h*dot(Γ, K*Γ);";
+        assert_eq!(of(field), ["J"]);
+        // Another multiple, the inertia itself, and what is squared.
+        assert!(of("param J: Sym<3>; lagrangian = -2*tr(J*Ω)/h;").is_empty());
+        assert!(of("param I: Sym<3>; lagrangian = -tr((tr(I)/2*Id - I)*Ω)/h;").is_empty());
+        assert!(of("param J: Sym<3>; lagrangian = -tr(J*J*Ω)/h;").is_empty());
+        let spatial = "group Λ: SO<3> velocity ω; advected J: Sym<3>; constraint next(Λ) = ω*Λ; \
+                       constraint next(J) = ω*J*ω^T; lagrangian = -tr(ω*J)/h;";
+        assert_eq!(moments(spatial), ["J"]);
+        let motion = "param J, M: Sym<3>; group G: SE<3> velocity V; constraint next(G) = G*V; \
+                      let u = (pos(V) - pos(V^-1))/2; \
+                      lagrangian = -tr(J*rot(V))/h + dot(u, M*u)/(2*h);";
+        assert_eq!(moments(motion), ["J"]);
+        let quaternion = "param J: Sym<3>; group q: SU<2> velocity W; constraint next(q) = q*W; \
+                          lagrangian = -tr(J*rot(W))/h;";
+        assert_eq!(moments(quaternion), ["J"]);
+    }
 }

@@ -10,6 +10,7 @@ use super::sizes::{Generics, size};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::invariants::Kind;
+use crate::derive::kinetic::{self, Kinetic};
 use crate::derive::recognise::Method;
 use crate::expr::shape::{Shape, Structure};
 use crate::expr::symbol::{Symbol, SymbolId, Symbols};
@@ -43,7 +44,10 @@ fn of_symbol(d: &Derivation, id: SymbolId, when: &str) -> FieldOf {
     } else if symbol.shape.is_vector() {
         "Vector"
     } else {
+        let moments =
+            |form: &Kinetic| kinetic::is_second_moment(&d.spec, &d.letters, &form.energy, id);
         match symbol.structure {
+            Structure::Symmetric if d.kinetic.as_ref().is_some_and(moments) => "SecondMoments",
             Structure::Symmetric => "Symmetric",
             Structure::Skew => "Skew",
             Structure::Diagonal => "Diagonal",
@@ -273,6 +277,14 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
     };
     let turbofish = (!used.is_empty()).then(|| quote!(:: #used));
     let (dimensions, sized) = (dimensions(d), sized(d));
+    let kinetic_warning = super::kinetic::kinetic_warning(d, names);
+    let judged = (!kinetic_warning.is_empty()).then(|| {
+        quote! {
+            fn kinetic_warning(&self) -> Option<KineticWarning> {
+                self.model.kinetic_warning(&self.start)
+            }
+        }
+    });
     let orders = match (preprocessed, d.reversible) {
         (true, _) => quote!(&[2, 4, 6, 8, 10]),
         (false, true) => quote!(&[2, 4, 6, 8]),
@@ -322,6 +334,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                 #step
             }
             fn card(&self) -> &'static Card { &#name::#plain::CARD }
+            #judged
             fn observe(&self, out: &mut [f64]) {
                 let state = &self.state;
                 #(#observed)*
@@ -363,6 +376,8 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                 dimensions: &[#(#dimensions),*],
                 sized: Self::sized,
             };
+
+            #kinetic_warning
 
             #sized
 

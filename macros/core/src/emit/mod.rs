@@ -12,6 +12,7 @@ mod forced;
 mod formula;
 mod invariants;
 mod items;
+mod kinetic;
 mod lanes;
 mod left_factor;
 mod names;

@@ -44,7 +44,8 @@ pub fn own(d: &Derivation, id: SymbolId) -> Ident {
 }
 
 /// Types, traits and variants that emitted code calls by a plain name: no model can bear one.
-const TYPES: [&str; 54] = [
+const TYPES: [&str; 55] = [
+    "KineticWarning",
     "BodyImpulse",
     "BodyMomentum",
     "BodyMomentumMatrix",
@@ -102,7 +103,8 @@ const TYPES: [&str; 54] = [
 ];
 
 /// Methods and constants that every model has.
-const MEMBERS: [&str; 29] = [
+const MEMBERS: [&str; 30] = [
+    "kinetic_warning",
     "ADMITTED",
     "CARD",
     "FINGERPRINT",
@@ -174,7 +176,8 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
 
 /// What emitted functions call by a plain name, and what they name themselves: a local of the
 /// model under such a name would hide it. The test of hygiene states a model with all of them.
-const INSIDE: [&str; 118] = [
+const INSIDE: [&str; 119] = [
+    "KineticWarning",
     "BodyImpulse",
     "BodyMomentum",
     "BodyMomentumMatrix",

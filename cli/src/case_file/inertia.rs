@@ -1,0 +1,84 @@
+//! A body by its inertia, where the model asks for second moments: principal moments or the matrix
+//! I in the place of J. Takes a table of a case file; gives J with `I = tr(J) Id - J`.
+
+use super::value::numbers;
+use clebsch::card::{Field, Kind};
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// The key under which the inertia may stand beside the field's own: `I` for `J`, `I2` for `J2`.
+/// None where the field is no matrix of second moments, has another letter, or the key is taken.
+pub(super) fn key(field: &Field, fields: &[Field]) -> Option<String> {
+    if field.kind != Kind::SecondMoments {
+        return None;
+    }
+    let key = format!("I{}", field.ascii.strip_prefix('J')?);
+    let taken = fields.iter().any(|other| other.ascii == key);
+    (!taken).then_some(key)
+}
+
+/// The value of a field, and whether it is its inertia: under its own name, as `J = { I = ... }`,
+/// or under the key of its inertia.
+pub(super) enum Given<'a, 'i> {
+    /// The field itself.
+    Own(&'a Spanned<DeValue<'i>>),
+    /// Its inertia.
+    Inertia(&'a Spanned<DeValue<'i>>),
+    /// Both, of which one is too many; the second one.
+    Twice(&'a Spanned<DeValue<'i>>),
+    /// Neither.
+    Missing,
+}
+
+/// How a table gives a field.
+pub(super) fn given<'a, 'i>(
+    table: &'a DeTable<'i>,
+    field: &Field,
+    fields: &[Field],
+) -> Given<'a, 'i> {
+    let own = table.get(field.ascii);
+    let beside = key(field, fields).and_then(|key| table.get(key.as_str()));
+    let inside = own
+        .filter(|_| field.kind == Kind::SecondMoments)
+        .and_then(|value| value.get_ref().as_table())
+        .filter(|inner| inner.len() == 1)
+        .and_then(|inner| inner.get("I"));
+    match (own, inside, beside) {
+        (Some(_), _, Some(second)) => Given::Twice(second),
+        (_, Some(inertia), None) | (None, None, Some(inertia)) => Given::Inertia(inertia),
+        (Some(value), None, None) => Given::Own(value),
+        (None, _, None) => Given::Missing,
+        (None, Some(_), Some(second)) => Given::Twice(second),
+    }
+}
+
+/// What to write for a matrix of second moments besides itself.
+pub(super) fn words(field: &Field) -> &'static str {
+    match field.kind {
+        Kind::SecondMoments => {
+            ", or the inertia: { I = [a, b, c] } for principal moments, { I = [[..], ..] } for a matrix"
+        }
+        _ => "",
+    }
+}
+
+/// J of an inertia given by its principal moments or in full: `tr(I)/2 Id - I`.
+pub(super) fn second_moments(field: &Field, value: &DeValue<'_>) -> Result<Vec<f64>, String> {
+    let inertia = Field {
+        kind: Kind::Diagonal,
+        ..*field
+    };
+    let entries = numbers(&inertia, value).map_err(|_| {
+        "expected the principal moments of inertia [a, b, c] or the matrix [[..], ..]".to_owned()
+    })?;
+    let n = field.rows;
+    let half: f64 = (0..n).map(|i| 0.5 * entries[i * n + i]).sum();
+    Ok(entries
+        .iter()
+        .enumerate()
+        .map(|(k, entry)| match k / n == k % n {
+            true => half - entry,
+            false => -entry,
+        })
+        .collect())
+}
