@@ -395,6 +395,9 @@ pub mod body_n {
         fn card(&self) -> &'static Card {
             &BodyN::<N, f64>::CARD
         }
+        fn kinetic_warning(&self) -> Option<KineticWarning> {
+            self.model.kinetic_warning(&self.start)
+        }
         fn observe(&self, out: &mut [f64]) {
             let state = &self.state;
             let out = put(out, rows(state.Λ().matrix()));
@@ -608,6 +611,38 @@ pub mod body_n {
             ],
             sized: Self::sized,
         };
+        /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
+        /// velocities together, at the identity, should be positive definite.
+        #[cold]
+        #[allow(unused_variables)]
+        pub fn kinetic_warning(
+            &self,
+            state: &BodyNState<N, f64>,
+        ) -> Option<KineticWarning> {
+            type T = f64;
+            let BodyNParameters { C, .. } = self.parameters;
+            let mut inertia = SMatrix::<T, 28, 28>::zeros();
+            for axis in 0..(N * (N - 1) / 2) {
+                let ξ: SMatrix<T, N, N> = skew_basis::<T, N>(axis);
+                let parts: [SMatrix<T, N, N>; 1] = [
+                    C.tr_mul(&ξ) * T::from_f64(0.5)
+                        + ξ * C.transpose() * T::from_f64(0.5)
+                        + ξ * C * T::from_f64(0.5) + C * ξ * T::from_f64(0.5),
+                ];
+                inertia
+                    .set_column(
+                        axis,
+                        &{
+                            let mut all = SVector::<T, 28>::zeros();
+                            let rest = all.as_mut_slice();
+                            let rest = put_skew(rest, &parts[0]);
+                            let _ = rest;
+                            all
+                        },
+                    );
+            }
+            KineticWarning::of(&inertia, 0 + (N * (N - 1) / 2))
+        }
         /// The card of the model at the given sizes, in the order of their declaration.
         fn sized(sizes: &[usize]) -> Option<Card> {
             match sizes {

@@ -478,6 +478,9 @@ pub mod cayley_klein_spatial {
         fn card(&self) -> &'static Card {
             &CayleyKleinSpatial::<f64>::CARD
         }
+        fn kinetic_warning(&self) -> Option<KineticWarning> {
+            self.model.kinetic_warning(&self.start)
+        }
         fn observe(&self, out: &mut [f64]) {
             let state = &self.state;
             let out = put(out, state.q().components());
@@ -680,6 +683,38 @@ pub mod cayley_klein_spatial {
             dimensions: &[],
             sized: Self::sized,
         };
+        /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
+        /// velocities together, at the identity, should be positive definite.
+        #[cold]
+        #[allow(unused_variables)]
+        pub fn kinetic_warning(
+            &self,
+            state: &CayleyKleinSpatialState<f64>,
+        ) -> Option<KineticWarning> {
+            type T = f64;
+            let q = state.q.matrix();
+            let I_reference = state.I;
+            let I = quaternion_rotation(&q)
+                * (I_reference * quaternion_rotation(&q).transpose());
+            let mut inertia = SMatrix::<T, 3, 3>::zeros();
+            for axis in 0..3 {
+                let ξ: SVector<T, 3> = unit::<T, 3>(axis);
+                let t1 = I * ξ * T::from_f64(0.5);
+                let parts: [SVector<T, 3>; 1] = [t1 + t1];
+                inertia
+                    .set_column(
+                        axis,
+                        &{
+                            let mut all = SVector::<T, 3>::zeros();
+                            let rest = all.as_mut_slice();
+                            let rest = put_vector(rest, &parts[0]);
+                            let _ = rest;
+                            all
+                        },
+                    );
+            }
+            KineticWarning::of(&inertia, 0 + 3)
+        }
         /// The card of the model at the given sizes, in the order of their declaration.
         fn sized(sizes: &[usize]) -> Option<Card> {
             match sizes {

@@ -636,6 +636,9 @@ pub mod coupled_bodies {
         fn card(&self) -> &'static Card {
             &CoupledBodies::<f64>::CARD
         }
+        fn kinetic_warning(&self) -> Option<KineticWarning> {
+            self.model.kinetic_warning(&self.start)
+        }
         fn observe(&self, out: &mut [f64]) {
             let state = &self.state;
             let out = put(out, rows(state.Λ1().matrix()));
@@ -710,7 +713,7 @@ pub mod coupled_bodies {
                     ascii: "J1",
                     rows: 3,
                     cols: 3,
-                    kind: Kind::Symmetric,
+                    kind: Kind::SecondMoments,
                     doc: "Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ",
                 },
                 Field {
@@ -718,7 +721,7 @@ pub mod coupled_bodies {
                     ascii: "J2",
                     rows: 3,
                     cols: 3,
-                    kind: Kind::Symmetric,
+                    kind: Kind::SecondMoments,
                     doc: "Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ",
                 },
                 Field {
@@ -869,6 +872,80 @@ pub mod coupled_bodies {
             dimensions: &[],
             sized: Self::sized,
         };
+        /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
+        /// velocities together, at the identity, should be positive definite.
+        #[cold]
+        #[allow(unused_variables)]
+        pub fn kinetic_warning(
+            &self,
+            state: &CoupledBodiesState<f64>,
+        ) -> Option<KineticWarning> {
+            type T = f64;
+            let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
+            let Λ1 = state.Λ1.matrix();
+            let Λ2 = state.Λ2.matrix();
+            let R = Λ1.tr_mul(&Λ2);
+            let mut inertia = SMatrix::<T, 6, 6>::zeros();
+            for axis in 0..3 {
+                let ξ1: SMatrix<T, 3, 3> = basis::<T>(axis);
+                let ξ2: SMatrix<T, 3, 3> = SMatrix::zeros();
+                let t1 = d1.dot(&(R * d2));
+                let t2 = vee(&ξ2);
+                let t3 = vee(&ξ1);
+                let t4 = hat(&(t3 * T::from_f64(0.5) * J1.trace())) * T::from_f64(0.5);
+                let t5 = -(hat(&(J1 * t3 * T::from_f64(0.5))) * T::from_f64(0.5));
+                let t6 = hat(&(t2 * T::from_f64(0.5) * J2.trace())) * T::from_f64(0.5);
+                let t7 = -(hat(&(J2 * t2 * T::from_f64(0.5))) * T::from_f64(0.5));
+                let parts: [SVector<T, 3>; 2] = [
+                    axial_of_difference(
+                        &(hat(&(R * d2 * eps * d1.dot(&(R * t2)))) * T::from_f64(0.5)
+                            - hat(&(R * t2 * eps * t1)) * T::from_f64(0.5) + t4 + t4 + t5
+                            + t5),
+                    ),
+                    axial_of_difference(
+                        &(hat(&(R.tr_mul(&d1) * eps * d2.dot(&(R.tr_mul(&t3)))))
+                            * T::from_f64(0.5)
+                            - hat(&(R.tr_mul(&t3) * eps * t1)) * T::from_f64(0.5) + t6
+                            + t6 + t7 + t7),
+                    ),
+                ];
+                inertia
+                    .set_column(
+                        axis,
+                        &SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3]),
+                    );
+            }
+            for axis in 0..3 {
+                let ξ1: SMatrix<T, 3, 3> = SMatrix::zeros();
+                let ξ2: SMatrix<T, 3, 3> = basis::<T>(axis);
+                let t1 = d1.dot(&(R * d2));
+                let t2 = vee(&ξ2);
+                let t3 = vee(&ξ1);
+                let t4 = hat(&(t3 * T::from_f64(0.5) * J1.trace())) * T::from_f64(0.5);
+                let t5 = -(hat(&(J1 * t3 * T::from_f64(0.5))) * T::from_f64(0.5));
+                let t6 = hat(&(t2 * T::from_f64(0.5) * J2.trace())) * T::from_f64(0.5);
+                let t7 = -(hat(&(J2 * t2 * T::from_f64(0.5))) * T::from_f64(0.5));
+                let parts: [SVector<T, 3>; 2] = [
+                    axial_of_difference(
+                        &(hat(&(R * d2 * eps * d1.dot(&(R * t2)))) * T::from_f64(0.5)
+                            - hat(&(R * t2 * eps * t1)) * T::from_f64(0.5) + t4 + t4 + t5
+                            + t5),
+                    ),
+                    axial_of_difference(
+                        &(hat(&(R.tr_mul(&d1) * eps * d2.dot(&(R.tr_mul(&t3)))))
+                            * T::from_f64(0.5)
+                            - hat(&(R.tr_mul(&t3) * eps * t1)) * T::from_f64(0.5) + t6
+                            + t6 + t7 + t7),
+                    ),
+                ];
+                inertia
+                    .set_column(
+                        3 + axis,
+                        &SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3]),
+                    );
+            }
+            KineticWarning::of(&inertia, 6)
+        }
         /// The card of the model at the given sizes, in the order of their declaration.
         fn sized(sizes: &[usize]) -> Option<Card> {
             match sizes {

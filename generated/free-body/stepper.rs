@@ -402,6 +402,9 @@ pub mod free_body {
         fn card(&self) -> &'static Card {
             &FreeBody::<f64>::CARD
         }
+        fn kinetic_warning(&self) -> Option<KineticWarning> {
+            self.model.kinetic_warning(&self.start)
+        }
         fn observe(&self, out: &mut [f64]) {
             let state = &self.state;
             let out = put(out, rows(state.Λ().matrix()));
@@ -480,7 +483,7 @@ pub mod free_body {
                     ascii: "J",
                     rows: 3,
                     cols: 3,
-                    kind: Kind::Symmetric,
+                    kind: Kind::SecondMoments,
                     doc: "Poinsot (second-moment) matrix",
                 },
             ],
@@ -565,6 +568,29 @@ pub mod free_body {
             dimensions: &[],
             sized: Self::sized,
         };
+        /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
+        /// velocities together, at the identity, should be positive definite.
+        #[cold]
+        #[allow(unused_variables)]
+        pub fn kinetic_warning(
+            &self,
+            state: &FreeBodyState<f64>,
+        ) -> Option<KineticWarning> {
+            type T = f64;
+            let FreeBodyParameters { J, .. } = self.parameters;
+            let mut inertia = SMatrix::<T, 3, 3>::zeros();
+            for axis in 0..3 {
+                let ξ: SMatrix<T, 3, 3> = basis::<T>(axis);
+                let t1 = vee(&ξ);
+                let t2 = hat(&(t1 * T::from_f64(0.5) * J.trace())) * T::from_f64(0.5);
+                let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
+                let parts: [SVector<T, 3>; 1] = [
+                    axial_of_difference(&(t2 + t2 + t3 + t3)),
+                ];
+                inertia.set_column(axis, &parts[0]);
+            }
+            KineticWarning::of(&inertia, 3)
+        }
         /// The card of the model at the given sizes, in the order of their declaration.
         fn sized(sizes: &[usize]) -> Option<Card> {
             match sizes {

@@ -842,6 +842,9 @@ pub mod kirchhoff_body {
         fn card(&self) -> &'static Card {
             &KirchhoffBody::<f64>::CARD
         }
+        fn kinetic_warning(&self) -> Option<KineticWarning> {
+            self.model.kinetic_warning(&self.start)
+        }
         fn observe(&self, out: &mut [f64]) {
             let state = &self.state;
             let out = put(out, rows(state.G().matrix()));
@@ -1111,7 +1114,7 @@ pub mod kirchhoff_body {
                     ascii: "J",
                     rows: 3,
                     cols: 3,
-                    kind: Kind::Symmetric,
+                    kind: Kind::SecondMoments,
                     doc: "Poinsot matrix of the rotational inertia, fluid included",
                 },
                 Field {
@@ -1242,6 +1245,62 @@ pub mod kirchhoff_body {
             dimensions: &[],
             sized: Self::sized,
         };
+        /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
+        /// velocities together, at the identity, should be positive definite.
+        #[cold]
+        #[allow(unused_variables)]
+        pub fn kinetic_warning(
+            &self,
+            state: &KirchhoffBodyState<f64>,
+        ) -> Option<KineticWarning> {
+            type T = f64;
+            let KirchhoffBodyParameters { J, M, D, .. } = self.parameters;
+            let mut inertia = SMatrix::<T, 6, 6>::zeros();
+            for axis in 0..6 {
+                let ξ: SVector<T, 6> = unit::<T, 6>(axis);
+                let t1 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ, 0), 0)
+                    * T::from_f64(0.5) * J.trace();
+                let t2 = -(into_rows::<
+                    T,
+                    6,
+                    3,
+                    1,
+                >(&(J * rows_from::<T, 6, 3, 1>(&ξ, 0)), 0) * T::from_f64(0.5));
+                let t3 = into_rows::<
+                    T,
+                    6,
+                    3,
+                    1,
+                >(&(M * rows_from::<T, 6, 3, 1>(&ξ, 3)), 3) * T::from_f64(0.5);
+                let parts: [SVector<T, 6>; 1] = [
+                    t1 + t1 + t2 + t2
+                        + into_rows::<
+                            T,
+                            6,
+                            3,
+                            1,
+                        >(&(D * rows_from::<T, 6, 3, 1>(&ξ, 3)), 0)
+                        + into_rows::<
+                            T,
+                            6,
+                            3,
+                            1,
+                        >(&D.tr_mul(&rows_from::<T, 6, 3, 1>(&ξ, 0)), 3) + t3 + t3,
+                ];
+                inertia
+                    .set_column(
+                        axis,
+                        &{
+                            let mut all = SVector::<T, 6>::zeros();
+                            let rest = all.as_mut_slice();
+                            let rest = put_vector(rest, &parts[0]);
+                            let _ = rest;
+                            all
+                        },
+                    );
+            }
+            KineticWarning::of(&inertia, 0 + 6)
+        }
         /// The card of the model at the given sizes, in the order of their declaration.
         fn sized(sizes: &[usize]) -> Option<Card> {
             match sizes {

@@ -49,14 +49,20 @@ pub fn kinetic_warning(d: &Derivation, names: &Names) -> TokenStream {
             };
             quote!(let #name: #t = #value;)
         });
-        let offset = element::offset(d, j);
         let count = element::coordinates(d, j);
+        let column = match j {
+            0 => quote!(axis),
+            _ => {
+                let offset = element::offset(d, j);
+                quote!(#offset + axis)
+            }
+        };
         quote! {
             for axis in 0..#count {
                 #(#directions)*
                 #lets
                 let parts: #covectors = #values;
-                inertia.set_column(#offset + axis, &#stacked);
+                inertia.set_column(#column, &#stacked);
             }
         }
     });
