@@ -354,27 +354,35 @@ fn data_that_the_model_refuses_are_placed_in_their_file() {
     }
 }
 
-/// The case of a shipped model with the value of one key replaced by a line of its own.
+/// The text of a case with a key and its value, of one line or several, replaced by a line.
+fn replaced(text: &str, key: &str, line: &str) -> String {
+    let own = format!("{key} = ");
+    let (mut found, mut inside) = (false, false);
+    let mut out = Vec::new();
+    for l in text.lines() {
+        let starts = l.starts_with(&own);
+        inside = starts || (inside && l.starts_with([' ', ']']));
+        if starts {
+            out.push(line);
+            found = true;
+        } else if !inside {
+            out.push(l);
+        }
+    }
+    assert!(found, "no {key}");
+    out.join("\n")
+}
+
+/// The values of a shipped model's case with one key replaced by a line of its own.
 fn shipped_with(model: &str, key: &str, line: &str) -> Result<Vec<Vec<f64>>, String> {
     let gallery = Gallery::shipped();
-    let text = on(&gallery, &["case", model]).out;
-    let own = format!("{key} = ");
-    assert!(
-        text.lines().any(|l| l.starts_with(&own)),
-        "{model} has no {key}"
-    );
-    let lines = text
-        .lines()
-        .map(|l| if l.starts_with(&own) { line } else { l });
-    let text = lines.collect::<Vec<_>>().join("\n");
+    let text = replaced(&on(&gallery, &["case", model]).out, key, line);
     let card = gallery.find(model).expect("a model").card;
     match case_file::read("a.toml", &text, &card) {
-        Ok(read) => Ok(read
-            .case
-            .parameters
-            .into_iter()
-            .chain(read.case.initial)
-            .collect()),
+        Ok(read) => {
+            let values = read.case.parameters.into_iter();
+            Ok(values.chain(read.case.initial).collect())
+        }
         Err(failure) => Err(failure.to_string()),
     }
 }
@@ -437,11 +445,8 @@ fn a_kinetic_energy_that_is_not_positive_is_warned_of_at_the_start() {
     let folder = Folder::new("kinetic-warning");
     let text = on(&gallery, &["case", "kirchhoff-body"]).out;
     let with = |m: &str| {
-        let lines = text.lines().map(|l| match l.starts_with("M = ") {
-            true => format!("M = [[{m}, 0, 0], [0, 2, 0], [0, 0, 3]]"),
-            false => l.to_owned(),
-        });
-        let file = folder.write("a.toml", &lines.collect::<Vec<_>>().join("\n"));
+        let line = format!("M = [[{m}, 0, 0], [0, 2, 0], [0, 0, 3]]");
+        let file = folder.write("a.toml", &replaced(&text, "M", &line));
         let arguments = ["run", "kirchhoff-body", "--case", &file, "--steps", "1"];
         let plain = on(&gallery, &arguments).err;
         let json = on(&gallery, &[&arguments[..], &["--json"]].concat()).out;
