@@ -87,9 +87,9 @@ fn eigenvalues(a: &mut [Vec<f64>]) -> Vec<f64> {
                     let (x, y) = (row[p], row[q]);
                     (row[p], row[q]) = (c * x - s * y, s * x + c * y);
                 }
-                for k in 0..n {
-                    let (x, y) = (a[p][k], a[q][k]);
-                    (a[p][k], a[q][k]) = (c * x - s * y, s * x + c * y);
+                let (above, below) = a.split_at_mut(q);
+                for (u, v) in above[p].iter_mut().zip(&mut below[0]) {
+                    (*u, *v) = (c * *u - s * *v, s * *u + c * *v);
                 }
             }
         }

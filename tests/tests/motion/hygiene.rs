@@ -146,14 +146,15 @@ macro_rules! awkward_names {
                 diagonal_part forced
                 inverse_or_nan largest_step length matrix_of number_of put reach rotation_of rows
                 skew_part solve solve_or_nan symmetric_part unit BodyMomentum SpatialMomentum
-                Rotation Poinsot QuaternionBody Edge Moving Free newton validate emitted
+                Rotation Poinsot QuaternionBody KineticWarning Edge Moving Free newton validate emitted
                 // Locals and parameters of functions.
                 after axis before body e edge found guess h_ here i inertia initial j kinetic
                 matrix model momenta momentum momentum_next n node out parameters parts potential
                 residual scratch solved solver state tangent total trial value velocity work x
                 field expected t1 t2 t3 momenta_six configurations
                 // Members.
-                balance body_momentum edge_momentum energies energy refused spatial_momentum start
+                balance body_momentum edge_momentum energies energy kinetic_warning refused
+                spatial_momentum start
                 step factor parameters_ CARD SOURCE
                 // The prelude and the primitive types.
                 Box Clone Copy Debug Default Err None Ok Option Real Result Some String Vec alloc
