@@ -737,35 +737,8 @@ pub mod kirchhoff_body {
             let KirchhoffBodyParameters { Z, .. } = self.parameters;
             let G = state.G.matrix();
             let μ = state.body_momentum().0;
-            let t1 = motion_rotation(&G);
             (rows_from::<T, 4, 3, 1>(&Z, 0))
-                .cross(
-                    &(rows_from::<
-                        T,
-                        6,
-                        3,
-                        1,
-                    >(
-                        &(into_rows::<
-                            T,
-                            6,
-                            3,
-                            1,
-                        >(
-                            &(t1 * rows_from::<T, 6, 3, 1>(&μ, 0)
-                                + motion_translation(&G)
-                                    .cross(&(t1 * rows_from::<T, 6, 3, 1>(&μ, 3)))),
-                            0,
-                        )
-                            + into_rows::<
-                                T,
-                                6,
-                                3,
-                                1,
-                            >(&(t1 * rows_from::<T, 6, 3, 1>(&μ, 3)), 3)),
-                        3,
-                    )),
-                )
+                .cross(&(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)))
         }
         /// `(rot(G_k) ang(μ_k) + pos(G_k) × (rot(G_k) lin(μ_k)))·Z[1:3]`: Noether: the action is invariant under what keeps the axis in space.
         pub fn spatial_momentum_angular_Z(&self, state: &KirchhoffBodyState<T>) -> T {
@@ -773,25 +746,8 @@ pub mod kirchhoff_body {
             let G = state.G.matrix();
             let μ = state.body_momentum().0;
             let t1 = motion_rotation(&G);
-            (rows_from::<
-                T,
-                6,
-                3,
-                1,
-            >(
-                &(into_rows::<
-                    T,
-                    6,
-                    3,
-                    1,
-                >(
-                    &(t1 * rows_from::<T, 6, 3, 1>(&μ, 0)
-                        + motion_translation(&G)
-                            .cross(&(t1 * rows_from::<T, 6, 3, 1>(&μ, 3)))),
-                    0,
-                ) + into_rows::<T, 6, 3, 1>(&(t1 * rows_from::<T, 6, 3, 1>(&μ, 3)), 3)),
-                0,
-            ))
+            (t1 * rows_from::<T, 6, 3, 1>(&μ, 0)
+                + motion_translation(&G).cross(&(t1 * rows_from::<T, 6, 3, 1>(&μ, 3))))
                 .dot(&(rows_from::<T, 4, 3, 1>(&Z, 0)))
         }
     }
@@ -1022,67 +978,9 @@ pub mod kirchhoff_body {
                         )
                         .sqrt()
                         + motion_translation(&G).dot(&motion_translation(&G)).sqrt()
-                            * (rows_from::<
-                                T,
-                                6,
-                                3,
-                                1,
-                            >(
-                                &(into_rows::<
-                                    T,
-                                    6,
-                                    3,
-                                    1,
-                                >(
-                                    &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 0)
-                                        + motion_translation(&G)
-                                            .cross(
-                                                &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
-                                            )),
-                                    0,
-                                )
-                                    + into_rows::<
-                                        T,
-                                        6,
-                                        3,
-                                        1,
-                                    >(
-                                        &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
-                                        3,
-                                    )),
-                                3,
-                            ))
+                            * (motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3))
                                 .dot(
-                                    &(rows_from::<
-                                        T,
-                                        6,
-                                        3,
-                                        1,
-                                    >(
-                                        &(into_rows::<
-                                            T,
-                                            6,
-                                            3,
-                                            1,
-                                        >(
-                                            &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 0)
-                                                + motion_translation(&G)
-                                                    .cross(
-                                                        &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
-                                                    )),
-                                            0,
-                                        )
-                                            + into_rows::<
-                                                T,
-                                                6,
-                                                3,
-                                                1,
-                                            >(
-                                                &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
-                                                3,
-                                            )),
-                                        3,
-                                    )),
+                                    &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
                                 )
                                 .sqrt())
                         * (rows_from::<T, 4, 3, 1>(&Z, 0))

@@ -60,6 +60,23 @@ fn of_rational(q: Rational) -> Option<u64> {
     Some(mul(num, inverse(den)?))
 }
 
+/// The fraction of small numbers that this is, numerator and denominator up to `largest`.
+pub(crate) fn rational(x: u64, largest: u64) -> Option<(i64, i64)> {
+    // Euclid's algorithm on the prime and x, stopped where the remainder is small.
+    let (mut a, mut b) = (i128::from(PRIME), i128::from(x));
+    let (mut s, mut t) = (0i128, 1i128);
+    while b > i128::from(largest) {
+        let q = a / b;
+        (a, b) = (b, a - q * b);
+        (s, t) = (t, s - q * t);
+    }
+    let (num, den) = if t < 0 { (-b, -t) } else { (b, t) };
+    if den == 0 || den > i128::from(largest) {
+        return None;
+    }
+    Some((i64::try_from(num).ok()?, i64::try_from(den).ok()?))
+}
+
 /// A fixed mixing of bits (SplitMix64): the same points in every run.
 pub(super) fn mix(mut x: u64) -> u64 {
     x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -206,6 +223,14 @@ impl<'a> Point<'a> {
     pub(crate) fn sized(mut self, size: usize) -> Point<'a> {
         self.size = Size::Given(size);
         self
+    }
+
+    /// Other values of all letters, and the same sizes.
+    pub(crate) fn redrawn(&self, attempt: u64) -> Point<'a> {
+        Point {
+            size: self.size,
+            ..Point::new(self.symbols, attempt)
+        }
     }
 
     /// Gives a letter its value.

@@ -258,6 +258,7 @@ pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
         spec: &spec,
         letters: &letters,
         action: &action,
+        variations: &variations,
         balances: &balances,
         bracket: &bracket,
         solve: &solve,

@@ -2,7 +2,7 @@
 //! step keeps, independent of one another, until there are as many as the corank. Takes the bracket
 //! and exact steps; gives invariants that hold for every Lagrangian.
 
-use super::noether::tangents;
+use super::independence::tangents;
 use super::passage::Passage;
 use super::{Family, Inputs, Invariant, Kind, here, is_conserved, words};
 use crate::algebra::assumed::{self, Independent, rank};

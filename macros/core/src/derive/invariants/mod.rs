@@ -4,11 +4,16 @@
 //! integrals where the step has a Lax form; the energy is exact where that is proved, else bounded.
 
 mod casimirs;
+mod difference;
 mod energy;
 mod homogeneous;
+mod independence;
 mod isospectral;
+mod kernel;
+mod motions;
 mod noether;
 pub(crate) mod passage;
+mod readings;
 #[cfg(test)]
 mod tests;
 mod words;
@@ -19,6 +24,7 @@ use super::balance::Balance;
 use super::bracket::Bracket;
 use super::limit::Limit;
 use super::recognise::Solve;
+use super::variation::Variation;
 use crate::algebra::{Algebra, Rational};
 use crate::check::spec::Spec;
 use crate::expr::shape::{Dim, Shape};
@@ -119,6 +125,8 @@ pub struct Inputs<'a> {
     pub letters: &'a Letters,
     /// The action of a step.
     pub action: &'a Action,
+    /// How quantities vary.
+    pub variations: &'a [Variation],
     /// The balances.
     pub balances: &'a [Balance],
     /// The bracket.
@@ -147,7 +155,7 @@ pub fn invariants(x: &Inputs) -> (Vec<Invariant>, Integrability) {
     let large = too_large(x);
     let small = large.is_none();
     out.extend(energy::energy(x, if small { &passages } else { &[] }));
-    let momenta = noether::of_space(x, &passages);
+    let (momenta, body) = noether::momenta(x, &passages);
     let casimirs = match small {
         true => casimirs::casimirs(x, x.assumed, &passages),
         false => casimirs::Casimirs::default(),
@@ -162,11 +170,10 @@ pub fn invariants(x: &Inputs) -> (Vec<Invariant>, Integrability) {
     let fresh = |v: &Invariant| casimirs::is_new(x, &passages, &out, v);
     let spectrum: Vec<Invariant> = spectrum.into_iter().filter(fresh).collect();
     out.extend(spectrum);
-    let body = noether::of_bodies(x, &passages);
     // A momentum about an axis may be a Casimir already, written by advected quantities.
     let mut linear: Vec<Invariant> = out.clone();
     for v in about_axes.into_iter().chain(body) {
-        if noether::is_new(x, &passages, &linear, &v) {
+        if independence::is_new(x, &passages, &linear, &v) {
             linear.push(v.clone());
             out.push(v);
         }

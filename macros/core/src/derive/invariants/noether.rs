@@ -1,19 +1,24 @@
-//! Noether momenta: of every set of coupled configurations in the space frame, of each one in its
-//! body frame; whole, or about an axis that the parameters or the basis give. A symmetry of the
-//! action is not asked for: that the momentum is conserved is proved itself.
+//! Noether momenta: combinations of the momenta of all configurations, from space and from the bodies,
+//! that no step changes, or that change by a total difference. How many there are at fixed parameters
+//! is a linear problem; they are then sought by what the parameters and the basis single out. That
+//! each one is conserved is proved itself.
 
-use super::homogeneous;
+use super::difference;
+use super::kernel::{Kernel, Samples};
+use super::motions::{Motion, Sort, Way, motions};
 use super::passage::Passage;
-use super::{Candidate, Family, Inputs, Invariant, Kind, here, is_conserved, length};
-use crate::algebra::Rational;
-use crate::algebra::assumed::rank;
-use crate::algebra::exact::{Matrix, Point};
+use super::readings::{Reading, readings};
+use super::{Family, Inputs, Invariant, Kind, is_conserved, length};
 use crate::check::spec::{Group, Side};
 use crate::derive::action::summands;
-use crate::derive::{bracket, lie};
-use crate::expr::shape::{Dim, Shape, Structure};
-use crate::expr::symbol::Role;
-use crate::expr::{self, Expr, Letter, Part, Shift};
+use crate::expr::shape::Shape;
+use crate::expr::{self, Expr, Letter};
+
+/// Most configurations whose momenta are combined one by one; of more, all that the action couples.
+const FEW: usize = 4;
+
+/// Most single numbers that are combined.
+const NUMBERS: usize = 48;
 
 /// Sets of configurations that the action couples, in order of declaration.
 pub(super) fn components(x: &Inputs) -> Vec<Vec<usize>> {
@@ -53,433 +58,433 @@ fn touches(x: &Inputs, letters: &[Letter], i: usize) -> bool {
     })
 }
 
-/// The node momentum in the space frame.
-fn in_space(x: &Inputs, i: usize) -> Expr {
-    turned(x, i, Side::Body)
-}
-
-/// The node momentum in the body frame.
-fn in_body(x: &Inputs, i: usize) -> Expr {
-    turned(x, i, Side::Spatial)
-}
-
-/// The node momentum, carried to the other frame if it is stated on this side.
-fn turned(x: &Inputs, i: usize, from: Side) -> Expr {
-    let s = &x.letters.symbols;
-    let c = &x.spec.configurations[i];
-    let mu = expr::here(s, x.letters.node_momentum[i]);
-    if c.side != from {
-        return mu;
+/// Momenta as seen from space, then those that bodies have a part in.
+pub(super) fn momenta(x: &Inputs, passages: &[Passage]) -> (Vec<Invariant>, Vec<Invariant>) {
+    if passages.is_empty() {
+        return (Vec::new(), Vec::new());
     }
-    let g = expr::here(s, c.element);
-    let g = match c.side {
-        Side::Body => g,
-        Side::Spatial => expr::inverse(s, g),
-    };
-    lie::to_space(s, c.group, &g, mu)
-}
-
-/// Most parameters that are tried as axes or forms.
-const AXES: usize = 12;
-
-fn ascii(x: &Inputs, id: crate::expr::symbol::SymbolId) -> String {
-    x.letters.symbols.get(id).ascii.clone()
-}
-
-fn kept(c: Candidate, kind: Kind, reason: String) -> Invariant {
-    Invariant {
-        name: c.name,
-        kind,
-        family: Family::Noether,
-        value: Some(c.value),
-        scale: Some(c.scale),
-        exact: true,
-        reason,
+    let motions = motions(x);
+    let kernels = kernels(x, &motions);
+    if !kernels.is_empty() && kernels.iter().all(|k| k.dimension == 0) {
+        return (Vec::new(), Vec::new());
     }
-}
-
-/// Momenta in the space frame: of each set of coupled configurations the whole, or else its parts.
-pub(super) fn of_space(x: &Inputs, passages: &[Passage]) -> Vec<Invariant> {
-    let sets = components(x);
-    let several = sets.len() > 1;
-    let mut out = Vec::new();
-    for set in &sets {
-        let Some(&first) = set.first() else { continue };
-        let group = x.spec.configurations[first].group;
-        let alike = set.iter().all(|i| x.spec.configurations[*i].group == group);
-        if !alike {
-            continue;
-        }
-        let parts: Vec<Expr> = set.iter().map(|i| in_space(x, *i)).collect();
-        let shape = parts[0].shape();
-        let total = expr::sum(parts.clone(), shape);
-        let scale = expr::sum(parts.iter().map(|p| length(x, p)), Shape::SCALAR);
-        let suffix: String = if several {
-            let names = set
-                .iter()
-                .map(|i| ascii(x, x.spec.configurations[*i].element));
-            names.map(|n| format!("_{n}")).collect()
-        } else {
-            String::new()
-        };
-        let who = match group {
-            Group::SpecialOrthogonal(_) | Group::UnitQuaternions => "rotations of space",
-            Group::RigidMotions => "rigid motions of space",
-            Group::GeneralLinear(_) => "linear maps of space",
-        };
-        if is_conserved(passages, &total) {
-            let (kind, name) = match (set.as_slice(), x.spec.configurations.as_slice()) {
-                ([only], [_]) => (Kind::SpatialMomentum(*only), "spatial_momentum".to_owned()),
-                ([only], _) => (
-                    Kind::TotalMomentum(vec![*only]),
-                    format!("spatial_momentum{suffix}"),
-                ),
-                (all, _) => (
-                    Kind::TotalMomentum(all.to_vec()),
-                    format!("total_momentum{suffix}"),
-                ),
-            };
-            let c = Candidate {
-                name,
-                value: total,
-                scale,
-            };
-            out.push(kept(
-                c,
-                kind,
-                format!("Noether: the action is invariant under {who}"),
-            ));
-            continue;
-        }
-        let stem = match set.as_slice() {
-            [i] if x.spec.configurations[*i].side == Side::Spatial => "momentum",
-            [_] => "spatial_momentum",
-            _ => "total_momentum",
-        };
-        for mut c in about_axes(x, group, &total, &scale) {
-            if is_conserved(passages, &c.value) {
-                c.name = format!("{stem}{suffix}_{}", c.name);
-                let reason = "Noether: the action is invariant under what keeps the axis in space";
-                out.push(kept(c, Kind::Value, reason.to_owned()));
-            }
+    let mut sorts: Vec<Sort> = Vec::new();
+    for m in &motions {
+        if !sorts.contains(&m.sort) {
+            sorts.push(m.sort);
         }
     }
-    out
-}
-
-/// Momenta in body frames: of each configuration, whole or about an axis.
-pub(super) fn of_bodies(x: &Inputs, passages: &[Passage]) -> Vec<Invariant> {
-    let mut out = Vec::new();
-    for (i, c) in x.spec.configurations.iter().enumerate() {
-        let mu = in_body(x, i);
-        let scale = length(x, &mu);
-        let stem = match c.side {
-            Side::Body => "momentum",
-            Side::Spatial => "body_momentum",
-        };
-        let suffix = match x.spec.configurations.len() {
-            1 => String::new(),
-            _ => format!("_{}", ascii(x, c.element)),
-        };
-        let reason = "Noether: the action is invariant under motions of the body's own frame";
-        if is_conserved(passages, &mu) {
-            let c = Candidate {
-                name: format!("body_momentum_whole{suffix}"),
-                value: mu,
-                scale,
-            };
-            out.push(kept(c, Kind::Value, reason.to_owned()));
-            continue;
-        }
-        for mut c in about_axes(x, c.group, &mu, &scale) {
-            if is_conserved(passages, &c.value) {
-                c.name = format!("{stem}{suffix}_{}", c.name);
-                let reason =
-                    "Noether: the action is invariant under what keeps the axis in the body";
-                out.push(kept(c, Kind::Value, reason.to_owned()));
-            }
-        }
-    }
-    out
-}
-
-/// Parts of a momentum, with the name of what singles them out.
-fn about_axes(x: &Inputs, group: Group, m: &Expr, size: &Expr) -> Vec<Candidate> {
-    let s = &x.letters.symbols;
-    let n = match group {
-        Group::SpecialOrthogonal(n) | Group::GeneralLinear(n) => n,
-        Group::UnitQuaternions | Group::RigidMotions => Dim::Fixed(3),
-    };
-    let parameters = |shape: Shape| {
-        let list = x.spec.parameters.iter().copied();
-        list.filter(move |p| s.get(*p).shape == shape)
-    };
-    let mut axes: Vec<(String, Expr, Expr)> = Vec::new();
-    let count = match n {
-        Dim::Fixed(n) => n.min(8) as u8,
-        Dim::Named(_) => 0,
-    };
-    for axis in 0..count {
-        let name = format!("E{}", axis + 1);
-        axes.push((name, expr::unit(n, axis), expr::integer(1)));
-    }
-    for p in parameters(Shape::vector(n)).take(AXES) {
-        let v = expr::here(s, p);
-        axes.push((ascii(x, p), v.clone(), length(x, &v)));
-    }
-    let square = |e: &Expr| expr::power(e.clone(), Rational::integer(2));
-    let mut out = Vec::new();
-    match group {
-        Group::RigidMotions => {
-            // The angular part is a sum of two that both grow with the distance of the body.
-            let moved = x.spec.configurations.iter();
-            let moved = moved.filter(|c| c.group == Group::RigidMotions);
-            let lever = moved.map(|c| {
-                let place = expr::column(s, &expr::here(s, c.element));
-                length(x, &place)
-            });
-            let lever = expr::sum(lever, Shape::SCALAR);
-            let moment = expr::mul(lever, length(x, &bracket::linear(s, m)));
-            let with_lever = expr::add(size.clone(), moment);
-            // Homogeneous vectors, planes and points, have a part in space.
-            for p in parameters(Shape::vector(Dim::Fixed(4))).take(AXES) {
-                let whole = expr::here(s, p);
-                out.push(Candidate {
-                    name: format!("moment_about_{}", ascii(x, p)),
-                    value: homogeneous::moment(s, m, &whole),
-                    scale: expr::mul(with_lever.clone(), length(x, &whole)),
-                });
-                let v = homogeneous::spatial_part(s, &whole);
-                axes.push((ascii(x, p), v.clone(), length(x, &v)));
-            }
-            for (which, part, size) in [
-                ("linear", bracket::linear(s, m), size),
-                ("angular", bracket::angular(s, m), &with_lever),
-            ] {
-                out.push(Candidate {
-                    name: which.to_owned(),
-                    value: part.clone(),
-                    scale: size.clone(),
-                });
-                for (name, v, long) in &axes {
-                    out.push(Candidate {
-                        name: format!("{which}_{name}"),
-                        value: expr::dot(part.clone(), v.clone()),
-                        scale: expr::mul(size.clone(), long.clone()),
-                    });
-                }
-                // What is left when the part along an axis is not kept.
-                for (name, v, long) in axes.iter().skip(usize::from(count)) {
-                    out.push(Candidate {
-                        name: format!("{which}_across_{name}"),
-                        value: expr::cross(v.clone(), part.clone()),
-                        scale: expr::mul(size.clone(), long.clone()),
-                    });
-                }
-            }
-        }
-        Group::SpecialOrthogonal(Dim::Fixed(3)) | Group::UnitQuaternions => {
-            for (name, v, long) in axes {
-                out.push(Candidate {
-                    name,
-                    value: expr::dot(m.clone(), v),
-                    scale: expr::mul(size.clone(), long),
-                });
-            }
-        }
-        // What keeps an axis a: |a|² m less its parts along a.
-        Group::SpecialOrthogonal(_) => {
-            for (name, v, long) in &axes {
-                let row = expr::transpose(s, v.clone());
-                let outer = expr::mul(v.clone(), row);
-                let shape = m.shape();
-                let value = expr::sum(
-                    [
-                        expr::mul(expr::dot(v.clone(), v.clone()), m.clone()),
-                        expr::neg(expr::mul(outer.clone(), m.clone())),
-                        expr::neg(expr::mul(m.clone(), outer)),
-                    ],
-                    shape,
-                );
-                out.push(Candidate {
-                    name: name.clone(),
-                    value,
-                    scale: expr::mul(size.clone(), square(long)),
-                });
-            }
-            // Planes that two axes span.
-            for (i, (first, u, long)) in axes.iter().enumerate() {
-                for (second, v, other) in &axes[i + 1..] {
-                    out.push(Candidate {
-                        name: format!("{first}_{second}"),
-                        value: expr::dot(u.clone(), expr::mul(m.clone(), v.clone())),
-                        scale: expr::product([size.clone(), long.clone(), other.clone()]),
-                    });
-                }
-            }
-        }
-        // What keeps a quadratic form: for δQ = ζ Q with ζ^T P + P ζ = 0 the skew part of P⁻¹ m.
-        Group::GeneralLinear(n) => {
-            let mut forms = vec![("identity".to_owned(), expr::identity(n))];
-            for p in parameters(Shape::square(n)).take(AXES) {
-                if s.get(p).structure.is_symmetric() {
-                    let e = expr::here(s, p);
-                    forms.push((
-                        format!("{}_inverse", ascii(x, p)),
-                        expr::inverse(s, e.clone()),
-                    ));
-                    forms.push((ascii(x, p), e));
-                }
-            }
-            for (name, p) in forms {
-                for (side, product) in [
-                    ("", expr::mul(p.clone(), m.clone())),
-                    ("_right", expr::mul(m.clone(), p.clone())),
-                ] {
-                    if side == "_right" && name == "identity" {
-                        continue;
-                    }
-                    out.push(Candidate {
-                        name: format!("skew_{name}{side}"),
-                        value: expr::part(Part::Skew, product),
-                        scale: expr::mul(size.clone(), length(x, &p)),
-                    });
-                }
-            }
-        }
-    }
-    out
-}
-
-/// Whether a momentum is independent of those found, all read on the phase space.
-pub(super) fn is_new(x: &Inputs, passages: &[Passage], found: &[Invariant], v: &Invariant) -> bool {
-    let Some(p) = passages.first() else {
-        return false;
-    };
-    let linear = |v: &Invariant| {
-        let noether = v.family == Family::Noether;
-        noether || v.value.as_ref().is_some_and(|e| is_linear(x, e))
-    };
-    let mut rows = Vec::new();
-    for known in found.iter().filter(|f| linear(f)) {
-        rows.extend(differentials(x, &p.before, known).unwrap_or_default());
-    }
-    let before = rank(&rows);
-    let Some(own) = differentials(x, &p.before, v) else {
-        return false;
-    };
-    rows.extend(own);
-    rank(&rows) > before
-}
-
-fn is_linear(x: &Inputs, e: &Expr) -> bool {
-    // A number with one momentum in it, as a bracket `μ·a`.
-    let momenta = &x.letters.node_momentum;
-    fn count(e: &Expr, momenta: &[crate::expr::symbol::SymbolId]) -> usize {
-        match e.node() {
-            expr::Node::Letter(l) => usize::from(momenta.contains(&l.symbol)),
-            _ => e.children().into_iter().map(|c| count(c, momenta)).sum(),
-        }
-    }
-    count(e, momenta) > 0
-        && !matches!(e.node(), expr::Node::Power(..))
-        && x.letters.node_momentum.iter().all(|m| {
-            let second = expr::gradient(&x.letters.symbols, e, here(*m));
-            !expr::letters(&second)
-                .iter()
-                .any(|l| momenta.contains(&l.symbol))
-        })
-}
-
-/// Differentials of the entries of an invariant on the phase space: momenta, elements, and what is
-/// carried without a definition.
-fn differentials(x: &Inputs, point: &Point, v: &Invariant) -> Option<Vec<Vec<u64>>> {
-    let s = &x.letters.symbols;
-    let value = v.value.clone()?;
-    let definitions: Vec<(Letter, Expr)> = x
-        .spec
-        .advected
-        .iter()
-        .filter_map(|a| Some((here(a.quantity), a.definition.clone()?)))
-        .collect();
-    let value = expr::substitute(s, &value, &definitions);
-    let shape = value.shape();
-    let (rows, cols) = (point.dim(shape.rows), point.dim(shape.cols));
-    let mut coordinates: Vec<(Letter, Matrix)> = Vec::new();
-    for id in s.ids() {
-        let symbol = s.get(id);
-        let of_phase = match symbol.role {
-            Role::Element => true,
-            Role::Derived => x.letters.node_momentum.contains(&id),
-            Role::Advected => x
-                .spec
-                .advected
-                .iter()
-                .any(|a| a.quantity == id && a.definition.is_none()),
-            Role::Step | Role::Parameter | Role::Velocity | Role::Multiplier | Role::Variation => {
-                false
-            }
-        };
-        if of_phase {
-            for t in tangents(point, here(id), symbol.structure)? {
-                coordinates.push((here(id), t));
-            }
-        }
-    }
-    // Entry (i, j) is the pairing with a constant matrix: linear in it, so one derivative serves.
-    let mut out = vec![vec![0; coordinates.len()]; rows * cols];
-    let mut derivative: Option<(Letter, Expr)> = None;
-    // The change of a letter is a letter of its shape: itself, at a label that nothing else has.
-    let marker = |l: Letter| Letter {
-        symbol: l.symbol,
-        shift: Shift {
-            time: 0,
-            label: [1, 0],
+    let readings = readings(x, &sorts);
+    let mut search = Search {
+        x,
+        passages,
+        motions: &motions,
+        readings: &readings,
+        spanned: vec![0; kernels.len()],
+        kernels: &kernels,
+        found: Vec::new(),
+        sets: match x.spec.configurations.len() > FEW {
+            true => components(x),
+            false => Vec::new(),
         },
+        wholes: Vec::new(),
     };
-    for (k, (l, t)) in coordinates.iter().enumerate() {
-        let mark = marker(*l);
-        if derivative.as_ref().is_none_or(|(of, _)| of != l) {
-            let change = expr::letter(s, mark.symbol, mark.shift);
-            derivative = Some((*l, expr::directional(s, &value, &[(*l, change)])));
-        }
-        let Some((_, d)) = &derivative else { continue };
-        let mut p = point.clone();
-        p.set(mark, t.clone());
-        let moved = p.value(d)?;
-        for (row, entry) in out.iter_mut().zip(&moved.data) {
-            row[k] = *entry;
-        }
+    search.of_one_reading(&mut Samples::of_steps(x, passages));
+    if !kernels.is_empty() && !search.is_complete() {
+        let mut samples = Samples::of_differences(x);
+        search.of_one_reading(&mut samples);
+        search.of_several_readings(&mut samples);
+        search.prune();
     }
-    Some(out)
+    let (space, others): (Vec<_>, Vec<_>) = search.found.into_iter().partition(|(space, _)| *space);
+    let only = |list: Vec<(bool, Invariant)>| list.into_iter().map(|(_, v)| v).collect();
+    (only(space), only(others))
 }
 
-/// Tangent directions at a letter's value that keep its structure, one for each coordinate.
-pub(super) fn tangents(point: &Point, l: Letter, structure: Structure) -> Option<Vec<Matrix>> {
-    let value = point.letter(l)?;
-    let (rows, cols) = (value.rows, value.cols);
-    let entries = bracket::coordinates(structure, rows, cols);
-    let unit = |i: usize, j: usize, mirror: Option<u64>| {
-        let mut m = Matrix::zeros(rows, cols);
-        m.data[i * cols + j] = 1;
-        if let Some(sign) = mirror.filter(|_| i != j) {
-            m.data[j * cols + i] = sign;
+/// The symmetries at fixed parameters; with assumptions at several, whose branches take turns.
+fn kernels<'a>(x: &Inputs<'a>, motions: &[Motion]) -> Vec<Kernel<'a>> {
+    let wanted = if x.assumed.is_empty() { 1 } else { 3 };
+    // Even attempts take the smallest size where it has only a name.
+    let attempts = (0..20).map(|turn| 2 * turn);
+    let found = attempts.filter_map(|attempt| Kernel::new(x, motions, attempt));
+    found.take(wanted).collect()
+}
+
+/// What a reading gives of a motion, so many times.
+#[derive(Clone, Copy)]
+pub(super) struct Term<'s> {
+    pub(super) reading: &'s Reading,
+    pub(super) motion: &'s Motion,
+    pub(super) times: i64,
+}
+
+struct Search<'a, 's> {
+    x: &'s Inputs<'a>,
+    passages: &'s [Passage<'a>],
+    motions: &'s [Motion],
+    readings: &'s [Reading],
+    kernels: &'s [Kernel<'a>],
+    /// Each with whether it is one of space alone.
+    found: Vec<(bool, Invariant)>,
+    /// How many are independent at the parameters of each kernel.
+    spanned: Vec<usize>,
+    /// Sets of configurations that the action couples, where there are many.
+    sets: Vec<Vec<usize>>,
+    /// Motions whose whole momentum has been found.
+    wholes: Vec<(usize, Way)>,
+}
+
+impl<'a, 's> Search<'a, 's> {
+    /// Whether the whole of it is known to be conserved, so that its parts are: with a count of all
+    /// that there are, that says it.
+    fn is_covered(&self, column: &[&Motion]) -> bool {
+        let whole = |m: &Motion| self.wholes.contains(&(m.configuration, m.way));
+        self.kernels.is_empty() && column.iter().all(|m| whole(m))
+    }
+
+    fn is_complete(&self) -> bool {
+        let all = self.kernels.iter().zip(&self.spanned);
+        !self.kernels.is_empty() && all.into_iter().all(|(k, n)| *n >= k.dimension)
+    }
+
+    /// Motions of a sort that may be combined, each by itself; of many configurations those that the
+    /// action couples, each set for itself and its members added.
+    fn columns(&self, sort: Sort) -> Vec<Vec<Vec<&'s Motion>>> {
+        let own = self.motions.iter().filter(|m| m.sort == sort);
+        if self.sets.is_empty() {
+            return vec![own.map(|m| vec![m]).collect()];
         }
-        m
-    };
-    let minus = Some(crate::algebra::exact::negate(1));
-    // A translation has no mirror image, a turn has.
-    let turn = |i: usize, j: usize| unit(i, j, (j < 3).then(|| crate::algebra::exact::negate(1)));
-    let list = entries.into_iter().map(|(i, j)| match structure {
-        Structure::UnitQuaternion => {
-            let axis = [1, 2, 3].map(|k| u64::from(k == i));
-            value.times(&crate::algebra::exact::pure(&axis))
+        let mut out: Vec<Vec<Vec<&Motion>>> = vec![Vec::new(); self.sets.len()];
+        for m in own {
+            let set = self.sets.iter().position(|s| s.contains(&m.configuration));
+            let Some(columns) = set.and_then(|i| out.get_mut(i)) else {
+                continue;
+            };
+            match columns.iter_mut().find(|list| list[0].way == m.way) {
+                Some(list) => list.push(m),
+                None => columns.push(vec![m]),
+            }
         }
-        Structure::RigidMotion => value.times(&turn(i, j)),
-        Structure::General | Structure::Invertible | Structure::Diagonal => unit(i, j, None),
-        Structure::Symmetric => unit(i, j, Some(1)),
-        Structure::Skew => unit(i, j, minus),
-        Structure::Orthogonal => value.times(&unit(i, j, minus)),
+        out
+    }
+
+    /// Combinations of one reading of several motions.
+    fn of_one_reading(&mut self, samples: &mut Samples) {
+        for reading in self.readings {
+            if self.is_complete() {
+                return;
+            }
+            for mut columns in self.columns(reading.sort) {
+                columns.retain(|c| !self.is_covered(c));
+                let values: Vec<Expr> = columns.iter().map(|c| self.value(reading, c)).collect();
+                for v in samples.combinations(&values) {
+                    let terms = columns.iter().zip(&v).filter(|(_, times)| **times != 0);
+                    let terms = terms.flat_map(|(c, times)| {
+                        c.iter().map(|motion| Term {
+                            reading,
+                            motion,
+                            times: *times,
+                        })
+                    });
+                    self.accept(&terms.collect::<Vec<_>>());
+                }
+            }
+        }
+    }
+
+    /// Combinations of numbers that several readings give.
+    fn of_several_readings(&mut self, samples: &mut Samples) {
+        if self.is_complete() {
+            return;
+        }
+        let mut terms: Vec<Vec<Term>> = Vec::new();
+        for reading in self.readings.iter().filter(|r| r.is_number()) {
+            for column in self.columns(reading.sort).into_iter().flatten() {
+                if column.iter().any(|m| m.spanned) || terms.len() >= NUMBERS {
+                    continue;
+                }
+                let term = |motion| Term {
+                    reading,
+                    motion,
+                    times: 1,
+                };
+                terms.push(column.into_iter().map(term).collect());
+            }
+        }
+        let values: Vec<Expr> = terms.iter().map(|list| sum(self.x, list)).collect();
+        for v in samples.combinations(&values) {
+            if self.is_complete() {
+                return;
+            }
+            let list = terms.iter().zip(&v).filter(|(_, times)| **times != 0);
+            let list = list.flat_map(|(list, times)| {
+                list.iter().map(|t| Term {
+                    times: *times,
+                    ..*t
+                })
+            });
+            self.accept(&list.collect::<Vec<_>>());
+        }
+    }
+
+    /// Takes out what the others span: a part that was found before the whole.
+    fn prune(&mut self) {
+        let mut i = 0;
+        while i < self.found.len() {
+            let others = |k: &Kernel| {
+                let list = self.found.iter().enumerate().filter(|(j, _)| *j != i);
+                k.spanned(list.filter_map(|(_, (_, v))| v.value.as_ref()))
+            };
+            let all = self.kernels.iter().zip(&self.spanned);
+            if all.into_iter().all(|(k, n)| others(k) == *n) {
+                self.found.remove(i);
+            } else {
+                i += 1;
+            }
+        }
+    }
+
+    fn value(&self, reading: &'s Reading, column: &[&'s Motion]) -> Expr {
+        let terms: Vec<Term> = column
+            .iter()
+            .map(|motion| Term {
+                reading,
+                motion,
+                times: 1,
+            })
+            .collect();
+        sum(self.x, &terms)
+    }
+
+    /// Adds an invariant if it is one, and if those before do not span it.
+    fn accept(&mut self, terms: &[Term]) {
+        let x = self.x;
+        let mut value = sum(x, terms);
+        let nothing = |p: &Passage| p.before.value(&value).is_none_or(|v| v.vanishes());
+        if self.passages.iter().all(nothing) {
+            return;
+        }
+        let mut scale = scale(terms);
+        let strict = is_conserved(self.passages, &value);
+        if !strict {
+            let Some(d) = difference::difference(x, self.passages, terms) else {
+                return;
+            };
+            let parts = summands_of(&d).into_iter().map(|t| length(x, &t));
+            scale = expr::sum(parts.chain([scale]), Shape::SCALAR);
+            value = expr::sub(value, d);
+            if !is_conserved(self.passages, &value) {
+                return;
+            }
+        }
+        if !self.kernels.is_empty() {
+            let all = self.kernels.iter().map(|k| {
+                let before = self.found.iter().filter_map(|(_, v)| v.value.as_ref());
+                k.spanned(before.chain([&value]))
+            });
+            let spanned: Vec<usize> = all.collect();
+            if spanned
+                .iter()
+                .zip(&self.spanned)
+                .all(|(new, old)| new <= old)
+            {
+                return;
+            }
+            self.spanned = spanned;
+        }
+        let kind = if strict { kind(x, terms) } else { Kind::Value };
+        let space = terms
+            .iter()
+            .all(|t| matches!(t.motion.way, Way::Space | Way::About(_)));
+        let invariant = Invariant {
+            name: name(x, terms),
+            kind,
+            family: Family::Noether,
+            value: Some(value),
+            scale: Some(scale),
+            exact: true,
+            reason: reason(x, terms, strict),
+        };
+        if terms.iter().all(|t| t.reading.is_whole()) && is_whole(x, terms) {
+            let moved = terms.iter().map(|t| (t.motion.configuration, t.motion.way));
+            self.wholes.extend(moved);
+        }
+        self.found.push((space, invariant));
+    }
+}
+
+fn summands_of(e: &Expr) -> Vec<Expr> {
+    match e.node() {
+        expr::Node::Sum(list) => list.clone(),
+        _ => vec![e.clone()],
+    }
+}
+
+/// The value of a combination.
+fn sum(x: &Inputs, terms: &[Term]) -> Expr {
+    combined(x, terms, |m| m.value.clone())
+}
+
+/// What the readings give of something that each motion has.
+pub(super) fn combined(x: &Inputs, terms: &[Term], of: impl Fn(&Motion) -> Expr) -> Expr {
+    // Readings are linear: of what one reads, the sum is taken first.
+    let mut groups: Vec<(&Reading, Vec<Expr>)> = Vec::new();
+    for t in terms {
+        let value = expr::scale(crate::algebra::Rational::integer(t.times), of(t.motion));
+        match groups
+            .iter_mut()
+            .find(|(r, _)| core::ptr::eq(*r, t.reading))
+        {
+            Some((_, list)) => list.push(value),
+            None => groups.push((t.reading, vec![value])),
+        }
+    }
+    let parts: Vec<Expr> = groups
+        .into_iter()
+        .map(|(reading, list)| {
+            let shape = list.first().map_or(Shape::SCALAR, Expr::shape);
+            reading.of(x, &expr::sum(list, shape))
+        })
+        .collect();
+    let shape = parts.first().map_or(Shape::SCALAR, Expr::shape);
+    expr::sum(parts, shape)
+}
+
+fn scale(terms: &[Term]) -> Expr {
+    let parts = terms.iter().map(|t| {
+        let times = crate::algebra::Rational::integer(t.times.abs());
+        let size = expr::mul(t.motion.scale.clone(), t.reading.size.clone());
+        expr::scale(times, size)
     });
-    Some(list.collect())
+    expr::sum(parts, Shape::SCALAR)
+}
+
+/// Whether the terms are whole momenta of their groups.
+fn is_whole(x: &Inputs, terms: &[Term]) -> bool {
+    terms.iter().all(|t| {
+        let group = x.spec.configurations[t.motion.configuration].group;
+        let natural = match t.motion.sort {
+            Sort::Rigid => true,
+            Sort::Planes(_) => group.is_orthogonal(),
+            Sort::Affine(_) | Sort::Entries(_) => true,
+            Sort::Angular => group == Group::UnitQuaternions || group.is_orthogonal(),
+            Sort::Linear => false,
+        };
+        natural && t.reading.is_whole()
+    })
+}
+
+fn configurations(terms: &[Term]) -> Vec<usize> {
+    let mut out: Vec<usize> = terms.iter().map(|t| t.motion.configuration).collect();
+    out.sort_unstable();
+    out.dedup();
+    out
+}
+
+fn kind(x: &Inputs, terms: &[Term]) -> Kind {
+    let set = configurations(terms);
+    let group = |i: usize| x.spec.configurations[i].group;
+    let alike = set.windows(2).all(|w| group(w[0]) == group(w[1]));
+    let plain = terms
+        .iter()
+        .all(|t| t.times == 1 && t.motion.way == Way::Space);
+    if !alike || !plain || !is_whole(x, terms) || set.len() != terms.len() {
+        return Kind::Value;
+    }
+    match (set.as_slice(), x.spec.configurations.as_slice()) {
+        ([only], [_]) => Kind::SpatialMomentum(*only),
+        _ => Kind::TotalMomentum(set),
+    }
+}
+
+/// A name: whose momentum it is, of which bodies, and what is read of it.
+fn name(x: &Inputs, terms: &[Term]) -> String {
+    let s = &x.letters.symbols;
+    let ascii = |id| s.get(id).ascii.clone();
+    let set = configurations(terms);
+    let all = |f: &dyn Fn(Way) -> bool| terms.iter().all(|t| f(t.motion.way));
+    let added = terms.iter().all(|t| t.times == 1);
+    let one = terms.len() == 1;
+    let whole = is_whole(x, terms);
+    let side = |i: &usize| x.spec.configurations[*i].side;
+    let own = set.first().map(side);
+    let mut parts: Vec<String> = Vec::new();
+    let stem = if all(&|w| matches!(w, Way::Space | Way::About(_))) && (one || added) {
+        match (one, whole, own) {
+            (true, false, Some(Side::Spatial)) => "momentum",
+            (true, ..) => "spatial_momentum",
+            (false, ..) => "total_momentum",
+        }
+    } else if all(&|w| w == Way::Body) && (one || added) {
+        match (one, whole, own) {
+            (true, true, _) => "body_momentum_whole",
+            (true, false, Some(Side::Body)) => "momentum",
+            (true, false, _) => "body_momentum",
+            (false, ..) => "total_body_momentum",
+        }
+    } else if all(&|w| w == Way::Spin) && (one || added) {
+        if one { "spin" } else { "total_spin" }
+    } else if all(&|w| w == Way::Shift) && (one || added) {
+        "coordinate_momentum"
+    } else {
+        "joint_momentum"
+    };
+    let mut out = stem.to_owned();
+    if set.len() < x.spec.configurations.len() {
+        for i in &set {
+            out += &format!("_{}", ascii(x.spec.configurations[*i].element));
+        }
+    }
+    let rigid =
+        |t: &Term| x.spec.configurations[t.motion.configuration].group == Group::RigidMotions;
+    let linear_group = |t: &Term| {
+        let group = x.spec.configurations[t.motion.configuration].group;
+        matches!(group, Group::GeneralLinear(_))
+    };
+    let mut push = |part: String| {
+        if !part.is_empty() && !parts.contains(&part) {
+            parts.push(part);
+        }
+    };
+    for t in terms {
+        let mixed = terms.iter().any(|o| rigid(o) || linear_group(o));
+        match t.motion.sort {
+            Sort::Linear => push("linear".to_owned()),
+            Sort::Angular if mixed && t.motion.way != Way::Spin => push("angular".to_owned()),
+            Sort::Planes(_) if linear_group(t) => push("planes".to_owned()),
+            _ => {}
+        }
+        if let Way::About(p) = t.motion.way {
+            push(format!("about_{}", ascii(p)));
+        }
+        push(t.reading.name.clone());
+    }
+    for part in parts {
+        out += &format!("_{part}");
+    }
+    out
+}
+
+/// Why it is conserved.
+fn reason(x: &Inputs, terms: &[Term], strict: bool) -> String {
+    let all = |f: &dyn Fn(Way) -> bool| terms.iter().all(|t| f(t.motion.way));
+    let whole = is_whole(x, terms);
+    let of_space = all(&|w| matches!(w, Way::Space | Way::About(_)));
+    let set = configurations(terms);
+    let group = set.first().map(|i| x.spec.configurations[*i].group);
+    let under = match (of_space, whole, group) {
+        (true, true, Some(Group::RigidMotions)) => "rigid motions of space",
+        (true, true, Some(Group::GeneralLinear(_))) => "linear maps of space",
+        (true, true, _) => "rotations of space",
+        (true, false, _) => "what keeps the axis in space",
+        _ if all(&|w| w == Way::Body) && whole => "motions of the body's own frame",
+        _ if all(&|w| w == Way::Body) => "what keeps the axis in the body",
+        _ if all(&|w| w == Way::Spin) => "turns of the body about its own origin",
+        _ if all(&|w| w == Way::Shift) => "shifts of the matrix of the configuration",
+        _ => "joint motions of space and bodies",
+    };
+    match strict {
+        true => format!("Noether: the action is invariant under {under}"),
+        false => format!("Noether: the action changes by a total difference under {under}"),
+    }
 }

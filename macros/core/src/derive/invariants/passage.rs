@@ -14,6 +14,7 @@ const STEPS: usize = 4;
 const STEPS_ASSUMED: usize = 8;
 
 /// Both ends of one step.
+#[derive(Clone)]
 pub(crate) struct Passage<'a> {
     /// Letters at the node where the step starts, the node momentum among them.
     pub(crate) before: Point<'a>,
@@ -43,11 +44,12 @@ pub(crate) fn passages<'a>(x: &Inputs<'a>, assumed: &[Expr]) -> Vec<Passage<'a>>
 }
 
 fn passage<'a>(x: &Inputs<'a>, equations: &[Expr], attempt: u64) -> Option<Passage<'a>> {
+    completed(x, start(x, equations, attempt)?)
+}
+
+/// Everything a step starts from: parameters, elements, velocities, what is carried.
+pub(super) fn start<'a>(x: &Inputs<'a>, equations: &[Expr], attempt: u64) -> Option<Point<'a>> {
     let mut before = assumed::point(&x.letters.symbols, attempt, equations)?;
-    let next = |l: Letter| Letter {
-        symbol: l.symbol,
-        shift: Shift::NEXT,
-    };
     // Computed once: elements of orthogonal groups cost an inversion.
     for c in &x.spec.configurations {
         for l in [here(c.element), here(c.velocity)] {
@@ -62,6 +64,15 @@ fn passage<'a>(x: &Inputs<'a>, equations: &[Expr], attempt: u64) -> Option<Passa
         };
         before.set(here(a.quantity), value);
     }
+    Some(before)
+}
+
+/// The step from there.
+pub(super) fn completed<'a>(x: &Inputs<'a>, mut before: Point<'a>) -> Option<Passage<'a>> {
+    let next = |l: Letter| Letter {
+        symbol: l.symbol,
+        shift: Shift::NEXT,
+    };
     let mut moved: Vec<(Letter, Matrix)> = Vec::new();
     for c in &x.spec.configurations {
         moved.push((here(c.element), before.value(&c.update)?));

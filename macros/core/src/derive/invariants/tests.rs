@@ -1,6 +1,8 @@
 //! Which invariants are found, and which are refused. Takes models as text; compares the names of
 //! what is found.
 
+mod symmetries;
+
 use super::{Family, Known};
 use crate::derive::Derivation;
 use crate::pipeline::derive_source;

@@ -1,0 +1,144 @@
+//! Whether a momentum is independent of others as a function on the phase space. Takes invariants and
+//! a general point; compares ranks of differentials in exact arithmetic.
+
+use super::passage::Passage;
+use super::{Family, Inputs, Invariant, here};
+use crate::algebra::assumed::rank;
+use crate::algebra::exact::{Matrix, Point};
+use crate::derive::bracket;
+use crate::expr::shape::Structure;
+use crate::expr::symbol::Role;
+use crate::expr::{self, Expr, Letter, Shift};
+
+/// Whether a momentum is independent of those found, all read on the phase space.
+pub(super) fn is_new(x: &Inputs, passages: &[Passage], found: &[Invariant], v: &Invariant) -> bool {
+    let Some(p) = passages.first() else {
+        return false;
+    };
+    let linear = |v: &Invariant| {
+        let noether = v.family == Family::Noether;
+        noether || v.value.as_ref().is_some_and(|e| is_linear(x, e))
+    };
+    let mut rows = Vec::new();
+    for known in found.iter().filter(|f| linear(f)) {
+        rows.extend(differentials(x, &p.before, known).unwrap_or_default());
+    }
+    let before = rank(&rows);
+    let Some(own) = differentials(x, &p.before, v) else {
+        return false;
+    };
+    rows.extend(own);
+    rank(&rows) > before
+}
+
+fn is_linear(x: &Inputs, e: &Expr) -> bool {
+    // A number with one momentum in it, as a bracket `μ·a`.
+    let momenta = &x.letters.node_momentum;
+    fn count(e: &Expr, momenta: &[crate::expr::symbol::SymbolId]) -> usize {
+        match e.node() {
+            expr::Node::Letter(l) => usize::from(momenta.contains(&l.symbol)),
+            _ => e.children().into_iter().map(|c| count(c, momenta)).sum(),
+        }
+    }
+    count(e, momenta) > 0
+        && !matches!(e.node(), expr::Node::Power(..))
+        && x.letters.node_momentum.iter().all(|m| {
+            let second = expr::gradient(&x.letters.symbols, e, here(*m));
+            !expr::letters(&second)
+                .iter()
+                .any(|l| momenta.contains(&l.symbol))
+        })
+}
+
+/// Differentials of the entries of an invariant on the phase space: momenta, elements, and what is
+/// carried without a definition.
+fn differentials(x: &Inputs, point: &Point, v: &Invariant) -> Option<Vec<Vec<u64>>> {
+    let s = &x.letters.symbols;
+    let value = v.value.clone()?;
+    let definitions: Vec<(Letter, Expr)> = x
+        .spec
+        .advected
+        .iter()
+        .filter_map(|a| Some((here(a.quantity), a.definition.clone()?)))
+        .collect();
+    let value = expr::substitute(s, &value, &definitions);
+    let shape = value.shape();
+    let (rows, cols) = (point.dim(shape.rows), point.dim(shape.cols));
+    let mut coordinates: Vec<(Letter, Matrix)> = Vec::new();
+    for id in s.ids() {
+        let symbol = s.get(id);
+        let of_phase = match symbol.role {
+            Role::Element => true,
+            Role::Derived => x.letters.node_momentum.contains(&id),
+            Role::Advected => x
+                .spec
+                .advected
+                .iter()
+                .any(|a| a.quantity == id && a.definition.is_none()),
+            Role::Step | Role::Parameter | Role::Velocity | Role::Multiplier | Role::Variation => {
+                false
+            }
+        };
+        if of_phase {
+            for t in tangents(point, here(id), symbol.structure)? {
+                coordinates.push((here(id), t));
+            }
+        }
+    }
+    // Entry (i, j) is the pairing with a constant matrix: linear in it, so one derivative serves.
+    let mut out = vec![vec![0; coordinates.len()]; rows * cols];
+    let mut derivative: Option<(Letter, Expr)> = None;
+    // The change of a letter is a letter of its shape: itself, at a label that nothing else has.
+    let marker = |l: Letter| Letter {
+        symbol: l.symbol,
+        shift: Shift {
+            time: 0,
+            label: [1, 0],
+        },
+    };
+    for (k, (l, t)) in coordinates.iter().enumerate() {
+        let mark = marker(*l);
+        if derivative.as_ref().is_none_or(|(of, _)| of != l) {
+            let change = expr::letter(s, mark.symbol, mark.shift);
+            derivative = Some((*l, expr::directional(s, &value, &[(*l, change)])));
+        }
+        let Some((_, d)) = &derivative else { continue };
+        let mut p = point.clone();
+        p.set(mark, t.clone());
+        let moved = p.value(d)?;
+        for (row, entry) in out.iter_mut().zip(&moved.data) {
+            row[k] = *entry;
+        }
+    }
+    Some(out)
+}
+
+/// Tangent directions at a letter's value that keep its structure, one for each coordinate.
+pub(super) fn tangents(point: &Point, l: Letter, structure: Structure) -> Option<Vec<Matrix>> {
+    let value = point.letter(l)?;
+    let (rows, cols) = (value.rows, value.cols);
+    let entries = bracket::coordinates(structure, rows, cols);
+    let unit = |i: usize, j: usize, mirror: Option<u64>| {
+        let mut m = Matrix::zeros(rows, cols);
+        m.data[i * cols + j] = 1;
+        if let Some(sign) = mirror.filter(|_| i != j) {
+            m.data[j * cols + i] = sign;
+        }
+        m
+    };
+    let minus = Some(crate::algebra::exact::negate(1));
+    // A translation has no mirror image, a turn has.
+    let turn = |i: usize, j: usize| unit(i, j, (j < 3).then(|| crate::algebra::exact::negate(1)));
+    let list = entries.into_iter().map(|(i, j)| match structure {
+        Structure::UnitQuaternion => {
+            let axis = [1, 2, 3].map(|k| u64::from(k == i));
+            value.times(&crate::algebra::exact::pure(&axis))
+        }
+        Structure::RigidMotion => value.times(&turn(i, j)),
+        Structure::General | Structure::Invertible | Structure::Diagonal => unit(i, j, None),
+        Structure::Symmetric => unit(i, j, Some(1)),
+        Structure::Skew => unit(i, j, minus),
+        Structure::Orthogonal => value.times(&unit(i, j, minus)),
+    });
+    Some(list.collect())
+}

@@ -1,0 +1,351 @@
+//! Symmetries as a linear problem: the momenta of some motions, with coefficients that are sought,
+//! change over no step. Takes random steps in exact arithmetic; gives all solutions in small whole
+//! numbers, and for fixed parameters how many there are in any numbers.
+
+use super::motions::{Motion, Sort};
+use super::passage::{Passage, completed, start};
+use super::{Inputs, here};
+use crate::algebra::assumed::{Independent, eliminate, rank};
+use crate::algebra::exact::{Matrix, Point, add, mul, negate, rational};
+use crate::check::spec::Side;
+use crate::expr::Expr;
+
+/// Rows beyond the unknowns: that one more is dependent by chance has a probability of 1e-18.
+const MORE: usize = 2;
+
+/// Most unknowns.
+const WIDEST: usize = 64;
+
+/// Largest numerator and denominator of a coefficient.
+const LARGEST: u64 = 1000;
+
+/// Most evaluations, in entries of matrices times nodes of expressions, of one search.
+const WORK: usize = 40_000_000;
+
+/// Steps whose differences are added with signs.
+pub(super) struct Sample<'a>(Vec<(bool, Passage<'a>)>);
+
+impl Sample<'_> {
+    /// The change of a quantity, added up.
+    fn change(&self, e: &Expr) -> Option<Vec<u64>> {
+        let mut out: Option<Vec<u64>> = None;
+        for (minus, p) in &self.0 {
+            let (before, after) = (p.before.value(e)?, p.after.value(e)?);
+            let change = after.data.iter().zip(&before.data);
+            let change = change.map(|(a, b)| {
+                let d = add(*a, negate(*b));
+                if *minus { negate(d) } else { d }
+            });
+            out = Some(match out {
+                None => change.collect(),
+                Some(sum) => sum.iter().zip(change).map(|(x, y)| add(*x, y)).collect(),
+            });
+        }
+        out
+    }
+}
+
+/// Samples, made as they are needed.
+pub(super) struct Samples<'a, 'x> {
+    x: &'x Inputs<'a>,
+    list: Vec<Sample<'a>>,
+    /// Whether what changes as a total difference counts as unchanged.
+    differences: bool,
+    attempt: u64,
+}
+
+impl<'a, 'x> Samples<'a, 'x> {
+    /// Samples of steps, these first.
+    pub(super) fn of_steps(x: &'x Inputs<'a>, passages: &[Passage<'a>]) -> Self {
+        let list = passages.iter().map(|p| Sample(vec![(false, p.clone())]));
+        Samples {
+            x,
+            list: list.collect(),
+            differences: false,
+            attempt: 2 * passages.len() as u64,
+        }
+    }
+
+    /// Samples of steps less total differences.
+    pub(super) fn of_differences(x: &'x Inputs<'a>) -> Self {
+        Samples {
+            x,
+            list: Vec::new(),
+            differences: true,
+            attempt: 0,
+        }
+    }
+
+    fn get(&mut self, index: usize) -> Option<&Sample<'a>> {
+        while self.list.len() <= index {
+            if self.attempt > 8 * index as u64 + 200 {
+                return None;
+            }
+            // Even ones take the smallest size where it has only a name.
+            self.attempt += 2;
+            let made =
+                start(self.x, self.x.assumed, self.attempt).and_then(|p| match self.differences {
+                    true => chain(self.x, &p, 1)?.pop(),
+                    false => Some(Sample(vec![(false, completed(self.x, p)?)])),
+                });
+            self.list.extend(made);
+        }
+        self.list.get(index)
+    }
+
+    /// Coefficients, as few as span them all, for which the sum of the quantities does not change.
+    pub(super) fn combinations(&mut self, values: &[Expr]) -> Vec<Vec<i64>> {
+        let n = values.len();
+        if n == 0 {
+            return Vec::new();
+        }
+        let mut rows: Vec<Vec<u64>> = Vec::new();
+        let mut independent = Independent::default();
+        let mut index = 0;
+        // At least four steps; branches of assumptions take turns.
+        let least = if self.x.assumed.is_empty() { 4 } else { 8 };
+        while rows.len() < n + MORE || index < least {
+            if index > n + least + 4 {
+                return Vec::new();
+            }
+            let Some(sample) = self.get(index) else {
+                return Vec::new();
+            };
+            index += 1;
+            let columns: Option<Vec<Vec<u64>>> = values.iter().map(|v| sample.change(v)).collect();
+            let Some(columns) = columns else { continue };
+            let entries = columns.first().map_or(0, Vec::len);
+            for k in 0..entries {
+                let row: Vec<u64> = columns.iter().map(|c| c[k]).collect();
+                if let Some(fresh) = independent.reduced(&row) {
+                    independent.push(fresh);
+                }
+                if independent.len() == n {
+                    return Vec::new();
+                }
+                rows.push(row);
+            }
+        }
+        let found = null_space(rows, n);
+        found.iter().filter_map(|v| whole_numbers(v)).collect()
+    }
+}
+
+/// A basis of the solutions of `rows x = 0`.
+fn null_space(mut rows: Vec<Vec<u64>>, n: usize) -> Vec<Vec<u64>> {
+    let pivots = eliminate(&mut rows, n);
+    let free = (0..n).filter(|j| !pivots.contains(j));
+    free.map(|j| {
+        let mut v = vec![0; n];
+        v[j] = 1;
+        for (row, p) in rows.iter().zip(&pivots) {
+            v[*p] = negate(row[j]);
+        }
+        v
+    })
+    .collect()
+}
+
+/// The same in whole numbers without a common factor, the first one positive.
+fn whole_numbers(v: &[u64]) -> Option<Vec<i64>> {
+    let parts: Vec<(i64, i64)> = v
+        .iter()
+        .map(|x| rational(*x, LARGEST))
+        .collect::<Option<_>>()?;
+    let gcd = |mut a: i64, mut b: i64| {
+        while b != 0 {
+            (a, b) = (b, a % b);
+        }
+        a.abs()
+    };
+    let below = parts.iter().try_fold(1i64, |m, (_, d)| {
+        let next = m / gcd(m, *d) * d;
+        (next <= LARGEST as i64).then_some(next)
+    })?;
+    let whole: Vec<i64> = parts.iter().map(|(n, d)| n * (below / d)).collect();
+    let common = whole.iter().fold(0, |g, x| gcd(g, *x)).max(1);
+    let sign = whole.iter().find(|x| **x != 0)?.signum();
+    Some(whole.iter().map(|x| sign * x / common).collect())
+}
+
+/// All symmetries at fixed parameters.
+pub(super) struct Kernel<'a> {
+    /// How many momenta are conserved, less those that are constants or the same as others.
+    pub(super) dimension: usize,
+    /// Nodes of motions that share their parameters, and what is carried.
+    nodes: Vec<Point<'a>>,
+}
+
+impl<'a> Kernel<'a> {
+    /// Solves for the coefficients of all motions at once, total differences left out of account;
+    /// nothing where that is too much work.
+    pub(super) fn new(x: &Inputs<'a>, motions: &[Motion], attempt: u64) -> Option<Kernel<'a>> {
+        let own: Vec<&Motion> = motions.iter().filter(|m| !m.spanned).collect();
+        let base = start(x, x.assumed, attempt)?;
+        let width: usize = own.iter().map(|m| coordinates(&base, m)).sum();
+        if width > WIDEST || work(x, &base).saturating_mul(2 * (width + MORE)) > WORK {
+            return None;
+        }
+        let steps = chain(x, &base, width + MORE)?;
+        let row = |entries: &dyn Fn(&Expr) -> Option<Matrix>| -> Option<Vec<u64>> {
+            let mut out = Vec::new();
+            for m in &own {
+                let value = entries(&m.value)?;
+                out.extend(independent_entries(m.sort, &value));
+            }
+            Some(out)
+        };
+        let (mut changes, mut momenta) = (Vec::new(), Vec::new());
+        let mut nodes = Vec::new();
+        for sample in steps {
+            changes.push(row(&|e| {
+                let data = sample.change(e)?;
+                let (_, first) = sample.0.first()?;
+                let value = first.before.value(e)?;
+                Some(Matrix { data, ..value })
+            })?);
+            let (_, step) = sample.0.into_iter().next()?;
+            momenta.push(row(&|e| step.before.value(e))?);
+            nodes.push(step.before);
+        }
+        let kept = null_space(changes, width);
+        // A function of the nodes for each of them, and the constants.
+        let functions = kept.iter().map(|v| {
+            let products = momenta.iter().map(|row| {
+                let terms = row.iter().zip(v);
+                terms.fold(0, |t, (a, b)| add(t, mul(*a, *b)))
+            });
+            products.collect::<Vec<u64>>()
+        });
+        Some(Kernel {
+            dimension: rank(&functions.collect::<Vec<_>>()),
+            nodes,
+        })
+    }
+
+    /// How many of these quantities are linearly independent, constants left out.
+    pub(super) fn spanned<'e>(&self, found: impl Iterator<Item = &'e Expr>) -> usize {
+        let mut rows: Vec<Vec<u64>> = vec![vec![1; self.nodes.len()]];
+        for e in found {
+            let values: Option<Vec<Matrix>> = self.nodes.iter().map(|p| p.value(e)).collect();
+            let Some(values) = values else { continue };
+            let entries = values.first().map_or(0, |m| m.data.len());
+            rows.extend((0..entries).map(|k| values.iter().map(|m| m.data[k]).collect::<Vec<_>>()));
+        }
+        rank(&rows) - 1
+    }
+}
+
+/// How many independent entries a momentum has.
+fn coordinates(point: &Point, m: &Motion) -> usize {
+    match m.sort {
+        Sort::Angular | Sort::Linear => 3,
+        Sort::Rigid => 6,
+        Sort::Planes(n) => {
+            let n = point.dim(n);
+            n * (n - 1) / 2
+        }
+        Sort::Affine(n) | Sort::Entries(n) => point.dim(n) * point.dim(n),
+    }
+}
+
+fn independent_entries(sort: Sort, value: &Matrix) -> Vec<u64> {
+    match sort {
+        Sort::Planes(_) => (0..value.rows)
+            .flat_map(|i| (i + 1..value.cols).map(move |j| value.at(i, j)))
+            .collect(),
+        _ => value.data.clone(),
+    }
+}
+
+/// About how much one step costs.
+fn work(x: &Inputs, point: &Point) -> usize {
+    let nodes: usize = x
+        .balances
+        .iter()
+        .map(|b| (b.incoming.size() + b.outgoing.size()) as usize)
+        .sum();
+    let largest = x
+        .spec
+        .configurations
+        .iter()
+        .map(|c| point.dim(c.group.size()));
+    let n = largest.max().unwrap_or(1);
+    nodes.saturating_mul(n * n * n)
+}
+
+/// Steps between random nodes with the parameters of a point, each with the steps that lead from
+/// the identity to its ends: a quantity that changes by `F(end) - F(start)` changes by `F` of its end
+/// over a step that starts at the identity, up to a constant.
+fn chain<'a>(x: &Inputs<'a>, base: &Point<'a>, count: usize) -> Option<Vec<Sample<'a>>> {
+    let mut origin = base.clone();
+    for c in &x.spec.configurations {
+        origin.set(here(c.element), Matrix::identity(base.dim(c.group.size())));
+    }
+    for a in &x.spec.advected {
+        if let Some(d) = &a.definition {
+            let value = origin.value(d)?;
+            origin.set(here(a.quantity), value);
+        }
+    }
+    let mut out = Vec::new();
+    let mut from: Option<Passage> = None;
+    // Roots that do not exist cost a part of the draws.
+    for attempt in 0..8 * (count as u64 + 10) {
+        if out.len() == count {
+            return Some(out);
+        }
+        let Some(to) = from_identity(x, &origin, 1000 + attempt) else {
+            continue;
+        };
+        let Some(start) = &from else {
+            from = Some(to);
+            continue;
+        };
+        let Some(step) = between(x, &origin, start, &to) else {
+            continue;
+        };
+        out.push(Sample(vec![
+            (false, step),
+            (true, to.clone()),
+            (false, start.clone()),
+        ]));
+        from = Some(to);
+    }
+    None
+}
+
+/// The step from the identity to a random node.
+fn from_identity<'a>(x: &Inputs<'a>, origin: &Point<'a>, attempt: u64) -> Option<Passage<'a>> {
+    let draw = origin.redrawn(attempt);
+    let mut p = origin.clone();
+    for c in &x.spec.configurations {
+        p.set(here(c.velocity), draw.letter(here(c.velocity))?);
+    }
+    completed(x, p)
+}
+
+/// The step from the end of one step to that of another.
+fn between<'a>(
+    x: &Inputs<'a>,
+    origin: &Point<'a>,
+    from: &Passage<'a>,
+    to: &Passage<'a>,
+) -> Option<Passage<'a>> {
+    let mut p = origin.clone();
+    for c in &x.spec.configurations {
+        let element = here(c.element);
+        let (a, b) = (from.after.letter(element)?, to.after.letter(element)?);
+        let (back, _) = a.inverted()?;
+        let velocity = match c.side {
+            Side::Body => back.times(&b),
+            Side::Spatial => b.times(&back),
+        };
+        p.set(element, a);
+        p.set(here(c.velocity), velocity);
+    }
+    for a in &x.spec.advected {
+        p.set(here(a.quantity), from.after.letter(here(a.quantity))?);
+    }
+    completed(x, p)
+}

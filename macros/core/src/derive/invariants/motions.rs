@@ -1,0 +1,333 @@
+//! Motions of one configuration that may be symmetries, and their momenta: turns and shifts seen from
+//! space and from the body, turns about the body's own origin, and shifts of matrices entry by entry.
+//! Takes the configurations; gives momenta in the letters of a node, and the variation that a motion
+//! is.
+
+use super::{Inputs, length};
+use crate::check::spec::{Configuration, Group, Side};
+use crate::derive::{bracket, lie};
+use crate::expr::shape::{Dim, Shape, Structure};
+use crate::expr::symbol::{SymbolId, Symbols};
+use crate::expr::{self, Expr};
+
+const THREE: Dim = Dim::Fixed(3);
+const FOUR: Dim = Dim::Fixed(4);
+const SIX: Dim = Dim::Fixed(6);
+
+/// What a motion is read in: momenta of one sort may be added.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Sort {
+    /// Turns of three dimensions, by their axis.
+    Angular,
+    /// Shifts of three dimensions.
+    Linear,
+    /// Both of them.
+    Rigid,
+    /// Turns of n dimensions, by their planes.
+    Planes(Dim),
+    /// Linear maps of n dimensions.
+    Affine(Dim),
+    /// Shifts of matrices.
+    Entries(Dim),
+}
+
+/// From where a motion is seen.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Way {
+    /// `δg = ζ g`.
+    Space,
+    /// `δg = g ζ`.
+    Body,
+    /// A rigid motion turns as seen from space, and its origin stays.
+    Spin,
+    /// A rigid motion turns as seen from space, about a place that a parameter is.
+    About(SymbolId),
+    /// `δQ` is a constant matrix.
+    Shift,
+}
+
+/// A motion of one configuration.
+#[derive(Clone, Debug)]
+pub(super) struct Motion {
+    pub(super) configuration: usize,
+    pub(super) way: Way,
+    pub(super) sort: Sort,
+    /// Its momentum.
+    pub(super) value: Expr,
+    /// The natural scale of it.
+    pub(super) scale: Expr,
+    /// Whether the motions before span it.
+    pub(super) spanned: bool,
+}
+
+/// Most places that turns are tried about.
+const PLACES: usize = 6;
+
+/// The node momentum in the space frame.
+pub(super) fn in_space(x: &Inputs, i: usize) -> Expr {
+    turned(x, i, Side::Body)
+}
+
+/// The node momentum in the body frame.
+fn in_body(x: &Inputs, i: usize) -> Expr {
+    turned(x, i, Side::Spatial)
+}
+
+/// The node momentum, carried to the other frame if it is stated on this side.
+fn turned(x: &Inputs, i: usize, from: Side) -> Expr {
+    let s = &x.letters.symbols;
+    let c = &x.spec.configurations[i];
+    let mu = expr::here(s, x.letters.node_momentum[i]);
+    if c.side != from {
+        return mu;
+    }
+    let g = expr::here(s, c.element);
+    let g = match c.side {
+        Side::Body => g,
+        Side::Spatial => expr::inverse(s, g),
+    };
+    lie::to_space(s, c.group, &g, mu)
+}
+
+/// Angular and linear momentum of a rigid motion, in space or in the body.
+fn parts(x: &Inputs, i: usize, way: Way) -> (Expr, Expr) {
+    let s = &x.letters.symbols;
+    let c = &x.spec.configurations[i];
+    let mu = expr::here(s, x.letters.node_momentum[i]);
+    let (a, l) = (bracket::angular(s, &mu), bracket::linear(s, &mu));
+    let g = expr::here(s, c.element);
+    let (turn, place) = (expr::block(s, &g), expr::column(s, &g));
+    match (way == Way::Body, c.side) {
+        (true, Side::Body) | (false, Side::Spatial) => (a, l),
+        (true, Side::Spatial) => {
+            let back = expr::transpose(s, turn);
+            let own = expr::sub(a, expr::cross(place, l.clone()));
+            (expr::mul(back.clone(), own), expr::mul(back, l))
+        }
+        (false, Side::Body) => {
+            let l = expr::mul(turn.clone(), l);
+            (
+                expr::add(expr::mul(turn, a), expr::cross(place, l.clone())),
+                l,
+            )
+        }
+    }
+}
+
+/// What the momentum of a rigid motion grows with: its angular part is a sum of two that both grow
+/// with the distance of the body.
+pub(super) fn with_lever(x: &Inputs, i: usize, m: &Expr) -> Expr {
+    let s = &x.letters.symbols;
+    let place = expr::column(s, &expr::here(s, x.spec.configurations[i].element));
+    let (_, linear) = parts(x, i, Way::Space);
+    expr::add(
+        length(x, m),
+        expr::mul(length(x, &place), length(x, &linear)),
+    )
+}
+
+/// All motions of all configurations; those as seen from space first.
+pub(super) fn motions(x: &Inputs) -> Vec<Motion> {
+    let mut out: Vec<Motion> = Vec::new();
+    let ways = [Way::Space, Way::Spin, Way::Shift, Way::Body];
+    for way in ways {
+        for i in 0..x.spec.configurations.len() {
+            of_configuration(x, i, way, &mut out);
+        }
+    }
+    let s = &x.letters.symbols;
+    let places = x.spec.parameters.iter().copied();
+    let places = places.filter(|p| s.get(*p).shape == Shape::vector(THREE));
+    for p in places.take(PLACES) {
+        for i in 0..x.spec.configurations.len() {
+            of_configuration(x, i, Way::About(p), &mut out);
+        }
+    }
+    out
+}
+
+fn of_configuration(x: &Inputs, i: usize, way: Way, out: &mut Vec<Motion>) {
+    let s = &x.letters.symbols;
+    let c = &x.spec.configurations[i];
+    let mut push = |sort: Sort, value: Expr, scale: Option<Expr>, spanned: bool| {
+        let scale = scale.unwrap_or_else(|| length(x, &value));
+        out.push(Motion {
+            configuration: i,
+            way,
+            sort,
+            value,
+            scale,
+            spanned,
+        });
+    };
+    let m = match way {
+        Way::Body => in_body(x, i),
+        Way::Space | Way::Spin | Way::About(_) | Way::Shift => in_space(x, i),
+    };
+    match (c.group, way) {
+        (Group::RigidMotions, Way::Space | Way::Body) => {
+            let angular = match way {
+                Way::Space => with_lever(x, i, &m),
+                _ => length(x, &m),
+            };
+            push(Sort::Rigid, m.clone(), None, true);
+            let (a, l) = parts(x, i, way);
+            push(Sort::Linear, l, Some(length(x, &m)), false);
+            push(Sort::Angular, a, Some(angular), false);
+        }
+        (Group::RigidMotions, Way::Spin) => {
+            let (angular, linear) = parts(x, i, Way::Space);
+            let mu = expr::here(s, x.letters.node_momentum[i]);
+            let g = expr::here(s, c.element);
+            let value = match c.side {
+                Side::Body => expr::mul(expr::block(s, &g), bracket::angular(s, &mu)),
+                Side::Spatial => expr::sub(angular, expr::cross(expr::column(s, &g), linear)),
+            };
+            // The state keeps the moment about the origin of space, of which this is a part.
+            push(Sort::Angular, value, Some(with_lever(x, i, &m)), false);
+        }
+        (Group::RigidMotions, Way::About(p)) => {
+            let place = expr::here(s, p);
+            let (angular, linear) = parts(x, i, Way::Space);
+            let value = expr::sub(angular, expr::cross(place.clone(), linear));
+            let far = expr::mul(length(x, &place), length(x, &m));
+            let scale = expr::add(with_lever(x, i, &m), far);
+            push(Sort::Angular, value, Some(scale), true);
+        }
+        (Group::SpecialOrthogonal(THREE) | Group::UnitQuaternions, Way::Space | Way::Body) => {
+            push(Sort::Angular, m, None, false);
+        }
+        (Group::SpecialOrthogonal(n), Way::Space | Way::Body) => {
+            push(Sort::Planes(n), m, None, false);
+        }
+        (Group::GeneralLinear(n), Way::Space | Way::Body) => {
+            push(Sort::Affine(n), m.clone(), None, false);
+            let scale = Some(length(x, &m));
+            if n == THREE {
+                let turning = lie::covector(x.letters, Group::SpecialOrthogonal(n), m);
+                push(Sort::Angular, turning, scale, true);
+            } else {
+                let turning = expr::sub(m.clone(), expr::transpose(s, m));
+                push(Sort::Planes(n), turning, scale, true);
+            }
+        }
+        (Group::GeneralLinear(n), Way::Shift) => {
+            let mu = expr::here(s, x.letters.node_momentum[i]);
+            let back = expr::inverse(s, expr::transpose(s, expr::here(s, c.element)));
+            let value = match c.side {
+                Side::Body => expr::mul(back, mu),
+                Side::Spatial => expr::mul(mu, back),
+            };
+            push(Sort::Entries(n), value, None, false);
+        }
+        (_, Way::Spin | Way::About(_) | Way::Shift) => {}
+    }
+}
+
+impl Motion {
+    /// Shape and structure of what the momentum is paired with.
+    pub(super) fn direction(&self) -> (Shape, Structure) {
+        match self.sort {
+            Sort::Angular | Sort::Linear => (Shape::vector(THREE), Structure::General),
+            Sort::Rigid => (Shape::vector(SIX), Structure::General),
+            Sort::Planes(n) => (Shape::square(n), Structure::Skew),
+            Sort::Affine(n) | Sort::Entries(n) => (Shape::square(n), Structure::General),
+        }
+    }
+
+    /// The covector that a gradient with respect to the direction is.
+    pub(super) fn covector(&self, s: &Symbols, gradient: Expr) -> Expr {
+        match self.sort {
+            Sort::Planes(_) => expr::sub(gradient.clone(), expr::transpose(s, gradient)),
+            Sort::Angular | Sort::Linear | Sort::Rigid | Sort::Affine(_) | Sort::Entries(_) => {
+                gradient
+            }
+        }
+    }
+
+    /// The letter of variation `ξ` of the motion along `v`, `Λ^-1 δΛ` on the body side and
+    /// `δΛ Λ^-1` on the spatial side, by the element `g`.
+    pub(super) fn variation(&self, s: &Symbols, c: &Configuration, g: &Expr, v: &Expr) -> Expr {
+        let v = v.clone();
+        // In the frame of the motion, and whether that is the frame of ξ.
+        let own = match (self.way, c.side) {
+            (Way::Body, Side::Body) | (Way::Space, Side::Spatial) => true,
+            (Way::Body, Side::Spatial) | (Way::Space, Side::Body) => false,
+            (Way::Spin | Way::About(_) | Way::Shift, _) => false,
+        };
+        let back = || expr::inverse(s, g.clone());
+        match c.group {
+            Group::RigidMotions => {
+                let (angular, linear) = self.twist(s, g, v);
+                if own || c.side == Side::Spatial && self.way != Way::Body {
+                    return expr::stacked(angular, linear);
+                }
+                let turn = expr::block(s, g);
+                let place = expr::column(s, g);
+                if c.side == Side::Spatial {
+                    let angular = expr::mul(turn.clone(), angular);
+                    let moved =
+                        expr::add(expr::mul(turn, linear), expr::cross(place, angular.clone()));
+                    return expr::stacked(angular, moved);
+                }
+                let moved = expr::add(linear, expr::cross(angular.clone(), place));
+                let turn = expr::transpose(s, turn);
+                expr::stacked(expr::mul(turn.clone(), angular), expr::mul(turn, moved))
+            }
+            Group::SpecialOrthogonal(THREE) | Group::UnitQuaternions => {
+                let turn = match c.group {
+                    Group::UnitQuaternions => expr::rotation(s, g.clone()),
+                    _ => g.clone(),
+                };
+                let moved = match (own, c.side) {
+                    (true, _) => v,
+                    (false, Side::Body) => expr::mul(expr::transpose(s, turn), v),
+                    (false, Side::Spatial) => expr::mul(turn, v),
+                };
+                match c.group {
+                    Group::UnitQuaternions => moved,
+                    _ => expr::hat(moved),
+                }
+            }
+            Group::SpecialOrthogonal(_) | Group::GeneralLinear(_) => {
+                let v = match (self.sort, c.group) {
+                    (Sort::Angular, _) => expr::hat(v),
+                    _ => v,
+                };
+                match (self.way, own, c.side) {
+                    (_, true, _) => v,
+                    (Way::Shift, _, Side::Body) => expr::mul(back(), v),
+                    (Way::Shift, _, Side::Spatial) => expr::mul(v, back()),
+                    (_, false, Side::Body) => expr::product([back(), v, g.clone()]),
+                    (_, false, Side::Spatial) => expr::product([g.clone(), v, back()]),
+                }
+            }
+        }
+    }
+
+    /// Angular and linear velocity of a rigid motion, in space or in the body.
+    fn twist(&self, s: &Symbols, g: &Expr, v: Expr) -> (Expr, Expr) {
+        let none = || expr::zero(Shape::vector(THREE));
+        match (self.sort, self.way) {
+            (Sort::Linear, _) => (none(), v),
+            (Sort::Rigid, _) => (bracket::angular(s, &v), bracket::linear(s, &v)),
+            (_, Way::Spin) => (v.clone(), expr::cross(expr::column(s, g), v)),
+            (_, Way::About(p)) => (v.clone(), expr::cross(expr::here(s, p), v)),
+            _ => (v, none()),
+        }
+    }
+}
+
+/// Whether homogeneous vectors have a meaning in the model.
+pub(super) fn has_rigid_motions(x: &Inputs) -> bool {
+    let mut list = x.spec.configurations.iter();
+    list.any(|c| c.group == Group::RigidMotions)
+}
+
+/// Homogeneous parameters.
+pub(super) fn homogeneous(x: &Inputs) -> Vec<SymbolId> {
+    let s = &x.letters.symbols;
+    let list = x.spec.parameters.iter().copied();
+    list.filter(|p| has_rigid_motions(x) && s.get(*p).shape == Shape::vector(FOUR))
+        .collect()
+}

@@ -1,0 +1,257 @@
+//! What is read of a momentum: the whole of it, its part about an axis, across an axis, in a plane,
+//! or what keeps a quadratic form. Takes the parameters, which single axes and forms out; gives
+//! linear maps of momenta with their names.
+
+use super::homogeneous;
+use super::motions::{self, Sort};
+use super::{Inputs, length};
+use crate::expr::shape::{Dim, Shape};
+use crate::expr::symbol::SymbolId;
+use crate::expr::{self, Expr, Part};
+
+/// Most parameters that are tried as axes or forms.
+const AXES: usize = 12;
+
+/// A linear map of momenta of one sort.
+pub(super) struct Reading {
+    pub(super) sort: Sort,
+    /// What it adds to the name of a momentum; nothing for the whole.
+    pub(super) name: String,
+    what: What,
+    /// How much longer it makes them.
+    pub(super) size: Expr,
+}
+
+enum What {
+    Whole,
+    Along(Expr),
+    Across(Expr),
+    /// The moment about a homogeneous point.
+    About(Expr),
+    /// What keeps an axis a: `|a|² m` less its parts along a.
+    Keeping(Expr),
+    Plane(Expr, Expr),
+    /// What keeps a quadratic form: for `δQ = ζ Q` with `ζ^T P + P ζ = 0` the skew part of `P⁻¹ m`.
+    Form(Expr),
+    FormRight(Expr),
+    /// Shifts of one column, of one row.
+    Column(Expr),
+    Row(Expr),
+    /// What is left of columns, of rows, across an axis a, times `|a|²`.
+    AcrossColumns(Expr),
+    AcrossRows(Expr),
+}
+
+impl Reading {
+    /// What it gives of a momentum.
+    pub(super) fn of(&self, x: &Inputs, m: &Expr) -> Expr {
+        let s = &x.letters.symbols;
+        let m = m.clone();
+        match &self.what {
+            What::Whole => m,
+            What::Along(a) => expr::dot(m, a.clone()),
+            What::Across(a) => expr::cross(a.clone(), m),
+            What::About(p) => homogeneous::moment(s, &m, p),
+            What::Keeping(a) => {
+                let outer = expr::mul(a.clone(), expr::transpose(s, a.clone()));
+                let shape = m.shape();
+                let square = expr::dot(a.clone(), a.clone());
+                expr::sum(
+                    [
+                        expr::mul(square, m.clone()),
+                        expr::neg(expr::mul(outer.clone(), m.clone())),
+                        expr::neg(expr::mul(m, outer)),
+                    ],
+                    shape,
+                )
+            }
+            What::Plane(a, b) => expr::dot(a.clone(), expr::mul(m, b.clone())),
+            What::Form(p) => expr::part(Part::Skew, expr::mul(p.clone(), m)),
+            What::FormRight(p) => expr::part(Part::Skew, expr::mul(m, p.clone())),
+            What::Column(a) => expr::mul(m, a.clone()),
+            What::Row(a) => expr::mul(expr::transpose(s, m), a.clone()),
+            What::AcrossColumns(a) => expr::mul(across(x, a), m),
+            What::AcrossRows(a) => expr::mul(m, across(x, a)),
+        }
+    }
+
+    /// Whether it gives the whole momentum.
+    pub(super) fn is_whole(&self) -> bool {
+        matches!(self.what, What::Whole)
+    }
+
+    /// Whether it gives one number.
+    pub(super) fn is_number(&self) -> bool {
+        matches!(self.what, What::Along(_) | What::Plane(..))
+    }
+}
+
+/// `|a|² Id - a a^T`.
+fn across(x: &Inputs, a: &Expr) -> Expr {
+    let outer = expr::mul(a.clone(), expr::transpose(&x.letters.symbols, a.clone()));
+    let whole = expr::mul(
+        expr::dot(a.clone(), a.clone()),
+        expr::identity(a.shape().rows),
+    );
+    expr::sub(whole, outer)
+}
+
+/// An axis with its name and length.
+struct Axis {
+    name: String,
+    value: Expr,
+    length: Expr,
+}
+
+/// All readings of the sorts that occur, whole momenta first.
+pub(super) fn readings(x: &Inputs, sorts: &[Sort]) -> Vec<Reading> {
+    let mut out = Vec::new();
+    let order = |sort: &Sort| match sort {
+        Sort::Rigid => 0,
+        Sort::Linear => 1,
+        Sort::Planes(_) | Sort::Affine(_) | Sort::Entries(_) | Sort::Angular => 2,
+    };
+    let mut sorts = sorts.to_vec();
+    sorts.sort_by_key(order);
+    sorts.dedup();
+    for sort in sorts {
+        let mut push = |name: String, what: What, size: Expr| {
+            out.push(Reading {
+                sort,
+                name,
+                what,
+                size,
+            });
+        };
+        let one = || expr::integer(1);
+        let told = |a: &Axis| !matches!(a.value.node(), expr::Node::Unit(..));
+        push(String::new(), What::Whole, one());
+        let axes = match sort {
+            Sort::Rigid => Vec::new(),
+            Sort::Angular | Sort::Linear => axes(x, Dim::Fixed(3)),
+            Sort::Planes(n) | Sort::Affine(n) | Sort::Entries(n) => axes(x, n),
+        };
+        match sort {
+            Sort::Rigid => {
+                for p in motions::homogeneous(x).into_iter().take(AXES) {
+                    let point = expr::here(&x.letters.symbols, p);
+                    let far = length(x, &point);
+                    push(
+                        format!("moment_about_{}", ascii(x, p)),
+                        What::About(point),
+                        far,
+                    );
+                }
+            }
+            Sort::Angular | Sort::Linear => {
+                for a in &axes {
+                    let along = What::Along(a.value.clone());
+                    push(a.name.clone(), along, a.length.clone());
+                }
+                // What is left when the part along an axis is not kept.
+                for a in axes.iter().filter(|a| told(a)) {
+                    let across = What::Across(a.value.clone());
+                    push(format!("across_{}", a.name), across, a.length.clone());
+                }
+            }
+            Sort::Planes(_) => {
+                for a in &axes {
+                    let square = expr::mul(a.length.clone(), a.length.clone());
+                    push(a.name.clone(), What::Keeping(a.value.clone()), square);
+                }
+                for (i, a) in axes.iter().enumerate() {
+                    for b in &axes[i + 1..] {
+                        let size = expr::mul(a.length.clone(), b.length.clone());
+                        let plane = What::Plane(a.value.clone(), b.value.clone());
+                        push(format!("{}_{}", a.name, b.name), plane, size);
+                    }
+                }
+            }
+            Sort::Affine(n) => {
+                let identity = What::Form(expr::identity(n));
+                push("skew_identity".to_owned(), identity, one());
+                for (name, p) in forms(x, n) {
+                    let size = length(x, &p);
+                    let left = What::Form(p.clone());
+                    push(format!("skew_{name}"), left, size.clone());
+                    push(format!("skew_{name}_right"), What::FormRight(p), size);
+                }
+            }
+            Sort::Entries(_) => {
+                for a in &axes {
+                    let column = What::Column(a.value.clone());
+                    push(format!("column_{}", a.name), column, a.length.clone());
+                    let row = What::Row(a.value.clone());
+                    push(format!("row_{}", a.name), row, a.length.clone());
+                }
+                for a in axes.iter().filter(|a| told(a)) {
+                    let size = expr::mul(a.length.clone(), a.length.clone());
+                    let columns = What::AcrossColumns(a.value.clone());
+                    push(format!("columns_across_{}", a.name), columns, size.clone());
+                    let rows = What::AcrossRows(a.value.clone());
+                    push(format!("rows_across_{}", a.name), rows, size);
+                }
+            }
+        }
+    }
+    out
+}
+
+fn ascii(x: &Inputs, id: SymbolId) -> String {
+    x.letters.symbols.get(id).ascii.clone()
+}
+
+/// Axes of the basis, then parameters, then what homogeneous parameters have in space.
+fn axes(x: &Inputs, n: Dim) -> Vec<Axis> {
+    let s = &x.letters.symbols;
+    let count = match n {
+        Dim::Fixed(n) => n.min(8) as u8,
+        Dim::Named(_) => 0,
+    };
+    let mut out: Vec<Axis> = (0..count)
+        .map(|axis| Axis {
+            name: format!("E{}", axis + 1),
+            value: expr::unit(n, axis),
+            length: expr::integer(1),
+        })
+        .collect();
+    let mut push = |p: SymbolId, value: Expr| {
+        out.push(Axis {
+            name: ascii(x, p),
+            length: length(x, &value),
+            value,
+        });
+    };
+    let parameters = x.spec.parameters.iter().copied();
+    let vectors = parameters.filter(|p| s.get(*p).shape == Shape::vector(n));
+    for p in vectors.take(AXES) {
+        push(p, expr::here(s, p));
+    }
+    if n == Dim::Fixed(3) {
+        for p in motions::homogeneous(x).into_iter().take(AXES) {
+            push(p, homogeneous::spatial_part(s, &expr::here(s, p)));
+        }
+    }
+    out
+}
+
+/// Symmetric parameters and their inverses.
+fn forms(x: &Inputs, n: Dim) -> Vec<(String, Expr)> {
+    let s = &x.letters.symbols;
+    let parameters = x.spec.parameters.iter().copied();
+    let symmetric = parameters
+        .filter(|p| s.get(*p).shape == Shape::square(n))
+        .take(AXES)
+        .filter(|p| s.get(*p).structure.is_symmetric());
+    let both = symmetric.flat_map(|p| {
+        let e = expr::here(s, p);
+        [
+            (
+                format!("{}_inverse", ascii(x, p)),
+                expr::inverse(s, e.clone()),
+            ),
+            (ascii(x, p), e),
+        ]
+    });
+    both.collect()
+}
