@@ -34,6 +34,7 @@ mod handwritten_oracle;
 mod handwritten_systems;
 mod high_order;
 mod hygiene;
+mod joint_symmetries;
 mod newton_refusals;
 mod oracle_compiled;
 mod oracle_self;
