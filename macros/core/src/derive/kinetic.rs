@@ -29,7 +29,7 @@ pub struct Kinetic {
 const LARGEST: u32 = 20_000;
 
 /// Most nodes that are evaluated for the rank.
-const EVALUATED: u64 = 400_000;
+const EVALUATED: u64 = 100_000;
 
 /// Points in general position that are tried: the rank is the largest found.
 const POINTS: u64 = 3;
@@ -41,19 +41,21 @@ pub fn kinetic(
     action: &Action,
     limit: Option<&Limit>,
     assumed: &[Expr],
+    algebra: &Algebra,
 ) -> Option<Kinetic> {
     let energy = match limit {
         Some(l) => l.kinetic.clone(),
-        None => expanded(spec, letters, action)?,
+        None => expanded(spec, letters, action, algebra)?,
     };
     let rank = rank(spec, letters, &energy, assumed);
     Some(Kinetic { energy, rank })
 }
 
 /// The second-order part in 1/h of an action that has no limit as a whole.
-fn expanded(spec: &Spec, letters: &Letters, action: &Action) -> Option<Expr> {
+fn expanded(spec: &Spec, letters: &Letters, action: &Action, algebra: &Algebra) -> Option<Expr> {
     let s = &letters.symbols;
-    let algebra = Algebra::new(s);
+    // On what work is left; the derivation itself books none of it.
+    let algebra = algebra.over(s);
     let (mut identity, mut first, mut second) = (Vec::new(), Vec::new(), Vec::new());
     for (c, xi) in spec.configurations.iter().zip(&letters.variation) {
         let xi = lie::element(s, c.group, *xi);

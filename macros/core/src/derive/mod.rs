@@ -248,7 +248,14 @@ pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
     let assumed = assumptions::equations(&spec, &letters.symbols);
     let reversal = reversal::reversal(&spec, &action, &assumed, &algebra);
     let limit = limit::limit(&spec, &letters, &action, &variations, &assumed, &algebra);
-    let kinetic = kinetic::kinetic(&spec, &letters, &action, limit.as_ref().ok(), &assumed);
+    let kinetic = kinetic::kinetic(
+        &spec,
+        &letters,
+        &action,
+        limit.as_ref().ok(),
+        &assumed,
+        &algebra,
+    );
     let continuous = limit
         .as_ref()
         .ok()
@@ -280,6 +287,7 @@ pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
         limit: &limit,
         kinetic: kinetic.as_ref(),
         assumed: &assumed,
+        algebra: &algebra,
     });
     Ok(Derivation {
         spec,

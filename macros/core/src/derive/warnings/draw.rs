@@ -43,8 +43,8 @@ pub(super) fn nothing(symbols: &Symbols) -> Assignment {
 }
 
 /// A value of a letter as a user would give it: positive numbers, symmetric matrices positive
-/// definite, elements of groups. Vectors and skew matrices are multiplied by `scale`, and so is
-/// what a matrix without structure has beside a positive definite one.
+/// definite, elements of groups. Vectors, skew matrices and matrices without structure, which may
+/// couple what the others move, are multiplied by `scale`; numbers spread as it shrinks.
 pub(super) fn natural(symbols: &Symbols, id: SymbolId, scale: f64, draw: &mut Draw) -> Vec<f64> {
     let symbol = symbols.get(id);
     let (n, m) = (
@@ -52,7 +52,7 @@ pub(super) fn natural(symbols: &Symbols, id: SymbolId, scale: f64, draw: &mut Dr
         size(symbols, symbol.shape.cols),
     );
     if symbol.shape.is_scalar() {
-        return vec![draw.positive()];
+        return vec![draw.positive().powf(1.0 - scale.log10())];
     }
     let free = |draw: &mut Draw, count: usize| -> Vec<f64> {
         (0..count).map(|_| scale * draw.number()).collect()
@@ -70,7 +70,10 @@ pub(super) fn natural(symbols: &Symbols, id: SymbolId, scale: f64, draw: &mut Dr
         Structure::General | Structure::Invertible if symbol.shape.is_square() => {
             let rest = free(draw, n * n);
             let base = positive_definite(n, draw);
-            base.iter().zip(rest).map(|(a, b)| a + 0.1 * b).collect()
+            base.iter()
+                .zip(rest)
+                .map(|(a, b)| scale * a + 0.1 * b)
+                .collect()
         }
         Structure::General | Structure::Invertible => free(draw, n * m),
         Structure::Orthogonal => rotation(n, draw),

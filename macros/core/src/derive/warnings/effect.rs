@@ -7,7 +7,7 @@ use crate::derive::action::{split, summands};
 use crate::derive::variation::at;
 use crate::diagnostic::{Diagnostic, Place};
 use crate::expr::symbol::Role;
-use crate::expr::{self, Expr, Letter, Node, Shift};
+use crate::expr::{self, Expr, Function, Letter, Node, Shift};
 
 /// One warning for each parameter that stands in no Lagrangian, constraint or definition.
 pub(super) fn parameters(x: &Inputs) -> Vec<Warning> {
@@ -133,4 +133,45 @@ fn place(x: &Inputs, term: Option<&Expr>) -> Place {
             .map(|(_, place)| *place)
     });
     found.unwrap_or(x.spec.lagrangian_place)
+}
+
+/// One warning for each absolute value or sign of what moves.
+pub(super) fn kinks(x: &Inputs) -> Vec<Warning> {
+    let s = &x.letters.symbols;
+    let moving = |e: &Expr| {
+        let letters = expr::letters(e);
+        let mut roles = letters.iter().map(|l| s.get(l.symbol).role);
+        roles.any(|r| !matches!(r, Role::Parameter | Role::Step))
+    };
+    let mut found: Vec<Expr> = Vec::new();
+    let mut list = vec![&x.spec.typed];
+    while let Some(e) = list.pop() {
+        if let Node::Call(Function::Abs | Function::Sign, inside) = e.node()
+            && moving(inside)
+            && !found.contains(e)
+        {
+            found.push(e.clone());
+        }
+        list.extend(e.children());
+    }
+    found
+        .iter()
+        .rev()
+        .map(|e| {
+            let at = x.spec.terms.iter().find(|(term, _)| holds(term, e));
+            let place = at.map_or(x.spec.lagrangian_place, |(_, place)| *place);
+            let message = format!(
+                "{} is not smooth where its argument vanishes: a step across has no order, and \
+                 the energy may jump",
+                x.text(e)
+            );
+            let help = "where the motion gets there, use a smooth function, such as \
+                        `sqrt(x^2 + eps^2)` for `abs(x)`";
+            Warning::new(Topic::NotSmooth, Diagnostic::new(place, message).help(help))
+        })
+        .collect()
+}
+
+fn holds(e: &Expr, part: &Expr) -> bool {
+    e == part || e.children().into_iter().any(|x| holds(x, part))
 }

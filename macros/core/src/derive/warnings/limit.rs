@@ -2,7 +2,6 @@
 //! warning that there is none, with what keeps it from having one.
 
 use super::{Inputs, Topic, Warning};
-use crate::algebra::Algebra;
 use crate::derive::limit;
 use crate::diagnostic::Diagnostic;
 
@@ -11,7 +10,7 @@ pub(super) fn limit(x: &Inputs) -> Option<Warning> {
     let why = x.limit.as_ref().err()?;
     // Of a model for all matrices those that are symmetric may have one.
     if let Some(action) = x.for_symmetric_matrices(x.action) {
-        let algebra = Algebra::new(&x.letters.symbols);
+        let algebra = x.engine();
         let special = limit::limit(
             x.spec,
             x.letters,
@@ -20,7 +19,7 @@ pub(super) fn limit(x: &Inputs) -> Option<Warning> {
             x.assumed,
             &algebra,
         );
-        if special.is_ok() && !algebra.exhausted() {
+        if special.is_ok() || algebra.exhausted() {
             return None;
         }
     }

@@ -19,7 +19,7 @@ use super::limit::Limit;
 use super::reversal::Reversal;
 use super::variation::Variation;
 use super::{Derivation, Letters};
-use crate::algebra::assumed;
+use crate::algebra::{Algebra, assumed};
 use crate::check::spec::Spec;
 use crate::diagnostic::Diagnostic;
 use crate::expr::shape::Structure;
@@ -41,6 +41,8 @@ pub enum Topic {
     UnusedParameter,
     /// A potential, or a term, that is constant along every motion.
     ConstantTerm,
+    /// A function that has no derivative somewhere, of what moves.
+    NotSmooth,
     /// An assumption that every choice of the parameters meets, or none.
     Assumption,
 }
@@ -55,6 +57,7 @@ impl Topic {
             Topic::FirstOrder => "first-order",
             Topic::UnusedParameter => "unused-parameter",
             Topic::ConstantTerm => "constant-term",
+            Topic::NotSmooth => "not-smooth",
             Topic::Assumption => "assumption",
         }
     }
@@ -96,6 +99,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) limit: &'a Result<Limit, String>,
     pub(crate) kinetic: Option<&'a Kinetic>,
     pub(crate) assumed: &'a [Expr],
+    pub(crate) algebra: &'a Algebra<'a>,
 }
 
 /// Largest expression that is evaluated at points.
@@ -106,6 +110,11 @@ impl Inputs<'_> {
     /// large counts as not vanishing.
     fn vanishes(&self, e: &Expr) -> bool {
         e.size() <= LARGEST && assumed::vanishes(&self.letters.symbols, self.assumed, e)
+    }
+
+    /// An engine for what is decided once more, on what work is left.
+    fn engine(&self) -> Algebra<'_> {
+        self.algebra.over(&self.letters.symbols)
     }
 
     /// An expression as text.
@@ -167,6 +176,7 @@ pub(crate) fn warnings(x: &Inputs) -> Vec<Warning> {
     }
     all.extend(effect::parameters(x));
     all.extend(effect::terms(x));
+    all.extend(effect::kinks(x));
     all.extend(assumptions::assumptions(x));
     all
 }

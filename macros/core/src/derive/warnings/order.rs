@@ -2,7 +2,6 @@
 //! the action is not self-adjoint, where that is not what the model asks for.
 
 use super::{Inputs, LARGEST, Topic, Warning};
-use crate::algebra::Algebra;
 use crate::check::spec::{Side, Spec};
 use crate::derive::action::{self, Action};
 use crate::derive::lie;
@@ -27,13 +26,14 @@ pub(super) fn order(x: &Inputs) -> Option<Warning> {
             ..x.spec.clone()
         };
         let action = action::action(&spec);
-        match reversed(x, &action) {
+        match reversed(x, &action)? {
             Reversal::Broken(left) => (action, left),
             Reversal::Symmetric | Reversal::Assumed => return None,
         }
     };
-    let special = x.for_symmetric_matrices(&action);
-    if special.is_some_and(|action| reversed(x, &action).is_symmetric()) {
+    if let Some(special) = x.for_symmetric_matrices(&action)
+        && reversed(x, &special)?.is_symmetric()
+    {
         return None;
     }
     if is_total_difference(x, &action) {
@@ -55,16 +55,25 @@ pub(super) fn order(x: &Inputs) -> Option<Warning> {
     Some(Warning::new(Topic::FirstOrder, d))
 }
 
-fn reversed(x: &Inputs, action: &Action) -> Reversal {
-    let algebra = Algebra::new(&x.letters.symbols);
-    reversal::reversal(x.spec, action, x.assumed, &algebra)
+/// The reversal of an action; nothing where the work ran out.
+fn reversed(x: &Inputs, action: &Action) -> Option<Reversal> {
+    let algebra = x.engine();
+    let found = reversal::reversal(x.spec, action, x.assumed, &algebra);
+    (!algebra.exhausted()).then_some(found)
 }
+
+/// Most nodes that are differentiated, over all pairs of ends.
+const EVALUATED: u64 = 100_000;
 
 /// Whether `S = L(q0, q1, h) + L(q1, q0, -h)` is `F(q1, h) - F(q0, h)`: no derivative of `S` mixes
 /// its two ends, and `S` is constant where they meet.
 fn is_total_difference(x: &Inputs, action: &Action) -> bool {
     let s = &x.letters.symbols;
     let sum = reversal::sum(x.spec, action);
+    let pairs = (x.spec.configurations.len() as u64).pow(2);
+    if pairs * u64::from(sum.size()) > EVALUATED {
+        return false;
+    }
     let still: Vec<(Letter, Expr)> = x
         .spec
         .configurations

@@ -44,10 +44,10 @@ pub(super) fn degenerate(x: &Inputs) -> Option<Warning> {
 }
 
 /// Parameters that are tried.
-const DRAWS: u64 = 24;
+const DRAWS: u64 = 32;
 
 /// Most nodes that are evaluated for one of them.
-const EVALUATED: u64 = 20_000;
+const EVALUATED: u64 = 10_000;
 
 /// The warning that the kinetic energy is positive for none of the parameters that are tried.
 pub(super) fn sign(x: &Inputs) -> Option<Warning> {

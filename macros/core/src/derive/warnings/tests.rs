@@ -127,6 +127,14 @@ fn the_sign_of_the_kinetic_energy_is_said() {
     assert_eq!(topics(&carried), []);
     let other = format!("{BODY} param c: Real; assume c == 2; lagrangian = c*tr(J*Ω)/h;");
     assert_eq!(topics(&other), [SignOfKineticEnergy]);
+    // Couplings are admitted where they are small: of matrices, vectors and numbers.
+    let coupled = format!(
+        "{POINT} param D: Mat<3>; param a, b, c, e: Vec<3>; param p, q: Real; \
+        let x = pos(G^-1*next(G)); let w = vee(rot(G^-1*next(G))); \
+        lagrangian = -tr(J*rot(G^-1*next(G)))/h + m*dot(x, x)/(2*h) \
+        + (dot(w, D*x) + p*dot(c, w)*dot(e, x) + q*dot(a, w)*dot(b, x))/h;"
+    );
+    assert!(!topics(&coupled).contains(&SignOfKineticEnergy));
     // I > 0, not J > 0.
     let inertia = "param I: Sym<3>; group Λ: SO<3> velocity Ω; constraint next(Λ) = Λ*Ω; \
                    lagrangian = -tr((tr(I)/2*Id - I)*Ω)/h;";
@@ -207,6 +215,21 @@ fn constant_potentials_are_said() {
         "{BODY} param m, g, l: Real; lagrangian = -tr(J*Ω)/h - h*m*g*l;"
     ));
     assert_eq!(flat, [ConstantTerm]);
+}
+
+#[test]
+fn functions_that_are_not_smooth_are_said() {
+    assert_eq!(top("-tr(J*Ω)/h - h*abs(dot(gU, Γ))"), [NotSmooth]);
+    assert_eq!(
+        top("-tr(J*Ω)/h - h*sign(dot(gU, Γ))*dot(gU, Γ)"),
+        [NotSmooth]
+    );
+    assert_eq!(top("-tr(J*Ω)/h - h*abs(dot(gU, gU))*dot(gU, Γ)"), []);
+    assert_eq!(top("-tr(J*Ω)/h - h*cos(dot(gU, Γ))"), []);
+    let text = words(&format!(
+        "{TOP} lagrangian = -tr(J*Ω)/h - h*abs(dot(gU, Γ));"
+    ));
+    assert!(text.contains("not smooth"), "{text}");
 }
 
 #[test]
