@@ -25,6 +25,38 @@ pub trait Number:
     fn exp(self) -> Self;
     /// The natural logarithm.
     fn ln(self) -> Self;
+    /// The sine.
+    fn sin(self) -> Self;
+    /// The cosine.
+    fn cos(self) -> Self;
+
+    /// The hyperbolic sine.
+    #[must_use]
+    fn sinh(self) -> Self {
+        (self.exp() - (-self).exp()) * Self::constant(0.5)
+    }
+
+    /// The hyperbolic cosine.
+    #[must_use]
+    fn cosh(self) -> Self {
+        (self.exp() + (-self).exp()) * Self::constant(0.5)
+    }
+
+    /// The sign, which does not vary.
+    #[must_use]
+    fn sign(self) -> Self {
+        Self::constant(if self.value() == 0.0 {
+            0.0
+        } else {
+            self.value().signum()
+        })
+    }
+
+    /// A power with a fractional exponent, of a positive number.
+    #[must_use]
+    fn fraction(self, numerator: i32, denominator: i32) -> Self {
+        (self.ln() * Self::constant(f64::from(numerator) / f64::from(denominator))).exp()
+    }
 
     /// An integer power by repeated multiplication; a negative exponent inverts.
     #[must_use]
@@ -56,6 +88,12 @@ impl Number for f64 {
     }
     fn ln(self) -> Self {
         f64::ln(self)
+    }
+    fn sin(self) -> Self {
+        f64::sin(self)
+    }
+    fn cos(self) -> Self {
+        f64::cos(self)
     }
 }
 
@@ -94,6 +132,12 @@ impl Number for Dual {
     }
     fn ln(self) -> Self {
         self.chain(self.value.ln(), 1.0 / self.value)
+    }
+    fn sin(self) -> Self {
+        self.chain(self.value.sin(), self.value.cos())
+    }
+    fn cos(self) -> Self {
+        self.chain(self.value.cos(), -self.value.sin())
     }
 }
 

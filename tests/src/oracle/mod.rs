@@ -10,4 +10,6 @@ pub mod dual;
 pub mod eval;
 pub mod points;
 pub mod random;
+pub mod sides;
 pub mod square;
+pub mod wide;

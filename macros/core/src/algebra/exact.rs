@@ -333,7 +333,17 @@ impl<'a> Point<'a> {
                 let below = inverse(number(b)?)?;
                 go(a)?.scaled(below)
             }
-            Node::Power(a, q) => Matrix::number(self.powered(number(a)?, *q)?),
+            Node::Power(a, q) => {
+                let base = number(a)?;
+                let value = self.powered(base, *q);
+                // Half of all constants have no root here, at any point: then some value that
+                // depends on the constant alone.
+                let constant = value.is_none() && expr::letters(a).is_empty();
+                Matrix::number(match constant && base != 0 {
+                    true => mix(base ^ mix(q.numerator() as u64)),
+                    false => value?,
+                })
+            }
             Node::Transpose(a) => go(a)?.transposed(),
             Node::Inverse(a) => go(a)?.inverted()?.0,
             Node::Trace(a) => {

@@ -1,12 +1,12 @@
 //! From expressions to normal forms: one rule for each kind of node.
 
-use super::Algebra;
 use super::factor::{Factor, Source, Word};
 use super::monomial::{self, Atom, Monomial};
 use super::poly::{Poly, Term};
 use super::quaternion::rotation_of;
 use super::rational::Rational;
 use super::rigid::translation_of;
+use super::{Algebra, Sense};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Function, Map, Node, Parity, Part};
@@ -300,7 +300,7 @@ impl Algebra<'_> {
             ),
             _ => (a.clone(), meaning.clone(), Rational::ONE),
         };
-        let id = self.intern(&self.numbers, key, || meaning);
+        let id = self.intern(&self.numbers, key, Sense::Value, || meaning);
         let term = Term {
             monomial: vec![(Atom::Base(id), q)],
             word: Word::new(),
@@ -343,7 +343,7 @@ impl Algebra<'_> {
         }
         let mut key = a.clone();
         key.symmetric = self.transpose(a).terms == a.terms;
-        let id = self.intern(&self.matrices, key, || meaning.clone());
+        let id = self.intern(&self.matrices, key, Sense::Value, || meaning.clone());
         self.one_factor(
             a.shape,
             Factor::Letter {
@@ -425,7 +425,7 @@ impl Algebra<'_> {
         }
         let mut key = a.clone();
         key.symmetric = self.transpose(a).terms == a.terms;
-        let id = self.intern(&self.matrices, key, || meaning.clone());
+        let id = self.intern(&self.matrices, key, Sense::Value, || meaning.clone());
         self.scalar_atom(Atom::OpaqueDet(id))
     }
 
@@ -447,7 +447,7 @@ impl Algebra<'_> {
                     let mut key = a.clone();
                     key.symmetric = true;
                     let diagonal = || expr::part(Part::Diagonal, meaning.clone());
-                    let id = self.intern(&self.matrices, key, diagonal);
+                    let id = self.intern(&self.matrices, key, Sense::Diagonal, diagonal);
                     return self.one_factor(
                         a.shape,
                         Factor::Letter {
@@ -484,7 +484,7 @@ impl Algebra<'_> {
         let Dim::Fixed(n) = v.shape.rows else {
             let mut key = v.clone();
             key.symmetric = true;
-            let id = self.intern(&self.matrices, key, || whole.clone());
+            let id = self.intern(&self.matrices, key, Sense::Diagonal, || whole.clone());
             let source = Source::Opaque(id);
             return self.one_factor(
                 out.shape,
@@ -554,7 +554,7 @@ impl Algebra<'_> {
             ),
             false => (a, meaning.clone()),
         };
-        let id = self.intern(&self.numbers, key, || meaning);
+        let id = self.intern(&self.numbers, key, Sense::Value, || meaning);
         let value = self.scalar_atom(Atom::Call(function, id));
         match turned && parity == Parity::Odd {
             true => self.scaled(&value, Rational::MINUS_ONE),

@@ -22,8 +22,8 @@ pub use monomial::{Atom, Monomial};
 pub use poly::{Poly, Term};
 pub use rational::Rational;
 
-use crate::expr::Expr;
 use crate::expr::symbol::Symbols;
+use crate::expr::{self, Expr};
 use std::cell::{Cell, RefCell};
 
 /// Work allowed for one model, in products of terms. A model of the gallery needs a few
@@ -62,6 +62,17 @@ pub enum Known {
 struct Opaque {
     key: Poly,
     meaning: Expr,
+    /// What of the key it is.
+    sense: Sense,
+}
+
+/// What of its key an opaque quantity is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Sense {
+    /// The key itself.
+    Value,
+    /// The diagonal of a matrix, or the matrix with that diagonal.
+    Diagonal,
 }
 
 impl<'a> Algebra<'a> {
@@ -158,15 +169,29 @@ impl<'a> Algebra<'a> {
         &self,
         table: &RefCell<Vec<Opaque>>,
         key: Poly,
+        sense: Sense,
         meaning: impl FnOnce() -> Expr,
     ) -> u32 {
-        let mut table = table.borrow_mut();
-        if let Some(i) = table.iter().position(|o| o.key == key) {
+        let same = |o: &Opaque| o.sense == sense && o.key == key;
+        let found = table.borrow().iter().position(same);
+        if let Some(i) = found {
             return i as u32;
         }
+        let mut meaning = meaning();
+        // What cancels in the key must not come back with the meaning: `V V^T` of a rotation has a
+        // value where no velocity is known.
+        if sense == Sense::Value {
+            let shorter = self.raise(&key);
+            let (left, all) = (expr::letters(&shorter), expr::letters(&meaning));
+            if left.len() < all.len() && left.iter().all(|l| all.contains(l)) {
+                meaning = shorter;
+            }
+        }
+        let mut table = table.borrow_mut();
         table.push(Opaque {
             key,
-            meaning: meaning(),
+            meaning,
+            sense,
         });
         (table.len() - 1) as u32
     }

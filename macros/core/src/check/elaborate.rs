@@ -117,13 +117,33 @@ impl<'a> Elaborator<'a> {
         let shape = self
             .hint(a)
             .or_else(|| self.hint(b))
-            .unwrap_or(Shape::SCALAR);
+            .unwrap_or_else(|| self.unhinted(a));
         Ok((self.of_shape(a, shape)?, self.of_shape(b, shape)?))
     }
 
     fn default_size(&self) -> Dim {
         let groups = &self.names.configurations;
         groups.first().map_or(Dim::Fixed(3), |g| g.group.size())
+    }
+
+    /// What is made of unit vectors alone: a column or a row, of a size that the context says.
+    fn of_units(&self, e: &Expression) -> Option<Shape> {
+        match &e.kind {
+            Kind::Name(n) if UNITS.contains(&n.as_str()) => {
+                Some(Shape::vector(self.default_size()))
+            }
+            Kind::Transpose(a) => self.of_units(a).map(Shape::transposed),
+            Kind::Neg(a) | Kind::Quotient(a, _) => self.of_units(a),
+            Kind::Sum(terms) => terms.iter().find_map(|(_, t)| self.of_units(t)),
+            Kind::Product(factors) => factors.iter().rev().find_map(|f| self.of_units(f)),
+            _ => None,
+        }
+    }
+
+    /// The shape of what takes it from a context that there is not.
+    fn unhinted(&self, e: &Expression) -> Shape {
+        self.elaborate(e, None)
+            .map_or(Shape::SCALAR, |value| value.shape())
     }
 
     /// The shape of an expression as far as it does not depend on the context.
@@ -136,9 +156,7 @@ impl<'a> Elaborator<'a> {
             Kind::Number(_) => Some(Shape::SCALAR),
             Kind::Power(a, _) => self.hint(a),
             Kind::Name(n) if n == "Id" => None,
-            Kind::Name(n) if UNITS.contains(&n.as_str()) => {
-                Some(Shape::vector(self.default_size()))
-            }
+            Kind::Name(n) if UNITS.contains(&n.as_str()) => None,
             Kind::Name(n) => {
                 if let Some((_, value)) = self.bindings.iter().find(|(b, _)| b == n) {
                     return Some(value.shape());
@@ -153,11 +171,19 @@ impl<'a> Elaborator<'a> {
             Kind::Quotient(a, _) => self.hint(a),
             Kind::Transpose(a) => self.hint(a).map(Shape::transposed),
             Kind::Product(factors) => {
-                let known: Vec<Shape> = factors.iter().filter_map(|f| self.hint(f)).collect();
+                let known = factors.iter().filter_map(|f| {
+                    let shape = self.hint(f).map(|s| (s, false));
+                    shape.or_else(|| self.of_units(f).map(|s| (s, true)))
+                });
+                let known: Vec<(Shape, bool)> = known.collect();
                 let open = known.len() < factors.len();
-                let matrices: Vec<&Shape> = known.iter().filter(|s| !s.is_scalar()).collect();
-                match (matrices.first(), matrices.last()) {
-                    (Some(a), Some(b)) => Some(Shape {
+                let mut matrices = known.iter().filter(|(s, _)| !s.is_scalar());
+                let first = matrices.next();
+                match (first, matrices.next_back().or(first)) {
+                    // Their own side of unit vectors is one, the other one open.
+                    (Some((a, true)), _) if a.rows != Dim::Fixed(1) => None,
+                    (_, Some((b, true))) if b.cols != Dim::Fixed(1) => None,
+                    (Some((a, _)), Some((b, _))) => Some(Shape {
                         rows: a.rows,
                         cols: b.cols,
                     }),
@@ -168,13 +194,11 @@ impl<'a> Elaborator<'a> {
             Kind::Call(name, args) => {
                 let first = || args.first().and_then(|a| self.hint(a));
                 match name.text.as_str() {
-                    "hat" => first().map(|s| Shape::square(s.rows)),
-                    "vee" => first().map(|s| Shape::vector(s.rows)),
-                    "im" | "pos" => Some(Shape::vector(Dim::Fixed(3))),
-                    "rot" => Some(Shape::square(Dim::Fixed(3))),
+                    "im" | "pos" | "vee" | "cross" => Some(Shape::vector(Dim::Fixed(3))),
+                    "hat" | "rot" => Some(Shape::square(Dim::Fixed(3))),
                     "quat" => Some(Shape::square(Dim::Fixed(4))),
                     "diag" => first().map(|s| Shape::square(s.rows)),
-                    "inv" | "sym" | "skew" | "cross" | "next" | "prev" => first(),
+                    "inv" | "sym" | "skew" | "next" | "prev" => first(),
                     _ => Some(Shape::SCALAR),
                 }
             }

@@ -198,7 +198,14 @@ fn without_zeros(algebra: &Algebra, mut e: Expr) -> Expr {
     e
 }
 
-/// The reduced form of the algebra if it is smaller than the expression itself.
+/// Whether the letters are some of those, and not all.
+fn has_fewer_letters(a: &Expr, b: &Expr) -> bool {
+    let (some, all) = (expr::letters(a), expr::letters(b));
+    some.len() < all.len() && some.iter().all(|l| all.contains(l))
+}
+
+/// The reduced form of the algebra if it is smaller than the expression itself, or free of a letter
+/// that cancels: `V V^T` of a rotation, where no velocity is known.
 pub fn shorter(algebra: &Algebra, e: Expr) -> Expr {
     if e.shape() == lie::IMPULSE && !e.is_zero() {
         // The angular and the linear part, each by itself.
@@ -206,7 +213,7 @@ pub fn shorter(algebra: &Algebra, e: Expr) -> Expr {
         return expr::stacked(part(0), part(3));
     }
     let reduced = algebra.shortest(&e);
-    if !algebra.exhausted() && reduced.size() <= e.size() {
+    if !algebra.exhausted() && (reduced.size() <= e.size() || has_fewer_letters(&reduced, &e)) {
         reduced
     } else {
         e

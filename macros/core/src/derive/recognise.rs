@@ -431,6 +431,11 @@ fn riccati(
         rest
     };
     let mv = with_node(spec, letters, b, i, factor, rest, transports, algebra);
+    let own = at(c.velocity, Shift::HERE);
+    if expr::contains(&mv.factor, own) || expr::contains(&mv.rest, own) {
+        let name = &s.get(c.velocity).name;
+        return Riccati::None(format!("the momentum is not linear in {name} on the left"));
+    }
     let moving = |e: &Expr| expr::contains_role(s, e, Role::Velocity);
     if moving(&mv.factor) || moving(&mv.rest) {
         return Riccati::Coupled(mv);

@@ -138,7 +138,7 @@ fn reason(
     coupled: bool,
 ) {
     let s = sheet.symbols();
-    let (letter, named) = factor(sheet, mv, i);
+    let (letter, _) = factor(sheet, mv, i);
     let n = edge(sheet, mv, i);
     if !coupled {
         let constant = expr::letters(&mv.factor)
@@ -176,7 +176,9 @@ fn reason(
             clauses.push(clause);
         }
     }
-    debug_assert!(named || !clauses.is_empty());
+    if clauses.is_empty() {
+        return;
+    }
     let mut words: Vec<Inline> = vec!["It is coupled: ".into()];
     words.extend(listed(clauses));
     words.push(".".into());

@@ -14,7 +14,6 @@ use crate::derive::kinetic::{self, Kinetic};
 use crate::derive::recognise::Method;
 use crate::expr::shape::{Shape, Structure};
 use crate::expr::symbol::{Symbol, SymbolId, Symbols};
-use crate::syntax::ast::NodeRule;
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -254,9 +253,6 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
     );
     // A symmetric one-step action gives an even order; one-sided nodal terms leave order one.
     let order: u32 = if d.reversible { 2 } else { 1 };
-    debug_assert!(
-        d.spec.node_rule == NodeRule::Symmetric || order == 1 || d.action.nodal.is_zero()
-    );
     let reversible = d.reversible;
     let discrete_energy = discrete_energy(d);
     let fields = |list: &[FieldOf]| -> Vec<TokenStream> {

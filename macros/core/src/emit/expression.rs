@@ -72,9 +72,6 @@ pub fn ty(s: &Symbols, shape: Shape) -> TokenStream {
 pub fn rational(q: Rational) -> TokenStream {
     let (num, den) = (q.numerator(), q.denominator());
     let exact = den.count_ones() == 1 && num.unsigned_abs() < 1 << 53 && den < 1 << 53;
-    if exact && num == 1 && den == 1 {
-        return quote!(T::one());
-    }
     if let (false, Ok(n), Ok(d)) = (exact, i64::try_from(num), i64::try_from(den)) {
         let (n, d) = (Literal::i64_unsuffixed(n), Literal::i64_unsuffixed(d));
         return quote!(T::from_ratio(#n, #d));
@@ -263,7 +260,7 @@ impl Writer<'_> {
         }
     }
 
-    /// `tr(A) Id - A`.
+    /// `tr(A) Id - A` in three dimensions.
     fn complement(&self, terms: &[Expr]) -> Option<TokenStream> {
         let [trace, subtracted] = terms else {
             return None;
@@ -274,7 +271,8 @@ impl Writer<'_> {
         let [number, identity] = factors.as_slice() else {
             return None;
         };
-        let (Node::Trace(x), Node::Identity(_)) = (number.node(), identity.node()) else {
+        let (Node::Trace(x), Node::Identity(Dim::Fixed(3))) = (number.node(), identity.node())
+        else {
             return None;
         };
         // The trace of the transpose is the same.
@@ -375,7 +373,7 @@ impl Writer<'_> {
         let above = above.iter().map(|n| self.operand(n));
         let mut parts: Vec<TokenStream> = chain.into_iter().chain(above).collect();
         if parts.is_empty() {
-            parts.push(quote!(T::one()));
+            parts.push(rational(Rational::ONE));
         }
         let mut out = TokenStream::new();
         for (i, part) in parts.into_iter().enumerate() {

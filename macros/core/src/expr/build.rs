@@ -407,6 +407,8 @@ pub fn trace(a: Expr) -> Expr {
 pub fn det(a: Expr) -> Expr {
     match a.node() {
         Node::Identity(_) => integer(1),
+        Node::Inverse(x) => power(det(x.clone()), Rational::MINUS_ONE),
+        Node::Transpose(x) => det(x.clone()),
         _ if a.shape().is_scalar() => a,
         _ => make(Node::Det(a), Shape::SCALAR),
     }

@@ -205,7 +205,8 @@ fn of_words(symbols: &Symbols, words: Vec<Word>, shape: Shape) -> Expr {
             rows: shape.rows,
             cols: f.shape().rows,
         },
-        Outer::CrossLeft(_) | Outer::CrossRight(_) | Outer::Vee | Outer::Hat => shape_within(&with),
+        Outer::CrossLeft(_) | Outer::CrossRight(_) | Outer::Hat => Shape::vector(shape.rows),
+        Outer::Vee => Shape::square(shape.rows),
     };
     let together = scale(common, outer.around(of_words(symbols, with, inner)));
     if without.is_empty() {
@@ -247,11 +248,6 @@ fn word(e: &Expr) -> Option<Word> {
         times: term.coefficient,
         factors: term.matrices,
     })
-}
-
-fn shape_within(words: &[Word]) -> Shape {
-    let first = words.first().and_then(|w| w.factors.first());
-    first.map_or(Shape::SCALAR, Expr::shape)
 }
 
 /// What several words have in common on the outside.

@@ -172,7 +172,7 @@ impl Elaborator<'_> {
                 })
             }
             "vee" => {
-                let a = argument(expected.map(|s| Shape::square(s.rows)))?;
+                let a = argument(Some(Shape::square(Dim::Fixed(3))))?;
                 if a.shape() != Shape::square(Dim::Fixed(3)) {
                     let what = shape_text(symbols, a.shape());
                     let message = format!("`vee` needs a 3 x 3 matrix, and this is {what}");
@@ -181,11 +181,14 @@ impl Elaborator<'_> {
                 Ok(expr::vee(a))
             }
             "dot" | "cross" => {
-                let (a, b) = self.pair(first, &args[1])?;
                 if f == "cross" {
+                    let context = Some(Shape::vector(Dim::Fixed(3)));
+                    let (a, b) = (argument(context)?, self.elaborate(&args[1], context)?);
                     three(&a, first.place)?;
+                    three(&b, args[1].place)?;
                     return Ok(expr::cross(a, b));
                 }
+                let (a, b) = self.pair(first, &args[1])?;
                 if !a.shape().is_vector() {
                     let what = shape_text(symbols, a.shape());
                     return fail(

@@ -5,7 +5,7 @@ use super::{Elaborated, Elaborator, UNITS, fail};
 use crate::check::messages::shape_text;
 use crate::diagnostic::{Diagnostic, Place, closest};
 use crate::expr;
-use crate::expr::shape::Shape;
+use crate::expr::shape::{Dim, Shape};
 use crate::syntax::FUNCTIONS;
 
 /// What the functions of the language are called elsewhere.
@@ -53,7 +53,8 @@ impl Elaborator<'_> {
         }
         if let Some(axis) = UNITS.iter().position(|u| *u == n) {
             let size = match expected {
-                Some(s) if s.is_vector() => s.rows,
+                // As a column of what is asked for, or before the rest of a product of that shape.
+                Some(s) if s.rows != Dim::Fixed(1) => s.rows,
                 _ => self.default_size(),
             };
             return Ok(expr::unit(size, axis as u8));

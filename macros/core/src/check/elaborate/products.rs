@@ -5,7 +5,7 @@ use super::{Elaborated, Elaborator, fail};
 use crate::algebra::Algebra;
 use crate::check::messages::shape_text;
 use crate::diagnostic::{Diagnostic, Place};
-use crate::expr::shape::Shape;
+use crate::expr::shape::{Dim, Shape};
 use crate::expr::{self, Expr};
 use crate::syntax::ast::{Expression, Kind};
 
@@ -52,7 +52,14 @@ impl Elaborator<'_> {
             let after = factors[i + 1..]
                 .iter()
                 .find_map(|g| self.hint(g).filter(|s| !s.is_scalar()));
-            let context = before.or(after.map(|s| Shape::square(s.rows))).or(expected);
+            let mut context = before.or(after.map(|s| Shape::square(s.rows))).or(expected);
+            // The row behind a column has the columns of the whole.
+            if context == Some(Shape::SCALAR) {
+                context = expected.map(|s| Shape {
+                    rows: Dim::Fixed(1),
+                    cols: s.cols,
+                });
+            }
             let value = if matches!(&f.kind, Kind::Number(q) if q.is_zero()) {
                 expr::integer(0)
             } else {

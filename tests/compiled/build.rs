@@ -1,0 +1,83 @@
+//! Writes the random models that are compiled: their text as macro invocations, and for each the
+//! function that hands its residual plain data. `CLEBSCH_RANDOM_MODELS` says how many; the suite
+//! takes 60.
+
+use oracle::wide::model::{Model, Role};
+use std::fmt::Write;
+
+/// The generator, by itself: a build script needs neither runtime nor engine.
+#[allow(dead_code, unused_imports)]
+#[path = "../src/oracle"]
+mod oracle {
+    pub mod dual;
+    pub mod points;
+    pub mod sides;
+    pub mod square;
+    pub mod wide;
+}
+
+/// Models in the suite: all groups, functions and statements by turns, and a little more.
+const MODELS: u64 = 60;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    println!("cargo::rerun-if-env-changed=CLEBSCH_RANDOM_MODELS");
+    println!("cargo::rerun-if-env-changed=CLEBSCH_RANDOM_FIRST");
+    println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rerun-if-changed=../src/oracle");
+    let given = |name: &str| std::env::var(name).ok().and_then(|text| text.parse().ok());
+    let count = given("CLEBSCH_RANDOM_MODELS").unwrap_or(MODELS);
+    let first = given("CLEBSCH_RANDOM_FIRST").unwrap_or(0);
+    let mut text = String::new();
+    let mut table = String::new();
+    for seed in first..first + count {
+        write_model(&mut text, &Model::of_seed(seed), seed)?;
+        writeln!(
+            table,
+            "    Compiled {{ seed: {seed}, residual: m{seed}::residual, card: &m{seed}::Wide{seed}::<f64>::CARD }},"
+        )?;
+    }
+    writeln!(
+        text,
+        "/// All of them.\npub const MODELS: &[Compiled] = &[\n{table}];"
+    )?;
+    let folder = std::env::var("OUT_DIR")?;
+    std::fs::write(std::path::Path::new(&folder).join("models.rs"), text)?;
+    Ok(())
+}
+
+/// One model in a module of its own.
+fn write_model(out: &mut String, model: &Model, seed: u64) -> std::fmt::Result {
+    let name = &model.name;
+    let fields = |wanted: &dyn Fn(&Role) -> bool, level: &str| -> String {
+        let letters = model.letters.iter().enumerate();
+        letters
+            .filter(|(index, l)| model.uses(*index) && wanted(&l.role))
+            .map(|(_, l)| format!("{0}: given.get(\"{0}\", {level})?, ", l.name))
+            .collect()
+    };
+    let parameters = fields(&|role| matches!(role, Role::Parameter), "0");
+    let configuration = fields(
+        &|role| match role {
+            Role::Element(_) => true,
+            Role::Advected { definition, .. } => definition.is_none(),
+            Role::Relative { defined, .. } => !defined,
+            Role::Parameter | Role::Velocity(_) => false,
+        },
+        "level",
+    );
+    writeln!(out, "/// A random model.\npub mod m{seed} {{")?;
+    writeln!(
+        out,
+        "#![allow(missing_docs, non_snake_case, deprecated, clippy::all)]"
+    )?;
+    writeln!(out, "use crate::Given;")?;
+    writeln!(out, "clebsch::model! {{ pub {} }}", model.text())?;
+    writeln!(
+        out,
+        "pub fn residual(h: f64, given: &Given<'_>) -> Result<Vec<f64>, String> {{\n\
+         let model = {name}::<f64>::new({name}Parameters {{ {parameters} }}).map_err(|e| e.to_string())?;\n\
+         let at = |level: i8| -> Result<{name}Configuration<f64>, String> {{ Ok({name}Configuration {{ {configuration} }}) }};\n\
+         Ok(model.balance(h, &at(-1)?, &at(0)?, &at(1)?).iter().copied().collect())\n}}"
+    )?;
+    writeln!(out, "}}")
+}

@@ -1,0 +1,300 @@
+//! Every compiled random model against the oracle: residuals at random points that solve nothing, and
+//! two steps whose nodes leave the unreduced action stationary. Takes the models of the package; gives
+//! agreement to rounding. The oracle knows the model as a tree, never as text.
+
+use clebsch::card::{Card, Field, Kind, Settings};
+use clebsch_compiled::{Compiled, Given, MODELS};
+use clebsch_tests::oracle::points::Source;
+use clebsch_tests::oracle::wide::grid::Grid;
+use clebsch_tests::oracle::wide::grow::AROUND;
+use clebsch_tests::oracle::wide::model::{Family, Model, Role};
+use clebsch_tests::oracle::wide::point::{Node, Point, Variation};
+
+/// Random points for every model.
+const POINTS: u64 = 4;
+/// Agreement of residuals, relative to the sum of the sizes of the summands: a few roundings,
+/// magnified by inverses and determinants of random matrices, whose condition is seldom above 1e4.
+const AGREEMENT: f64 = 1e-12;
+/// What two steps leave: Newton's method stops at a few roundings of the momentum, which is of the size
+/// of the summands.
+const SOLVED: f64 = 1e-11;
+/// The step of the two steps: the kinetic terms dominate.
+const STEP: f64 = 0.02;
+
+fn relative(oracle: &Variation, found: &[f64]) -> f64 {
+    if oracle.derivative.len() != found.len() {
+        return f64::INFINITY;
+    }
+    let differences = oracle
+        .derivative
+        .iter()
+        .zip(found)
+        .map(|(a, b)| (a - b).abs() / oracle.scale);
+    // Infinite for anything that is no number: it must not be lost in a maximum.
+    differences.fold(0.0, |worst: f64, x| {
+        if x.is_finite() {
+            worst.max(x)
+        } else {
+            f64::INFINITY
+        }
+    })
+}
+
+/// Whether the state of a model holds the letter: what is computed from others is not given.
+fn is_given(role: &Role) -> bool {
+    match role {
+        Role::Element(_) => true,
+        Role::Advected { definition, .. } => definition.is_none(),
+        Role::Relative { defined, .. } => !defined,
+        Role::Parameter | Role::Velocity(_) => false,
+    }
+}
+
+fn given<'a>(model: &'a Model, point: &Point<'_>, nodes: &[Node; 3]) -> Given<'a> {
+    let mut list = Vec::new();
+    for (level, node) in [-1, 0, 1].into_iter().zip(nodes) {
+        for (l, value) in model.letters.iter().zip(point.letters(node)) {
+            let constant = matches!(l.role, Role::Parameter) && level == 0;
+            if constant || is_given(&l.role) {
+                list.push((l.name.as_str(), level, value.data));
+            }
+        }
+    }
+    Given(list)
+}
+
+/// The worst disagreement of residuals.
+fn residuals(compiled: &Compiled) -> Result<f64, String> {
+    let model = Model::of_seed(compiled.seed);
+    let mut source = Source::seeded(compiled.seed ^ 0xa9ee);
+    let mut worst: f64 = 0.0;
+    for _ in 0..POINTS {
+        let step = source.between(0.2, 1.0);
+        let point = Point::draw(&model, &mut source, step);
+        let nodes: [Node; 3] = std::array::from_fn(|_| point.node(&mut source));
+        let oracle = point.stationarity(&nodes);
+        let found = (compiled.residual)(step, &given(&model, &point, &nodes))?;
+        let off = relative(&oracle, &found);
+        if off > AGREEMENT {
+            return Err(format!(
+                "off by {off:e} of {:e}\noracle  {:?}\nemitted {found:?}",
+                oracle.scale, oracle.derivative
+            ));
+        }
+        worst = worst.max(off);
+    }
+    Ok(worst)
+}
+
+/// The initial values by field, from the oracle's letters; momenta, body after body, are drawn.
+fn initial(
+    model: &Model,
+    card: &Card,
+    at_start: &[Grid<f64>],
+    source: &mut Source,
+) -> Vec<Vec<f64>> {
+    let mut bodies = model.bodies.iter();
+    let mut value = |field: &Field| {
+        if !matches!(field.kind, Kind::BodyMomentum | Kind::SpatialMomentum) {
+            let found = model
+                .letters
+                .iter()
+                .zip(at_start)
+                .find(|(l, _)| l.name == field.name);
+            return found.map_or_else(Vec::new, |(_, value)| as_field(field, value));
+        }
+        let family = bodies.next().map(|b| b.family);
+        let (count, n) = (field.rows * field.cols, field.cols);
+        let draws: Vec<f64> = (0..count).map(|_| source.between(-0.3, 0.3)).collect();
+        match family {
+            // The momentum of a body of other than three dimensions is a skew matrix.
+            Some(Family::Rotation(_)) if n > 1 => (0..count)
+                .map(|k| draws[k] - draws[k % n * n + k / n])
+                .collect(),
+            _ => draws,
+        }
+    };
+    card.initial.iter().map(&mut value).collect()
+}
+
+/// A value in the numbers of its field: a unit quaternion by its four components.
+fn as_field(field: &Field, value: &Grid<f64>) -> Vec<f64> {
+    match field.rows * field.cols {
+        4 if value.data.len() == 16 => (0..4).map(|i| value.at(i, 0)).collect(),
+        _ => value.data.clone(),
+    }
+}
+
+/// What an element is, from the numbers of its field.
+fn element(family: Family, data: &[f64]) -> Grid<f64> {
+    match (family, data) {
+        (Family::Quaternion, [w, x, y, z]) => Grid::quaternion(*w, [*x, *y, *z]),
+        _ => {
+            let n = family.size();
+            Grid {
+                rows: n,
+                cols: n,
+                data: data.to_vec(),
+            }
+        }
+    }
+}
+
+/// How far two emitted steps leave the action from being stationary; nothing where a step is refused.
+fn steps(compiled: &Compiled) -> Result<Option<f64>, String> {
+    let model = Model::of_seed(compiled.seed);
+    let mut source = Source::seeded(compiled.seed ^ 0x57e9);
+    let point = Point::draw(&model, &mut source, STEP);
+    let start = point.node(&mut source);
+    let letters = point.letters(&start);
+    let card = compiled.card;
+    let parameters: Vec<Vec<f64>> = card
+        .parameters
+        .iter()
+        .map(|f| {
+            let found = model
+                .letters
+                .iter()
+                .zip(&letters)
+                .find(|(l, _)| l.name == f.name);
+            found.map_or_else(Vec::new, |(_, value)| as_field(f, value))
+        })
+        .collect();
+    let values = initial(&model, card, &letters, &mut source);
+    let Ok(mut trajectory) = (card.open)(&parameters, &values, Settings::step(STEP)) else {
+        return Ok(None);
+    };
+    let count: usize = card.observables.iter().map(|f| f.rows * f.cols).sum();
+    let mut nodes = vec![start];
+    for _ in 0..2 {
+        if trajectory.step().is_err() {
+            return Ok(None);
+        }
+        let mut out = vec![f64::NAN; count];
+        trajectory.observe(&mut out);
+        let mut node = Vec::new();
+        let mut at = 0;
+        for f in card.observables {
+            let data = &out[at..at + f.rows * f.cols];
+            at += data.len();
+            let body = model
+                .bodies
+                .iter()
+                .find(|b| model.letters[b.element].name == f.name);
+            if let Some(b) = body {
+                node.push(element(b.family, data));
+            }
+        }
+        nodes.push(node);
+    }
+    let nodes = <[Node; 3]>::try_from(nodes).map_err(|_| "three nodes".to_owned())?;
+    let oracle = point.stationarity(&nodes);
+    let zeros = vec![0.0; oracle.derivative.len()];
+    let off = relative(&oracle, &zeros);
+    match off <= SOLVED {
+        true => Ok(Some(off)),
+        false => Err(format!(
+            "off by {off:e} of {:e}: {:?}",
+            oracle.scale, oracle.derivative
+        )),
+    }
+}
+
+fn report(failures: &[(u64, String)]) {
+    let list: Vec<String> = failures
+        .iter()
+        .map(|(seed, why)| format!("seed {seed}: {why}\n{}", Model::of_seed(*seed).text()))
+        .collect();
+    assert!(
+        list.is_empty(),
+        "{} of {} failed\n{}",
+        list.len(),
+        MODELS.len(),
+        list.join("\n\n")
+    );
+}
+
+#[test]
+fn residuals_are_those_of_the_unreduced_action() {
+    let mut failures = Vec::new();
+    let mut worst: f64 = 0.0;
+    for compiled in MODELS {
+        match residuals(compiled) {
+            Ok(off) => worst = worst.max(off),
+            Err(why) => failures.push((compiled.seed, why)),
+        }
+    }
+    println!("{} models, worst {worst:e}", MODELS.len());
+    report(&failures);
+}
+
+#[test]
+fn steps_leave_the_action_stationary() {
+    let mut failures = Vec::new();
+    let (mut worst, mut refused): (f64, Vec<u64>) = (0.0, Vec::new());
+    for compiled in MODELS {
+        match steps(compiled) {
+            Ok(Some(off)) => worst = worst.max(off),
+            Ok(None) => refused.push(compiled.seed),
+            Err(why) => failures.push((compiled.seed, why)),
+        }
+    }
+    println!(
+        "{} models, worst {worst:e}, refused {refused:?}",
+        MODELS.len()
+    );
+    report(&failures);
+    // Some actions are far from convex; most are not.
+    assert!(refused.len() * 10 <= MODELS.len(), "refused: {refused:?}");
+}
+
+#[test]
+fn every_group_and_function_stands_in_some_model() {
+    let texts: Vec<String> = MODELS
+        .iter()
+        .map(|c| Model::of_seed(c.seed).text())
+        .collect();
+    let functions = [
+        "tr(", "det(", "log(", "exp(", "sqrt(", "sin(", "cos(", "sinh(", "cosh(", "tanh(", "abs(",
+        "sign(", "inv(", "sym(", "skew(", "diag(", "hat(", "vee(", "dot(", "cross(", "re(", "im(",
+        "I1(", "I2(", "next(", "quat(", "rot(", "pos(",
+    ];
+    let written = [
+        "^(1/3)",
+        "^(-3/2)",
+        "^-1",
+        "^T",
+        "^2",
+        "^3",
+        "E1",
+        "Id",
+        "[1]",
+        "[1, 1]",
+        "SO<2>",
+        "SO<3>",
+        "SO<4>",
+        "SO<5>",
+        "SU<2>",
+        "SE<3>",
+        "GL<2>",
+        "GL<3>",
+        "Real",
+        "Vec<",
+        "Sym<",
+        "Skew<",
+        "Diag<",
+        "Mat<3>",
+        "Mat<3, 2>",
+        "node incoming",
+        "node outgoing",
+        "scale ",
+    ];
+    for wanted in functions.iter().chain(&written) {
+        assert!(
+            texts.iter().any(|t| t.contains(wanted)),
+            "no model has `{wanted}`"
+        );
+    }
+    // Each function around a number of its own, so that one taken for another is seen.
+    assert_eq!(AROUND.len(), 16);
+}

@@ -1,0 +1,15 @@
+//! Random models on every group of the language: products of up to three groups, advected quantities
+//! of every shape, every function, reduced and unreduced statements.
+//! Takes a seed; gives the text of a model and, apart from it, the action as a tree that is evaluated
+//! on dual numbers. Nothing is read back from the text.
+
+pub mod grid;
+pub mod grow;
+pub mod model;
+pub mod point;
+pub mod tree;
+pub mod unreduced;
+pub mod write;
+
+pub use model::Model;
+pub use point::{Point, Variation};

@@ -1,0 +1,293 @@
+//! Random values for a random model, and the variation of its unreduced action there.
+//! Takes a model and a source; gives what every letter is at a node, and the discrete Euler-Lagrange
+//! residual by dual numbers, component by component as the language orders them.
+
+use super::grid::Grid;
+use super::model::{Action, Family, Kind, Model, Role};
+use super::tree::{Edge, Tree};
+use crate::oracle::dual::{Dual, Number};
+use crate::oracle::points::Source;
+use crate::oracle::sides::Side;
+use crate::oracle::square::Square;
+
+/// A derivative with the size of what was added up to it.
+#[derive(Clone, Debug)]
+pub struct Variation {
+    /// Along each direction, body after body.
+    pub derivative: Vec<f64>,
+    /// The sum over all summands of the size of each or of its largest derivative.
+    pub scale: f64,
+}
+
+/// A model at random values of its parameters.
+#[derive(Clone, Debug)]
+pub struct Point<'a> {
+    model: &'a Model,
+    /// The step.
+    pub step: f64,
+    /// By letter: a parameter, or what an advected quantity is at the identity.
+    pub constants: Vec<Grid<f64>>,
+    nodal: Vec<bool>,
+}
+
+/// A node: the element of each body.
+pub type Node = Vec<Grid<f64>>;
+
+fn square<const N: usize>(a: &Square<f64, N>) -> Grid<f64> {
+    Grid::from_entries(N, N, |i, j| a.0[i][j])
+}
+
+fn any(source: &mut Source, rows: usize, cols: usize) -> Grid<f64> {
+    let data = (0..rows * cols)
+        .map(|_| source.between(-1.0, 1.0))
+        .collect();
+    Grid { rows, cols, data }
+}
+
+/// A random element, anywhere on the group.
+pub fn element(source: &mut Source, family: Family) -> Grid<f64> {
+    match family {
+        Family::Rotation(2) => square(&source.orthogonal::<2>()),
+        Family::Rotation(3) => square(&source.orthogonal::<3>()),
+        Family::Rotation(4) => square(&source.orthogonal::<4>()),
+        Family::Rotation(_) => square(&source.orthogonal::<5>()),
+        Family::Quaternion => {
+            let q: [f64; 4] = source.vector();
+            let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let [w, x, y, z] = q.map(|c| c / length);
+            Grid::quaternion(w, [x, y, z])
+        }
+        Family::Motion => {
+            let (turn, shift) = (source.orthogonal::<3>(), source.vector::<3>());
+            Grid::from_entries(4, 4, |i, j| match (i, j) {
+                (3, 3) => 1.0,
+                (3, _) => 0.0,
+                (i, 3) => shift[i],
+                (i, j) => turn.0[i][j],
+            })
+        }
+        // Near enough to the identity that the determinant is positive and the inverse tame.
+        Family::Linear(n) => Grid::identity(n).plus(&any(source, n, n).scaled(0.3)),
+    }
+}
+
+/// The basis of the Lie algebra in which residuals are given.
+fn basis(family: Family) -> Vec<Grid<f64>> {
+    let axis = |k: usize| Grid::from_entries(3, 1, |i, _| f64::from(u8::from(i == k)));
+    match family {
+        Family::Rotation(3) => (0..3).map(|k| axis(k).hat()).collect(),
+        Family::Rotation(n) => {
+            let pairs = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
+            pairs
+                .map(|(i, j)| {
+                    Grid::from_entries(n, n, |r, c| match (r, c) {
+                        _ if (r, c) == (j, i) => 1.0,
+                        _ if (r, c) == (i, j) => -1.0,
+                        _ => 0.0,
+                    })
+                })
+                .collect()
+        }
+        Family::Quaternion => (0..3)
+            .map(|k| Grid::quaternion(0.0, [0, 1, 2].map(|i| if i == k { 0.5 } else { 0.0 })))
+            .collect(),
+        Family::Motion => (0..6)
+            .map(|k| {
+                Grid::from_entries(4, 4, |i, j| match (i, j) {
+                    (3, _) => 0.0,
+                    (i, 3) => f64::from(u8::from(k == i + 3)),
+                    (i, j) if k < 3 => axis(k).hat().at(i, j),
+                    _ => 0.0,
+                })
+            })
+            .collect(),
+        Family::Linear(n) => (0..n * n)
+            .map(|k| Grid::from_entries(n, n, |i, j| f64::from(u8::from(i * n + j == k))))
+            .collect(),
+    }
+}
+
+impl<'a> Point<'a> {
+    /// Random values for all letters.
+    pub fn draw(model: &'a Model, source: &mut Source, step: f64) -> Self {
+        let constants = model
+            .letters
+            .iter()
+            .map(|l| match (l.kind, &l.role) {
+                (_, Role::Relative { defined: true, .. }) => Grid::identity(l.kind.shape().0),
+                (Kind::Real, _) => Grid::number(source.between(0.3, 1.5)),
+                (Kind::Vector(n), _) => any(source, n, 1),
+                (Kind::Symmetric(n), _) => {
+                    let a = any(source, n, n);
+                    Grid::from_entries(n, n, |i, j| a.at(i.min(j), i.max(j)))
+                }
+                (Kind::Positive(n), _) => {
+                    let a = any(source, n, n).scaled(0.4);
+                    let product = Grid::identity(n).plus(&a.times(&a.transposed()));
+                    // Symmetric to the last bit: constructors check it.
+                    Grid::from_entries(n, n, |i, j| product.at(i.min(j), i.max(j)))
+                }
+                (Kind::Skew(n), _) => {
+                    let a = any(source, n, n);
+                    Grid::from_entries(n, n, |i, j| match i.cmp(&j) {
+                        std::cmp::Ordering::Less => a.at(i, j),
+                        std::cmp::Ordering::Equal => 0.0,
+                        std::cmp::Ordering::Greater => -a.at(j, i),
+                    })
+                }
+                (Kind::Diagonal(n), _) => {
+                    let a = any(source, n, 1);
+                    Grid::from_entries(n, n, |i, j| if i == j { a.at(i, 0) } else { 0.0 })
+                }
+                (Kind::Matrix(n, m), _) => any(source, n, m),
+                (Kind::Element(family), _) => element(source, family),
+            })
+            .collect();
+        let nodal = model
+            .summands
+            .iter()
+            .map(|(_, t)| model.is_nodal(t))
+            .collect();
+        Self {
+            model,
+            step,
+            constants,
+            nodal,
+        }
+    }
+
+    /// A random node.
+    pub fn node(&self, source: &mut Source) -> Node {
+        let bodies = self.model.bodies.iter();
+        bodies.map(|b| element(source, b.family)).collect()
+    }
+
+    /// What every letter is at a node; velocities are left open.
+    #[must_use]
+    pub fn letters<T: Number>(&self, node: &[Grid<T>]) -> Vec<Grid<T>> {
+        let letters = self.model.letters.iter().zip(&self.constants);
+        letters
+            .map(|(l, constant)| {
+                let own: Grid<T> = Grid::constant(constant);
+                match l.role {
+                    Role::Parameter | Role::Velocity(_) => own,
+                    Role::Element(body) => node[body].clone(),
+                    Role::Advected {
+                        body,
+                        action,
+                        turns,
+                        definition,
+                    } => {
+                        let at_identity = match definition.and_then(|by| self.constants.get(by)) {
+                            Some(by) => Grid::constant(by),
+                            None => own,
+                        };
+                        let b = &self.model.bodies[body];
+                        let g = match (turns, b.family) {
+                            (true, Family::Motion) => node[body].block(3, 3, (0, 0)),
+                            (true, _) => node[body].covered(),
+                            (false, _) => node[body].clone(),
+                        };
+                        let (g, inverse) = match b.side {
+                            Side::Body => (g.inverse(), g),
+                            Side::Space => (g.clone(), g.inverse()),
+                        };
+                        acted(action, &g, &inverse, &at_identity)
+                    }
+                    Role::Relative { first, second, .. } => {
+                        node[first].inverse().times(&own).times(&node[second])
+                    }
+                }
+            })
+            .collect()
+    }
+
+    /// The summands of the action of one edge.
+    fn edge<T: Number>(&self, tail: &[Grid<T>], head: &[Grid<T>]) -> Vec<T> {
+        let (mut here, next) = (self.letters(tail), self.letters(head));
+        for (i, b) in self.model.bodies.iter().enumerate() {
+            here[b.element + 1] = match b.side {
+                Side::Body => tail[i].inverse().times(&head[i]),
+                Side::Space => head[i].times(&tail[i].inverse()),
+            };
+        }
+        let edge = Edge {
+            step: self.step,
+            here: &here,
+            next: &next,
+        };
+        let at_head = Edge {
+            step: self.step,
+            here: &next,
+            next: &next,
+        };
+        let scale = self.model.scale.as_ref().map(|s| s.value(&edge).scalar());
+        let summands = self.model.summands.iter().zip(&self.nodal);
+        summands
+            .map(|((minus, t), nodal)| {
+                let value = |at: &Edge<'_, T>, t: &Tree| t.value(at).scalar();
+                let typed = match nodal {
+                    true => self.model.rule.split(value(&edge, t), value(&at_head, t)),
+                    false => value(&edge, t),
+                };
+                let signed = if *minus { -typed } else { typed };
+                match scale {
+                    Some(scale) => signed / scale,
+                    None => signed,
+                }
+            })
+            .collect()
+    }
+
+    /// The derivative of the action of both edges by each direction at the middle node.
+    #[must_use]
+    pub fn stationarity(&self, nodes: &[Node; 3]) -> Variation {
+        let steady = |node: &Node| -> Vec<Grid<Dual>> { node.iter().map(Grid::constant).collect() };
+        let [before, here, after] = nodes;
+        let (before, after) = (steady(before), steady(after));
+        let mut derivative = Vec::new();
+        let mut largest: Vec<f64> = Vec::new();
+        for (i, b) in self.model.bodies.iter().enumerate() {
+            for direction in basis(b.family) {
+                let tangent = match b.side {
+                    Side::Body => here[i].times(&direction),
+                    Side::Space => direction.times(&here[i]),
+                };
+                let mut varied = steady(here);
+                varied[i] = Grid::from_entries(tangent.rows, tangent.cols, |r, c| Dual {
+                    value: here[i].at(r, c),
+                    slope: tangent.at(r, c),
+                });
+                let mut summands = self.edge(&before, &varied);
+                summands.extend(self.edge(&varied, &after));
+                largest.resize(summands.len(), 0.0);
+                for (size, s) in largest.iter_mut().zip(&summands) {
+                    // A summand that is no number must not be lost in a maximum.
+                    let own = s.slope.abs() + s.value.abs();
+                    *size = if own.is_finite() {
+                        size.max(own)
+                    } else {
+                        f64::NAN
+                    };
+                }
+                derivative.push(summands.iter().map(|s| s.slope).sum());
+            }
+        }
+        Variation {
+            derivative,
+            scale: largest.iter().sum(),
+        }
+    }
+}
+
+/// A quantity acted on by `g`.
+fn acted<T: Number>(action: Action, g: &Grid<T>, inverse: &Grid<T>, c: &Grid<T>) -> Grid<T> {
+    match action {
+        Action::Forward => g.times(c),
+        Action::Dual => inverse.transposed().times(c),
+        Action::Congruence => g.times(c).times(&g.transposed()),
+        Action::DualCongruence => inverse.transposed().times(c).times(inverse),
+        Action::Conjugation => g.times(c).times(inverse),
+        Action::Weight => c.scaled(g.determinant()),
+    }
+}
