@@ -152,13 +152,13 @@ impl Outcome {
         };
         vec![
             self.invariant.name.to_owned(),
-            self.invariant.formula.to_owned(),
             number(self.scale),
             number(self.worst),
             number(self.last),
             self.bound
                 .map_or_else(|| "-".to_owned(), |bound| format!("{bound:e}")),
             self.verdict.word().to_owned(),
+            self.invariant.formula.to_owned(),
         ]
     }
 }
@@ -169,16 +169,17 @@ impl Outcome {
 pub fn table(outcomes: &[Outcome], width: Option<usize>) -> String {
     let head = [
         "invariant",
-        "formula",
         "scale",
         "max drift",
         "final drift",
         "bound",
         "verdict",
+        // Last: on a narrow terminal it continues below, and the verdict stays beside the numbers.
+        "formula",
     ];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
     rows.extend(outcomes.iter().map(Outcome::cells));
-    let mut text = crate::columns::aligned(&rows, &[2, 3, 4, 5], width);
+    let mut text = crate::columns::aligned(&rows, &[1, 2, 3, 4], width);
     let absolute: Vec<String> = outcomes.iter().filter_map(Outcome::absolute).collect();
     if !absolute.is_empty() {
         let said = format!(

@@ -79,7 +79,7 @@ fn a_left_bound_is_code_three_and_the_results_are_written() {
     let out = folder.path("out");
     let done = clebsch(&["run", "harmonic-rotor", "--case", &file, "--out", &out]);
     assert_eq!(done.code, 3, "{}", done.err);
-    assert!(done.out.contains("1e-5  EXCEEDED\n"), "{}", done.out);
+    assert!(done.out.contains("1e-5  EXCEEDED  "), "{}", done.out);
     assert_eq!(done.err, "clebsch: bound exceeded: energy\n");
     assert_eq!(names(&out), FILES);
     let json = fs::read_to_string(format!("{out}/run.json")).expect("run.json");

@@ -224,11 +224,29 @@ const MOTIONS: &str = "model Falling {
 }
 ";
 
+/// The position appears by itself, and with it the metric of the whole group.
+const SPRING: &str = "model Spring {
+    param J: Sym<3>;
+    param m, s: Real;
+    param a, o: Vec<3>;
+    group G: SE<3> velocity V;
+    constraint next(G) = G*V;
+    let x = pos(next(G)) - pos(G);
+    let y = pos(G) + rot(G)*a - o;
+    lagrangian = -tr(J*rot(G)^T*rot(next(G)))/h + m*dot(x, x)/(2*h) - h*s/2*dot(y, y);
+}
+";
+
 /// Rigid motions and rotations of any dimension are written on the terminal without the inclusion ι,
 /// vectors of six in parts; pages of a paper keep it.
 #[test]
 fn vectors_of_six_are_derived_in_parts() {
-    for (name, input) in [("kirchhoff-body", ""), ("body-n", ""), ("-", MOTIONS)] {
+    for (name, input) in [
+        ("kirchhoff-body", ""),
+        ("body-n", ""),
+        ("-", MOTIONS),
+        ("-", SPRING),
+    ] {
         let derive = ["derive", name];
         let done = with(&Gallery::shipped(), &derive, input, None);
         assert_eq!(done.code, 0, "{}", done.err);

@@ -185,13 +185,32 @@ fn combination(basis: &[Value], by: &[f64]) -> Value {
     out
 }
 
+/// What stands between the commas that no bracket encloses: those of `(a, b)` are of one vector.
+fn apart(text: &str) -> Vec<&str> {
+    let mut parts = Vec::new();
+    let (mut from, mut depth) = (0, 0);
+    for (at, letter) in text.char_indices() {
+        match letter {
+            '(' | '[' => depth += 1,
+            ')' | ']' => depth -= 1,
+            ',' if depth == 0 => {
+                parts.push(text[from..at].trim());
+                from = at + 1;
+            }
+            _ => {}
+        }
+    }
+    parts.push(text[from..].trim());
+    parts
+}
+
 /// Evaluates `formula, where μ = ..., ...`: the velocities are what gives the momenta.
 fn evaluated(d: &Derivation, formula: &str, letters: &[(String, Value)]) -> Value {
     let Some((formula, relations)) = formula.split_once(", where ") else {
         return value(formula, letters);
     };
-    let relations: Vec<(&str, &str)> = relations
-        .split(", ")
+    let relations: Vec<(&str, &str)> = apart(relations)
+        .into_iter()
         .map(|r| r.split_once(" = ").expect("an equation"))
         .collect();
     let given: Vec<Value> = relations.iter().map(|(m, _)| value(m, letters)).collect();

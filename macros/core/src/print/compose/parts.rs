@@ -130,7 +130,9 @@ impl Composer<'_> {
             return None;
         }
         let (head, rest) = factors.split_first()?;
-        let found = inclusion(head)?;
+        let Some(found) = inclusion(head) else {
+            return self.row_included(factors);
+        };
         let zero = || Layout::Number("0".to_owned());
         let is = |wanted: Inclusion| move |f: &Expr| inclusion(f) == Some(wanted);
         let inner = |count: usize| -> Option<Expr> {
@@ -193,6 +195,33 @@ impl Composer<'_> {
             }
             _ => None,
         }
+    }
+}
+
+impl Composer<'_> {
+    /// The same for a row at the front: `lin(x)ᵀ` for a part of a row of six, `[vᵀ, 0]` for a row of
+    /// three that is made longer.
+    fn row_included(&self, factors: &[Expr]) -> Option<(Laid, usize)> {
+        let head = factors.first()?;
+        let Node::Transpose(column) = head.node() else {
+            return None;
+        };
+        let next = |at: usize| factors.get(at).and_then(inclusion);
+        let (row, used) = match next(1) {
+            Some(i) if i.rows == 6 && !i.takes && head.shape().rows == Dim::Fixed(1) => {
+                let word = if i.at == LINEAR { "lin" } else { "ang" };
+                let part = self.call(word, self.expression(column));
+                (part.raised(super::transposition(false)), 2)
+            }
+            _ => (self.expression(head), 1),
+        };
+        let longer = next(used).is_some_and(|i| i.rows == 4 && i.takes);
+        if longer && head.shape().rows == Dim::Fixed(1) {
+            let zero = Layout::Number("0".to_owned());
+            let row = self.commas(vec![row.layout, zero]);
+            return Some((Laid::atom(Layout::fenced(Fence::Square, row)), used + 1));
+        }
+        (used > 1).then_some((row, used))
     }
 }
 
