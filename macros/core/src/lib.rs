@@ -20,6 +20,7 @@ pub mod print;
 pub mod prove;
 pub mod schedule;
 pub mod syntax;
+pub mod work;
 
 pub use derive::Derivation;
 pub use diagnostic::Errors;

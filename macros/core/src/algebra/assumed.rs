@@ -6,6 +6,7 @@ use super::exact::{ATTEMPTS, Matrix, POINTS, Point, add, inverse, mix, mul, nega
 use crate::expr::shape::Structure;
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr, Letter};
+use crate::work;
 
 /// Most coordinates of a letter that an equation is solved for.
 const LARGEST: usize = 64;
@@ -240,6 +241,7 @@ pub(crate) fn eliminate(rows: &mut [Vec<u64>], n: usize) -> Vec<usize> {
         for (r, row) in rows.iter_mut().enumerate() {
             let f = negate(row[c]);
             if r != start && f != 0 {
+                work::take(pivot.len());
                 for (x, y) in row.iter_mut().zip(&pivot) {
                     *x = add(*x, mul(f, *y));
                 }

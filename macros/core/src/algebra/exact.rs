@@ -6,6 +6,7 @@ use super::rational::Rational;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr, Function, Letter, Map, Node, Part};
+use crate::work;
 use std::collections::BTreeMap;
 
 const PRIME: u64 = (1 << 61) - 1;
@@ -54,10 +55,20 @@ pub(super) fn root(a: u64) -> Option<u64> {
     (mul(r, r) == a).then_some(r)
 }
 
+/// A half and a quarter: 2^61 is 1 modulo the prime.
+const HALF: u64 = 1 << 60;
+const QUARTER: u64 = 1 << 59;
+
 fn of_rational(q: Rational) -> Option<u64> {
     let num = (q.numerator().rem_euclid(i128::from(PRIME))) as u64;
-    let den = (q.denominator().rem_euclid(i128::from(PRIME))) as u64;
-    Some(mul(num, inverse(den)?))
+    match q.denominator() {
+        1 => Some(num),
+        2 => Some(mul(num, HALF)),
+        den => {
+            let den = (den.rem_euclid(i128::from(PRIME))) as u64;
+            Some(mul(num, inverse(den)?))
+        }
+    }
 }
 
 /// The fraction of small numbers that this is, numerator and denominator up to `largest`.
@@ -130,6 +141,7 @@ impl Matrix {
         if b.data.len() == 1 {
             return self.scaled(b.data[0]);
         }
+        work::take(self.data.len() * b.cols);
         Matrix::from_fn(self.rows, b.cols, |i, j| {
             (0..self.cols).fold(0, |s, k| add(s, mul(self.at(i, k), b.at(k, j))))
         })
@@ -142,6 +154,7 @@ impl Matrix {
     /// Inverse and determinant; `None` for a singular matrix.
     pub(crate) fn inverted(&self) -> Option<(Matrix, u64)> {
         let n = self.rows;
+        work::take(2 * n * n * n);
         let (mut a, mut b, mut det) = (self.clone(), Matrix::identity(n), 1);
         for c in 0..n {
             let p = (c..n).find(|r| a.at(*r, c) != 0)?;
@@ -303,7 +316,9 @@ impl<'a> Point<'a> {
         let number = |x: &Expr| self.value(x).map(|m| m.at(0, 0));
         let Shape { rows, cols } = e.shape();
         let (rows, cols) = (self.dim(rows), self.dim(cols));
-        let half = of_rational(Rational::HALF)?;
+        if !work::take(1) {
+            return None;
+        }
         Some(match e.node() {
             Node::Number(q) => Matrix::number(of_rational(*q)?),
             Node::Letter(l) => self.letter(*l)?,
@@ -315,19 +330,19 @@ impl<'a> Point<'a> {
                 Matrix::from_fn(rows, cols, |i, j| u64::from(i == at + j))
             }
             Node::Sum(list) => {
-                let mut total = Matrix::from_fn(rows, cols, |_, _| 0);
+                let mut total = Matrix::zeros(rows, cols);
                 for x in list {
-                    total = total.plus(&go(x)?);
+                    let part = go(x)?;
+                    let entries = total.data.iter_mut().zip(&part.data);
+                    entries.for_each(|(t, x)| *t = add(*t, *x));
                 }
                 total
             }
             Node::Neg(a) => go(a)?.scaled(negate(1)),
             Node::Product(list) => {
-                let mut total = Matrix::number(1);
-                for x in list {
-                    total = total.times(&go(x)?);
-                }
-                total
+                let mut parts = list.iter().map(go);
+                let first = parts.next().unwrap_or_else(|| Some(Matrix::number(1)))?;
+                parts.try_fold(first, |total, x| Some(total.times(&x?)))?
             }
             Node::Quotient(a, b) => {
                 let below = inverse(number(b)?)?;
@@ -361,7 +376,7 @@ impl<'a> Point<'a> {
             Node::Hat(a) => hat(&go(a)?),
             Node::Vee(a) => {
                 let a = go(a)?;
-                let part = |i, j| mul(half, add(a.at(i, j), negate(a.at(j, i))));
+                let part = |i, j| mul(HALF, add(a.at(i, j), negate(a.at(j, i))));
                 Matrix {
                     rows: 3,
                     cols: 1,
@@ -371,8 +386,8 @@ impl<'a> Point<'a> {
             Node::Part(part, a) => {
                 let a = go(a)?;
                 match part {
-                    Part::Symmetric => a.plus(&a.transposed()).scaled(half),
-                    Part::Skew => a.plus(&a.transposed().scaled(negate(1))).scaled(half),
+                    Part::Symmetric => a.plus(&a.transposed()).scaled(HALF),
+                    Part::Skew => a.plus(&a.transposed().scaled(negate(1))).scaled(HALF),
                     Part::Diagonal => {
                         Matrix::from_fn(rows, cols, |i, j| if i == j { a.at(i, i) } else { 0 })
                     }
@@ -380,22 +395,21 @@ impl<'a> Point<'a> {
             }
             Node::Map(map, argument) => {
                 let a = go(argument)?;
-                let quarter = of_rational(Rational::QUARTER)?;
                 match map {
-                    Map::Real => Matrix::number(mul(quarter, quaternion(&a)[0])),
+                    Map::Real => Matrix::number(mul(QUARTER, quaternion(&a)[0])),
                     Map::Imaginary => {
                         let [_, v @ ..] = quaternion(&a);
                         Matrix {
                             rows: 3,
                             cols: 1,
-                            data: v.iter().map(|x| mul(quarter, *x)).collect(),
+                            data: v.iter().map(|x| mul(QUARTER, *x)).collect(),
                         }
                     }
                     Map::Pure => pure(&a.data),
                     Map::Rotation if expr::is_motion(self.symbols, argument) => {
                         Matrix::from_fn(3, 3, |i, j| a.at(i, j))
                     }
-                    Map::Rotation => rotation(&quaternion(&a).map(|x| mul(quarter, x))),
+                    Map::Rotation => rotation(&quaternion(&a).map(|x| mul(QUARTER, x))),
                     Map::Translation => Matrix::from_fn(3, 1, |i, _| a.at(i, 3)),
                     Map::Diagonal => {
                         Matrix::from_fn(rows, cols, |i, j| if i == j { a.at(i, 0) } else { 0 })

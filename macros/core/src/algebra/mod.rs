@@ -107,9 +107,14 @@ impl<'a> Algebra<'a> {
         self.symbols
     }
 
+    /// Products of terms taken so far.
+    pub(crate) fn spent(&self) -> u64 {
+        self.work.get()
+    }
+
     /// Whether an expression was too large to normalise; every answer since is void.
     pub fn exhausted(&self) -> bool {
-        self.work.get() > WORK_LIMIT
+        self.work.get() > WORK_LIMIT || crate::work::exhausted()
     }
 
     /// How it is known that the expression vanishes identically, if it does. Nothing when it does

@@ -7,6 +7,7 @@ use super::spec::{Dimension, Group};
 use crate::diagnostic::{Diagnostic, Errors, Place, closest};
 use crate::expr::Expr;
 use crate::expr::shape::{Shape, Structure};
+use crate::expr::spelling::seen;
 use crate::expr::symbol::{Role, SymbolId, Symbols, ascii};
 use crate::syntax::ast::{Model, Name, Statement};
 use crate::syntax::{FUNCTIONS, HIDEABLE};
@@ -50,6 +51,9 @@ pub struct Declared {
 /// Names with a fixed meaning.
 const RESERVED: [&str; 5] = ["Id", "T", "E1", "E2", "E3"];
 
+/// What derivations write for the action, the identity and unit vectors.
+const PRINTED: [&str; 10] = ["ℓ", "Id", "E1", "E2", "E3", "E4", "E5", "E6", "E7", "E8"];
+
 /// Words that no field, method or local of the emitted Rust can bear.
 const RUST: [&str; 53] = [
     "_", "Self", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue",
@@ -68,8 +72,11 @@ pub fn is_rust_word(name: &str) -> bool {
 fn unusable(name: &Name) -> Option<Diagnostic> {
     let text = name.text.as_str();
     let function = FUNCTIONS.contains(&text) && !HIDEABLE.contains(&text);
+    let printed = PRINTED.into_iter().find(|sign| seen(sign) == seen(text));
     let message = if RESERVED.contains(&text) || function {
         format!("`{text}` has a fixed meaning in the language")
+    } else if let Some(sign) = printed {
+        format!("`{text}` prints as `{sign}`, which has a fixed meaning in derivations")
     } else if RUST.contains(&text) {
         format!(
             "`{text}` is a word of Rust, in which the model is emitted, and names nothing there"
@@ -201,13 +208,17 @@ impl Declared {
                     stated: false,
                 });
             }
-            Statement::Advected { name, shape, .. } => {
+            Statement::Advected { names, shape, .. } => {
                 let Some((shape, structure)) = shapes::advected_shape(&self.symbols, shape, errors)
                 else {
-                    self.places.push((name.text.clone(), name.place));
+                    let spoilt = names.iter().map(|n| (n.text.clone(), n.place));
+                    self.places.extend(spoilt);
                     return;
                 };
-                if self.admit(name, errors) {
+                for name in names {
+                    if !self.admit(name, errors) {
+                        continue;
+                    }
                     let quantity = self
                         .symbols
                         .add(&name.text, shape, structure, Role::Advected);
@@ -257,6 +268,17 @@ impl Declared {
                     ),
                 )
                 .help("choose names that differ when Greek letters are spelt out")
+                .also(*first, format!("`{other}` is declared here")),
+            );
+            return false;
+        }
+        if let Some((other, first)) = self.places.iter().find(|(n, _)| seen(n) == seen(text)) {
+            errors.push(
+                Diagnostic::new(
+                    name.place,
+                    format!("`{text}` and `{other}` print alike, as one name"),
+                )
+                .help("choose names that differ in print: Greek words become letters, digits and what follows `_` become subscripts")
                 .also(*first, format!("`{other}` is declared here")),
             );
             return false;

@@ -14,6 +14,7 @@ use crate::diagnostic::{Diagnostic, Errors};
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::syntax::ast::{Model, NodeRule, Statement};
+use crate::work;
 pub(crate) use declare::is_rust_word;
 
 use declare::Declared;
@@ -23,8 +24,17 @@ use spec::{Advected, Assumption, Configuration, Spec, Subject};
 /// Largest expression tree the derivation takes on.
 const LARGEST: u32 = 1_000;
 
-/// Checks a model.
+/// Checks a model. Work is counted: a model that takes more than any is given is refused.
 pub fn check(model: &Model) -> Result<Spec, Errors> {
+    let _count = work::Count::begin();
+    let checked = checked(model);
+    match work::exhausted() {
+        true => Err(messages::too_large(model.name.place).into()),
+        false => checked,
+    }
+}
+
+fn checked(model: &Model) -> Result<Spec, Errors> {
     let mut errors = Errors::new();
     let mut declared = declare::declare(model, &mut errors);
     let names = declared.clone();
@@ -83,11 +93,12 @@ pub fn check(model: &Model) -> Result<Spec, Errors> {
                 }
             }
             Statement::Advected {
-                name,
+                names: quantities,
                 definition: Some(value),
                 ..
             } => {
-                if let Some(slot) = names.symbols.find(&name.text) {
+                let own = quantities.first();
+                if let Some(slot) = own.and_then(|name| names.symbols.find(&name.text)) {
                     match elaborator.of_shape(value, names.symbols.get(slot).shape) {
                         Ok(e) => declared.set_definition(slot, e, value.place, &mut errors),
                         Err(e) => errors.push(*e),

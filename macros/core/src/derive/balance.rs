@@ -87,9 +87,12 @@ fn balance(
                 symbol: letter.symbol,
                 shift,
             };
+            if change.is_zero() {
+                continue;
+            }
             let g = expr::gradient(s, l, wrt);
-            let change = expr::shift_time(s, change, shift.time);
-            if !g.is_zero() && !change.is_zero() {
+            if !g.is_zero() {
+                let change = expr::shift_time(s, change, shift.time);
                 terms.push(pairing(letters, &g, &change));
             }
         }
@@ -116,12 +119,15 @@ fn balance(
     let (outgoing, incoming) = (total(&edge_out, &node_out), total(&edge_in, &node_in));
     // What potentials add, if that is all that the step adds.
     let acting = || {
+        if c.side == Side::Body {
+            return None;
+        }
         let at = |shift| nodes_of(&action.distributed, shift);
         let added = shorter(algebra, expr::add(at(Shift::HERE), at(Shift::NEXT)));
         let step = expr::sub(incoming.clone(), outgoing.clone());
         let rest = forward(spec, s, &expr::sub(step, added.clone()));
         let moving = expr::contains_role(s, &added, Role::Velocity);
-        (c.side == Side::Spatial && !moving && algebra.is_zero(&rest)).then_some(added)
+        (!moving && algebra.is_zero(&rest)).then_some(added)
     };
     Balance {
         increment: increment(s, c, &outgoing, &incoming, algebra).or_else(acting),

@@ -9,13 +9,14 @@ use super::balance::{Balance, pairing};
 use super::clebsch::{self, Relation, constraint_terms};
 use super::lie;
 use super::momentum::Momentum;
-use super::variation::{Variation, at, on_shell, substitute_previous_elements};
+use super::variation::{Variation, at, on_shell, previous_elements};
 use crate::algebra::{Algebra, Known, Rational};
 use crate::check::spec::Spec;
 use crate::diagnostic::{Diagnostic, Errors};
 use crate::expr::shape::Shape;
 use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr, Letter, Node, Shift};
+use std::collections::BTreeMap;
 
 /// What the proof is about.
 pub struct Inputs<'a> {
@@ -79,10 +80,14 @@ impl Certificate {
 /// Proves, or says what is left.
 pub fn certify(x: &Inputs) -> Result<Certificate, Errors> {
     let mut steps = Vec::new();
+    let back = Back {
+        shell: on_shell(x.spec, x.letters),
+        elements: previous_elements(x.spec, x.letters),
+    };
     for i in 0..x.spec.configurations.len() {
-        constraint_steps(x, i, &mut steps);
+        constraint_steps(x, i, &back, &mut steps);
         gradient_steps(x, i, &mut steps);
-        combination(x, i, &mut steps);
+        combination(x, i, &back, &mut steps);
         named_form(x, i, &mut steps);
     }
     let mut errors = Errors::new();
@@ -112,44 +117,58 @@ pub fn certify(x: &Inputs) -> Result<Certificate, Errors> {
     Ok(Certificate { steps })
 }
 
+/// Replacements at the node before: the same for every step of the proof.
+struct Back {
+    shell: Vec<(Letter, Expr)>,
+    elements: Vec<(Letter, Expr)>,
+}
+
 fn name_of(x: &Inputs, l: Letter) -> String {
     x.letters.symbols.get(l.symbol).name.clone()
 }
 
 /// The variations preserve every constraint: on the outgoing edge as they stand, on the incoming
-/// edge with node k written by node k-1.
-fn constraint_steps(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
+/// edge with node k written by node k-1. Where nothing moves there is nothing to prove.
+fn constraint_steps(x: &Inputs, i: usize, earlier: &Back, steps: &mut Vec<Step>) {
     let s = &x.letters.symbols;
     let v = &x.variations[i];
     let nodes = x.spec.configurations.iter().map(|c| (c.element, &c.update));
     let nodes = nodes.chain(x.spec.advected.iter().map(|a| (a.quantity, &a.update)));
     let multipliers = x.letters.momentum.iter().chain(&x.letters.multiplier);
+    let (outgoing, incoming) = (v.on_outgoing(), v.on_incoming());
+    let moved: BTreeMap<Letter, &Expr> = v
+        .advected
+        .iter()
+        .chain([&v.element])
+        .map(|(l, e)| (*l, e))
+        .collect();
     for ((quantity, update), p) in nodes.zip(multipliers) {
         let name = &s.get(quantity).name;
         let p_next = expr::letter(s, *p, Shift::NEXT);
-        let change = expr::directional(s, update, &v.on_outgoing());
-        steps.push(Step {
-            known: Known::NormalForm,
-            name: format!("the variation keeps the constraint of {name} on the outgoing edge"),
-            left: pairing(x.letters, &p_next, &change),
-            right: expr::integer(0),
-        });
+        let change = expr::directional(s, update, &outgoing);
+        if !change.is_zero() {
+            steps.push(Step {
+                known: Known::NormalForm,
+                name: format!("the variation keeps the constraint of {name} on the outgoing edge"),
+                left: pairing(x.letters, &p_next, &change),
+                right: expr::integer(0),
+            });
+        }
         let p_here = expr::here(s, *p);
         let back = expr::shift_time(s, update, Shift::PREVIOUS.time);
-        let change = expr::directional(s, &back, &v.on_incoming());
-        let change = substitute_previous_elements(x.spec, x.letters, &change);
-        let letter = at(quantity, Shift::HERE);
-        let mut moved = v.advected.iter().chain([&v.element]);
-        let own = moved
-            .find(|(l, _)| *l == letter)
-            .map_or_else(|| expr::zero(s.get(quantity).shape), |(_, e)| e.clone());
-        let own = expr::substitute(s, &own, &on_shell(x.spec, x.letters));
-        steps.push(Step {
-            known: Known::NormalForm,
-            name: format!("the variation keeps the constraint of {name} on the incoming edge"),
-            left: pairing(x.letters, &p_here, &own),
-            right: pairing(x.letters, &p_here, &change),
-        });
+        let change = expr::directional(s, &back, &incoming);
+        let change = expr::substitute(s, &change, &earlier.elements);
+        let own = moved.get(&at(quantity, Shift::HERE));
+        let own = own.map_or_else(|| expr::zero(s.get(quantity).shape), |e| (*e).clone());
+        let own = expr::substitute(s, &own, &earlier.shell);
+        if !own.is_zero() || !change.is_zero() {
+            steps.push(Step {
+                known: Known::NormalForm,
+                name: format!("the variation keeps the constraint of {name} on the incoming edge"),
+                left: pairing(x.letters, &p_here, &own),
+                right: pairing(x.letters, &p_here, &change),
+            });
+        }
     }
 }
 
@@ -159,8 +178,11 @@ fn gradient_steps(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
     let l = &x.action.total;
     let v = &x.variations[i];
     for (letter, change) in v.on_outgoing() {
+        if change.is_zero() {
+            continue;
+        }
         let g = expr::gradient(s, l, letter);
-        if g.is_zero() || change.is_zero() {
+        if g.is_zero() {
             continue;
         }
         steps.push(Step {
@@ -178,7 +200,7 @@ fn gradient_steps(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
 /// `Σ ⟨E_v, δv⟩ = δS`: the balance is a combination of the Clebsch relations. They are affine in
 /// the multipliers, so the sum falls into one block for the action and one for each multiplier,
 /// which must cancel by itself.
-fn combination(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
+fn combination(x: &Inputs, i: usize, back: &Back, steps: &mut Vec<Step>) {
     let s = &x.letters.symbols;
     // The relations are those of the constrained action: the sum of the action and these terms.
     debug_assert_eq!(
@@ -190,8 +212,8 @@ fn combination(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
     let name = &s.get(x.spec.configurations[i].element).name;
     let mut block = |what: String, left: Expr, right: Expr| {
         let close = |e: Expr| {
-            let e = substitute_previous_elements(x.spec, x.letters, &e);
-            expr::substitute(s, &e, &on_shell(x.spec, x.letters))
+            let e = expr::substitute(s, &e, &back.elements);
+            expr::substitute(s, &e, &back.shell)
         };
         steps.push(Step {
             known: Known::NormalForm,
@@ -203,14 +225,15 @@ fn combination(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
         });
     };
     let action = |gradient: &Expr| with_multiplier(x, gradient, None);
-    block("the action".to_owned(), combined(x, i, &action), balance);
+    let met = met(x, i);
+    block("the action".to_owned(), combined(x, &met, &action), balance);
     let quantities = x.spec.configurations.iter().map(|c| c.element);
     let quantities = quantities.chain(x.spec.advected.iter().map(|a| a.quantity));
     let multipliers = x.letters.momentum.iter().chain(&x.letters.multiplier);
     for (quantity, multiplier) in quantities.zip(multipliers) {
         let own = |gradient: &Expr| {
-            let letters = expr::letters(gradient);
-            if !letters.iter().any(|l| l.symbol == *multiplier) {
+            let occurs = |shift| expr::contains(gradient, at(*multiplier, shift));
+            if ![Shift::HERE, Shift::NEXT].into_iter().any(occurs) {
                 return expr::zero(gradient.shape());
             }
             let (with, without) = (
@@ -219,7 +242,7 @@ fn combination(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
             );
             difference(with, without)
         };
-        let left = combined(x, i, &own);
+        let left = combined(x, &met, &own);
         if !left.is_zero() {
             let what = format!("the multiplier of {} cancels", s.get(quantity).name);
             block(what, left, expr::integer(0));
@@ -227,30 +250,47 @@ fn combination(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
     }
 }
 
-/// The relations paired with the variations, `part` of each gradient taken.
-fn combined(x: &Inputs, i: usize, part: &dyn Fn(&Expr) -> Expr) -> Expr {
-    let s = &x.letters.symbols;
+/// A relation whose variable varies.
+struct Met<'a> {
+    relation: &'a Relation,
+    /// The change of its variable.
+    here: Option<Expr>,
+    /// That of the velocity of the incoming edge, which has its relation one level earlier.
+    incoming: Option<&'a Expr>,
+}
+
+/// The relations that the variation of one configuration meets.
+fn met<'a>(x: &Inputs<'a>, i: usize) -> Vec<Met<'a>> {
     let v = &x.variations[i];
+    let changes: BTreeMap<Letter, Expr> = v
+        .on_outgoing()
+        .into_iter()
+        .filter(|(_, change)| !change.is_zero())
+        .collect();
+    let all = x.relations.iter().map(|relation| Met {
+        relation,
+        here: changes.get(&relation.variable).cloned(),
+        incoming: (v.incoming.0.symbol == relation.variable.symbol).then_some(&v.incoming.1),
+    });
+    all.filter(|m| m.here.is_some() || m.incoming.is_some())
+        .collect()
+}
+
+/// The relations paired with the variations, `part` of each gradient taken.
+fn combined(x: &Inputs, met: &[Met], part: &dyn Fn(&Expr) -> Expr) -> Expr {
+    let s = &x.letters.symbols;
     let mut terms = Vec::new();
-    let outgoing = v.on_outgoing();
-    for relation in x.relations {
-        let here = outgoing.iter().filter(|(l, _)| *l == relation.variable);
-        let here: Vec<_> = here.collect();
-        let incoming = v.incoming.0.symbol == relation.variable.symbol;
-        if here.is_empty() && !incoming {
-            continue;
-        }
-        let gradient = part(&relation.gradient);
+    for m in met {
+        let gradient = part(&m.relation.gradient);
         if gradient.is_zero() {
             continue;
         }
-        for (_, change) in here {
+        if let Some(change) = &m.here {
             terms.push(pairing(x.letters, &gradient, change));
         }
-        // The velocity of the incoming edge has its relation one level earlier.
-        if incoming {
+        if let Some(change) = m.incoming {
             let earlier = expr::shift_time(s, &gradient, Shift::PREVIOUS.time);
-            terms.push(pairing(x.letters, &earlier, &v.incoming.1));
+            terms.push(pairing(x.letters, &earlier, change));
         }
     }
     expr::sum(terms, Shape::SCALAR)

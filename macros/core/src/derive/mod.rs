@@ -26,10 +26,11 @@ pub mod warnings;
 
 use crate::algebra::Algebra;
 use crate::check::spec::{Group, Side, Spec};
-use crate::diagnostic::{Diagnostic, Errors};
+use crate::diagnostic::{Diagnostic, Errors, Place};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::schedule::Program;
+use crate::work::{self, Count, Work};
 use std::sync::OnceLock;
 
 /// Letters that the derivation adds to those of the model.
@@ -101,6 +102,8 @@ pub struct Derivation {
     pub integrability: invariants::Integrability,
     /// What derives but is hardly meant.
     pub warnings: Vec<warnings::Warning>,
+    /// What the derivation took.
+    pub work: Work,
     /// The scheduled residual, once it has been asked for.
     pub(crate) residual: OnceLock<Program>,
 }
@@ -203,23 +206,33 @@ fn letters(spec: &Spec) -> Letters {
     }
 }
 
-/// Derives a checked model, in the order in which each result needs those before it.
+/// Derives a checked model. Work is counted, and a model that takes more than any is given is
+/// refused: what was found until then is void, errors among it.
 pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
+    let count = Count::begin();
+    let whole = spec.lagrangian_place;
+    let derived = derived(spec, &count);
+    match work::exhausted() {
+        true => Err(too_large(whole).into()),
+        false => derived,
+    }
+}
+
+fn too_large(place: Place) -> Diagnostic {
+    let message = "this model is too large to derive: its normal form does not fit";
+    Diagnostic::new(place, message)
+        .help("reduce powers of sums and nested products, or make parts of it parameters")
+}
+
+/// All results, in the order in which each needs those before it.
+fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
     let spec = reduction::reduce(spec)?;
     let letters = letters(&spec);
     let algebra = Algebra::new(&letters.symbols);
     let whole = spec.lagrangian_place;
-    let bounded = |algebra: &Algebra| {
-        if algebra.exhausted() {
-            return Err(Errors::from(
-                Diagnostic::new(
-                    whole,
-                    "this model is too large to derive: its normal form does not fit",
-                )
-                .help("reduce powers of sums and nested products, or make parts of it parameters"),
-            ));
-        }
-        Ok(())
+    let bounded = |algebra: &Algebra| match algebra.exhausted() {
+        true => Err(Errors::from(too_large(whole))),
+        false => Ok(()),
     };
     let action = action::action(&spec);
     // The constraints first: a wrong-sided action makes everything below meaningless.
@@ -260,6 +273,10 @@ pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
         .as_ref()
         .ok()
         .map(|l| continuous::continuous(&spec, &letters, &variations, l, &algebra));
+    // Everything until here must be decided; the search for invariants may be cut short.
+    if work::cut_short() {
+        return Err(too_large(whole).into());
+    }
     let bracket = bracket::bracket(&spec, &letters, &variations);
     let (invariants, integrability) = invariants::invariants(&invariants::Inputs {
         spec: &spec,
@@ -290,6 +307,7 @@ pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
         algebra: &algebra,
     });
     Ok(Derivation {
+        work: count.work(algebra.spent()),
         spec,
         letters,
         action,

@@ -52,10 +52,14 @@ pub fn variations(
 ) -> Result<Vec<Variation>, Errors> {
     let mut errors = Errors::new();
     let mut out = Vec::new();
+    let back = Back {
+        shell: on_shell(spec, letters),
+        elements: previous_elements(spec, letters),
+    };
     for (i, c) in spec.configurations.iter().enumerate() {
         let mut v = of_configuration(c, letters, i);
         for (j, a) in spec.advected.iter().enumerate() {
-            match of_advected(spec, letters, algebra, &v, a, j) {
+            match of_advected(spec, letters, algebra, &v, a, j, &back) {
                 Ok(change) => v.advected.push(change),
                 Err(d) => {
                     errors.push(*d);
@@ -98,6 +102,12 @@ fn of_configuration(c: &Configuration, letters: &Letters, i: usize) -> Variation
     }
 }
 
+/// Replacements at the node before: the same for every quantity.
+struct Back {
+    shell: Vec<(Letter, Expr)>,
+    elements: Vec<(Letter, Expr)>,
+}
+
 /// Solves the outgoing constraint for the change of `a`, then requires the incoming one.
 fn of_advected(
     spec: &Spec,
@@ -106,6 +116,7 @@ fn of_advected(
     v: &Variation,
     a: &Advected,
     j: usize,
+    back: &Back,
 ) -> Result<(Letter, Expr), Box<Diagnostic>> {
     let s = &letters.symbols;
     let here = at(a.quantity, Shift::HERE);
@@ -136,9 +147,8 @@ fn of_advected(
     // The incoming constraint a = f(-1), on shell.
     let backward = expr::shift_time(s, &a.update, Shift::PREVIOUS.time);
     let wanted = expr::directional(s, &backward, &v.on_incoming());
-    let wanted = substitute_previous_elements(spec, letters, &wanted);
-    let shell = on_shell(spec, letters);
-    let found = expr::substitute(s, &solved, &shell);
+    let wanted = expr::substitute(s, &wanted, &back.elements);
+    let found = expr::substitute(s, &solved, &back.shell);
     let difference = expr::sub(found, wanted);
     if algebra.is_zero(&difference) || algebra.exhausted() {
         return Ok((here, solved));
@@ -160,11 +170,10 @@ pub(super) fn on_shell(spec: &Spec, letters: &Letters) -> Vec<(Letter, Expr)> {
     advected.collect()
 }
 
-/// Group elements at node k-1 by those at node k: `Λ(-1) = Λ Ω(-1)^-1`.
-pub(super) fn substitute_previous_elements(spec: &Spec, letters: &Letters, e: &Expr) -> Expr {
+/// Replacements that put group elements at node k-1 forward to node k: `Λ(-1) = Λ Ω(-1)^-1`.
+pub(super) fn previous_elements(spec: &Spec, letters: &Letters) -> Vec<(Letter, Expr)> {
     let s = &letters.symbols;
-    let list: Vec<(Letter, Expr)> = spec
-        .configurations
+    spec.configurations
         .iter()
         .map(|c| {
             let g = expr::here(s, c.element);
@@ -175,8 +184,7 @@ pub(super) fn substitute_previous_elements(spec: &Spec, letters: &Letters, e: &E
             };
             (at(c.element, Shift::PREVIOUS), before)
         })
-        .collect();
-    expr::substitute(s, e, &list)
+        .collect()
 }
 
 /// Reads `L x R` off a normal form that holds the letter once; `L` and `R` must be invertible.

@@ -255,7 +255,7 @@ fn action(sheet: &Sheet, doc: &mut Document) {
     };
     section.paragraph([
         "Matrices are paired by ".into(),
-        pairing("A", "B", false).into(),
+        pairing(sheet.free("A"), sheet.free("B"), false).into(),
         weight.into(),
     ]);
     let terms = constraint_terms(&d.spec, &d.letters);
@@ -270,8 +270,7 @@ fn action(sheet: &Sheet, doc: &mut Document) {
 }
 
 /// `⟨A, B⟩ = tr(Aᵀ B)`, or half of it.
-pub fn pairing(a: &str, b: &str, half: bool) -> Formula {
-    let (a, b) = (Formula::name(a), Formula::name(b));
+pub fn pairing(a: Formula, b: Formula, half: bool) -> Formula {
     let product = Formula::Product(vec![Formula::transpose(a.clone()), b.clone()]);
     let trace = Formula::operator(crate::print::formula::Operator::Trace, product);
     let value = if half {

@@ -91,6 +91,7 @@ pub fn momentum_maps(sheet: &Sheet, doc: &mut Document) {
 /// Pairing, diamond and coadjoint action, each in one sentence.
 fn definitions(sheet: &Sheet, section: &mut Section) {
     let d = sheet.d;
+    let free = |base: &str| sheet.free(base);
     let orthogonal = d
         .spec
         .configurations
@@ -99,15 +100,15 @@ fn definitions(sheet: &Sheet, section: &mut Section) {
     if orthogonal {
         section.paragraph([
             "Skew matrices are paired with half the trace, ".into(),
-            pairing("M", "ξ", true).into(),
+            pairing(free("M"), free("ξ"), true).into(),
             ", which in three dimensions is the scalar product of their axial vectors.".into(),
         ]);
     }
-    let star = Formula::ad_star(Formula::name("g"), Formula::name("M"));
+    let star = Formula::ad_star(free("g"), free("M"));
     let turned = Formula::Product(vec![
-        Formula::transpose(Formula::name("g")),
-        Formula::name("M"),
-        Formula::transpose(Formula::Inverse(Box::new(Formula::name("g")))),
+        Formula::transpose(free("g")),
+        free("M"),
+        Formula::transpose(Formula::Inverse(Box::new(free("g")))),
     ]);
     section.paragraph([
         "The coadjoint action is ".into(),
@@ -115,13 +116,13 @@ fn definitions(sheet: &Sheet, section: &mut Section) {
         ", the dual of ".into(),
         Formula::equal(
             Formula::Ad {
-                group: Box::new(Formula::name("g")),
-                argument: Box::new(Formula::name("ξ")),
+                group: Box::new(free("g")),
+                argument: Box::new(free("ξ")),
             },
             Formula::Product(vec![
-                Formula::name("g"),
-                Formula::name("ξ"),
-                Formula::Inverse(Box::new(Formula::name("g"))),
+                free("g"),
+                free("ξ"),
+                Formula::Inverse(Box::new(free("g"))),
             ]),
         )
         .into(),
@@ -144,20 +145,14 @@ fn definitions(sheet: &Sheet, section: &mut Section) {
     let mut words: Vec<Inline> = vec![
         "The diamond of a covector and a quantity is defined by ".into(),
         Formula::equal(
-            Formula::pairing(
-                Formula::diamond(Formula::name("v"), Formula::name("a")),
-                Formula::name("ξ"),
-            ),
-            Formula::pairing(
-                Formula::name("v"),
-                Formula::apply(Formula::name("ξ"), vec![Formula::name("a")]),
-            ),
+            Formula::pairing(Formula::diamond(free("v"), free("a")), free("ξ")),
+            Formula::pairing(free("v"), Formula::apply(free("ξ"), vec![free("a")])),
         )
         .into(),
         ", where ".into(),
-        Formula::apply(Formula::name("ξ"), vec![Formula::name("a")]).into(),
+        Formula::apply(free("ξ"), vec![free("a")]).into(),
         " is the action of the Lie algebra on the quantity, that is its variation along ".into(),
-        Formula::name("ξ").into(),
+        free("ξ").into(),
     ];
     if !labels.is_empty() {
         words.push(

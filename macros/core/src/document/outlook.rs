@@ -148,11 +148,11 @@ fn equations(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize, 
         steady(Formula::equal(
             Formula::pairing(
                 Formula::lie_ad_star(sheet.here(*zeta), mu.clone()),
-                Formula::name("ξ"),
+                sheet.free("ξ"),
             ),
             Formula::pairing(
                 mu.clone(),
-                Formula::Bracket(Box::new(sheet.here(*zeta)), Box::new(Formula::name("ξ"))),
+                Formula::Bracket(Box::new(sheet.here(*zeta)), Box::new(sheet.free("ξ"))),
             ),
         ))
         .into(),

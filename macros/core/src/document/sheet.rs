@@ -74,6 +74,11 @@ impl<'a> Sheet<'a> {
         Formula::name(&self.symbols().fresh_name(&wanted))
     }
 
+    /// A letter that stands for anything, in a definition: its usual name unless the model has it.
+    pub fn free(&self, base: &str) -> Formula {
+        Formula::name(&self.d.spec.symbols.fresh_name(base))
+    }
+
     /// The momentum map of the multipliers at node k: `J^R` of the right translation on the body
     /// side, `J^L` of the left one on the spatial side.
     pub fn lifted(&self, i: usize, by: i8) -> Formula {

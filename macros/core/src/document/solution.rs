@@ -248,7 +248,7 @@ fn riccati(sheet: &Sheet, section: &mut Section, c: &Configuration, mv: &MoserVe
             Formula::Product(vec![column(vec![id, sym.clone()]), x.clone()]),
         ),
     ]));
-    let (u1, u2) = (Formula::name("U_1"), Formula::name("U_2"));
+    let (u1, u2) = (sheet.free("U_1"), sheet.free("U_2"));
     let wanted = if mv.symmetric {
         "The velocity that tends to the identity with the step"
     } else {

@@ -3,10 +3,12 @@
 //! Shapes must already fit: `check` has verified the user's, the derivation builds its own.
 
 use super::function::Parity;
+use super::presence::Marks;
 use super::shape::{Dim, Shape, Structure};
 use super::symbol::{SymbolId, Symbols};
 use super::{Expr, Function, Inner, Letter, Map, Node, Part, Shift};
 use crate::algebra::Rational;
+use crate::work;
 use core::hash::{Hash, Hasher};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -26,17 +28,33 @@ impl Hasher for Fnv {
 }
 
 pub(super) fn make(node: Node, shape: Shape) -> Expr {
+    let (mut size, mut marks) = (1u32, Marks::default());
+    match &node {
+        Node::Letter(at) => marks = Marks::of(*at),
+        _ => node.each_child(&mut |c| {
+            size = size.saturating_add(c.size());
+            marks = marks.with(c.0.marks);
+        }),
+    }
+    // Once the work is spent, all that is still made is nothing: the model is refused.
+    let node = match work::make(size) {
+        true => node,
+        false => {
+            (size, marks) = (1, Marks::default());
+            match shape.is_scalar() {
+                true => Node::Number(Rational::ZERO),
+                false => Node::Zero(shape),
+            }
+        }
+    };
     let mut hasher = Fnv(0xcbf2_9ce4_8422_2325);
     node.hash(&mut hasher);
-    let size = node
-        .children()
-        .iter()
-        .fold(1u32, |n, c| n.saturating_add(c.size()));
     Expr(Arc::new(Inner {
         node,
         shape,
         size,
         hash: hasher.finish(),
+        marks,
     }))
 }
 

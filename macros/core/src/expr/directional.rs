@@ -1,117 +1,154 @@
 //! Directional derivatives: how an expression changes to first order when some letters change
 //! by given amounts. Linear in the amounts; one rule for each kind of node.
 
+use super::presence::{Marks, Memo};
 use super::*;
 use crate::expr::symbol::Symbols;
 
 /// The derivative of `e` when each letter in `changes` moves by its amount and no other letter
 /// moves.
 pub fn directional(symbols: &Symbols, e: &Expr, changes: &[(Letter, Expr)]) -> Expr {
-    let d = |x: &Expr| directional(symbols, x, changes);
-    let shape = e.shape();
-    match e.node() {
-        Node::Number(_)
-        | Node::Identity(_)
-        | Node::Zero(_)
-        | Node::Unit(..)
-        | Node::Inclusion(..) => zero(shape),
-        Node::Letter(at) => changes
-            .iter()
-            .find(|(l, _)| l == at)
-            .map_or_else(|| zero(shape), |(_, amount)| amount.clone()),
-        Node::Sum(terms) => sum(terms.iter().map(d), shape),
-        Node::Neg(a) => neg(d(a)),
-        Node::Product(factors) => {
-            let mut terms = Vec::new();
-            for (i, f) in factors.iter().enumerate() {
-                let df = d(f);
-                if !df.is_zero() {
-                    let mut word = factors.clone();
-                    word[i] = df;
-                    terms.push(product(word));
+    let moving = changes.iter().filter(|(_, amount)| !amount.is_zero());
+    let walk = Walk {
+        symbols,
+        changes,
+        marks: Marks::of_all(moving.map(|(l, _)| *l)),
+    };
+    walk.of(e, &mut Memo::default())
+}
+
+/// What stays the same during one derivative.
+struct Walk<'a> {
+    symbols: &'a Symbols,
+    changes: &'a [(Letter, Expr)],
+    /// Marks of the letters that move.
+    marks: Marks,
+}
+
+impl Walk<'_> {
+    fn of(&self, e: &Expr, memo: &mut Memo<Expr>) -> Expr {
+        if e.0.marks.are_apart(self.marks) {
+            return zero(e.shape());
+        }
+        if let Some(known) = memo.get(e) {
+            return known;
+        }
+        let derivative = self.of_node(e, memo);
+        memo.keep(e, &derivative);
+        derivative
+    }
+
+    fn of_node(&self, e: &Expr, memo: &mut Memo<Expr>) -> Expr {
+        let symbols = self.symbols;
+        let mut d = |x: &Expr| self.of(x, memo);
+        let shape = e.shape();
+        match e.node() {
+            Node::Number(_)
+            | Node::Identity(_)
+            | Node::Zero(_)
+            | Node::Unit(..)
+            | Node::Inclusion(..) => zero(shape),
+            Node::Letter(at) => self
+                .changes
+                .iter()
+                .find(|(l, _)| l == at)
+                .map_or_else(|| zero(shape), |(_, amount)| amount.clone()),
+            Node::Sum(terms) => sum(terms.iter().map(d).collect::<Vec<_>>(), shape),
+            Node::Neg(a) => neg(d(a)),
+            Node::Product(factors) => {
+                let mut terms = Vec::new();
+                for (i, f) in factors.iter().enumerate() {
+                    let df = d(f);
+                    if !df.is_zero() {
+                        let mut word = factors.clone();
+                        word[i] = df;
+                        terms.push(product(word));
+                    }
+                }
+                sum(terms, shape)
+            }
+            Node::Quotient(a, b) => {
+                let (da, db) = (d(a), d(b));
+                let first = if da.is_zero() {
+                    zero(shape)
+                } else {
+                    quotient(da, b.clone())
+                };
+                if db.is_zero() {
+                    return first;
+                }
+                let second = quotient(mul(db, a.clone()), power(b.clone(), Rational::integer(2)));
+                sub(first, second)
+            }
+            Node::Power(a, q) => {
+                let da = d(a);
+                match q.plus(Rational::MINUS_ONE) {
+                    Some(lower) if !da.is_zero() => {
+                        product([number(*q), power(a.clone(), lower), da])
+                    }
+                    _ => integer(0),
                 }
             }
-            sum(terms, shape)
-        }
-        Node::Quotient(a, b) => {
-            let (da, db) = (d(a), d(b));
-            let first = if da.is_zero() {
-                zero(shape)
-            } else {
-                quotient(da, b.clone())
-            };
-            if db.is_zero() {
-                return first;
-            }
-            let second = quotient(mul(db, a.clone()), power(b.clone(), Rational::integer(2)));
-            sub(first, second)
-        }
-        Node::Power(a, q) => {
-            let da = d(a);
-            match q.plus(Rational::MINUS_ONE) {
-                Some(lower) if !da.is_zero() => product([number(*q), power(a.clone(), lower), da]),
-                _ => integer(0),
-            }
-        }
-        Node::Transpose(a) => transpose(symbols, d(a)),
-        Node::Inverse(a) => {
-            let da = d(a);
-            if da.is_zero() {
-                return zero(shape);
-            }
-            neg(product([e.clone(), da, e.clone()]))
-        }
-        Node::Trace(a) => trace(d(a)),
-        Node::Det(a) => {
-            let da = d(a);
-            if da.is_zero() {
-                return integer(0);
-            }
-            trace(mul(adjugate(symbols, a), da))
-        }
-        Node::Adjugate(a) => d(&adjugate_polynomial(a)),
-        Node::Dot(a, b) => add(dot(d(a), b.clone()), dot(a.clone(), d(b))),
-        Node::Cross(a, b) => add(cross(d(a), b.clone()), cross(a.clone(), d(b))),
-        Node::Hat(v) => hat(d(v)),
-        Node::Vee(a) => vee(d(a)),
-        Node::Part(which, a) => part(*which, d(a)),
-        Node::Call(Function::Log, a) if matches!(a.node(), Node::Det(_)) => {
-            let Node::Det(inner) = a.node() else {
-                return integer(0);
-            };
-            let da = d(inner);
-            if da.is_zero() {
-                return integer(0);
-            }
-            trace(mul(inverse(symbols, inner.clone()), da))
-        }
-        Node::Call(function, a) => {
-            let da = d(a);
-            if da.is_zero() {
-                return integer(0);
-            }
-            match function {
-                Function::Exp => mul(e.clone(), da),
-                _ => function.chain(e, a, da),
-            }
-        }
-        Node::Map(map, a) => match map {
-            Map::Real => real(d(a)),
-            Map::Imaginary => imaginary(d(a)),
-            Map::Pure => pure(d(a)),
-            Map::Rotation if is_motion(symbols, a) => block(symbols, &d(a)),
-            Map::Translation => column(symbols, &d(a)),
-            Map::Diagonal => diagonal(d(a)),
-            Map::DiagonalOf => diagonal_of(d(a)),
-            Map::Twist => twist(d(a)),
-            // Right along the group, which is all that a letter of SU(2) moves along.
-            Map::Rotation => {
+            Node::Transpose(a) => transpose(symbols, d(a)),
+            Node::Inverse(a) => {
                 let da = d(a);
                 if da.is_zero() {
                     return zero(shape);
                 }
-                mul(e.clone(), hat(quaternion::angular(symbols, a, da)))
+                neg(product([e.clone(), da, e.clone()]))
             }
-        },
+            Node::Trace(a) => trace(d(a)),
+            Node::Det(a) => {
+                let da = d(a);
+                if da.is_zero() {
+                    return integer(0);
+                }
+                trace(mul(adjugate(symbols, a), da))
+            }
+            Node::Adjugate(a) => d(&adjugate_polynomial(a)),
+            Node::Dot(a, b) => add(dot(d(a), b.clone()), dot(a.clone(), d(b))),
+            Node::Cross(a, b) => add(cross(d(a), b.clone()), cross(a.clone(), d(b))),
+            Node::Hat(v) => hat(d(v)),
+            Node::Vee(a) => vee(d(a)),
+            Node::Part(which, a) => part(*which, d(a)),
+            Node::Call(Function::Log, a) if matches!(a.node(), Node::Det(_)) => {
+                let Node::Det(inner) = a.node() else {
+                    return integer(0);
+                };
+                let da = d(inner);
+                if da.is_zero() {
+                    return integer(0);
+                }
+                trace(mul(inverse(symbols, inner.clone()), da))
+            }
+            Node::Call(function, a) => {
+                let da = d(a);
+                if da.is_zero() {
+                    return integer(0);
+                }
+                match function {
+                    Function::Exp => mul(e.clone(), da),
+                    _ => function.chain(e, a, da),
+                }
+            }
+            Node::Map(map, a) => match map {
+                Map::Real => real(d(a)),
+                Map::Imaginary => imaginary(d(a)),
+                Map::Pure => pure(d(a)),
+                Map::Rotation if is_motion(symbols, a) => block(symbols, &d(a)),
+                Map::Translation => column(symbols, &d(a)),
+                Map::Diagonal => diagonal(d(a)),
+                Map::DiagonalOf => diagonal_of(d(a)),
+                Map::Twist => twist(d(a)),
+                // Right along the group, which is all that a letter of SU(2) moves along.
+                Map::Rotation => {
+                    let da = d(a);
+                    if da.is_zero() {
+                        return zero(shape);
+                    }
+                    mul(e.clone(), hat(quaternion::angular(symbols, a, da)))
+                }
+            },
+        }
     }
 }

@@ -8,10 +8,12 @@ mod directional;
 mod factored;
 mod function;
 mod gradient;
+mod presence;
 mod projection;
 mod quaternion;
 mod rigid;
 pub mod shape;
+pub(crate) mod spelling;
 mod substitute;
 pub mod symbol;
 mod terms;
@@ -166,6 +168,7 @@ struct Inner {
     shape: Shape,
     size: u32,
     hash: u64,
+    marks: presence::Marks,
 }
 
 impl Expr {
@@ -202,14 +205,21 @@ impl Expr {
 impl Node {
     /// Children in order.
     pub fn children(&self) -> Vec<&Expr> {
+        let mut out = Vec::new();
+        self.each_child(&mut |c| out.push(c));
+        out
+    }
+
+    /// Visits the children in order.
+    pub fn each_child<'a>(&'a self, visit: &mut dyn FnMut(&'a Expr)) {
         match self {
             Node::Number(_)
             | Node::Letter(_)
             | Node::Identity(_)
             | Node::Zero(_)
             | Node::Unit(..)
-            | Node::Inclusion(..) => Vec::new(),
-            Node::Sum(list) | Node::Product(list) => list.iter().collect(),
+            | Node::Inclusion(..) => {}
+            Node::Sum(list) | Node::Product(list) => list.iter().for_each(visit),
             Node::Neg(a)
             | Node::Power(a, _)
             | Node::Transpose(a)
@@ -221,8 +231,11 @@ impl Node {
             | Node::Vee(a)
             | Node::Part(_, a)
             | Node::Call(_, a)
-            | Node::Map(_, a) => vec![a],
-            Node::Quotient(a, b) | Node::Dot(a, b) | Node::Cross(a, b) => vec![a, b],
+            | Node::Map(_, a) => visit(a),
+            Node::Quotient(a, b) | Node::Dot(a, b) | Node::Cross(a, b) => {
+                visit(a);
+                visit(b);
+            }
         }
     }
 }

@@ -2,15 +2,23 @@
 //! expressions in their place. All other rewriting happens on normal forms.
 
 use super::build::letter_of_shape;
+use super::presence::{Marks, Memo};
 use super::symbol::{Role, Symbols};
 use super::*;
 
 /// Whether the letter occurs.
 pub fn contains(e: &Expr, wanted: Letter) -> bool {
-    match e.node() {
-        Node::Letter(at) => *at == wanted,
-        _ => e.children().into_iter().any(|c| contains(c, wanted)),
+    let marks = Marks::of(wanted);
+    fn walk(e: &Expr, wanted: Letter, marks: Marks) -> bool {
+        if e.0.marks.are_apart(marks) {
+            return false;
+        }
+        match e.node() {
+            Node::Letter(at) => *at == wanted,
+            _ => e.children().into_iter().any(|c| walk(c, wanted, marks)),
+        }
     }
+    walk(e, wanted, marks)
 }
 
 /// Whether a letter of this role occurs, at any offset.
@@ -22,14 +30,18 @@ pub fn contains_role(symbols: &Symbols, e: &Expr, role: Role) -> bool {
 
 /// Every letter that occurs, sorted, once.
 pub fn letters(e: &Expr) -> Vec<Letter> {
-    fn walk(e: &Expr, out: &mut Vec<Letter>) {
+    fn walk(e: &Expr, seen: &mut Memo<()>, out: &mut Vec<Letter>) {
         if let Node::Letter(at) = e.node() {
             out.push(*at);
         }
-        e.children().into_iter().for_each(|c| walk(c, out));
+        if e.0.marks.is_empty() || seen.get(e).is_some() {
+            return;
+        }
+        e.node().each_child(&mut |c| walk(c, seen, out));
+        seen.keep(e, &());
     }
     let mut out = Vec::new();
-    walk(e, &mut out);
+    walk(e, &mut Memo::default(), &mut out);
     out.sort();
     out.dedup();
     out
@@ -37,7 +49,7 @@ pub fn letters(e: &Expr) -> Vec<Letter> {
 
 /// The expression with every letter that lives in time moved by `by` levels. Constants stay.
 pub fn shift_time(symbols: &Symbols, e: &Expr, by: i8) -> Expr {
-    map_letters(symbols, e, &|at, shape| {
+    let shifted = |at: Letter, shape| {
         let moves = match symbols.get(at.symbol).role {
             Role::Step | Role::Parameter | Role::Variation => false,
             Role::Element | Role::Velocity | Role::Advected | Role::Multiplier | Role::Derived => {
@@ -49,24 +61,40 @@ pub fn shift_time(symbols: &Symbols, e: &Expr, by: i8) -> Expr {
             to.shift.time = to.shift.time.saturating_add(by);
         }
         letter_of_shape(to, shape)
-    })
+    };
+    map_letters(symbols, e, &mut Memo::default(), &shifted)
 }
 
 /// The expression with letters replaced; letters not listed stay.
 pub fn substitute(symbols: &Symbols, e: &Expr, replacements: &[(Letter, Expr)]) -> Expr {
-    map_letters(symbols, e, &|at, shape| {
+    let wanted = Marks::of_all(replacements.iter().map(|(l, _)| *l));
+    if e.0.marks.are_apart(wanted) {
+        return e.clone();
+    }
+    let replaced = |at: Letter, shape| {
         replacements
             .iter()
             .find(|(l, _)| *l == at)
             .map_or_else(|| letter_of_shape(at, shape), |(_, x)| x.clone())
-    })
+    };
+    map_letters(symbols, e, &mut Memo::default(), &replaced)
 }
 
-fn map_letters(symbols: &Symbols, e: &Expr, f: &dyn Fn(Letter, shape::Shape) -> Expr) -> Expr {
-    match e.node() {
-        Node::Letter(at) => f(*at, e.shape()),
-        _ => rebuild(symbols, e, &mut |x| map_letters(symbols, x, f)),
+fn map_letters(
+    symbols: &Symbols,
+    e: &Expr,
+    memo: &mut Memo<Expr>,
+    f: &dyn Fn(Letter, shape::Shape) -> Expr,
+) -> Expr {
+    if let Node::Letter(at) = e.node() {
+        return f(*at, e.shape());
     }
+    if let Some(known) = memo.get(e) {
+        return known;
+    }
+    let mapped = rebuild(symbols, e, &mut |x| map_letters(symbols, x, memo, f));
+    memo.keep(e, &mapped);
+    mapped
 }
 
 /// The same node with every child replaced; leaves stay.

@@ -2,6 +2,8 @@
 //! that can appear in an expression, in order of declaration.
 
 use super::shape::{Dim, Shape, Structure};
+use super::spelling::seen;
+use std::collections::BTreeSet;
 
 /// Index of a symbol in its table.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
@@ -51,6 +53,8 @@ pub struct Symbol {
 #[derive(Clone, Default, PartialEq, Eq, Debug)]
 pub struct Symbols {
     list: Vec<Symbol>,
+    /// Their names as readers see them.
+    seen: BTreeSet<String>,
     dims: Vec<NamedSize>,
 }
 
@@ -69,6 +73,7 @@ const LARGEST_TRIED: u64 = 8;
 impl Symbols {
     /// Adds a symbol and returns its index.
     pub fn add(&mut self, name: &str, shape: Shape, structure: Structure, role: Role) -> SymbolId {
+        self.seen.insert(seen(name));
         self.list.push(Symbol {
             name: name.to_owned(),
             ascii: ascii(name),
@@ -83,6 +88,9 @@ impl Symbols {
 
     /// Says how a symbol is typeset and what it means, as its declaration does.
     pub fn describe(&mut self, id: SymbolId, typeset: Option<String>, docs: &[String]) {
+        // Letters of the derivation keep clear of it, as of the name itself.
+        let printed = typeset.iter().map(|t| seen(&t.replace(['\\', ' '], "")));
+        self.seen.extend(printed);
         if let Some(symbol) = self.list.get_mut(id.0 as usize) {
             symbol.typeset = typeset;
             symbol.docs = docs.to_vec();
@@ -149,19 +157,15 @@ impl Symbols {
         (0..self.list.len() as u32).map(SymbolId)
     }
 
-    /// A name that no symbol bears yet: `base`, or `base` with a number.
+    /// A name that no symbol bears yet, in print either: `base`, or `base` with a number.
     pub fn fresh_name(&self, base: &str) -> String {
-        if self.find(base).is_none() {
-            return base.to_owned();
-        }
+        let mut name = base.to_owned();
         let mut n = 1u32;
-        loop {
-            let name = format!("{base}{n}");
-            if self.find(&name).is_none() {
-                return name;
-            }
+        while self.seen.contains(&seen(&name)) {
+            name = format!("{base}{n}");
             n += 1;
         }
+        name
     }
 }
 

@@ -141,13 +141,13 @@ pub enum Statement {
         /// Its velocity.
         velocity: Name,
     },
-    /// `advected Γ: SHAPE [= EXPR];`
+    /// `advected Γ, S: SHAPE;`, `advected Γ: SHAPE = EXPR;`
     Advected {
-        /// The quantity.
-        name: Name,
-        /// Its shape.
+        /// The quantities: one, where there is a definition.
+        names: Vec<Name>,
+        /// Their shape.
         shape: Kindred,
-        /// Its definition.
+        /// The definition.
         definition: Option<Expression>,
     },
     /// `constraint next(X) = EXPR;`

@@ -32,8 +32,23 @@ pub fn parse(tokens: TokenStream) -> Result<Model, Errors> {
     statement::model(&mut cursor)
 }
 
+/// Longest text that is read, in bytes: a source that holds a model may hold other things too.
+const LONGEST_TEXT: usize = 250_000;
+
 /// The tokens of a text.
 pub fn tokens(source: &str) -> Result<TokenStream, Errors> {
+    if source.len() > LONGEST_TEXT {
+        let message = format!(
+            "this text has {} bytes; one of more than {LONGEST_TEXT} is refused, and a model of more than {}",
+            source.len(),
+            token::LONGEST
+        );
+        return Err(
+            Diagnostic::new(Place::token(proc_macro2::Span::call_site()), message)
+                .help("put the model into a file of its own")
+                .into(),
+        );
+    }
     text::with_plain_backslashes(source).parse().map_err(|e: proc_macro2::LexError| {
         Errors::from(
             Diagnostic::new(Place::token(e.span()), format!("this is not a token of the language: {e}"))

@@ -290,17 +290,29 @@ fn group(c: &mut Cursor) -> Result<Statement, Diagnostic> {
 }
 
 fn advected(c: &mut Cursor) -> Result<Statement, Diagnostic> {
-    let mut name = c.name("the name of the advected quantity")?;
+    let mut names = vec![c.name("the name of the advected quantity")?];
+    while c.take_punct(',') {
+        names.push(c.name("the name of an advected quantity")?);
+    }
     c.punct(':')?;
     let shape = kindred(c)?;
-    typeset(c, std::slice::from_mut(&mut name))?;
+    typeset(c, &mut names)?;
+    let place = c.place();
     let definition = if c.take_punct('=') {
         Some(expression(c)?)
     } else {
         None
     };
+    if let ([first, .., last], Some(_)) = (names.as_slice(), &definition) {
+        return Err(Diagnostic::new(
+            place,
+            "a definition belongs to one quantity, and several are declared here",
+        )
+        .help("write a statement for each, as `advected Γ: Vec<3> = Λ^T*z;`")
+        .also(first.place.to(last.place), "declared together here"));
+    }
     Ok(Statement::Advected {
-        name,
+        names,
         shape,
         definition,
     })

@@ -8,8 +8,8 @@ use proc_macro2::{Delimiter, Spacing, Span, TokenStream, TokenTree};
 
 /// Deepest nesting of parentheses that the parser follows.
 const DEEPEST: usize = 100;
-/// Longest model, in tokens.
-const LONGEST: usize = 20_000;
+/// Longest model, in bytes; blanks, comments and documentation are not counted.
+pub(super) const LONGEST: usize = 10_000;
 
 /// Keywords that start a statement.
 pub const KEYWORDS: [&str; 19] = [
@@ -109,22 +109,26 @@ impl Cursor {
     /// Flattens a token stream.
     pub fn new(stream: TokenStream) -> Result<Cursor, Errors> {
         let mut tokens = Vec::new();
+        let mut bytes = 0;
         let mut end = Span::call_site();
         let mut stack = vec![(stream.into_iter(), None::<(char, Span)>)];
         while let Some((iter, closing)) = stack.last_mut() {
             let Some(tree) = iter.next() else {
                 if let Some((c, span)) = closing.take() {
                     tokens.push((Token::Close(c), span));
+                    bytes += 1;
                     end = span;
                 }
                 stack.pop();
                 continue;
             };
             let span = tree.span();
-            if tokens.len() > LONGEST {
-                let message = format!("a model of more than {LONGEST} tokens is refused");
+            if bytes > LONGEST {
+                let message = format!(
+                    "a model of more than {LONGEST} bytes is refused, blanks, comments and documentation not counted"
+                );
                 return Err(Diagnostic::new(Place::token(span), message)
-                    .help("split it into several models, or shorten it with `let`")
+                    .help("shorten it with `let`, make parts of it parameters, or split it into several models")
                     .into());
             }
             match tree {
@@ -139,6 +143,7 @@ impl Cursor {
                     let pair = delimiters(group.delimiter());
                     if let Some((open, _)) = pair {
                         tokens.push((Token::Open(open), group.span_open()));
+                        bytes += 1;
                     }
                     let close = pair.map(|(_, c)| (c, group.span_close()));
                     stack.push((group.stream().into_iter(), close));
@@ -146,15 +151,18 @@ impl Cursor {
                 TokenTree::Ident(name) => {
                     let text = name.to_string();
                     let text = text.strip_prefix("r#").unwrap_or(&text).to_owned();
+                    bytes += text.len();
                     tokens.push((Token::Name(text), span));
                 }
                 TokenTree::Punct(p) => {
                     let joint = p.spacing() == Spacing::Joint;
+                    bytes += p.as_char().len_utf8();
                     tokens.push((Token::Punct(p.as_char(), joint), span));
                 }
                 TokenTree::Literal(literal) => {
                     let text = literal.to_string();
                     if text.starts_with(|c: char| c.is_ascii_digit()) {
+                        bytes += text.len();
                         let (number, suffix) = text.split_at(split_number(&text));
                         tokens.push((
                             match suffix.is_empty() {
@@ -164,6 +172,10 @@ impl Cursor {
                             span,
                         ));
                     } else {
+                        // A line of documentation is `#[doc = "..."]`: none of it is counted.
+                        if matches!(tokens.last(), Some((Token::Punct('=', _), _))) {
+                            bytes = bytes.saturating_sub("#[doc=]".len());
+                        }
                         tokens.push((Token::Literal(text), span));
                     }
                 }

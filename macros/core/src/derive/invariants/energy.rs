@@ -103,37 +103,44 @@ fn value(x: &Inputs, point: &Point) -> Option<u64> {
         }
     }
     // Gradients of the kinetic energy and of the linear part in each velocity.
+    let variation = |i: usize| here(x.letters.variation[i]);
     let gradients = |e: &Expr| -> Vec<Expr> {
-        let list = x.letters.variation.iter();
-        list.map(|v| {
-            expr::gradient(
-                s,
-                e,
-                expr::Letter {
-                    symbol: *v,
-                    shift: Shift::HERE,
-                },
-            )
-        })
-        .collect()
+        let all = 0..x.letters.variation.len();
+        all.map(|i| expr::gradient(s, e, variation(i))).collect()
     };
     let kinetic = gradients(&limit.kinetic);
     let linear = gradients(&limit.linear);
     let mut rest = point.clone();
-    let zero_velocity = |p: &mut Point| {
-        for v in &x.letters.variation {
+    let zeros: Vec<Matrix> = x
+        .letters
+        .variation
+        .iter()
+        .map(|v| {
             let shape = s.get(*v).shape;
-            let (rows, cols) = (p.dim(shape.rows), p.dim(shape.cols));
-            p.set(here(*v), Matrix::zeros(rows, cols));
-        }
-    };
-    zero_velocity(&mut rest);
+            Matrix::zeros(rest.dim(shape.rows), rest.dim(shape.cols))
+        })
+        .collect();
+    for (i, zero) in zeros.iter().enumerate() {
+        rest.set(variation(i), zero.clone());
+    }
+    // Gradients are linear in the velocities: one without a velocity does not answer to it.
+    let answers: Vec<Vec<usize>> = (0..zeros.len())
+        .map(|i| {
+            let all = 0..kinetic.len();
+            all.filter(|j| expr::contains(&kinetic[*j], variation(i)))
+                .collect()
+        })
+        .collect();
     let mut rows: Vec<Vec<u64>> = Vec::new();
     for (i, e) in &bases {
-        let mut p = rest.clone();
-        p.set(here(x.letters.variation[*i]), e.clone());
-        let values: Vec<Matrix> = kinetic.iter().map(|g| p.value(g)).collect::<Option<_>>()?;
-        rows.push(bases.iter().map(|(j, f)| values[*j].pairing(f)).collect());
+        rest.set(variation(*i), e.clone());
+        let mut values: Vec<Option<Matrix>> = vec![None; kinetic.len()];
+        for j in &answers[*i] {
+            values[*j] = Some(rest.value(&kinetic[*j])?);
+        }
+        rest.set(variation(*i), zeros[*i].clone());
+        let entry = |(j, f): &(usize, Matrix)| values[*j].as_ref().map_or(0, |v| v.pairing(f));
+        rows.push(bases.iter().map(entry).collect());
     }
     let offsets: Vec<Matrix> = linear
         .iter()

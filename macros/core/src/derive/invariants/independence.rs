@@ -96,14 +96,17 @@ fn differentials(x: &Inputs, point: &Point, v: &Invariant) -> Option<Vec<Vec<u64
             label: [1, 0],
         },
     };
+    let mut p = point.clone();
     for (k, (l, t)) in coordinates.iter().enumerate() {
+        if !expr::contains(&value, *l) {
+            continue;
+        }
         let mark = marker(*l);
         if derivative.as_ref().is_none_or(|(of, _)| of != l) {
             let change = expr::letter(s, mark.symbol, mark.shift);
             derivative = Some((*l, expr::directional(s, &value, &[(*l, change)])));
         }
         let Some((_, d)) = &derivative else { continue };
-        let mut p = point.clone();
         p.set(mark, t.clone());
         let moved = p.value(d)?;
         for (row, entry) in out.iter_mut().zip(&moved.data) {

@@ -29,6 +29,7 @@ use crate::algebra::{Algebra, Rational};
 use crate::check::spec::Spec;
 use crate::expr::shape::{Dim, Shape};
 use crate::expr::{self, Expr, Letter, Shift};
+use crate::work;
 use passage::Passage;
 
 pub use casimirs::Count;
@@ -182,6 +183,10 @@ pub fn invariants(x: &Inputs) -> (Vec<Invariant>, Integrability) {
     let known = Integrability {
         casimirs: match large {
             Some(why) => Known::NotSought(why),
+            None if work::cut_short() => Known::NotSought(format!(
+                "the search took more than {} products of numbers",
+                work::PRODUCTS
+            )),
             None => Known::Counted(casimirs.counts),
         },
         discrete_energy: energy::discrete(x, &passages, lax.as_ref()),

@@ -12,7 +12,9 @@ use super::{Family, Inputs, Invariant, Kind, is_conserved, length};
 use crate::check::spec::{Group, Side};
 use crate::derive::action::summands;
 use crate::expr::shape::Shape;
-use crate::expr::{self, Expr, Letter};
+use crate::expr::symbol::SymbolId;
+use crate::expr::{self, Expr};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Most configurations whose momenta are combined one by one; of more, all that the action couples.
 const FEW: usize = 4;
@@ -24,15 +26,20 @@ const NUMBERS: usize = 48;
 pub(super) fn components(x: &Inputs) -> Vec<Vec<usize>> {
     let count = x.spec.configurations.len();
     let mut of: Vec<usize> = (0..count).collect();
+    let touched = touched(x);
     for term in summands(&x.action.total) {
         let letters = expr::letters(&term);
-        let met: Vec<usize> = (0..count).filter(|i| touches(x, &letters, *i)).collect();
+        let met: BTreeSet<usize> = letters
+            .iter()
+            .filter_map(|l| touched.get(&l.symbol))
+            .flatten()
+            .copied()
+            .collect();
         if let Some(first) = met.first().map(|i| of[*i]) {
-            let joined: Vec<usize> = met.iter().map(|i| of[*i]).collect();
-            for o in &mut of {
-                if joined.contains(o) {
-                    *o = first;
-                }
+            let joined: BTreeSet<usize> = met.iter().map(|i| of[*i]).collect();
+            if joined.len() > 1 {
+                let touched = of.iter_mut().filter(|o| joined.contains(o));
+                touched.for_each(|o| *o = first);
             }
         }
     }
@@ -46,16 +53,21 @@ pub(super) fn components(x: &Inputs) -> Vec<Vec<usize>> {
     out
 }
 
-fn touches(x: &Inputs, letters: &[Letter], i: usize) -> bool {
-    let c = &x.spec.configurations[i];
-    let own = |l: &Letter| l.symbol == c.element || l.symbol == c.velocity;
-    letters.iter().any(|l| {
-        own(l)
-            || x.spec
-                .advected
-                .iter()
-                .any(|a| a.quantity == l.symbol && expr::letters(&a.update).iter().any(own))
-    })
+/// For each symbol the configurations that move it: its own, or those that its constraint names.
+fn touched(x: &Inputs) -> BTreeMap<SymbolId, Vec<usize>> {
+    let mut out: BTreeMap<SymbolId, Vec<usize>> = BTreeMap::new();
+    for (i, c) in x.spec.configurations.iter().enumerate() {
+        out.insert(c.element, vec![i]);
+        out.insert(c.velocity, vec![i]);
+    }
+    let advected = x.spec.advected.iter().map(|a| {
+        let letters = expr::letters(&a.update);
+        let moved = letters.iter().filter_map(|l| out.get(&l.symbol));
+        (a.quantity, moved.flatten().copied().collect())
+    });
+    let advected: Vec<(SymbolId, Vec<usize>)> = advected.collect();
+    out.extend(advected);
+    out
 }
 
 /// Momenta as seen from space, then those that bodies have a part in.

@@ -12,6 +12,7 @@ use crate::derive::bracket;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr, Part};
+use std::collections::BTreeMap;
 
 /// Most candidates that are looked at.
 const MOST: usize = 400;
@@ -243,9 +244,10 @@ fn vectors(x: &Inputs, passages: &[Passage]) -> Vec<Piece> {
             });
         }
     }
+    let carriers = carriers(x, passages);
     for set in components(x).iter().filter(|set| set.len() > 1) {
         for frame in set {
-            if let Some(value) = total(x, passages, set, *frame) {
+            if let Some(value) = total(x, &carriers, set, *frame) {
                 let size = expr::sum(
                     set.iter().map(|i| {
                         let mu = expr::here(s, x.letters.node_momentum[*i]);
@@ -275,7 +277,7 @@ fn vectors(x: &Inputs, passages: &[Passage]) -> Vec<Piece> {
 
 /// The sum of the momenta of coupled bodies, in the frame of one of them: each is carried over by
 /// an advected element of the group that goes from its frame to that one.
-fn total(x: &Inputs, passages: &[Passage], set: &[usize], frame: usize) -> Option<Expr> {
+fn total(x: &Inputs, carriers: &[Carrier], set: &[usize], frame: usize) -> Option<Expr> {
     let s = &x.letters.symbols;
     let three = Group::SpecialOrthogonal(Dim::Fixed(3));
     if set.iter().any(|i| x.spec.configurations[*i].group != three) {
@@ -294,9 +296,9 @@ fn total(x: &Inputs, passages: &[Passage], set: &[usize], frame: usize) -> Optio
             }
             if all_spatial {
                 reached.push((*i, Vec::new()));
-            } else if let Some(e) = carrier(x, passages, *i, to) {
+            } else if let Some(c) = carriers.iter().find(|c| c.from == *i && c.to == to) {
                 let mut path = by.clone();
-                path.push(e);
+                path.push(c.rotation.clone());
                 reached.push((*i, path));
             }
         }
@@ -316,28 +318,58 @@ fn total(x: &Inputs, passages: &[Passage], set: &[usize], frame: usize) -> Optio
 }
 
 /// An advected rotation from one body's frame to another's.
-fn carrier(x: &Inputs, passages: &[Passage], from: usize, to: usize) -> Option<Expr> {
+struct Carrier {
+    from: usize,
+    to: usize,
+    rotation: Expr,
+}
+
+/// All of them: only bodies that the constraint of a rotation names can be joined by it.
+fn carriers(x: &Inputs, passages: &[Passage]) -> Vec<Carrier> {
     let s = &x.letters.symbols;
-    let list = x.spec.advected.iter().map(|a| a.quantity);
-    let rotations = list.filter(|q| s.get(*q).structure == Structure::Orthogonal);
-    let both = rotations.flat_map(|q| {
-        let e = expr::here(s, q);
-        [e.clone(), expr::transpose(s, e)]
-    });
-    let velocity = |i: usize| expr::here(s, x.spec.configurations[i].velocity);
-    let body = |i: usize| x.spec.configurations[i].side == Side::Body;
-    if !body(from) || !body(to) {
-        return None;
+    let velocity = |i: usize| x.spec.configurations[i].velocity;
+    let mut of: BTreeMap<SymbolId, usize> = BTreeMap::new();
+    for (i, c) in x.spec.configurations.iter().enumerate() {
+        if c.side == Side::Body {
+            of.insert(c.velocity, i);
+        }
     }
-    let mut both = both;
-    both.find(|e| {
-        e.shape() == Shape::square(Dim::Fixed(3))
-            && passages.iter().all(|p| {
-                let carried =
-                    expr::product([expr::transpose(s, velocity(to)), e.clone(), velocity(from)]);
-                p.before.value(&carried) == p.after.value(e)
-            })
-    })
+    let mut out = Vec::new();
+    for a in &x.spec.advected {
+        let own = expr::here(s, a.quantity);
+        let turns = s.get(a.quantity).structure == Structure::Orthogonal
+            && own.shape() == Shape::square(Dim::Fixed(3));
+        if !turns {
+            continue;
+        }
+        let letters = expr::letters(&a.update);
+        let named: Vec<usize> = letters
+            .iter()
+            .filter_map(|l| of.get(&l.symbol).copied())
+            .collect();
+        for rotation in [own.clone(), expr::transpose(s, own)] {
+            for (from, to) in named
+                .iter()
+                .flat_map(|i| named.iter().map(move |j| (*i, *j)))
+            {
+                let back = expr::transpose(s, expr::here(s, velocity(to)));
+                let turned = expr::here(s, velocity(from));
+                let carried = expr::product([back, rotation.clone(), turned]);
+                let joins = from != to
+                    && passages
+                        .iter()
+                        .all(|p| p.before.value(&carried) == p.after.value(&rotation));
+                if joins {
+                    out.push(Carrier {
+                        from,
+                        to,
+                        rotation: rotation.clone(),
+                    });
+                }
+            }
+        }
+    }
+    out
 }
 
 /// Matrices of the reduced space and their transposes.

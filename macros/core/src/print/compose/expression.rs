@@ -76,7 +76,8 @@ impl Composer<'_> {
             Node::Inclusion(shape, at) => {
                 let rows = self.symbols.dim_text(shape.rows);
                 let script = format!("{rows}{}", u32::from(*at) + 1);
-                Laid::atom(self.name("ι", Some(&script), None))
+                let name = self.symbols.fresh_name("ι");
+                Laid::atom(self.name(&name, Some(&script), None))
             }
             Node::Sum(_) | Node::Neg(_) => self.expression(e),
             Node::Product(factors) => {

@@ -1,5 +1,6 @@
 //! Tests of the printers on one list of expressions that holds every kind of node.
 
+mod alike;
 mod derivations;
 mod documents;
 mod mathml;

@@ -1,0 +1,79 @@
+//! What a walk of an expression need not do: read a part in which a letter cannot occur, or a
+//! part that several places share again. One mark of 128 stands for each letter; letters may share
+//! one, so that a mark that is absent proves absence and one that is present proves nothing.
+
+use super::{Expr, Letter};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Marks of the letters of an expression.
+#[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
+pub(super) struct Marks([u64; 2]);
+
+impl Marks {
+    /// The mark of one letter.
+    pub(super) fn of(letter: Letter) -> Marks {
+        // Three time levels of a symbol stand side by side.
+        let place = i64::from(letter.symbol.0) * 3 + i64::from(letter.shift.time);
+        let place = place.rem_euclid(128) as usize;
+        let mut marks = [0; 2];
+        marks[place / 64] = 1 << (place % 64);
+        Marks(marks)
+    }
+
+    /// The marks of several letters.
+    pub(super) fn of_all(letters: impl IntoIterator<Item = Letter>) -> Marks {
+        let marks = letters.into_iter().map(Marks::of);
+        marks.fold(Marks::default(), Marks::with)
+    }
+
+    /// The marks of both.
+    pub(super) fn with(self, other: Marks) -> Marks {
+        Marks([self.0[0] | other.0[0], self.0[1] | other.0[1]])
+    }
+
+    /// Whether no letter is in both.
+    pub(super) fn are_apart(self, other: Marks) -> bool {
+        self.0[0] & other.0[0] == 0 && self.0[1] & other.0[1] == 0
+    }
+
+    /// Whether there is no letter.
+    pub(super) fn is_empty(self) -> bool {
+        self == Marks::default()
+    }
+}
+
+/// Results of one walk for the parts that several places share. It holds these parts, so that no
+/// other expression comes to lie at the address of one.
+pub(super) struct Memo<T>(HashMap<usize, (Expr, T)>);
+
+/// Parts of fewer nodes are read again: that costs less than looking them up.
+const SHARED: u32 = 8;
+
+impl<T> Default for Memo<T> {
+    fn default() -> Self {
+        // Looked up, never iterated: no order of it reaches a result.
+        Memo(HashMap::new())
+    }
+}
+
+impl<T: Clone> Memo<T> {
+    /// What was found for this part.
+    pub(super) fn get(&self, e: &Expr) -> Option<T> {
+        let (_, found) = self.0.get(&place(e)?)?;
+        Some(found.clone())
+    }
+
+    /// Keeps what was found for this part, if it is shared.
+    pub(super) fn keep(&mut self, e: &Expr, found: &T) {
+        if let Some(place) = place(e) {
+            self.0.insert(place, (e.clone(), found.clone()));
+        }
+    }
+}
+
+/// The address of a part that is worth looking up.
+fn place(e: &Expr) -> Option<usize> {
+    let shared = e.size() >= SHARED && Arc::strong_count(&e.0) > 1;
+    shared.then(|| Arc::as_ptr(&e.0).addr())
+}

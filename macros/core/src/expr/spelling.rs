@@ -1,0 +1,152 @@
+//! How a name is read when it is printed: from `Lambda1`, `J^R_{k+1}` or `gU` to a base letter or
+//! word, subscripts and a superscript. Greek words become Greek letters, trailing digits become
+//! subscripts. Two names that read the same are the same to a reader, however they are spelt.
+
+use super::symbol::GREEK;
+
+/// A name in its parts.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(crate) struct Parsed {
+    /// A letter, or a word of several.
+    pub base: String,
+    /// Subscripts in order, as text.
+    pub subs: Vec<String>,
+    /// Superscript, as text.
+    pub sup: Option<String>,
+}
+
+/// The Greek letter of a word such as `Lambda`, or the word itself.
+pub(crate) fn letter(word: &str) -> String {
+    match GREEK.iter().find(|(_, name)| *name == word) {
+        Some((greek, _)) => greek.to_string(),
+        None => word.to_owned(),
+    }
+}
+
+/// Takes a name apart.
+pub(crate) fn parse(text: &str) -> Parsed {
+    let end = text
+        .char_indices()
+        .position(|(at, c)| at > 0 && matches!(c, '_' | '^'))
+        .unwrap_or_else(|| text.chars().count());
+    let stem: String = text.chars().take(end).collect();
+    let base = stem.trim_end_matches(|c: char| c.is_ascii_digit());
+    let (base, digits) = if base.is_empty() {
+        (stem.as_str(), "")
+    } else {
+        stem.split_at(base.len())
+    };
+    let mut parsed = Parsed {
+        base: letter(base),
+        subs: Vec::new(),
+        sup: None,
+    };
+    if !digits.is_empty() {
+        parsed.subs.push(digits.to_owned());
+    }
+    let mut rest = text.chars().skip(end).peekable();
+    while let Some(mark) = rest.next() {
+        let mut script = String::new();
+        if rest.next_if_eq(&'{').is_some() {
+            script.extend(rest.by_ref().take_while(|c| *c != '}'));
+        } else {
+            while let Some(c) = rest.next_if(|c| !matches!(c, '_' | '^')) {
+                script.push(c);
+            }
+        }
+        match mark {
+            _ if script.is_empty() => {}
+            '^' => parsed.sup = Some(script),
+            _ => parsed.subs.push(script),
+        }
+    }
+    parsed
+}
+
+/// Greek letters that look Latin, which LaTeX prints as such.
+const LATIN: [(char, char); 15] = [
+    ('Α', 'A'),
+    ('Β', 'B'),
+    ('Ε', 'E'),
+    ('Ζ', 'Z'),
+    ('Η', 'H'),
+    ('Ι', 'I'),
+    ('Κ', 'K'),
+    ('Μ', 'M'),
+    ('Ν', 'N'),
+    ('Ο', 'O'),
+    ('Ρ', 'P'),
+    ('Τ', 'T'),
+    ('Υ', 'Y'),
+    ('Χ', 'X'),
+    ('ο', 'o'),
+];
+
+fn latin(text: &str) -> String {
+    let twin = |c: char| LATIN.iter().find(|(greek, _)| *greek == c).map(|(_, l)| *l);
+    text.chars().map(|c| twin(c).unwrap_or(c)).collect()
+}
+
+/// A name as a reader sees it: one text for all spellings that print alike.
+pub(crate) fn seen(text: &str) -> String {
+    let parsed = parse(text);
+    let script = |text: &str| {
+        let mut out = String::new();
+        let mut word = String::new();
+        for c in text.chars().chain([' ']) {
+            if c.is_alphabetic() {
+                word.push(c);
+                continue;
+            }
+            out.push_str(&letter(&std::mem::take(&mut word)));
+            if !c.is_whitespace() {
+                out.push(c);
+            }
+        }
+        out
+    };
+    let below: Vec<String> = parsed.subs.iter().map(|s| script(s)).collect();
+    let above = parsed.sup.as_deref().map(script).unwrap_or_default();
+    latin(&format!("{}_{}^{above}", parsed.base, below.join(",")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{parse, seen};
+
+    #[test]
+    fn names_are_taken_apart() {
+        let parts = |text: &str| {
+            let p = parse(text);
+            (p.base, p.subs.join(","), p.sup.unwrap_or_default())
+        };
+        let owned = |a: &str, b: &str, c: &str| (a.to_owned(), b.to_owned(), c.to_owned());
+        assert_eq!(parts("Λ1"), owned("Λ", "1", ""));
+        assert_eq!(parts("Lambda12"), owned("Λ", "12", ""));
+        assert_eq!(parts("gU"), owned("gU", "", ""));
+        assert_eq!(parts("J^R_{k+1}"), owned("J", "k+1", "R"));
+        assert_eq!(parts("Γ_ref"), owned("Γ", "ref", ""));
+        assert_eq!(parts("chi0_k"), owned("χ", "0,k", ""));
+        assert_eq!(parts("3"), owned("3", "", ""));
+        assert_eq!(parts("_"), owned("_", "", ""));
+        assert_eq!(parts(""), owned("", "", ""));
+    }
+
+    #[test]
+    fn spellings_that_print_alike_are_one_name() {
+        for (a, b) in [
+            ("mu", "μ"),
+            ("mu1", "μ_1"),
+            ("mu_1", "μ1"),
+            ("x_mu", "x_{μ}"),
+            ("chi_0k", "χ_{0 k}"),
+            ("J^R_{k+1}", "J_{k+1}^R"),
+            ("Mu", "M"),
+        ] {
+            assert_eq!(seen(a), seen(b));
+        }
+        for (a, b) in [("mu", "nu"), ("mu", "mu1"), ("Mu", "mu"), ("x_1", "x^1")] {
+            assert_ne!(seen(a), seen(b));
+        }
+    }
+}

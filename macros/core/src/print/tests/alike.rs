@@ -1,0 +1,122 @@
+//! Letters of the engine beside letters of the model that would print as they do. Takes models with
+//! a parameter named as a reader would read an engine's letter; asserts that every letter of a
+//! derivation stays one letter in print.
+
+use crate::document::printed;
+use crate::expr::spelling::seen;
+use crate::pipeline::derive_source;
+use crate::print::Format;
+use std::collections::BTreeSet;
+
+/// A heavy top whose parameter has this name, on SO(3) or on another group by the same letters.
+fn models(name: &str) -> [String; 4] {
+    [
+        format!(
+            "model M {{ param J: Sym<3>; param {name}, z0: Vec<3>; group G: SO<3> velocity W; \
+             advected q: Vec<3> = G^T*z0; constraint next(G) = G*W; constraint next(q) = W^T*q; \
+             lagrangian = -tr(J*W)/h - h*dot({name}, q); }}"
+        ),
+        format!(
+            "model M {{ param J: Sym<3>; param {name}: Vec<3>; group G1: SO<3> velocity W1; \
+             group G2: SO<3> velocity W2; constraint next(G1) = G1*W1; constraint next(G2) = G2*W2; \
+             lagrangian = -tr(J*W1)/h - tr(J*W2)/h - h*dot({name}, G1*G2^T*{name}); }}"
+        ),
+        format!(
+            "model M {{ param J: Sym<3>; param {name}: Real; group G: SE<3> velocity W; \
+             constraint next(G) = G*W; let u = (pos(W) - pos(W^-1))/2; \
+             lagrangian = -tr(J*rot(W))/h + {name}*dot(u, u)/(2*h); }}"
+        ),
+        format!(
+            "model M {{ param {name}: Sym<4>; group G: SO<4> velocity W; \
+             constraint next(G) = G*W; lagrangian = -tr({name}*W)/h; }}"
+        ),
+    ]
+}
+
+/// How often a letter stands in a text with nothing below or after it that makes it another one.
+fn occurrences(text: &str, letter: &str) -> usize {
+    text.match_indices(letter)
+        .filter(|(at, _)| {
+            let before = text[..*at].chars().next_back();
+            let after = text[at + letter.len()..].chars().next();
+            let other = |c: char| c.is_alphanumeric();
+            let digit = |c: char| ('₀'..='₉').contains(&c) || c.is_ascii_digit();
+            !before.is_some_and(char::is_alphabetic) && !after.is_some_and(|c| other(c) || digit(c))
+        })
+        .count()
+}
+
+#[test]
+fn every_letter_of_a_derivation_prints_as_no_other() {
+    let own = [
+        "mu", "xi", "zeta", "eta", "Theta", "lambda", "iota", "M", "Mu", "P", "m", "mu1", "xi_1",
+        "V_q", "V", "dq", "L", "K", "C", "N", "U_1", "A", "B", "g", "v", "a", "ℒ", "dzeta", "dζ",
+    ];
+    for name in own {
+        for model in models(name) {
+            let d = derive_source(&model).unwrap_or_else(|e| panic!("{e}\n{model}"));
+            let mut names = BTreeSet::new();
+            for id in d.letters.symbols.ids() {
+                let symbol = &d.letters.symbols.get(id).name;
+                assert!(names.insert(seen(symbol)), "{symbol} twice in {model}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_parameter_stands_in_the_document_where_it_stands_by_another_name() {
+    for (name, letter) in [
+        ("mu", "μ"),
+        ("xi", "ξ"),
+        ("zeta", "ζ"),
+        ("eta", "η"),
+        ("Theta", "Θ"),
+        ("lambda", "λ"),
+        ("iota", "ι"),
+    ] {
+        // A letter that the engine never writes says how often the parameter stands there.
+        for (model, plain) in models(name).iter().zip(models("psi")) {
+            let text = |model: &str| {
+                let d = derive_source(model).unwrap_or_else(|e| panic!("{e}\n{model}"));
+                printed(&d, Format::Text)
+            };
+            let (named, plain) = (text(model), text(&plain));
+            assert_eq!(
+                occurrences(&named, letter),
+                occurrences(&plain, "ψ"),
+                "{letter} stands for something else too:\n{named}"
+            );
+        }
+    }
+}
+
+#[test]
+fn names_that_print_as_another_are_refused() {
+    for (names, said) in [
+        ("x1, x_1", "print alike"),
+        ("M, Mu", "print alike"),
+        ("E_1", "prints as `E1`"),
+        ("E4", "prints as `E4`"),
+        ("ℓ", "prints as `ℓ`"),
+    ] {
+        let model = format!(
+            "model M {{ param J: Sym<3>; param {names}: Real; group G: SO<3> velocity W; \
+             constraint next(G) = G*W; lagrangian = -tr(J*W)/h; }}"
+        );
+        let message = derive_source(&model).map_or_else(|e| e.to_string(), |_| String::new());
+        assert!(message.contains(said), "{names}: {message}");
+    }
+}
+
+#[test]
+fn letters_keep_clear_of_typeset_names() {
+    let model = "model M { param J: Sym<3>; param p, z: Vec<3> as \"\\mu\", \"\\xi\"; \
+                 group G: SO<3> velocity W; advected q: Vec<3> = G^T*z; constraint next(G) = G*W; \
+                 constraint next(q) = W^T*q; lagrangian = -tr(J*W)/h - h*dot(p, q); }";
+    let d = derive_source(model).unwrap_or_else(|e| panic!("{e}"));
+    for id in d.letters.symbols.ids() {
+        let name = seen(&d.letters.symbols.get(id).name);
+        assert!(name != seen("mu") && name != seen("xi"), "{name}");
+    }
+}

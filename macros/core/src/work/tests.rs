@@ -1,0 +1,175 @@
+//! How work grows with models: many groups, many quantities, words and powers that multiply out.
+//! Takes families of models of increasing size; asserts counts, which are the same on every machine.
+
+use super::{NODES, PRODUCTS, Work};
+use crate::pipeline::derive_source;
+
+/// Statements of `count` groups and what the kinetic energy of each adds to the Lagrangian.
+fn bodies(count: usize, group: &str, kinetic: &str) -> (String, String) {
+    let numbered = |text: &str, i: usize| text.replace('#', &i.to_string());
+    let statements = (0..count).map(|i| {
+        numbered(
+            &format!("group G#: {group} velocity W#; constraint next(G#) = G#*W#; "),
+            i,
+        )
+    });
+    let terms = (0..count).map(|i| numbered(kinetic, i));
+    (statements.collect(), terms.collect())
+}
+
+fn free(count: usize) -> String {
+    let (statements, kinetic) = bodies(count, "SO<3>", " - tr(J*W#)/h");
+    format!("model M {{ param J: Sym<3>; {statements} lagrangian = 0{kinetic}; }}")
+}
+
+/// Each body turns the next one: coupled by the rotations between neighbours.
+fn chain(count: usize) -> String {
+    let (statements, kinetic) = bodies(count, "SO<3>", " - tr(J*W#)/h");
+    let neighbours = (1..count).map(|j| (j - 1, j));
+    let rotations: String = neighbours
+        .clone()
+        .map(|(i, j)| {
+            format!(
+                "advected R{i}: SO<3> = G{i}^T*G{j}; constraint next(R{i}) = W{i}^T*R{i}*W{j}; "
+            )
+        })
+        .collect();
+    let springs: String = neighbours
+        .map(|(i, _)| format!(" - h*dot(d, R{i}*d)"))
+        .collect();
+    format!(
+        "model M {{ param J: Sym<3>; param d: Vec<3>; {statements} {rotations} lagrangian = 0{kinetic}{springs}; }}"
+    )
+}
+
+/// Bodies in one field: each keeps its momentum about the same axis.
+fn tops(count: usize) -> String {
+    let (statements, kinetic) = bodies(count, "SO<3>", " - tr(J*W#)/h - h*dot(z, G#*g)");
+    format!(
+        "model M {{ param J: Sym<3>; param g, z: Vec<3>; {statements} lagrangian = 0{kinetic}; }}"
+    )
+}
+
+fn carried(count: usize) -> String {
+    let quantities: String = (0..count)
+        .map(|i| format!("advected a{i}: Vec<3>; constraint next(a{i}) = W^T*a{i}; "))
+        .collect();
+    let potentials: String = (0..count).map(|i| format!(" - h*dot(a{i}, g)")).collect();
+    format!(
+        "model M {{ param J: Sym<3>; param g: Vec<3>; group G: SO<3> velocity W; \
+         constraint next(G) = G*W; {quantities} lagrangian = -tr(J*W)/h{potentials}; }}"
+    )
+}
+
+fn work(model: &str) -> Work {
+    match derive_source(model) {
+        Ok(d) => d.work,
+        Err(e) => panic!("{e}\n{model}"),
+    }
+}
+
+fn refusal(model: &str) -> String {
+    match derive_source(model) {
+        Ok(d) => panic!("derived with {:?}", d.work),
+        Err(e) => e.to_string(),
+    }
+}
+
+/// What twice as many take is at most this many times as much: less than the cube, eight. Every
+/// group is looked at together with every other, and the rows of independent momenta grow with both.
+const GROWTH: u64 = 6;
+
+#[test]
+fn work_grows_less_than_the_cube_of_what_is_declared() {
+    type Family = (&'static str, fn(usize) -> String);
+    let families: [Family; 4] = [
+        ("free bodies", free),
+        ("chain", chain),
+        ("tops", tops),
+        ("carried quantities", carried),
+    ];
+    for (name, family) in families {
+        let (small, large) = (work(&family(10)), work(&family(20)));
+        for (what, a, b) in [
+            ("nodes", small.nodes, large.nodes),
+            ("terms", small.terms, large.terms),
+            ("products", small.products, large.products),
+        ] {
+            assert!(
+                b <= GROWTH * a,
+                "{name}: {b} {what} for twice as many, {a} for half"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_largest_models_of_many_groups_stay_far_below_the_limits() {
+    for (name, model) in [
+        ("free", free(100)),
+        ("chain", chain(40)),
+        ("tops", tops(60)),
+    ] {
+        let w = work(&model);
+        assert!(model.len() <= 10_000, "{name}: {} bytes", model.len());
+        assert!(
+            w.nodes <= NODES / 3 && w.products <= PRODUCTS / 2,
+            "{name}: {w:?}"
+        );
+    }
+}
+
+/// A potential of the advected vector of a top.
+fn potential(statements: &str, value: &str) -> String {
+    format!(
+        "model M {{ param J: Sym<3>; param g: Vec<3>; group G: SO<3> velocity W; \
+         advected a: Vec<3>; advected S: Sym<3>; constraint next(G) = G*W; \
+         constraint next(a) = W^T*a; constraint next(S) = W^T*S*W; \
+         {statements} lagrangian = -tr(J*W)/h - h*({value}); }}"
+    )
+}
+
+#[test]
+fn what_multiplies_out_beyond_the_limits_is_refused() {
+    let lets = |first: &str, step: &str, count: usize| -> String {
+        let mut text = format!("let v0 = {first}; ");
+        for i in 0..count {
+            text += &format!("let v{} = {}; ", i + 1, step.replace('#', &format!("v{i}")));
+        }
+        text
+    };
+    for (first, step, last) in [
+        ("S", "inv(Id + #*#)", "tr(v6)"),
+        ("S", "inv(Id + #*#)", "tr(v7)"),
+        ("S", "det(# + W)*#", "tr(v7)"),
+        ("J + W", "#*#", "tr(v7)"),
+        ("dot(a, g)", "exp(#*#) + #", "v6"),
+        ("a", "cross(#, S*#)", "dot(v6, g)"),
+        ("dot(a, g)", "#*#", "v40"),
+    ] {
+        let count = last
+            .chars()
+            .filter(char::is_ascii_digit)
+            .collect::<String>();
+        let count = count.parse().unwrap_or(0);
+        let message = refusal(&potential(&lets(first, step, count), last));
+        assert!(message.contains("too large"), "{step}: {message}");
+    }
+    let power = "*(1 + dot(a, J*g) + tr(S) + det(S))".repeat(30);
+    let message = refusal(&potential("", &power[1..]));
+    assert!(message.contains("too large"), "{message}");
+}
+
+#[test]
+fn longer_texts_are_refused_with_the_limit() {
+    let terms = |count: usize| potential("", &vec!["tr(S)"; count].join("+"));
+    let message = refusal(&terms(1_700));
+    assert!(message.contains("more than 10000 bytes"), "{message}");
+    // A megabyte of it is not even taken apart into tokens.
+    let message = refusal(&terms(300_000));
+    assert!(message.contains("more than 250000"), "{message}");
+    // What is no part of the model does not count.
+    let remark = format!("// {}\n", "x".repeat(20_000));
+    let documentation = "/// a line\n".repeat(2_000);
+    assert!(derive_source(&(remark + &documentation + &free(1))).is_ok());
+}
