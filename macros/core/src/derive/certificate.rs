@@ -16,7 +16,7 @@ use crate::diagnostic::{Diagnostic, Errors};
 use crate::expr::shape::Shape;
 use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr, Letter, Node, Shift};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What the proof is about.
 pub struct Inputs<'a> {
@@ -128,7 +128,7 @@ fn name_of(x: &Inputs, l: Letter) -> String {
 }
 
 /// The variations preserve every constraint: on the outgoing edge as they stand, on the incoming
-/// edge with node k written by node k-1. Where nothing moves there is nothing to prove.
+/// edge with node k written by node k-1. A constraint in which nothing varies says nothing.
 fn constraint_steps(x: &Inputs, i: usize, earlier: &Back, steps: &mut Vec<Step>) {
     let s = &x.letters.symbols;
     let v = &x.variations[i];
@@ -142,18 +142,26 @@ fn constraint_steps(x: &Inputs, i: usize, earlier: &Back, steps: &mut Vec<Step>)
         .chain([&v.element])
         .map(|(l, e)| (*l, e))
         .collect();
+    let moving: BTreeSet<Letter> = outgoing
+        .iter()
+        .filter(|(_, change)| !change.is_zero())
+        .map(|(l, _)| *l)
+        .collect();
     for ((quantity, update), p) in nodes.zip(multipliers) {
+        let met = expr::letters(update);
+        let met = met.iter().chain([&at(quantity, Shift::HERE)]);
+        if !met.into_iter().any(|l| moving.contains(l)) {
+            continue;
+        }
         let name = &s.get(quantity).name;
         let p_next = expr::letter(s, *p, Shift::NEXT);
         let change = expr::directional(s, update, &outgoing);
-        if !change.is_zero() {
-            steps.push(Step {
-                known: Known::NormalForm,
-                name: format!("the variation keeps the constraint of {name} on the outgoing edge"),
-                left: pairing(x.letters, &p_next, &change),
-                right: expr::integer(0),
-            });
-        }
+        steps.push(Step {
+            known: Known::NormalForm,
+            name: format!("the variation keeps the constraint of {name} on the outgoing edge"),
+            left: pairing(x.letters, &p_next, &change),
+            right: expr::integer(0),
+        });
         let p_here = expr::here(s, *p);
         let back = expr::shift_time(s, update, Shift::PREVIOUS.time);
         let change = expr::directional(s, &back, &incoming);
@@ -161,14 +169,12 @@ fn constraint_steps(x: &Inputs, i: usize, earlier: &Back, steps: &mut Vec<Step>)
         let own = moved.get(&at(quantity, Shift::HERE));
         let own = own.map_or_else(|| expr::zero(s.get(quantity).shape), |e| (*e).clone());
         let own = expr::substitute(s, &own, &earlier.shell);
-        if !own.is_zero() || !change.is_zero() {
-            steps.push(Step {
-                known: Known::NormalForm,
-                name: format!("the variation keeps the constraint of {name} on the incoming edge"),
-                left: pairing(x.letters, &p_here, &own),
-                right: pairing(x.letters, &p_here, &change),
-            });
-        }
+        steps.push(Step {
+            known: Known::NormalForm,
+            name: format!("the variation keeps the constraint of {name} on the incoming edge"),
+            left: pairing(x.letters, &p_here, &own),
+            right: pairing(x.letters, &p_here, &change),
+        });
     }
 }
 

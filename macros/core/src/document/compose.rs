@@ -317,7 +317,7 @@ fn variations(sheet: &Sheet, doc: &mut Document) {
                 let both = " is an arbitrary angular and a linear displacement on top of each other; twist of it is the matrix of the Lie algebra, and";
                 Inline::Notation {
                     line: format!("{both} ang and lin take the angular and the linear part of such a vector, x[1:3] the first three entries of a longer one."),
-                    page: format!("{both} ι puts a vector into a longer one, from the row that its second index tells."),
+                    page: format!("{both} {} puts a vector into a longer one, from the row that its second index tells.", sheet.symbols().fresh_name("ι")),
                 }
             }
         };

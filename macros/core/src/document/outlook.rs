@@ -60,14 +60,35 @@ fn invariant(sheet: &Sheet, v: &Invariant) -> Vec<Inline> {
     match (&v.value, &v.kind) {
         (Some(e), _) => line.push(sheet.derived(e).into()),
         (None, Kind::Spectrum) => {
-            line.push("the coefficients of det(ν + μ + λ C²) that hold μ, C that of ".into());
-            line.push(Inline::reference("Lax"));
+            line.extend(spectrum(sheet));
         }
         (None, _) => line.push("kinetic plus potential energy of the limit".into()),
     }
     let how = if v.exact { "exact" } else { "bounded" };
     line.push(format!(" ({how}: {})", v.reason).into());
     line
+}
+
+/// The coefficients of `det(ν + μ + λ C²)` in which the momentum occurs.
+fn spectrum(sheet: &Sheet) -> Vec<Inline> {
+    let letters = &sheet.d.letters;
+    let (Some(mu), Some(lax)) = (letters.node_momentum.first(), &sheet.d.integrability.lax) else {
+        return Vec::new();
+    };
+    let square = expr::mul(lax.factor.clone(), lax.factor.clone());
+    let matrix = Formula::Sum(vec![
+        sheet.free("ν"),
+        sheet.here(*mu),
+        Formula::Product(vec![sheet.here(letters.spectral), sheet.math(&square)]),
+    ]);
+    vec![
+        "the coefficients of ".into(),
+        Formula::operator(crate::print::formula::Operator::Det, matrix).into(),
+        " that hold ".into(),
+        sheet.here(*mu).into(),
+        ", equation ".into(),
+        Inline::reference("Lax"),
+    ]
 }
 
 /// The limit of small steps.

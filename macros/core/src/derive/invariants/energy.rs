@@ -78,7 +78,7 @@ pub(super) fn discrete(x: &Inputs, passages: &[Passage], lax: Option<&Lax>) -> D
         value,
         exact,
         reason: if exact {
-            "tr(C Ω) is the sum of the eigenvalues of Ω C, the half of those of the Lax matrix that the principal solution takes".to_owned()
+            "it holds the sum of the eigenvalues of the velocity times the left factor, the half of those of the Lax matrix that the principal solution takes".to_owned()
         } else {
             "the stepper is symplectic".to_owned()
         },

@@ -121,7 +121,7 @@ pub(super) fn integrals(x: &Inputs, lax: Option<&Lax>, passages: &[Passage]) -> 
                 value: Some(value),
                 scale: Some(scale),
                 exact: true,
-                reason: "Manakov integral μ·C²μ".to_owned(),
+                reason: "Manakov integral, quadratic in the momentum".to_owned(),
             })
             .into_iter()
             .collect();

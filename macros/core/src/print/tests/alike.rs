@@ -40,8 +40,9 @@ fn occurrences(text: &str, letter: &str) -> usize {
             let before = text[..*at].chars().next_back();
             let after = text[at + letter.len()..].chars().next();
             let other = |c: char| c.is_alphanumeric();
-            let digit = |c: char| ('₀'..='₉').contains(&c) || c.is_ascii_digit();
-            !before.is_some_and(char::is_alphabetic) && !after.is_some_and(|c| other(c) || digit(c))
+            let script = |c: char| c == '_' || ('₀'..='₉').contains(&c) || c.is_ascii_digit();
+            !before.is_some_and(char::is_alphabetic)
+                && !after.is_some_and(|c| other(c) || script(c))
         })
         .count()
 }
