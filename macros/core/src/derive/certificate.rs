@@ -3,6 +3,9 @@
 //! named (momentum map) form is the balance. Its steps are small identities that a second prover
 //! can check on its own. A model whose certificate fails does not compile.
 
+#[cfg(test)]
+mod tests;
+
 use super::Letters;
 use super::action::Action;
 use super::balance::{Balance, pairing};
