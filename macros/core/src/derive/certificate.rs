@@ -151,9 +151,9 @@ fn constraint_steps(x: &Inputs, i: usize, earlier: &Back, steps: &mut Vec<Step>)
         .map(|(l, _)| *l)
         .collect();
     for ((quantity, update), p) in nodes.zip(multipliers) {
+        let own = at(quantity, Shift::HERE);
         let met = expr::letters(update);
-        let met = met.iter().chain([&at(quantity, Shift::HERE)]);
-        if !met.into_iter().any(|l| moving.contains(l)) {
+        if !met.iter().chain([&own]).any(|l| moving.contains(l)) {
             continue;
         }
         let name = &s.get(quantity).name;
@@ -169,7 +169,7 @@ fn constraint_steps(x: &Inputs, i: usize, earlier: &Back, steps: &mut Vec<Step>)
         let back = expr::shift_time(s, update, Shift::PREVIOUS.time);
         let change = expr::directional(s, &back, &incoming);
         let change = expr::substitute(s, &change, &earlier.elements);
-        let own = moved.get(&at(quantity, Shift::HERE));
+        let own = moved.get(&own);
         let own = own.map_or_else(|| expr::zero(s.get(quantity).shape), |e| (*e).clone());
         let own = expr::substitute(s, &own, &earlier.shell);
         steps.push(Step {
