@@ -436,7 +436,7 @@ pub mod free_body_spatial {
             let J = Λ * (J_reference * Λ.transpose());
             (J * (J * J)).trace()
         }
-        /// `m_k·(J_k² m_k)`: Manakov integral μ·C²μ.
+        /// `m_k·(J_k² m_k)`: Manakov integral, quadratic in the momentum.
         pub fn momentum_quadratic(&self, state: &FreeBodySpatialState<T>) -> T {
             let Λ = state.Λ.matrix();
             let J_reference = state.J;
@@ -446,7 +446,7 @@ pub mod free_body_spatial {
         }
     }
     impl<T: Real> FreeBodySpatial<T> {
-        /// The discrete energy of the edge between two consecutive states, `-tr(ω_k J_k)/h² + tr(J_k)/h²`: constant, since tr(C Ω) is the sum of the eigenvalues of Ω C, the half of those of the Lax matrix that the principal solution takes.
+        /// The discrete energy of the edge between two consecutive states, `-tr(ω_k J_k)/h² + tr(J_k)/h²`: constant, since it holds the sum of the eigenvalues of the velocity times the left factor, the half of those of the Lax matrix that the principal solution takes.
         pub fn discrete_energy(
             &self,
             h: T,

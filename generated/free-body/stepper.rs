@@ -361,7 +361,7 @@ pub mod free_body {
             let μ = state.body_momentum().0;
             μ.dot(&μ)
         }
-        /// `μ_k·(J² μ_k)`: Manakov integral μ·C²μ.
+        /// `μ_k·(J² μ_k)`: Manakov integral, quadratic in the momentum.
         pub fn momentum_quadratic(&self, state: &FreeBodyState<T>) -> T {
             let FreeBodyParameters { J, .. } = self.parameters;
             let μ = state.body_momentum().0;
@@ -369,7 +369,7 @@ pub mod free_body {
         }
     }
     impl<T: Real> FreeBody<T> {
-        /// The discrete energy of the edge between two consecutive states, `tr(J)/h² - tr(J Ω_k)/h²`: constant, since tr(C Ω) is the sum of the eigenvalues of Ω C, the half of those of the Lax matrix that the principal solution takes.
+        /// The discrete energy of the edge between two consecutive states, `tr(J)/h² - tr(J Ω_k)/h²`: constant, since it holds the sum of the eigenvalues of the velocity times the left factor, the half of those of the Lax matrix that the principal solution takes.
         pub fn discrete_energy(
             &self,
             h: T,
