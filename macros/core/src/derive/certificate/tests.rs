@@ -65,8 +65,11 @@ fn doubled(e: &mut Expr) {
     *e = expr::scale(crate::algebra::Rational::integer(2), e.clone());
 }
 
-/// One mistake of each part of a derivation, with what is false then.
-fn mistakes() -> Vec<(&'static str, fn(&mut Derivation))> {
+/// What is false in a derivation, and what makes it so.
+type Mistake = (&'static str, fn(&mut Derivation));
+
+/// One mistake of each part of a derivation.
+fn mistakes() -> Vec<Mistake> {
     vec![
         ("the outgoing velocity varies the other way", |d| {
             opposite(&mut d.variations[0].outgoing.1);
