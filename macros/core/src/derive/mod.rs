@@ -6,6 +6,7 @@ pub mod action;
 mod assumptions;
 pub mod balance;
 pub mod bracket;
+pub mod carry;
 pub mod certificate;
 pub mod clebsch;
 pub mod continuous;
@@ -19,6 +20,7 @@ pub mod quaternionic;
 pub mod recognise;
 pub mod reduction;
 pub mod reversal;
+pub mod rounding;
 pub mod tangent;
 pub mod transport;
 pub mod variation;
@@ -80,6 +82,8 @@ pub struct Derivation {
     pub certificate: certificate::Certificate,
     /// Momentum maps and the named form of the balance.
     pub momenta: Vec<momentum::Momentum>,
+    /// How the momentum of every configuration goes from one node to the next.
+    pub carries: Vec<carry::Carry>,
     /// What each step must solve.
     pub solve: recognise::Solve,
     /// How advected quantities follow from the configuration.
@@ -258,6 +262,14 @@ fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
     bounded(&algebra)?;
     let certificate = certificate?;
     let solve = recognise::recognise(&spec, &letters, &balances, &transports, &algebra);
+    let carries = carry::carries(&carry::Inputs {
+        spec: &spec,
+        letters: &letters,
+        action: &action,
+        variations: &variations,
+        balances: &balances,
+        transports: &transports,
+    });
     let assumed = assumptions::equations(&spec, &letters.symbols);
     let reversal = reversal::reversal(&spec, &action, &assumed, &algebra);
     let limit = limit::limit(&spec, &letters, &action, &variations, &assumed, &algebra);
@@ -316,6 +328,7 @@ fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
         relations,
         certificate,
         momenta,
+        carries,
         solve,
         transports,
         reversible: reversal.is_symmetric(),

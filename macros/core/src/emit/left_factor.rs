@@ -7,9 +7,10 @@ use super::expression::{Bindings, Writer, program, ty as quantity};
 use super::items::{letters_of, parameter_locals, text, with_transports};
 use super::names::{Names, item, own, per_configuration, tagged, variable};
 use super::sizes::{Generics, size};
-use super::step::{Update, at, finish, here, step_signature, update};
+use super::step::{at, finish, here, step_signature};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
+use crate::derive::carry::Carry;
 use crate::derive::recognise::{Method, MoserVeselov};
 use crate::expr::symbol::{Role, SymbolId};
 use crate::expr::{self, Expr, Letter, Shift};
@@ -276,15 +277,12 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
         }
     });
     let mut bindings = Bindings::new();
-    let updates = update(d, 0);
-    let list = match &updates {
-        Update::Acted { leave, arrive } => vec![leave, arrive],
-        Update::Added(e) | Update::Brought(e) => vec![e],
-    };
+    let list: Vec<&Expr> = d.carries.iter().flat_map(Carry::parts).collect();
     let velocity = at(c.velocity, Shift::HERE);
     let uses_velocity = list.iter().any(|e| expr::contains(e, velocity));
     let mut needed: Vec<Letter> = letters_of(list.iter().copied());
-    if let (Update::Acted { leave, .. }, true) = (&updates, rotations)
+    if let (Side::Body, [Carry::Through { leave, .. }], true) =
+        (c.side, d.carries.as_slice(), rotations)
         && !leave.is_zero()
     {
         needed.push(at(c.element, Shift::HERE));

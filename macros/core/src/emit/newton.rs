@@ -7,9 +7,10 @@ use super::expression::{Bindings, program};
 use super::items::{letters_of, parameter_locals, with_transports};
 use super::names::{Names, item, own, per_configuration, tagged, variable};
 use super::sizes::Generics;
-use super::step::{at, finish, here, update};
+use super::step::{at, finish, here};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
+use crate::derive::carry::Carry;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::schedule;
 use proc_macro2::TokenStream;
@@ -65,13 +66,7 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
             needed.push(at(c.element, Shift::HERE));
         }
     }
-    let updates: Vec<Expr> = (0..bodies)
-        .flat_map(|i| match update(d, i) {
-            super::step::Update::Acted { leave, arrive } => vec![leave, arrive],
-            super::step::Update::Added(e) | super::step::Update::Brought(e) => vec![e],
-        })
-        .collect();
-    needed.extend(letters_of(&updates));
+    needed.extend(letters_of(d.carries.iter().flat_map(Carry::parts)));
     let mut all = with_transports(d, &needed, 0);
     all.extend(with_transports(d, &needed, 1));
     let parameters = parameter_locals(d, quote!(self.parameters), &all);

@@ -8,6 +8,7 @@ use super::names::{Names, field, item, own, per_configuration, tagged, variable}
 use super::sizes::Generics;
 use crate::check::spec::Side;
 use crate::derive::Derivation;
+use crate::derive::carry::Carry;
 use crate::derive::recognise::{Method, Riccati};
 use crate::derive::transport::Transport;
 use crate::expr::{self, Expr, Letter, Shift};
@@ -17,31 +18,6 @@ use quote::quote;
 
 pub(super) fn at(symbol: crate::expr::symbol::SymbolId, shift: Shift) -> Letter {
     Letter { symbol, shift }
-}
-
-/// How the spatial momentum goes from one node to the next.
-pub(super) enum Update {
-    /// Body side: what acts at the two nodes, in the body frame there: `m' = m + Λ a + Λ' b`.
-    Acted { leave: Expr, arrive: Expr },
-    /// Spatial side: what is added to the momentum, free of velocities.
-    Added(Expr),
-    /// Spatial side: the momentum that the edge brings.
-    Brought(Expr),
-}
-
-/// The update of one configuration.
-pub(super) fn update(d: &Derivation, i: usize) -> Update {
-    let b = &d.balances[i];
-    match d.spec.configurations[i].side {
-        Side::Body => Update::Acted {
-            leave: expr::neg(b.node_out.clone()),
-            arrive: b.node_in.clone(),
-        },
-        Side::Spatial => match &b.increment {
-            Some(e) => Update::Added(e.clone()),
-            None => Update::Brought(b.incoming.clone()),
-        },
-    }
 }
 
 /// `start` and `step`.
@@ -270,14 +246,8 @@ pub(super) fn finish(
     remembered: TokenStream,
 ) -> TokenStream {
     let s = &d.letters.symbols;
-    let updates: Vec<Update> = (0..d.balances.len()).map(|i| update(d, i)).collect();
-    let mut wanted: Vec<Expr> = Vec::new();
-    for u in &updates {
-        match u {
-            Update::Acted { leave, arrive } => wanted.extend([leave.clone(), arrive.clone()]),
-            Update::Added(e) | Update::Brought(e) => wanted.push(e.clone()),
-        }
-    }
+    let parts = d.carries.iter().flat_map(Carry::parts);
+    let wanted: Vec<Expr> = parts.cloned().collect();
     let mut needed = letters_of(&wanted);
     let advanced: Vec<_> = d
         .spec
@@ -314,8 +284,10 @@ pub(super) fn finish(
         quote!(state.#r)
     };
     // Rotated torques need the matrices of both nodes.
-    for (c, u) in d.spec.configurations.iter().zip(&updates) {
-        if let (Update::Acted { leave, arrive }, Family::Rotation) = (u, family(c)) {
+    for (c, u) in d.spec.configurations.iter().zip(&d.carries) {
+        if let (Side::Body, Carry::Through { leave, arrive }, Family::Rotation) =
+            (c.side, u, family(c))
+        {
             if !leave.is_zero() {
                 needed.push(at(c.element, Shift::HERE));
             }
@@ -332,41 +304,48 @@ pub(super) fn finish(
     let (lets, values) = program(&p, bindings);
     out.extend(lets);
     let mut values = values.into_iter();
-    for (i, (c, u)) in d.spec.configurations.iter().zip(&updates).enumerate() {
+    for (i, (c, u)) in d.spec.configurations.iter().zip(&d.carries).enumerate() {
         let field = per_configuration(d, "momentum", i);
         let momentum = names.local(&format!("{field}_next"));
-        let value = match u {
-            Update::Acted { leave, arrive } => {
+        let (here, next) = (variable(s, c.element), tagged(d, names, c.element, "next"));
+        let (element, moved) = (own(d, c.element), tagged(d, names, c.element, "moved"));
+        let turned = |element: TokenStream, matrix: &proc_macro2::Ident, value: &Option<TokenStream>| {
+            match family(c) {
+                Family::Rotation => quote!(+ #matrix * (#value)),
+                Family::Orthogonal(_) | Family::Linear(_) | Family::Quaternion | Family::Motion => {
+                    quote!(+ #element.covector_to_space(&(#value)))
+                }
+            }
+        };
+        let plus = |e: &Expr, value: &Option<TokenStream>| {
+            (!e.is_zero()).then(|| quote!(+ #value))
+        };
+        let value = match (c.side, u) {
+            (Side::Body, Carry::Through { leave, arrive }) => {
                 let (a, b) = (values.next(), values.next());
-                let here = variable(s, c.element);
-                let next = tagged(d, names, c.element, "next");
-                let moved = tagged(d, names, c.element, "moved");
-                let element = own(d, c.element);
-                let turned = |element: TokenStream,
-                              matrix: &proc_macro2::Ident,
-                              covector: &Option<TokenStream>| {
-                    match family(c) {
-                        Family::Rotation => quote!(+ #matrix * (#covector)),
-                        Family::Orthogonal(_)
-                        | Family::Linear(_)
-                        | Family::Quaternion
-                        | Family::Motion => {
-                            quote!(+ #element.covector_to_space(&(#covector)))
-                        }
-                    }
-                };
                 let left = (!leave.is_zero()).then(|| turned(quote!(state.#element), &here, &a));
                 let arrived = (!arrive.is_zero()).then(|| turned(quote!(#moved), &next, &b));
                 quote!(state.#field.0 #left #arrived)
             }
-            Update::Added(e) => {
-                let value = values.next();
-                let added = (!e.is_zero()).then(|| quote!(+ #value));
+            (Side::Body, Carry::Kept(e)) => {
+                let added = plus(e, &values.next());
+                quote! {
+                    #moved.covector_to_space(
+                        &(state.#element.covector_to_body(&state.#field.0) #added)
+                    )
+                }
+            }
+            (Side::Spatial, Carry::Kept(e)) => {
+                let added = plus(e, &values.next());
                 quote!(state.#field.0 #added)
             }
-            Update::Brought(_) => {
-                let e = values.next();
-                quote!(#e)
+            (Side::Spatial, Carry::Through { leave, arrive }) => {
+                let (left, arrived) = (plus(leave, &values.next()), plus(arrive, &values.next()));
+                quote! {
+                    #moved.covector_to_space(
+                        &state.#element.covector_to_body(&(state.#field.0 #left))
+                    ) #arrived
+                }
             }
         };
         let kind = element::momentum_name(d, i, Side::Spatial);

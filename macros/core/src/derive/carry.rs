@@ -1,0 +1,321 @@
+//! How the momentum goes from one node to the next: what acts is added to what it was. It is never
+//! made again from the velocity, which would lose what is conserved to the rounding of `1/h`.
+//! Takes the action and its variations; gives what is added, in the form that rounds least.
+
+use super::Letters;
+use super::action::Action;
+use super::balance::{Balance, shorter};
+use super::lie;
+use super::rounding::Rounding;
+use super::transport::Transport;
+use super::variation::{Variation, at};
+use crate::algebra::Algebra;
+use crate::check::spec::{Configuration, Group, Side, Spec};
+use crate::expr::shape::{Shape, Structure};
+use crate::expr::symbol::{Role, SymbolId, Symbols};
+use crate::expr::{self, Expr, Letter, Node, Shift};
+
+/// How the node momentum of one configuration is carried, covectors in the frame of its side.
+#[derive(Clone, Debug)]
+pub enum Carry {
+    /// In this frame: `m' = m + added`. Exact where the action is invariant under what moves both
+    /// ends of the edge alike in this frame.
+    Kept(Expr),
+    /// By the edge: `m' = Ad*(m + leave) + arrive`, with what acts at its start and at its end.
+    /// Exact where the action is invariant in the other frame.
+    Through {
+        /// What acts at the start of the edge.
+        leave: Expr,
+        /// What acts at its end.
+        arrive: Expr,
+    },
+}
+
+impl Carry {
+    /// The expressions it is made of.
+    pub fn parts(&self) -> Vec<&Expr> {
+        match self {
+            Carry::Kept(added) => vec![added],
+            Carry::Through { leave, arrive } => vec![leave, arrive],
+        }
+    }
+
+    fn is_zero(&self) -> bool {
+        self.parts().into_iter().all(Expr::is_zero)
+    }
+}
+
+/// Most terms of a Lagrangian that are looked at in groups.
+const MOST_TERMS: usize = 32;
+
+/// What the derivation has so far.
+pub struct Inputs<'a> {
+    /// The model.
+    pub spec: &'a Spec,
+    /// Its letters.
+    pub letters: &'a Letters,
+    /// The action of one step.
+    pub action: &'a Action,
+    /// How everything varies.
+    pub variations: &'a [Variation],
+    /// The balances.
+    pub balances: &'a [Balance],
+    /// How advected quantities follow from the configuration.
+    pub transports: &'a [Transport],
+}
+
+/// How every momentum is carried.
+pub fn carries(inputs: &Inputs) -> Vec<Carry> {
+    // Velocities less the identity, in which small terms are small.
+    let mut symbols = inputs.letters.symbols.clone();
+    let configurations = inputs.spec.configurations.iter();
+    let small: Vec<Option<SymbolId>> = configurations
+        .map(|c| {
+            let matrices = matches!(
+                c.group,
+                Group::SpecialOrthogonal(_) | Group::GeneralLinear(_)
+            );
+            matrices.then(|| {
+                let name = symbols.fresh_name("D");
+                let shape = Shape::square(c.group.size());
+                symbols.add(&name, shape, Structure::General, Role::Velocity)
+            })
+        })
+        .collect();
+    let algebra = Algebra::new(&symbols);
+    let work = Work {
+        inputs,
+        symbols: &symbols,
+        algebra: &algebra,
+        small: &small,
+    };
+    (0..inputs.balances.len()).map(|i| work.carry(i)).collect()
+}
+
+struct Work<'a> {
+    inputs: &'a Inputs<'a>,
+    symbols: &'a Symbols,
+    algebra: &'a Algebra<'a>,
+    small: &'a [Option<SymbolId>],
+}
+
+impl Work<'_> {
+    fn carry(&self, i: usize) -> Carry {
+        let (c, b) = (&self.inputs.spec.configurations[i], &self.inputs.balances[i]);
+        let through = Carry::Through {
+            leave: expr::neg(b.node_out.clone()),
+            arrive: b.node_in.clone(),
+        };
+        // What is free of velocities is a force, and of the step's own size.
+        match (c.side, &b.increment) {
+            (Side::Spatial, Some(added)) => return Carry::Kept(added.clone()),
+            (Side::Body, _) if !self.moving(&through) => return through,
+            _ => {}
+        }
+        let kept = Carry::Kept(self.added(i, c));
+        if self.algebra.exhausted() {
+            // A model at the limit of the engine: the plain difference is as right, if less exact.
+            return match c.side {
+                Side::Body => through,
+                Side::Spatial => {
+                    Carry::Kept(expr::sub(b.incoming.clone(), b.outgoing.clone()))
+                }
+            };
+        }
+        let (first, second) = match c.side {
+            Side::Body => (through, kept),
+            Side::Spatial => (kept, through),
+        };
+        let loss = |carry: &Carry| match carry.is_zero() {
+            true => f64::INFINITY,
+            false => {
+                let parts = carry.parts().into_iter();
+                parts.fold(0.0, |worst: f64, e| worst.min(self.rounding().error(e)))
+            }
+        };
+        match loss(&second) > loss(&first) {
+            true => second,
+            false => first,
+        }
+    }
+
+    fn rounding(&self) -> Rounding<'_> {
+        Rounding {
+            spec: self.inputs.spec,
+            symbols: self.symbols,
+            algebra: self.algebra,
+        }
+    }
+
+    fn moving(&self, carry: &Carry) -> bool {
+        let parts = carry.parts().into_iter();
+        parts
+            .into_iter()
+            .any(|e| expr::contains_role(self.symbols, e, Role::Velocity))
+    }
+
+    /// What the step adds to the momentum, in the frame of the side: the derivative of the action
+    /// when both ends of the edge are moved alike.
+    fn added(&self, i: usize, c: &Configuration) -> Expr {
+        let along = self.alike(i);
+        let terms = self.felt(&self.inputs.action.total, &along);
+        let terms = self.without_groups(terms, &along);
+        let each: Vec<Expr> = terms
+            .iter()
+            .map(|t| self.covector(i, c, t, &along))
+            .collect();
+        let shape = self.inputs.balances[i].outgoing.shape();
+        let total = expr::sum(each.clone(), shape);
+        let apart = expr::sum(
+            each.iter()
+                .map(|e| self.best(self.forms(e)))
+                .collect::<Vec<_>>(),
+            shape,
+        );
+        let mut all = vec![apart];
+        all.extend(self.forms(&total));
+        self.best(all)
+    }
+
+    /// How everything on the edge changes when its two ends are moved alike.
+    fn alike(&self, i: usize) -> Vec<(Letter, Expr)> {
+        let (s, v) = (self.symbols, &self.inputs.variations[i]);
+        let next = |(l, e): &(Letter, Expr)| (at(l.symbol, Shift::NEXT), expr::shift_time(s, e, 1));
+        let (_, arriving) = next(&v.incoming);
+        let (velocity, leaving) = &v.outgoing;
+        let mut all = vec![(*velocity, expr::add(leaving.clone(), arriving))];
+        for change in v.advected.iter().chain([&v.element]) {
+            all.extend([change.clone(), next(change)]);
+        }
+        all
+    }
+
+    /// The derivative of a number along a variation, with everything written by the start of the
+    /// edge.
+    fn vanishes(&self, e: &Expr, along: &[(Letter, Expr)]) -> bool {
+        let s = self.symbols;
+        let change = expr::directional(s, e, along);
+        if change.is_zero() {
+            return true;
+        }
+        let forward = expr::substitute(s, &change, &self.inputs.spec.end_of_edge());
+        if self.algebra.is_zero(&forward) {
+            return true;
+        }
+        // Known by its definition, a quantity has properties that its letter does not tell.
+        let advected = self.inputs.spec.advected.iter();
+        let defined: Vec<(Letter, Expr)> = advected
+            .zip(self.inputs.transports)
+            .filter_map(|(a, t)| match t {
+                Transport::Defined(value) | Transport::Carried { value, .. } => {
+                    Some((at(a.quantity, Shift::HERE), value.clone()))
+                }
+                Transport::Advanced => None,
+            })
+            .collect();
+        !defined.is_empty() && self.algebra.is_zero(&expr::substitute(s, &forward, &defined))
+    }
+
+    /// The terms of a number that change along a variation.
+    fn felt(&self, e: &Expr, along: &[(Letter, Expr)]) -> Vec<Expr> {
+        if e.is_zero() || self.vanishes(e, along) {
+            return Vec::new();
+        }
+        let constant = |x: &Expr| {
+            let fixed = |l: &Letter| !along.iter().any(|(moved, _)| moved == l);
+            expr::letters(x).iter().all(fixed)
+        };
+        match e.node() {
+            Node::Sum(terms) => terms.iter().flat_map(|t| self.felt(t, along)).collect(),
+            Node::Neg(a) => self.felt(a, along).into_iter().map(expr::neg).collect(),
+            Node::Quotient(a, b) if constant(b) => {
+                let terms = self.felt(a, along).into_iter();
+                terms.map(|t| expr::quotient(t, b.clone())).collect()
+            }
+            Node::Product(factors) => {
+                let (fixed, moved): (Vec<Expr>, Vec<Expr>) =
+                    factors.iter().cloned().partition(constant);
+                let [only] = moved.as_slice() else {
+                    return vec![e.clone()];
+                };
+                if !only.shape().is_scalar() || !fixed.iter().all(|f| f.shape().is_scalar()) {
+                    return vec![e.clone()];
+                }
+                let with = |t| expr::product(fixed.iter().cloned().chain([t]));
+                self.felt(only, along).into_iter().map(with).collect()
+            }
+            _ => vec![e.clone()],
+        }
+    }
+
+    /// Terms of the same velocities may change by nothing together.
+    fn without_groups(&self, mut terms: Vec<Expr>, along: &[(Letter, Expr)]) -> Vec<Expr> {
+        if terms.len() > MOST_TERMS {
+            return terms;
+        }
+        let velocities = |e: &Expr| -> Vec<Letter> {
+            let letters = expr::letters(e).into_iter();
+            letters
+                .filter(|l| self.symbols.get(l.symbol).role == Role::Velocity)
+                .collect()
+        };
+        let mut kinds: Vec<Vec<Letter>> = terms.iter().map(&velocities).collect();
+        kinds.sort();
+        kinds.dedup();
+        for kind in kinds {
+            let group = terms.iter().filter(|t| velocities(t) == kind).cloned();
+            let group: Vec<Expr> = group.collect();
+            if group.len() > 1 && self.vanishes(&expr::sum(group, Shape::SCALAR), along) {
+                terms.retain(|t| velocities(t) != kind);
+            }
+        }
+        terms
+    }
+
+    /// The derivative of a number along a variation as a covector.
+    fn covector(&self, i: usize, c: &Configuration, e: &Expr, along: &[(Letter, Expr)]) -> Expr {
+        let xi = at(self.inputs.letters.variation[i], Shift::HERE);
+        let change = expr::directional(self.symbols, e, along);
+        let y = expr::gradient(self.symbols, &change, xi);
+        lie::of_gradient(self.inputs.letters, c.group, y)
+    }
+
+    /// The same covector as it was derived, in its normal form, and in that of velocities less the
+    /// identity.
+    fn forms(&self, e: &Expr) -> Vec<Expr> {
+        let s = self.symbols;
+        let (mut there, mut back) = (Vec::new(), Vec::new());
+        for (c, small) in self.inputs.spec.configurations.iter().zip(self.small) {
+            if let Some(small) = small {
+                let (velocity, one) = (at(c.velocity, Shift::HERE), expr::identity(c.group.size()));
+                let whole = expr::add(expr::here(s, *small), one.clone());
+                there.push((velocity, whole));
+                let less = expr::sub(expr::here(s, c.velocity), one);
+                back.push((at(*small, Shift::HERE), less));
+            }
+        }
+        let in_small = expr::substitute(s, e, &there);
+        let in_small = self.algebra.shortest(&in_small);
+        vec![
+            e.clone(),
+            shorter(self.algebra, e.clone()),
+            expr::substitute(s, &in_small, &back),
+        ]
+    }
+
+    /// The one that rounds least, and of those the shortest.
+    fn best(&self, forms: Vec<Expr>) -> Expr {
+        let rounding = self.rounding();
+        let mut best: Option<(f64, Expr)> = None;
+        for form in forms {
+            let error = rounding.error(&form).min(0.0);
+            let better = best.as_ref().is_none_or(|(least, known)| {
+                error > *least || error == *least && form.size() < known.size()
+            });
+            if better {
+                best = Some((error, form));
+            }
+        }
+        best.map_or_else(|| expr::integer(0), |(_, form)| form)
+    }
+}

@@ -1,0 +1,132 @@
+//! What rounding does to an expression when the step is small: velocities are then near the identity,
+//! and `(Ω - 1) a / h` keeps sixteen digits of what `Ω a / h - a / h` loses. Takes expressions; gives
+//! the power of the step that they are of, and that of their rounding.
+
+use crate::algebra::Algebra;
+use crate::check::spec::Spec;
+use crate::expr::symbol::{Role, Symbols};
+use crate::expr::{self, Expr, Letter, Map, Node, Shift};
+
+/// Powers of the step: `size` that of the value, `error` that of its rounding, in units of
+/// `EPSILON`. What is exact has an infinite one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Order {
+    /// The value is of this power of the step.
+    pub size: f64,
+    /// Its rounding is `EPSILON` times this power of the step.
+    pub error: f64,
+}
+
+/// What the orders are found from.
+pub struct Rounding<'a> {
+    /// The model.
+    pub spec: &'a Spec,
+    /// Letters of the expressions.
+    pub symbols: &'a Symbols,
+    /// Decides what vanishes at rest.
+    pub algebra: &'a Algebra<'a>,
+}
+
+impl Rounding<'_> {
+    /// The power of the step that the rounding of an expression is of.
+    pub fn error(&self, e: &Expr) -> f64 {
+        self.order(e).error
+    }
+
+    /// Whether it vanishes where nothing moves: for velocities at the identity.
+    fn rests_at_zero(&self, e: &Expr) -> bool {
+        let velocities = self.spec.configurations.iter().map(|c| {
+            let letter = Letter {
+                symbol: c.velocity,
+                shift: Shift::HERE,
+            };
+            let size = self.symbols.get(c.velocity).shape.rows;
+            (letter, expr::identity(size))
+        });
+        let rest: Vec<(Letter, Expr)> = velocities.collect();
+        let forward = expr::substitute(self.symbols, e, &self.spec.end_of_edge());
+        self.algebra
+            .is_zero(&expr::substitute(self.symbols, &forward, &rest))
+    }
+
+    fn moves(&self, e: &Expr) -> bool {
+        expr::letters(e).iter().any(|l| {
+            self.symbols.get(l.symbol).role == Role::Velocity || l.shift.time != 0
+        })
+    }
+
+    /// What is of the order `inside`, or one more where it vanishes at rest.
+    fn cancelling(&self, e: &Expr, inside: Order) -> Order {
+        let gains = self.moves(e) && self.rests_at_zero(e);
+        Order {
+            size: inside.size + f64::from(u8::from(gains)),
+            error: inside.error,
+        }
+    }
+
+    fn order(&self, e: &Expr) -> Order {
+        let exact = |size| Order {
+            size,
+            error: f64::INFINITY,
+        };
+        match e.node() {
+            Node::Number(_)
+            | Node::Identity(_)
+            | Node::Zero(_)
+            | Node::Unit(..)
+            | Node::Inclusion(..) => exact(0.0),
+            Node::Letter(l) => {
+                let size = f64::from(u8::from(self.symbols.get(l.symbol).role == Role::Step));
+                Order { size, error: size }
+            }
+            Node::Sum(terms) => {
+                let all = terms.iter().map(|t| self.order(t));
+                let inside = all.fold(exact(f64::INFINITY), |a, b| Order {
+                    size: a.size.min(b.size),
+                    error: a.error.min(b.error),
+                });
+                self.cancelling(e, inside)
+            }
+            Node::Product(factors) => {
+                let all = factors.iter().map(|f| self.order(f));
+                all.fold(exact(0.0), product)
+            }
+            Node::Dot(a, b) => product(self.order(a), self.order(b)),
+            Node::Cross(a, b) => self.cancelling(e, product(self.order(a), self.order(b))),
+            Node::Quotient(a, b) => product(self.order(a), power(self.order(b), -1.0)),
+            Node::Power(a, q) => power(self.order(a), q.value()),
+            Node::Neg(a) | Node::Transpose(a) | Node::Hat(a) => self.order(a),
+            Node::Trace(a) | Node::Vee(a) | Node::Part(_, a) => {
+                self.cancelling(e, self.order(a))
+            }
+            // Kept as numbers of their own, small ones with all digits.
+            Node::Map(Map::Imaginary | Map::Translation, a)
+                if matches!(a.node(), Node::Letter(_)) && self.moves(a) =>
+            {
+                Order {
+                    size: 1.0,
+                    error: 1.0,
+                }
+            }
+            Node::Map(_, a) => self.cancelling(e, self.order(a)),
+            Node::Inverse(a) | Node::Det(a) | Node::Adjugate(a) | Node::Call(_, a) => Order {
+                size: 0.0,
+                error: self.order(a).error.min(0.0),
+            },
+        }
+    }
+}
+
+fn product(a: Order, b: Order) -> Order {
+    Order {
+        size: a.size + b.size,
+        error: (a.error + b.size).min(b.error + a.size),
+    }
+}
+
+fn power(a: Order, q: f64) -> Order {
+    Order {
+        size: a.size * q,
+        error: a.error + a.size * (q - 1.0),
+    }
+}
