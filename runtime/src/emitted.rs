@@ -5,11 +5,13 @@ pub use crate::card::{
     Card, Conserved, Dimension, Field, Invariant, Kind, OpenError, Settings, Trajectory,
     chosen_solver,
 };
+pub use crate::domain;
 pub use crate::groups::{
     BodyImpulse, BodyMomentum, BodyMomentumMatrix, Coadjoint, Group, Linear, Orthogonal,
     RigidMotion, Rotation, SpatialImpulse, SpatialMomentum, SpatialMomentumMatrix, TurnedRotation,
     UnitQuaternion,
 };
+pub use crate::integrate::Residual;
 pub use crate::integrate::{
     Moving, Reversible, SideBySide, Stepper, Steps, advance_side_by_side, preprocessing_order,
 };

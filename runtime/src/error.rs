@@ -1,6 +1,7 @@
 //! What can go wrong: with parameters, at the start of a trajectory, during a step.
 //! Takes the numbers of the failure; gives messages that say what to change.
 
+use crate::domain::Contact;
 use crate::groups::{NotARigidMotion, NotARotation, NotInvertible};
 use crate::said::place;
 use crate::solvers::left_factor::{LeftFactorError, Unsolved};
@@ -103,6 +104,15 @@ pub enum Problem {
         /// The assumption as the model writes it.
         text: &'static str,
     },
+    /// A function of parameters is not defined there.
+    OutsideDomain {
+        /// The function.
+        function: &'static str,
+        /// What its argument must be.
+        needs: &'static str,
+        /// The argument.
+        value: f64,
+    },
     /// The matrix is no Poinsot matrix of a body.
     Poinsot(PoinsotError),
     /// The matrix is no left factor of a Moser-Veselov equation.
@@ -162,6 +172,14 @@ impl fmt::Display for Problem {
                 write!(f, "{value:e} is too small: its inverse is infinite")
             }
             Self::AssumptionFails { text } => write!(f, "the assumption `{text}` does not hold"),
+            Self::OutsideDomain {
+                function,
+                needs,
+                value,
+            } => write!(
+                f,
+                "it is {value}, and the argument of {function} must be {needs}"
+            ),
             Self::Poinsot(error) => write!(f, "{error}"),
             Self::LeftFactor(error) => write!(f, "{error}"),
             Self::Rotation(error) => write!(f, "{error}"),
@@ -308,6 +326,8 @@ pub enum StepCause {
     Factor(LeftFactorError),
     /// The Newton iteration failed.
     Newton(NewtonError),
+    /// The step leaves what the model is defined on.
+    Contact(Contact),
     /// A quantity became NaN or infinite.
     NotFinite {
         /// Its name.
@@ -344,6 +364,13 @@ impl From<Unsolved> for StepCause {
     }
 }
 
+impl From<Contact> for StepCause {
+    #[cold]
+    fn from(contact: Contact) -> Self {
+        Self::Contact(contact)
+    }
+}
+
 impl From<NewtonError> for StepCause {
     #[cold]
     fn from(error: NewtonError) -> Self {
@@ -359,6 +386,7 @@ impl fmt::Display for StepCause {
             Self::LeftFactor(error) => write!(f, "{error}"),
             Self::Factor(error) => write!(f, "the left factor of this state: {error}"),
             Self::Newton(error) => write!(f, "{error}"),
+            Self::Contact(contact) => write!(f, "{contact}"),
             Self::NotFinite { what } => write!(
                 f,
                 "`{what}` is NaN or infinite; reduce the step size or check the initial values"
@@ -375,7 +403,23 @@ impl std::error::Error for StepCause {
             Self::LeftFactor(error) => Some(error),
             Self::Factor(error) => Some(error),
             Self::Newton(error) => Some(error),
+            Self::Contact(contact) => Some(contact),
             Self::NotFinite { .. } => None,
+        }
+    }
+}
+
+impl StepError {
+    /// The time of contact from node 0, in equal steps, where the motion left what its model is
+    /// defined on.
+    #[must_use]
+    pub fn contact_time(&self) -> Option<f64> {
+        match &self.cause {
+            StepCause::Contact(contact) => {
+                let share = contact.share?;
+                Some((self.node as f64 + share) * contact.h)
+            }
+            _ => None,
         }
     }
 }

@@ -12,6 +12,7 @@
 //! `Omega = R_k^T R_{k+1}`.
 
 pub mod card;
+pub mod domain;
 pub mod emitted;
 pub mod error;
 pub mod groups;
@@ -23,6 +24,7 @@ pub mod scalar;
 pub mod solvers;
 pub mod validate;
 
+pub use domain::{Contact, Met};
 pub use error::{ParameterError, Problem, StartError, StepCause, StepError};
 pub use groups::{
     BodyImpulse, BodyMomentum, BodyMomentumMatrix, Coadjoint, Group, Linear, NotARigidMotion,

@@ -1,6 +1,7 @@
 //! Checks of parameters and initial values, as emitted constructors call them.
 //! Takes a name and a value; gives nothing, or a [`ParameterError`] with the offending numbers.
 
+use crate::domain::Domain;
 use crate::linalg::{
     columns_from, determinant, inverse, left_multiplication, quaternion_imaginary, quaternion_real,
     rows_from,
@@ -280,6 +281,30 @@ pub fn assumption(holds: bool, text: &'static str) -> Result<(), ParameterError>
         field: "assume",
         problem: Problem::AssumptionFails { text },
         remedy: "choose parameters that satisfy it",
+    })
+}
+
+/// A function of parameters, whose argument has this value.
+///
+/// # Errors
+/// Names the argument when it is outside the function's domain.
+pub fn inside<T: Real>(
+    domain: Domain,
+    function: &'static str,
+    argument: &'static str,
+    value: T,
+) -> Result<(), ParameterError> {
+    if domain.admits(value) {
+        return Ok(());
+    }
+    Err(ParameterError {
+        field: argument,
+        problem: Problem::OutsideDomain {
+            function,
+            needs: domain.needs(),
+            value: value.value(),
+        },
+        remedy: "choose parameters for which the function is defined",
     })
 }
 

@@ -3,7 +3,8 @@
 
 use super::{Coadjoint, Coordinate, Group, Part};
 use crate::Real;
-use crate::linalg::inverse;
+use crate::domain::LEAST_RATIO;
+use crate::linalg::{inverse, singular_ratio};
 use crate::scalar::of_scalars;
 use core::fmt;
 use nalgebra::SMatrix;
@@ -25,7 +26,8 @@ of_scalars!(Linear<N> { matrix });
 pub enum NotInvertible {
     /// An entry is NaN or infinite.
     NotFinite,
-    /// Elimination finds no pivot: the matrix is singular to working precision.
+    /// The matrix is singular to working precision: elimination finds no pivot, or its smallest
+    /// singular value is below [`LEAST_RATIO`] of its largest.
     Singular,
 }
 
@@ -57,9 +59,10 @@ impl<const N: usize, T: Real> Linear<N, T> {
         if !a.iter().all(|x| x.is_finite()) {
             return Err(NotInvertible::NotFinite);
         }
+        let far = |lane| singular_ratio(&a.map(|x| x.lane(lane))) >= LEAST_RATIO;
         match inverse(a) {
-            Some(_) => Ok(Self { matrix: *a }),
-            None => Err(NotInvertible::Singular),
+            Some(_) if (0..T::LANES).all(far) => Ok(Self { matrix: *a }),
+            _ => Err(NotInvertible::Singular),
         }
     }
 

@@ -11,6 +11,7 @@ mod motion;
 mod pencil;
 mod product;
 mod quaternion;
+mod singular_values;
 mod skew;
 
 pub use eigenvalues::symmetric_eigenvalues;
@@ -25,6 +26,7 @@ pub use quaternion::{
     left_multiplication, pure_quaternion, quaternion_imaginary, quaternion_real,
     quaternion_rotation,
 };
+pub use singular_values::singular_ratio;
 pub use skew::{
     axial_of_difference, crossed, crossing, hat, skew_coordinates, skew_from, trace_complement, vee,
 };

@@ -119,6 +119,12 @@ impl<T: Real, G: Group<T>, const D: usize> Search<T, G, D> {
         }
     }
 
+    /// Whether steps are only tried: what refuses one then looks for no other.
+    #[must_use]
+    pub fn tries(&self) -> bool {
+        self.tries
+    }
+
     /// How the last step was solved; zeros before the first.
     #[must_use]
     pub fn last(&self) -> Summary {

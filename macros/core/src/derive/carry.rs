@@ -101,7 +101,10 @@ struct Work<'a> {
 
 impl Work<'_> {
     fn carry(&self, i: usize) -> Carry {
-        let (c, b) = (&self.inputs.spec.configurations[i], &self.inputs.balances[i]);
+        let (c, b) = (
+            &self.inputs.spec.configurations[i],
+            &self.inputs.balances[i],
+        );
         let through = Carry::Through {
             leave: expr::neg(b.node_out.clone()),
             arrive: b.node_in.clone(),
@@ -117,9 +120,7 @@ impl Work<'_> {
             // A model at the limit of the engine: the plain difference is as right, if less exact.
             return match c.side {
                 Side::Body => through,
-                Side::Spatial => {
-                    Carry::Kept(expr::sub(b.incoming.clone(), b.outgoing.clone()))
-                }
+                Side::Spatial => Carry::Kept(expr::sub(b.incoming.clone(), b.outgoing.clone())),
             };
         }
         let (first, second) = match c.side {
@@ -213,7 +214,10 @@ impl Work<'_> {
                 Transport::Advanced => None,
             })
             .collect();
-        !defined.is_empty() && self.algebra.is_zero(&expr::substitute(s, &forward, &defined))
+        !defined.is_empty()
+            && self
+                .algebra
+                .is_zero(&expr::substitute(s, &forward, &defined))
     }
 
     /// The terms of a number that change along a variation.

@@ -50,9 +50,9 @@ impl Rounding<'_> {
     }
 
     fn moves(&self, e: &Expr) -> bool {
-        expr::letters(e).iter().any(|l| {
-            self.symbols.get(l.symbol).role == Role::Velocity || l.shift.time != 0
-        })
+        expr::letters(e)
+            .iter()
+            .any(|l| self.symbols.get(l.symbol).role == Role::Velocity || l.shift.time != 0)
     }
 
     /// What is of the order `inside`, or one more where it vanishes at rest.
@@ -96,9 +96,7 @@ impl Rounding<'_> {
             Node::Quotient(a, b) => product(self.order(a), power(self.order(b), -1.0)),
             Node::Power(a, q) => power(self.order(a), q.value()),
             Node::Neg(a) | Node::Transpose(a) | Node::Hat(a) => self.order(a),
-            Node::Trace(a) | Node::Vee(a) | Node::Part(_, a) => {
-                self.cancelling(e, self.order(a))
-            }
+            Node::Trace(a) | Node::Vee(a) | Node::Part(_, a) => self.cancelling(e, self.order(a)),
             // Kept as numbers of their own, small ones with all digits.
             Node::Map(Map::Imaginary | Map::Translation, a)
                 if matches!(a.node(), Node::Letter(_)) && self.moves(a) =>

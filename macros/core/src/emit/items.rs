@@ -410,7 +410,9 @@ pub fn model(d: &Derivation, documented: bool) -> TokenStream {
         .flat_map(|a| [&a.left, &a.right])
         .collect();
     let numbers = constant.and_then(|_| real(d));
-    let needed = letters_of(constant.into_iter().chain(numbers).chain(assumed));
+    let mut needed = letters_of(constant.into_iter().chain(numbers).chain(assumed));
+    let (arguments, inside) = super::domain::of_parameters(d);
+    needed.extend(arguments);
     let locals = parameter_locals(d, quote!(parameters), &needed);
     let assumptions = d.spec.assumptions.iter().map(|a| assumption(d, a));
     let (field, build, init) = match constant {
@@ -454,6 +456,7 @@ pub fn model(d: &Derivation, documented: bool) -> TokenStream {
                 #(#checks)*
                 #locals
                 #(#assumptions)*
+                #inside
                 #build
                 Ok(Self { parameters, #init #solver_init })
             }

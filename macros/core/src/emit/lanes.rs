@@ -60,7 +60,7 @@ pub fn over_any_scalar(d: &Derivation, names: &Names) -> TokenStream {
     let side_by_side = matches!(
         d.solve.method,
         Method::FreeMoserVeselov | Method::ForcedMoserVeselov
-    );
+    ) && !super::domain::is_guarded(d);
     let (choice, chosen, passed) = if super::stepper::preprocessed(d) {
         (quote!(Order), quote!(order), Some(quote!(, order)))
     } else {

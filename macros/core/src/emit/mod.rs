@@ -4,6 +4,7 @@
 
 mod card;
 mod discrete_energy;
+mod domain;
 mod element;
 mod energy;
 mod equations;
@@ -20,6 +21,7 @@ mod newton;
 mod notes;
 mod quaternionic;
 mod residual;
+mod residual_of_step;
 mod sizes;
 mod state;
 mod step;
@@ -96,6 +98,7 @@ pub fn emit(d: &Derivation, documented: bool) -> TokenStream {
         stepper::traits(d, &names),
         lanes::over_any_scalar(d, &names),
         residual::balance(d, &names),
+        residual_of_step::residual_of_step(d, &names),
         invariants::invariants(d, &names),
         discrete_energy::discrete_energy(d, &names),
         card::card(d, &names),

@@ -44,7 +44,7 @@ pub fn own(d: &Derivation, id: SymbolId) -> Ident {
 }
 
 /// Types, traits and variants that emitted code calls by a plain name: no model can bear one.
-const TYPES: [&str; 55] = [
+const TYPES: [&str; 56] = [
     "KineticWarning",
     "BodyImpulse",
     "BodyMomentum",
@@ -77,6 +77,7 @@ const TYPES: [&str; 55] = [
     "Real",
     "Result",
     "Reversible",
+    "Residual",
     "RigidMotion",
     "Rotation",
     "SMatrix",
@@ -103,7 +104,7 @@ const TYPES: [&str; 55] = [
 ];
 
 /// Methods and constants that every model has.
-const MEMBERS: [&str; 30] = [
+const MEMBERS: [&str; 35] = [
     "kinetic_warning",
     "ADMITTED",
     "CARD",
@@ -115,21 +116,26 @@ const MEMBERS: [&str; 30] = [
     "at_node_0",
     "balance",
     "discrete_energy",
+    "domain_arguments",
     "edge",
     "edge_momentum",
     "energies",
     "energy",
     "factor_at",
+    "left_domain",
     "new",
     "node",
     "open",
     "parameters",
     "refused",
+    "residual",
     "sized",
     "start",
     "start_of_order",
     "start_with",
+    "stays_inside",
     "step",
+    "step_untested",
     "with_solver",
     "workspace",
     "workspace_with",
@@ -176,7 +182,7 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
 
 /// What emitted functions call by a plain name, and what they name themselves: a local of the
 /// model under such a name would hide it. The test of hygiene states a model with all of them.
-const INSIDE: [&str; 119] = [
+const INSIDE: [&str; 120] = [
     "KineticWarning",
     "BodyImpulse",
     "BodyMomentum",
@@ -188,6 +194,7 @@ const INSIDE: [&str; 119] = [
     "Orthogonal",
     "Poinsot",
     "QuaternionBody",
+    "Residual",
     "RigidMotion",
     "Rotation",
     "Some",

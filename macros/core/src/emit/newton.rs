@@ -122,6 +122,7 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
     let configurations = d.spec.configurations.iter().map(|c| &s.get(c.element).name);
     let solved_at = |i: usize| bundle.part(quote!(#solved), i);
     let rest = finish(d, names, &mut after, &solved_at, remembered);
+    let head = super::domain::step_head(d);
     let method = format!(" One step, in place. Solved thus: {}.", d.solve.reason);
     quote! {
         #[doc = #method]
@@ -130,7 +131,7 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
         /// When the iteration does not converge: which equation is worst, and which step could be
         /// solved; the state is then unchanged.
         #[inline]
-        pub fn step(&self, state: &mut #state #used, work: &mut #work #used) -> Result<(), StepError> {
+        #head(&self, state: &mut #state #used, work: &mut #work #used) -> Result<(), StepError> {
             let #step = work.h;
             #parameters
             #locals

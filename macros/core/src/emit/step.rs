@@ -37,12 +37,14 @@ pub fn start_and_step(d: &Derivation, names: &Names) -> TokenStream {
         }
         _ => super::newton::step(d, names),
     };
+    let tested = super::domain::tested_step(d, names);
     let g = Generics::of(d);
     let (bound, used) = (g.bound(), g.used());
     quote! {
         impl #bound #name #used {
             #start
             #factor
+            #tested
             #step
             #access
         }
@@ -170,6 +172,7 @@ fn start(d: &Derivation, names: &Names) -> TokenStream {
 pub(super) fn step_signature(d: &Derivation, body: TokenStream) -> TokenStream {
     let (state, work) = (item(d, "State"), item(d, "Workspace"));
     let method = &d.solve.reason;
+    let head = super::domain::step_head(d);
     let doc = format!(" One step, in place. Solved thus: {method}.");
     let used = Generics::of(d).used();
     quote! {
@@ -178,7 +181,7 @@ pub(super) fn step_signature(d: &Derivation, body: TokenStream) -> TokenStream {
         /// # Errors
         /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
         #[inline]
-        pub fn step(&self, state: &mut #state #used, work: &mut #work #used) -> Result<(), StepError> {
+        #head(&self, state: &mut #state #used, work: &mut #work #used) -> Result<(), StepError> {
             #body
         }
     }
@@ -309,7 +312,9 @@ pub(super) fn finish(
         let momentum = names.local(&format!("{field}_next"));
         let (here, next) = (variable(s, c.element), tagged(d, names, c.element, "next"));
         let (element, moved) = (own(d, c.element), tagged(d, names, c.element, "moved"));
-        let turned = |element: TokenStream, matrix: &proc_macro2::Ident, value: &Option<TokenStream>| {
+        let turned = |element: TokenStream,
+                      matrix: &proc_macro2::Ident,
+                      value: &Option<TokenStream>| {
             match family(c) {
                 Family::Rotation => quote!(+ #matrix * (#value)),
                 Family::Orthogonal(_) | Family::Linear(_) | Family::Quaternion | Family::Motion => {
@@ -317,9 +322,7 @@ pub(super) fn finish(
                 }
             }
         };
-        let plus = |e: &Expr, value: &Option<TokenStream>| {
-            (!e.is_zero()).then(|| quote!(+ #value))
-        };
+        let plus = |e: &Expr, value: &Option<TokenStream>| (!e.is_zero()).then(|| quote!(+ #value));
         let value = match (c.side, u) {
             (Side::Body, Carry::Through { leave, arrive }) => {
                 let (a, b) = (values.next(), values.next());

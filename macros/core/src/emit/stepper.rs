@@ -27,7 +27,9 @@ pub(super) fn start(d: &Derivation, state_of: TokenStream, fields: TokenStream) 
             #state_of
         }
     };
+    let admitted = super::domain::of_step(d);
     let tried = quote! {
+        #admitted
         let state = *state;
         let work = #bare { h, #fields };
         // The first step is tried on a copy: what cannot run is refused here.
@@ -154,7 +156,9 @@ pub fn traits(d: &Derivation, names: &Names) -> TokenStream {
             }
         }
     });
-    let forced = matches!(d.solve.method, Method::ForcedMoserVeselov);
+    // Lanes side by side pass by what is tested after a step.
+    let forced =
+        matches!(d.solve.method, Method::ForcedMoserVeselov) && !super::domain::is_guarded(d);
     let lanes = forced.then(|| super::forced::side_by_side(d, names));
     let many = many.or_else(|| {
         forced.then(|| {

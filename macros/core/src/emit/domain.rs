@@ -1,0 +1,417 @@
+//! What a step must not leave: the domains of the functions that a model uses, and invertible maps.
+//! Takes the derivation; gives the test of a step, of a step size and of the parameters. A model
+//! without such functions has none of it.
+
+use super::element::{Family, family};
+use super::expression::{Bindings, Writer, program};
+use super::items::{letters_of, node_locals, parameter_locals, text, with_transports};
+use super::names::{Names, item, own, tagged, variable};
+use super::sizes::Generics;
+use super::step::at;
+use crate::algebra::Rational;
+use crate::check::spec::Side;
+use crate::derive::Derivation;
+use crate::derive::recognise::Method;
+use crate::derive::transport::Transport;
+use crate::expr::symbol::Role;
+use crate::expr::{self, Expr, Function, Letter, Node, Shift};
+use crate::schedule;
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+/// What a function asks of its argument; the names are those of the runtime.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Domain {
+    Positive,
+    NotNegative,
+    NotZero,
+}
+
+impl Domain {
+    fn tokens(self) -> TokenStream {
+        match self {
+            Domain::Positive => quote!(domain::Domain::Positive),
+            Domain::NotNegative => quote!(domain::Domain::NotNegative),
+            Domain::NotZero => quote!(domain::Domain::NotZero),
+        }
+    }
+}
+
+/// Where an argument changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Place {
+    /// Made of parameters.
+    Parameters,
+    /// Of the step and parameters.
+    Step,
+    /// Of what stands at a node.
+    Node,
+    /// Of velocities, or of both ends of an edge.
+    Edge,
+}
+
+/// The argument of a function, and what it must be.
+#[derive(Clone, Debug, PartialEq)]
+struct Guard {
+    domain: Domain,
+    function: &'static str,
+    argument: Expr,
+    place: Place,
+}
+
+/// All guards of a model, in the order in which its Lagrangian names them.
+fn guards(d: &Derivation) -> Vec<Guard> {
+    let mut all = Vec::new();
+    let lagrangian = [&d.spec.lagrangian, &d.action.edge, &d.action.nodal];
+    let definitions = d.spec.advected.iter().filter_map(|a| a.definition.as_ref());
+    for e in lagrangian.into_iter().chain(definitions) {
+        collect(d, e, &mut all);
+    }
+    all
+}
+
+fn of(d: &Derivation, place: Place) -> Vec<Guard> {
+    let mut all = guards(d);
+    all.retain(|g| g.place == place);
+    all
+}
+
+fn collect(d: &Derivation, e: &Expr, all: &mut Vec<Guard>) {
+    match e.node() {
+        Node::Call(Function::Log, a) => guard(d, Domain::Positive, "log", a, all),
+        Node::Power(a, q) => match (q.as_integer(), q.is_negative()) {
+            (Some(_), false) => {}
+            (Some(_), true) => guard(d, Domain::NotZero, "a quotient", a, all),
+            (None, true) => guard(d, Domain::Positive, "a power", a, all),
+            (None, false) if *q == Rational::HALF => guard(d, Domain::NotNegative, "sqrt", a, all),
+            (None, false) => guard(d, Domain::NotNegative, "a power", a, all),
+        },
+        Node::Quotient(_, b) => guard(d, Domain::NotZero, "a quotient", b, all),
+        Node::Inverse(a) if !invertible(d, a) => {
+            guard(d, Domain::NotZero, "an inverse", &expr::det(a.clone()), all);
+        }
+        _ => {}
+    }
+    for child in e.children() {
+        collect(d, child, all);
+    }
+}
+
+/// Whether a matrix is made of what is invertible by itself.
+fn invertible(d: &Derivation, e: &Expr) -> bool {
+    match e.node() {
+        Node::Letter(l) => d.letters.symbols.get(l.symbol).structure.is_invertible(),
+        Node::Identity(_) => true,
+        Node::Transpose(a) | Node::Inverse(a) | Node::Neg(a) => invertible(d, a),
+        Node::Product(factors) => factors.iter().all(|f| invertible(d, f)),
+        _ => false,
+    }
+}
+
+/// Whether a number is a sum of squares: it then leaves no domain, and where it is zero the step
+/// finds what is infinite by itself.
+fn is_square(e: &Expr) -> bool {
+    match e.node() {
+        Node::Dot(a, b) => a == b,
+        Node::Power(a, q) => match q.as_integer() {
+            Some(n) => n % 2 == 0 || is_square(a),
+            None => is_square(a),
+        },
+        Node::Number(q) => !q.is_negative() && !q.is_zero(),
+        Node::Sum(list) | Node::Product(list) => list.iter().all(is_square),
+        Node::Quotient(a, b) => is_square(a) && is_square(b),
+        _ => false,
+    }
+}
+
+fn guard(
+    d: &Derivation,
+    domain: Domain,
+    function: &'static str,
+    argument: &Expr,
+    all: &mut Vec<Guard>,
+) {
+    if is_square(argument) {
+        return;
+    }
+    // A product is zero where a factor is.
+    if let (Domain::NotZero, Node::Product(factors)) = (domain, argument.node())
+        && factors.iter().all(|f| f.shape().is_scalar())
+    {
+        for f in factors {
+            guard(d, domain, function, f, all);
+        }
+        return;
+    }
+    let s = &d.letters.symbols;
+    let letters = expr::letters(argument);
+    let has = |role| letters.iter().any(|l| s.get(l.symbol).role == role);
+    let place = if has(Role::Velocity) || letters.iter().any(|l| l.shift.time != 0) {
+        Place::Edge
+    } else if has(Role::Element) || has(Role::Advected) {
+        Place::Node
+    } else if has(Role::Step) {
+        Place::Step
+    } else {
+        Place::Parameters
+    };
+    let own_step = matches!(argument.node(), Node::Letter(_)) && place == Place::Step;
+    if own_step || letters.is_empty() {
+        return;
+    }
+    let found = Guard {
+        domain,
+        function,
+        argument: argument.clone(),
+        place,
+    };
+    if !all.contains(&found) {
+        all.push(found);
+    }
+}
+
+/// Whether a step must be tested.
+pub(super) fn is_guarded(d: &Derivation) -> bool {
+    let linear = |c| matches!(family(c), Family::Linear(_));
+    let tested = |g: &Guard| matches!(g.place, Place::Node | Place::Edge);
+    d.spec.configurations.iter().any(linear) || guards(d).iter().any(tested)
+}
+
+/// The head of the function that makes a step: a tested one stands before it.
+pub(super) fn step_head(d: &Derivation) -> TokenStream {
+    match is_guarded(d) {
+        true => quote!(fn step_untested),
+        false => quote!(pub fn step),
+    }
+}
+
+/// Letters and tests of what parameters must be.
+pub(super) fn of_parameters(d: &Derivation) -> (Vec<Letter>, TokenStream) {
+    tests_of(d, Place::Parameters)
+}
+
+fn tests_of(d: &Derivation, place: Place) -> (Vec<Letter>, TokenStream) {
+    let list = of(d, place);
+    let none = Bindings::new();
+    let writer = Writer {
+        symbols: &d.letters.symbols,
+        bindings: &none,
+    };
+    let tests = list.iter().map(|g| {
+        let (domain, function) = (g.domain.tokens(), g.function);
+        let (argument, value) = (text(d, &g.argument), writer.write(&g.argument));
+        quote!(validate::inside(#domain, #function, #argument, #value)?;)
+    });
+    let tests = quote!(#(#tests)*);
+    (letters_of(list.iter().map(|g| &g.argument)), tests)
+}
+
+/// The test of a step size, where the model divides by more of it than itself.
+pub(super) fn of_step(d: &Derivation) -> TokenStream {
+    let (letters, tests) = tests_of(d, Place::Step);
+    if tests.is_empty() {
+        return tests;
+    }
+    let parameters = parameter_locals(d, quote!(self.parameters), &letters);
+    let step = variable(&d.letters.symbols, d.spec.step);
+    quote! {
+        { let #step = h; #parameters #tests }
+    }
+}
+
+/// `step` as it is called, for a model that must be tested.
+pub(super) fn tested_step(d: &Derivation, names: &Names) -> TokenStream {
+    if !is_guarded(d) {
+        return TokenStream::new();
+    }
+    let (state, work) = (item(d, "State"), item(d, "Workspace"));
+    let used = Generics::of(d).used();
+    let (node, before) = (names.local("node"), names.local("before"));
+    let inside = inside(d, names);
+    let method = format!(" One step, in place. Solved thus: {}.", d.solve.reason);
+    let trials = matches!(d.solve.method, Method::Newton).then(|| {
+        quote! {
+            let contact = match work.search.tries() {
+                true => contact,
+                false => contact.with_trials(work.h, |h| {
+                    let (mut moving, search) = (*state, newton::Search::to_try());
+                    self.step(&mut moving, &mut #work { h, search }).is_ok()
+                }),
+            };
+        }
+    });
+    quote! {
+        #[doc = #method]
+        ///
+        /// # Errors
+        /// When the step cannot be solved, or leaves what the model is defined on, with numbers and
+        /// a remedy; the state is then unchanged.
+        #[inline]
+        pub fn step(&self, state: &mut #state #used, work: &mut #work #used) -> Result<(), StepError> {
+            let #before = *state;
+            self.step_untested(state, work)?;
+            match self.stays_inside(&#before, state, work.h) {
+                Ok(()) => Ok(()),
+                Err(contact) => {
+                    *state = #before;
+                    Err(self.left_domain(state, work, contact))
+                }
+            }
+        }
+
+        /// Says what the step met, and which step could be made.
+        #[cold]
+        #[inline(never)]
+        fn left_domain(&self, state: &#state #used, work: &#work #used, contact: domain::Contact) -> StepError {
+            #trials
+            StepCause::from(contact).at_node(state.#node)
+        }
+
+        #inside
+    }
+}
+
+/// Whether a step stays where the model is defined.
+fn inside(d: &Derivation, names: &Names) -> TokenStream {
+    let s = &d.letters.symbols;
+    let (state, used) = (item(d, "State"), Generics::of(d).used());
+    let (before, after) = (names.local("before"), names.local("after"));
+    let step = variable(s, d.spec.step);
+    let linear = d.spec.configurations.iter().filter_map(|c| {
+        let (name, own) = (&s.get(c.element).name, own(d, c.element));
+        matches!(family(c), Family::Linear(_))
+            .then(|| quote!(domain::invertible(#name, &#before.#own, &#after.#own, #step)?;))
+    });
+    let linear = quote!(#(#linear)*);
+    let (nodal, edge) = (of(d, Place::Node), of(d, Place::Edge));
+    let (nodes, arguments) = at_nodes(d, names, &nodal);
+    let edges = on_edge(d, names, &edge);
+    quote! {
+        /// Whether the step from one state to the next stays where the model is defined.
+        #[inline]
+        fn stays_inside(&self, #before: &#state #used, #after: &#state #used, #step: T) -> Result<(), domain::Contact> {
+            #linear
+            #nodes
+            #edges
+            let _ = (#before, #after, #step);
+            Ok(())
+        }
+        #arguments
+    }
+}
+
+/// The tests at both nodes, and the function that gives the arguments at one.
+fn at_nodes(d: &Derivation, names: &Names, list: &[Guard]) -> (TokenStream, TokenStream) {
+    if list.is_empty() {
+        return Default::default();
+    }
+    let s = &d.letters.symbols;
+    let (state, used) = (item(d, "State"), Generics::of(d).used());
+    let (before, after) = (names.local("before"), names.local("after"));
+    let step = variable(s, d.spec.step);
+    let count = Literal::usize_unsuffixed(list.len());
+    let tests = list.iter().enumerate().map(|(i, g)| {
+        let (domain, function, argument) = (g.domain.tokens(), g.function, text(d, &g.argument));
+        let i = Literal::usize_unsuffixed(i);
+        quote!(#domain.at_nodes(#function, #argument, #before[#i], #after[#i], #step)?;)
+    });
+    let nodes = quote! {{
+        let (#before, #after) = (self.domain_arguments(#before, #step), self.domain_arguments(#after, #step));
+        #(#tests)*
+    }};
+    let arguments: Vec<Expr> = list.iter().map(|g| g.argument.clone()).collect();
+    let needed = letters_of(&arguments);
+    let mut bindings = Bindings::new();
+    let parameters = parameter_locals(d, quote!(self.parameters), &with_transports(d, &needed, 0));
+    let locals = super::step::here(d, names, &needed, &mut bindings);
+    let p = schedule::program(s, &arguments, "t");
+    let (lets, values) = program(&p, &bindings);
+    let function = quote! {
+        /// The arguments of the functions that the model uses, at the node of this state.
+        #[inline]
+        fn domain_arguments(&self, state: &#state #used, #step: T) -> [T; #count] {
+            #parameters
+            #locals
+            #lets
+            let _ = (state, #step);
+            [#(#values),*]
+        }
+    };
+    (nodes, function)
+}
+
+/// The tests for the velocities.
+fn on_edge(d: &Derivation, names: &Names, list: &[Guard]) -> TokenStream {
+    if list.is_empty() {
+        return TokenStream::new();
+    }
+    let s = &d.letters.symbols;
+    let (before, after) = (names.local("before"), names.local("after"));
+    let step = variable(s, d.spec.step);
+    let rest: Vec<(Letter, Expr)> = d
+        .spec
+        .configurations
+        .iter()
+        .map(|c| {
+            let size = s.get(c.velocity).shape.rows;
+            (at(c.velocity, Shift::HERE), expr::identity(size))
+        })
+        .collect();
+    let mut wanted: Vec<Expr> = Vec::new();
+    for g in list {
+        let forward = expr::substitute(s, &g.argument, &d.spec.end_of_edge());
+        wanted.push(expr::substitute(s, &forward, &rest));
+        wanted.push(g.argument.clone());
+    }
+    let mut needed = letters_of(&wanted);
+    for (a, t) in d.spec.advected.iter().zip(&d.transports) {
+        if matches!(t, Transport::Advanced) && needed.contains(&at(a.quantity, Shift::NEXT)) {
+            needed.extend(expr::letters(&a.update));
+        }
+    }
+    let mut all = with_transports(d, &needed, 0);
+    all.extend(with_transports(d, &needed, 1));
+    let parameters = parameter_locals(d, quote!(self.parameters), &all);
+    let mut bindings = Bindings::new();
+    let mut locals = TokenStream::new();
+    for c in &d.spec.configurations {
+        let (own, name) = (own(d, c.element), tagged(d, names, c.velocity, "matrix"));
+        let value = match c.side {
+            Side::Body => quote!((#before.#own.inverse() * #after.#own).matrix()),
+            Side::Spatial => quote!((#after.#own * #before.#own.inverse()).matrix()),
+        };
+        locals.extend(quote!(let #name = #value;));
+        bindings.bind(at(c.velocity, Shift::HERE), name);
+    }
+    for (level, source) in [(0i8, &before), (1, &after)] {
+        let element = |i: usize| {
+            let e = own(d, d.spec.configurations[i].element);
+            quote!(#source.#e.matrix())
+        };
+        let reference = |id| {
+            let r = own(d, id);
+            quote!(#before.#r)
+        };
+        locals.extend(node_locals(
+            d,
+            names,
+            level,
+            &needed,
+            &element,
+            &reference,
+            &mut bindings,
+        ));
+    }
+    let p = schedule::program(s, &wanted, "t");
+    let (lets, values) = program(&p, &bindings);
+    let tests = list.iter().zip(values.chunks(2)).map(|(g, pair)| {
+        let (domain, function, argument) = (g.domain.tokens(), g.function, text(d, &g.argument));
+        quote!(#domain.on_edge(#function, #argument, #(#pair),*, #step)?;)
+    });
+    quote! {{
+        #parameters
+        #locals
+        #lets
+        #(#tests)*
+    }}
+}

@@ -1,0 +1,319 @@
+//! What a step must not leave: the domain of a function that the model uses, the invertible maps.
+//! Takes values at both ends of a step; gives an error that says what was met, and when.
+
+mod segment;
+
+use crate::groups::Linear;
+use crate::linalg::{determinant, singular_ratio};
+use crate::said::Plain;
+use crate::scalar::Real;
+use core::fmt;
+use nalgebra::SMatrix;
+
+/// The smallest over the largest singular value below which a map counts as singular: beyond it an
+/// inverse has no more than four right digits.
+pub const LEAST_RATIO: f64 = 1e-12;
+
+/// A velocity this near to the identity, by the sum of squares of its difference, has no eigenvalue
+/// that is zero or negative; one is where one could be.
+const NEAR: f64 = 0.98;
+
+/// What a step met.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Met {
+    /// A linear map loses its inverse: the straight line from one node to the next meets `det = 0`.
+    Singular {
+        /// The configuration.
+        configuration: &'static str,
+    },
+    /// A linear map is singular to working precision at the end of the step.
+    NearlySingular {
+        /// The configuration.
+        configuration: &'static str,
+        /// Its smallest over its largest singular value.
+        ratio: f64,
+    },
+    /// The argument of a function leaves its domain.
+    Outside {
+        /// The function, such as `log`.
+        function: &'static str,
+        /// Its argument as the model writes it.
+        argument: &'static str,
+        /// The argument at the start of the step; on an edge, where nothing moves.
+        before: f64,
+        /// The argument at its end; on an edge, at the velocity of the step.
+        after: f64,
+    },
+}
+
+/// A step that left what its model is defined on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// What was met.
+    pub met: Met,
+    /// When, as a share of the step from 0 to 1: where the straight line between the nodes meets
+    /// `det = 0`, or the argument interpolated between them its bound. None where the velocity
+    /// itself is outside.
+    pub share: Option<f64>,
+    /// The step that was refused.
+    pub h: f64,
+    /// A shorter step from the same state that was tried and works, where one was.
+    pub works: Option<f64>,
+    /// The lane; 0 for types without lanes.
+    pub lane: u8,
+}
+
+impl Contact {
+    fn new<T: Real>(met: Met, share: Option<f64>, h: T, lane: usize) -> Self {
+        Self {
+            met,
+            share,
+            h: h.lane(lane),
+            works: None,
+            lane: u8::try_from(lane).unwrap_or(u8::MAX),
+        }
+    }
+
+    /// The time from the node before the step to the contact.
+    #[must_use]
+    pub fn after_node(&self) -> Option<f64> {
+        self.share.map(|s| s * self.h)
+    }
+
+    /// The same with a shorter step that `try_step` can make, if halving finds one.
+    #[cold]
+    #[must_use]
+    pub fn with_trials<T: Real>(self, h: T, try_step: impl Fn(T) -> bool) -> Self {
+        let mut share = 0.5;
+        let works = (0..20).find_map(|_| {
+            let found = try_step(h * T::from_f64(share)).then_some(share);
+            share *= 0.5;
+            found
+        });
+        Self {
+            works: works.map(|s| self.h * s),
+            ..self
+        }
+    }
+}
+
+impl fmt::Display for Contact {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.lane > 0 {
+            write!(f, "lane {}: ", self.lane)?;
+        }
+        match self.met {
+            Met::Singular { configuration } => write!(
+                f,
+                "`{configuration}` loses its inverse: the motion meets det = 0"
+            )?,
+            Met::NearlySingular {
+                configuration,
+                ratio,
+            } => write!(
+                f,
+                "`{configuration}` loses its inverse: its smallest singular value is {ratio:.1e} of \
+                 its largest, needed {LEAST_RATIO:e}"
+            )?,
+            Met::Outside {
+                function,
+                argument,
+                before,
+                ..
+            } if self.share == Some(0.0) => {
+                return write!(
+                    f,
+                    "`{argument}` is {before} at this node, outside the domain of {function}: \
+                     change the values of the state or the parameters"
+                );
+            }
+            Met::Outside {
+                function,
+                argument,
+                before,
+                after,
+            } => write!(
+                f,
+                "`{argument}` leaves the domain of {function}: it goes from {before} to {after}"
+            )?,
+        }
+        if let Some(after) = self.after_node() {
+            write!(
+                f,
+                ", {} after the node of a step of {}",
+                Plain(after),
+                Plain(self.h)
+            )?;
+        }
+        match self.works {
+            Some(works) => write!(
+                f,
+                "; a step of {} from this state was tried and can be made",
+                Plain(works)
+            ),
+            None => write!(
+                f,
+                "; start where the motion stays inside, or state a potential that keeps it there"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for Contact {}
+
+/// Whether a linear map stays invertible from one node to the next: the straight line between them
+/// meets no `det = 0`, not even twice, and the end is far enough from it.
+///
+/// # Errors
+/// [`Contact`] of the first lane that does not.
+#[inline]
+pub fn invertible<T: Real, const N: usize>(
+    configuration: &'static str,
+    before: &Linear<N, T>,
+    after: &Linear<N, T>,
+    h: T,
+) -> Result<(), Contact> {
+    let velocity = before.inverse() * *after;
+    let (v, end) = (velocity.matrix(), after.matrix());
+    let away = v - SMatrix::identity();
+    let squares = |a: &SMatrix<T, N, N>| a.iter().fold(T::zero(), |sum, x| sum + *x * *x);
+    // |det A| <= s_min |A|^(n-1), hence the ratio of singular values is at least |det A| / |A|^n.
+    let (det, size) = (determinant(&end), squares(&end));
+    let exponent = i32::try_from(N).unwrap_or(i32::MAX);
+    let least = T::from_f64(LEAST_RATIO * LEAST_RATIO) * size.powi(exponent);
+    let margin = det * det - least;
+    if squares(&away).greatest() < NEAR && margin.least() > 0.0 {
+        return Ok(());
+    }
+    closely(configuration, &v, &end, h)
+}
+
+/// The same lane by lane, by the eigenvalues of the velocity and the singular values of the end.
+#[cold]
+#[inline(never)]
+fn closely<T: Real, const N: usize>(
+    configuration: &'static str,
+    velocity: &SMatrix<T, N, N>,
+    end: &SMatrix<T, N, N>,
+    h: T,
+) -> Result<(), Contact> {
+    for lane in 0..T::LANES {
+        let of = |a: &SMatrix<T, N, N>| a.map(|x| x.lane(lane));
+        if let Some(share) = segment::contact(&of(velocity)) {
+            let met = Met::Singular { configuration };
+            return Err(Contact::new(met, Some(share), h, lane));
+        }
+        let ratio = singular_ratio(&of(end));
+        // NaN is refused too.
+        if !(ratio >= LEAST_RATIO) {
+            let met = Met::NearlySingular {
+                configuration,
+                ratio,
+            };
+            return Err(Contact::new(met, Some(1.0), h, lane));
+        }
+    }
+    Ok(())
+}
+
+/// What a function asks of its argument.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Domain {
+    /// A logarithm, a root below a quotient: positive.
+    Positive,
+    /// A root: zero or positive.
+    NotNegative,
+    /// A quotient, an inverse: not zero, and not through zero from one node to the next.
+    NotZero,
+}
+
+impl Domain {
+    fn holds(self, x: f64) -> bool {
+        match self {
+            Self::Positive => x > 0.0 && x.is_finite(),
+            Self::NotNegative => x >= 0.0 && x.is_finite(),
+            Self::NotZero => x != 0.0 && x.is_finite(),
+        }
+    }
+
+    /// What must be, in words.
+    #[must_use]
+    pub fn needs(self) -> &'static str {
+        match self {
+            Self::Positive => "positive",
+            Self::NotNegative => "zero or positive",
+            Self::NotZero => "other than zero",
+        }
+    }
+
+    /// Whether all lanes of a number are inside.
+    pub fn admits<T: Real>(self, x: T) -> bool {
+        (0..T::LANES).all(|lane| self.holds(x.lane(lane)))
+    }
+
+    /// Whether an argument is inside at both nodes of a step, and between them.
+    ///
+    /// # Errors
+    /// [`Contact`] of the first lane where it is not.
+    #[inline]
+    pub fn at_nodes<T: Real>(
+        self,
+        function: &'static str,
+        argument: &'static str,
+        before: T,
+        after: T,
+        h: T,
+    ) -> Result<(), Contact> {
+        for lane in 0..T::LANES {
+            let (from, to) = (before.lane(lane), after.lane(lane));
+            let crossed = self == Self::NotZero && (from < 0.0) != (to < 0.0);
+            if self.holds(from) && self.holds(to) && !crossed {
+                continue;
+            }
+            let share = match self.holds(from) {
+                true => (from / (from - to)).clamp(0.0, 1.0),
+                false => 0.0,
+            };
+            let met = Met::Outside {
+                function,
+                argument,
+                before: from,
+                after: to,
+            };
+            let share = (!share.is_nan()).then_some(share);
+            return Err(Contact::new(met, share, h, lane));
+        }
+        Ok(())
+    }
+
+    /// Whether an argument is inside for the velocity of a step; `rest` is its value where nothing
+    /// moves, from which it must not have gone through zero.
+    ///
+    /// # Errors
+    /// [`Contact`] of the first lane where it is not.
+    #[inline]
+    pub fn on_edge<T: Real>(
+        self,
+        function: &'static str,
+        argument: &'static str,
+        rest: T,
+        moving: T,
+        h: T,
+    ) -> Result<(), Contact> {
+        for lane in 0..T::LANES {
+            let (from, to) = (rest.lane(lane), moving.lane(lane));
+            let crossed = self == Self::NotZero && from * to < 0.0;
+            if self.holds(to) && !crossed {
+                continue;
+            }
+            let met = Met::Outside {
+                function,
+                argument,
+                before: from,
+                after: to,
+            };
+            return Err(Contact::new(met, None, h, lane));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,86 @@
+//! Singular values of a small matrix, for the test whether a linear map is still invertible (never
+//! on the ordinary path of a step). Takes the matrix; gives the smallest over the largest.
+
+use nalgebra::SMatrix;
+
+/// The smallest singular value over the largest, between 0 and 1; NaN when an entry is.
+///
+/// By one-sided Jacobi rotations, which find small singular values to their own rounding where the
+/// eigenvalues of `A^T A` would lose all below `1e-8` of the largest.
+pub fn singular_ratio<const N: usize>(a: &SMatrix<f64, N, N>) -> f64 {
+    let mut columns = a.data.0;
+    if !columns.iter().flatten().all(|x| x.is_finite()) {
+        return f64::NAN;
+    }
+    // A scale of one keeps squares from overflowing.
+    let largest = columns
+        .iter()
+        .flatten()
+        .fold(0.0, |m: f64, x| m.max(x.abs()));
+    if largest == 0.0 {
+        return 0.0;
+    }
+    columns.iter_mut().flatten().for_each(|x| *x /= largest);
+    let dot = |x: &[f64; N], y: &[f64; N]| -> f64 { x.iter().zip(y).map(|(x, y)| x * y).sum() };
+    // Convergence is quadratic; five sweeps do for such sizes.
+    for _ in 0..30 {
+        let mut turned = false;
+        for p in 0..N {
+            for q in p + 1..N {
+                let (x, y) = (columns[p], columns[q]);
+                let (xx, yy, xy) = (dot(&x, &x), dot(&y, &y), dot(&x, &y));
+                if xy.abs() <= f64::EPSILON * (xx * yy).sqrt() {
+                    continue;
+                }
+                turned = true;
+                let slope = (yy - xx) / (2.0 * xy);
+                let tangent = slope.signum() / (slope.abs() + slope.hypot(1.0));
+                let cosine = 1.0 / tangent.hypot(1.0);
+                let sine = tangent * cosine;
+                for (u, (x, y)) in columns[p].iter_mut().zip(x.iter().zip(&y)) {
+                    *u = cosine * x - sine * y;
+                }
+                for (v, (x, y)) in columns[q].iter_mut().zip(x.iter().zip(&y)) {
+                    *v = sine * x + cosine * y;
+                }
+            }
+        }
+        if !turned {
+            break;
+        }
+    }
+    let lengths = columns.iter().map(|c| dot(c, c).sqrt());
+    let (least, most) = lengths.fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), x| {
+        (a.min(x), b.max(x))
+    });
+    least / most
+}
+
+#[cfg(test)]
+mod tests {
+    use super::singular_ratio;
+    use nalgebra::{Matrix3, Rotation3, Vector3};
+
+    #[test]
+    fn small_ratios_are_found_between_any_frames() {
+        let left = Rotation3::new(Vector3::new(0.3, -0.7, 0.5)).into_inner();
+        let right = Rotation3::new(Vector3::new(-1.1, 0.2, 0.9)).into_inner();
+        for ratio in [1.0, 0.3, 1e-5, 1e-10, 1e-13] {
+            let a = left
+                * Matrix3::from_diagonal(&Vector3::new(3.0, 3.0 * ratio, 3.0 * ratio.sqrt()))
+                * right;
+            // The entries themselves are rounded: two frames of nine each, and six products.
+            let off = (singular_ratio(&a) - ratio).abs();
+            assert!(off <= 16.0 * f64::EPSILON, "{ratio:e}: {off:e}");
+        }
+    }
+
+    #[test]
+    fn scales_and_singular_matrices() {
+        assert_eq!(singular_ratio(&Matrix3::<f64>::zeros()), 0.0);
+        assert_eq!(singular_ratio(&(Matrix3::identity() * 1e-200)), 1.0);
+        assert_eq!(singular_ratio(&(Matrix3::identity() * 1e200)), 1.0);
+        assert!(singular_ratio(&Matrix3::from_element(1.0)) < 1e-15);
+        assert!(singular_ratio(&Matrix3::from_element(f64::NAN)).is_nan());
+    }
+}
