@@ -19,6 +19,9 @@ const HALVINGS: u32 = 53;
 /// least value there, and no sign to show it.
 const ROUNDINGS: f64 = 64.0;
 
+/// A crossing is found to this at least where zero is taken for so many roundings: the root of them.
+const SHARPER: f64 = 1e-6;
+
 /// The first `s` from 0 to 1 at which the determinant is zero, or negative to rounding; also where
 /// it only touches zero.
 pub(super) fn contact<const N: usize>(velocity: &SMatrix<f64, N, N>) -> Option<f64> {
@@ -35,7 +38,12 @@ pub(super) fn contact<const N: usize>(velocity: &SMatrix<f64, N, N>) -> Option<f
     }
     let largest = coefficients.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
     let zero = ROUNDINGS * f64::EPSILON * largest;
-    first(coefficients, zero, 0.0, 1.0, 0)
+    let touched = first(coefficients, zero, 0.0, 1.0, 0)?;
+    // Where the sign shows it, the place is sharper.
+    match first(coefficients, 0.0, 0.0, 1.0, 0) {
+        Some(crossed) if crossed - touched < SHARPER => Some(crossed),
+        _ => Some(touched),
+    }
 }
 
 /// The sum of the principal minors of `k` rows.

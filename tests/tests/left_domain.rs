@@ -1,0 +1,347 @@
+//! Steps that leave what their model is defined on: maps of GL(n) that lose their inverse, functions outside their domain.
+//! Takes models and motions that do; each is an error with the time of contact, the state is as it was, and a step that is
+//! named can be made.
+
+// The fields of the models are Greek letters, as in the papers.
+#![allow(mixed_script_confusables)]
+
+use clebsch::nalgebra::{Matrix3, Vector3};
+use clebsch::{
+    BodyMomentum, BodyMomentumMatrix, Contact, Linear, Met, Rotation, SpatialMomentumMatrix,
+    StartError, StepCause, StepError,
+};
+
+clebsch::model! {
+    /// An ellipsoid in space: free for a = 0.
+    model Ellipsoid {
+        param C0: Sym<3>;
+        param a: Real;
+        group Q: GL<3> velocity V;
+        advected I: Sym<3>;
+        constraint next(Q) = V*Q;
+        constraint next(I) = V*I*V^T;
+        lagrangian = tr((V - Id)*I*(V - Id)^T)/(2*h) - h*a/2*tr(C0*I);
+    }
+}
+
+clebsch::model! {
+    /// The free ellipsoid seen from its reference.
+    model EllipsoidInBody {
+        param I: Sym<3>;
+        group Q: GL<3> velocity V;
+        advected C: Sym<3>;
+        constraint next(Q) = Q*V;
+        constraint next(C) = V^T*C*V;
+        lagrangian = tr(C*(V - Id)*I*(V - Id)^T)/(2*h);
+    }
+}
+
+clebsch::model! {
+    /// A pressure that pulls inwards.
+    model Collapsing {
+        param w: Real;
+        group Q: GL<3> velocity V;
+        advected I: Sym<3>;
+        constraint next(Q) = V*Q;
+        constraint next(I) = V*I*V^T;
+        lagrangian = tr((V - Id)*I*(V - Id)^T)/(2*h) - h*w*log(det(I));
+    }
+}
+
+clebsch::model! {
+    /// A top with a logarithm of its height.
+    model LogTop {
+        param J: Sym<3>;
+        param chi, z: Vec<3>;
+        param w, c: Real;
+        group Λ: SO<3> velocity Ω;
+        advected Γ: Vec<3> = Λ^T*z;
+        constraint next(Λ) = Λ*Ω;
+        constraint next(Γ) = Ω^T*Γ;
+        lagrangian = -tr(J*Ω)/h - h*w*log(dot(chi, Γ) + c);
+    }
+}
+
+clebsch::model! {
+    /// A top with a pole, and a root of a parameter.
+    model PoleTop {
+        param J: Sym<3>;
+        param chi, z: Vec<3>;
+        param w, c: Real;
+        group Λ: SO<3> velocity Ω;
+        advected Γ: Vec<3> = Λ^T*z;
+        constraint next(Λ) = Λ*Ω;
+        constraint next(Γ) = Ω^T*Γ;
+        lagrangian = -tr(J*Ω)/h - h*w/(dot(chi, Γ) + c) - h*w*sqrt(c)*dot(chi, Γ);
+    }
+}
+
+clebsch::model! {
+    /// A top with a root of its height, a power and the inverse of a matrix.
+    model RootTop {
+        param J, K: Sym<3>;
+        param chi, z: Vec<3>;
+        param w, u, c: Real;
+        group Λ: SO<3> velocity Ω;
+        advected Γ: Vec<3> = Λ^T*z;
+        constraint next(Λ) = Λ*Ω;
+        constraint next(Γ) = Ω^T*Γ;
+        lagrangian = -tr(J*Ω)/h - h*w*(dot(chi, Γ) + c)^(3/2) - h*u*dot(chi, inv(K + dot(chi, Γ)*Id)*chi);
+    }
+}
+
+clebsch::model! {
+    /// A kinetic energy with a pole in the velocity.
+    model EdgePole {
+        param J: Sym<3>;
+        param b: Vec<3>;
+        param w: Real;
+        group Λ: SO<3> velocity Ω;
+        constraint next(Λ) = Λ*Ω;
+        lagrangian = -tr(J*Ω)/h + w/(h*(dot(b, Ω*b) - 1));
+    }
+}
+
+fn contact(error: &StepError) -> Contact {
+    match error.cause {
+        StepCause::Contact(contact) => contact,
+        _ => panic!("{error}"),
+    }
+}
+
+/// Steps until one is refused, at most `most`; the error, with the state it left unchanged.
+fn refused<S: Copy + PartialEq + std::fmt::Debug>(
+    state: &mut S,
+    most: u32,
+    mut step: impl FnMut(&mut S) -> Result<(), StepError>,
+) -> StepError {
+    for _ in 0..most {
+        let before = *state;
+        if let Err(error) = step(state) {
+            assert_eq!(before, *state);
+            return error;
+        }
+    }
+    panic!("{most} steps were made");
+}
+
+/// The velocity of the straight line along which the first axis reaches zero at time 1.
+fn inwards() -> Matrix3<f64> {
+    -Matrix3::from_diagonal(&Vector3::new(1.0, 0.2, 0.1))
+}
+
+fn ellipsoid() -> (Ellipsoid, EllipsoidInitial) {
+    let model = Ellipsoid::new(EllipsoidParameters {
+        C0: Matrix3::identity(),
+        a: 0.0,
+    });
+    let initial = EllipsoidInitial {
+        Q: Linear::identity(),
+        spatial_momentum: SpatialMomentumMatrix(inwards()),
+        I: Matrix3::identity(),
+    };
+    (model.unwrap(), initial)
+}
+
+#[test]
+fn a_straight_line_through_zero_ends_at_the_contact() {
+    for h in [0.05, 0.03, 0.3, 0.7] {
+        let (model, initial) = ellipsoid();
+        let (mut state, mut work) = model.start(initial, h).unwrap();
+        let error = refused(&mut state, 100, |s| model.step(s, &mut work));
+        let time = error.contact_time().expect("known");
+        // Rounding of a straight line of at most forty steps.
+        assert!((time - 1.0).abs() < 1e-13, "h = {h}: {time}");
+        assert_eq!(error.node, ((1.0 - 1e-9) / h).floor() as u64, "h = {h}");
+        assert!(error.to_string().contains("`Q` loses its inverse"), "{error}");
+        // The step that is named was tried and can be made.
+        let works = contact(&error).works.expect("found");
+        assert!(works < h && model.workspace(&state, works).is_ok());
+    }
+}
+
+#[test]
+fn the_first_step_is_tested_too_and_two_crossings_in_one() {
+    // Past the first axis; past the second; past all three: det is negative, positive, negative.
+    for h in [2.5, 7.0, 15.0] {
+        let (model, initial) = ellipsoid();
+        let Err(StartError::Refused(StepCause::Contact(met))) = model.start(initial, h) else {
+            panic!("h = {h} was taken");
+        };
+        assert_eq!(met.met, Met::Singular { configuration: "Q" });
+        let after = met.after_node().expect("known");
+        assert!((after - 1.0).abs() < 1e-13, "h = {h}: {after}");
+    }
+}
+
+#[test]
+fn the_body_side_ends_there_too() {
+    let model = EllipsoidInBody::new(EllipsoidInBodyParameters {
+        I: Matrix3::identity(),
+    })
+    .unwrap();
+    let initial = EllipsoidInBodyInitial {
+        Q: Linear::identity(),
+        body_momentum: BodyMomentumMatrix(inwards()),
+        C: Matrix3::identity(),
+    };
+    let (mut state, mut work) = model.start(initial, 0.05).unwrap();
+    let error = refused(&mut state, 100, |s| model.step(s, &mut work));
+    let time = error.contact_time().expect("known");
+    assert!((time - 1.0).abs() < 1e-13, "{time}");
+}
+
+#[test]
+fn a_motion_that_turns_back_before_it_is_not_stopped() {
+    // A spring of frequency 1 about zero goes through it; one about the identity does not.
+    let model = ElasticAtRest::new(ElasticAtRestParameters { s: 1.0 }).unwrap();
+    let initial = ElasticAtRestInitial {
+        Q: Linear::identity(),
+        spatial_momentum: SpatialMomentumMatrix(inwards() * 0.9),
+        I: Matrix3::identity(),
+        B: Matrix3::identity(),
+    };
+    let (mut state, mut work) = model.start(initial, 0.05).unwrap();
+    for _ in 0..2000 {
+        model.step(&mut state, &mut work).unwrap();
+    }
+    let model = Ellipsoid::new(EllipsoidParameters {
+        C0: Matrix3::identity(),
+        a: 1.0,
+    })
+    .unwrap();
+    let initial = EllipsoidInitial {
+        Q: Linear::identity(),
+        spatial_momentum: SpatialMomentumMatrix(inwards() * 0.1),
+        I: Matrix3::identity(),
+    };
+    let (mut state, mut work) = model.start(initial, 0.05).unwrap();
+    let error = refused(&mut state, 100, |s| model.step(s, &mut work));
+    let time = error.contact_time().expect("known");
+    // cos t = sin t / 10, to the second order of the scheme.
+    assert!((time - 10.0f64.atan()).abs() < 1e-3, "{time}");
+}
+
+clebsch::model! {
+    /// An elastic body with a volume that it keeps.
+    model ElasticAtRest {
+        param s: Real;
+        group Q: GL<3> velocity V;
+        advected I: Sym<3>;
+        advected B: Sym<3>;
+        constraint next(Q) = V*Q;
+        constraint next(I) = V*I*V^T;
+        constraint next(B) = V*B*V^T;
+        lagrangian = tr((V - Id)*I*(V - Id)^T)/(2*h) - h*s/2*tr(B) + h*s/2*log(det(B));
+    }
+}
+
+#[test]
+fn a_collapse_is_an_error_before_its_energy_is_no_number() {
+    let model = Collapsing::new(CollapsingParameters { w: 0.1 }).unwrap();
+    let initial = CollapsingInitial {
+        Q: Linear::identity(),
+        spatial_momentum: SpatialMomentumMatrix(inwards()),
+        I: Matrix3::identity(),
+    };
+    let (mut state, mut work) = model.start(initial, 0.02).unwrap();
+    let error = refused(&mut state, 1000, |s| {
+        let done = model.step(s, &mut work);
+        assert!(model.energy(s).is_finite());
+        done
+    });
+    // It falls faster than the straight line.
+    assert!(error.contact_time().is_some_and(|t| t < 1.0), "{error}");
+}
+
+#[test]
+fn a_map_that_is_nearly_singular_is_no_start() {
+    let thin = |x: f64| Linear::from_matrix(&Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, x)));
+    assert!(thin(2e-12).is_ok());
+    assert!(thin(5e-13).is_err());
+    assert!(thin(-0.5).is_ok(), "reflections are invertible");
+}
+
+fn turning() -> BodyMomentum {
+    BodyMomentum(Vector3::new(2.0, 0.3, 1.0))
+}
+
+fn body() -> Matrix3<f64> {
+    Matrix3::new(1.0, 0.1, 0.0, 0.1, 1.5, 0.2, 0.0, 0.2, 2.0)
+}
+
+/// Where the argument `x + c` of a top vanishes: by the error, and interpolated between its own nodes.
+fn assert_met(error: &StepError, function: &str, before: f64) {
+    let contact = contact(error);
+    let Met::Outside {
+        function: found,
+        argument,
+        before: from,
+        after,
+    } = contact.met
+    else {
+        panic!("{error}");
+    };
+    assert_eq!(found, function, "{error}");
+    assert!(argument.contains("Γ"), "{argument}");
+    assert!((from - before).abs() < 1e-14 && from > 0.0 && after < 0.0, "{error}");
+    let share = contact.share.expect("known");
+    assert!((from + share * (after - from)).abs() < 1e-15, "{share}");
+    for words in ["leaves the domain of", function, "after the node"] {
+        assert!(error.to_string().contains(words), "{error}");
+    }
+}
+
+#[test]
+fn a_logarithm_and_a_pole_are_left_with_an_error() {
+    let (chi, z, c) = (Vector3::z(), Vector3::z(), 0.3);
+    let model = LogTop::new(LogTopParameters { J: body(), chi, z, w: -1e-3, c }).unwrap();
+    let initial = LogTopInitial { Λ: Rotation::identity(), body_momentum: turning() };
+    let (mut state, mut work) = model.start(initial, 0.05).unwrap();
+    let error = refused(&mut state, 10_000, |s| model.step(s, &mut work));
+    assert_met(&error, "log", model.Γ(&state).z + c);
+
+    let model = PoleTop::new(PoleTopParameters { J: body(), chi, z, w: -1e-5, c }).unwrap();
+    let initial = PoleTopInitial { Λ: Rotation::identity(), body_momentum: turning() };
+    let (mut state, mut work) = model.start(initial, 0.05).unwrap();
+    let error = refused(&mut state, 10_000, |s| model.step(s, &mut work));
+    assert_met(&error, "a quotient", model.Γ(&state).z + c);
+}
+
+#[test]
+fn a_power_and_an_inverse_are_left_with_an_error() {
+    let (chi, z) = (Vector3::z(), Vector3::z());
+    let start = |w, u, c, k: f64| {
+        let parameters = RootTopParameters { J: body(), K: Matrix3::identity() * k, chi, z, w, u, c };
+        let model = RootTop::new(parameters).unwrap();
+        let initial = RootTopInitial { Λ: Rotation::identity(), body_momentum: turning() };
+        let (mut state, mut work) = model.start(initial, 0.05).unwrap();
+        refused(&mut state, 10_000, |s| model.step(s, &mut work))
+    };
+    // The root leaves first, then the matrix becomes singular first. Below a root the residual itself is no number, so
+    // that Newton's method may find no velocity instead.
+    let error = start(1e-3, 0.0, 0.3, 2.0);
+    match error.cause {
+        StepCause::Contact(_) => assert!(error.to_string().contains("a power"), "{error}"),
+        _ => assert!(error.to_string().contains("NaN"), "{error}"),
+    }
+    let error = start(0.0, 1e-6, 2.0, 0.3);
+    assert!(error.to_string().contains("domain of an inverse"), "{error}");
+}
+
+#[test]
+fn parameters_states_and_velocities_outside_are_refused_at_the_start() {
+    let (chi, z) = (Vector3::z(), Vector3::z());
+    let refusal = PoleTop::new(PoleTopParameters { J: body(), chi, z, w: 1.0, c: -0.3 }).unwrap_err();
+    assert!(refusal.to_string().contains("argument of sqrt must be zero or positive"), "{refusal}");
+    let model = LogTop::new(LogTopParameters { J: body(), chi, z, w: 1.0, c: -1.5 }).unwrap();
+    let initial = LogTopInitial { Λ: Rotation::identity(), body_momentum: turning() };
+    let refusal = model.start(initial, 0.05).unwrap_err().to_string();
+    assert!(refusal.contains("is -0.5 at this node, outside the domain of log"), "{refusal}");
+    // b·Ωb - 1 begins above zero; the first step turns it below.
+    let model = EdgePole::new(EdgePoleParameters { J: body(), b: Vector3::x() * 1.1, w: 1e-9 }).unwrap();
+    let initial = EdgePoleInitial { Λ: Rotation::identity(), body_momentum: BodyMomentum(Vector3::z() * 2.0) };
+    assert!(model.start(initial, 0.05).is_ok());
+    let refusal = model.start(initial, 1.0).unwrap_err().to_string();
+    assert!(refusal.contains("domain of a quotient"), "{refusal}");
+}
