@@ -503,6 +503,47 @@ pub mod body_in_quadratic_field {
         }
     }
     impl<T: Real> BodyInQuadraticField<T> {
+        /// What the step of size `h` from one state to the next leaves of its equations: the
+        /// momentum that is carried to the second state, less the one that the motion between
+        /// them brings there. One part a configuration, angular and linear ones of a rigid
+        /// motion apart, each with the size of the terms it is made of.
+        pub fn residual(
+            &self,
+            before: &BodyInQuadraticFieldState<T>,
+            after: &BodyInQuadraticFieldState<T>,
+            h: T,
+        ) -> [Residual; 1] {
+            let BodyInQuadraticFieldParameters { J, K, .. } = self.parameters;
+            let Ω_matrix = (before.Λ.inverse() * after.Λ).matrix();
+            let Λ_next = after.Λ.matrix();
+            let Γ_reference = before.Γ;
+            let Γ_next = Λ_next.tr_mul(&Γ_reference);
+            let t1 = h.powi(-1);
+            let t2 = Γ_next.dot(&Γ_next).sqrt();
+            let _ = h;
+            [
+                {
+                    let momentum = after.momentum.to_body(&after.Λ).0;
+                    Residual {
+                        size: length(
+                                &(momentum
+                                    - (axial_of_difference(&(J * Ω_matrix)) * t1
+                                        - (K * Γ_next).cross(&Γ_next) * T::from_f64(0.5) * h)),
+                            )
+                            .magnitude(),
+                        scale: length(&momentum).magnitude()
+                            + (T::from_f64(2.0) * (t1 * t1).sqrt()
+                                * (J * J).trace().sqrt()
+                                * (Ω_matrix.tr_mul(&Ω_matrix)).trace().sqrt()
+                                + T::from_f64(0.5) * (h * h).sqrt() * (K * K).trace().sqrt()
+                                    * t2 * t2)
+                                .magnitude(),
+                    }
+                },
+            ]
+        }
+    }
+    impl<T: Real> BodyInQuadraticField<T> {
         /// The kinetic and the potential energy at this node: those of the limit of small steps,
         /// at the node's momentum.
         pub fn energies(&self, state: &BodyInQuadraticFieldState<T>) -> (T, T) {

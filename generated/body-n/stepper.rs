@@ -339,6 +339,40 @@ pub mod body_n {
         }
     }
     impl<const N: usize, T: Real> BodyN<N, T> {
+        /// What the step of size `h` from one state to the next leaves of its equations: the
+        /// momentum that is carried to the second state, less the one that the motion between
+        /// them brings there. One part a configuration, angular and linear ones of a rigid
+        /// motion apart, each with the size of the terms it is made of.
+        pub fn residual(
+            &self,
+            before: &BodyNState<N, T>,
+            after: &BodyNState<N, T>,
+            h: T,
+        ) -> [Residual; 1] {
+            let BodyNParameters { C, .. } = self.parameters;
+            let Ω_matrix = (before.Λ.inverse() * after.Λ).matrix();
+            let t1 = h.powi(-1);
+            let t2 = (t1 * t1).sqrt();
+            let t3 = (C.tr_mul(&C)).trace().sqrt();
+            let t4 = (Ω_matrix.tr_mul(&Ω_matrix)).trace().sqrt();
+            let _ = h;
+            [
+                {
+                    let momentum = after.momentum.to_body(&after.Λ).0;
+                    Residual {
+                        size: length(
+                                &(momentum
+                                    - (C.tr_mul(&Ω_matrix) * t1 - Ω_matrix.tr_mul(&C) * t1)),
+                            )
+                            .magnitude(),
+                        scale: length(&momentum).magnitude()
+                            + (t2 * t3 * t4 + t2 * t4 * t3).magnitude(),
+                    }
+                },
+            ]
+        }
+    }
+    impl<const N: usize, T: Real> BodyN<N, T> {
         /// `-½ tr(μ_k²)`: Casimir: constant on coadjoint orbits.
         pub fn momentum_squared(&self, state: &BodyNState<N, T>) -> T {
             let μ = state.body_momentum().0;

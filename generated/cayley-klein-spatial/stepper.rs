@@ -372,6 +372,50 @@ pub mod cayley_klein_spatial {
         }
     }
     impl<T: Real> CayleyKleinSpatial<T> {
+        /// What the step of size `h` from one state to the next leaves of its equations: the
+        /// momentum that is carried to the second state, less the one that the motion between
+        /// them brings there. One part a configuration, angular and linear ones of a rigid
+        /// motion apart, each with the size of the terms it is made of.
+        pub fn residual(
+            &self,
+            before: &CayleyKleinSpatialState<T>,
+            after: &CayleyKleinSpatialState<T>,
+            h: T,
+        ) -> [Residual; 1] {
+            let CayleyKleinSpatialParameters { c, .. } = self.parameters;
+            let w_matrix = (after.q * before.q.inverse()).matrix();
+            let q = before.q.matrix();
+            let I_reference = before.I;
+            let I = quaternion_rotation(&q)
+                * (I_reference * quaternion_rotation(&q).transpose());
+            let t1 = h.powi(-1);
+            let t2 = quaternion_imaginary(&w_matrix);
+            let t3 = quaternion_imaginary(&(w_matrix * pure_quaternion(&(I * t2))));
+            let t4 = quaternion_imaginary(&(w_matrix * w_matrix));
+            let t5 = (t1 * t1).sqrt();
+            let t6 = (c * c).sqrt();
+            let _ = h;
+            [
+                {
+                    let momentum = after.momentum.0;
+                    Residual {
+                        size: length(
+                                &(momentum
+                                    - (t3 * T::from_f64(2.0) * t1
+                                        + t2 * T::from_f64(2.0) * t1 * c - t4 * t1 * c)),
+                            )
+                            .magnitude(),
+                        scale: length(&momentum).magnitude()
+                            + (T::from_f64(2.0) * t5 * t3.dot(&t3).sqrt()
+                                + T::from_f64(2.0) * t5 * t6 * t2.dot(&t2).sqrt()
+                                + t5 * t6 * t4.dot(&t4).sqrt())
+                                .magnitude(),
+                    }
+                },
+            ]
+        }
+    }
+    impl<T: Real> CayleyKleinSpatial<T> {
         /// The kinetic and the potential energy at this node: those of the limit of small steps,
         /// at the node's momentum.
         pub fn energies(&self, state: &CayleyKleinSpatialState<T>) -> (T, T) {

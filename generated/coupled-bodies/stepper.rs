@@ -514,6 +514,91 @@ pub mod coupled_bodies {
         }
     }
     impl<T: Real> CoupledBodies<T> {
+        /// What the step of size `h` from one state to the next leaves of its equations: the
+        /// momentum that is carried to the second state, less the one that the motion between
+        /// them brings there. One part a configuration, angular and linear ones of a rigid
+        /// motion apart, each with the size of the terms it is made of.
+        pub fn residual(
+            &self,
+            before: &CoupledBodiesState<T>,
+            after: &CoupledBodiesState<T>,
+            h: T,
+        ) -> [Residual; 2] {
+            let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
+            let Ω1_matrix = (before.Λ1.inverse() * after.Λ1).matrix();
+            let Ω2_matrix = (before.Λ2.inverse() * after.Λ2).matrix();
+            let Λ1 = before.Λ1.matrix();
+            let Λ2 = before.Λ2.matrix();
+            let R = Λ1.tr_mul(&Λ2);
+            let t1 = Ω2_matrix - SMatrix::<T, 3, 3>::identity();
+            let t2 = Ω1_matrix - SMatrix::<T, 3, 3>::identity();
+            let t3 = h * h;
+            let _ = h;
+            [
+                {
+                    let momentum = after.momentum_Λ1.to_body(&after.Λ1).0;
+                    Residual {
+                        size: length(
+                                &(momentum
+                                    - (axial_of_difference(
+                                        &(Ω1_matrix
+                                            .tr_mul(
+                                                &((-(J1 / h))
+                                                    - ((R * (t1 * d2)) * d1.transpose() * eps) / h),
+                                            )),
+                                    ))),
+                            )
+                            .magnitude(),
+                        scale: length(&momentum).magnitude()
+                            + (T::from_f64(2.0)
+                                * (Ω1_matrix.tr_mul(&Ω1_matrix)).trace().sqrt()
+                                * (((J1 * J1) / t3).trace().sqrt()
+                                    + ((d1
+                                        * (d1.transpose()
+                                            * d2
+                                                .dot(
+                                                    &((Ω2_matrix.transpose() - SMatrix::<T, 3, 3>::identity())
+                                                        * R.tr_mul(&(R * (t1 * d2)))),
+                                                )) * eps * eps) / t3)
+                                        .trace()
+                                        .sqrt()))
+                                .magnitude(),
+                    }
+                },
+                {
+                    let momentum = after.momentum_Λ2.to_body(&after.Λ2).0;
+                    Residual {
+                        size: length(
+                                &(momentum
+                                    - (axial_of_difference(
+                                        &(Ω2_matrix
+                                            .tr_mul(
+                                                &((-(J2 / h))
+                                                    - (R.tr_mul(&(t2 * d1)) * d2.transpose() * eps) / h),
+                                            )),
+                                    ))),
+                            )
+                            .magnitude(),
+                        scale: length(&momentum).magnitude()
+                            + (T::from_f64(2.0)
+                                * (Ω2_matrix.tr_mul(&Ω2_matrix)).trace().sqrt()
+                                * (((J2 * J2) / t3).trace().sqrt()
+                                    + ((d2
+                                        * (d2.transpose()
+                                            * d1
+                                                .dot(
+                                                    &((Ω1_matrix.transpose() - SMatrix::<T, 3, 3>::identity())
+                                                        * (R * R.tr_mul(&(t2 * d1)))),
+                                                )) * eps * eps) / t3)
+                                        .trace()
+                                        .sqrt()))
+                                .magnitude(),
+                    }
+                },
+            ]
+        }
+    }
+    impl<T: Real> CoupledBodies<T> {
         /// The kinetic and the potential energy at this node: those of the limit of small steps,
         /// at the node's momentum.
         pub fn energies(&self, state: &CoupledBodiesState<T>) -> (T, T) {

@@ -387,6 +387,41 @@ pub mod free_body_spatial {
         }
     }
     impl<T: Real> FreeBodySpatial<T> {
+        /// What the step of size `h` from one state to the next leaves of its equations: the
+        /// momentum that is carried to the second state, less the one that the motion between
+        /// them brings there. One part a configuration, angular and linear ones of a rigid
+        /// motion apart, each with the size of the terms it is made of.
+        pub fn residual(
+            &self,
+            before: &FreeBodySpatialState<T>,
+            after: &FreeBodySpatialState<T>,
+            h: T,
+        ) -> [Residual; 1] {
+            let ω_matrix = (after.Λ * before.Λ.inverse()).matrix();
+            let Λ = before.Λ.matrix();
+            let J_reference = before.J;
+            let J = Λ * (J_reference * Λ.transpose());
+            let t1 = h.powi(-1);
+            let _ = h;
+            [
+                {
+                    let momentum = after.momentum.0;
+                    Residual {
+                        size: length(
+                                &(momentum - (axial_of_difference(&(ω_matrix * J)) * t1)),
+                            )
+                            .magnitude(),
+                        scale: length(&momentum).magnitude()
+                            + (T::from_f64(2.0) * (t1 * t1).sqrt()
+                                * (ω_matrix.tr_mul(&ω_matrix)).trace().sqrt()
+                                * (J * J).trace().sqrt())
+                                .magnitude(),
+                    }
+                },
+            ]
+        }
+    }
+    impl<T: Real> FreeBodySpatial<T> {
         /// The kinetic and the potential energy at this node: those of the limit of small steps,
         /// at the node's momentum.
         pub fn energies(&self, state: &FreeBodySpatialState<T>) -> (T, T) {

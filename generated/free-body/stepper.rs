@@ -330,6 +330,39 @@ pub mod free_body {
         }
     }
     impl<T: Real> FreeBody<T> {
+        /// What the step of size `h` from one state to the next leaves of its equations: the
+        /// momentum that is carried to the second state, less the one that the motion between
+        /// them brings there. One part a configuration, angular and linear ones of a rigid
+        /// motion apart, each with the size of the terms it is made of.
+        pub fn residual(
+            &self,
+            before: &FreeBodyState<T>,
+            after: &FreeBodyState<T>,
+            h: T,
+        ) -> [Residual; 1] {
+            let FreeBodyParameters { J, .. } = self.parameters;
+            let Ω_matrix = (before.Λ.inverse() * after.Λ).matrix();
+            let t1 = h.powi(-1);
+            let _ = h;
+            [
+                {
+                    let momentum = after.momentum.to_body(&after.Λ).0;
+                    Residual {
+                        size: length(
+                                &(momentum - (axial_of_difference(&(J * Ω_matrix)) * t1)),
+                            )
+                            .magnitude(),
+                        scale: length(&momentum).magnitude()
+                            + (T::from_f64(2.0) * (t1 * t1).sqrt()
+                                * (J * J).trace().sqrt()
+                                * (Ω_matrix.tr_mul(&Ω_matrix)).trace().sqrt())
+                                .magnitude(),
+                    }
+                },
+            ]
+        }
+    }
+    impl<T: Real> FreeBody<T> {
         /// The kinetic and the potential energy at this node: those of the limit of small steps,
         /// at the node's momentum.
         pub fn energies(&self, state: &FreeBodyState<T>) -> (T, T) {

@@ -469,6 +469,45 @@ pub mod heavy_top {
         }
     }
     impl<T: Real> HeavyTop<T> {
+        /// What the step of size `h` from one state to the next leaves of its equations: the
+        /// momentum that is carried to the second state, less the one that the motion between
+        /// them brings there. One part a configuration, angular and linear ones of a rigid
+        /// motion apart, each with the size of the terms it is made of.
+        pub fn residual(
+            &self,
+            before: &HeavyTopState<T>,
+            after: &HeavyTopState<T>,
+            h: T,
+        ) -> [Residual; 1] {
+            let HeavyTopParameters { J, gU, z, .. } = self.parameters;
+            let Ω_matrix = (before.Λ.inverse() * after.Λ).matrix();
+            let Λ_next = after.Λ.matrix();
+            let Γ_next = Λ_next.tr_mul(&z);
+            let t1 = h.powi(-1);
+            let _ = h;
+            [
+                {
+                    let momentum = after.momentum.to_body(&after.Λ).0;
+                    Residual {
+                        size: length(
+                                &(momentum
+                                    - (axial_of_difference(&(J * Ω_matrix)) * t1
+                                        - gU.cross(&Γ_next) * T::from_f64(0.5) * h)),
+                            )
+                            .magnitude(),
+                        scale: length(&momentum).magnitude()
+                            + (T::from_f64(2.0) * (t1 * t1).sqrt()
+                                * (J * J).trace().sqrt()
+                                * (Ω_matrix.tr_mul(&Ω_matrix)).trace().sqrt()
+                                + T::from_f64(0.5) * (h * h).sqrt() * gU.dot(&gU).sqrt()
+                                    * Γ_next.dot(&Γ_next).sqrt())
+                                .magnitude(),
+                    }
+                },
+            ]
+        }
+    }
+    impl<T: Real> HeavyTop<T> {
         /// The kinetic and the potential energy at this node: those of the limit of small steps,
         /// at the node's momentum.
         pub fn energies(&self, state: &HeavyTopState<T>) -> (T, T) {

@@ -642,6 +642,101 @@ pub mod kirchhoff_body {
         }
     }
     impl<T: Real> KirchhoffBody<T> {
+        /// What the step of size `h` from one state to the next leaves of its equations: the
+        /// momentum that is carried to the second state, less the one that the motion between
+        /// them brings there. One part a configuration, angular and linear ones of a rigid
+        /// motion apart, each with the size of the terms it is made of.
+        pub fn residual(
+            &self,
+            before: &KirchhoffBodyState<T>,
+            after: &KirchhoffBodyState<T>,
+            h: T,
+        ) -> [Residual; 2] {
+            let KirchhoffBodyParameters { J, M, D, b, Z, .. } = self.parameters;
+            let V_matrix = (before.G.inverse() * after.G).matrix();
+            let G_next = after.G.matrix();
+            let P_next = G_next.tr_mul(&Z);
+            let t1 = h.powi(-1);
+            let t2 = motion_rotation(&V_matrix);
+            let t3 = t2.transpose();
+            let t4 = motion_translation(&V_matrix);
+            let t5 = t3 * t4;
+            let t6 = vee(&t2);
+            let t7 = (t1 * t1).sqrt();
+            let t8 = (M * M).trace().sqrt();
+            let t9 = (t3 * t2).trace().sqrt();
+            let t10 = t4.dot(&t4).sqrt();
+            let t11 = (D.tr_mul(&D)).trace().sqrt();
+            let t12 = T::from_f64(0.5) * (h * h).sqrt() * b.dot(&b).sqrt()
+                * P_next.dot(&P_next).sqrt();
+            let _ = h;
+            [
+                {
+                    let momentum = rows_from::<
+                        T,
+                        6,
+                        3,
+                        1,
+                    >(&after.momentum.to_body(&after.G).0, 0);
+                    Residual {
+                        size: length(
+                                &(momentum
+                                    - ((M * (t3 * t4)).cross(&t5) * T::from_f64(0.25) * t1
+                                        + (M * t4).cross(&t5) * T::from_f64(0.25) * t1
+                                        + (D.tr_mul(&t6)).cross(&t5) * T::from_f64(0.5) * t1
+                                        + axial_of_difference(&(J * t2)) * t1
+                                        + axial_of_difference(&(crossing(&t3, &(D * (t3 * t4)))))
+                                            * T::from_f64(0.25) * t1
+                                        + axial_of_difference(&(crossing(&t3, &(D * t4))))
+                                            * T::from_f64(0.25) * t1
+                                        - (rows_from::<T, 4, 3, 1>(&b, 0))
+                                            .cross(&(rows_from::<T, 4, 3, 1>(&P_next, 0)))
+                                            * T::from_f64(0.5) * h)),
+                            )
+                            .magnitude(),
+                        scale: length(&momentum).magnitude()
+                            + (T::from_f64(0.25) * t7 * t8 * t9 * t10 * t9 * t10
+                                + T::from_f64(0.25) * t7 * t8 * t10 * t9 * t10
+                                + T::from_f64(0.5) * t7 * t11 * t9 * t9 * t10
+                                + T::from_f64(2.0) * t7 * (J * J).trace().sqrt() * t9
+                                + t7 * t9 * t11 * t9 * t10 + t7 * t9 * t11 * t10 + t12)
+                                .magnitude(),
+                    }
+                },
+                {
+                    let momentum = rows_from::<
+                        T,
+                        6,
+                        3,
+                        1,
+                    >(&after.momentum.to_body(&after.G).0, 3);
+                    Residual {
+                        size: length(
+                                &(momentum
+                                    - (M * (t3 * t4) * T::from_f64(0.25) * t1
+                                        + M * t4 * T::from_f64(0.25) * t1
+                                        + D.tr_mul(&t6) * T::from_f64(0.5) * t1
+                                        + t3 * (M * (t3 * t4)) * T::from_f64(0.25) * t1
+                                        + t3 * (M * t4) * T::from_f64(0.25) * t1
+                                        + t3 * D.tr_mul(&t6) * T::from_f64(0.5) * t1
+                                        - rows_from::<T, 4, 3, 1>(&P_next, 0) * T::from_f64(0.5) * h
+                                            * b[3])),
+                            )
+                            .magnitude(),
+                        scale: length(&momentum).magnitude()
+                            + (T::from_f64(0.25) * t7 * t8 * t9 * t10
+                                + T::from_f64(0.25) * t7 * t8 * t10
+                                + T::from_f64(0.5) * t7 * t11 * t9
+                                + T::from_f64(0.25) * t7 * t9 * t8 * t9 * t10
+                                + T::from_f64(0.25) * t7 * t9 * t8 * t10
+                                + T::from_f64(0.5) * t7 * t9 * t11 * t9 + t12)
+                                .magnitude(),
+                    }
+                },
+            ]
+        }
+    }
+    impl<T: Real> KirchhoffBody<T> {
         /// The kinetic and the potential energy at this node: those of the limit of small steps,
         /// at the node's momentum.
         pub fn energies(&self, state: &KirchhoffBodyState<T>) -> (T, T) {

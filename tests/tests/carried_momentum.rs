@@ -246,7 +246,9 @@ fn the_pair_moves_as_it_is_stated_from_its_bodies() {
     }
     let off = largest(&(state.A().matrix() - other.A().matrix()))
         .max(largest(&(state.B().matrix() - other.B().matrix())))
-        .max(largest(&(state.spatial_momentum_A().0 - other.spatial_momentum_A().0)));
+        .max(largest(
+            &(state.spatial_momentum_A().0 - other.spatial_momentum_A().0),
+        ));
     // Rounding of a hundred steps, which two motions may amplify tenfold over five units of time.
     assert!(off < 1e-12, "{off:e}");
 }
@@ -294,7 +296,12 @@ fn the_angular_momentum_of_an_elastic_body() {
 }
 
 /// A thrown body of this shape, mass and first momentum, and where it starts.
-fn thrown(j: Vector3<f64>, m: f64, momentum: [f64; 6], at: Vector3<f64>) -> (Thrown, ThrownInitial) {
+fn thrown(
+    j: Vector3<f64>,
+    m: f64,
+    momentum: [f64; 6],
+    at: Vector3<f64>,
+) -> (Thrown, ThrownInitial) {
     let parameters = ThrownParameters {
         J: Matrix3::from_diagonal(&j),
         m,
@@ -316,9 +323,24 @@ fn thrown(j: Vector3<f64>, m: f64, momentum: [f64; 6], at: Vector3<f64>) -> (Thr
 #[test]
 fn free_fall_keeps_energy_to_the_rounding_of_what_is_carried() {
     let bodies = [
-        (Vector3::new(0.5, 0.7, 1.1), 1.3, [0.3, 0.5, -0.4, 1.0, 0.5, 2.0], Vector3::new(1.0, 2.0, 3.0)),
-        (Vector3::new(0.05, 0.02, 0.04), 1.0, [0.1, -0.05, 0.02, 0.0, 0.0, 0.0], Vector3::zeros()),
-        (Vector3::new(2.0, 1.0, 3.0), 5.0, [1.0, 1.0, 1.0, 10.0, -3.0, 40.0], Vector3::new(-10.0, 0.0, 5.0)),
+        (
+            Vector3::new(0.5, 0.7, 1.1),
+            1.3,
+            [0.3, 0.5, -0.4, 1.0, 0.5, 2.0],
+            Vector3::new(1.0, 2.0, 3.0),
+        ),
+        (
+            Vector3::new(0.05, 0.02, 0.04),
+            1.0,
+            [0.1, -0.05, 0.02, 0.0, 0.0, 0.0],
+            Vector3::zeros(),
+        ),
+        (
+            Vector3::new(2.0, 1.0, 3.0),
+            5.0,
+            [1.0, 1.0, 1.0, 10.0, -3.0, 40.0],
+            Vector3::new(-10.0, 0.0, 5.0),
+        ),
     ];
     for (j, m, momentum, at) in bodies {
         for (h, steps) in [(0.05, 5000), (1e-3, STEPS), (1e-6, STEPS), (1e-8, STEPS)] {
@@ -332,17 +354,24 @@ fn free_fall_keeps_energy_to_the_rounding_of_what_is_carried() {
                 let p = state.spatial_momentum().0;
                 let linear = p.fixed_rows::<3>(3).norm();
                 // What is carried about the fixed origin, and the potential beside it.
-                let carried = (1.0 + state.G().translation.norm()) * (linear + p.fixed_rows::<3>(0).norm())
+                let carried = (1.0 + state.G().translation.norm())
+                    * (linear + p.fixed_rows::<3>(0).norm())
                     / m.min(j.min())
                     + m * 9.81 * state.G().translation.norm();
                 // Each step rounds by one unit, at worst of one sign.
                 let rounding = k as f64 * f64::EPSILON * carried;
                 let off = (model.energy(&state) - energy).abs();
-                assert!(off <= rounding, "h = {h:e}, node {k}: {off:e}, rounding {rounding:e}");
+                assert!(
+                    off <= rounding,
+                    "h = {h:e}, node {k}: {off:e}, rounding {rounding:e}"
+                );
                 // Angular about the vertical, and linear across it.
                 let about = [p[2] - start[2], p[3] - start[3], p[4] - start[4]];
                 for off in about {
-                    assert!(off.abs() <= EXACT * start.norm(), "h = {h:e}, node {k}: {off:e}");
+                    assert!(
+                        off.abs() <= EXACT * start.norm(),
+                        "h = {h:e}, node {k}: {off:e}"
+                    );
                 }
                 together(&model.residual(&before, &state, h));
             }
@@ -374,7 +403,9 @@ fn the_body_momentum_where_the_tensor_is_constant_in_space() {
             let (before, earlier) = (state, seen);
             model.step(&mut state, &mut work).unwrap();
             other.step(&mut seen, &mut scratch).unwrap();
-            for off in [state.body_momentum().0, seen.body_momentum().0].map(|m| largest(&(m - momentum))) {
+            for off in
+                [state.body_momentum().0, seen.body_momentum().0].map(|m| largest(&(m - momentum)))
+            {
                 assert!(off <= EXACT * momentum.norm(), "h = {h:e}: {off:e}");
             }
             solved(&model.residual(&before, &state, h));
@@ -401,7 +432,10 @@ fn a_bad_solve_shows_in_the_residual_alone() {
         // From the right bodies to where the wrong ones went.
         let found = model.residual(&right, &state, h)[0].relative();
         assert!(found > SOLVED, "{share:e}: {found:e}");
-        assert!(found > 1e-4 * share && found < 10.0 * share, "{share:e}: {found:e}");
+        assert!(
+            found > 1e-4 * share && found < 10.0 * share,
+            "{share:e}: {found:e}"
+        );
         solved(&other.residual(&before, &state, h));
     }
 }

@@ -153,7 +153,10 @@ fn a_straight_line_through_zero_ends_at_the_contact() {
         // Rounding of a straight line of at most forty steps.
         assert!((time - 1.0).abs() < 1e-13, "h = {h}: {time}");
         assert_eq!(error.node, ((1.0 - 1e-9) / h).floor() as u64, "h = {h}");
-        assert!(error.to_string().contains("`Q` loses its inverse"), "{error}");
+        assert!(
+            error.to_string().contains("`Q` loses its inverse"),
+            "{error}"
+        );
         // The step that is named was tried and can be made.
         let works = contact(&error).works.expect("found");
         assert!(works < h && model.workspace(&state, works).is_ok());
@@ -284,7 +287,10 @@ fn assert_met(error: &StepError, function: &str, before: f64) {
     };
     assert_eq!(found, function, "{error}");
     assert!(argument.contains("Γ"), "{argument}");
-    assert!((from - before).abs() < 1e-14 && from > 0.0 && after < 0.0, "{error}");
+    assert!(
+        (from - before).abs() < 1e-14 && from > 0.0 && after < 0.0,
+        "{error}"
+    );
     let share = contact.share.expect("known");
     assert!((from + share * (after - from)).abs() < 1e-15, "{share}");
     for words in ["leaves the domain of", function, "after the node"] {
@@ -295,14 +301,34 @@ fn assert_met(error: &StepError, function: &str, before: f64) {
 #[test]
 fn a_logarithm_and_a_pole_are_left_with_an_error() {
     let (chi, z, c) = (Vector3::z(), Vector3::z(), 0.3);
-    let model = LogTop::new(LogTopParameters { J: body(), chi, z, w: -1e-3, c }).unwrap();
-    let initial = LogTopInitial { Λ: Rotation::identity(), body_momentum: turning() };
+    let model = LogTop::new(LogTopParameters {
+        J: body(),
+        chi,
+        z,
+        w: -1e-3,
+        c,
+    })
+    .unwrap();
+    let initial = LogTopInitial {
+        Λ: Rotation::identity(),
+        body_momentum: turning(),
+    };
     let (mut state, mut work) = model.start(initial, 0.05).unwrap();
     let error = refused(&mut state, 10_000, |s| model.step(s, &mut work));
     assert_met(&error, "log", model.Γ(&state).z + c);
 
-    let model = PoleTop::new(PoleTopParameters { J: body(), chi, z, w: -1e-5, c }).unwrap();
-    let initial = PoleTopInitial { Λ: Rotation::identity(), body_momentum: turning() };
+    let model = PoleTop::new(PoleTopParameters {
+        J: body(),
+        chi,
+        z,
+        w: -1e-5,
+        c,
+    })
+    .unwrap();
+    let initial = PoleTopInitial {
+        Λ: Rotation::identity(),
+        body_momentum: turning(),
+    };
     let (mut state, mut work) = model.start(initial, 0.05).unwrap();
     let error = refused(&mut state, 10_000, |s| model.step(s, &mut work));
     assert_met(&error, "a quotient", model.Γ(&state).z + c);
@@ -312,9 +338,20 @@ fn a_logarithm_and_a_pole_are_left_with_an_error() {
 fn a_power_and_an_inverse_are_left_with_an_error() {
     let (chi, z) = (Vector3::z(), Vector3::z());
     let start = |w, u, c, k: f64| {
-        let parameters = RootTopParameters { J: body(), K: Matrix3::identity() * k, chi, z, w, u, c };
+        let parameters = RootTopParameters {
+            J: body(),
+            K: Matrix3::identity() * k,
+            chi,
+            z,
+            w,
+            u,
+            c,
+        };
         let model = RootTop::new(parameters).unwrap();
-        let initial = RootTopInitial { Λ: Rotation::identity(), body_momentum: turning() };
+        let initial = RootTopInitial {
+            Λ: Rotation::identity(),
+            body_momentum: turning(),
+        };
         let (mut state, mut work) = model.start(initial, 0.05).unwrap();
         refused(&mut state, 10_000, |s| model.step(s, &mut work))
     };
@@ -326,21 +363,57 @@ fn a_power_and_an_inverse_are_left_with_an_error() {
         _ => assert!(error.to_string().contains("NaN"), "{error}"),
     }
     let error = start(0.0, 1e-6, 2.0, 0.3);
-    assert!(error.to_string().contains("domain of an inverse"), "{error}");
+    assert!(
+        error.to_string().contains("domain of an inverse"),
+        "{error}"
+    );
 }
 
 #[test]
 fn parameters_states_and_velocities_outside_are_refused_at_the_start() {
     let (chi, z) = (Vector3::z(), Vector3::z());
-    let refusal = PoleTop::new(PoleTopParameters { J: body(), chi, z, w: 1.0, c: -0.3 }).unwrap_err();
-    assert!(refusal.to_string().contains("argument of sqrt must be zero or positive"), "{refusal}");
-    let model = LogTop::new(LogTopParameters { J: body(), chi, z, w: 1.0, c: -1.5 }).unwrap();
-    let initial = LogTopInitial { Λ: Rotation::identity(), body_momentum: turning() };
+    let refusal = PoleTop::new(PoleTopParameters {
+        J: body(),
+        chi,
+        z,
+        w: 1.0,
+        c: -0.3,
+    })
+    .unwrap_err();
+    assert!(
+        refusal
+            .to_string()
+            .contains("argument of sqrt must be zero or positive"),
+        "{refusal}"
+    );
+    let model = LogTop::new(LogTopParameters {
+        J: body(),
+        chi,
+        z,
+        w: 1.0,
+        c: -1.5,
+    })
+    .unwrap();
+    let initial = LogTopInitial {
+        Λ: Rotation::identity(),
+        body_momentum: turning(),
+    };
     let refusal = model.start(initial, 0.05).unwrap_err().to_string();
-    assert!(refusal.contains("is -0.5 at this node, outside the domain of log"), "{refusal}");
+    assert!(
+        refusal.contains("is -0.5 at this node, outside the domain of log"),
+        "{refusal}"
+    );
     // b·Ωb - 1 begins above zero; the first step turns it below.
-    let model = EdgePole::new(EdgePoleParameters { J: body(), b: Vector3::x() * 1.1, w: 1e-9 }).unwrap();
-    let initial = EdgePoleInitial { Λ: Rotation::identity(), body_momentum: BodyMomentum(Vector3::z() * 2.0) };
+    let model = EdgePole::new(EdgePoleParameters {
+        J: body(),
+        b: Vector3::x() * 1.1,
+        w: 1e-9,
+    })
+    .unwrap();
+    let initial = EdgePoleInitial {
+        Λ: Rotation::identity(),
+        body_momentum: BodyMomentum(Vector3::z() * 2.0),
+    };
     assert!(model.start(initial, 0.05).is_ok());
     let refusal = model.start(initial, 1.0).unwrap_err().to_string();
     assert!(refusal.contains("domain of a quotient"), "{refusal}");
