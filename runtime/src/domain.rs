@@ -35,8 +35,8 @@ pub enum Met {
     },
     /// The argument of a function leaves its domain.
     Outside {
-        /// The function, such as `log`.
-        function: &'static str,
+        /// The function.
+        function: Function,
         /// Its argument as the model writes it.
         argument: &'static str,
         /// The argument at the start of the step; on an edge, where nothing moves.
@@ -205,7 +205,8 @@ fn closely<T: Real, const N: usize>(
         }
         let ratio = singular_ratio(&of(end));
         // NaN is refused too.
-        if !(ratio >= LEAST_RATIO) {
+        let enough = ratio >= LEAST_RATIO;
+        if !enough {
             let met = Met::NearlySingular {
                 configuration,
                 ratio,
@@ -214,6 +215,33 @@ fn closely<T: Real, const N: usize>(
         }
     }
     Ok(())
+}
+
+/// What has a domain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Function {
+    /// A logarithm.
+    Log,
+    /// A square root.
+    Sqrt,
+    /// Another power.
+    Power,
+    /// A quotient.
+    Quotient,
+    /// The inverse of a matrix; its argument is the determinant.
+    Inverse,
+}
+
+impl fmt::Display for Function {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Log => "log",
+            Self::Sqrt => "sqrt",
+            Self::Power => "a power",
+            Self::Quotient => "a quotient",
+            Self::Inverse => "an inverse",
+        })
+    }
 }
 
 /// What a function asks of its argument.
@@ -258,7 +286,7 @@ impl Domain {
     #[inline]
     pub fn at_nodes<T: Real>(
         self,
-        function: &'static str,
+        function: Function,
         argument: &'static str,
         before: T,
         after: T,
@@ -294,7 +322,7 @@ impl Domain {
     #[inline]
     pub fn on_edge<T: Real>(
         self,
-        function: &'static str,
+        function: Function,
         argument: &'static str,
         rest: T,
         moving: T,

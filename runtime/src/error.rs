@@ -1,7 +1,7 @@
 //! What can go wrong: with parameters, at the start of a trajectory, during a step.
 //! Takes the numbers of the failure; gives messages that say what to change.
 
-use crate::domain::Contact;
+use crate::domain::{Contact, Domain, Function};
 use crate::groups::{NotARigidMotion, NotARotation, NotInvertible};
 use crate::said::place;
 use crate::solvers::left_factor::{LeftFactorError, Unsolved};
@@ -107,9 +107,9 @@ pub enum Problem {
     /// A function of parameters is not defined there.
     OutsideDomain {
         /// The function.
-        function: &'static str,
+        function: Function,
         /// What its argument must be.
-        needs: &'static str,
+        domain: Domain,
         /// The argument.
         value: f64,
     },
@@ -174,11 +174,12 @@ impl fmt::Display for Problem {
             Self::AssumptionFails { text } => write!(f, "the assumption `{text}` does not hold"),
             Self::OutsideDomain {
                 function,
-                needs,
+                domain,
                 value,
             } => write!(
                 f,
-                "it is {value}, and the argument of {function} must be {needs}"
+                "it is {value}, and the argument of {function} must be {}",
+                domain.needs()
             ),
             Self::Poinsot(error) => write!(f, "{error}"),
             Self::LeftFactor(error) => write!(f, "{error}"),

@@ -1,7 +1,7 @@
 //! Checks of parameters and initial values, as emitted constructors call them.
 //! Takes a name and a value; gives nothing, or a [`ParameterError`] with the offending numbers.
 
-use crate::domain::Domain;
+use crate::domain::{Domain, Function};
 use crate::linalg::{
     columns_from, determinant, inverse, left_multiplication, quaternion_imaginary, quaternion_real,
     rows_from,
@@ -290,7 +290,7 @@ pub fn assumption(holds: bool, text: &'static str) -> Result<(), ParameterError>
 /// Names the argument when it is outside the function's domain.
 pub fn inside<T: Real>(
     domain: Domain,
-    function: &'static str,
+    function: Function,
     argument: &'static str,
     value: T,
 ) -> Result<(), ParameterError> {
@@ -301,7 +301,7 @@ pub fn inside<T: Real>(
         field: argument,
         problem: Problem::OutsideDomain {
             function,
-            needs: domain.needs(),
+            domain,
             value: value.value(),
         },
         remedy: "choose parameters for which the function is defined",

@@ -65,7 +65,7 @@ mod tests {
     fn small_ratios_are_found_between_any_frames() {
         let left = Rotation3::new(Vector3::new(0.3, -0.7, 0.5)).into_inner();
         let right = Rotation3::new(Vector3::new(-1.1, 0.2, 0.9)).into_inner();
-        for ratio in [1.0, 0.3, 1e-5, 1e-10, 1e-13] {
+        for ratio in [1.0_f64, 0.3, 1e-5, 1e-10, 1e-13] {
             let a = left
                 * Matrix3::from_diagonal(&Vector3::new(3.0, 3.0 * ratio, 3.0 * ratio.sqrt()))
                 * right;

@@ -37,6 +37,28 @@ impl Domain {
     }
 }
 
+/// What has a domain; the names are those of the runtime.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Named {
+    Log,
+    Sqrt,
+    Power,
+    Quotient,
+    Inverse,
+}
+
+impl Named {
+    fn tokens(self) -> TokenStream {
+        match self {
+            Named::Log => quote!(domain::Function::Log),
+            Named::Sqrt => quote!(domain::Function::Sqrt),
+            Named::Power => quote!(domain::Function::Power),
+            Named::Quotient => quote!(domain::Function::Quotient),
+            Named::Inverse => quote!(domain::Function::Inverse),
+        }
+    }
+}
+
 /// Where an argument changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Place {
@@ -54,7 +76,7 @@ enum Place {
 #[derive(Clone, Debug, PartialEq)]
 struct Guard {
     domain: Domain,
-    function: &'static str,
+    function: Named,
     argument: Expr,
     place: Place,
 }
@@ -78,17 +100,25 @@ fn of(d: &Derivation, place: Place) -> Vec<Guard> {
 
 fn collect(d: &Derivation, e: &Expr, all: &mut Vec<Guard>) {
     match e.node() {
-        Node::Call(Function::Log, a) => guard(d, Domain::Positive, "log", a, all),
+        Node::Call(Function::Log, a) => guard(d, Domain::Positive, Named::Log, a, all),
         Node::Power(a, q) => match (q.as_integer(), q.is_negative()) {
             (Some(_), false) => {}
-            (Some(_), true) => guard(d, Domain::NotZero, "a quotient", a, all),
-            (None, true) => guard(d, Domain::Positive, "a power", a, all),
-            (None, false) if *q == Rational::HALF => guard(d, Domain::NotNegative, "sqrt", a, all),
-            (None, false) => guard(d, Domain::NotNegative, "a power", a, all),
+            (Some(_), true) => guard(d, Domain::NotZero, Named::Quotient, a, all),
+            (None, true) => guard(d, Domain::Positive, Named::Power, a, all),
+            (None, false) if *q == Rational::HALF => {
+                guard(d, Domain::NotNegative, Named::Sqrt, a, all)
+            }
+            (None, false) => guard(d, Domain::NotNegative, Named::Power, a, all),
         },
-        Node::Quotient(_, b) => guard(d, Domain::NotZero, "a quotient", b, all),
+        Node::Quotient(_, b) => guard(d, Domain::NotZero, Named::Quotient, b, all),
         Node::Inverse(a) if !invertible(d, a) => {
-            guard(d, Domain::NotZero, "an inverse", &expr::det(a.clone()), all);
+            guard(
+                d,
+                Domain::NotZero,
+                Named::Inverse,
+                &expr::det(a.clone()),
+                all,
+            );
         }
         _ => {}
     }
@@ -124,13 +154,7 @@ fn is_square(e: &Expr) -> bool {
     }
 }
 
-fn guard(
-    d: &Derivation,
-    domain: Domain,
-    function: &'static str,
-    argument: &Expr,
-    all: &mut Vec<Guard>,
-) {
+fn guard(d: &Derivation, domain: Domain, function: Named, argument: &Expr, all: &mut Vec<Guard>) {
     if is_square(argument) {
         return;
     }
@@ -198,7 +222,7 @@ fn tests_of(d: &Derivation, place: Place) -> (Vec<Letter>, TokenStream) {
         bindings: &none,
     };
     let tests = list.iter().map(|g| {
-        let (domain, function) = (g.domain.tokens(), g.function);
+        let (domain, function) = (g.domain.tokens(), g.function.tokens());
         let (argument, value) = (text(d, &g.argument), writer.write(&g.argument));
         quote!(validate::inside(#domain, #function, #argument, #value)?;)
     });
@@ -311,7 +335,8 @@ fn at_nodes(d: &Derivation, names: &Names, list: &[Guard]) -> (TokenStream, Toke
     let step = variable(s, d.spec.step);
     let count = Literal::usize_unsuffixed(list.len());
     let tests = list.iter().enumerate().map(|(i, g)| {
-        let (domain, function, argument) = (g.domain.tokens(), g.function, text(d, &g.argument));
+        let (domain, function, argument) =
+            (g.domain.tokens(), g.function.tokens(), text(d, &g.argument));
         let i = Literal::usize_unsuffixed(i);
         quote!(#domain.at_nodes(#function, #argument, #before[#i], #after[#i], #step)?;)
     });
@@ -405,7 +430,8 @@ fn on_edge(d: &Derivation, names: &Names, list: &[Guard]) -> TokenStream {
     let p = schedule::program(s, &wanted, "t");
     let (lets, values) = program(&p, &bindings);
     let tests = list.iter().zip(values.chunks(2)).map(|(g, pair)| {
-        let (domain, function, argument) = (g.domain.tokens(), g.function, text(d, &g.argument));
+        let (domain, function, argument) =
+            (g.domain.tokens(), g.function.tokens(), text(d, &g.argument));
         quote!(#domain.on_edge(#function, #argument, #(#pair),*, #step)?;)
     });
     quote! {{
