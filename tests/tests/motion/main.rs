@@ -10,6 +10,7 @@ mod allocation;
 #[path = "../common/allocations.rs"]
 mod allocations;
 mod body_n;
+mod carried_momentum;
 mod cayley_klein_symmetric;
 mod coupled_solve;
 mod dimensions_against_hand;
@@ -35,6 +36,7 @@ mod handwritten_systems;
 mod high_order;
 mod hygiene;
 mod joint_symmetries;
+mod left_domain;
 mod newton_refusals;
 mod oracle_compiled;
 mod oracle_self;

@@ -2,9 +2,6 @@
 //! for steps from a tenth to 1e-6 and below. Takes pairs and single bodies stated in space, maps of GL(3), bodies whose tensor is
 //! constant on the other side; a step that solves its equations badly is told by its residual, since carrying hides it.
 
-// The fields of the models are Greek letters, as in the papers.
-#![allow(mixed_script_confusables)]
-
 use clebsch::integrate::Residual;
 use clebsch::nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use clebsch::{

@@ -2,9 +2,6 @@
 //! Takes models and motions that do; each is an error with the time of contact, the state is as it was, and a step that is
 //! named can be made.
 
-// The fields of the models are Greek letters, as in the papers.
-#![allow(mixed_script_confusables)]
-
 use clebsch::domain::Function;
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{
