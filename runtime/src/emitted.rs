@@ -33,6 +33,7 @@ pub use crate::solvers::unit_quaternions::{QuaternionBody, QuaternionError};
 pub use crate::validate;
 pub use crate::{ParameterError, StartError, StepCause, StepError};
 pub use nalgebra::{SMatrix, SVector};
+pub use num_traits::{One as _, Zero as _};
 
 /// The inverse of a matrix; all NaN where there is none, so that the step that used it is refused.
 #[inline]
