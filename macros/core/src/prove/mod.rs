@@ -32,7 +32,7 @@ pub struct Statement {
     pub right: Expr,
 }
 
-/// How far a search may go. Counts of terms and iterations decide; the clock is a last safety.
+/// How far a search may go. Counts of terms and iterations decide, no clock.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Limits {
     /// Terms held at once.
@@ -41,8 +41,6 @@ pub struct Limits {
     pub iterations: usize,
     /// Summands of a side, multiplied out.
     pub summands: usize,
-    /// Seconds; an answer that this limit decides is not reproducible.
-    pub seconds: u64,
 }
 
 impl Default for Limits {
@@ -53,7 +51,6 @@ impl Default for Limits {
             nodes: 12_000,
             iterations: 60,
             summands: 8,
-            seconds: 60,
         }
     }
 }

@@ -113,13 +113,6 @@ fn limits_end_a_search() {
         ),
         (
             Limits {
-                seconds: 0,
-                ..usual
-            },
-            "time limit",
-        ),
-        (
-            Limits {
                 summands: 1,
                 ..usual
             },
