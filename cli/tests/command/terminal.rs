@@ -203,7 +203,12 @@ fn a_model_is_read_from_standard_input() {
     let explained = derive(&["-", "--explain"], SOURCE).1;
     assert!(explained.starts_with(&plain) && explained.len() > plain.len());
     assert!(!explained.contains(second), "{explained}");
-    let proved = derive(&["-", "--second-proof"], SOURCE).1;
+    let (code, proved, said) = derive(&["-", "--second-proof"], SOURCE);
+    if !cfg!(feature = "second-proof") {
+        assert_eq!(code, 2);
+        assert!(said.contains("--features second-proof"), "{said}");
+        return;
+    }
     assert!(
         proved.starts_with(&plain) && proved.contains(second),
         "{proved}"
