@@ -1,3 +1,5 @@
+//! A command line of one's own: a model stated here, with its cases, under the commands of `clebsch`.
+
 use clebsch_cli::gallery::{Case, Entry, Gallery};
 use std::process::ExitCode;
 
