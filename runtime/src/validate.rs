@@ -391,4 +391,23 @@ mod tests {
         assert!(assumption(true, "c > 0").is_ok());
         assert!(assumption(false, "c > 0").is_err());
     }
+
+    #[test]
+    fn a_few_roundings_pass_and_thousands_do_not() {
+        // An entry computed in another way differs by some roundings, a mistyped digit by far more.
+        for (roundings, passes) in [(8.0, true), (1e4, false)] {
+            let off = roundings * f64::EPSILON;
+            let matrix = Matrix2::new(1.0, 2.0, 2.0 * (1.0 + off), 3.0);
+            assert_eq!(symmetric("J", &matrix).is_ok(), passes, "{roundings}");
+            let matrix = Matrix2::new(0.0, 2.0, -2.0 * (1.0 + off), 0.0);
+            assert_eq!(skew("A", &matrix).is_ok(), passes, "{roundings}");
+            let matrix = Matrix2::new(0.6, -0.8, 0.8, 0.6 + off);
+            assert_eq!(orthogonal("R", &matrix).is_ok(), passes, "{roundings}");
+            let q = left_multiplication([0.1, -0.7, 0.5, 0.5]) * (1.0 + off);
+            assert_eq!(unit_quaternion("q", &q).is_ok(), passes, "{roundings}");
+            let mut motion = SMatrix::<f64, 4, 4>::identity();
+            motion.m12 = off;
+            assert_eq!(rigid_motion("G", &motion).is_ok(), passes, "{roundings}");
+        }
+    }
 }
