@@ -185,7 +185,8 @@ fn combination(basis: &[Value], by: &[f64]) -> Value {
     out
 }
 
-/// What stands between the commas that no bracket encloses: those of `(a, b)` are of one vector.
+/// What stands between the commas that no bracket encloses: those of `(a, b)` are of one vector, that of `μ_{1,k}` of a
+/// name.
 fn apart(text: &str) -> Vec<&str> {
     let mut parts = Vec::new();
     let (mut from, mut depth) = (0, 0);
@@ -193,7 +194,7 @@ fn apart(text: &str) -> Vec<&str> {
         match letter {
             '(' | '[' => depth += 1,
             ')' | ']' => depth -= 1,
-            ',' if depth == 0 => {
+            ',' if depth == 0 && text[at..].starts_with(", ") => {
                 parts.push(text[from..at].trim());
                 from = at + 1;
             }
