@@ -1,4 +1,4 @@
-//! Two equal symmetric bodies with a spherical joint, arms along their axes, 32-digit run rounded to `f64`.
+//! Two equal symmetric bodies with a spherical joint, arms along their axes, 32 digits rounded to `f64`.
 //! Gives the start and, at the recorded nodes, body momenta, the relative attitude and that of body 1.
 
 /// Principal moments of either body about its own centre of mass.

@@ -1,4 +1,4 @@
-//! Free body I = (1, 1, 1/2) on SU(2), for c = 0 and c = 1, 32-digit runs rounded to `f64`.
+//! Free body I = (1, 1, 1/2) on SU(2), for c = 0 and c = 1, 32 digits rounded to `f64`.
 //! Gives the start and, at the recorded nodes, the unit quaternion (w, x, y, z) and the body momentum.
 
 /// Principal moments of inertia.

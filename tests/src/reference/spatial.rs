@@ -1,4 +1,4 @@
-//! Free body I = (3.5, 2.5, 2) in the spatial representation, 32-digit run rounded to `f64`.
+//! Free body I = (3.5, 2.5, 2) in the spatial representation, 32 digits rounded to `f64`.
 //! Gives the start and, at the recorded nodes, J, Lambda (body -> space) and omega (edge k-1 -> k).
 
 /// Principal moments of inertia.
@@ -57,11 +57,11 @@ pub const POINSOT: [[[f64; 3]; 3]; 4] = [
         [
             -0.07224348207133242,
             1.5107204018965288,
-            0.009746856918873156,
+            0.009746856918873155,
         ],
         [
             -0.3276889463506713,
-            0.009746856918873156,
+            0.009746856918873155,
             0.5760296459869998,
         ],
     ],

@@ -25,6 +25,7 @@ mod oracle_interpreted;
 mod quoted_figures;
 mod reduction;
 mod reduction_of_motions;
+mod reference_numbers;
 mod second_proof;
 mod snapshots;
 mod wrong_sides;

@@ -1,0 +1,150 @@
+//! The tables of reference numbers are what tests/reference/generate.py computes from the equations in fifty digits.
+//! Takes its committed output and the text of the tables; every number of every table is compared, none is left out.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+/// What is no result and no start of a run.
+const SETTINGS: [&str; 4] = ["H", "NODES", "TOLERANCE", "coupled_sym.TOLERANCE"];
+
+/// Errors are written with five digits or six, states as the nearest `f64`.
+const ERRORS: &str = "asymmetric_body_errors.ATTITUDE";
+
+fn page(name: &str) -> String {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    fs::read_to_string(root.join(name)).expect("a file of the tests")
+}
+
+/// The tables of a source: name with that of its module, numbers as they are written.
+fn tables(file: &str, source: &str) -> BTreeMap<String, Vec<String>> {
+    let mut found = BTreeMap::new();
+    let mut module = file.to_owned();
+    let mut rest = source;
+    while let Some(at) = rest.find("pub ") {
+        rest = &rest[at + 4..];
+        if let Some(name) = rest.strip_prefix("mod ") {
+            if let Some((name, _)) = name.split_once(" {").filter(|(n, _)| !n.contains(';')) {
+                module = format!("{name}.");
+            }
+        } else if let Some((name, typed)) = rest
+            .strip_prefix("const ")
+            .and_then(|item| item.split_once(':'))
+        {
+            let (_, value) = typed.split_once('=').expect("a value");
+            // Every constant ends before the next one, the last `;` of its type stands before `=`.
+            let (value, _) = value.split_once(';').expect("an end");
+            let numbers = value.split(|c: char| c.is_whitespace() || "[],".contains(c));
+            let numbers = numbers.filter(|n| !n.is_empty()).map(str::to_owned);
+            found.insert(format!("{module}{name}"), numbers.collect());
+        }
+    }
+    found
+}
+
+fn all_tables() -> BTreeMap<String, Vec<String>> {
+    let mut all = tables("", &page("src/reference.rs"));
+    for file in ["coupled_sym", "quaternion", "spatial"] {
+        let source = page(&format!("src/reference/{file}.rs"));
+        all.extend(tables(&format!("{file}."), &source));
+    }
+    all
+}
+
+/// What the generator wrote: the rows of a table one after the other.
+fn generated() -> BTreeMap<String, Vec<String>> {
+    let mut all: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    let mut rows: BTreeMap<String, usize> = BTreeMap::new();
+    for line in page("reference/states.txt").lines() {
+        let mut words = line.split_whitespace();
+        let name = words.next().expect("a name").to_owned();
+        let row = rows.entry(name.clone()).or_default();
+        assert_eq!(words.next(), Some(row.to_string().as_str()), "{name}");
+        *row += 1;
+        all.entry(name)
+            .or_default()
+            .extend(words.map(str::to_owned));
+    }
+    all
+}
+
+/// Half a unit in the last place of a number as it is written.
+fn half_a_unit(written: &str) -> f64 {
+    let (digits, exponent) = written.split_once('e').unwrap_or((written, "0"));
+    let after = digits.split_once('.').map_or(0, |(_, d)| d.len());
+    let exponent: i32 = exponent.parse().expect("an exponent");
+    0.5 * 10_f64.powi(exponent - i32::try_from(after).expect("few digits"))
+}
+
+/// Which numbers are not those that were computed.
+fn differences(tables: &BTreeMap<String, Vec<String>>) -> Vec<String> {
+    let computed = generated();
+    let mut found = Vec::new();
+    for name in computed.keys().filter(|name| !tables.contains_key(*name)) {
+        found.push(format!("{name} is in no table"));
+    }
+    for (name, written) in tables {
+        if SETTINGS.contains(&name.as_str()) {
+            continue;
+        }
+        let Some(computed) = computed.get(name).filter(|c| c.len() == written.len()) else {
+            found.push(format!("{name} is not generated"));
+            continue;
+        };
+        for (place, (a, b)) in written.iter().zip(computed).enumerate() {
+            let [x, y] = [a, b].map(|n| n.parse::<f64>().expect("a number"));
+            let room = if name == ERRORS { half_a_unit(a) } else { 0.0 };
+            let apart = (x - y).abs();
+            if apart > room || apart.is_nan() {
+                found.push(format!("{name}, number {place}: {a}, computed {b}"));
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn every_number_is_the_one_computed() {
+    let tables = all_tables();
+    let numbers: usize = tables.values().map(Vec::len).sum();
+    assert!(numbers > 400, "{numbers}");
+    let found = differences(&tables);
+    assert!(found.is_empty(), "{found:#?}");
+    // 32 digits are given, of which zeros and whole numbers need none.
+    let computed = generated();
+    for number in computed.values().flatten().filter(|n| *n != "0") {
+        let digits = number.split('e').next().unwrap_or_default();
+        let digits = digits.chars().filter(char::is_ascii_digit).count();
+        assert_eq!(digits, 32, "{number}");
+    }
+}
+
+#[test]
+fn another_number_is_found() {
+    let tables = all_tables();
+    // The last bit of any state; two numbers exchanged; a table more; a table less.
+    for name in [
+        "body_sym.MOMENTUM",
+        "spatial.OMEGA",
+        "quaternion.MOMENTUM_C1",
+    ] {
+        let mut wrong = tables.clone();
+        let numbers = wrong.get_mut(name).expect("a table");
+        let number: f64 = numbers[4].parse().expect("a number");
+        numbers[4] = number.next_up().to_string();
+        assert_eq!(differences(&wrong).len(), 1, "{name}");
+        let numbers = wrong.get_mut(name).expect("a table");
+        numbers[4] = number.to_string();
+        numbers.swap(0, 4);
+        assert_eq!(differences(&wrong).len(), 2, "{name}");
+    }
+    let mut wrong = tables.clone();
+    wrong.get_mut(ERRORS).expect("a table")[2] = "3.9496e-4".to_owned();
+    assert_eq!(differences(&wrong).len(), 1);
+    let mut wrong = tables.clone();
+    wrong.insert("spatial.MORE".to_owned(), vec!["1.0".to_owned()]);
+    assert_eq!(differences(&wrong).len(), 1);
+    let mut wrong = tables;
+    wrong.remove("coupled_sym.CASIMIR");
+    assert_eq!(differences(&wrong).len(), 1);
+}
