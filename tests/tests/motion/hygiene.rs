@@ -155,7 +155,7 @@ macro_rules! awkward_names {
                 // Members.
                 balance body_momentum edge_momentum energies energy kinetic_warning refused
                 spatial_momentum start
-                step factor parameters_ CARD SOURCE
+                step factor CARD SOURCE
                 // The prelude and the primitive types.
                 Box Clone Copy Debug Default Err None Ok Option Real Result Some String Vec alloc
                 bool clebsch core drop f64 nalgebra std str u64 usize
@@ -211,13 +211,13 @@ twice! { AwkwardFree PlainFree {
 twice! { AwkwardForced PlainForced {
     param J: Sym<3>;
     param lever, vertical: Vec<3>;
-    group R: SO<3> velocity solved_;
+    group R: SO<3> velocity solved2;
     advected above: Vec<3> = R^T*vertical;
     advected carried: Vec<3>;
-    constraint next(R) = R*solved_;
-    constraint next(above) = solved_^T*above;
-    constraint next(carried) = solved_^T*carried;
-    lagrangian = -tr(J*solved_)/h - h*weight*(dot(lever, above) + dot(lever, carried));
+    constraint next(R) = R*solved2;
+    constraint next(above) = solved2^T*above;
+    constraint next(carried) = solved2^T*carried;
+    lagrangian = -tr(J*solved2)/h - h*weight*(dot(lever, above) + dot(lever, carried));
 } }
 twice! { AwkwardNewton PlainNewton {
     time n_ step tau;
@@ -232,7 +232,7 @@ twice! { AwkwardNewton PlainNewton {
     lagrangian = -(tr(J*w1) + tr(J*w2))/tau - tau*weight*dot(lever, carried) - tau*dot(R1*lever, R2*vertical);
 } }
 twice! { AwkwardSpatial PlainSpatial {
-    time i_ step state_;
+    time i_ step state2;
     param vertical: Vec<3>;
     group R: SO<3> velocity w;
     advected J: Sym<3>;
@@ -240,7 +240,7 @@ twice! { AwkwardSpatial PlainSpatial {
     constraint next(R) = w*R;
     constraint next(J) = w*J*w^T;
     constraint next(carried) = w*carried;
-    lagrangian = -tr(w*J)/state_ - state_*weight*dot(carried, vertical);
+    lagrangian = -tr(w*J)/state2 - state2*weight*dot(carried, vertical);
 } }
 
 twice! { AwkwardMotion PlainMotion {

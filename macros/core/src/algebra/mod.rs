@@ -9,6 +9,7 @@ mod factor;
 mod lower;
 mod monomial;
 mod poly;
+mod prime;
 mod quaternion;
 mod raise;
 mod rational;

@@ -2,17 +2,16 @@
 //! Takes the derivation; gives the test of a step, of a step size and of the parameters. A model
 //! without such functions has none of it.
 
+use super::between::{Edge, edge_between};
 use super::element::{Family, family};
 use super::expression::{Bindings, Writer, program};
-use super::items::{letters_of, node_locals, parameter_locals, text, with_transports};
-use super::names::{Names, item, own, tagged, variable};
+use super::items::{letters_of, parameter_locals, text, with_transports};
+use super::names::{Names, item, own, variable};
 use super::sizes::Generics;
 use super::step::at;
 use crate::algebra::Rational;
-use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::recognise::Method;
-use crate::derive::transport::Transport;
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Function, Letter, Node, Shift};
 use crate::schedule;
@@ -371,7 +370,7 @@ fn on_edge(d: &Derivation, names: &Names, list: &[Guard]) -> TokenStream {
         return TokenStream::new();
     }
     let s = &d.letters.symbols;
-    let (before, after) = (names.local("before"), names.local("after"));
+    let (_before, _after) = (names.local("before"), names.local("after"));
     let step = variable(s, d.spec.step);
     let rest: Vec<(Letter, Expr)> = d
         .spec
@@ -388,45 +387,11 @@ fn on_edge(d: &Derivation, names: &Names, list: &[Guard]) -> TokenStream {
         wanted.push(expr::substitute(s, &forward, &rest));
         wanted.push(g.argument.clone());
     }
-    let mut needed = letters_of(&wanted);
-    for (a, t) in d.spec.advected.iter().zip(&d.transports) {
-        if matches!(t, Transport::Advanced) && needed.contains(&at(a.quantity, Shift::NEXT)) {
-            needed.extend(expr::letters(&a.update));
-        }
-    }
-    let mut all = with_transports(d, &needed, 0);
-    all.extend(with_transports(d, &needed, 1));
-    let parameters = parameter_locals(d, quote!(self.parameters), &all);
-    let mut bindings = Bindings::new();
-    let mut locals = TokenStream::new();
-    for c in &d.spec.configurations {
-        let (own, name) = (own(d, c.element), tagged(d, names, c.velocity, "matrix"));
-        let value = match c.side {
-            Side::Body => quote!((#before.#own.inverse() * #after.#own).matrix()),
-            Side::Spatial => quote!((#after.#own * #before.#own.inverse()).matrix()),
-        };
-        locals.extend(quote!(let #name = #value;));
-        bindings.bind(at(c.velocity, Shift::HERE), name);
-    }
-    for (level, source) in [(0i8, &before), (1, &after)] {
-        let element = |i: usize| {
-            let e = own(d, d.spec.configurations[i].element);
-            quote!(#source.#e.matrix())
-        };
-        let reference = |id| {
-            let r = own(d, id);
-            quote!(#before.#r)
-        };
-        locals.extend(node_locals(
-            d,
-            names,
-            level,
-            &needed,
-            &element,
-            &reference,
-            &mut bindings,
-        ));
-    }
+    let Edge {
+        parameters,
+        locals,
+        bindings,
+    } = edge_between(d, names, &wanted);
     let p = schedule::program(s, &wanted, "t");
     let (lets, values) = program(&p, &bindings);
     let tests = list.iter().zip(values.chunks(2)).map(|(g, pair)| {

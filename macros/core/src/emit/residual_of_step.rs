@@ -2,17 +2,16 @@
 //! would not show in what is conserved; it shows here.
 //! Takes the derivation; gives the function.
 
-use super::expression::{Bindings, program};
-use super::items::{letters_of, magnitude, node_locals, parameter_locals, with_transports};
-use super::names::{Names, item, own, per_configuration, tagged, variable};
+use super::between::{Edge, edge_between};
+use super::expression::program;
+use super::items::magnitude;
+use super::names::{Names, item, own, per_configuration, variable};
 use super::sizes::Generics;
-use super::step::at;
 use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::lie::IMPULSE;
 use crate::derive::parts::rows;
-use crate::derive::transport::Transport;
-use crate::expr::{self, Expr, Shift};
+use crate::expr::Expr;
 use crate::schedule;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
@@ -47,45 +46,11 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
     }
     sizes.extend(brought.iter().map(|e| magnitude(s, e)));
     let all: Vec<Expr> = brought.iter().chain(&sizes).cloned().collect();
-    let mut needed = letters_of(&all);
-    for (a, t) in d.spec.advected.iter().zip(&d.transports) {
-        if matches!(t, Transport::Advanced) && needed.contains(&at(a.quantity, Shift::NEXT)) {
-            needed.extend(expr::letters(&a.update));
-        }
-    }
-    let mut letters = with_transports(d, &needed, 0);
-    letters.extend(with_transports(d, &needed, 1));
-    let parameters = parameter_locals(d, quote!(self.parameters), &letters);
-    let mut bindings = Bindings::new();
-    let mut locals = TokenStream::new();
-    for c in &d.spec.configurations {
-        let (own, name) = (own(d, c.element), tagged(d, names, c.velocity, "matrix"));
-        let value = match c.side {
-            Side::Body => quote!((#before.#own.inverse() * #after.#own).matrix()),
-            Side::Spatial => quote!((#after.#own * #before.#own.inverse()).matrix()),
-        };
-        locals.extend(quote!(let #name = #value;));
-        bindings.bind(at(c.velocity, Shift::HERE), name);
-    }
-    for (level, source) in [(0i8, &before), (1, &after)] {
-        let element = |i: usize| {
-            let e = own(d, d.spec.configurations[i].element);
-            quote!(#source.#e.matrix())
-        };
-        let reference = |id| {
-            let r = own(d, id);
-            quote!(#before.#r)
-        };
-        locals.extend(node_locals(
-            d,
-            names,
-            level,
-            &needed,
-            &element,
-            &reference,
-            &mut bindings,
-        ));
-    }
+    let Edge {
+        parameters,
+        locals,
+        bindings,
+    } = edge_between(d, names, &all);
     let p = schedule::program(s, &all, "t");
     let (lets, values) = program(&p, &bindings);
     let (values, sizes) = values.split_at(brought.len());

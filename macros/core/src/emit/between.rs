@@ -1,0 +1,70 @@
+//! The letters of an edge, read off the states at its two ends.
+//! Takes expressions of an edge; gives the parameters, the statements that bind their letters, and the bindings.
+
+use super::expression::Bindings;
+use super::items::{letters_of, node_locals, parameter_locals, with_transports};
+use super::names::{Names, own, tagged};
+use super::step::at;
+use crate::check::spec::Side;
+use crate::derive::Derivation;
+use crate::derive::transport::Transport;
+use crate::expr::{self, Expr, Shift};
+use proc_macro2::TokenStream;
+use quote::quote;
+
+/// What comes before expressions of an edge are evaluated.
+pub(super) struct Edge {
+    pub(super) parameters: TokenStream,
+    pub(super) locals: TokenStream,
+    pub(super) bindings: Bindings,
+}
+
+/// Binds the letters of `wanted` to the states named `before` and `after`; velocities are made from the elements of
+/// both.
+pub(super) fn edge_between(d: &Derivation, names: &Names, wanted: &[Expr]) -> Edge {
+    let (before, after) = (names.local("before"), names.local("after"));
+    let mut needed = letters_of(wanted);
+    for (a, t) in d.spec.advected.iter().zip(&d.transports) {
+        if matches!(t, Transport::Advanced) && needed.contains(&at(a.quantity, Shift::NEXT)) {
+            needed.extend(expr::letters(&a.update));
+        }
+    }
+    let mut all = with_transports(d, &needed, 0);
+    all.extend(with_transports(d, &needed, 1));
+    let parameters = parameter_locals(d, quote!(self.parameters), &all);
+    let mut bindings = Bindings::new();
+    let mut locals = TokenStream::new();
+    for c in &d.spec.configurations {
+        let (own, name) = (own(d, c.element), tagged(d, names, c.velocity, "matrix"));
+        let value = match c.side {
+            Side::Body => quote!((#before.#own.inverse() * #after.#own).matrix()),
+            Side::Spatial => quote!((#after.#own * #before.#own.inverse()).matrix()),
+        };
+        locals.extend(quote!(let #name = #value;));
+        bindings.bind(at(c.velocity, Shift::HERE), name);
+    }
+    for (level, source) in [(0i8, &before), (1, &after)] {
+        let element = |i: usize| {
+            let e = own(d, d.spec.configurations[i].element);
+            quote!(#source.#e.matrix())
+        };
+        let reference = |id| {
+            let r = own(d, id);
+            quote!(#before.#r)
+        };
+        locals.extend(node_locals(
+            d,
+            names,
+            level,
+            &needed,
+            &element,
+            &reference,
+            &mut bindings,
+        ));
+    }
+    Edge {
+        parameters,
+        locals,
+        bindings,
+    }
+}
