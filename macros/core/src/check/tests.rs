@@ -192,3 +192,62 @@ fn a_diagonal_is_that_of_a_vector_or_of_a_matrix() {
     );
     assert!(refused("", "tr(diag(F))").contains("square matrix"));
 }
+
+/// A body in two fields that it carries, declared as `declared` says.
+fn carried(declared: &str) -> Result<Spec, Errors> {
+    let source = format!(
+        "model Body {{ param J: Sym<3>; group Λ: SO<3> velocity Ω; {declared} \
+         constraint next(Λ) = Λ*Ω; constraint next(A) = Ω^T*A*Ω; constraint next(B) = Ω^T*B*Ω; \
+         lagrangian = -tr(J*Ω)/h - h*tr(J*A*B) - 2*h*tr(J*B); }}"
+    );
+    check(&tokens(&source).and_then(parse)?)
+}
+
+#[test]
+fn advected_quantities_are_declared_together_as_apart() {
+    let read = |declared: &str| carried(declared).unwrap_or_else(|e| panic!("{declared}: {e}"));
+    let apart = read("/// field\nadvected A: Sym<3>; /// field\nadvected B: Sym<3>;");
+    let together = read("/// field\nadvected A, B: Sym<3>;");
+    // Both symbols with their shape, structure, role and documentation, in this order, and what is made of them.
+    assert_eq!(together.symbols, apart.symbols);
+    assert_eq!(together.typed, apart.typed);
+    let updates = |spec: &Spec| -> Vec<_> {
+        let all = spec.advected.iter();
+        all.map(|a| (a.quantity, a.update.clone(), a.definition.clone()))
+            .collect()
+    };
+    assert_eq!(updates(&together), updates(&apart));
+    assert_eq!(together.advected.len(), 2);
+    for a in &together.advected {
+        let symbol = together.symbols.get(a.quantity);
+        assert_eq!(symbol.docs, [" field"], "{}", symbol.name);
+        assert_eq!(symbol.structure, crate::expr::shape::Structure::Symmetric);
+    }
+    // The order of declaration is that of the symbols, and a shape of one is not that of the other.
+    assert_ne!(read("advected B, A: Sym<3>;").symbols, apart.symbols);
+    assert_ne!(
+        read("advected A: Sym<3>; advected B: Mat<3, 3>;").symbols,
+        apart.symbols
+    );
+    let refused = |declared: &str| match carried(declared) {
+        Ok(_) => format!("`{declared}` is accepted"),
+        Err(errors) => errors.to_string(),
+    };
+    for (declared, said) in [
+        (
+            "advected A, B: Sym<3> = Λ^T*J*Λ;",
+            "a definition belongs to one quantity",
+        ),
+        ("advected A, A: Sym<3>;", "`A`"),
+        ("advected A, J: Sym<3>;", "`J`"),
+        ("advected A, : Sym<3>;", "the name of an advected quantity"),
+        ("advected A B: Sym<3>;", "`:`"),
+        ("advected A, B, C: Sym<3>;", "`C`"),
+    ] {
+        let message = refused(declared);
+        assert!(
+            message.contains(said) && !message.contains("is accepted"),
+            "{declared}: {message}"
+        );
+    }
+}
