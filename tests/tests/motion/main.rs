@@ -11,6 +11,7 @@ mod allocation;
 mod allocations;
 mod body_n;
 mod carried_momentum;
+mod carried_references;
 mod cayley_klein_symmetric;
 mod coupled_solve;
 mod dimensions_against_hand;
