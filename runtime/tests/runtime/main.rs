@@ -1,4 +1,4 @@
-//! Scalars, groups, solvers, orders and the integration loop, without the engine. One binary, since linking is most of
+//! Scalars, groups, solvers, orders and the integration loop, and models of every group that are solved by Newton's method. One binary, since linking is most of
 //! what a test costs.
 
 mod common;
@@ -10,6 +10,7 @@ mod integrate;
 mod left_factor;
 mod newton;
 mod order;
+mod principal;
 mod quaternions_and_motions;
 mod scalars;
 mod scalars_through_solvers;
