@@ -122,7 +122,7 @@ fn judge<J: Judged>(name: &str, unit: &DVector<f64>) {
         "{name}: {tally:?}"
     );
     assert!(
-        (tally.unknown + tally.at_a_fold) * 3 < problems(),
+        (tally.unknown + tally.at_a_fold) * 2 < problems(),
         "{name}: {tally:?}"
     );
 }
