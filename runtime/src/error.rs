@@ -200,10 +200,19 @@ impl PoinsotError {
     /// The same error, said of the parameter `field`.
     #[cold]
     pub fn in_field(self, field: &'static str) -> ParameterError {
+        let remedy = match self {
+            Self::NoInertia { .. } => {
+                "give the mass an extent, so that J has rank two or three: add to it the second \
+                 moments of the mass about its own centre; a hundredth of J will do"
+            }
+            Self::NotFinite { .. } | Self::NotSymmetric { .. } | Self::Triangle { .. } => {
+                "give the matrix of second moments J = tr(I)/2 - I of a real mass distribution"
+            }
+        };
         ParameterError {
             field,
             problem: Problem::Poinsot(self),
-            remedy: "give the matrix of second moments J = tr(I)/2 - I of a real mass distribution",
+            remedy,
         }
     }
 }

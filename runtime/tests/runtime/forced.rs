@@ -240,3 +240,33 @@ fn a_million_random_problems_end_in_a_solution_or_an_error() {
     assert!(solved > 300_000 && refused > 300_000);
     assert!(worst <= RESIDUAL, "{worst:e}");
 }
+
+#[test]
+fn a_point_mass_is_refused_with_the_reason_and_the_way_out() {
+    let mut random = Random(32);
+    for case in 0..1000 {
+        // Over twelve decades, in axes of its own or along one that is given.
+        let size = 10_f64.powf(6.0 * random.symmetric());
+        let a = match case % 4 {
+            0 => Vector3::z(),
+            _ => random.vector(),
+        } * size;
+        let error = Poinsot::new(a * a.transpose()).expect_err("no inertia about a");
+        assert!(
+            matches!(error, PoinsotError::NoInertia { .. }),
+            "{a}: {error}"
+        );
+        let said = error.in_field("m a aᵀ").to_string();
+        for words in [
+            "`m a aᵀ`: the smallest moment of inertia is",
+            "all mass lies on a line, and momenta do not determine the spin about it",
+            "so that J has rank two or three: add to it the second moments of the mass about its \
+             own centre",
+        ] {
+            assert!(said.contains(words), "{words}\n{said}");
+        }
+        // The way out, with a bob of a thousandth of the length.
+        let bob = Matrix3::identity() * (a.norm_squared() * 1e-6);
+        assert!(Poinsot::new(a * a.transpose() + bob).is_ok(), "{a}");
+    }
+}

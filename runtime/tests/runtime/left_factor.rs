@@ -4,7 +4,7 @@
 use super::common::Random;
 use clebsch::groups::Part;
 use clebsch::linalg::{hat, skew_from};
-use clebsch::nalgebra::{Matrix3, SMatrix, Vector3};
+use clebsch::nalgebra::{Matrix3, Matrix4, SMatrix, Vector3, Vector4};
 use clebsch::solvers::Method;
 use clebsch::solvers::left_factor::{LeftFactor, LeftFactorError, Refusal, davenport};
 use clebsch::{DoubleDouble, Dual, Group, Lanes, Orthogonal, Poinsot, Real, Rotation};
@@ -423,4 +423,28 @@ fn methods_have_names() {
         error.to_string(),
         "no such solver; the solvers are kappa, lie-newton, davenport, sign, schur"
     );
+}
+
+#[test]
+fn planes_without_mass_are_refused_with_the_reason() {
+    let mut random = Random(33);
+    for case in 0..200 {
+        let size = 10_f64.powf(6.0 * random.symmetric());
+        let masses: [Vector4<f64>; 3] =
+            [(); 3].map(|()| Vector4::from_fn(|_, _| random.symmetric()) * size);
+        let moments = |count: usize| -> Matrix4<f64> {
+            let list = masses.iter().take(count);
+            list.map(|a| a * a.transpose()).sum()
+        };
+        // Two masses leave a plane without inertia, three a line, which turns with the others.
+        let error = LeftFactor::new(moments(2)).expect_err("no inertia in a plane");
+        assert!(
+            matches!(error, LeftFactorError::NotPositive { .. }),
+            "case {case}: {error}"
+        );
+        let said = error.in_field("a aᵀ + b bᵀ").to_string();
+        let words = "a turn in a plane without any has no inertia, and momenta do not determine it";
+        assert!(said.contains(words), "{said}");
+        assert!(LeftFactor::new(moments(3)).is_ok(), "case {case}");
+    }
 }

@@ -25,6 +25,13 @@ pub struct Kinetic {
     pub rank: Option<(usize, usize)>,
 }
 
+impl Kinetic {
+    /// The rank and the number of velocities, where the form is singular for all parameters.
+    pub fn degenerate(&self) -> Option<(usize, usize)> {
+        self.rank.filter(|(rank, n)| rank < n)
+    }
+}
+
 /// Largest expression that is differentiated a second time.
 const LARGEST: u32 = 20_000;
 

@@ -300,8 +300,8 @@ fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
         solve: &solve,
         // Momenta that do not determine the velocities have no energy.
         limit: limit.as_ref().ok().filter(|_| {
-            let rank = kinetic.as_ref().and_then(|k| k.rank);
-            rank.is_none_or(|(rank, n)| rank == n)
+            let degenerate = kinetic.as_ref().and_then(kinetic::Kinetic::degenerate);
+            degenerate.is_none()
         }),
         assumed: &assumed,
         algebra: &algebra,
@@ -315,6 +315,7 @@ fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
         reversal: &reversal,
         limit: &limit,
         kinetic: kinetic.as_ref(),
+        solve: &solve,
         assumed: &assumed,
         algebra: &algebra,
     });

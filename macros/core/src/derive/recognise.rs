@@ -2,11 +2,12 @@
 //! `Ω C^T - C Ω^T = h N` when the balance is linear in the velocity with `C` free of velocities
 //! (an exact matrix Riccati equation), else Newton on the derived residual and tangent.
 
-use super::Letters;
 use super::balance::{Balance, shorter};
+use super::kinetic::Kinetic;
 use super::quaternionic::{self, Quaternionic};
 use super::transport::Transport;
 use super::variation::at;
+use super::{Derivation, Letters};
 use crate::algebra::{Algebra, Factor, Monomial, Poly, Rational, Source};
 use crate::check::spec::{Configuration, Group, Side, Spec};
 use crate::expr::shape::{Dim, Shape};
@@ -79,6 +80,36 @@ pub struct Solve {
     /// `C` seen from the other frame, where it is constant along the motion: made of parameters and
     /// of advected quantities by their reference values.
     pub turned: Option<Expr>,
+}
+
+impl Solve {
+    /// Whether the stepper takes symmetric factors `C` only that are second moments of a body, and
+    /// tests them where it is given them: the Moser-Veselov equation of others does not determine
+    /// the velocity. A model whose kinetic energy is degenerate then takes no parameters at all.
+    pub fn needs_second_moments(&self) -> bool {
+        let symmetric = |r: &Riccati| matches!(r, Riccati::Exact(mv) if mv.symmetric);
+        match self.method {
+            Method::FreeMoserVeselov | Method::ForcedMoserVeselov => true,
+            Method::LeftFactor => self.riccati.iter().all(symmetric),
+            Method::Davenport | Method::UnitQuaternions | Method::Newton => false,
+        }
+    }
+}
+
+impl Derivation {
+    /// How a step is solved, in one sentence for the documentation of what is emitted; that none is,
+    /// where no parameters are taken.
+    pub fn how_solved(&self) -> String {
+        let reason = &self.solve.reason;
+        let degenerate = self.kinetic.as_ref().and_then(Kinetic::degenerate);
+        match degenerate.filter(|_| self.solve.needs_second_moments()) {
+            None => reason.clone(),
+            Some((rank, n)) => format!(
+                "{reason}, for no parameters, since the kinetic energy has rank {rank} of {n}: \
+                 all are refused at the start"
+            ),
+        }
+    }
 }
 
 /// Recognises.

@@ -23,11 +23,11 @@ pub fn invariants(sheet: &Sheet, doc: &mut Document) {
         section.list(items);
     }
     let energy = &d.integrability.discrete_energy;
-    let how = if energy.exact { "constant" } else { "bounded" };
+    let (how, why) = d.discrete_energy();
     section.paragraph([
         "The discrete energy of an edge, ".into(),
         sheet.derived(&energy.value).into(),
-        format!(", is {how}: {}.", energy.reason).into(),
+        format!(", is {how}: {why}.").into(),
     ]);
     reversal(sheet, section);
 }

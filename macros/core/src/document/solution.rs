@@ -248,6 +248,18 @@ fn riccati(sheet: &Sheet, section: &mut Section, c: &Configuration, mv: &MoserVe
             Formula::Product(vec![column(vec![id, sym.clone()]), x.clone()]),
         ),
     ]));
+    if sheet.d.solve.needs_second_moments()
+        && let Some(degenerate) = degenerate(sheet)
+    {
+        section.paragraph([
+            letter.into(),
+            " is singular whatever the parameters, too far for a solution: ".into(),
+            degenerate.into(),
+            ", and of the velocities that solve the Moser-Veselov equation none is singled out."
+                .into(),
+        ]);
+        return;
+    }
     let (u1, u2) = (sheet.free("U_1"), sheet.free("U_2"));
     let wanted = if mv.symmetric {
         "The velocity that tends to the identity with the step"
@@ -282,6 +294,15 @@ fn riccati(sheet: &Sheet, section: &mut Section, c: &Configuration, mv: &MoserVe
     ]);
 }
 
+/// What is degenerate, where the kinetic energy is for all parameters.
+fn degenerate(sheet: &Sheet) -> Option<String> {
+    let kinetic = sheet.d.kinetic.as_ref()?;
+    let (rank, n) = kinetic.degenerate()?;
+    Some(format!(
+        "the kinetic energy has rank {rank} of {n} in the velocities"
+    ))
+}
+
 /// What the emitted stepper does, or why there is none.
 fn method(sheet: &Sheet, section: &mut Section) {
     let d = sheet.d;
@@ -295,6 +316,21 @@ fn method(sheet: &Sheet, section: &mut Section) {
         Riccati::Exact(mv) | Riccati::Coupled(mv) => Some(factor(sheet, mv, 0).0),
         Riccati::Quaternionic(_) | Riccati::None(_) => None,
     });
+    let degenerate = degenerate(sheet);
+    if d.solve.needs_second_moments()
+        && let (Some(degenerate), Some(letter)) = (&degenerate, &letter)
+    {
+        section.paragraph([
+            "The stepper makes no step: it tests ".into(),
+            letter.clone().into(),
+            format!(
+                " where it is given it and refuses every one, since {degenerate} whatever the \
+                 parameters. The warning says what to write instead."
+            )
+            .into(),
+        ]);
+        return;
+    }
     // What the motion carries stands still in the body.
     let carried = d.solve.riccati.iter().any(|r| match r {
         Riccati::Exact(mv) | Riccati::Coupled(mv) => {
@@ -340,4 +376,10 @@ fn method(sheet: &Sheet, section: &mut Section) {
         }
     };
     section.paragraph(words);
+    if let Some(degenerate) = degenerate {
+        section.text(&format!(
+            "But {degenerate} whatever the parameters: for small steps the equation does not \
+             determine all velocities, and steps may be refused."
+        ));
+    }
 }

@@ -249,7 +249,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
             Method::UnitQuaternions => "Unit quaternions",
             Method::Newton => "Newton",
         },
-        d.solve.reason
+        d.how_solved()
     );
     // A symmetric one-step action gives an even order; one-sided nodal terms leave order one.
     let order: u32 = if d.reversible { 2 } else { 1 };

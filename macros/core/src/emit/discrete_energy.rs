@@ -54,11 +54,10 @@ pub fn discrete_energy(d: &Derivation, names: &Names) -> TokenStream {
     let p = schedule::program(s, std::slice::from_ref(&energy.value), "t");
     let (lets, values) = program(&p, &bindings);
     let (value, step) = (&values[0], variable(s, d.spec.step));
-    let how = if energy.exact { "constant" } else { "bounded" };
+    let (how, why) = d.discrete_energy();
     let doc = format!(
-        " The discrete energy of the edge between two consecutive states, `{}`: {how}, since {}.",
+        " The discrete energy of the edge between two consecutive states, `{}`: {how}, since {why}.",
         text(d, &energy.value),
-        energy.reason
     );
     quote! {
         impl #bound #name #used {

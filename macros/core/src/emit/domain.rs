@@ -251,7 +251,7 @@ pub(super) fn tested_step(d: &Derivation, names: &Names) -> TokenStream {
     let used = Generics::of(d).used();
     let (node, before) = (names.local("node"), names.local("before"));
     let inside = inside(d, names);
-    let method = format!(" One step, in place. Solved thus: {}.", d.solve.reason);
+    let method = format!(" One step, in place. Solved thus: {}.", d.how_solved());
     let trials = matches!(d.solve.method, Method::Newton).then(|| {
         quote! {
             let contact = match work.search.tries() {

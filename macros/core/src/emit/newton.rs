@@ -107,7 +107,7 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
     let solved_at = |i: usize| bundle.part(quote!(#solved), i);
     let rest = finish(d, names, &mut after, &solved_at, remembered);
     let head = super::domain::step_head(d);
-    let method = format!(" One step, in place. Solved thus: {}.", d.solve.reason);
+    let method = format!(" One step, in place. Solved thus: {}.", d.how_solved());
     let step = quote! {
         #[doc = #method]
         ///

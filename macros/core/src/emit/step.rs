@@ -178,7 +178,7 @@ fn start(d: &Derivation, names: &Names) -> TokenStream {
 
 pub(super) fn step_signature(d: &Derivation, body: TokenStream) -> TokenStream {
     let (state, work) = (item(d, "State"), item(d, "Workspace"));
-    let method = &d.solve.reason;
+    let method = d.how_solved();
     let head = super::domain::step_head(d);
     let doc = format!(" One step, in place. Solved thus: {method}.");
     let used = Generics::of(d).used();

@@ -77,10 +77,19 @@ impl LeftFactorError {
     /// The same error, said of the parameter `field`.
     #[cold]
     pub fn in_field(self, field: &'static str) -> ParameterError {
+        let remedy = match self {
+            Self::NotPositive { .. } => {
+                "give second moments that are positive in all directions but one: a turn in a plane \
+                 without any has no inertia, and momenta do not determine it"
+            }
+            Self::NotFinite | Self::Reflected { .. } => {
+                "give the second moments of a real mass distribution, turned if need be"
+            }
+        };
         ParameterError {
             field,
             problem: Problem::LeftFactor(self),
-            remedy: "give the second moments of a real mass distribution, turned if need be",
+            remedy,
         }
     }
 }

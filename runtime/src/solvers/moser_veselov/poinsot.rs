@@ -138,7 +138,8 @@ impl fmt::Display for PoinsotError {
             ),
             Self::NoInertia { smallest_moment } => write!(
                 f,
-                "the smallest moment of inertia is {smallest_moment}: all mass lies on a line"
+                "the smallest moment of inertia is {smallest_moment}: all mass lies on a line, and \
+                 momenta do not determine the spin about it"
             ),
         }
     }

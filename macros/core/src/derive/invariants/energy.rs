@@ -8,7 +8,8 @@ use crate::algebra::Rational;
 use crate::algebra::assumed::eliminate;
 use crate::algebra::exact::{Matrix, Point, add, inverse, mul, negate};
 use crate::derive::balance::shorter;
-use crate::derive::bracket;
+use crate::derive::kinetic::Kinetic;
+use crate::derive::{Derivation, bracket};
 use crate::expr::{self, Expr, Shift};
 
 /// The energy, if the limit of small steps exists.
@@ -43,6 +44,23 @@ pub struct DiscreteEnergy {
     pub exact: bool,
     /// Why.
     pub reason: String,
+}
+
+impl Derivation {
+    /// What is known of the discrete energy of an edge, and why. Where the kinetic energy is
+    /// degenerate, a symplectic step bounds nothing.
+    pub fn discrete_energy(&self) -> (&'static str, &str) {
+        let energy = &self.integrability.discrete_energy;
+        let degenerate = self.kinetic.as_ref().and_then(Kinetic::degenerate);
+        match (energy.exact, degenerate) {
+            (true, _) => ("constant", &energy.reason),
+            (false, Some(_)) => (
+                "not known to be bounded",
+                "the kinetic energy is degenerate",
+            ),
+            (false, None) => ("bounded", &energy.reason),
+        }
+    }
 }
 
 /// The discrete energy.

@@ -9,6 +9,8 @@ mod effect;
 mod feasible;
 mod limit;
 mod order;
+#[cfg(test)]
+mod point_masses;
 mod sign;
 #[cfg(test)]
 mod tests;
@@ -16,6 +18,7 @@ mod tests;
 use super::action::Action;
 use super::kinetic::Kinetic;
 use super::limit::Limit;
+use super::recognise::Solve;
 use super::reversal::Reversal;
 use super::variation::Variation;
 use super::{Derivation, Letters};
@@ -98,6 +101,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) reversal: &'a Reversal,
     pub(crate) limit: &'a Result<Limit, String>,
     pub(crate) kinetic: Option<&'a Kinetic>,
+    pub(crate) solve: &'a Solve,
     pub(crate) assumed: &'a [Expr],
     pub(crate) algebra: &'a Algebra<'a>,
 }

@@ -18,10 +18,14 @@ pub const CONVENTION: &str = "the Lagrangian states kinetic minus potential ener
 
 /// The warning that the kinetic energy does not depend on every velocity.
 pub(super) fn degenerate(x: &Inputs) -> Option<Warning> {
-    let (rank, n) = x.kinetic?.rank?;
-    if rank == n {
-        return None;
-    }
+    let (rank, n) = x.kinetic?.degenerate()?;
+    let refused = match x.solve.needs_second_moments() {
+        true => {
+            ". The Moser-Veselov equation does not determine the velocity: no step can be made, and \
+             every choice of the parameters is refused at the start"
+        }
+        false => "",
+    };
     let message = match rank {
         0 => "the Lagrangian has no kinetic energy: no term is quadratic in the velocities and \
               divided by `h`"
@@ -29,14 +33,17 @@ pub(super) fn degenerate(x: &Inputs) -> Option<Warning> {
         _ => format!(
             "the kinetic energy is degenerate: its Hessian in all velocities has rank {rank} of \
              {n} whatever the parameters, so that momenta do not determine velocities and there \
-             is no energy"
+             is no energy{refused}"
         ),
     };
     let help = match rank {
         0 => "did you forget `/h`? Kinetic terms are divided by the step, as in `-tr(J*Ω)/h`",
         _ => {
             "give every velocity a kinetic energy; did you forget `/h` in one of the terms? A body \
-             needs I = tr(J) Id - J > 0: a single point mass has no inertia about its own direction"
+             needs I = tr(J) Id - J > 0: second moments of rank one, as m a a^T of a single point \
+             mass, leave the spin about their line without inertia. Give the mass an extent: with \
+             `param S: Sym<3>`, its second moments about its own centre, write `m*a*a^T + S` for \
+             `m*a*a^T`, so that J has rank two or three; a hundredth of m |a|^2 will do"
         }
     };
     let d = Diagnostic::new(x.spec.lagrangian_place, message).help(help);
