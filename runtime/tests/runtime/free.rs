@@ -154,8 +154,8 @@ fn equals_the_forced_solver_without_a_force() {
     }
 }
 
-/// Numbers computed with 34 digits: momentum and attitude after 1 and 10 steps, moments (2, 2, 1),
-/// momentum (0.1, 0, 1), h = 0.1, attitude the identity at the start.
+/// Numbers from tests/reference/generate.py in the repository: momentum and attitude after 1 and 10
+/// steps, moments (2, 2, 1), momentum (0.1, 0, 1), h = 0.1, attitude the identity at the start.
 #[test]
 #[allow(clippy::excessive_precision, reason = "the digits as computed")]
 fn reference_numbers_of_the_symmetric_top() {

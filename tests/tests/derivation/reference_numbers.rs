@@ -148,3 +148,30 @@ fn another_number_is_found() {
     wrong.remove("coupled_sym.CASIMIR");
     assert_eq!(differences(&wrong).len(), 1);
 }
+
+/// The runtime's own tests, which this crate is not there for, repeat the first two nodes of one run.
+#[test]
+fn the_numbers_that_the_runtime_repeats_are_the_same() {
+    let source = page("../runtime/tests/runtime/free.rs");
+    let (_, list) = source.split_once("let expected = [").expect("the numbers");
+    let (list, _) = list.split_once("];").expect("their end");
+    let words = list.split(|c: char| c.is_whitespace() || "[](),".contains(c));
+    let repeated: Vec<f64> = words
+        .filter(|word| word.contains('.'))
+        .map(|word| word.replace('_', "").parse().expect("a number"))
+        .collect();
+    let computed = generated();
+    let rows = |name: &str, width: usize, row: usize| -> Vec<f64> {
+        let row = &computed[name][width * row..width * (row + 1)];
+        row.iter().map(|n| n.parse().expect("a number")).collect()
+    };
+    let expected: Vec<f64> = (0..2)
+        .flat_map(|node| {
+            let momentum = rows("body_sym.MOMENTUM", 3, node);
+            momentum
+                .into_iter()
+                .chain(rows("body_sym.ATTITUDE", 9, node))
+        })
+        .collect();
+    assert_eq!(repeated, expected);
+}

@@ -1,4 +1,4 @@
-//! Generated steppers against reference states computed elsewhere with 32 digits, to 1e-12 up to node 1000.
+//! Generated steppers against reference states of tests/reference/generate.py, 32 digits, to 1e-12 up to node 1000.
 //! The same comparisons reject steppers with a fault: see the tests of the hand-written steppers.
 
 use super::generated_motion::{
