@@ -6,7 +6,6 @@
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(
-    mixed_script_confusables,
     non_snake_case,
     deprecated,
     reason = "terms of higher order have no limit of small steps, and random models leave parameters out"

@@ -95,13 +95,15 @@ impl<const D: usize> Strain<D> {
         for k in 0..n {
             let pivot = a[k][k];
             // Also refuses NaN. What is left of a pivot must be more than rounding.
-            if !(pivot > 1e-6) {
+            let regular = pivot > 1e-6;
+            if !regular {
                 return None;
             }
             for i in k + 1..n {
                 let factor = a[i][k] / pivot;
-                for j in k..n {
-                    a[i][j] -= factor * a[k][j];
+                let above = a[k];
+                for (x, up) in a[i].iter_mut().zip(above).take(n).skip(k) {
+                    *x -= factor * up;
                 }
                 y[i] -= factor * y[k];
             }

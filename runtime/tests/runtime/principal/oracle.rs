@@ -75,7 +75,8 @@ pub fn follow<C: Curve>(
         let made = (|| {
             let inverse = here.clone().try_inverse()?;
             let predicted = &inverse * (&back * &way) * length;
-            if !(predicted.norm() < 0.2) {
+            let short = predicted.norm() < 0.2;
+            if !short {
                 return None;
             }
             let mut next = curve.moved(&at, &predicted.component_mul(unit));
@@ -84,7 +85,8 @@ pub fn follow<C: Curve>(
                 let inverse = relative(&next).try_inverse()?;
                 let correction = inverse * (&back * (&target - curve.value(&next)));
                 size = correction.norm();
-                if !(size < 0.2) {
+                let short = size < 0.2;
+                if !short {
                     return None;
                 }
                 next = curve.moved(&next, &correction.component_mul(unit));
