@@ -1,5 +1,5 @@
-//! Scalars, groups, solvers, orders and the integration loop, and models of every group that are solved by Newton's method. One binary, since linking is most of
-//! what a test costs.
+//! Scalars, groups, solvers, orders, the integration loop, and models of every group that are solved by Newton's method. One
+//! binary, since linking is most of what a test costs.
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables)]

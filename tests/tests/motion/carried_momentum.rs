@@ -124,7 +124,8 @@ fn largest<const R: usize, const C: usize>(a: &SMatrix<f64, R, C>) -> f64 {
     let mut largest = 0.0;
     for x in a {
         // NaN is larger than any number.
-        if !(x.abs() <= largest) {
+        let within = x.abs() <= largest;
+        if !within {
             largest = x.abs();
         }
     }

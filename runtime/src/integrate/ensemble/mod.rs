@@ -209,10 +209,6 @@ impl<M: Model<Scalar = f64>, const N: usize> Ensemble<M, N> {
     /// # Errors
     /// Names the first body that could not go on. It and those beside it are where they were, all
     /// others have made their steps.
-    #[expect(
-        clippy::result_large_err,
-        reason = "an error ends the run, and says all it knows"
-    )]
     pub fn run(&mut self, count: u64) -> Result<(), EnsembleError<StepError>> {
         let task = self.task(count);
         first(
@@ -228,10 +224,6 @@ impl<M: Model<Scalar = f64>, const N: usize> Ensemble<M, N> {
     /// # Errors
     /// As [`Ensemble::run`].
     #[cfg(feature = "rayon")]
-    #[expect(
-        clippy::result_large_err,
-        reason = "an error ends the run, and says all it knows"
-    )]
     pub fn run_parallel(&mut self, count: u64) -> Result<(), EnsembleError<StepError>> {
         use rayon::prelude::*;
         let task = self.task(count);
