@@ -30,7 +30,7 @@ fn measure() {
     if std::io::stdin().read_to_string(&mut source).is_err() {
         return;
     }
-    let Ok(tokens) = source.parse() else {
+    let Ok(tokens) = clebsch_core::syntax::tokens(&source) else {
         return;
     };
     let start = Instant::now();

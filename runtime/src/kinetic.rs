@@ -2,6 +2,7 @@
 //! the quadratic form in all velocities together; gives what to say if it is not positive definite,
 //! with the sign convention, which is the commonest mistake.
 
+use crate::scalar::largest;
 use core::fmt;
 use nalgebra::SMatrix;
 
@@ -34,7 +35,7 @@ impl KineticWarning {
         // vanishes, by the largest of its couplings.
         let size = |i: usize| {
             let own = form[(i, i)].abs();
-            let row = (0..n).map(|j| form[(i, j)].abs()).fold(0.0, f64::max);
+            let row = largest((0..n).map(|j| form[(i, j)]));
             match own > ROUNDING * row {
                 true => own.sqrt(),
                 false if row > 0.0 => row.sqrt(),

@@ -90,6 +90,8 @@ const COMMANDS: &[&str] = &[
     "textasciicircum",
     "textasciitilde",
     "textbackslash",
+    "texttt",
+    "tfrac",
     "theta",
     "times",
     "ttfamily",

@@ -3,7 +3,7 @@
 //! Takes values of a node; gives the same in bounds, and whether they are near others.
 
 use crate::Real;
-use crate::scalar::{Enclosure, OfScalars};
+use crate::scalar::{Enclosure, OfScalars, largest};
 use nalgebra::SMatrix;
 
 /// How far the values of a node may be from those at hand for a proof to hold.
@@ -78,7 +78,7 @@ impl<A: NodeValues, B: NodeValues<Scalar = A::Scalar>> NodeValues for (A, B) {
 impl<T: Real, const R: usize, const C: usize> NodeValues for SMatrix<T, R, C> {
     fn enclosed<const K: usize>(&self, lane: usize, spread: Spread) -> SMatrix<Enclosure<K>, R, C> {
         let size = |x: &T| x.lane(lane).abs();
-        let most = self.iter().map(size).fold(0.0, f64::max);
+        let most = largest(self.iter().map(size));
         self.map(|x| Enclosure::around(x.lane(lane), spread.share * most))
     }
 
