@@ -172,7 +172,9 @@ fn refusals_name_the_plane_and_the_lane() {
         for method in [Method::LieNewton, Method::Sign, Method::Schur] {
             let e = four.solve(&v, method).expect_err("too fast");
             assert_eq!(e.fastest, Part::Plane(i as u8, j as u8), "{e}");
-            assert!(e.to_string().contains(&format!("plane ({i}, {j})")), "{e}");
+            // Messages count from 1.
+            let said = format!("plane ({}, {})", i + 1, j + 1);
+            assert!(e.to_string().contains(&said), "{e}");
         }
     }
     let c = Matrix3::from_diagonal(&Vector3::new(0.5, 0.9, 0.7))
