@@ -9,8 +9,7 @@
 //!
 //! Along a trajectory of principal roots the velocity changes continuously, unless a step comes to
 //! a fold, where it is refused. The converse does not hold: a root that follows the last one
-//! continuously may have passed around a fold, and is no principal one then. A trajectory takes
-//! such a root where no proof is made between the two steps (see [`Certificate`](super::Certificate)).
+//! continuously may have passed around a fold, and is no principal one then.
 //!
 //! Takes the equations of one lane; gives the root, with a region in which it is the only one.
 
