@@ -325,19 +325,14 @@ impl<T: Real, G: Group<T>, V, const D: usize> Newton<'_, T, G, V, D> {
         self.search.weighed = 0;
     }
 
-    /// Whether the solution found is the principal root: by a proof that still holds, or because it
-    /// follows the last one continuously.
+    /// Whether the solution found is the principal root.
     #[inline(always)]
-    pub fn is_principal(&mut self, solution: &G, values: &V) -> bool
+    pub fn is_principal(&self, solution: &G, values: &V) -> bool
     where
         V: NodeValues<Scalar = T>,
     {
         if self.search.certificate.holds(solution, values) {
             return true;
-        }
-        let last = self.search.past[self.search.newest];
-        if self.search.known > 1 && self.anchor.is_none() {
-            return self.search.certificate.follows(&last, solution);
         }
         self.is_anchored(solution)
     }

@@ -9,12 +9,6 @@ use crate::scalar::{OfScalars, Real};
 /// Steps without a proof that lasts, after which one is looked for again.
 const PATIENCE: u32 = 16;
 
-/// Steps that may follow without a proof.
-const MOST_FOLLOWED: u32 = 1024;
-
-/// What part of a velocity the next one may differ by.
-const STRIDE: f64 = 0.2;
-
 /// Velocities that are principal roots: those whose coordinates do not exceed `reach`, part by
 /// part, at nodes within `spread` of `node`.
 #[derive(Clone, Copy, Debug)]
@@ -23,10 +17,6 @@ pub struct Certificate<V, const D: usize> {
     node: Option<V>,
     spread: Spread,
     misses: u32,
-    /// How far the next velocity may be from the last to follow it continuously.
-    stride: [f64; D],
-    /// How many velocities have followed so since the last proof.
-    followed: u32,
 }
 
 impl<V, const D: usize> Certificate<V, D> {
@@ -38,17 +28,7 @@ impl<V, const D: usize> Certificate<V, D> {
             node: None,
             spread: Spread::HERE,
             misses: 0,
-            stride: [0.0; D],
-            followed: 0,
         }
-    }
-
-    /// Whether a velocity follows the last one, a principal root, continuously. What this misses
-    /// is a root that passed around a fold between two proofs.
-    #[inline(always)]
-    pub(super) fn follows<T, G: Group<T>>(&mut self, last: &G, velocity: &G) -> bool {
-        self.followed = self.followed.wrapping_add(1);
-        self.followed < MOST_FOLLOWED && last.inverse().compose(velocity).is_within(&self.stride)
     }
 }
 
@@ -134,13 +114,7 @@ impl<G: Copy, const D: usize> Verdict<G, D> {
         self,
         certificate: &mut Certificate<V, D>,
         values: &V,
-    ) -> Option<Anchor<G, D>>
-    where
-        G: Group<V::Scalar>,
-    {
-        self.anchor.root.extents(&mut certificate.stride);
-        certificate.stride = certificate.stride.map(|x| STRIDE * x);
-        certificate.followed = 0;
+    ) -> Option<Anchor<G, D>> {
         if self.elsewhere {
             certificate.misses = certificate.misses.wrapping_add(1);
             return Some(self.anchor);
@@ -152,7 +126,6 @@ impl<G: Copy, const D: usize> Verdict<G, D> {
                 node: Some(*values),
                 spread: self.spread,
                 misses: 0,
-                ..*certificate
             };
         } else {
             certificate.misses = certificate.misses.wrapping_add(1);
