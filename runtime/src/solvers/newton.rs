@@ -388,7 +388,9 @@ impl<T: Real, G: Group<T>, V, const D: usize> Newton<'_, T, G, V, D> {
     /// Whether the residual is nothing but rounding. What is only foreseen is corrected once.
     #[inline(always)]
     fn polished(&self) -> bool {
-        T::ORDER == 0 && self.iteration > 0 && self.size <= POLISHED_ROUNDINGS * T::EPSILON
+        T::ORDER == 0
+            && self.iteration > 0
+            && self.size <= POLISHED_ROUNDINGS * T::EPSILON
     }
 
     /// Takes the tangent at the trial.
@@ -461,12 +463,7 @@ impl<T: Real, G: Group<T>, V, const D: usize> Newton<'_, T, G, V, D> {
         let residual = self.residual.as_slice().get(..looked_at).unwrap_or(&[]);
         Progress::Failed(NewtonError {
             tried: self.search.tries,
-            ..NewtonError::of::<T, G>(
-                failure,
-                iterations,
-                residual,
-                self.search.weights.as_slice(),
-            )
+            ..NewtonError::of::<T, G>(failure, iterations, residual, self.search.weights.as_slice())
         })
     }
 

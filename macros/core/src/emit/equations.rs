@@ -140,15 +140,16 @@ impl Equations<'_> {
                 quote!(#mu[#i])
             })
             .collect();
-        let residual_of =
-            |values: &[TokenStream], lets: TokenStream| match (values, momenta.as_slice()) {
+        let residual_of = |values: &[TokenStream], lets: TokenStream| {
+            match (values, momenta.as_slice()) {
                 ([value], [own]) => quote!(#lets (#value) - #own),
                 _ => {
                     let rows = values.iter().zip(&momenta);
                     let rows = rows.map(|(value, own)| quote!((#value) - #own));
                     quote!(#lets joined::<T, #count, #total>(&[#(#rows),*]))
                 }
-            };
+            }
+        };
         let tangent_of = |values: &[TokenStream], lets: TokenStream| match values {
             [only] => quote!(#lets #only),
             _ => {

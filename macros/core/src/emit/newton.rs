@@ -3,10 +3,10 @@
 
 use super::element::{self, Bundle, Family, family};
 use super::equations::Equations;
+use super::principal::Principal;
 use super::expression::Bindings;
 use super::items::{letters_of, parameter_locals, with_transports};
 use super::names::{Names, item, own, per_configuration, tagged, variable};
-use super::principal::Principal;
 use super::sizes::Generics;
 use super::step::{at, finish, here};
 use crate::check::spec::Side;
@@ -78,8 +78,11 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
         momenta: &mu,
     };
     let (known, equations) = solved_for.write(&momenta, &node_momenta);
-    let (at_trial, residual_body, tangent_body) =
-        (&equations.at_trial, &equations.residual, &equations.tangent);
+    let (at_trial, residual_body, tangent_body) = (
+        &equations.at_trial,
+        &equations.residual,
+        &equations.tangent,
+    );
     let principal = Principal {
         d,
         bindings: &bindings,

@@ -79,9 +79,7 @@ impl Principal<'_> {
             let own = ty(s, shape);
             let kept = match (shape.is_scalar(), s.get(l.symbol).structure) {
                 (true, _) => quote!(SMatrix<T, 1, 1>),
-                (_, Structure::Orthogonal | Structure::UnitQuaternion) => {
-                    quote!(newton::Turn<#own>)
-                }
+                (_, Structure::Orthogonal | Structure::UnitQuaternion) => quote!(newton::Turn<#own>),
                 _ => own,
             };
             quote!((#kept, #rest))
@@ -185,7 +183,10 @@ impl Principal<'_> {
         let trial_over = changed(quote!(#trial));
         let found_over = changed(quote!(found));
         let put = (0..bodies).map(|i| {
-            let (to, from) = (bundle.part(quote!(all), i), bundle.part(quote!(root), i));
+            let (to, from) = (
+                bundle.part(quote!(all), i),
+                bundle.part(quote!(root), i),
+            );
             quote!(#to = #to.over(&mut newton::Numbers::of(&#from).put(lane));)
         });
         quote! {

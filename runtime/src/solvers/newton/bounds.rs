@@ -39,11 +39,7 @@ fn radius(radii: &[f64], part: usize) -> f64 {
 /// of it is at most this.
 fn angle(radius: f64) -> (f64, f64) {
     let square = 0.25 * radius * radius;
-    let sine = if radius < 2.0 {
-        radius / (1.0 + square)
-    } else {
-        1.0
-    };
+    let sine = if radius < 2.0 { radius / (1.0 + square) } else { 1.0 };
     (sine, 2.0 * square / (1.0 + square))
 }
 
@@ -75,11 +71,7 @@ fn turn<const K: usize>(radius: f64, first: usize) -> [SVector<Enclosure<K>, 3>;
     // -1/2; the others are t n_i n_j, no farther than 1/sqrt(3) from 0.
     let middle = Enclosure::exactly(-0.5 * rest);
     let diagonal = vector(0.8661 * rest, first + 3).map(|x: Enclosure<K>| x + middle);
-    [
-        vector(sine, first),
-        diagonal,
-        vector(0.5774 * rest, first + 6),
-    ]
+    [vector(sine, first), diagonal, vector(0.5774 * rest, first + 6)]
 }
 
 impl<const K: usize> RotationRegion<K> {
@@ -134,10 +126,7 @@ pub struct QuaternionRegion<const K: usize> {
 }
 
 /// Real and imaginary part.
-fn half_turn<const K: usize>(
-    radius: f64,
-    first: usize,
-) -> (Enclosure<K>, SVector<Enclosure<K>, 3>) {
+fn half_turn<const K: usize>(radius: f64, first: usize) -> (Enclosure<K>, SVector<Enclosure<K>, 3>) {
     let cosine = 1.0 / (1.0 + 0.25 * radius * radius).sqrt();
     let real = Enclosure::exactly(0.5 * (1.0 + cosine))
         + Enclosure::variable(0.5 * (1.0 - cosine), first + 3);

@@ -2,8 +2,8 @@
 //! step could have been made from the same state.
 //! Takes the last residual and a way to try other steps; gives the error.
 
-use super::Fold;
 use crate::groups::{Coordinate, Group};
+use super::Fold;
 use crate::said::{AtMost, Plain, Times, in_lane, instead};
 use crate::scalar::Real;
 use crate::solvers::largest_step::largest_step;

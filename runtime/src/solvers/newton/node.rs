@@ -66,7 +66,10 @@ impl<T: Real> NodeValues for [T; 0] {
 
 impl<A: NodeValues, B: NodeValues<Scalar = A::Scalar>> NodeValues for (A, B) {
     fn enclosed<const K: usize>(&self, lane: usize, spread: Spread) -> Self::Over<Enclosure<K>> {
-        (self.0.enclosed(lane, spread), self.1.enclosed(lane, spread))
+        (
+            self.0.enclosed(lane, spread),
+            self.1.enclosed(lane, spread),
+        )
     }
 
     #[inline(always)]
@@ -76,7 +79,11 @@ impl<A: NodeValues, B: NodeValues<Scalar = A::Scalar>> NodeValues for (A, B) {
 }
 
 impl<T: Real, const R: usize, const C: usize> NodeValues for SMatrix<T, R, C> {
-    fn enclosed<const K: usize>(&self, lane: usize, spread: Spread) -> SMatrix<Enclosure<K>, R, C> {
+    fn enclosed<const K: usize>(
+        &self,
+        lane: usize,
+        spread: Spread,
+    ) -> SMatrix<Enclosure<K>, R, C> {
         let size = |x: &T| x.lane(lane).abs();
         let most = largest(self.iter().map(size));
         self.map(|x| Enclosure::around(x.lane(lane), spread.share * most))

@@ -13,8 +13,8 @@
 //!
 //! Takes the equations of one lane; gives the root, with a region in which it is the only one.
 
-use super::bounds::Region;
 use super::node::Spread;
+use super::bounds::Region;
 use super::region::Strain;
 use crate::groups::Group;
 use crate::linalg::inverse_leading;
@@ -45,34 +45,10 @@ const MARGIN: f64 = 1.6;
 /// For which nodes a proof is looked for that lasts, and how large the region is at least in every
 /// direction.
 const NODES: [(Spread, f64); 4] = [
-    (
-        Spread {
-            turned: true,
-            share: 0.25,
-        },
-        0.05,
-    ),
-    (
-        Spread {
-            turned: false,
-            share: 0.2,
-        },
-        0.05,
-    ),
-    (
-        Spread {
-            turned: true,
-            share: 0.05,
-        },
-        0.01,
-    ),
-    (
-        Spread {
-            turned: false,
-            share: 0.03,
-        },
-        0.01,
-    ),
+    (Spread { turned: true, share: 0.25 }, 0.05),
+    (Spread { turned: false, share: 0.2 }, 0.05),
+    (Spread { turned: true, share: 0.05 }, 0.01),
+    (Spread { turned: false, share: 0.03 }, 0.01),
 ];
 
 /// How much larger than the velocity at hand the regions are.
@@ -225,9 +201,7 @@ where
             let inner = radii.map(|r| INNER * r);
             let enough = moved.is_some_and(|y| fits::<G, D>(&y, &inner));
             if enough {
-                accepted = stage
-                    .solve(equations, &toward, &goal, &radii)
-                    .map(|next| (next, end));
+                accepted = stage.solve(equations, &toward, &goal, &radii).map(|next| (next, end));
             } else if let (Some(y), true) = (moved, tries % 2 == 0) {
                 // The region has the wrong shape, perhaps.
                 let grown = |b: usize| (y[b] / length).clamp(0.2 * course[b], 5.0 * course[b]);
@@ -402,11 +376,7 @@ fn reach<const D: usize>(strain: &Strain<D>, radii: &[f64; D], parts: usize) -> 
 
 /// Whether no part exceeds its bound; false for NaN.
 fn fits<G: Group<f64>, const D: usize>(lengths: &[f64; D], bounds: &[f64; D]) -> bool {
-    lengths
-        .iter()
-        .zip(bounds)
-        .take(G::PARTS)
-        .all(|(x, r)| x <= r)
+    lengths.iter().zip(bounds).take(G::PARTS).all(|(x, r)| x <= r)
 }
 
 /// The lengths of the parts.

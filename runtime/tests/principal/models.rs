@@ -211,19 +211,11 @@ pub trait Judged {
     /// At rest.
     fn rest() -> Self::E;
     /// What leads from one state to the next.
-    fn between(
-        from: &<Self::M as clebsch::integrate::Stepper>::State,
-        to: &<Self::M as clebsch::integrate::Stepper>::State,
-    ) -> Self::E;
+    fn between(from: &<Self::M as clebsch::integrate::Stepper>::State, to: &<Self::M as clebsch::integrate::Stepper>::State) -> Self::E;
     /// Moved from the right.
     fn moved(velocity: &Self::E, xi: &[f64]) -> Self::E;
     /// The derived equations, the edge before being at rest.
-    fn balance(
-        model: &Self::M,
-        h: f64,
-        here: &<Self::M as clebsch::integrate::Stepper>::State,
-        velocity: &Self::E,
-    ) -> DVector<f64>;
+    fn balance(model: &Self::M, h: f64, here: &<Self::M as clebsch::integrate::Stepper>::State, velocity: &Self::E) -> DVector<f64>;
     /// How far apart two velocities are.
     fn distance(a: &Self::E, b: &Self::E) -> f64;
 }
@@ -266,13 +258,7 @@ macro_rules! entries {
     )+};
 }
 
-entries!(
-    Rotation,
-    UnitQuaternion,
-    RigidMotion,
-    Orthogonal<4>,
-    Linear<3>
-);
+entries!(Rotation, UnitQuaternion, RigidMotion, Orthogonal<4>, Linear<3>);
 
 macro_rules! judged {
     ($judge:ident, $Model:ident, $Configuration:ident { $($element:ident: $G:ty),+ }, $draw:expr) => {
@@ -351,322 +337,166 @@ fn stacked(list: &[Vector3<f64>]) -> DVector<f64> {
     DVector::from_iterator(3 * list.len(), list.iter().flat_map(|v| v.iter().copied()))
 }
 
-judged!(
-    JudgedPair,
-    Pair,
-    PairConfiguration {
-        Λ1: Rotation,
-        Λ2: Rotation
-    },
-    |r: &mut Random| {
-        let eps = between(r, 0.1, 1.0);
-        let arms = [(); 2].map(|()| vector(r, 0.7));
-        let j = arms.map(|d| positive(r) + d * d.transpose() * eps);
-        let momenta = [(); 2].map(|()| momentum(r));
-        let model = Pair::new(PairParameters {
-            J1: j[0],
-            J2: j[1],
-            d1: arms[0],
-            d2: arms[1],
-            eps,
-            k: between(r, -0.5, 0.5),
-        })
-        .expect("valid");
-        let turns = [r.rotation(), r.rotation()];
-        let state = move |part: f64| {
-            model
-                .begin(PairInitial {
-                    Λ1: turns[0],
-                    body_momentum_Λ1: BodyMomentum(momenta[0] * part),
-                    Λ2: turns[1],
-                    body_momentum_Λ2: BodyMomentum(momenta[1] * part),
-                })
-                .expect("valid")
-        };
-        let unit = (j[0].trace() / momenta[0].norm()).min(j[1].trace() / momenta[1].norm());
-        Problem {
-            model,
-            state: Box::new(state),
-            momenta: stacked(&momenta),
-            unit,
-        }
-    }
-);
+judged!(JudgedPair, Pair, PairConfiguration { Λ1: Rotation, Λ2: Rotation }, |r: &mut Random| {
+    let eps = between(r, 0.1, 1.0);
+    let arms = [(); 2].map(|()| vector(r, 0.7));
+    let j = arms.map(|d| positive(r) + d * d.transpose() * eps);
+    let momenta = [(); 2].map(|()| momentum(r));
+    let model = Pair::new(PairParameters {
+        J1: j[0],
+        J2: j[1],
+        d1: arms[0],
+        d2: arms[1],
+        eps,
+        k: between(r, -0.5, 0.5),
+    }).expect("valid");
+    let turns = [r.rotation(), r.rotation()];
+    let state = move |part: f64| model.begin(PairInitial {
+        Λ1: turns[0],
+        body_momentum_Λ1: BodyMomentum(momenta[0] * part),
+        Λ2: turns[1],
+        body_momentum_Λ2: BodyMomentum(momenta[1] * part),
+    }).expect("valid");
+    let unit = (j[0].trace() / momenta[0].norm()).min(j[1].trace() / momenta[1].norm());
+    Problem { model, state: Box::new(state), momenta: stacked(&momenta), unit }
+});
 
-judged!(
-    JudgedFluid,
-    FluidBody,
-    FluidBodyConfiguration { G: RigidMotion },
-    |r: &mut Random| {
-        let (j, m) = (positive(r), positive(r) * 3.0);
-        let model = FluidBody::new(FluidBodyParameters {
-            J: j,
-            M: m,
-            D: positive(r) * between(r, 0.0, 0.2),
-            b: Vector4::from_fn(|_, _| between(r, -0.3, 0.3)),
-            Z: Vector4::new(0.0, 0.0, 1.0, 0.0),
-        })
-        .expect("valid");
-        let (angular, linear) = (momentum(r), momentum(r));
-        let place = RigidMotion {
-            rotation: r.rotation(),
-            translation: vector(r, 1.0),
-        };
-        let all = SVector::<f64, 6>::from_fn(|i, _| if i < 3 { angular[i] } else { linear[i - 3] });
-        let state = move |part: f64| {
-            model
-                .begin(FluidBodyInitial {
-                    G: place,
-                    body_momentum: BodyImpulse(all * part),
-                })
-                .expect("valid")
-        };
-        let unit = j.trace() / angular.norm();
-        Problem {
-            model,
-            state: Box::new(state),
-            momenta: stacked(&[angular, linear]),
-            unit,
-        }
-    }
-);
+judged!(JudgedFluid, FluidBody, FluidBodyConfiguration { G: RigidMotion }, |r: &mut Random| {
+    let (j, m) = (positive(r), positive(r) * 3.0);
+    let model = FluidBody::new(FluidBodyParameters {
+        J: j,
+        M: m,
+        D: positive(r) * between(r, 0.0, 0.2),
+        b: Vector4::from_fn(|_, _| between(r, -0.3, 0.3)),
+        Z: Vector4::new(0.0, 0.0, 1.0, 0.0),
+    }).expect("valid");
+    let (angular, linear) = (momentum(r), momentum(r));
+    let place = RigidMotion { rotation: r.rotation(), translation: vector(r, 1.0) };
+    let all = SVector::<f64, 6>::from_fn(|i, _| if i < 3 { angular[i] } else { linear[i - 3] });
+    let state = move |part: f64| model.begin(FluidBodyInitial {
+        G: place,
+        body_momentum: BodyImpulse(all * part),
+    }).expect("valid");
+    let unit = j.trace() / angular.norm();
+    Problem { model, state: Box::new(state), momenta: stacked(&[angular, linear]), unit }
+});
 
-judged!(
-    JudgedCharged,
-    ChargedTop,
-    ChargedTopConfiguration { Λ: Rotation },
-    |r: &mut Random| {
-        let j = positive(r);
-        let model = ChargedTop::new(ChargedTopParameters {
-            J: j,
-            a: vector(r, 0.5),
-            z: Vector3::z(),
-            B: vector(r, 1.0),
-            q: between(r, -0.7, 0.7),
-            c: between(r, 0.0, 0.3),
-        })
-        .expect("valid");
-        let (turn, m) = (r.rotation(), momentum(r));
-        let state = move |part: f64| {
-            model
-                .begin(ChargedTopInitial {
-                    Λ: turn,
-                    body_momentum: BodyMomentum(m * part),
-                })
-                .expect("valid")
-        };
-        Problem {
-            model,
-            state: Box::new(state),
-            momenta: stacked(&[m]),
-            unit: j.trace() / m.norm(),
-        }
-    }
-);
+judged!(JudgedCharged, ChargedTop, ChargedTopConfiguration { Λ: Rotation }, |r: &mut Random| {
+    let j = positive(r);
+    let model = ChargedTop::new(ChargedTopParameters {
+        J: j,
+        a: vector(r, 0.5),
+        z: Vector3::z(),
+        B: vector(r, 1.0),
+        q: between(r, -0.7, 0.7),
+        c: between(r, 0.0, 0.3),
+    }).expect("valid");
+    let (turn, m) = (r.rotation(), momentum(r));
+    let state = move |part: f64| model.begin(ChargedTopInitial {
+        Λ: turn,
+        body_momentum: BodyMomentum(m * part),
+    }).expect("valid");
+    Problem { model, state: Box::new(state), momenta: stacked(&[m]), unit: j.trace() / m.norm() }
+});
 
-judged!(
-    JudgedSprings,
-    ThreeSprings,
-    ThreeSpringsConfiguration {
-        G1: RigidMotion,
-        G2: RigidMotion,
-        G3: RigidMotion
-    },
-    |r: &mut Random| {
-        let j = [(); 3].map(|()| positive(r));
-        let model = ThreeSprings::new(ThreeSpringsParameters {
-            J1: j[0],
-            J2: j[1],
-            J3: j[2],
-            m: between(r, 0.5, 2.0),
-            k: between(r, 0.1, 1.0),
-            a: vector(r, 0.5),
-            b: vector(r, 0.5),
-        })
-        .expect("valid");
-        let places = [(); 3].map(|()| RigidMotion {
-            rotation: r.rotation(),
-            translation: vector(r, 1.0),
-        });
-        let parts = [(); 6].map(|()| momentum(r));
-        let six = move |i: usize, part: f64| {
-            BodyImpulse(SVector::<f64, 6>::from_fn(|k, _| {
-                part * if k < 3 {
-                    parts[2 * i][k]
-                } else {
-                    parts[2 * i + 1][k - 3]
-                }
-            }))
-        };
-        let unit = (0..3)
-            .map(|i| j[i].trace() / parts[2 * i].norm())
-            .fold(f64::INFINITY, f64::min);
-        let state = move |part: f64| {
-            model
-                .begin(ThreeSpringsInitial {
-                    G1: places[0],
-                    body_momentum_G1: six(0, part),
-                    G2: places[1],
-                    body_momentum_G2: six(1, part),
-                    G3: places[2],
-                    body_momentum_G3: six(2, part),
-                })
-                .expect("valid")
-        };
-        Problem {
-            model,
-            state: Box::new(state),
-            momenta: stacked(&parts),
-            unit,
-        }
-    }
-);
+judged!(JudgedSprings, ThreeSprings, ThreeSpringsConfiguration { G1: RigidMotion, G2: RigidMotion, G3: RigidMotion }, |r: &mut Random| {
+    let j = [(); 3].map(|()| positive(r));
+    let model = ThreeSprings::new(ThreeSpringsParameters {
+        J1: j[0],
+        J2: j[1],
+        J3: j[2],
+        m: between(r, 0.5, 2.0),
+        k: between(r, 0.1, 1.0),
+        a: vector(r, 0.5),
+        b: vector(r, 0.5),
+    }).expect("valid");
+    let places = [(); 3].map(|()| RigidMotion { rotation: r.rotation(), translation: vector(r, 1.0) });
+    let parts = [(); 6].map(|()| momentum(r));
+    let six = move |i: usize, part: f64| BodyImpulse(SVector::<f64, 6>::from_fn(|k, _| {
+        part * if k < 3 { parts[2 * i][k] } else { parts[2 * i + 1][k - 3] }
+    }));
+    let unit = (0..3).map(|i| j[i].trace() / parts[2 * i].norm()).fold(f64::INFINITY, f64::min);
+    let state = move |part: f64| model.begin(ThreeSpringsInitial {
+        G1: places[0],
+        body_momentum_G1: six(0, part),
+        G2: places[1],
+        body_momentum_G2: six(1, part),
+        G3: places[2],
+        body_momentum_G3: six(2, part),
+    }).expect("valid");
+    Problem { model, state: Box::new(state), momenta: stacked(&parts), unit }
+});
 
-judged!(
-    JudgedFrames,
-    Frames,
-    FramesConfiguration {
-        Λ1: Rotation,
-        Λ2: Rotation,
-        Λ3: Rotation
-    },
-    |r: &mut Random| {
-        let j = [(); 3].map(|()| positive(r));
-        let model = Frames::new(FramesParameters {
-            J1: j[0],
-            J2: j[1],
-            J3: j[2],
-            k: between(r, 0.1, 1.0),
-            c: between(r, -0.2, 0.2),
-        })
-        .expect("valid");
-        let turns = [(); 3].map(|()| r.rotation());
-        let m = [(); 3].map(|()| momentum(r));
-        let state = move |part: f64| {
-            model
-                .begin(FramesInitial {
-                    Λ1: turns[0],
-                    body_momentum_Λ1: BodyMomentum(m[0] * part),
-                    Λ2: turns[1],
-                    body_momentum_Λ2: BodyMomentum(m[1] * part),
-                    Λ3: turns[2],
-                    body_momentum_Λ3: BodyMomentum(m[2] * part),
-                })
-                .expect("valid")
-        };
-        let unit = (0..3)
-            .map(|i| j[i].trace() / m[i].norm())
-            .fold(f64::INFINITY, f64::min);
-        Problem {
-            model,
-            state: Box::new(state),
-            momenta: stacked(&m),
-            unit,
-        }
-    }
-);
+judged!(JudgedFrames, Frames, FramesConfiguration { Λ1: Rotation, Λ2: Rotation, Λ3: Rotation }, |r: &mut Random| {
+    let j = [(); 3].map(|()| positive(r));
+    let model = Frames::new(FramesParameters {
+        J1: j[0],
+        J2: j[1],
+        J3: j[2],
+        k: between(r, 0.1, 1.0),
+        c: between(r, -0.2, 0.2),
+    }).expect("valid");
+    let turns = [(); 3].map(|()| r.rotation());
+    let m = [(); 3].map(|()| momentum(r));
+    let state = move |part: f64| model.begin(FramesInitial {
+        Λ1: turns[0],
+        body_momentum_Λ1: BodyMomentum(m[0] * part),
+        Λ2: turns[1],
+        body_momentum_Λ2: BodyMomentum(m[1] * part),
+        Λ3: turns[2],
+        body_momentum_Λ3: BodyMomentum(m[2] * part),
+    }).expect("valid");
+    let unit = (0..3).map(|i| j[i].trace() / m[i].norm()).fold(f64::INFINITY, f64::min);
+    Problem { model, state: Box::new(state), momenta: stacked(&m), unit }
+});
 
-judged!(
-    JudgedVarying,
-    Varying,
-    VaryingConfiguration { Λ: Rotation },
-    |r: &mut Random| {
-        let j = positive(r);
-        let model = Varying::new(VaryingParameters {
-            J: j,
-            a: vector(r, 0.7),
-            z: Vector3::z(),
-            c: between(r, 0.0, 2.0),
-            d: between(r, 0.0, 0.3),
-        })
-        .expect("valid");
-        let (turn, m) = (r.rotation(), momentum(r));
-        let state = move |part: f64| {
-            model
-                .begin(VaryingInitial {
-                    Λ: turn,
-                    body_momentum: BodyMomentum(m * part),
-                })
-                .expect("valid")
-        };
-        Problem {
-            model,
-            state: Box::new(state),
-            momenta: stacked(&[m]),
-            unit: j.trace() / m.norm(),
-        }
-    }
-);
+judged!(JudgedVarying, Varying, VaryingConfiguration { Λ: Rotation }, |r: &mut Random| {
+    let j = positive(r);
+    let model = Varying::new(VaryingParameters {
+        J: j,
+        a: vector(r, 0.7),
+        z: Vector3::z(),
+        c: between(r, 0.0, 2.0),
+        d: between(r, 0.0, 0.3),
+    }).expect("valid");
+    let (turn, m) = (r.rotation(), momentum(r));
+    let state = move |part: f64| model.begin(VaryingInitial {
+        Λ: turn,
+        body_momentum: BodyMomentum(m * part),
+    }).expect("valid");
+    Problem { model, state: Box::new(state), momenta: stacked(&[m]), unit: j.trace() / m.norm() }
+});
 
-judged!(
-    JudgedQuaternion,
-    StiffQuaternion,
-    StiffQuaternionConfiguration { q: UnitQuaternion },
-    |r: &mut Random| {
-        let s = positive(r);
-        let model = StiffQuaternion::new(StiffQuaternionParameters {
-            S: s,
-            c: between(r, 0.1, 0.5),
-        })
-        .expect("valid");
-        let (turn, m) = (
-            UnitQuaternion::from_components(r.rotation().quaternion()).expect("unit"),
-            momentum(r),
-        );
-        let state = move |part: f64| {
-            model
-                .begin(StiffQuaternionInitial {
-                    q: turn,
-                    body_momentum: BodyMomentum(m * part),
-                })
-                .expect("valid")
-        };
-        Problem {
-            model,
-            state: Box::new(state),
-            momenta: stacked(&[m]),
-            unit: s.trace() / m.norm(),
-        }
-    }
-);
+judged!(JudgedQuaternion, StiffQuaternion, StiffQuaternionConfiguration { q: UnitQuaternion }, |r: &mut Random| {
+    let s = positive(r);
+    let model = StiffQuaternion::new(StiffQuaternionParameters { S: s, c: between(r, 0.1, 0.5) }).expect("valid");
+    let (turn, m) = (UnitQuaternion::from_components(r.rotation().quaternion()).expect("unit"), momentum(r));
+    let state = move |part: f64| model.begin(StiffQuaternionInitial {
+        q: turn,
+        body_momentum: BodyMomentum(m * part),
+    }).expect("valid");
+    Problem { model, state: Box::new(state), momenta: stacked(&[m]), unit: s.trace() / m.norm() }
+});
 
-judged!(
-    JudgedMixed,
-    MixedPair,
-    MixedPairConfiguration {
-        Λ: Rotation,
-        q: UnitQuaternion
-    },
-    |r: &mut Random| {
-        let (j, s) = (positive(r), positive(r));
-        let model = MixedPair::new(MixedPairParameters {
-            J: j,
-            S: s,
-            a: vector(r, 0.4),
-            eps: between(r, 0.0, 0.3),
-        })
-        .expect("valid");
-        let turn = UnitQuaternion::from_components(r.rotation().quaternion()).expect("unit");
-        let (other, m) = (r.rotation(), [momentum(r), momentum(r)]);
-        let state = move |part: f64| {
-            model
-                .begin(MixedPairInitial {
-                    Λ: other,
-                    body_momentum_Λ: BodyMomentum(m[0] * part),
-                    q: turn,
-                    body_momentum_q: BodyMomentum(m[1] * part),
-                })
-                .expect("valid")
-        };
-        let unit = (j.trace() / m[0].norm()).min(s.trace() / m[1].norm());
-        Problem {
-            model,
-            state: Box::new(state),
-            momenta: stacked(&m),
-            unit,
-        }
-    }
-);
+judged!(JudgedMixed, MixedPair, MixedPairConfiguration { Λ: Rotation, q: UnitQuaternion }, |r: &mut Random| {
+    let (j, s) = (positive(r), positive(r));
+    let model = MixedPair::new(MixedPairParameters {
+        J: j,
+        S: s,
+        a: vector(r, 0.4),
+        eps: between(r, 0.0, 0.3),
+    }).expect("valid");
+    let turn = UnitQuaternion::from_components(r.rotation().quaternion()).expect("unit");
+    let (other, m) = (r.rotation(), [momentum(r), momentum(r)]);
+    let state = move |part: f64| model.begin(MixedPairInitial {
+        Λ: other,
+        body_momentum_Λ: BodyMomentum(m[0] * part),
+        q: turn,
+        body_momentum_q: BodyMomentum(m[1] * part),
+    }).expect("valid");
+    let unit = (j.trace() / m[0].norm()).min(s.trace() / m[1].norm());
+    Problem { model, state: Box::new(state), momenta: stacked(&m), unit }
+});
 
 judged!(JudgedFour, StiffBody, StiffBodyConfiguration { Λ: Orthogonal<4> }, |r: &mut Random| {
     let skew = |r: &mut Random| {

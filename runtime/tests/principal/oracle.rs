@@ -40,8 +40,7 @@ fn tangent<C: Curve>(curve: &C, at: &C::E, unit: &DVector<f64>) -> DMatrix<f64> 
             xi[k] = times * DIFFERENCE * unit[k];
             curve.value(&curve.moved(at, &xi))
         };
-        let column =
-            ((f(1.0) - f(-1.0)) * 8.0 - (f(2.0) - f(-2.0))) / (12.0 * DIFFERENCE * unit[k]);
+        let column = ((f(1.0) - f(-1.0)) * 8.0 - (f(2.0) - f(-2.0))) / (12.0 * DIFFERENCE * unit[k]);
         all.set_column(k, &column);
     }
     all
@@ -49,11 +48,7 @@ fn tangent<C: Curve>(curve: &C, at: &C::E, unit: &DVector<f64>) -> DMatrix<f64> 
 
 /// Follows the curve to where the equations have the value `goal`. `unit` is what is a small move of
 /// each coordinate.
-pub fn follow<C: Curve>(
-    curve: &C,
-    goal: &DVector<f64>,
-    unit: &DVector<f64>,
-) -> Option<Followed<C::E>> {
+pub fn follow<C: Curve>(curve: &C, goal: &DVector<f64>, unit: &DVector<f64>) -> Option<Followed<C::E>> {
     let mut at = curve.rest();
     let first = curve.value(&at);
     let way = goal - &first;
@@ -96,8 +91,7 @@ pub fn follow<C: Curve>(
             }
             let there = relative(&next);
             // The tangent changes by a fifth of itself at most.
-            let changed =
-                (&inverse * &there - DMatrix::identity(there.nrows(), there.ncols())).norm();
+            let changed = (&inverse * &there - DMatrix::identity(there.nrows(), there.ncols())).norm();
             (size < 1e-8 && changed < 0.2).then_some((next, there))
         })();
         match made {
@@ -110,9 +104,5 @@ pub fn follow<C: Curve>(
     }
     let smallest = here.svd(false, false).singular_values.min();
     let share = if shortest_left { share } else { 1.0 };
-    Some(Followed {
-        end: at,
-        share,
-        smallest,
-    })
+    Some(Followed { end: at, share, smallest })
 }
