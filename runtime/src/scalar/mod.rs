@@ -4,7 +4,6 @@
 mod double;
 mod double_double;
 mod dual;
-mod enclosure;
 mod lanes;
 mod largest;
 pub(crate) mod one;
@@ -12,7 +11,6 @@ mod over;
 
 pub use double_double::DoubleDouble;
 pub use dual::Dual;
-pub use enclosure::Enclosure;
 pub use lanes::Lanes;
 pub use largest::{larger, largest};
 pub use one::InLanes;

@@ -42,8 +42,7 @@ impl Bindings {
         found.map(|(_, local)| local)
     }
 
-    /// The local that holds a letter.
-    pub fn local(&self, symbols: &Symbols, letter: Letter) -> Ident {
+    fn find(&self, symbols: &Symbols, letter: Letter) -> Ident {
         let found = self.list.iter().find(|(l, _)| *l == letter);
         found.map_or_else(
             || variable(symbols, letter.symbol),
@@ -125,7 +124,7 @@ impl Writer<'_> {
         match e.node() {
             Node::Number(q) => rational(*q),
             Node::Letter(l) => {
-                let local = self.bindings.local(self.symbols, *l);
+                let local = self.bindings.find(self.symbols, *l);
                 quote!(#local)
             }
             Node::Identity(_) => quote!(SMatrix::<T, #rows, #cols>::identity()),

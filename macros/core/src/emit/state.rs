@@ -99,10 +99,7 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
         }
         Method::LeftFactor | Method::Davenport => super::left_factor::work(d),
         Method::Newton => (
-            {
-                let (values, used) = (item(d, "Node"), g.used());
-                quote!(search: newton::Search<T, #elements, #values #used, #dimension>,)
-            },
+            quote!(search: newton::Search<T, #elements, #dimension>,),
             " The step and the last velocities, from which the next solve starts.",
         ),
     };

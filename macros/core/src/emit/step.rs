@@ -26,7 +26,6 @@ pub fn start_and_step(d: &Derivation, names: &Names) -> TokenStream {
     let start = start(d, names);
     let factor = items::factor_of_state(d);
     let access = advected_access(d, names);
-    let mut beside = TokenStream::new();
     let step = match (&d.solve.method, d.solve.riccati.first()) {
         (Method::FreeMoserVeselov, _) => free_step(d, names),
         (Method::ForcedMoserVeselov, Some(Riccati::Exact(mv))) => super::forced::step(d, names, mv),
@@ -36,18 +35,12 @@ pub fn start_and_step(d: &Derivation, names: &Names) -> TokenStream {
         (Method::LeftFactor | Method::Davenport, Some(Riccati::Exact(mv))) => {
             super::left_factor::step(d, names, mv)
         }
-        _ => {
-            let (values, step) = super::newton::step(d, names);
-            beside = values;
-            step
-        }
+        _ => super::newton::step(d, names),
     };
     let tested = super::domain::tested_step(d, names);
     let g = Generics::of(d);
     let (bound, used) = (g.bound(), g.used());
     quote! {
-        #beside
-
         impl #bound #name #used {
             #start
             #factor

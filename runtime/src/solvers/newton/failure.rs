@@ -3,7 +3,6 @@
 //! Takes the last residual and a way to try other steps; gives the error.
 
 use crate::groups::{Coordinate, Group};
-use super::Fold;
 use crate::said::{AtMost, Plain, Times, in_lane, instead};
 use crate::scalar::Real;
 use crate::solvers::largest_step::largest_step;
@@ -12,7 +11,7 @@ use core::cell::Cell;
 use core::fmt;
 
 /// What went wrong.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NewtonFailure {
     /// The residual is still too large.
     NotConverged,
@@ -20,12 +19,6 @@ pub enum NewtonFailure {
     SingularTangent,
     /// The residual became NaN or infinite.
     NotFinite,
-    /// There is no principal root: on the way from rest to the momenta of the node the tangent
-    /// becomes singular, or the equations lose their meaning.
-    Fold {
-        /// What part of the way there is.
-        share: f64,
-    },
 }
 
 /// The equations of a step that Newton's method did not solve.
@@ -35,8 +28,7 @@ pub struct NewtonError {
     pub failure: NewtonFailure,
     /// Corrections made.
     pub iterations: u8,
-    /// The residual that is largest compared with the terms of its equation, over all lanes; NaN
-    /// if any is.
+    /// The largest component of the residual, over all lanes; NaN if any is.
     pub residual: f64,
     /// What it should have come below.
     pub tolerance: f64,
@@ -66,46 +58,26 @@ impl NewtonError {
         failure: NewtonFailure,
         iterations: usize,
         residual: &[T],
-        weights: &[T],
+        tolerance: f64,
     ) -> Self {
         let (mut size, mut index, mut lane) = (0.0, 0, 0);
-        let (mut worst, mut weight) = (0.0, f64::NAN);
-        for (i, (x, w)) in residual.iter().zip(weights).enumerate() {
+        for (i, x) in residual.iter().enumerate() {
             for at in 0..T::LANES {
-                let (x, w) = (x.lane(at).abs(), w.lane(at));
-                if w * x > size || (x.is_nan() && !f64::is_nan(size)) {
-                    (size, index, lane) = (w * x, i, at);
-                    (worst, weight) = (x, w);
+                let x = x.lane(at).abs();
+                if x > size || (x.is_nan() && !f64::is_nan(size)) {
+                    (size, index, lane) = (x, i, at);
                 }
             }
         }
         Self {
             failure,
             iterations: u8::try_from(iterations).unwrap_or(u8::MAX),
-            residual: worst,
-            tolerance: super::CONVERGED_ROUNDINGS * T::EPSILON / weight,
+            residual: size,
+            tolerance,
             h: None,
             largest_step: None,
             worst: G::coordinate(index),
             lane: u8::try_from(lane).unwrap_or(u8::MAX),
-            configurations: &[],
-            tried: false,
-        }
-    }
-
-    /// No principal root.
-    #[cold]
-    #[inline(never)]
-    pub(super) fn at_fold<T: Real, G: Group<T>>(fold: Fold) -> Self {
-        Self {
-            failure: NewtonFailure::Fold { share: fold.share },
-            iterations: 0,
-            residual: 0.0,
-            tolerance: 0.0,
-            h: None,
-            largest_step: None,
-            worst: G::coordinate(fold.fastest),
-            lane: u8::try_from(fold.lane).unwrap_or(u8::MAX),
             configurations: &[],
             tried: false,
         }
@@ -186,11 +158,6 @@ impl fmt::Display for NewtonError {
             NewtonFailure::NotFinite => write!(
                 f,
                 "the residual is NaN or infinite at Newton iteration {iterations}"
-            )?,
-            NewtonFailure::Fold { share } => write!(
-                f,
-                "no velocity that follows from rest: the tangent becomes singular when {share:.6} \
-                 of the momentum is reached"
             )?,
         }
         match self.configuration() {
