@@ -1,8 +1,5 @@
-//! Scalars, groups, solvers, orders, the integration loop, and models of every group that are solved by Newton's method. One
-//! binary, since linking is most of what a test costs.
-
-// The fields of the models are Greek letters, as in the papers.
-#![allow(mixed_script_confusables)]
+//! Scalars, groups, solvers, orders and the integration loop, without the engine. One binary, since linking is most of
+//! what a test costs.
 
 mod common;
 mod composition;
@@ -13,7 +10,6 @@ mod integrate;
 mod left_factor;
 mod newton;
 mod order;
-mod principal;
 mod quaternions_and_motions;
 mod scalars;
 mod scalars_through_solvers;

@@ -3,8 +3,7 @@
 
 use super::element::{self, Bundle, Family, family};
 use super::equations::Equations;
-use super::principal::Principal;
-use super::expression::Bindings;
+use super::expression::{Bindings, program};
 use super::items::{letters_of, parameter_locals, with_transports};
 use super::names::{Names, item, own, per_configuration, tagged, variable};
 use super::sizes::Generics;
@@ -12,7 +11,8 @@ use super::step::{at, finish, here};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::carry::Carry;
-use crate::expr::{self, Expr, Shift};
+use crate::expr::{self, Expr, Letter, Shift};
+use crate::schedule;
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -25,8 +25,8 @@ fn outgoing(d: &Derivation) -> Vec<Expr> {
         .collect()
 }
 
-/// The type of what the tangent asks of a node, and `step`.
-pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
+/// `step`.
+pub fn step(d: &Derivation, names: &Names) -> TokenStream {
     let s = &d.letters.symbols;
     let bodies = d.spec.configurations.len();
     let bundle = Bundle::of(d);
@@ -36,17 +36,31 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
     let (state, work) = (item(d, "State"), item(d, "Workspace"));
     let node = names.local("node");
     let step = variable(s, d.spec.step);
-    let (trial, mu, newton, found, solved) = (
+    let (trial, mu, momentum, newton, found, solved) = (
         names.local("trial"),
         names.local("momenta"),
+        names.local("momentum"),
         names.local("iteration"),
         names.local("found"),
         names.local("solved"),
     );
     let momenta = outgoing(d);
+    let gradients: Vec<Expr> = d
+        .balances
+        .iter()
+        .map(|b| {
+            let forward: Vec<(Letter, Expr)> = d
+                .spec
+                .advected
+                .iter()
+                .map(|a| (at(a.quantity, Shift::NEXT), a.update.clone()))
+                .collect();
+            expr::substitute(s, &b.gradient, &forward)
+        })
+        .collect();
     // Everything known at the node.
     let mut bindings = Bindings::new();
-    let mut needed = letters_of(&momenta);
+    let mut needed = letters_of(momenta.iter().chain(&gradients));
     for c in &d.spec.configurations {
         if c.side == Side::Body && family(c) == Family::Rotation {
             needed.push(at(c.element, Shift::HERE));
@@ -57,6 +71,13 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
     all.extend(with_transports(d, &needed, 1));
     let parameters = parameter_locals(d, quote!(self.parameters), &all);
     let locals = here(d, names, &needed, &mut bindings);
+    let velocity = |i: usize| variable(s, d.spec.configurations[i].velocity);
+    let velocities: TokenStream = (0..bodies)
+        .map(|i| {
+            let (w, part) = (velocity(i), bundle.part(quote!(#trial), i));
+            quote!(let #w = #part.matrix();)
+        })
+        .collect();
     // Node momenta.
     let node_momenta: Vec<TokenStream> = (0..bodies)
         .map(|i| {
@@ -78,23 +99,15 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
         momenta: &mu,
     };
     let (known, equations) = solved_for.write(&momenta, &node_momenta);
-    let (at_trial, residual_body, tangent_body) = (
-        &equations.at_trial,
-        &equations.residual,
-        &equations.tangent,
-    );
-    let principal = Principal {
-        d,
-        bindings: &bindings,
-        equations: &equations,
-        momenta: &mu,
-        trial: &trial,
-    };
-    let (given, values) = (
-        principal.packed(&equations.alone.given),
-        principal.packed(&equations.alone.values),
-    );
-    let functions = principal.functions();
+    let (at_trial, residual_body, tangent_body) =
+        (equations.at_trial, equations.residual, equations.tangent);
+    // The natural size of the residual: the momenta and the gradients they are made of.
+    let p = schedule::program(s, &gradients, "t");
+    let (gradient_lets, gradient_values) = program(&p, &bindings);
+    let sizes = gradient_values
+        .iter()
+        .map(|v| quote!(length(&(#v)).magnitude()));
+    let momentum_parts = &equations.momenta;
     let remembered = quote!(work.search.remember(state.#node - 1, &#found););
     let mut after = bindings.clone();
     let matrices: TokenStream = (0..bodies)
@@ -111,50 +124,35 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
     let rest = finish(d, names, &mut after, &solved_at, remembered);
     let head = super::domain::step_head(d);
     let method = format!(" One step, in place. Solved thus: {}.", d.how_solved());
-    let step = quote! {
+    quote! {
         #[doc = #method]
         ///
         /// # Errors
-        /// When no velocity that follows from rest solves the equations: which of them fails, and
-        /// which step could be solved; the state is then unchanged.
+        /// When the iteration does not converge: which equation is worst, and which step could be
+        /// solved; the state is then unchanged.
         #[inline]
         #head(&self, state: &mut #state #used, work: &mut #work #used) -> Result<(), StepError> {
             let #step = work.h;
             #parameters
             #locals
             #known
-            let (given, values) = (#given, #values);
-            let mut #newton = work.search.begin(state.#node);
+            let #momentum = #(size_of(&#momentum_parts))+*;
+            let mut #newton = work.search.begin(state.#node, #momentum);
             let #found: newton::Solved<#elements> = loop {
                 let #trial = #newton.trial();
                 if #newton.wants_scale() {
-                    #newton.set_scale(|lane| self.rounding(#step, &given, &#mu, &#trial, lane));
+                    #velocities
+                    #gradient_lets
+                    #newton.set_scale(#(#sizes)+*);
                 }
                 #at_trial
                 if #newton.assess({ #residual_body }) {
                     #newton.set_tangent(&{ #tangent_body });
                 }
-                let failed = match #newton.correct() {
-                    newton::Progress::Continue => continue,
-                    newton::Progress::Solved(solved) => {
-                        if #newton.is_principal(&solved.element, &values) {
-                            break solved;
-                        }
-                        Ok(solved)
-                    }
-                    newton::Progress::Failed(e) => Err(e),
-                };
-                let asked = failed.as_ref().ok().map(|solved| &solved.element);
-                let traced = self.principal(#step, &given, &values, &#mu, #newton.certificate(), asked);
-                match (traced, failed) {
-                    (Ok(None), Ok(solved)) => break solved,
-                    (Ok(Some(root)), _) if #newton.restart(root) => {}
-                    (Ok(_), Err(e)) => return Err(self.refused(*state, #step, e)),
-                    (Ok(_), Ok(_)) => return Err(self.refused(*state, #step, #newton.unpolished())),
-                    (Err(fold), failed) => {
-                        let e = #newton.folded(fold, failed.err());
-                        return Err(self.refused(*state, #step, e));
-                    }
+                match #newton.correct() {
+                    newton::Progress::Continue => {}
+                    newton::Progress::Solved(solved) => break solved,
+                    newton::Progress::Failed(e) => return Err(self.refused(*state, #step, e)),
                 }
             };
             let #solved = #found.element;
@@ -172,8 +170,5 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
             });
             StepCause::from(e).at_node(state.#node)
         }
-
-        #functions
-    };
-    (principal.node_type(), step)
+    }
 }
