@@ -155,7 +155,7 @@ macro_rules! awkward_names {
                 // Members.
                 balance body_momentum edge_momentum energies energy kinetic_warning refused
                 spatial_momentum start
-                step factor CARD SOURCE
+                step factor own_parameters CARD SOURCE
                 // The prelude and the primitive types.
                 Box Clone Copy Debug Default Err None Ok Option Real Result Some String Vec alloc
                 bool clebsch core drop f64 nalgebra std str u64 usize
