@@ -179,7 +179,7 @@ pub fn probe_all(threads: u64, count: u64, input: impl Fn(u64) -> Input + Sync) 
             let probing = std::thread::Builder::new()
                 .name("probe".to_owned())
                 .stack_size(2 << 20)
-                .spawn_scoped(scope, &work);
+                .spawn_scoped(scope, work);
             assert!(probing.is_ok(), "a thread");
         }
     });
