@@ -155,10 +155,9 @@ fn errors_say_what_was_expected() {
         found: 3,
     };
     assert_eq!(error.to_string(), "`J` takes 9 numbers, found 3");
-    // A result is copied out of every step: thirteen words hold the numbers of every refusal,
-    // time and argument of a contact with the edge of a domain included.
+    // A result is copied out of every step: ten words hold the numbers of every refusal.
     let size = std::mem::size_of::<StepError>();
-    assert!(size <= 104, "{size}");
+    assert!(size <= 80, "{size}");
 }
 
 /// Fails in one way each: by a number of an invariant, of a scale or of an observable.

@@ -13,9 +13,9 @@ pub struct EnsembleError<E> {
     pub body: usize,
     /// How many bodies from this one on may be meant: 1, unless each of them would do alone, and
     /// only side by side they would not.
-    pub among: u32,
+    pub among: usize,
     /// How many bodies have failed.
-    pub failed: u32,
+    pub failed: usize,
     /// Why the first did.
     pub cause: E,
 }
@@ -28,7 +28,7 @@ impl<E: fmt::Display> fmt::Display for EnsembleError<E> {
                 f,
                 "bodies at indices {} to {}, side by side: {}",
                 self.body,
-                self.body + n as usize - 1,
+                self.body + n - 1,
                 self.cause
             )?,
         }
@@ -45,11 +45,6 @@ impl<E: std::error::Error + 'static> std::error::Error for EnsembleError<E> {
     }
 }
 
-/// A number of bodies in an error, which is kept small.
-pub(super) fn counted(bodies: usize) -> u32 {
-    u32::try_from(bodies).unwrap_or(u32::MAX)
-}
-
 /// The first failure, with the number of bodies that failed in all.
 pub(super) fn first<E>(
     failures: impl Iterator<Item = EnsembleError<E>>,
@@ -57,7 +52,7 @@ pub(super) fn first<E>(
     let mut told: Option<EnsembleError<E>> = None;
     for failure in failures {
         match &mut told {
-            Some(told) => told.failed = told.failed.saturating_add(failure.failed),
+            Some(told) => told.failed += failure.failed,
             None => told = Some(failure),
         }
     }

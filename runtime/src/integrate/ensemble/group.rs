@@ -2,7 +2,6 @@
 //! Takes as many bodies as there are lanes; advances them, and finds the one that cannot go on.
 
 use super::EnsembleError;
-use super::failure::counted;
 use crate::integrate::{Model, Stepper};
 use crate::scalar::{gather, lane};
 use crate::{Lanes, StartError, StepError};
@@ -205,13 +204,13 @@ fn told<E>(
         Some((at, cause)) => EnsembleError {
             body: first + at,
             among: 1,
-            failed: counted(1 + failures.count()),
+            failed: 1 + failures.count(),
             cause,
         },
         None => EnsembleError {
             body: first,
-            among: counted(bodies),
-            failed: counted(bodies),
+            among: bodies,
+            failed: bodies,
             cause,
         },
     }
