@@ -35,10 +35,8 @@ pub enum Met {
     },
     /// The argument of a function leaves its domain.
     Outside {
-        /// The function.
-        function: Function,
-        /// Its argument as the model writes it.
-        argument: &'static str,
+        /// The function and its argument.
+        call: &'static Call,
         /// The argument at the start of the step; on an edge, where nothing moves.
         before: f64,
         /// The argument at its end; on an edge, at the velocity of the step.
@@ -57,8 +55,8 @@ pub struct Contact {
     pub share: Option<f64>,
     /// The step that was refused.
     pub h: f64,
-    /// A shorter step from the same state that was tried and works, where one was.
-    pub works: Option<f64>,
+    /// How often the step was halved until it was tried and worked; 0 where none was found.
+    pub halvings: u8,
     /// The lane; 0 for types without lanes.
     pub lane: u8,
 }
@@ -69,7 +67,7 @@ impl Contact {
             met,
             share,
             h: h.lane(lane),
-            works: None,
+            halvings: 0,
             lane: u8::try_from(lane).unwrap_or(u8::MAX),
         }
     }
@@ -80,18 +78,23 @@ impl Contact {
         self.share.map(|s| s * self.h)
     }
 
+    /// A shorter step from the same state that was tried and works, where one was.
+    #[must_use]
+    pub fn works(&self) -> Option<f64> {
+        (self.halvings > 0).then(|| self.h * 0.5_f64.powi(i32::from(self.halvings)))
+    }
+
     /// The same with a shorter step that `try_step` can make, if halving finds one.
     #[cold]
     #[must_use]
     pub fn with_trials<T: Real>(self, h: T, try_step: impl Fn(T) -> bool) -> Self {
-        let mut share = 0.5;
-        let works = (0..20).find_map(|_| {
-            let found = try_step(h * T::from_f64(share)).then_some(share);
-            share *= 0.5;
-            found
+        let mut shorter = h;
+        let found = (1..=20).find(|_| {
+            shorter *= T::from_f64(0.5);
+            try_step(shorter)
         });
         Self {
-            works: works.map(|s| self.h * s),
+            halvings: found.unwrap_or(0),
             ..self
         }
     }
@@ -115,26 +118,22 @@ impl fmt::Display for Contact {
                 "`{configuration}` loses its inverse: its smallest singular value is {ratio:.1e} of \
                  its largest, needed {LEAST_RATIO:e}"
             )?,
-            Met::Outside {
-                function,
-                argument,
-                before,
-                ..
-            } if self.share == Some(0.0) => {
+            Met::Outside { call, before, .. } if self.share == Some(0.0) => {
                 return write!(
                     f,
-                    "`{argument}` is {before} at this node, outside the domain of {function}: \
-                     change the values of the state or the parameters"
+                    "`{}` is {before} at this node, outside the domain of {}: change the values of \
+                     the state or the parameters",
+                    call.argument, call.function
                 );
             }
             Met::Outside {
-                function,
-                argument,
+                call,
                 before,
                 after,
             } => write!(
                 f,
-                "`{argument}` leaves the domain of {function}: it goes from {before} to {after}"
+                "`{}` leaves the domain of {}: it goes from {before} to {after}",
+                call.argument, call.function
             )?,
         }
         if let Some(after) = self.after_node() {
@@ -145,7 +144,7 @@ impl fmt::Display for Contact {
                 Plain(self.h)
             )?;
         }
-        match self.works {
+        match self.works() {
             Some(works) => write!(
                 f,
                 "; a step of {} from this state was tried and can be made",
@@ -244,6 +243,15 @@ impl fmt::Display for Function {
     }
 }
 
+/// A function of something, as a model writes it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Call {
+    /// The function.
+    pub function: Function,
+    /// Its argument.
+    pub argument: &'static str,
+}
+
 /// What a function asks of its argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Domain {
@@ -286,8 +294,7 @@ impl Domain {
     #[inline]
     pub fn at_nodes<T: Real>(
         self,
-        function: Function,
-        argument: &'static str,
+        call: &'static Call,
         before: T,
         after: T,
         h: T,
@@ -303,8 +310,7 @@ impl Domain {
                 false => 0.0,
             };
             let met = Met::Outside {
-                function,
-                argument,
+                call,
                 before: from,
                 after: to,
             };
@@ -322,8 +328,7 @@ impl Domain {
     #[inline]
     pub fn on_edge<T: Real>(
         self,
-        function: Function,
-        argument: &'static str,
+        call: &'static Call,
         rest: T,
         moving: T,
         h: T,
@@ -335,8 +340,7 @@ impl Domain {
                 continue;
             }
             let met = Met::Outside {
-                function,
-                argument,
+                call,
                 before: from,
                 after: to,
             };

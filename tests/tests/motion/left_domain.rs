@@ -156,7 +156,7 @@ fn a_straight_line_through_zero_ends_at_the_contact() {
             "{error}"
         );
         // The step that is named was tried and can be made.
-        let works = contact(&error).works.expect("found");
+        let works = contact(&error).works().expect("found");
         assert!(works < h && model.workspace(&state, works).is_ok());
     }
 }
@@ -275,16 +275,15 @@ fn body() -> Matrix3<f64> {
 fn assert_met(error: &StepError, function: Function, before: f64) {
     let contact = contact(error);
     let Met::Outside {
-        function: found,
-        argument,
+        call,
         before: from,
         after,
     } = contact.met
     else {
         panic!("{error}");
     };
-    assert_eq!(found, function, "{error}");
-    assert!(argument.contains("Γ"), "{argument}");
+    assert_eq!(call.function, function, "{error}");
+    assert!(call.argument.contains("Γ"), "{error}");
     assert!(
         (from - before).abs() < 1e-14 && from > 0.0 && after < 0.0,
         "{error}"

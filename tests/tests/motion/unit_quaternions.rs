@@ -315,7 +315,7 @@ fn the_bound_of_a_ball_is_met_and_the_axis_named() {
         let said = e.to_string();
         for words in [
             "3.000000 times",
-            &format!("component {axis}"),
+            &format!("component {}", axis + 1),
             "reduce the step size from",
         ] {
             assert!(said.contains(words), "{said}");

@@ -80,6 +80,14 @@ struct Guard {
     place: Place,
 }
 
+impl Guard {
+    /// The function and its argument, as the runtime names them.
+    fn call(&self, d: &Derivation) -> TokenStream {
+        let (function, argument) = (self.function.tokens(), text(d, &self.argument));
+        quote!(&domain::Call { function: #function, argument: #argument })
+    }
+}
+
 /// All guards of a model, in the order in which its Lagrangian names them.
 fn guards(d: &Derivation) -> Vec<Guard> {
     let mut all = Vec::new();
@@ -334,10 +342,9 @@ fn at_nodes(d: &Derivation, names: &Names, list: &[Guard]) -> (TokenStream, Toke
     let step = variable(s, d.spec.step);
     let count = Literal::usize_unsuffixed(list.len());
     let tests = list.iter().enumerate().map(|(i, g)| {
-        let (domain, function, argument) =
-            (g.domain.tokens(), g.function.tokens(), text(d, &g.argument));
+        let (domain, call) = (g.domain.tokens(), g.call(d));
         let i = Literal::usize_unsuffixed(i);
-        quote!(#domain.at_nodes(#function, #argument, #before[#i], #after[#i], #step)?;)
+        quote!(#domain.at_nodes(#call, #before[#i], #after[#i], #step)?;)
     });
     let nodes = quote! {{
         let (#before, #after) = (self.domain_arguments(#before, #step), self.domain_arguments(#after, #step));
@@ -395,9 +402,8 @@ fn on_edge(d: &Derivation, names: &Names, list: &[Guard]) -> TokenStream {
     let p = schedule::program(s, &wanted, "t");
     let (lets, values) = program(&p, &bindings);
     let tests = list.iter().zip(values.chunks(2)).map(|(g, pair)| {
-        let (domain, function, argument) =
-            (g.domain.tokens(), g.function.tokens(), text(d, &g.argument));
-        quote!(#domain.on_edge(#function, #argument, #(#pair),*, #step)?;)
+        let (domain, call) = (g.domain.tokens(), g.call(d));
+        quote!(#domain.on_edge(#call, #(#pair),*, #step)?;)
     });
     quote! {{
         #parameters

@@ -256,11 +256,11 @@ fn square(r: &[f64]) -> f64 {
 fn damped(columns: &[Vec<f64>], r: &[f64], damping: f64) -> Vec<f64> {
     let n = columns.len();
     let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
-    let largest = columns.iter().map(|c| dot(c, c)).fold(0.0, f64::max);
+    let total = columns.iter().map(|c| dot(c, c)).sum::<f64>();
     let mut rows: Vec<Vec<f64>> = (0..n)
         .map(|i| {
             let mut row: Vec<f64> = (0..n).map(|j| dot(&columns[i], &columns[j])).collect();
-            row[i] += damping * largest + f64::MIN_POSITIVE;
+            row[i] += damping * total + f64::MIN_POSITIVE;
             row.push(-dot(&columns[i], r));
             row
         })
