@@ -42,7 +42,7 @@ pub struct Outcome {
     pub invariant: &'static Invariant,
     /// Drift of each component.
     pub components: Vec<Drift>,
-    /// Largest natural scale of a component.
+    /// Largest natural scale of a component, see [`Drift`].
     pub scale: f64,
     /// Largest drift of a component at any node, relative to its scale or absolute without one.
     pub worst: f64,
@@ -182,10 +182,7 @@ pub fn table(outcomes: &[Outcome], width: Option<usize>) -> String {
     let mut text = crate::columns::aligned(&rows, &[1, 2, 3, 4], width);
     let absolute: Vec<String> = outcomes.iter().filter_map(Outcome::absolute).collect();
     if !absolute.is_empty() {
-        let said = format!(
-            "absolute, as the scale at the start is zero: {}",
-            absolute.join(", ")
-        );
+        let said = format!("absolute, as the scale is zero: {}", absolute.join(", "));
         text.push('\n');
         text.push_str(&paragraph(&said, width, 2));
     }

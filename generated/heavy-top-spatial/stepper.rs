@@ -737,7 +737,7 @@ pub mod heavy_top_spatial {
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
-            let state = &self.start;
+            let state = &self.state;
             let out = put(
                 out,
                 [{
@@ -752,7 +752,8 @@ pub mod heavy_top_spatial {
                     let Λ = state.Λ.matrix();
                     let χ_reference = state.χ;
                     let χ = Λ * χ_reference;
-                    let value: T = χ.dot(&χ).sqrt() * χ.dot(&χ).sqrt();
+                    let t1 = χ.dot(&χ).sqrt();
+                    let value: T = t1 * t1;
                     value
                 }; 1usize],
             );
@@ -763,7 +764,7 @@ pub mod heavy_top_spatial {
                     let Λ = state.Λ.matrix();
                     let J_reference = state.J;
                     let J = Λ * (J_reference * Λ.transpose());
-                    let value: T = (J * J).trace().sqrt();
+                    let value: T = T::from_f64(3.0).sqrt() * (J * J).trace().sqrt();
                     value
                 }; 1usize],
             );
@@ -774,7 +775,8 @@ pub mod heavy_top_spatial {
                     let Λ = state.Λ.matrix();
                     let J_reference = state.J;
                     let J = Λ * (J_reference * Λ.transpose());
-                    let value: T = (J * J).trace().sqrt() * (J * J).trace().sqrt();
+                    let t1 = (J * J).trace().sqrt();
+                    let value: T = t1 * t1;
                     value
                 }; 1usize],
             );
@@ -785,22 +787,8 @@ pub mod heavy_top_spatial {
                     let Λ = state.Λ.matrix();
                     let J_reference = state.J;
                     let J = Λ * (J_reference * Λ.transpose());
-                    let value: T = (J * J).trace().sqrt() * (J * J).trace().sqrt()
-                        * (J * J).trace().sqrt();
-                    value
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let Λ = state.Λ.matrix();
-                    let J_reference = state.J;
-                    let J = Λ * (J_reference * Λ.transpose());
-                    let χ_reference = state.χ;
-                    let χ = Λ * χ_reference;
-                    let value: T = χ.dot(&χ).sqrt() * (J * J).trace().sqrt()
-                        * χ.dot(&χ).sqrt();
+                    let t1 = (J * J).trace().sqrt();
+                    let value: T = t1 * t1 * t1;
                     value
                 }; 1usize],
             );
@@ -813,8 +801,23 @@ pub mod heavy_top_spatial {
                     let J = Λ * (J_reference * Λ.transpose());
                     let χ_reference = state.χ;
                     let χ = Λ * χ_reference;
-                    let value: T = χ.dot(&χ).sqrt() * (J * J).trace().sqrt()
-                        * (J * J).trace().sqrt() * χ.dot(&χ).sqrt();
+                    let t1 = χ.dot(&χ).sqrt();
+                    let value: T = t1 * (J * J).trace().sqrt() * t1;
+                    value
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let Λ = state.Λ.matrix();
+                    let J_reference = state.J;
+                    let J = Λ * (J_reference * Λ.transpose());
+                    let χ_reference = state.χ;
+                    let χ = Λ * χ_reference;
+                    let t1 = χ.dot(&χ).sqrt();
+                    let t2 = (J * J).trace().sqrt();
+                    let value: T = t1 * t2 * t2 * t1;
                     value
                 }; 1usize],
             );

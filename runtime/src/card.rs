@@ -273,7 +273,9 @@ pub trait Trajectory: Send {
     /// Writes all components of all invariants.
     fn invariants(&self, out: &mut [f64]);
 
-    /// Writes one natural scale per component of the invariants, taken at node 0; positive.
+    /// Writes one size per component of the invariants: the sum of the absolute values of the terms it
+    /// is made of at this node, or a bound of it; not negative. The largest along a run is the natural
+    /// scale of the component, see [`Drift`](crate::integrate::Drift).
     fn scales(&self, out: &mut [f64]);
 }
 

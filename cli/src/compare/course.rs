@@ -22,11 +22,15 @@ pub(crate) struct Course {
     pub stopped: Option<(u64, String)>,
 }
 
-/// The generated stepper's course.
+/// The generated stepper's course, and the natural scale of each component of the invariants along it.
 ///
 /// # Errors
 /// Usage or failed, as for a run.
-pub(crate) fn generated(card: &Card, plan: &Plan, progress: bool) -> Result<Course, Failure> {
+pub(crate) fn generated(
+    card: &Card,
+    plan: &Plan,
+    progress: bool,
+) -> Result<(Course, Vec<f64>), Failure> {
     let mut trajectory = plan.open(card)?;
     let mut recorder = Recorder::new(card, plan.case.steps, true, progress);
     let done = integrate::run(
@@ -36,11 +40,12 @@ pub(crate) fn generated(card: &Card, plan: &Plan, progress: bool) -> Result<Cour
         &mut recorder,
     );
     let record = recorder.finish().unwrap_or_default();
-    done.map_err(|error| Failure::Failed(error.to_string()))?;
-    Ok(Course {
+    let done = done.map_err(|error| Failure::Failed(error.to_string()))?;
+    let course = Course {
         record,
         stopped: None,
-    })
+    };
+    Ok((course, done.drifts.iter().map(|d| d.scale).collect()))
 }
 
 /// Another method's course.
@@ -97,7 +102,7 @@ pub(crate) fn extrapolated(card: &Card, plan: &Plan) -> Result<(Course, f64), Fa
         finer.case.h = plan.case.h / f64::from(part);
         finer.case.steps = plan.case.steps * u64::from(part);
         finer.every = plan.every * u64::from(part);
-        records.push(generated(card, &finer, false)?.record);
+        records.push(generated(card, &finer, false)?.0.record);
     }
     // The error of a reversible scheme has even powers of the step only.
     let power = if card.reversible { 2 } else { 1 };

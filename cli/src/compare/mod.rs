@@ -104,9 +104,8 @@ pub(crate) fn against_all(card: &Card, plan: &Plan, progress: bool) -> Result<Co
             plan.every
         )));
     }
-    let mut scales = vec![0.0; card.invariant_count()];
-    plan.open(card)?.scales(&mut scales);
-    let own = course::generated(card, plan, progress)?;
+    // One measure for all methods: the natural scales along the generated stepper's course.
+    let (own, scales) = course::generated(card, plan, progress)?;
     let mut others: Vec<(Offer, Course)> = offers
         .into_iter()
         .map(|offer| (offer, course::other(card, plan, &offer)))
@@ -198,10 +197,13 @@ pub(crate) fn against_all(card: &Card, plan: &Plan, progress: bool) -> Result<Co
 /// The generated stepper otherwise than asked for. A case may be too stiff for the longest steps of a
 /// composition, or beyond a solver's reach: then its line says so.
 fn course_or_why(card: &Card, plan: &Plan) -> Course {
-    course::generated(card, plan, false).unwrap_or_else(|why| Course {
-        record: Record::default(),
-        stopped: Some((0, why.to_string())),
-    })
+    match course::generated(card, plan, false) {
+        Ok((course, _)) => course,
+        Err(why) => Course {
+            record: Record::default(),
+            stopped: Some((0, why.to_string())),
+        },
+    }
 }
 
 fn print(

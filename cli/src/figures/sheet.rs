@@ -56,7 +56,9 @@ impl<'a> Subject<'a> {
     /// # Errors
     /// Failed: it gives up.
     pub fn generated(&self) -> Result<Record, Failure> {
-        Ok(course::generated(self.card(), &self.plan(), false)?.record)
+        Ok(course::generated(self.card(), &self.plan(), false)?
+            .0
+            .record)
     }
 
     /// What the reference of the model says.

@@ -29,7 +29,7 @@ fn a_run_prints_what_was_derived_and_a_table() {
         "case swing: Swings \"widely\".\n",
         "h = 0.05, 2000 steps, to time 100\n",
         "invariant     scale  max drift  final drift  bound  verdict       formula\n",
-        "energy     5.625e-1",
+        "energy     5.627e-1",
         "across      1.000e0          0            0  1e-12  within bound  (μ₁, μ₂)\n",
     ] {
         assert!(

@@ -11,5 +11,6 @@ mod npz;
 mod own_models;
 mod rest;
 mod results;
+mod scales;
 mod staging;
 mod terminal;

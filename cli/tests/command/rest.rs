@@ -41,7 +41,7 @@ fn no_model_exceeds_a_bound_from_rest_or_without_forces() {
             assert!(!done.out.contains("NaN"), "{what}: {}", done.out);
             // A free body at rest has nothing that has a size.
             if name == "free-body" && rest {
-                let words = "absolute, as the scale at the start is zero: ";
+                let words = "absolute, as the scale is zero: ";
                 assert!(done.out.contains(words), "{what}: {}", done.out);
             }
         }
@@ -58,7 +58,7 @@ fn absolute_drifts_are_said_and_judged() {
     let run = ["run", "harmonic-rotor", "--case", &file, "--steps", "20"];
     let done = clebsch(&run);
     assert_eq!(done.code, 0, "{}", done.err);
-    let words = "\nabsolute, as the scale at the start is zero: energy\n";
+    let words = "\nabsolute, as the scale is zero: energy\n";
     assert!(done.out.contains(words), "{}", done.out);
     let done = clebsch(&[&run[..], &["--json"]].concat());
     let json: serde_json::Value = serde_json::from_str(&done.out).expect("JSON");

@@ -1,34 +1,34 @@
 //! How far an invariant has moved: relative to its natural scale, absolute where that scale is zero.
-//! Takes its value at every step; gives the largest and the last deviation.
+//! Takes its value and its scale at every step; gives the largest and the last deviation.
 
 use crate::scalar::larger;
 
 /// The drift of one component of one invariant since the run began.
 ///
-/// A body at rest has no momentum to compare with, one without weight no potential: an invariant
-/// whose natural scale is zero (or below the smallest normal number, where quotients have no digits)
-/// is measured by its change itself, in its own unit. [`Drift::is_absolute`] says so.
+/// **Natural scale**, for every invariant, exact or bounded: the sum of the absolute values of the
+/// terms that its value is made of, the largest over all nodes of the run. Rounding is that of the
+/// terms, not of their sum: an angular momentum `R m + x × p` about a fixed origin is known to the
+/// rounding of `|m| + |x| |p|`, which grows with the way the body goes while the sum stays; a body
+/// released from rest has neither momentum nor kinetic energy at node 0. Terms of a product are
+/// bounded by the product of the lengths of its factors; those of the energy are the kinetic and the
+/// potential energy.
+///
+/// A body that stays at rest has no momentum to compare with, one without weight no potential: an
+/// invariant whose natural scale is zero (or below the smallest normal number, where quotients have
+/// no digits) at every node is measured by its change itself, in its own unit.
+/// [`Drift::is_absolute`] says so.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drift {
     /// `max |I_k - I_0| / scale` over every step, or `max |I_k - I_0|` where the scale is zero; NaN
-    /// once a value was NaN.
+    /// once a value or a scale was NaN.
     pub worst: f64,
     /// `(I_k - I_0) / scale` at the last step, with its sign, or `I_k - I_0` where the scale is zero.
     pub last: f64,
-    /// The natural scale of the component, as the trajectory gives it at node 0.
+    /// The natural scale of the component, in its own unit.
     pub scale: f64,
 }
 
 impl Drift {
-    /// No drift yet.
-    pub(super) fn at_rest(scale: f64) -> Self {
-        Self {
-            worst: 0.0,
-            last: 0.0,
-            scale,
-        }
-    }
-
     /// The drift that a deviation `I_k - I_0` makes, with its sign: divided by the natural scale, or
     /// as it is where the scale is zero. NaN if either number is.
     #[inline]
@@ -46,23 +46,59 @@ impl Drift {
     pub fn is_absolute(&self) -> bool {
         self.scale.abs() < f64::MIN_POSITIVE
     }
+}
 
-    /// Takes in the deviation `I_k - I_0`.
+/// What was seen of one component so far: its scale is known when the run is over.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Deviation {
+    /// The value at the start.
+    start: f64,
+    /// The largest `|I_k - I_0|`.
+    largest: f64,
+    /// The last `I_k - I_0`.
+    last: f64,
+    /// The largest sum of the absolute values of the terms.
+    scale: f64,
+}
+
+impl Deviation {
+    /// None yet, from the value and the size of its terms at the start.
+    pub(super) fn none(start: f64, terms: f64) -> Self {
+        Self {
+            start,
+            largest: 0.0,
+            last: 0.0,
+            scale: terms,
+        }
+    }
+
+    /// Takes in the value at a node, and the size of its terms there.
     #[inline]
-    pub(super) fn record(&mut self, deviation: f64) {
-        self.last = Self::of(deviation, self.scale);
-        self.worst = larger(self.worst, self.last.abs());
+    pub(super) fn record(&mut self, value: f64, terms: f64) {
+        self.last = value - self.start;
+        self.largest = larger(self.largest, self.last.abs());
+        self.scale = larger(self.scale, terms);
+    }
+
+    /// The drift up to here.
+    pub(super) fn drift(&self) -> Drift {
+        Drift {
+            worst: Drift::of(self.largest, self.scale),
+            last: Drift::of(self.last, self.scale),
+            scale: self.scale,
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Drift;
+    use super::{Deviation, Drift};
 
-    fn after(scale: f64, deviations: &[f64]) -> Drift {
-        let mut drift = Drift::at_rest(scale);
-        deviations.iter().for_each(|d| drift.record(*d));
-        drift
+    /// The drift after these deviations, the size of the terms the same throughout.
+    fn after(terms: f64, deviations: &[f64]) -> Drift {
+        let mut seen = Deviation::none(0.0, terms);
+        deviations.iter().for_each(|d| seen.record(*d, terms));
+        seen.drift()
     }
 
     #[test]
@@ -80,6 +116,19 @@ mod tests {
     }
 
     #[test]
+    fn the_scale_is_the_largest_of_the_run() {
+        // From rest: nothing at the start, most in the middle.
+        let mut seen = Deviation::none(10.0, 0.0);
+        for (value, terms) in [(10.5, 1.0), (9.0, 8.0), (10.25, 4.0)] {
+            seen.record(value, terms);
+        }
+        let drift = seen.drift();
+        assert_eq!((drift.worst, drift.last), (0.125, 0.03125));
+        assert_eq!(drift.scale, 8.0);
+        assert!(!drift.is_absolute());
+    }
+
+    #[test]
     fn nan_enters_anywhere_and_stays() {
         for deviations in [
             [f64::NAN, 0.0, 9.0],
@@ -91,5 +140,9 @@ mod tests {
             }
         }
         assert!(after(f64::NAN, &[0.0]).worst.is_nan());
+        let mut seen = Deviation::none(0.0, 1.0);
+        seen.record(0.0, f64::NAN);
+        seen.record(0.0, 1.0);
+        assert!(seen.drift().worst.is_nan());
     }
 }

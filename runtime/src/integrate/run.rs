@@ -3,6 +3,7 @@
 //! step that failed or of the number that is none.
 
 use super::Drift;
+use super::drift::Deviation;
 use crate::StepError;
 use crate::card::Trajectory;
 use core::fmt;
@@ -38,7 +39,7 @@ pub struct Summary {
 pub enum Watched {
     /// A component of an invariant, looked at on every node.
     Invariant,
-    /// The natural scale of a component of an invariant, looked at on the first node.
+    /// The natural scale of a component of an invariant, looked at on every node.
     Scale,
     /// A number of an observable, looked at on every node that is sampled.
     Observable,
@@ -151,8 +152,8 @@ impl From<NotFinite> for RunError {
 ///
 /// # Errors
 /// The first [`StepError`]; the trajectory then stands at the node before it, and the observer has
-/// all samples up to there. The first number that is NaN or infinite: of an invariant at any node,
-/// of an observable at a node that is sampled; the trajectory stands there, and the observer has all
+/// all samples up to there. The first number that is NaN or infinite: of an invariant or its natural
+/// scale at any node, of an observable at a node that is sampled; the trajectory stands there, and the observer has all
 /// samples before it.
 pub fn run(
     trajectory: &mut dyn Trajectory,
@@ -168,8 +169,8 @@ pub fn run(
     trajectory.invariants(&mut invariants);
     finite(trajectory, Watched::Invariant, &invariants)?;
     finite(trajectory, Watched::Scale, &scales)?;
-    let initial = invariants.clone();
-    let mut drifts: Vec<Drift> = scales.iter().map(|scale| Drift::at_rest(*scale)).collect();
+    let seen = invariants.iter().zip(&scales);
+    let mut seen: Vec<Deviation> = seen.map(|(start, s)| Deviation::none(*start, *s)).collect();
 
     let stride = (steps / 200).clamp(1, 1024);
     let mut samples = 1;
@@ -185,8 +186,10 @@ pub fn run(
         trajectory.step()?;
         trajectory.invariants(&mut invariants);
         finite(trajectory, Watched::Invariant, &invariants)?;
-        for ((drift, now), then) in drifts.iter_mut().zip(&invariants).zip(&initial) {
-            drift.record(now - then);
+        trajectory.scales(&mut scales);
+        finite(trajectory, Watched::Scale, &scales)?;
+        for ((seen, now), scale) in seen.iter_mut().zip(&invariants).zip(&scales) {
+            seen.record(*now, *scale);
         }
         if done == steps || (every != 0 && done % every == 0) {
             trajectory.observe(&mut observables);
@@ -208,7 +211,7 @@ pub fn run(
         node: trajectory.node(),
         time: trajectory.time(),
         samples,
-        drifts,
+        drifts: seen.iter().map(Deviation::drift).collect(),
     })
 }
 

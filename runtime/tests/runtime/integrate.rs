@@ -266,6 +266,11 @@ fn a_number_that_is_none_stops_the_run_at_its_node() {
                 "at node 0 (time 0) component 2 of the natural scale of the invariant `pair` is ",
             ),
             (
+                Watched::Scale,
+                5,
+                "at node 5 (time 2.5) component 2 of the natural scale of the invariant `pair` is ",
+            ),
+            (
                 Watched::Observable,
                 4,
                 "at node 4 (time 2) entry (2, 3) of `Λ` is ",
@@ -320,38 +325,64 @@ impl Observer for NoShape<'_> {
     }
 }
 
-#[test]
-fn an_invariant_of_scale_zero_is_measured_absolutely() {
-    struct Resting(Counter);
-    impl Trajectory for Resting {
-        fn node(&self) -> u64 {
-            self.0.node()
-        }
-        fn time(&self) -> f64 {
-            self.0.time()
-        }
-        fn step(&mut self) -> Result<(), StepError> {
-            self.0.step()
-        }
-        fn card(&self) -> &'static Card {
-            &CARD
-        }
-        fn observe(&self, out: &mut [f64]) {
-            self.0.observe(out);
-        }
-        fn invariants(&self, out: &mut [f64]) {
-            out.fill(if self.0.node == 5 { -1e-15 } else { 0.0 });
-        }
-        fn scales(&self, out: &mut [f64]) {
-            out.fill(0.0);
-        }
+/// An invariant that is off by this at node 5, of terms whose size is this factor times the node.
+struct Resting {
+    counter: Counter,
+    off: f64,
+    growth: f64,
+}
+
+impl Trajectory for Resting {
+    fn node(&self) -> u64 {
+        self.counter.node()
     }
-    let mut resting = Resting(Counter {
-        node: 0,
-        stop: u64::MAX,
-    });
-    let summary = run(&mut resting, 10, 4, &mut Notes::default()).expect("runs");
-    let drift = summary.drifts[0];
-    assert_eq!((drift.worst, drift.last, drift.scale), (1e-15, 0.0, 0.0));
-    assert!(drift.is_absolute());
+    fn time(&self) -> f64 {
+        self.counter.time()
+    }
+    fn step(&mut self) -> Result<(), StepError> {
+        self.counter.step()
+    }
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+    fn observe(&self, out: &mut [f64]) {
+        self.counter.observe(out);
+    }
+    fn invariants(&self, out: &mut [f64]) {
+        out.fill(if self.counter.node == 5 {
+            self.off
+        } else {
+            0.0
+        });
+    }
+    fn scales(&self, out: &mut [f64]) {
+        out.fill(self.growth * self.counter.node as f64);
+    }
+}
+
+#[test]
+fn an_invariant_is_measured_by_its_largest_terms_or_absolutely() {
+    let drift = |growth: f64| {
+        let counter = Counter {
+            node: 0,
+            stop: u64::MAX,
+        };
+        let mut resting = Resting {
+            counter,
+            off: -5e-15,
+            growth,
+        };
+        let summary = run(&mut resting, 10, 4, &mut Notes::default()).expect("runs");
+        summary.drifts[0]
+    };
+    let none = drift(0.0);
+    assert_eq!((none.worst, none.last, none.scale), (5e-15, 0.0, 0.0));
+    assert!(none.is_absolute());
+    // Nothing at the start, most at the end, at node 10.
+    let most = drift(1.0);
+    assert_eq!(
+        (most.worst, most.last, most.scale),
+        (5e-15 / 10.0, 0.0, 10.0)
+    );
+    assert!(!most.is_absolute());
 }

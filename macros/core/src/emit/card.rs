@@ -217,12 +217,8 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                 let sizes = super::invariants::spectrum_scales(d, names);
                 scales.extend(quote!(let out = put(out, #sizes);));
             } else {
-                let size = scale(d, names, v);
-                // Arrays of a length that is computed from a named size are not stable Rust.
-                scales.extend(match d.spec.dimensions.is_empty() {
-                    true => quote!(let out = put(out, [#size; #rows]);),
-                    false => quote!(let out = put(out, ::core::iter::repeat_n(#size, #rows));),
-                });
+                let sizes = scale(d, names, v);
+                scales.extend(quote!(let out = put(out, #sizes);));
             }
             quote! {
                 Invariant { name: #label, formula: #text, rows: #rows, conserved: Conserved::#conserved }
@@ -281,6 +277,9 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
             }
         }
     });
+    // Where the trajectory started: only the warning looks at it again.
+    let start = judged.is_some().then(|| quote!(start: #state #plain));
+    let started = judged.is_some().then(|| quote!(start: state));
     let orders = match (preprocessed, d.reversible) {
         (true, _) => quote!(&[2, 4, 6, 8, 10]),
         (false, true) => quote!(&[2, 4, 6, 8]),
@@ -295,7 +294,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                 let order = preprocessing_order(settings, Self::CARD.orders)?;
                 let (state, work) = model.start_of_order(initial, settings.h, order)?;
                 let work = if settings.compensated { work.compensated() } else { work };
-                Ok(Box::new(#trajectory #turbofish { model, state, work, start: state }))
+                Ok(Box::new(#trajectory #turbofish { model, state, work, #started }))
             },
         )
     } else {
@@ -310,7 +309,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
             quote! {
                 let state = model.at_node_0(initial)?;
                 let steps = Steps::#of_order(&model, &state, settings, Self::CARD.orders)?;
-                Ok(Box::new(#trajectory #turbofish { model, state, steps, h: settings.h, start: state }))
+                Ok(Box::new(#trajectory #turbofish { model, state, steps, h: settings.h, #started }))
             },
         )
     };
@@ -320,7 +319,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
             model: #name #plain,
             state: #state #plain,
             #work,
-            start: #state #plain,
+            #start
         }
 
         impl #bound Trajectory for #trajectory #used {
@@ -342,7 +341,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                 let _ = out;
             }
             fn scales(&self, out: &mut [f64]) {
-                let state = &self.start;
+                let state = &self.state;
                 #scales
                 let _ = out;
             }

@@ -221,14 +221,20 @@ pub fn invariants(d: &Derivation, names: &Names) -> TokenStream {
     quote!(impl #bound #name #used { #functions })
 }
 
-/// The scale of an invariant as a value of type `T`.
+/// The scales of all components of an invariant, as something to iterate over.
 pub fn scale(d: &Derivation, names: &Names, v: &Invariant) -> TokenStream {
+    let rows = rows(d, v);
+    // Arrays of a length that is computed from a named size are not stable Rust.
+    let alike = |value: TokenStream| match d.spec.dimensions.is_empty() {
+        true => quote!([#value; #rows]),
+        false => quote!(::core::iter::repeat_n(#value, #rows)),
+    };
     let s = &d.letters.symbols;
     let Some(e) = &v.scale else {
-        return quote!({
+        return alike(quote!({
             let (kinetic, potential) = self.model.energies(state);
             kinetic.abs() + potential.abs()
-        });
+        }));
     };
     let needed = letters_of([e]);
     let all = with_transports(d, &needed, 0);
@@ -236,11 +242,14 @@ pub fn scale(d: &Derivation, names: &Names, v: &Invariant) -> TokenStream {
     let mut bindings = Bindings::new();
     let locals = here(d, names, &needed, &mut bindings);
     let mu = momenta(d, &needed, &mut bindings);
-    let value = Writer {
-        symbols: s,
-        bindings: &bindings,
-    }
-    .write(e);
+    let p = schedule::program(s, std::slice::from_ref(e), "t");
+    let (lets, values) = program(&p, &bindings);
+    let (value, t) = (&values[0], ty(s, e.shape()));
     // Scales are taken on plain numbers.
-    quote!({ type T = f64; #parameters #locals #mu let value: T = #value; value })
+    let value =
+        quote!({ type T = f64; #parameters #locals #mu #lets let value: #t = #value; value });
+    match e.shape().is_scalar() {
+        true => alike(value),
+        false => quote!(rows(#value)),
+    }
 }

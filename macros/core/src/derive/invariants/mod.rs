@@ -76,7 +76,8 @@ pub struct Invariant {
     /// Its value by node momenta, advected quantities, group elements and parameters. The energy
     /// has none: it is evaluated from the limit.
     pub value: Option<Expr>,
-    /// Its natural scale, as a number.
+    /// The sum of the absolute values of its terms, or a bound of it: a number, or a vector of the
+    /// shape of its value where components are of different units. The energy has none, see `value`.
     pub scale: Option<Expr>,
     /// Whether it is conserved exactly, or only oscillates.
     pub exact: bool,

@@ -54,8 +54,10 @@ pub(super) struct Motion {
     pub(super) sort: Sort,
     /// Its momentum.
     pub(super) value: Expr,
-    /// The natural scale of it.
+    /// The size of its terms.
     pub(super) scale: Expr,
+    /// The same component by component, where they are of different units.
+    pub(super) scales: Option<Expr>,
     /// Whether the motions before span it.
     pub(super) spanned: bool,
 }
@@ -114,16 +116,27 @@ fn parts(x: &Inputs, i: usize, way: Way) -> (Expr, Expr) {
     }
 }
 
-/// What the momentum of a rigid motion grows with: its angular part is a sum of two that both grow
-/// with the distance of the body.
-pub(super) fn with_lever(x: &Inputs, i: usize, m: &Expr) -> Expr {
+/// Sizes of the terms of the angular and of the linear momentum of a rigid motion. About the origin of
+/// space the angular one is that about the body's own origin and that of the linear momentum, which
+/// both grow when the body travels, while their sum stays.
+fn sizes(x: &Inputs, i: usize, way: Way) -> [Expr; 2] {
     let s = &x.letters.symbols;
-    let place = expr::column(s, &expr::here(s, x.spec.configurations[i].element));
-    let (_, linear) = parts(x, i, Way::Space);
-    expr::add(
-        length(x, m),
-        expr::mul(length(x, &place), length(x, &linear)),
-    )
+    let c = &x.spec.configurations[i];
+    let mu = expr::here(s, x.letters.node_momentum[i]);
+    let own = length(x, &bracket::angular(s, &mu));
+    let linear = length(x, &bracket::linear(s, &mu));
+    if way == Way::Body && c.side == Side::Body {
+        return [own, linear];
+    }
+    let place = expr::column(s, &expr::here(s, c.element));
+    let lever = expr::mul(length(x, &place), linear.clone());
+    [expr::add(own, lever), linear]
+}
+
+/// A vector whose three components are one.
+fn ones() -> Expr {
+    let units = (0..3).map(|axis| expr::unit(THREE, axis));
+    expr::sum(units.collect::<Vec<_>>(), Shape::vector(THREE))
 }
 
 /// All motions of all configurations; those as seen from space first.
@@ -151,12 +164,17 @@ fn of_configuration(x: &Inputs, i: usize, way: Way, out: &mut Vec<Motion>) {
     let c = &x.spec.configurations[i];
     let mut push = |sort: Sort, value: Expr, scale: Option<Expr>, spanned: bool| {
         let scale = scale.unwrap_or_else(|| length(x, &value));
+        let scales = (sort == Sort::Rigid).then(|| {
+            let [angular, linear] = sizes(x, i, way).map(|size| expr::mul(ones(), size));
+            expr::stacked(angular, linear)
+        });
         out.push(Motion {
             configuration: i,
             way,
             sort,
             value,
             scale,
+            scales,
             spanned,
         });
     };
@@ -166,13 +184,11 @@ fn of_configuration(x: &Inputs, i: usize, way: Way, out: &mut Vec<Motion>) {
     };
     match (c.group, way) {
         (Group::RigidMotions, Way::Space | Way::Body) => {
-            let angular = match way {
-                Way::Space => with_lever(x, i, &m),
-                _ => length(x, &m),
-            };
-            push(Sort::Rigid, m.clone(), None, true);
+            let [angular, linear] = sizes(x, i, way);
+            let both = expr::add(angular.clone(), linear.clone());
+            push(Sort::Rigid, m, Some(both), true);
             let (a, l) = parts(x, i, way);
-            push(Sort::Linear, l, Some(length(x, &m)), false);
+            push(Sort::Linear, l, Some(linear), false);
             push(Sort::Angular, a, Some(angular), false);
         }
         (Group::RigidMotions, Way::Spin) => {
@@ -184,14 +200,16 @@ fn of_configuration(x: &Inputs, i: usize, way: Way, out: &mut Vec<Motion>) {
                 Side::Spatial => expr::sub(angular, expr::cross(expr::column(s, &g), linear)),
             };
             // The state keeps the moment about the origin of space, of which this is a part.
-            push(Sort::Angular, value, Some(with_lever(x, i, &m)), false);
+            let [angular, _] = sizes(x, i, Way::Space);
+            push(Sort::Angular, value, Some(angular), false);
         }
         (Group::RigidMotions, Way::About(p)) => {
             let place = expr::here(s, p);
             let (angular, linear) = parts(x, i, Way::Space);
             let value = expr::sub(angular, expr::cross(place.clone(), linear));
-            let far = expr::mul(length(x, &place), length(x, &m));
-            let scale = expr::add(with_lever(x, i, &m), far);
+            let [own, weight] = sizes(x, i, Way::Space);
+            let far = expr::mul(length(x, &place), weight);
+            let scale = expr::add(own, far);
             push(Sort::Angular, value, Some(scale), true);
         }
         (Group::SpecialOrthogonal(THREE) | Group::UnitQuaternions, Way::Space | Way::Body) => {

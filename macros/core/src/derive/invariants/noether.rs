@@ -276,14 +276,14 @@ impl<'a, 's> Search<'a, 's> {
         if self.passages.iter().all(nothing) {
             return;
         }
-        let mut scale = scale(terms);
+        let (mut size, each) = (scale(terms), scales(terms));
         let strict = is_conserved(self.passages, &value);
         if !strict {
             let Some(d) = difference::difference(x, self.passages, terms) else {
                 return;
             };
             let parts = summands_of(&d).into_iter().map(|t| length(x, &t));
-            scale = expr::sum(parts.chain([scale]), Shape::SCALAR);
+            size = expr::sum(parts.chain([size]), Shape::SCALAR);
             value = expr::sub(value, d);
             if !is_conserved(self.passages, &value) {
                 return;
@@ -313,7 +313,7 @@ impl<'a, 's> Search<'a, 's> {
             kind,
             family: Family::Noether,
             value: Some(value),
-            scale: Some(scale),
+            scale: each.filter(|_| strict).or(Some(size)),
             exact: true,
             reason: reason(x, terms, strict),
         };
@@ -362,6 +362,19 @@ pub(super) fn combined(x: &Inputs, terms: &[Term], of: impl Fn(&Motion) -> Expr)
     expr::sum(parts, shape)
 }
 
+/// Sizes of the terms, component by component, of whole momenta that have them.
+fn scales(terms: &[Term]) -> Option<Expr> {
+    let parts = terms.iter().map(|t| {
+        let own = t.motion.scales.clone().filter(|_| t.reading.is_whole())?;
+        let times = crate::algebra::Rational::integer(t.times.abs());
+        Some(expr::scale(times, own))
+    });
+    let parts: Vec<Expr> = parts.collect::<Option<_>>()?;
+    let shape = parts.first()?.shape();
+    Some(expr::sum(parts, shape))
+}
+
+/// The size of the terms, one for all components.
 fn scale(terms: &[Term]) -> Expr {
     let parts = terms.iter().map(|t| {
         let times = crate::algebra::Rational::integer(t.times.abs());

@@ -67,10 +67,15 @@ pub(super) fn candidates(x: &Inputs, passages: &[Passage]) -> Vec<Candidate> {
     };
     let trace = |word: &[&Piece]| -> Option<Candidate> {
         let (name, value) = chain(word);
+        // The sum of n entries is at most √n times the length; of a product, that of the lengths.
+        let entries = match word {
+            [_] => length(x, &expr::identity(value.shape().rows)),
+            _ => expr::integer(1),
+        };
         value.shape().is_square().then(|| Candidate {
             name: format!("trace_{name}"),
             value: expr::trace(value),
-            scale: sizes(word),
+            scale: expr::mul(entries, sizes(word)),
         })
     };
     let pairs = |out: &mut Vec<Candidate>, middle: &[&Piece]| {
@@ -128,10 +133,16 @@ pub(super) fn candidates(x: &Inputs, passages: &[Passage]) -> Vec<Candidate> {
     out.extend(circulations(x));
     out.extend(across(x, &vectors));
     for m in matrices.iter().filter(|m| m.value.shape().is_square()) {
+        let value = expr::det(m.value.clone());
+        let scale = match m.value.shape().rows {
+            Dim::Fixed(n) => expr::power(m.size.clone(), Rational::integer(n.into())),
+            // A power of a number that has only a name: the value itself.
+            Dim::Named(_) => length(x, &value),
+        };
         out.push(Candidate {
             name: format!("det_{}", m.name),
-            value: expr::det(m.value.clone()),
-            scale: m.size.clone(),
+            value,
+            scale,
         });
     }
     out.truncate(MOST);
@@ -512,13 +523,14 @@ fn circulations(x: &Inputs) -> Vec<Candidate> {
             let form = expr::here(s, a.quantity);
             let inverse = expr::inverse(s, form.clone());
             let skew = |e: Expr| expr::part(Part::Skew, e);
+            let sizes = [&mu, &form, &inverse].map(|e| length(x, e));
+            let size = expr::product(sizes);
             let images = [
                 expr::mul(form.clone(), skew(expr::mul(inverse.clone(), mu.clone()))),
                 expr::mul(skew(expr::mul(mu.clone(), inverse.clone())), form.clone()),
                 expr::mul(inverse.clone(), skew(expr::mul(form.clone(), mu.clone()))),
                 expr::mul(skew(expr::mul(mu.clone(), form.clone())), inverse),
             ];
-            let size = length(x, &mu);
             for power in [2i64, 4] {
                 for k in &images {
                     let word = (0..power).map(|_| k.clone()).collect::<Vec<_>>();

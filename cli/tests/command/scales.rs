@@ -1,0 +1,126 @@
+//! The natural scale of an invariant: the sum of the absolute values of its terms, the largest along the run. What is
+//! only rounding of the terms exceeds no bound, whatever the terms were at the start.
+
+use super::common::{Folder, on};
+use clebsch_cli::gallery::Gallery;
+use serde_json::Value;
+
+fn json(gallery: &Gallery, arguments: &[&str]) -> (u8, Value) {
+    let done = on(gallery, &[arguments, &["--json"]].concat());
+    let json = serde_json::from_str(&done.out).unwrap_or_else(|e| panic!("{e}: {}", done.err));
+    (done.code, json)
+}
+
+fn invariant<'a>(json: &'a Value, name: &str) -> &'a Value {
+    let list = json["results"]["invariants"].as_array().expect("a list");
+    let found = list.iter().find(|one| one["name"] == name);
+    found.unwrap_or_else(|| panic!("no invariant {name}"))
+}
+
+fn number(value: &Value) -> f64 {
+    value
+        .as_f64()
+        .unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+/// Bodies that go a thousand lengths away: of the angular momentum about the origin only a thousandth is left of its
+/// two terms, and it is known to their rounding.
+#[test]
+fn an_angular_momentum_about_the_origin_has_the_scale_of_the_lever_arm_reached() {
+    let name = "spatial_momentum_angular_Z";
+    for case in ["ellipsoid", "screw", "floating"] {
+        let steps = "100000";
+        let run = [
+            "run",
+            "kirchhoff-body",
+            "--case",
+            case,
+            "--h",
+            "0.1",
+            "--steps",
+            steps,
+        ];
+        let folder = Folder::new(&format!("lever_{case}"));
+        let out = folder.path("out");
+        let (code, json) = json(&Gallery::shipped(), &[&run[..], &["--out", &out]].concat());
+        assert_eq!(code, 0, "{case}: {}", invariant(&json, name));
+        // The distance at the end times the linear momentum across the vertical, in whose direction it is.
+        let text = std::fs::read_to_string(format!("{out}/trajectory.csv")).expect("a file");
+        let mut lines = text.lines();
+        let names: Vec<&str> = lines.next().expect("names").split(',').collect();
+        let last: Vec<f64> = lines
+            .last()
+            .expect("a sample")
+            .split(',')
+            .map(|n| n.parse().expect("a number"))
+            .collect();
+        let at = |name: &str| last[names.iter().position(|n| *n == name).expect("a column")];
+        let length = |of: [&str; 3]| of.map(at).iter().map(|x| x * x).sum::<f64>().sqrt();
+        let away = length(["G_14", "G_24", "G_34"]);
+        let linear = length(["body_momentum_4", "body_momentum_5", "body_momentum_6"]);
+        let scale = number(&invariant(&json, name)["scale"]);
+        assert!(away > 1e3, "{case}: {away}");
+        assert!(scale > away * linear, "{case}: {scale} < {away} * {linear}");
+        // The other term is of the size of the start, and the body is farthest at the end.
+        assert!(scale < away * linear + 2.0, "{case}: {scale}");
+    }
+}
+
+/// A top released from rest with its axis horizontal has neither kinetic nor potential energy at first.
+#[test]
+fn the_energy_of_a_top_released_from_rest_has_the_scale_of_its_swing() {
+    let mut gallery = Gallery::shipped();
+    gallery.entries.retain(|e| e.card.kebab == "heavy-top");
+    let entry = &mut gallery.entries[0];
+    entry.cases.truncate(1);
+    let case = &mut entry.cases[0];
+    case.initial[0] = vec![0.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0];
+    case.initial[1] = vec![0.0; 3];
+    let (code, json) = json(
+        &gallery,
+        &["run", "heavy-top", "--h", "0.01", "--steps", "2000"],
+    );
+    assert_eq!(code, 0, "{json}");
+    let energy = invariant(&json, "energy");
+    assert_eq!(energy["absolute"], false, "{energy}");
+    // It falls by the length of its axis, from 0 to -1, and the kinetic energy is then 1.
+    let scale = number(&energy["scale"]);
+    assert!((scale - 2.0).abs() < 1e-3, "{energy}");
+    // A relative drift of order h squared: that of the largest swing, not of the first node.
+    assert!(number(&energy["worst_drift"]) < 1e-4, "{energy}");
+}
+
+/// The sum of the absolute values of the terms is not less than the value, at any node of any shipped case.
+#[test]
+fn no_value_is_larger_than_its_scale() {
+    let gallery = Gallery::shipped();
+    let mut compared = 0;
+    for entry in &gallery.entries {
+        for case in &entry.cases {
+            let card = entry.card_of(case);
+            let settings = clebsch::card::Settings::step(case.h);
+            let opened = (card.open)(&case.parameters, &case.initial, settings);
+            let mut motion = opened.unwrap_or_else(|e| panic!("{}: {e}", case.name));
+            let mut values = vec![0.0; card.invariant_count()];
+            let mut scales = values.clone();
+            for _ in 0..50 {
+                motion
+                    .step()
+                    .unwrap_or_else(|e| panic!("{}: {e}", case.name));
+                motion.invariants(&mut values);
+                motion.scales(&mut scales);
+                for (value, scale) in values.iter().zip(&scales) {
+                    // Lengths are products of a few roots: their rounding is some 1e-15.
+                    let enough = value.abs() <= scale * (1.0 + 1e-14);
+                    assert!(
+                        enough,
+                        "{} {}: {values:?} {scales:?}",
+                        card.kebab, case.name
+                    );
+                    compared += 1;
+                }
+            }
+        }
+    }
+    assert!(compared > 1000, "{compared}");
+}
