@@ -654,7 +654,7 @@ pub mod body_in_quadratic_field {
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
-            let state = &self.state;
+            let state = &self.start;
             let out = put(
                 out,
                 [{
@@ -681,8 +681,7 @@ pub mod body_in_quadratic_field {
                     let Λ = state.Λ.matrix();
                     let Γ_reference = state.Γ;
                     let Γ = Λ.tr_mul(&Γ_reference);
-                    let t1 = Γ.dot(&Γ).sqrt();
-                    let value: T = t1 * t1;
+                    let value: T = Γ.dot(&Γ).sqrt() * Γ.dot(&Γ).sqrt();
                     value
                 }; 1usize],
             );

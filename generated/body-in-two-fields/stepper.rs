@@ -663,7 +663,7 @@ pub mod body_in_two_fields {
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
-            let state = &self.state;
+            let state = &self.start;
             let out = put(
                 out,
                 [{
@@ -678,8 +678,7 @@ pub mod body_in_two_fields {
                     let BodyInTwoFieldsParameters { z, .. } = self.model.parameters;
                     let Λ = state.Λ.matrix();
                     let Γ = Λ.tr_mul(&z);
-                    let t1 = Γ.dot(&Γ).sqrt();
-                    let value: T = t1 * t1;
+                    let value: T = Γ.dot(&Γ).sqrt() * Γ.dot(&Γ).sqrt();
                     value
                 }; 1usize],
             );
@@ -702,8 +701,7 @@ pub mod body_in_two_fields {
                     let BodyInTwoFieldsParameters { b, .. } = self.model.parameters;
                     let Λ = state.Λ.matrix();
                     let B = Λ.tr_mul(&b);
-                    let t1 = B.dot(&B).sqrt();
-                    let value: T = t1 * t1;
+                    let value: T = B.dot(&B).sqrt() * B.dot(&B).sqrt();
                     value
                 }; 1usize],
             );

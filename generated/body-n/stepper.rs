@@ -449,7 +449,7 @@ pub mod body_n {
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
-            let state = &self.state;
+            let state = &self.start;
             let out = put(
                 out,
                 ::core::iter::repeat_n(
@@ -472,8 +472,8 @@ pub mod body_n {
                     {
                         type T = f64;
                         let μ = state.body_momentum().0;
-                        let t1 = (-(μ * μ).trace()).sqrt();
-                        let value: T = t1 * t1;
+                        let value: T = (-(μ * μ).trace()).sqrt()
+                            * (-(μ * μ).trace()).sqrt();
                         value
                     },
                     1usize,
@@ -485,8 +485,9 @@ pub mod body_n {
                     {
                         type T = f64;
                         let μ = state.body_momentum().0;
-                        let t1 = (-(μ * μ).trace()).sqrt();
-                        let value: T = t1 * t1 * t1 * t1;
+                        let value: T = (-(μ * μ).trace()).sqrt()
+                            * (-(μ * μ).trace()).sqrt() * (-(μ * μ).trace()).sqrt()
+                            * (-(μ * μ).trace()).sqrt();
                         value
                     },
                     1usize,
@@ -498,8 +499,10 @@ pub mod body_n {
                     {
                         type T = f64;
                         let μ = state.body_momentum().0;
-                        let t1 = (-(μ * μ).trace()).sqrt();
-                        let value: T = t1 * t1 * t1 * t1 * t1 * t1;
+                        let value: T = (-(μ * μ).trace()).sqrt()
+                            * (-(μ * μ).trace()).sqrt() * (-(μ * μ).trace()).sqrt()
+                            * (-(μ * μ).trace()).sqrt() * (-(μ * μ).trace()).sqrt()
+                            * (-(μ * μ).trace()).sqrt();
                         value
                     },
                     1usize,
@@ -511,8 +514,11 @@ pub mod body_n {
                     {
                         type T = f64;
                         let μ = state.body_momentum().0;
-                        let t1 = (-(μ * μ).trace()).sqrt();
-                        let value: T = t1 * t1 * t1 * t1 * t1 * t1 * t1 * t1;
+                        let value: T = (-(μ * μ).trace()).sqrt()
+                            * (-(μ * μ).trace()).sqrt() * (-(μ * μ).trace()).sqrt()
+                            * (-(μ * μ).trace()).sqrt() * (-(μ * μ).trace()).sqrt()
+                            * (-(μ * μ).trace()).sqrt() * (-(μ * μ).trace()).sqrt()
+                            * (-(μ * μ).trace()).sqrt();
                         value
                     },
                     1usize,

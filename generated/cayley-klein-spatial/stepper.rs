@@ -543,7 +543,7 @@ pub mod cayley_klein_spatial {
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
-            let state = &self.state;
+            let state = &self.start;
             let out = put(
                 out,
                 [{
@@ -568,7 +568,7 @@ pub mod cayley_klein_spatial {
                     let I_reference = state.I;
                     let I = quaternion_rotation(&q)
                         * (I_reference * quaternion_rotation(&q).transpose());
-                    let value: T = T::from_f64(3.0).sqrt() * (I * I).trace().sqrt();
+                    let value: T = (I * I).trace().sqrt();
                     value
                 }; 1usize],
             );
@@ -580,8 +580,7 @@ pub mod cayley_klein_spatial {
                     let I_reference = state.I;
                     let I = quaternion_rotation(&q)
                         * (I_reference * quaternion_rotation(&q).transpose());
-                    let t1 = (I * I).trace().sqrt();
-                    let value: T = t1 * t1;
+                    let value: T = (I * I).trace().sqrt() * (I * I).trace().sqrt();
                     value
                 }; 1usize],
             );
@@ -593,8 +592,8 @@ pub mod cayley_klein_spatial {
                     let I_reference = state.I;
                     let I = quaternion_rotation(&q)
                         * (I_reference * quaternion_rotation(&q).transpose());
-                    let t1 = (I * I).trace().sqrt();
-                    let value: T = t1 * t1 * t1;
+                    let value: T = (I * I).trace().sqrt() * (I * I).trace().sqrt()
+                        * (I * I).trace().sqrt();
                     value
                 }; 1usize],
             );

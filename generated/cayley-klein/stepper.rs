@@ -466,7 +466,7 @@ pub mod cayley_klein {
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
-            let state = &self.state;
+            let state = &self.start;
             let out = put(
                 out,
                 [{
@@ -480,8 +480,9 @@ pub mod cayley_klein {
                     type T = f64;
                     let q = state.q.matrix();
                     let μ = state.body_momentum().0;
-                    let t1 = quaternion_rotation(&q) * μ;
-                    let value: T = t1.dot(&t1).sqrt();
+                    let value: T = (quaternion_rotation(&q) * μ)
+                        .dot(&(quaternion_rotation(&q) * μ))
+                        .sqrt();
                     value
                 }; 3usize],
             );
@@ -490,8 +491,7 @@ pub mod cayley_klein {
                 [{
                     type T = f64;
                     let μ = state.body_momentum().0;
-                    let t1 = μ.dot(&μ).sqrt();
-                    let value: T = t1 * t1;
+                    let value: T = μ.dot(&μ).sqrt() * μ.dot(&μ).sqrt();
                     value
                 }; 1usize],
             );

@@ -743,7 +743,7 @@ pub mod coupled_bodies {
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
-            let state = &self.state;
+            let state = &self.start;
             let out = put(
                 out,
                 [{
@@ -759,9 +759,8 @@ pub mod coupled_bodies {
                     let Λ2 = state.Λ2.matrix();
                     let μ1 = state.body_momentum_Λ1().0;
                     let μ2 = state.body_momentum_Λ2().0;
-                    let t1 = Λ1 * μ1;
-                    let t2 = Λ2 * μ2;
-                    let value: T = t1.dot(&t1).sqrt() + t2.dot(&t2).sqrt();
+                    let value: T = (Λ1 * μ1).dot(&(Λ1 * μ1)).sqrt()
+                        + (Λ2 * μ2).dot(&(Λ2 * μ2)).sqrt();
                     value
                 }; 3usize],
             );
@@ -771,8 +770,8 @@ pub mod coupled_bodies {
                     type T = f64;
                     let μ1 = state.body_momentum_Λ1().0;
                     let μ2 = state.body_momentum_Λ2().0;
-                    let t1 = μ1.dot(&μ1).sqrt() + μ2.dot(&μ2).sqrt();
-                    let value: T = t1 * t1;
+                    let value: T = (μ1.dot(&μ1).sqrt() + μ2.dot(&μ2).sqrt())
+                        * (μ1.dot(&μ1).sqrt() + μ2.dot(&μ2).sqrt());
                     value
                 }; 1usize],
             );

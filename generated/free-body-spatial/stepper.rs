@@ -539,7 +539,7 @@ pub mod free_body_spatial {
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
-            let state = &self.state;
+            let state = &self.start;
             let out = put(
                 out,
                 [{
@@ -563,7 +563,7 @@ pub mod free_body_spatial {
                     let Λ = state.Λ.matrix();
                     let J_reference = state.J;
                     let J = Λ * (J_reference * Λ.transpose());
-                    let value: T = T::from_f64(3.0).sqrt() * (J * J).trace().sqrt();
+                    let value: T = (J * J).trace().sqrt();
                     value
                 }; 1usize],
             );
@@ -574,8 +574,7 @@ pub mod free_body_spatial {
                     let Λ = state.Λ.matrix();
                     let J_reference = state.J;
                     let J = Λ * (J_reference * Λ.transpose());
-                    let t1 = (J * J).trace().sqrt();
-                    let value: T = t1 * t1;
+                    let value: T = (J * J).trace().sqrt() * (J * J).trace().sqrt();
                     value
                 }; 1usize],
             );
@@ -586,8 +585,8 @@ pub mod free_body_spatial {
                     let Λ = state.Λ.matrix();
                     let J_reference = state.J;
                     let J = Λ * (J_reference * Λ.transpose());
-                    let t1 = (J * J).trace().sqrt();
-                    let value: T = t1 * t1 * t1;
+                    let value: T = (J * J).trace().sqrt() * (J * J).trace().sqrt()
+                        * (J * J).trace().sqrt();
                     value
                 }; 1usize],
             );

@@ -455,7 +455,7 @@ pub mod free_body {
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
-            let state = &self.state;
+            let state = &self.start;
             let out = put(
                 out,
                 [{
@@ -469,8 +469,7 @@ pub mod free_body {
                     type T = f64;
                     let Λ = state.Λ.matrix();
                     let μ = state.body_momentum().0;
-                    let t1 = Λ * μ;
-                    let value: T = t1.dot(&t1).sqrt();
+                    let value: T = (Λ * μ).dot(&(Λ * μ)).sqrt();
                     value
                 }; 3usize],
             );
@@ -479,8 +478,7 @@ pub mod free_body {
                 [{
                     type T = f64;
                     let μ = state.body_momentum().0;
-                    let t1 = μ.dot(&μ).sqrt();
-                    let value: T = t1 * t1;
+                    let value: T = μ.dot(&μ).sqrt() * μ.dot(&μ).sqrt();
                     value
                 }; 1usize],
             );

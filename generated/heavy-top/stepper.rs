@@ -611,7 +611,7 @@ pub mod heavy_top {
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
-            let state = &self.state;
+            let state = &self.start;
             let out = put(
                 out,
                 [{
@@ -638,8 +638,7 @@ pub mod heavy_top {
                     let HeavyTopParameters { z, .. } = self.model.parameters;
                     let Λ = state.Λ.matrix();
                     let Γ = Λ.tr_mul(&z);
-                    let t1 = Γ.dot(&Γ).sqrt();
-                    let value: T = t1 * t1;
+                    let value: T = Γ.dot(&Γ).sqrt() * Γ.dot(&Γ).sqrt();
                     value
                 }; 1usize],
             );

@@ -917,7 +917,7 @@ pub mod kirchhoff_body {
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
-            let state = &self.state;
+            let state = &self.start;
             let out = put(
                 out,
                 [{
@@ -932,9 +932,12 @@ pub mod kirchhoff_body {
                     let KirchhoffBodyParameters { Z, .. } = self.model.parameters;
                     let G = state.G.matrix();
                     let P = G.tr_mul(&Z);
-                    let t1 = rows_from::<T, 4, 3, 1>(&P, 0);
-                    let t2 = t1.dot(&t1).sqrt();
-                    let value: T = t2 * t2;
+                    let value: T = (rows_from::<T, 4, 3, 1>(&P, 0))
+                        .dot(&(rows_from::<T, 4, 3, 1>(&P, 0)))
+                        .sqrt()
+                        * (rows_from::<T, 4, 3, 1>(&P, 0))
+                            .dot(&(rows_from::<T, 4, 3, 1>(&P, 0)))
+                            .sqrt();
                     value
                 }; 1usize],
             );
@@ -946,10 +949,18 @@ pub mod kirchhoff_body {
                     let G = state.G.matrix();
                     let P = G.tr_mul(&Z);
                     let μ = state.body_momentum().0;
-                    let t1 = rows_from::<T, 6, 3, 1>(&μ, 3);
-                    let t2 = rows_from::<T, 4, 3, 1>(&P, 0);
-                    let value: T = (t1.dot(&t1).sqrt() * t2.dot(&t2).sqrt())
-                        * (t1.dot(&t1).sqrt() * t2.dot(&t2).sqrt());
+                    let value: T = ((rows_from::<T, 6, 3, 1>(&μ, 3))
+                        .dot(&(rows_from::<T, 6, 3, 1>(&μ, 3)))
+                        .sqrt()
+                        * (rows_from::<T, 4, 3, 1>(&P, 0))
+                            .dot(&(rows_from::<T, 4, 3, 1>(&P, 0)))
+                            .sqrt())
+                        * ((rows_from::<T, 6, 3, 1>(&μ, 3))
+                            .dot(&(rows_from::<T, 6, 3, 1>(&μ, 3)))
+                            .sqrt()
+                            * (rows_from::<T, 4, 3, 1>(&P, 0))
+                                .dot(&(rows_from::<T, 4, 3, 1>(&P, 0)))
+                                .sqrt());
                     value
                 }; 1usize],
             );
@@ -958,10 +969,55 @@ pub mod kirchhoff_body {
                 [{
                     type T = f64;
                     let KirchhoffBodyParameters { Z, .. } = self.model.parameters;
+                    let G = state.G.matrix();
                     let μ = state.body_momentum().0;
-                    let t1 = rows_from::<T, 6, 3, 1>(&μ, 3);
-                    let t2 = rows_from::<T, 4, 3, 1>(&Z, 0);
-                    let value: T = t1.dot(&t1).sqrt() * t2.dot(&t2).sqrt();
+                    let value: T = (into_rows::<
+                        T,
+                        6,
+                        3,
+                        1,
+                    >(
+                        &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 0)
+                            + motion_translation(&G)
+                                .cross(
+                                    &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
+                                )),
+                        0,
+                    )
+                        + into_rows::<
+                            T,
+                            6,
+                            3,
+                            1,
+                        >(&(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)), 3))
+                        .dot(
+                            &(into_rows::<
+                                T,
+                                6,
+                                3,
+                                1,
+                            >(
+                                &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 0)
+                                    + motion_translation(&G)
+                                        .cross(
+                                            &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
+                                        )),
+                                0,
+                            )
+                                + into_rows::<
+                                    T,
+                                    6,
+                                    3,
+                                    1,
+                                >(
+                                    &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
+                                    3,
+                                )),
+                        )
+                        .sqrt()
+                        * (rows_from::<T, 4, 3, 1>(&Z, 0))
+                            .dot(&(rows_from::<T, 4, 3, 1>(&Z, 0)))
+                            .sqrt();
                     value
                 }; 3 * 1],
             );
@@ -972,12 +1028,59 @@ pub mod kirchhoff_body {
                     let KirchhoffBodyParameters { Z, .. } = self.model.parameters;
                     let G = state.G.matrix();
                     let μ = state.body_momentum().0;
-                    let t1 = rows_from::<T, 6, 3, 1>(&μ, 0);
-                    let t2 = motion_translation(&G);
-                    let t3 = rows_from::<T, 6, 3, 1>(&μ, 3);
-                    let t4 = rows_from::<T, 4, 3, 1>(&Z, 0);
-                    let value: T = (t1.dot(&t1).sqrt()
-                        + t2.dot(&t2).sqrt() * t3.dot(&t3).sqrt()) * t4.dot(&t4).sqrt();
+                    let value: T = ((into_rows::<
+                        T,
+                        6,
+                        3,
+                        1,
+                    >(
+                        &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 0)
+                            + motion_translation(&G)
+                                .cross(
+                                    &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
+                                )),
+                        0,
+                    )
+                        + into_rows::<
+                            T,
+                            6,
+                            3,
+                            1,
+                        >(&(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)), 3))
+                        .dot(
+                            &(into_rows::<
+                                T,
+                                6,
+                                3,
+                                1,
+                            >(
+                                &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 0)
+                                    + motion_translation(&G)
+                                        .cross(
+                                            &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
+                                        )),
+                                0,
+                            )
+                                + into_rows::<
+                                    T,
+                                    6,
+                                    3,
+                                    1,
+                                >(
+                                    &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
+                                    3,
+                                )),
+                        )
+                        .sqrt()
+                        + motion_translation(&G).dot(&motion_translation(&G)).sqrt()
+                            * (motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3))
+                                .dot(
+                                    &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
+                                )
+                                .sqrt())
+                        * (rows_from::<T, 4, 3, 1>(&Z, 0))
+                            .dot(&(rows_from::<T, 4, 3, 1>(&Z, 0)))
+                            .sqrt();
                     value
                 }; 1usize],
             );
