@@ -58,7 +58,8 @@ fn run() -> Command {
             ),
         "Write every N-th node; by default such that at most 10000 are written. Invariants are \
          watched at every node in any case",
-        "Write trajectory.csv, trajectory.npz, run.json and plots into this new folder",
+        "Write trajectory.csv, trajectory.npz, run.json and plots into this new folder; when a step \
+         fails, those of the run up to there, which run.json and the plots say",
     )
 }
 

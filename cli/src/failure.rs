@@ -6,7 +6,8 @@ use std::io;
 
 /// Everything was done and every bounded invariant stayed within its bound.
 pub const DONE: u8 = 0;
-/// The solver or the file system failed.
+/// The solver or the file system failed. Of a run that stopped after its first step the results up to
+/// there are written.
 pub const FAILED: u8 = 1;
 /// The request cannot be understood: arguments, names, case files, values.
 pub const USAGE: u8 = 2;

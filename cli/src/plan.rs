@@ -129,6 +129,7 @@ impl Plan {
             OpenError::Start(StartError::Refused(cause)) => {
                 Failure::Failed(format!("cannot take the first step: {cause}"))
             }
+            OpenError::Kinetic { .. } => Failure::Failed(error.to_string()),
             OpenError::Solver { .. } => {
                 let name = self.solver.map_or("", Method::name);
                 Failure::Usage(format!("--solver {}: {error}", shown(name)))

@@ -3,12 +3,13 @@
 
 use crate::Streams;
 use crate::asked;
-use crate::failure::{BOUND_LEFT, DONE, Failure};
+use crate::failure::{BOUND_LEFT, DONE, FAILED, Failure};
 use crate::gallery::Gallery;
 use crate::list::first_line;
-use crate::output::{self, Finished, Staging, run_json};
+use crate::output::{self, Finished, Staging, Stopped, run_json};
 use crate::plain::shown;
 use crate::plan::Plan;
+use crate::plots::axis;
 use crate::record::{LARGEST, Record, Recorder, Samples};
 use crate::verdict::{Verdict, judge, table};
 use crate::width::paragraph;
@@ -24,11 +25,12 @@ const OPENING: u64 = 10_000;
 /// Where the texts of a summary begin, behind their names.
 const SUMMARY: usize = 21;
 
-/// Runs the command; the code is 0, or 3 when an invariant exceeded its bound.
+/// Runs the command; the code is 0, 3 when an invariant exceeded its bound, or 1 when a step after the
+/// first failed: what was computed before is shown and written then, marked as stopped.
 ///
 /// # Errors
-/// Usage for a wrong request, failed when the solver or the file system gives up. Nothing is left
-/// behind then.
+/// Usage for a wrong request, failed when the solver refuses the first step or the file system gives
+/// up. Nothing is left behind then.
 pub fn run(
     gallery: &Gallery,
     matches: &ArgMatches,
@@ -64,64 +66,109 @@ pub fn run(
     }
     let steps = plan.case.steps;
     let mut recorder = Recorder::new(card, steps, staging.is_some(), streams.progress);
-    let summary = integrate::run(trajectory.as_mut(), steps, plan.every, &mut recorder);
+    let (summary, stopped) =
+        integrate::run_until_stopped(trajectory.as_mut(), steps, plan.every, &mut recorder);
     let record = recorder.finish();
-    let summary = summary.map_err(|error| Failure::Failed(error.to_string()))?;
+    let stopped = match stopped {
+        // A run without a step has no results.
+        Some(error) if summary.steps == 0 => return Err(Failure::Failed(error.to_string())),
+        error => error.map(|error| Stopped {
+            node: summary.node,
+            time: summary.time,
+            why: error.to_string(),
+        }),
+    };
     let outcomes = judge(card, &plan.case, &summary.drifts);
     let run = Finished {
         card,
         plan: &plan,
         outcomes: &outcomes,
         samples: summary.samples,
+        residual: summary.residual,
+        stopped,
     };
-    let mut files = Vec::new();
-    if let (Some(staging), Some(record)) = (staging, record) {
-        let opening = opening(card, &plan)?;
+    let (mut files, mut place) = (Vec::new(), None);
+    if let (Some(staging), Some(record), Some(target)) = (staging, record, target) {
+        let opening = opening(card, &plan, summary.steps)?;
         files = output::write(&staging, &run, &Samples { record, opening })?;
-        staging.commit()?;
+        place = Some(match &run.stopped {
+            None => staging.commit().map(|()| shown(target))?,
+            Some(_) => staging.commit_stopped()?,
+        });
     }
     let left: Vec<&str> = outcomes
         .iter()
         .filter(|outcome| outcome.verdict == Verdict::Left)
         .map(|outcome| outcome.invariant.name)
         .collect();
-    let code = if left.is_empty() { DONE } else { BOUND_LEFT };
+    let code = match (&run.stopped, left.is_empty()) {
+        (Some(_), _) => FAILED,
+        (None, true) => DONE,
+        (None, false) => BOUND_LEFT,
+    };
     if as_json {
         let mut object = run_json(&run, &files);
         if let Some(object) = object.as_object_mut() {
-            object.insert(
-                "out".to_owned(),
-                json!(target.map(|path| path.display().to_string())),
-            );
+            let place = place.as_ref().map(ToString::to_string);
+            object.insert("out".to_owned(), json!(place));
             object.insert("exit_code".to_owned(), json!(code));
             object.insert(
                 "warnings".to_owned(),
                 json!(warning.iter().collect::<Vec<_>>()),
             );
+            if let Some(stopped) = &run.stopped {
+                object.insert("error".to_owned(), json!(stopped.why));
+            }
         }
         writeln!(streams.out, "{object}")?;
     } else {
         write!(streams.out, "\n{}", table(&outcomes, streams.width))?;
-        if let Some(target) = target {
-            let written = format!("written to {}: {}", shown(target), files.join(", "));
+        for line in below_the_table(&run, summary.steps) {
+            write!(streams.out, "\n{}", paragraph(&line, streams.width, 2))?;
+        }
+        if let Some(place) = place {
+            let written = format!("written to {place}: {}", files.join(", "));
             let written = paragraph(&written, streams.width, 2);
             write!(streams.out, "\n{written}")?;
         }
     }
+    // The exit code says the same; nothing is lost when these cannot be written.
     if !left.is_empty() {
         let message = format!("bound exceeded: {}", left.join(", "));
-        // The exit code says the same; nothing is lost when this cannot be written.
         let _ = writeln!(streams.err, "clebsch: {message}");
+    }
+    if let Some(stopped) = &run.stopped {
+        let _ = writeln!(streams.err, "clebsch: {}", stopped.why);
     }
     Ok(code)
 }
 
+/// How well the steps are solved, and whether all were made.
+fn below_the_table(run: &Finished<'_>, made: u64) -> Vec<String> {
+    let residual = run.residual.map(|residual| {
+        format!(
+            "discrete Euler-Lagrange equations: max relative residual {:.3e}, at node {}",
+            residual.relative, residual.node
+        )
+    });
+    let stopped = run.stopped.as_ref().map(|stopped| {
+        let time = axis::plain(stopped.time);
+        let steps = run.plan.case.steps;
+        format!(
+            "stopped at node {} (time {time}), after {made} of {steps} steps: these are the results \
+             up to there",
+            stopped.node
+        )
+    });
+    residual.into_iter().chain(stopped).collect()
+}
+
 /// The beginning of the run once more with every node kept, when the record is sparser than that.
-fn opening(card: &Card, plan: &Plan) -> Result<Option<Record>, Failure> {
+fn opening(card: &Card, plan: &Plan, made: u64) -> Result<Option<Record>, Failure> {
     if plan.every == 1 {
         return Ok(None);
     }
-    let steps = plan.case.steps.min(OPENING);
+    let steps = made.min(OPENING);
     let mut recorder = Recorder::new(card, steps, true, false);
     let mut trajectory = plan.open(card)?;
     integrate::run(trajectory.as_mut(), steps, 1, &mut recorder)

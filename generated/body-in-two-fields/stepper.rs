@@ -627,7 +627,11 @@ pub mod body_in_two_fields {
         state: BodyInTwoFieldsState<f64>,
         steps: Steps<BodyInTwoFields<f64>>,
         h: f64,
-        start: BodyInTwoFieldsState<f64>,
+        /// The state before the last step.
+        before: BodyInTwoFieldsState<f64>,
+        /// Whether a step is one of the derivation, not composed and without modified moments.
+        plain: bool,
+        kinetic: Option<KineticWarning>,
     }
     impl Trajectory for BodyInTwoFieldsTrajectory {
         fn node(&self) -> u64 {
@@ -637,13 +641,25 @@ pub mod body_in_two_fields {
             self.h * self.state.node() as f64
         }
         fn step(&mut self) -> Result<(), StepError> {
-            self.steps.step(&self.model, &mut self.state)
+            let before = self.state;
+            self.steps.step(&self.model, &mut self.state)?;
+            self.before = before;
+            Ok(())
         }
         fn card(&self) -> &'static Card {
             &BodyInTwoFields::<f64>::CARD
         }
         fn kinetic_warning(&self) -> Option<KineticWarning> {
-            self.model.kinetic_warning(&self.start)
+            self.kinetic
+        }
+        fn residual(&self) -> Option<f64> {
+            let moved = self.before.node() != self.state.node();
+            (self.plain && moved)
+                .then(|| {
+                    Residual::largest(
+                        &self.model.residual(&self.before, &self.state, self.h),
+                    )
+                })
         }
         fn observe(&self, out: &mut [f64]) {
             let state = &self.state;
@@ -926,14 +942,19 @@ pub mod body_in_two_fields {
                 None => model,
             };
             let state = model.at_node_0(initial)?;
-            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)?;
+            let kinetic = model.kinetic_warning(&state);
+            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)
+                .map_err(|e| OpenError::from(e).beside(kinetic))?;
+            let plain = matches!(steps, Steps::Plain(_));
             Ok(
                 Box::new(BodyInTwoFieldsTrajectory {
                     model,
                     state,
                     steps,
                     h: settings.h,
-                    start: state,
+                    before: state,
+                    plain,
+                    kinetic,
                 }),
             )
         }

@@ -706,7 +706,11 @@ pub mod coupled_bodies {
         state: CoupledBodiesState<f64>,
         steps: Steps<CoupledBodies<f64>>,
         h: f64,
-        start: CoupledBodiesState<f64>,
+        /// The state before the last step.
+        before: CoupledBodiesState<f64>,
+        /// Whether a step is one of the derivation, not composed and without modified moments.
+        plain: bool,
+        kinetic: Option<KineticWarning>,
     }
     impl Trajectory for CoupledBodiesTrajectory {
         fn node(&self) -> u64 {
@@ -716,13 +720,25 @@ pub mod coupled_bodies {
             self.h * self.state.node() as f64
         }
         fn step(&mut self) -> Result<(), StepError> {
-            self.steps.step(&self.model, &mut self.state)
+            let before = self.state;
+            self.steps.step(&self.model, &mut self.state)?;
+            self.before = before;
+            Ok(())
         }
         fn card(&self) -> &'static Card {
             &CoupledBodies::<f64>::CARD
         }
         fn kinetic_warning(&self) -> Option<KineticWarning> {
-            self.model.kinetic_warning(&self.start)
+            self.kinetic
+        }
+        fn residual(&self) -> Option<f64> {
+            let moved = self.before.node() != self.state.node();
+            (self.plain && moved)
+                .then(|| {
+                    Residual::largest(
+                        &self.model.residual(&self.before, &self.state, self.h),
+                    )
+                })
         }
         fn observe(&self, out: &mut [f64]) {
             let state = &self.state;
@@ -1074,14 +1090,19 @@ pub mod coupled_bodies {
             };
             chosen_solver(settings, Self::CARD.solvers)?;
             let state = model.at_node_0(initial)?;
-            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)?;
+            let kinetic = model.kinetic_warning(&state);
+            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)
+                .map_err(|e| OpenError::from(e).beside(kinetic))?;
+            let plain = matches!(steps, Steps::Plain(_));
             Ok(
                 Box::new(CoupledBodiesTrajectory {
                     model,
                     state,
                     steps,
                     h: settings.h,
-                    start: state,
+                    before: state,
+                    plain,
+                    kinetic,
                 }),
             )
         }

@@ -420,7 +420,11 @@ pub mod free_body {
         model: FreeBody<f64>,
         state: FreeBodyState<f64>,
         work: FreeBodyWorkspace<f64>,
-        start: FreeBodyState<f64>,
+        /// The state before the last step.
+        before: FreeBodyState<f64>,
+        /// Whether a step is one of the derivation, not composed and without modified moments.
+        plain: bool,
+        kinetic: Option<KineticWarning>,
     }
     impl Trajectory for FreeBodyTrajectory {
         fn node(&self) -> u64 {
@@ -430,13 +434,25 @@ pub mod free_body {
             self.work.h * self.state.node() as f64
         }
         fn step(&mut self) -> Result<(), StepError> {
-            self.model.step(&mut self.state, &mut self.work)
+            let before = self.state;
+            self.model.step(&mut self.state, &mut self.work)?;
+            self.before = before;
+            Ok(())
         }
         fn card(&self) -> &'static Card {
             &FreeBody::<f64>::CARD
         }
         fn kinetic_warning(&self) -> Option<KineticWarning> {
-            self.model.kinetic_warning(&self.start)
+            self.kinetic
+        }
+        fn residual(&self) -> Option<f64> {
+            let moved = self.before.node() != self.state.node();
+            (self.plain && moved)
+                .then(|| {
+                    Residual::largest(
+                        &self.model.residual(&self.before, &self.state, self.work.h),
+                    )
+                })
         }
         fn observe(&self, out: &mut [f64]) {
             let state = &self.state;
@@ -662,14 +678,21 @@ pub mod free_body {
                 None => model,
             };
             let order = preprocessing_order(settings, Self::CARD.orders)?;
-            let (state, work) = model.start_of_order(initial, settings.h, order)?;
+            let state = model.at_node_0(initial)?;
+            let kinetic = model.kinetic_warning(&state);
+            let (state, work) = model
+                .start_of_order(initial, settings.h, order)
+                .map_err(|e| OpenError::from(e).beside(kinetic))?;
             let work = if settings.compensated { work.compensated() } else { work };
+            let plain = order == Order::Two;
             Ok(
                 Box::new(FreeBodyTrajectory {
                     model,
                     state,
                     work,
-                    start: state,
+                    before: state,
+                    plain,
+                    kinetic,
                 }),
             )
         }

@@ -878,7 +878,11 @@ pub mod kirchhoff_body {
         state: KirchhoffBodyState<f64>,
         steps: Steps<KirchhoffBody<f64>>,
         h: f64,
-        start: KirchhoffBodyState<f64>,
+        /// The state before the last step.
+        before: KirchhoffBodyState<f64>,
+        /// Whether a step is one of the derivation, not composed and without modified moments.
+        plain: bool,
+        kinetic: Option<KineticWarning>,
     }
     impl Trajectory for KirchhoffBodyTrajectory {
         fn node(&self) -> u64 {
@@ -888,13 +892,25 @@ pub mod kirchhoff_body {
             self.h * self.state.node() as f64
         }
         fn step(&mut self) -> Result<(), StepError> {
-            self.steps.step(&self.model, &mut self.state)
+            let before = self.state;
+            self.steps.step(&self.model, &mut self.state)?;
+            self.before = before;
+            Ok(())
         }
         fn card(&self) -> &'static Card {
             &KirchhoffBody::<f64>::CARD
         }
         fn kinetic_warning(&self) -> Option<KineticWarning> {
-            self.model.kinetic_warning(&self.start)
+            self.kinetic
+        }
+        fn residual(&self) -> Option<f64> {
+            let moved = self.before.node() != self.state.node();
+            (self.plain && moved)
+                .then(|| {
+                    Residual::largest(
+                        &self.model.residual(&self.before, &self.state, self.h),
+                    )
+                })
         }
         fn observe(&self, out: &mut [f64]) {
             let state = &self.state;
@@ -1333,14 +1349,19 @@ pub mod kirchhoff_body {
             };
             chosen_solver(settings, Self::CARD.solvers)?;
             let state = model.at_node_0(initial)?;
-            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)?;
+            let kinetic = model.kinetic_warning(&state);
+            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)
+                .map_err(|e| OpenError::from(e).beside(kinetic))?;
+            let plain = matches!(steps, Steps::Plain(_));
             Ok(
                 Box::new(KirchhoffBodyTrajectory {
                     model,
                     state,
                     steps,
                     h: settings.h,
-                    start: state,
+                    before: state,
+                    plain,
+                    kinetic,
                 }),
             )
         }

@@ -4,7 +4,7 @@
 use crate::integrate::CompositionOrder;
 use crate::kinetic::KineticWarning;
 use crate::solvers::Method;
-use crate::{ParameterError, StartError, StepError};
+use crate::{ParameterError, StartError, StepCause, StepError};
 use core::fmt;
 
 /// What sort of quantity a field is; it fixes how the numbers are read and checked.
@@ -262,8 +262,15 @@ pub trait Trajectory: Send {
     fn card(&self) -> &'static Card;
 
     /// What is wrong with the kinetic energy where the trajectory started, if anything: a warning,
-    /// the trajectory runs all the same.
+    /// the trajectory runs all the same. Where its first step is refused, [`OpenError::Kinetic`] says so.
     fn kinetic_warning(&self) -> Option<KineticWarning> {
+        None
+    }
+
+    /// What the last step leaves of its equations, relative to the terms they are made of: the largest of
+    /// all momenta, see [`Residual`](crate::integrate::Residual). None at node 0, and for steps that are
+    /// composed of others or take modified moments, of which each solves other equations.
+    fn residual(&self) -> Option<f64> {
         None
     }
 
@@ -286,6 +293,13 @@ pub enum OpenError {
     Parameter(ParameterError),
     /// An initial value is unusable, or the first step is refused.
     Start(StartError),
+    /// The first step is refused, and the kinetic energy is not positive definite, which may be why.
+    Kinetic {
+        /// Why the step is refused.
+        refused: StepCause,
+        /// What is wrong with the kinetic energy.
+        warning: KineticWarning,
+    },
     /// The model does not offer the solver that was named.
     Solver {
         /// Those it offers.
@@ -316,11 +330,27 @@ pub enum OpenError {
     },
 }
 
+impl OpenError {
+    /// The same error; where the first step is refused, with what is wrong with the kinetic energy.
+    #[must_use]
+    pub fn beside(self, warning: Option<KineticWarning>) -> Self {
+        match (self, warning) {
+            (Self::Start(StartError::Refused(refused)), Some(warning)) => {
+                Self::Kinetic { refused, warning }
+            }
+            (other, _) => other,
+        }
+    }
+}
+
 impl fmt::Display for OpenError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Parameter(error) => write!(f, "{error}"),
             Self::Start(error) => write!(f, "{error}"),
+            Self::Kinetic { refused, warning } => {
+                write!(f, "cannot take the first step: {refused}; {warning}")
+            }
             Self::Solver { offered: [] } => {
                 write!(f, "this model has one solver only, nothing is to be chosen")
             }
@@ -395,6 +425,7 @@ impl std::error::Error for OpenError {
         match self {
             Self::Parameter(error) => Some(error),
             Self::Start(error) => Some(error),
+            Self::Kinetic { refused, .. } => Some(refused),
             Self::Solver { .. }
             | Self::Count { .. }
             | Self::Order { .. }

@@ -148,7 +148,7 @@ impl<'a> Subject<'a> {
         let case = self.case;
         let to = plain(end(case.h, case.steps));
         format!(
-            "{}, case {}; h = {}, {} steps, to time {to}; momenta in units of the case{more}",
+            "{}, case {}; h = {}, {} steps, to time {to}{more}",
             self.card().kebab,
             case.name,
             case.h,
@@ -287,7 +287,7 @@ pub(super) fn sheet(
         title: title.to_owned(),
         subtitle: subject.subtitle(more),
         x: subject.times(),
-        x_label: "time t   (unit of h)".to_owned(),
+        x_label: "time t".to_owned(),
         panels,
     })
 }

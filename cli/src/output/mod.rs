@@ -1,5 +1,5 @@
 //! What a run leaves behind: trajectory.csv, trajectory.npz, run.json and plots in one new folder.
-//! Takes a finished run; gives the names of the files. Nothing in them depends on the time of day.
+//! Takes a run, finished or stopped in the middle; gives the names of the files. Nothing in them depends on the time of day.
 
 mod csv;
 mod names;
@@ -17,8 +17,19 @@ use crate::plots;
 use crate::record::Samples;
 use crate::verdict::Outcome;
 use clebsch::card::Card;
+use clebsch::integrate::LargestResidual;
 
-/// A run that has come to its end.
+/// Where and why a run stopped before its end.
+pub struct Stopped {
+    /// The last node reached.
+    pub node: u64,
+    /// The time there.
+    pub time: f64,
+    /// Why the next one was not, in a sentence.
+    pub why: String,
+}
+
+/// A run that has come to its end, or stopped after at least one step.
 pub struct Finished<'a> {
     /// The model.
     pub card: &'a Card,
@@ -28,6 +39,10 @@ pub struct Finished<'a> {
     pub outcomes: &'a [Outcome],
     /// Number of samples taken.
     pub samples: u64,
+    /// The largest residual of a step; none where the steps solve other equations.
+    pub residual: Option<LargestResidual>,
+    /// Where it stopped; none for a run that has come to its end.
+    pub stopped: Option<Stopped>,
 }
 
 /// Every file name a run can write, so that a folder with anything else is never replaced.

@@ -14,6 +14,8 @@ pub fn run_json(run: &Finished<'_>, files: &[&str]) -> Value {
         plan,
         outcomes,
         samples,
+        residual,
+        stopped,
     } = run;
     let case = &plan.case;
     let bounds = case.bounds.iter();
@@ -41,6 +43,8 @@ pub fn run_json(run: &Finished<'_>, files: &[&str]) -> Value {
             "invariants": outcomes.iter().map(Outcome::json).collect::<Vec<_>>(),
             "kept": outcomes.iter().all(|outcome| outcome.verdict != Verdict::Left),
             "files": files,
+            "residual": residual.map(|r| json!({"relative": r.relative, "node": r.node})),
+            "stopped": stopped.as_ref().map(|s| json!({"node": s.node, "time": s.time, "why": s.why})),
         },
     })
 }

@@ -150,6 +150,20 @@ impl Staging {
         })
     }
 
+    /// As [`Staging::commit`], for results of a run that stopped in the middle: what `--force` was to
+    /// replace is whole, and stays. Says where the results are.
+    ///
+    /// # Errors
+    /// As [`Staging::commit`].
+    pub fn commit_stopped(mut self) -> Result<Shown, Failure> {
+        if self.standing.is_none() {
+            let target = shown(&self.target);
+            return self.commit().map(|()| target);
+        }
+        self.committed = true;
+        Ok(self.beside(&self.hidden))
+    }
+
     /// Moves what is to be replaced aside, if it is still what it was at the start. Gives where to, or
     /// nothing when there is nothing to replace.
     fn set_aside(&self) -> Result<Option<PathBuf>, String> {

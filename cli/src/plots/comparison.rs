@@ -60,7 +60,7 @@ pub(crate) fn comparison(card: &Card, plan: &Plan, done: &Comparison) -> Result<
             done.reference.split(':').next().unwrap_or_default(),
         ),
         x: Axis::linear(0.0, to, 8),
-        x_label: "time t   (unit of h)".to_owned(),
+        x_label: "time t".to_owned(),
         panels,
     };
     figure.svg()

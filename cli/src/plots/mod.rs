@@ -96,7 +96,7 @@ pub(crate) fn invariants(run: &Finished<'_>, record: &Record) -> Plot {
     };
     let panel = Panel {
         caption,
-        y_label: "|I(t) − I(0)| / scale   (dimensionless)".to_owned(),
+        y_label: "|I(t) − I(0)| / scale".to_owned(),
         y: Axis::decades(&curves),
         curves,
         // Room for the legend, two lines an entry.
@@ -119,6 +119,10 @@ fn figure(run: &Finished<'_>, shown: Window<'_>, what: &str, panels: Vec<Panel>)
     } else {
         String::new()
     };
+    let stopped = run.stopped.as_ref().map_or_else(String::new, |stopped| {
+        let time = axis::plain(stopped.time);
+        format!("; stopped at node {} (time {time})", stopped.node)
+    });
     let figure = Figure {
         title: format!(
             "{}, case {}: {what}",
@@ -126,14 +130,14 @@ fn figure(run: &Finished<'_>, shown: Window<'_>, what: &str, panels: Vec<Panel>)
             crate::plain::shown(&case.name)
         ),
         subtitle: format!(
-            "h = {}, {} steps, to time {}; order {}{part}",
+            "h = {}, {} steps, to time {}; order {}{stopped}{part}",
             case.h,
             case.steps,
             axis::plain(end(case.h, case.steps)),
             run.card.order
         ),
         x: Axis::linear(first(times), last(times), 8),
-        x_label: "time t   (unit of h)".to_owned(),
+        x_label: "time t".to_owned(),
         panels,
     };
     figure.svg().map(Some)
@@ -180,7 +184,7 @@ fn panel(field: &Field, columns: Range<usize>, shown: Window<'_>) -> Panel {
         .collect();
     Panel {
         caption: caption(field),
-        y_label: format!("{letter}   (units of the case)"),
+        y_label: quantity(field),
         y: Axis::around(&curves),
         curves,
         height: 230,
@@ -193,6 +197,16 @@ fn letter(field: &Field) -> &str {
         Kind::BodyMomentum => "μ",
         Kind::SpatialMomentum => "m",
         _ => field.name,
+    }
+}
+
+/// What stands beside the axis: `body momentum μ`.
+fn quantity(field: &Field) -> String {
+    let letter = letter(field);
+    match field.kind {
+        Kind::BodyMomentum => format!("body momentum {letter}"),
+        Kind::SpatialMomentum => format!("spatial momentum {letter}"),
+        _ => letter.to_owned(),
     }
 }
 

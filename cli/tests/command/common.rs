@@ -206,7 +206,8 @@ impl Trajectory for Rotor {
     }
 
     fn scales(&self, out: &mut [f64]) {
-        self.invariants(out);
+        let kinetic = 0.5 * self.momentum * self.momentum / self.inertia;
+        out[0] = kinetic + (self.stiffness * (1.0 - self.angle.cos())).abs();
         out[1..].fill(1.0);
     }
 }

@@ -13,4 +13,5 @@ mod rest;
 mod results;
 mod scales;
 mod staging;
+mod stopped;
 mod terminal;

@@ -11,13 +11,15 @@ mod run;
 mod side_by_side;
 mod stepper;
 mod steps;
+mod stop;
 
 pub use composition::{Composition, CompositionOrder};
 pub use drift::Drift;
 pub use ensemble::{Ensemble, EnsembleError, InstructionSet, Work};
 pub use model::Model;
 pub use residual::Residual;
-pub use run::{NotFinite, Observer, RunError, Summary, Watched, run};
+pub use run::{LargestResidual, Observer, Summary, run, run_until_stopped};
 pub use side_by_side::{Moving, SideBySide, advance_side_by_side};
 pub use stepper::{Reversible, Stepper};
 pub use steps::{Steps, preprocessing_order};
+pub use stop::{NotFinite, RunError, Watched};

@@ -2,6 +2,8 @@
 //! so that a bad solve does not show in what is conserved; it shows here.
 //! Takes two lengths; says how they compare.
 
+use crate::scalar::larger;
+
 /// A part of the equations of a step: the momentum carried to its end, less the one that its
 /// velocity brings there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,5 +22,10 @@ impl Residual {
             true => 0.0,
             false => self.size / self.scale,
         }
+    }
+    /// The largest of the parts of a step, each in units of its own terms; NaN where one is.
+    #[must_use]
+    pub fn largest(parts: &[Self]) -> f64 {
+        parts.iter().map(Self::relative).fold(0.0, larger)
     }
 }

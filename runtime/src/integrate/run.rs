@@ -1,12 +1,10 @@
 //! The loop itself.
-//! Takes a trajectory, a number of steps and an observer; gives a [`Summary`], or the error of the
+//! Takes a trajectory, a number of steps and an observer; gives a [`Summary`], and the error of the
 //! step that failed or of the number that is none.
 
-use super::Drift;
 use super::drift::Deviation;
-use crate::StepError;
+use super::{Drift, NotFinite, RunError, Watched};
 use crate::card::Trajectory;
-use core::fmt;
 
 /// What watches a run.
 pub trait Observer {
@@ -22,7 +20,7 @@ pub trait Observer {
 /// What a run did.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
-    /// Number of steps made.
+    /// Number of steps made, after each of which what is watched was finite.
     pub steps: u64,
     /// The node reached.
     pub node: u64,
@@ -32,117 +30,27 @@ pub struct Summary {
     pub samples: u64,
     /// The drift of every component of every invariant, in the order of the model's card.
     pub drifts: Vec<Drift>,
+    /// The largest residual of a step; none where the trajectory has none.
+    pub residual: Option<LargestResidual>,
 }
 
-/// What of a trajectory is watched.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Watched {
-    /// A component of an invariant, looked at on every node.
-    Invariant,
-    /// The natural scale of a component of an invariant, looked at on every node.
-    Scale,
-    /// A number of an observable, looked at on every node that is sampled.
-    Observable,
-}
-
-/// A number of a trajectory that is NaN or infinite, though every step was made.
+/// The step of a run that solves its equations worst.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NotFinite {
-    /// The node.
+pub struct LargestResidual {
+    /// The residual relative to the terms of its equation, see
+    /// [`Trajectory::residual`]; NaN where one was.
+    pub relative: f64,
+    /// The node at the end of the step.
     pub node: u64,
-    /// The time there.
-    pub time: f64,
-    /// What it is a number of.
-    pub watched: Watched,
-    /// The name of the invariant or observable, as the card has it.
-    pub name: &'static str,
-    /// Which of its numbers, row-major from 0; `None` where there is one only.
-    pub index: Option<usize>,
-    /// How many numbers a row of it has.
-    pub columns: usize,
-    /// The number.
-    pub value: f64,
 }
 
-impl fmt::Display for NotFinite {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            node,
-            time,
-            name,
-            value,
-            ..
-        } = self;
-        write!(f, "at node {node} (time {time}) ")?;
-        // Counted from 1, as in files and plots.
-        match (self.index, self.columns) {
-            (None, _) => {}
-            (Some(index), ..=1) => write!(f, "component {} of ", index + 1)?,
-            (Some(index), n) => write!(f, "entry ({}, {}) of ", index / n + 1, index % n + 1)?,
+impl LargestResidual {
+    /// The worse of the two; the first where they are equal, and any that is NaN.
+    fn worse(one: Option<Self>, other: Option<Self>) -> Option<Self> {
+        match (one, other) {
+            (Some(a), Some(b)) if b.relative <= a.relative || a.relative.is_nan() => Some(a),
+            (a, b) => b.or(a),
         }
-        match self.watched {
-            Watched::Invariant => write!(f, "the invariant `{name}` is {value}"),
-            Watched::Scale => write!(f, "the natural scale of the invariant `{name}` is {value}"),
-            Watched::Observable => write!(f, "`{name}` is {value}"),
-        }?;
-        f.write_str(
-            ": a function was left by its domain, or a number is too large for f64; reduce the \
-             step size, or check the parameters and initial values",
-        )
-    }
-}
-
-impl std::error::Error for NotFinite {}
-
-/// Why a run stopped before its end.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum RunError {
-    /// A step was not made.
-    Step(StepError),
-    /// A step was made, and what is watched is no number after it.
-    NotFinite(NotFinite),
-}
-
-impl RunError {
-    /// The node at which the trajectory stands.
-    #[must_use]
-    pub fn node(&self) -> u64 {
-        match self {
-            Self::Step(error) => error.node,
-            Self::NotFinite(found) => found.node,
-        }
-    }
-}
-
-impl fmt::Display for RunError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Step(error) => error.fmt(f),
-            Self::NotFinite(found) => found.fmt(f),
-        }
-    }
-}
-
-impl std::error::Error for RunError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            Self::Step(error) => Some(error),
-            Self::NotFinite(found) => Some(found),
-        }
-    }
-}
-
-impl From<StepError> for RunError {
-    #[cold]
-    fn from(error: StepError) -> Self {
-        Self::Step(error)
-    }
-}
-
-impl From<NotFinite> for RunError {
-    #[cold]
-    fn from(found: NotFinite) -> Self {
-        Self::NotFinite(found)
     }
 }
 
@@ -151,68 +59,144 @@ impl From<NotFinite> for RunError {
 /// or not. Allocates before the loop only.
 ///
 /// # Errors
-/// The first [`StepError`]; the trajectory then stands at the node before it, and the observer has
-/// all samples up to there. The first number that is NaN or infinite: of an invariant or its natural
-/// scale at any node, of an observable at a node that is sampled; the trajectory stands there, and the observer has all
-/// samples before it.
+/// As [`run_until_stopped`], of which this is the form for runs that are worth nothing unless whole.
 pub fn run(
     trajectory: &mut dyn Trajectory,
     steps: u64,
     every: u64,
     observer: &mut dyn Observer,
 ) -> Result<Summary, RunError> {
-    let card = trajectory.card();
-    let mut observables = vec![0.0; card.observable_count()];
-    let mut invariants = vec![0.0; card.invariant_count()];
-    let mut scales = vec![0.0; card.invariant_count()];
-    trajectory.scales(&mut scales);
-    trajectory.invariants(&mut invariants);
-    finite(trajectory, Watched::Invariant, &invariants)?;
-    finite(trajectory, Watched::Scale, &scales)?;
-    let seen = invariants.iter().zip(&scales);
-    let mut seen: Vec<Deviation> = seen.map(|(start, s)| Deviation::none(*start, *s)).collect();
+    match run_until_stopped(trajectory, steps, every, observer) {
+        (summary, None) => Ok(summary),
+        (_, Some(error)) => Err(error),
+    }
+}
 
-    let stride = (steps / 200).clamp(1, 1024);
-    let mut samples = 1;
-    trajectory.observe(&mut observables);
-    finite(trajectory, Watched::Observable, &observables)?;
-    observer.sample(
-        trajectory.node(),
-        trajectory.time(),
-        &observables,
-        &invariants,
-    );
-    for done in 1..=steps {
-        trajectory.step()?;
-        trajectory.invariants(&mut invariants);
-        finite(trajectory, Watched::Invariant, &invariants)?;
-        trajectory.scales(&mut scales);
-        finite(trajectory, Watched::Scale, &scales)?;
-        for ((seen, now), scale) in seen.iter_mut().zip(&invariants).zip(&scales) {
-            seen.record(*now, *scale);
-        }
-        if done == steps || (every != 0 && done % every == 0) {
-            trajectory.observe(&mut observables);
-            finite(trajectory, Watched::Observable, &observables)?;
-            observer.sample(
-                trajectory.node(),
-                trajectory.time(),
-                &observables,
-                &invariants,
-            );
-            samples += 1;
-        }
-        if done == steps || done % stride == 0 {
-            observer.progress(done, steps);
+/// As [`run`], with what was done up to where the run stopped, and why it did, if it did:
+///
+/// - the first [`StepError`]. The trajectory then stands at the node before it, which is the last
+///   sample;
+/// - the first number that is NaN or infinite: of an invariant or its natural scale at any node, of an
+///   observable at a node that is sampled. The trajectory stands there; summary and samples are those
+///   of the nodes before.
+pub fn run_until_stopped(
+    trajectory: &mut dyn Trajectory,
+    steps: u64,
+    every: u64,
+    observer: &mut dyn Observer,
+) -> (Summary, Option<RunError>) {
+    let mut watch = Watch::new(trajectory, steps, every);
+    let stopped = watch.follow(trajectory, observer).err();
+    // Seen already, but for the observables of a node that was not to be sampled.
+    if matches!(stopped, Some(RunError::Step(_))) && watch.sampled != watch.summary.node {
+        trajectory.observe(&mut watch.observables);
+        if finite(trajectory, Watched::Observable, &watch.observables).is_ok() {
+            watch.sample(observer);
         }
     }
-    Ok(Summary {
-        steps,
-        node: trajectory.node(),
-        time: trajectory.time(),
-        samples,
-        drifts: seen.iter().map(Deviation::drift).collect(),
-    })
+    let drifts = watch.seen.iter().map(Deviation::drift).collect();
+    let summary = Summary {
+        drifts,
+        ..watch.summary
+    };
+    (summary, stopped)
+}
+
+/// A run up to a node: the numbers there, and what was seen before.
+struct Watch {
+    total: u64,
+    every: u64,
+    observables: Vec<f64>,
+    invariants: Vec<f64>,
+    scales: Vec<f64>,
+    seen: Vec<Deviation>,
+    /// The node sampled last.
+    sampled: u64,
+    /// The drifts are taken from `seen` at the end.
+    summary: Summary,
+}
+
+impl Watch {
+    fn new(trajectory: &dyn Trajectory, total: u64, every: u64) -> Self {
+        let card = trajectory.card();
+        Self {
+            total,
+            every,
+            observables: vec![0.0; card.observable_count()],
+            invariants: vec![0.0; card.invariant_count()],
+            scales: vec![0.0; card.invariant_count()],
+            seen: Vec::with_capacity(card.invariant_count()),
+            sampled: trajectory.node(),
+            summary: Summary {
+                steps: 0,
+                node: trajectory.node(),
+                time: trajectory.time(),
+                samples: 0,
+                drifts: Vec::new(),
+                residual: None,
+            },
+        }
+    }
+
+    fn follow(
+        &mut self,
+        trajectory: &mut dyn Trajectory,
+        observer: &mut dyn Observer,
+    ) -> Result<(), RunError> {
+        self.look(trajectory, true)?;
+        let start = self.invariants.iter().zip(&self.scales);
+        let start = start.map(|(value, terms)| Deviation::none(*value, *terms));
+        self.seen.extend(start);
+        self.sample(observer);
+        let stride = (self.total / 200).clamp(1, 1024);
+        for done in 1..=self.total {
+            trajectory.step()?;
+            let sampled = done == self.total || (self.every != 0 && done % self.every == 0);
+            self.look(trajectory, sampled)?;
+            let values = self.invariants.iter().zip(&self.scales);
+            for (seen, (value, terms)) in self.seen.iter_mut().zip(values) {
+                seen.record(*value, *terms);
+            }
+            let summary = &mut self.summary;
+            summary.steps = done;
+            summary.node = trajectory.node();
+            summary.time = trajectory.time();
+            let residual = trajectory.residual().map(|relative| LargestResidual {
+                relative,
+                node: summary.node,
+            });
+            summary.residual = LargestResidual::worse(summary.residual, residual);
+            if sampled {
+                self.sample(observer);
+            }
+            if done == self.total || done % stride == 0 {
+                observer.progress(done, self.total);
+            }
+        }
+        Ok(())
+    }
+
+    /// The numbers at the node, if all are finite; the observables where it is to be sampled.
+    #[inline]
+    fn look(&mut self, trajectory: &dyn Trajectory, sampled: bool) -> Result<(), NotFinite> {
+        trajectory.invariants(&mut self.invariants);
+        finite(trajectory, Watched::Invariant, &self.invariants)?;
+        trajectory.scales(&mut self.scales);
+        finite(trajectory, Watched::Scale, &self.scales)?;
+        if sampled {
+            trajectory.observe(&mut self.observables);
+            finite(trajectory, Watched::Observable, &self.observables)?;
+        }
+        Ok(())
+    }
+
+    /// Shows the node to the observer.
+    fn sample(&mut self, observer: &mut dyn Observer) {
+        let Summary { node, time, .. } = self.summary;
+        observer.sample(node, time, &self.observables, &self.invariants);
+        self.summary.samples += 1;
+        self.sampled = node;
+    }
 }
 
 /// Refuses numbers that are NaN or infinite.

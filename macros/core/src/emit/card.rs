@@ -270,31 +270,32 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
     let turbofish = (!used.is_empty()).then(|| quote!(:: #used));
     let (dimensions, sized) = (dimensions(d), sized(d));
     let kinetic_warning = super::kinetic::kinetic_warning(d, names);
-    let judged = (!kinetic_warning.is_empty()).then(|| {
-        quote! {
-            fn kinetic_warning(&self) -> Option<KineticWarning> {
-                self.model.kinetic_warning(&self.start)
-            }
-        }
-    });
-    // Where the trajectory started: only the warning looks at it again.
-    let start = judged.is_some().then(|| quote!(start: #state #plain));
-    let started = judged.is_some().then(|| quote!(start: state));
+    // Judged before the first step is tried: it may be why that is refused.
+    let [judge, told] = match kinetic_warning.is_empty() {
+        true => [quote!(let kinetic = None;), quote!()],
+        false => [
+            quote!(let kinetic = model.kinetic_warning(&state);),
+            quote!(.map_err(|e| OpenError::from(e).beside(kinetic))),
+        ],
+    };
     let orders = match (preprocessed, d.reversible) {
         (true, _) => quote!(&[2, 4, 6, 8, 10]),
         (false, true) => quote!(&[2, 4, 6, 8]),
         (false, false) => quote!(&[1]),
     };
-    let (work, time, step, begin) = if preprocessed {
+    let (work, h, step, begin) = if preprocessed {
         (
             quote!(work: #work #plain),
             quote!(self.work.h),
             quote!(self.model.step(&mut self.state, &mut self.work)),
             quote! {
                 let order = preprocessing_order(settings, Self::CARD.orders)?;
-                let (state, work) = model.start_of_order(initial, settings.h, order)?;
+                let state = model.at_node_0(initial)?;
+                #judge
+                let (state, work) = model.start_of_order(initial, settings.h, order)#told?;
                 let work = if settings.compensated { work.compensated() } else { work };
-                Ok(Box::new(#trajectory #turbofish { model, state, work, #started }))
+                let plain = order == Order::Two;
+                Ok(Box::new(#trajectory #turbofish { model, state, work, before: state, plain, kinetic }))
             },
         )
     } else {
@@ -308,8 +309,10 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
             quote!(self.steps.step(&self.model, &mut self.state)),
             quote! {
                 let state = model.at_node_0(initial)?;
-                let steps = Steps::#of_order(&model, &state, settings, Self::CARD.orders)?;
-                Ok(Box::new(#trajectory #turbofish { model, state, steps, h: settings.h, #started }))
+                #judge
+                let steps = Steps::#of_order(&model, &state, settings, Self::CARD.orders)#told?;
+                let plain = matches!(steps, Steps::Plain(_));
+                Ok(Box::new(#trajectory #turbofish { model, state, steps, h: settings.h, before: state, plain, kinetic }))
             },
         )
     };
@@ -319,17 +322,30 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
             model: #name #plain,
             state: #state #plain,
             #work,
-            #start
+            /// The state before the last step.
+            before: #state #plain,
+            /// Whether a step is one of the derivation, not composed and without modified moments.
+            plain: bool,
+            kinetic: Option<KineticWarning>,
         }
 
         impl #bound Trajectory for #trajectory #used {
             fn node(&self) -> u64 { self.state.node() }
-            fn time(&self) -> f64 { #time * self.state.node() as f64 }
+            fn time(&self) -> f64 { #h * self.state.node() as f64 }
             fn step(&mut self) -> Result<(), StepError> {
-                #step
+                let before = self.state;
+                #step?;
+                self.before = before;
+                Ok(())
             }
             fn card(&self) -> &'static Card { &#name::#plain::CARD }
-            #judged
+            fn kinetic_warning(&self) -> Option<KineticWarning> { self.kinetic }
+            fn residual(&self) -> Option<f64> {
+                let moved = self.before.node() != self.state.node();
+                (self.plain && moved).then(|| {
+                    Residual::largest(&self.model.residual(&self.before, &self.state, #h))
+                })
+            }
             fn observe(&self, out: &mut [f64]) {
                 let state = &self.state;
                 #(#observed)*

@@ -1,0 +1,247 @@
+//! Runs that do not come to their end: refused before the first step they leave nothing, stopped after it they leave
+//! what was computed, and say so wherever it is read.
+
+use super::common::{Done, Folder, clebsch, on};
+use clebsch_cli::gallery::Gallery;
+use serde_json::Value;
+use std::fs;
+
+/// A torque so stiff that the rotor outruns its step after some steps.
+fn failing(folder: &Folder) -> String {
+    let text = clebsch(&["case", "harmonic-rotor"]).out;
+    folder.write(
+        "failing.toml",
+        &text.replace("kappa = 1.0", "kappa = -400.0"),
+    )
+}
+
+fn run(file: &str, more: &[&str]) -> Done {
+    clebsch(&[&["run", "harmonic-rotor", "--case", file][..], more].concat())
+}
+
+fn read(folder: &str, name: &str) -> String {
+    fs::read_to_string(format!("{folder}/{name}")).unwrap_or_else(|e| panic!("{name}: {e}"))
+}
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap_or_else(|e| panic!("{e}: {text}"))
+}
+
+/// The node at which the message says that the run stopped.
+fn node_of(message: &str) -> u64 {
+    let from = message.split("no step from node ").nth(1);
+    let digits = from.and_then(|rest| rest.split(' ').next());
+    digits
+        .and_then(|n| n.parse().ok())
+        .unwrap_or_else(|| panic!("{message}"))
+}
+
+#[test]
+fn a_run_that_stops_leaves_what_it_computed_marked_as_stopped() {
+    let folder = Folder::new("stopped");
+    let file = failing(&folder);
+    for every in ["1", "4"] {
+        let out = folder.path(&format!("new/out-{every}"));
+        let done = run(&file, &["--every", every, "--out", &out]);
+        assert_eq!(done.code, 1);
+        let node = node_of(&done.err);
+        assert!(node > 4, "{}", done.err);
+        // On the terminal.
+        let said = format!("stopped at node {node} (time ");
+        assert!(done.out.contains(&said), "{}", done.out);
+        assert!(done.out.contains("\nenergy "), "{}", done.out);
+        assert!(done.out.contains("written to "), "{}", done.out);
+        // In the manifest.
+        let manifest = json(&read(&out, "run.json"));
+        let stopped = &manifest["results"]["stopped"];
+        assert_eq!(stopped["node"], node);
+        assert_eq!(stopped["time"], 0.05 * node as f64);
+        let why = stopped["why"].as_str().expect("a sentence");
+        let ending = format!("clebsch: {why}\n");
+        assert!(done.err.ends_with(&ending), "{}", done.err);
+        assert_eq!(manifest["steps"], 2000);
+        // In the samples: to the last node reached, whether it was to be sampled or not.
+        let text = read(&out, "trajectory.csv");
+        let nodes: Vec<u64> = text
+            .lines()
+            .skip(1)
+            .filter_map(|line| line.split(',').next()?.parse().ok())
+            .collect();
+        assert_eq!(nodes.last(), Some(&node));
+        assert_eq!(manifest["results"]["samples"], nodes.len());
+        // In the plots.
+        for file in manifest["results"]["files"].as_array().expect("files") {
+            let name = file.as_str().expect("a name");
+            if name.ends_with(".svg") {
+                let svg = read(&out, name);
+                assert!(
+                    svg.contains(&format!("; stopped at node {node} (")),
+                    "{svg}"
+                );
+            }
+        }
+    }
+    assert_eq!(folder.names(), ["failing.toml", "new"]);
+}
+
+#[test]
+fn it_says_so_without_files_and_as_json() {
+    let folder = Folder::new("stopped_json");
+    let file = failing(&folder);
+    let done = run(&file, &["--json"]);
+    assert_eq!(done.code, 1);
+    assert_eq!(done.out.lines().count(), 1, "{}", done.out);
+    let object = json(&done.out);
+    assert_eq!(object["exit_code"], 1);
+    assert_eq!(object["out"], Value::Null);
+    assert_eq!(object["error"], object["results"]["stopped"]["why"]);
+    assert_eq!(object["results"]["stopped"]["node"], node_of(&done.err));
+    // A run that comes to its end says that it did not stop.
+    let done = clebsch(&["run", "harmonic-rotor", "--json"]);
+    assert_eq!(json(&done.out)["results"]["stopped"], Value::Null);
+}
+
+#[test]
+fn a_run_that_stops_keeps_the_earlier_results() {
+    let folder = Folder::new("stopped_force");
+    let file = failing(&folder);
+    let out = folder.path("out");
+    assert_eq!(clebsch(&["run", "harmonic-rotor", "--out", &out]).code, 0);
+    let before = read(&out, "run.json");
+    let done = run(&file, &["--out", &out, "--force"]);
+    assert_eq!(done.code, 1);
+    assert_eq!(read(&out, "run.json"), before);
+    // Its own are beside them.
+    assert_eq!(folder.names(), ["failing.toml", "out", "out-2"]);
+    let kept = folder.path("out-2");
+    assert!(
+        done.out.contains(&format!("written to {kept}: ")),
+        "{}",
+        done.out
+    );
+    let manifest = json(&read(&kept, "run.json"));
+    assert_eq!(manifest["results"]["stopped"]["node"], node_of(&done.err));
+}
+
+#[test]
+fn a_run_refused_before_its_first_step_leaves_nothing() {
+    let folder = Folder::new("refused_start");
+    let out = folder.path("new/out");
+    let done = clebsch(&["run", "harmonic-rotor", "--h", "10", "--out", &out]);
+    assert_eq!(done.code, 1);
+    assert!(
+        done.err.contains("cannot take the first step"),
+        "{}",
+        done.err
+    );
+    assert!(folder.names().is_empty());
+    // What stood there stays.
+    assert_eq!(clebsch(&["run", "harmonic-rotor", "--out", &out]).code, 0);
+    let before = read(&out, "run.json");
+    let run = [
+        "run",
+        "harmonic-rotor",
+        "--h",
+        "10",
+        "--out",
+        &out,
+        "--force",
+    ];
+    assert_eq!(clebsch(&run).code, 1);
+    assert_eq!(read(&out, "run.json"), before);
+    assert_eq!(folder.names(), ["new"]);
+}
+
+/// A kinetic energy that is not positive is the commonest reason for a first step without solution.
+#[test]
+fn a_refused_first_step_says_what_is_wrong_with_the_kinetic_energy() {
+    type Change = fn(&str, &mut Vec<f64>);
+    let changes: [(&str, &str, Change); 4] = [
+        ("coupled-bodies", "indefinite", |name, values| {
+            if name == "eps" {
+                values[0] = 1e6;
+            }
+        }),
+        // No added mass, and none of its own.
+        ("kirchhoff-body", "degenerate", |name, values| {
+            if name == "M" || name == "D" {
+                values.fill(0.0);
+            }
+        }),
+        ("kirchhoff-body", "indefinite", |name, values| {
+            if name == "M" {
+                values.iter_mut().for_each(|m| *m = -*m);
+            }
+        }),
+        ("kirchhoff-body", "indefinite", |name, values| {
+            if name == "D" {
+                for i in [0, 4, 8] {
+                    values[i] = 1e4;
+                }
+            }
+        }),
+    ];
+    let mut refused = 0;
+    for (model, sort, change) in changes {
+        let mut gallery = Gallery::shipped();
+        gallery.entries.retain(|e| e.card.kebab == model);
+        let entry = &mut gallery.entries[0];
+        let values = entry.cases[0].parameters.iter_mut();
+        for (field, values) in entry.card.parameters.iter().zip(values) {
+            change(field.ascii, values);
+        }
+        let run = ["run", model, "--steps", "5"];
+        let done = on(&gallery, &run);
+        let words = format!("the kinetic energy at the start is {sort}: ");
+        assert!(
+            done.err.contains(&words),
+            "{model}: {}\n{}",
+            done.err,
+            done.out
+        );
+        if done.err.contains("cannot take the first step: ") {
+            assert_eq!(done.code, 1);
+            refused += 1;
+            let done = on(&gallery, &[&run[..], &["--json"]].concat());
+            let object = json(&done.out);
+            let said = object["error"].as_str().expect("a message");
+            assert!(said.contains(&words), "{model}: {said}");
+            // Other commands that begin with a step.
+            let done = on(&gallery, &["compare", model, "--steps", "5"]);
+            assert!(done.err.contains(&words), "{model}: {}", done.err);
+        }
+    }
+    assert!(refused >= 2, "{refused} first steps were refused");
+}
+
+/// How well the equations of each step are solved stands below the table and in the manifest.
+#[test]
+fn the_largest_residual_of_a_step_is_shown() {
+    let gallery = Gallery::shipped();
+    for entry in &gallery.entries {
+        let model = entry.card.kebab;
+        let run = ["run", model, "--steps", "50"];
+        let done = on(&gallery, &run);
+        let words = "\ndiscrete Euler-Lagrange equations: max relative residual ";
+        assert!(done.out.contains(words), "{model}: {}", done.out);
+        let residual = |more: &[&str]| {
+            let done = on(&gallery, &[&run[..], &["--json"], more].concat());
+            assert!(done.code == 0 || done.code == 3, "{model}: {}", done.err);
+            json(&done.out)["results"]["residual"].clone()
+        };
+        let found = residual(&[]);
+        let relative = found["relative"].as_f64().expect("a number");
+        // Convergence is judged at 1e-13 of the terms.
+        assert!(relative < 1e-13, "{model}: {found}");
+        let node = found["node"].as_u64().expect("a node");
+        assert!((1..=50).contains(&node), "{model}: {found}");
+        // Steps that are composed, or take modified moments, solve other equations.
+        if entry.card.orders.contains(&4) {
+            assert_eq!(
+                residual(&["--order", "4", "--h", "0.01"]),
+                Value::Null,
+                "{model}"
+            );
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! Why a run stops before its end: a step that was not made, or a number that is none.
+//! Takes the node and what was found there; gives errors that name it and the way out.
+
+use crate::StepError;
+use core::fmt;
+
+/// What of a trajectory is watched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Watched {
+    /// A component of an invariant, looked at on every node.
+    Invariant,
+    /// The natural scale of a component of an invariant, looked at on every node.
+    Scale,
+    /// A number of an observable, looked at on every node that is sampled.
+    Observable,
+}
+
+/// A number of a trajectory that is NaN or infinite, though every step was made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NotFinite {
+    /// The node.
+    pub node: u64,
+    /// The time there.
+    pub time: f64,
+    /// What it is a number of.
+    pub watched: Watched,
+    /// The name of the invariant or observable, as the card has it.
+    pub name: &'static str,
+    /// Which of its numbers, row-major from 0; `None` where there is one only.
+    pub index: Option<usize>,
+    /// How many numbers a row of it has.
+    pub columns: usize,
+    /// The number.
+    pub value: f64,
+}
+
+impl fmt::Display for NotFinite {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            node,
+            time,
+            name,
+            value,
+            ..
+        } = self;
+        write!(f, "at node {node} (time {time}) ")?;
+        // Counted from 1, as in files and plots.
+        match (self.index, self.columns) {
+            (None, _) => {}
+            (Some(index), ..=1) => write!(f, "component {} of ", index + 1)?,
+            (Some(index), n) => write!(f, "entry ({}, {}) of ", index / n + 1, index % n + 1)?,
+        }
+        match self.watched {
+            Watched::Invariant => write!(f, "the invariant `{name}` is {value}"),
+            Watched::Scale => write!(f, "the natural scale of the invariant `{name}` is {value}"),
+            Watched::Observable => write!(f, "`{name}` is {value}"),
+        }?;
+        f.write_str(
+            ": a function was left by its domain, or a number is too large for f64; reduce the \
+             step size, or check the parameters and initial values",
+        )
+    }
+}
+
+impl std::error::Error for NotFinite {}
+
+/// Why a run stopped before its end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RunError {
+    /// A step was not made.
+    Step(StepError),
+    /// A step was made, and what is watched is no number after it.
+    NotFinite(NotFinite),
+}
+
+impl RunError {
+    /// The node at which the trajectory stands.
+    #[must_use]
+    pub fn node(&self) -> u64 {
+        match self {
+            Self::Step(error) => error.node,
+            Self::NotFinite(found) => found.node,
+        }
+    }
+}
+
+impl fmt::Display for RunError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Step(error) => error.fmt(f),
+            Self::NotFinite(found) => found.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for RunError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::Step(error) => Some(error),
+            Self::NotFinite(found) => Some(found),
+        }
+    }
+}
+
+impl From<StepError> for RunError {
+    #[cold]
+    fn from(error: StepError) -> Self {
+        Self::Step(error)
+    }
+}
+
+impl From<NotFinite> for RunError {
+    #[cold]
+    fn from(found: NotFinite) -> Self {
+        Self::NotFinite(found)
+    }
+}
