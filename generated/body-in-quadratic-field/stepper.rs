@@ -670,7 +670,7 @@ pub mod body_in_quadratic_field {
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
-            let state = &self.start;
+            let state = &self.state;
             let out = put(
                 out,
                 [{
@@ -697,7 +697,8 @@ pub mod body_in_quadratic_field {
                     let Λ = state.Λ.matrix();
                     let Γ_reference = state.Γ;
                     let Γ = Λ.tr_mul(&Γ_reference);
-                    let value: T = Γ.dot(&Γ).sqrt() * Γ.dot(&Γ).sqrt();
+                    let t1 = Γ.dot(&Γ).sqrt();
+                    let value: T = t1 * t1;
                     value
                 }; 1usize],
             );

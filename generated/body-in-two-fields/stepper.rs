@@ -679,7 +679,7 @@ pub mod body_in_two_fields {
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
-            let state = &self.start;
+            let state = &self.state;
             let out = put(
                 out,
                 [{
@@ -694,7 +694,8 @@ pub mod body_in_two_fields {
                     let BodyInTwoFieldsParameters { z, .. } = self.model.parameters;
                     let Λ = state.Λ.matrix();
                     let Γ = Λ.tr_mul(&z);
-                    let value: T = Γ.dot(&Γ).sqrt() * Γ.dot(&Γ).sqrt();
+                    let t1 = Γ.dot(&Γ).sqrt();
+                    let value: T = t1 * t1;
                     value
                 }; 1usize],
             );
@@ -717,7 +718,8 @@ pub mod body_in_two_fields {
                     let BodyInTwoFieldsParameters { b, .. } = self.model.parameters;
                     let Λ = state.Λ.matrix();
                     let B = Λ.tr_mul(&b);
-                    let value: T = B.dot(&B).sqrt() * B.dot(&B).sqrt();
+                    let t1 = B.dot(&B).sqrt();
+                    let value: T = t1 * t1;
                     value
                 }; 1usize],
             );

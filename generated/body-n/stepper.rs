@@ -465,7 +465,7 @@ pub mod body_n {
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
-            let state = &self.start;
+            let state = &self.state;
             let out = put(
                 out,
                 ::core::iter::repeat_n(
@@ -488,8 +488,8 @@ pub mod body_n {
                     {
                         type T = f64;
                         let μ = state.body_momentum().0;
-                        let value: T = (-(μ * μ).trace()).sqrt()
-                            * (-(μ * μ).trace()).sqrt();
+                        let t1 = (-(μ * μ).trace()).sqrt();
+                        let value: T = t1 * t1;
                         value
                     },
                     1usize,
@@ -501,9 +501,8 @@ pub mod body_n {
                     {
                         type T = f64;
                         let μ = state.body_momentum().0;
-                        let value: T = (-(μ * μ).trace()).sqrt()
-                            * (-(μ * μ).trace()).sqrt() * (-(μ * μ).trace()).sqrt()
-                            * (-(μ * μ).trace()).sqrt();
+                        let t1 = (-(μ * μ).trace()).sqrt();
+                        let value: T = t1 * t1 * t1 * t1;
                         value
                     },
                     1usize,
@@ -515,10 +514,8 @@ pub mod body_n {
                     {
                         type T = f64;
                         let μ = state.body_momentum().0;
-                        let value: T = (-(μ * μ).trace()).sqrt()
-                            * (-(μ * μ).trace()).sqrt() * (-(μ * μ).trace()).sqrt()
-                            * (-(μ * μ).trace()).sqrt() * (-(μ * μ).trace()).sqrt()
-                            * (-(μ * μ).trace()).sqrt();
+                        let t1 = (-(μ * μ).trace()).sqrt();
+                        let value: T = t1 * t1 * t1 * t1 * t1 * t1;
                         value
                     },
                     1usize,
@@ -530,11 +527,8 @@ pub mod body_n {
                     {
                         type T = f64;
                         let μ = state.body_momentum().0;
-                        let value: T = (-(μ * μ).trace()).sqrt()
-                            * (-(μ * μ).trace()).sqrt() * (-(μ * μ).trace()).sqrt()
-                            * (-(μ * μ).trace()).sqrt() * (-(μ * μ).trace()).sqrt()
-                            * (-(μ * μ).trace()).sqrt() * (-(μ * μ).trace()).sqrt()
-                            * (-(μ * μ).trace()).sqrt();
+                        let t1 = (-(μ * μ).trace()).sqrt();
+                        let value: T = t1 * t1 * t1 * t1 * t1 * t1 * t1 * t1;
                         value
                     },
                     1usize,

@@ -559,7 +559,7 @@ pub mod cayley_klein_spatial {
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
-            let state = &self.start;
+            let state = &self.state;
             let out = put(
                 out,
                 [{
@@ -584,7 +584,7 @@ pub mod cayley_klein_spatial {
                     let I_reference = state.I;
                     let I = quaternion_rotation(&q)
                         * (I_reference * quaternion_rotation(&q).transpose());
-                    let value: T = (I * I).trace().sqrt();
+                    let value: T = T::from_f64(3.0).sqrt() * (I * I).trace().sqrt();
                     value
                 }; 1usize],
             );
@@ -596,7 +596,8 @@ pub mod cayley_klein_spatial {
                     let I_reference = state.I;
                     let I = quaternion_rotation(&q)
                         * (I_reference * quaternion_rotation(&q).transpose());
-                    let value: T = (I * I).trace().sqrt() * (I * I).trace().sqrt();
+                    let t1 = (I * I).trace().sqrt();
+                    let value: T = t1 * t1;
                     value
                 }; 1usize],
             );
@@ -608,8 +609,8 @@ pub mod cayley_klein_spatial {
                     let I_reference = state.I;
                     let I = quaternion_rotation(&q)
                         * (I_reference * quaternion_rotation(&q).transpose());
-                    let value: T = (I * I).trace().sqrt() * (I * I).trace().sqrt()
-                        * (I * I).trace().sqrt();
+                    let t1 = (I * I).trace().sqrt();
+                    let value: T = t1 * t1 * t1;
                     value
                 }; 1usize],
             );

@@ -482,7 +482,7 @@ pub mod cayley_klein {
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
-            let state = &self.start;
+            let state = &self.state;
             let out = put(
                 out,
                 [{
@@ -496,9 +496,8 @@ pub mod cayley_klein {
                     type T = f64;
                     let q = state.q.matrix();
                     let μ = state.body_momentum().0;
-                    let value: T = (quaternion_rotation(&q) * μ)
-                        .dot(&(quaternion_rotation(&q) * μ))
-                        .sqrt();
+                    let t1 = quaternion_rotation(&q) * μ;
+                    let value: T = t1.dot(&t1).sqrt();
                     value
                 }; 3usize],
             );
@@ -507,7 +506,8 @@ pub mod cayley_klein {
                 [{
                     type T = f64;
                     let μ = state.body_momentum().0;
-                    let value: T = μ.dot(&μ).sqrt() * μ.dot(&μ).sqrt();
+                    let t1 = μ.dot(&μ).sqrt();
+                    let value: T = t1 * t1;
                     value
                 }; 1usize],
             );

@@ -759,7 +759,7 @@ pub mod coupled_bodies {
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
-            let state = &self.start;
+            let state = &self.state;
             let out = put(
                 out,
                 [{
@@ -775,8 +775,9 @@ pub mod coupled_bodies {
                     let Λ2 = state.Λ2.matrix();
                     let μ1 = state.body_momentum_Λ1().0;
                     let μ2 = state.body_momentum_Λ2().0;
-                    let value: T = (Λ1 * μ1).dot(&(Λ1 * μ1)).sqrt()
-                        + (Λ2 * μ2).dot(&(Λ2 * μ2)).sqrt();
+                    let t1 = Λ1 * μ1;
+                    let t2 = Λ2 * μ2;
+                    let value: T = t1.dot(&t1).sqrt() + t2.dot(&t2).sqrt();
                     value
                 }; 3usize],
             );
@@ -786,8 +787,8 @@ pub mod coupled_bodies {
                     type T = f64;
                     let μ1 = state.body_momentum_Λ1().0;
                     let μ2 = state.body_momentum_Λ2().0;
-                    let value: T = (μ1.dot(&μ1).sqrt() + μ2.dot(&μ2).sqrt())
-                        * (μ1.dot(&μ1).sqrt() + μ2.dot(&μ2).sqrt());
+                    let t1 = μ1.dot(&μ1).sqrt() + μ2.dot(&μ2).sqrt();
+                    let value: T = t1 * t1;
                     value
                 }; 1usize],
             );

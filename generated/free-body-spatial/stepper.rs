@@ -555,7 +555,7 @@ pub mod free_body_spatial {
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
-            let state = &self.start;
+            let state = &self.state;
             let out = put(
                 out,
                 [{
@@ -579,7 +579,7 @@ pub mod free_body_spatial {
                     let Λ = state.Λ.matrix();
                     let J_reference = state.J;
                     let J = Λ * (J_reference * Λ.transpose());
-                    let value: T = (J * J).trace().sqrt();
+                    let value: T = T::from_f64(3.0).sqrt() * (J * J).trace().sqrt();
                     value
                 }; 1usize],
             );
@@ -590,7 +590,8 @@ pub mod free_body_spatial {
                     let Λ = state.Λ.matrix();
                     let J_reference = state.J;
                     let J = Λ * (J_reference * Λ.transpose());
-                    let value: T = (J * J).trace().sqrt() * (J * J).trace().sqrt();
+                    let t1 = (J * J).trace().sqrt();
+                    let value: T = t1 * t1;
                     value
                 }; 1usize],
             );
@@ -601,8 +602,8 @@ pub mod free_body_spatial {
                     let Λ = state.Λ.matrix();
                     let J_reference = state.J;
                     let J = Λ * (J_reference * Λ.transpose());
-                    let value: T = (J * J).trace().sqrt() * (J * J).trace().sqrt()
-                        * (J * J).trace().sqrt();
+                    let t1 = (J * J).trace().sqrt();
+                    let value: T = t1 * t1 * t1;
                     value
                 }; 1usize],
             );

@@ -471,7 +471,7 @@ pub mod free_body {
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
-            let state = &self.start;
+            let state = &self.state;
             let out = put(
                 out,
                 [{
@@ -485,7 +485,8 @@ pub mod free_body {
                     type T = f64;
                     let Λ = state.Λ.matrix();
                     let μ = state.body_momentum().0;
-                    let value: T = (Λ * μ).dot(&(Λ * μ)).sqrt();
+                    let t1 = Λ * μ;
+                    let value: T = t1.dot(&t1).sqrt();
                     value
                 }; 3usize],
             );
@@ -494,7 +495,8 @@ pub mod free_body {
                 [{
                     type T = f64;
                     let μ = state.body_momentum().0;
-                    let value: T = μ.dot(&μ).sqrt() * μ.dot(&μ).sqrt();
+                    let t1 = μ.dot(&μ).sqrt();
+                    let value: T = t1 * t1;
                     value
                 }; 1usize],
             );

@@ -753,7 +753,7 @@ pub mod heavy_top_spatial {
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
-            let state = &self.start;
+            let state = &self.state;
             let out = put(
                 out,
                 [{
@@ -768,7 +768,8 @@ pub mod heavy_top_spatial {
                     let Λ = state.Λ.matrix();
                     let χ_reference = state.χ;
                     let χ = Λ * χ_reference;
-                    let value: T = χ.dot(&χ).sqrt() * χ.dot(&χ).sqrt();
+                    let t1 = χ.dot(&χ).sqrt();
+                    let value: T = t1 * t1;
                     value
                 }; 1usize],
             );
@@ -779,7 +780,7 @@ pub mod heavy_top_spatial {
                     let Λ = state.Λ.matrix();
                     let J_reference = state.J;
                     let J = Λ * (J_reference * Λ.transpose());
-                    let value: T = (J * J).trace().sqrt();
+                    let value: T = T::from_f64(3.0).sqrt() * (J * J).trace().sqrt();
                     value
                 }; 1usize],
             );
@@ -790,7 +791,8 @@ pub mod heavy_top_spatial {
                     let Λ = state.Λ.matrix();
                     let J_reference = state.J;
                     let J = Λ * (J_reference * Λ.transpose());
-                    let value: T = (J * J).trace().sqrt() * (J * J).trace().sqrt();
+                    let t1 = (J * J).trace().sqrt();
+                    let value: T = t1 * t1;
                     value
                 }; 1usize],
             );
@@ -801,22 +803,8 @@ pub mod heavy_top_spatial {
                     let Λ = state.Λ.matrix();
                     let J_reference = state.J;
                     let J = Λ * (J_reference * Λ.transpose());
-                    let value: T = (J * J).trace().sqrt() * (J * J).trace().sqrt()
-                        * (J * J).trace().sqrt();
-                    value
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let Λ = state.Λ.matrix();
-                    let J_reference = state.J;
-                    let J = Λ * (J_reference * Λ.transpose());
-                    let χ_reference = state.χ;
-                    let χ = Λ * χ_reference;
-                    let value: T = χ.dot(&χ).sqrt() * (J * J).trace().sqrt()
-                        * χ.dot(&χ).sqrt();
+                    let t1 = (J * J).trace().sqrt();
+                    let value: T = t1 * t1 * t1;
                     value
                 }; 1usize],
             );
@@ -829,8 +817,23 @@ pub mod heavy_top_spatial {
                     let J = Λ * (J_reference * Λ.transpose());
                     let χ_reference = state.χ;
                     let χ = Λ * χ_reference;
-                    let value: T = χ.dot(&χ).sqrt() * (J * J).trace().sqrt()
-                        * (J * J).trace().sqrt() * χ.dot(&χ).sqrt();
+                    let t1 = χ.dot(&χ).sqrt();
+                    let value: T = t1 * (J * J).trace().sqrt() * t1;
+                    value
+                }; 1usize],
+            );
+            let out = put(
+                out,
+                [{
+                    type T = f64;
+                    let Λ = state.Λ.matrix();
+                    let J_reference = state.J;
+                    let J = Λ * (J_reference * Λ.transpose());
+                    let χ_reference = state.χ;
+                    let χ = Λ * χ_reference;
+                    let t1 = χ.dot(&χ).sqrt();
+                    let t2 = (J * J).trace().sqrt();
+                    let value: T = t1 * t2 * t2 * t1;
                     value
                 }; 1usize],
             );

@@ -627,7 +627,7 @@ pub mod heavy_top {
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
-            let state = &self.start;
+            let state = &self.state;
             let out = put(
                 out,
                 [{
@@ -654,7 +654,8 @@ pub mod heavy_top {
                     let HeavyTopParameters { z, .. } = self.model.parameters;
                     let Λ = state.Λ.matrix();
                     let Γ = Λ.tr_mul(&z);
-                    let value: T = Γ.dot(&Γ).sqrt() * Γ.dot(&Γ).sqrt();
+                    let t1 = Γ.dot(&Γ).sqrt();
+                    let value: T = t1 * t1;
                     value
                 }; 1usize],
             );

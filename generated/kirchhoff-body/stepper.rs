@@ -933,7 +933,7 @@ pub mod kirchhoff_body {
             let _ = out;
         }
         fn scales(&self, out: &mut [f64]) {
-            let state = &self.start;
+            let state = &self.state;
             let out = put(
                 out,
                 [{
@@ -948,12 +948,9 @@ pub mod kirchhoff_body {
                     let KirchhoffBodyParameters { Z, .. } = self.model.parameters;
                     let G = state.G.matrix();
                     let P = G.tr_mul(&Z);
-                    let value: T = (rows_from::<T, 4, 3, 1>(&P, 0))
-                        .dot(&(rows_from::<T, 4, 3, 1>(&P, 0)))
-                        .sqrt()
-                        * (rows_from::<T, 4, 3, 1>(&P, 0))
-                            .dot(&(rows_from::<T, 4, 3, 1>(&P, 0)))
-                            .sqrt();
+                    let t1 = rows_from::<T, 4, 3, 1>(&P, 0);
+                    let t2 = t1.dot(&t1).sqrt();
+                    let value: T = t2 * t2;
                     value
                 }; 1usize],
             );
@@ -965,18 +962,10 @@ pub mod kirchhoff_body {
                     let G = state.G.matrix();
                     let P = G.tr_mul(&Z);
                     let μ = state.body_momentum().0;
-                    let value: T = ((rows_from::<T, 6, 3, 1>(&μ, 3))
-                        .dot(&(rows_from::<T, 6, 3, 1>(&μ, 3)))
-                        .sqrt()
-                        * (rows_from::<T, 4, 3, 1>(&P, 0))
-                            .dot(&(rows_from::<T, 4, 3, 1>(&P, 0)))
-                            .sqrt())
-                        * ((rows_from::<T, 6, 3, 1>(&μ, 3))
-                            .dot(&(rows_from::<T, 6, 3, 1>(&μ, 3)))
-                            .sqrt()
-                            * (rows_from::<T, 4, 3, 1>(&P, 0))
-                                .dot(&(rows_from::<T, 4, 3, 1>(&P, 0)))
-                                .sqrt());
+                    let t1 = rows_from::<T, 6, 3, 1>(&μ, 3);
+                    let t2 = rows_from::<T, 4, 3, 1>(&P, 0);
+                    let value: T = (t1.dot(&t1).sqrt() * t2.dot(&t2).sqrt())
+                        * (t1.dot(&t1).sqrt() * t2.dot(&t2).sqrt());
                     value
                 }; 1usize],
             );
@@ -985,55 +974,10 @@ pub mod kirchhoff_body {
                 [{
                     type T = f64;
                     let KirchhoffBodyParameters { Z, .. } = self.model.parameters;
-                    let G = state.G.matrix();
                     let μ = state.body_momentum().0;
-                    let value: T = (into_rows::<
-                        T,
-                        6,
-                        3,
-                        1,
-                    >(
-                        &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 0)
-                            + motion_translation(&G)
-                                .cross(
-                                    &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
-                                )),
-                        0,
-                    )
-                        + into_rows::<
-                            T,
-                            6,
-                            3,
-                            1,
-                        >(&(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)), 3))
-                        .dot(
-                            &(into_rows::<
-                                T,
-                                6,
-                                3,
-                                1,
-                            >(
-                                &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 0)
-                                    + motion_translation(&G)
-                                        .cross(
-                                            &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
-                                        )),
-                                0,
-                            )
-                                + into_rows::<
-                                    T,
-                                    6,
-                                    3,
-                                    1,
-                                >(
-                                    &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
-                                    3,
-                                )),
-                        )
-                        .sqrt()
-                        * (rows_from::<T, 4, 3, 1>(&Z, 0))
-                            .dot(&(rows_from::<T, 4, 3, 1>(&Z, 0)))
-                            .sqrt();
+                    let t1 = rows_from::<T, 6, 3, 1>(&μ, 3);
+                    let t2 = rows_from::<T, 4, 3, 1>(&Z, 0);
+                    let value: T = t1.dot(&t1).sqrt() * t2.dot(&t2).sqrt();
                     value
                 }; 3 * 1],
             );
@@ -1044,59 +988,12 @@ pub mod kirchhoff_body {
                     let KirchhoffBodyParameters { Z, .. } = self.model.parameters;
                     let G = state.G.matrix();
                     let μ = state.body_momentum().0;
-                    let value: T = ((into_rows::<
-                        T,
-                        6,
-                        3,
-                        1,
-                    >(
-                        &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 0)
-                            + motion_translation(&G)
-                                .cross(
-                                    &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
-                                )),
-                        0,
-                    )
-                        + into_rows::<
-                            T,
-                            6,
-                            3,
-                            1,
-                        >(&(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)), 3))
-                        .dot(
-                            &(into_rows::<
-                                T,
-                                6,
-                                3,
-                                1,
-                            >(
-                                &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 0)
-                                    + motion_translation(&G)
-                                        .cross(
-                                            &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
-                                        )),
-                                0,
-                            )
-                                + into_rows::<
-                                    T,
-                                    6,
-                                    3,
-                                    1,
-                                >(
-                                    &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
-                                    3,
-                                )),
-                        )
-                        .sqrt()
-                        + motion_translation(&G).dot(&motion_translation(&G)).sqrt()
-                            * (motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3))
-                                .dot(
-                                    &(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)),
-                                )
-                                .sqrt())
-                        * (rows_from::<T, 4, 3, 1>(&Z, 0))
-                            .dot(&(rows_from::<T, 4, 3, 1>(&Z, 0)))
-                            .sqrt();
+                    let t1 = rows_from::<T, 6, 3, 1>(&μ, 0);
+                    let t2 = motion_translation(&G);
+                    let t3 = rows_from::<T, 6, 3, 1>(&μ, 3);
+                    let t4 = rows_from::<T, 4, 3, 1>(&Z, 0);
+                    let value: T = (t1.dot(&t1).sqrt()
+                        + t2.dot(&t2).sqrt() * t3.dot(&t3).sqrt()) * t4.dot(&t4).sqrt();
                     value
                 }; 1usize],
             );
