@@ -5,6 +5,7 @@ use crate::Streams;
 use crate::asked::case_file;
 use crate::failure::Failure;
 use crate::gallery::Gallery;
+use crate::lines::fitted;
 use crate::plain::shown;
 use crate::suggestion::did_you_mean;
 use clap::ArgMatches;
@@ -35,8 +36,9 @@ pub fn derive(
         return Err(Failure::Usage(WITHOUT_PROVER.to_owned()));
     }
     let name = shown(&name).to_string();
+    let width = streams.width;
     let (derivation, warnings) =
-        derive_text(&name, &source, text("format"), proofs).map_err(Failure::Usage)?;
+        derived(&name, &source, text("format"), proofs, width).map_err(Failure::Usage)?;
     streams.out.write_all(derivation.as_bytes())?;
     // What cannot be written there is in the derivation too.
     let _ = streams.err.write_all(warnings.as_bytes());
@@ -114,6 +116,20 @@ pub fn derive_text(
     format: &str,
     proofs: Proofs,
 ) -> Result<(String, String), String> {
+    derived(name, source, format, proofs, None)
+}
+
+/// Columns of the plain text where the terminal has more.
+const PAGE: usize = 100;
+
+/// As [`derive_text`], plain text in lines of at most `width` letters.
+fn derived(
+    name: &str,
+    source: &str,
+    format: &str,
+    proofs: Proofs,
+    width: Option<usize>,
+) -> Result<(String, String), String> {
     let derivation =
         derive_source(source).map_err(|errors| format!("\n{}", errors.render(source, name)))?;
     let warnings = derivation.render_warnings(source, name);
@@ -124,7 +140,8 @@ pub fn derive_text(
         "json" => Format::Json,
         _ => Format::Text,
     };
-    let mut printed = document::printed(&derivation, format);
+    let columns = width.unwrap_or(PAGE).min(PAGE);
+    let mut printed = document::printed_in(&derivation, format, columns);
     let proof = explanation(&derivation, proofs);
     match format {
         _ if proof.is_empty() => {}
@@ -134,6 +151,9 @@ pub fn derive_text(
         Format::Markdown => printed.push_str(&format!("\n```text\n{proof}```\n")),
         Format::Text | Format::MathMl => printed.push_str(&format!("\n{proof}")),
         Format::Json => {}
+    }
+    if let (Format::Text, Some(width)) = (format, width) {
+        printed = fitted(&printed, width);
     }
     Ok((printed, warnings))
 }

@@ -14,6 +14,7 @@ pub mod derive;
 pub mod failure;
 mod figures;
 pub mod gallery;
+mod lines;
 mod list;
 mod output;
 mod plain;
@@ -145,6 +146,12 @@ fn answer_clap(error: &clap::Error, streams: &mut Streams<'_>) -> u8 {
         let _ = write!(streams.err, "{message}");
         return USAGE;
     }
+    // Clap fits everything to the terminal but the line of usage.
+    let message = message.to_string();
+    let message = match streams.width {
+        Some(width) => lines::fitted(&message, width),
+        None => message,
+    };
     match write!(streams.out, "{message}").and_then(|()| streams.out.flush()) {
         Ok(()) => DONE,
         Err(_) => FAILED,

@@ -19,7 +19,7 @@ fn fits(text: &str, width: usize, what: &str) {
 
 #[test]
 fn help_fits_and_has_examples() {
-    for width in [60, 80, 100, 200] {
+    for width in [40, 60, 80, 100, 200] {
         let help = |arguments: &[&str]| {
             let done = with(&gallery(), arguments, "", Some(width));
             assert_eq!(done.code, 0);
@@ -63,6 +63,48 @@ fn examples_of_the_help_are_understood() {
                 .is_some_and(|word| word.ends_with("-top") || word.ends_with("-body"));
             if named {
                 assert!(Gallery::shipped().find(words[1]).is_ok(), "{line}");
+            }
+        }
+    }
+}
+
+/// Equations are broken before the signs of their sums, and nothing is lost by it.
+#[test]
+fn derivations_fit() {
+    let gallery = Gallery::shipped();
+    let words = |text: &str| -> String { text.split_whitespace().collect() };
+    for entry in &gallery.entries {
+        let model = entry.card.kebab;
+        for arguments in [&["derive", model][..], &["derive", model, "--explain"]] {
+            let page = on(&gallery, arguments).out;
+            for width in [40, 60, 80, 132] {
+                let what = format!("{arguments:?}, {width}");
+                let done = with(&gallery, arguments, "", Some(width));
+                assert_eq!(done.code, 0, "{}", done.err);
+                fits(&done.out, width, &what);
+                // Headings are underlined by as many letters as they have: only what is no rule is compared.
+                let lines = |text: &str| -> Vec<String> {
+                    let rule =
+                        |line: &&str| !line.is_empty() && line.chars().all(|c| "=-".contains(c));
+                    text.lines()
+                        .filter(|line| !rule(line))
+                        .map(str::to_owned)
+                        .collect()
+                };
+                assert_eq!(
+                    words(&lines(&done.out).join(" ")),
+                    words(&lines(&page).join(" ")),
+                    "{what}"
+                );
+                // Displayed equations: numbered, or going on behind the number.
+                let displayed =
+                    |line: &&str| line.starts_with("  (") || line.starts_with("        ");
+                for line in done.out.lines().filter(displayed) {
+                    let sign = [" +", " -", " =", " :="]
+                        .iter()
+                        .any(|sign| line.ends_with(sign));
+                    assert!(!sign, "{what}: {line}");
+                }
             }
         }
     }

@@ -33,6 +33,15 @@ pub fn printed(d: &Derivation, format: Format) -> String {
     render(&document(d), &d.letters.symbols, &style(d), format)
 }
 
+/// The derivation in a format, its plain text in lines of at most so many columns where that can be.
+pub fn printed_in(d: &Derivation, format: Format, columns: usize) -> String {
+    let style = Style {
+        columns,
+        ..style(d)
+    };
+    render(&document(d), &d.letters.symbols, &style, format)
+}
+
 /// A number that changes when the model's text or the engine's version does (FNV-1a).
 pub fn fingerprint(d: &Derivation) -> u64 {
     let text = format!("{} {}", env!("CARGO_PKG_VERSION"), source(d));

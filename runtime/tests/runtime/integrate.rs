@@ -1,7 +1,7 @@
 //! The loop: samples where they belong, drift at every step, errors where they happen.
 
 use clebsch::card::{Card, Conserved, Field, Invariant, Kind, OpenError, Settings, Trajectory};
-use clebsch::integrate::{Observer, RunError, Watched, run};
+use clebsch::integrate::{LargestResidual, Observer, RunError, Watched, run, run_until_stopped};
 use clebsch::{StepCause, StepError};
 
 static CARD: Card = Card {
@@ -145,6 +145,98 @@ fn an_error_stops_the_run_at_its_node() {
         "no step from node 7 (state unchanged): `x` is NaN or infinite; reduce the step size or \
          check the initial values"
     );
+}
+
+#[test]
+fn what_was_done_before_a_run_stopped_is_told() {
+    let mut counter = Counter { node: 0, stop: 7 };
+    let mut notes = Notes::default();
+    let (summary, stopped) = run_until_stopped(&mut counter, 10, 4, &mut notes);
+    assert!(matches!(stopped, Some(RunError::Step(e)) if e.node == 7));
+    // The last node is a sample, though it was not to be one.
+    assert_eq!(notes.nodes, [0, 4, 7]);
+    assert_eq!(notes.last, [7.0, 49.0]);
+    assert_eq!((summary.steps, summary.node, summary.time), (7, 7, 3.5));
+    assert_eq!(summary.samples, 3);
+    assert_eq!(summary.drifts[0].worst, 0.5);
+    // One that was to be a sample is so once.
+    let mut counter = Counter { node: 0, stop: 8 };
+    let mut notes = Notes::default();
+    let (summary, _) = run_until_stopped(&mut counter, 10, 4, &mut notes);
+    assert_eq!((notes.nodes, summary.samples), (vec![0, 4, 8], 3));
+    // Nothing at all.
+    let mut counter = Counter { node: 0, stop: 0 };
+    let (summary, stopped) = run_until_stopped(&mut counter, 10, 4, &mut Notes::default());
+    assert_eq!((summary.steps, summary.samples), (0, 1));
+    assert!(stopped.is_some());
+    // To the end: as `run`.
+    let end = |run: &dyn Fn(&mut Counter, &mut Notes)| {
+        let mut counter = Counter { node: 0, stop: 99 };
+        let mut notes = Notes::default();
+        run(&mut counter, &mut notes);
+        (counter.node, notes.nodes)
+    };
+    let whole = end(&|c, n| assert!(run(c, 10, 4, n).is_ok()));
+    let part = end(&|c, n| assert!(run_until_stopped(c, 10, 4, n).1.is_none()));
+    assert_eq!(whole, part);
+}
+
+/// A counter whose steps leave these residuals; the last one for all that follow.
+struct Solved(Counter, &'static [Option<f64>]);
+
+impl Trajectory for Solved {
+    fn node(&self) -> u64 {
+        self.0.node()
+    }
+    fn time(&self) -> f64 {
+        self.0.time()
+    }
+    fn step(&mut self) -> Result<(), StepError> {
+        self.0.step()
+    }
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+    fn residual(&self) -> Option<f64> {
+        let last = self.1.len().checked_sub(1)?;
+        let index = usize::try_from(self.0.node - 1).expect("few steps");
+        self.1[index.min(last)]
+    }
+    fn observe(&self, out: &mut [f64]) {
+        self.0.observe(out);
+    }
+    fn invariants(&self, out: &mut [f64]) {
+        self.0.invariants(out);
+    }
+    fn scales(&self, out: &mut [f64]) {
+        self.0.scales(out);
+    }
+}
+
+#[test]
+fn the_worst_step_is_named() {
+    let worst = |residuals| {
+        let mut solved = Solved(Counter { node: 0, stop: 99 }, residuals);
+        let summary = run(&mut solved, 10, 4, &mut Notes::default()).expect("runs");
+        summary.residual
+    };
+    let found = |relative, node| Some(LargestResidual { relative, node });
+    assert_eq!(worst(&[None]), None);
+    // The first of equal ones; between samples, too.
+    let some = [
+        Some(0.0),
+        Some(2e-16),
+        Some(3e-14),
+        Some(3e-14),
+        Some(1e-16),
+    ];
+    assert_eq!(worst(Box::leak(Box::new(some))), found(3e-14, 3));
+    assert_eq!(worst(&[Some(0.0)]), found(0.0, 1));
+    // None has none to compare with, and a NaN is not passed over.
+    assert_eq!(worst(&[None, Some(1e-16), None]), found(1e-16, 2));
+    let nan = worst(&[Some(1e-16), Some(f64::NAN), Some(1.0)]).expect("a residual");
+    assert!(nan.relative.is_nan());
+    assert_eq!(nan.node, 2);
 }
 
 #[test]
