@@ -89,12 +89,19 @@ pub fn run(
     };
     let (mut files, mut place) = (Vec::new(), None);
     if let (Some(staging), Some(record), Some(target)) = (staging, record, target) {
-        let opening = opening(card, &plan, summary.steps)?;
-        files = output::write(&staging, &run, &Samples { record, opening })?;
-        place = Some(match &run.stopped {
-            None => staging.commit().map(|()| shown(target))?,
-            Some(_) => staging.commit_stopped()?,
-        });
+        let write = |files: &mut Vec<&'static str>| {
+            let opening = opening(card, &plan, summary.steps)?;
+            *files = output::write(&staging, &run, &Samples { record, opening })?;
+            match &run.stopped {
+                None => staging.commit().map(|()| shown(target)),
+                Some(_) => staging.commit_stopped(),
+            }
+        };
+        // Of two things that went wrong both are said.
+        place = Some(write(&mut files).map_err(|failure| match &run.stopped {
+            None => failure,
+            Some(stopped) => Failure::Failed(format!("{}; {failure}", stopped.why)),
+        })?);
     }
     let left: Vec<&str> = outcomes
         .iter()

@@ -5,6 +5,17 @@ use super::common::{Folder, on};
 use clebsch_cli::gallery::Gallery;
 use serde_json::Value;
 
+clebsch::model! {
+    /// A rigid body, free to turn and to move.
+    model FreeRigidBody {
+        param J: Sym<3>;
+        param m: Real;
+        group G: SE<3> velocity V;
+        constraint next(G) = G*V;
+        lagrangian = -tr(J*rot(V))/h + m*dot(pos(V), pos(V))/(2*h);
+    }
+}
+
 fn json(gallery: &Gallery, arguments: &[&str]) -> (u8, Value) {
     let done = on(gallery, &[arguments, &["--json"]].concat());
     let json = serde_json::from_str(&done.out).unwrap_or_else(|e| panic!("{e}: {}", done.err));
@@ -63,6 +74,51 @@ fn an_angular_momentum_about_the_origin_has_the_scale_of_the_lever_arm_reached()
         assert!(scale > away * linear, "{case}: {scale} < {away} * {linear}");
         // The other term is of the size of the start, and the body is farthest at the end.
         assert!(scale < away * linear + 2.0, "{case}: {scale}");
+    }
+}
+
+/// Far from the origin only the angular part is known less well.
+#[test]
+fn angular_and_linear_momentum_have_scales_of_their_own() {
+    let card = FreeRigidBody::CARD;
+    let far = 4096.0;
+    let mut place = vec![0.0; 16];
+    for i in 0..4 {
+        place[5 * i] = 1.0;
+    }
+    place[3] = far;
+    let inertia = vec![1.0, 0.0, 0.0, 0.0, 0.7, 0.0, 0.0, 0.0, 0.4];
+    let momentum = vec![0.0, 0.3, 0.4, 3.0, 0.0, 4.0];
+    let settings = clebsch::card::Settings::step(0.05);
+    let opened = (card.open)(&[inertia, vec![2.0]], &[place, momentum], settings);
+    let mut motion = opened.unwrap_or_else(|e| panic!("{e}"));
+    let mut scales = vec![0.0; card.invariant_count()];
+    let mut values = scales.clone();
+    let mut start = scales.clone();
+    motion.invariants(&mut start);
+    motion.scales(&mut scales);
+    let from: usize = card
+        .invariants
+        .iter()
+        .take_while(|v| v.name != "spatial_momentum")
+        .map(|v| v.rows)
+        .sum();
+    let of = |all: &[f64]| all[from..from + 6].to_vec();
+    // |m| + |x| |p| and |p|: lengths of 3-4-5 triangles.
+    let (angular, linear) = (0.5 + far * 5.0, 5.0);
+    for (scale, wanted) in of(&scales)
+        .iter()
+        .zip([angular, angular, angular, linear, linear, linear])
+    {
+        assert!((scale - wanted).abs() < 1e-12 * wanted, "{scales:?}");
+    }
+    for _ in 0..200 {
+        motion.step().unwrap_or_else(|e| panic!("{e}"));
+    }
+    motion.invariants(&mut values);
+    for ((a, b), scale) in of(&values).iter().zip(of(&start)).zip(of(&scales)) {
+        // A few roundings of a carried number.
+        assert!((a - b).abs() <= 1e-14 * scale, "{values:?} {start:?}");
     }
 }
 

@@ -104,6 +104,27 @@ fn kept_beside(done: &Done, kept: &str) {
     assert_eq!(steps_in(kept), 20);
 }
 
+/// Two things go wrong: the folder is taken, and a step fails after that.
+#[test]
+fn results_of_a_run_that_stopped_are_kept_beside_a_folder_made_meanwhile() {
+    let folder = Folder::new("made_and_stopped");
+    let out = folder.path("out");
+    let text = clebsch(&["case", "harmonic-rotor"]).out;
+    let file = folder.write("stiff.toml", &text.replace("kappa = 1.0", "kappa = -200.0"));
+    let made = out.clone();
+    let event = move || fs::create_dir(&made).expect("a folder");
+    let done = run_while(event, &out, &["--case", &file]);
+    kept_beside(&done, &folder.path("out-2"));
+    assert!(
+        done.err.starts_with("clebsch: no step from node 9 "),
+        "{}",
+        done.err
+    );
+    let made = "made by someone else during the run";
+    assert!(done.err.contains(made), "{}", done.err);
+    assert_eq!(folder.names(), ["out", "out-2", "stiff.toml"]);
+}
+
 #[test]
 fn a_folder_made_meanwhile_is_left_as_it_is() {
     let folder = Folder::new("made_meanwhile");

@@ -169,6 +169,23 @@ fn what_was_done_before_a_run_stopped_is_told() {
     let (summary, stopped) = run_until_stopped(&mut counter, 10, 4, &mut Notes::default());
     assert_eq!((summary.steps, summary.samples), (0, 1));
     assert!(stopped.is_some());
+    // A number that is none: what was done before its node.
+    for watched in [Watched::Invariant, Watched::Scale] {
+        let mut failing = Failing {
+            node: 0,
+            at: 6,
+            watched,
+            value: f64::NAN,
+        };
+        let mut notes = Notes::default();
+        let (summary, stopped) = run_until_stopped(&mut failing, 10, 4, &mut NoShape(&mut notes));
+        assert!(matches!(stopped, Some(RunError::NotFinite(e)) if e.node == 6));
+        assert_eq!(
+            (summary.steps, summary.node, notes.nodes),
+            (5, 5, vec![0, 4])
+        );
+        assert!(summary.drifts.iter().all(|d| d.worst.is_finite()));
+    }
     // To the end: as `run`.
     let end = |run: &dyn Fn(&mut Counter, &mut Notes)| {
         let mut counter = Counter { node: 0, stop: 99 };
