@@ -1,6 +1,9 @@
 //! Time reversal: whether the action of one step changes sign when its ends change places and
 //! the step changes sign. Established here before any composition to higher order is offered.
 
+#[cfg(test)]
+mod tests;
+
 use super::action::Action;
 use super::variation::at;
 use crate::algebra::{Algebra, assumed};
@@ -51,6 +54,16 @@ pub(crate) fn sum(spec: &Spec, action: &Action) -> Expr {
     expr::substitute(s, &sum, &forward)
 }
 
+/// The same expression with every advected quantity by its definition: a carried point has 1 for its
+/// last component and a carried frame is orthogonal, which letters of their shape do not show.
+pub(crate) fn by_configuration(spec: &Spec, e: &Expr) -> Expr {
+    let defined = spec.advected.iter().filter_map(|a| {
+        let definition = a.definition.clone()?;
+        Some((at(a.quantity, Shift::HERE), definition))
+    });
+    expr::substitute(&spec.symbols, e, &defined.collect::<Vec<_>>())
+}
+
 /// Whether `ℓ(q0, q1, h) = -ℓ(q1, q0, -h)` up to constants, `assumed` being what vanishes.
 pub fn reversal(spec: &Spec, action: &Action, assumed: &[Expr], algebra: &Algebra) -> Reversal {
     let s = &spec.symbols;
@@ -67,20 +80,19 @@ pub fn reversal(spec: &Spec, action: &Action, assumed: &[Expr], algebra: &Algebr
     if constant(&rest) {
         return Reversal::Symmetric;
     }
-    // A sum that is constant has the value that it has at rest, which identities beyond the normal
-    // form may prove: that a rotation keeps its axis, for one.
-    let still: Vec<(Letter, Expr)> = spec
-        .configurations
-        .iter()
-        .map(|c| (at(c.velocity, Shift::HERE), expr::identity(c.group.size())))
-        .collect();
-    let at_rest = expr::substitute(s, &rest, &still);
+    // A sum that is constant has the value that it has at rest in the identity, which identities
+    // beyond the normal form may prove: that a rotation keeps its axis, for one.
+    let whole = by_configuration(spec, &rest);
+    let still = spec.configurations.iter().flat_map(|c| {
+        [c.velocity, c.element].map(|x| (at(x, Shift::HERE), expr::identity(c.group.size())))
+    });
+    let at_rest = expr::substitute(s, &whole, &still.collect::<Vec<_>>());
     let at_rest = algebra.raise(&algebra.lower(&at_rest));
     if constant(&at_rest) {
-        if algebra.equal(&rest, &at_rest) {
+        if algebra.agree(&whole, &at_rest) {
             return Reversal::Symmetric;
         }
-        let moving = expr::sub(rest.clone(), at_rest);
+        let moving = expr::sub(whole, at_rest);
         if !assumed.is_empty() && assumed::vanishes(s, assumed, &moving) {
             return Reversal::Assumed;
         }

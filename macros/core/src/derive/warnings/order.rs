@@ -69,7 +69,7 @@ const EVALUATED: u64 = 100_000;
 /// its two ends, and `S` is constant where they meet.
 fn is_total_difference(x: &Inputs, action: &Action) -> bool {
     let s = &x.letters.symbols;
-    let sum = reversal::sum(x.spec, action);
+    let sum = reversal::by_configuration(x.spec, &reversal::sum(x.spec, action));
     let pairs = (x.spec.configurations.len() as u64).pow(2);
     if pairs * u64::from(sum.size()) > EVALUATED {
         return false;
