@@ -2,6 +2,7 @@
 //! `Id`, `0` and `E1 E2 E3` take theirs from the context.
 
 mod components;
+mod domains;
 mod functions;
 mod names;
 mod products;
@@ -230,7 +231,7 @@ impl<'a> Elaborator<'a> {
                 if self.vanishes(&bottom) {
                     return fail(Diagnostic::new(b.place, "this divisor is identically zero"));
                 }
-                Ok(expr::quotient(top, bottom))
+                self.finite(expr::quotient(top, bottom), e.place)
             }
             Kind::Transpose(a) => {
                 let inner = self.elaborate(a, expected.map(Shape::transposed))?;
@@ -239,7 +240,7 @@ impl<'a> Elaborator<'a> {
             Kind::Power(a, q) => {
                 let base = self.elaborate(a, None)?;
                 if base.shape().is_scalar() {
-                    return Ok(expr::power(base, *q));
+                    return self.power(base, *q, a.place, e.place);
                 }
                 self.square(&base, a.place, "a power")?;
                 match q.as_integer() {

@@ -43,7 +43,7 @@ fn numbers_glued_to_names_are_refused() {
         ("2m", "2m", vec!["`2*m`"]),
         ("2.5m*g", "2.5m", vec!["`2.5*m`"]),
         ("1e3m", "1e3m", vec!["`1e3*m`"]),
-        ("2(g) + 3m", "3m", vec!["`3*m`"]),
+        ("2*(g) + 3m", "3m", vec!["`3*m`"]),
         ("m/2g", "2g", vec!["`/(2*g)`", "`/2*g`"]),
         ("m/-2g", "2g", vec!["`2*g`"]),
         ("m 2g", "2g", vec!["`2*g`"]),
@@ -250,4 +250,118 @@ fn advected_quantities_are_declared_together_as_apart() {
             "{declared}: {message}"
         );
     }
+}
+
+#[test]
+fn what_stands_without_a_sign_after_a_factor_is_refused() {
+    for (text, remedy) in [
+        ("Γ[1]2", "`*2`"),
+        ("(m + g)2", "`*2`"),
+        ("m 2", "`*2`"),
+        ("2 3", "`*3`"),
+        ("m^2 3", "`*3`"),
+        ("-dot(v, Γ) 2.5", "`*2.5`"),
+        ("dot(v, Γ)(2)", "`*(...)`"),
+        ("Γ[1](m + g)", "`*(...)`"),
+        ("J[1, 2] (m + g)", "`*(...)`"),
+        ("m^2(3)", "`*(...)`"),
+        ("g*m^2(3)", "`*(...)`"),
+        ("m^1/2", "`m^(1/2)`"),
+        ("m^1/2", "`m/2`"),
+        ("2*(m + g)^1/3*g", "`a^(1/3)`"),
+        ("m^-1/2", "`(m^-1)/2`"),
+        ("m^-1/2", "`m^(-1/2)`"),
+    ] {
+        let message = refused("", text);
+        assert!(message.contains(remedy), "{text}: {message}");
+    }
+    // What can be read in one way only.
+    same("2 (m + g)", "2*m + 2*g");
+    same("(m + g)(m - g)", "m^2 - g^2");
+    same("(m^2)(m + g)", "m^3 + m^2*g");
+    same("(dot(v, Γ))(m + g) m", "dot(v, Γ)*m^2 + m*g*dot(v, Γ)");
+    same("dot(v, Γ) m", "m*dot(v, Γ)");
+    same("m^2/2 - m^4/4", "(m^2 - m^4/2)/2");
+    same("m^(1/2)*m^(1/2)", "m");
+    same("m^-1*g/2", "g/(2*m)");
+}
+
+#[test]
+fn numbers_of_other_languages_are_refused() {
+    for (text, said) in [
+        ("0x10*m", "write `16`"),
+        ("m*0xff", "write `255`"),
+        ("0b11*m", "write `3`"),
+        ("m^0x2", "write `2`"),
+        ("0o1_7*m", "write `15`"),
+        ("0xffffffffffffffffffffffffffffffffff*m", "decimal digits"),
+        ("2f64*m", "write `2`"),
+        ("1.5f32*m", "write `1.5`"),
+        ("3u8*m", "no type here"),
+    ] {
+        let message = refused("", text);
+        assert!(message.contains(said), "{text}: {message}");
+    }
+}
+
+#[test]
+fn what_has_no_value_anywhere_is_refused() {
+    let declared = "param p: Real; param S: Skew<3>;";
+    for (text, said) in [
+        ("log(0)", "`log` is zero"),
+        ("log(p - p)", "`log` is zero"),
+        ("log(det(hat(v)))", "`log` is zero"),
+        ("log(-1)", "`log` is negative"),
+        ("log(-p*p)", "negative or zero"),
+        ("log(-dot(Γ, Γ))", "negative or zero"),
+        ("log(sin(p) - 2)", "`log` is negative"),
+        ("log(-exp(p))", "`log` is negative"),
+        ("log(tanh(p) - 1)", "`log` is negative"),
+        ("sqrt(-1)", "root is negative"),
+        ("sqrt(-1 - p^2)", "root is negative"),
+        ("sqrt(-abs(p))", "root is negative or zero"),
+        ("(-dot(v, v) - 1)^(3/2)", "root is negative"),
+        ("(p - p)^-2", "identically zero"),
+        ("(p - p)^(-1/2)", "identically zero"),
+        ("tr(hat(Γ)^-1)", "has no inverse"),
+        ("tr(inv(S)*J)", "has no inverse"),
+        ("tr((v*Γ^T)^-1)", "has no inverse"),
+        ("tr(inv(hat(v)*J)*J)", "has no inverse"),
+        ("3^1000000", "from -256 to 256"),
+        ("p^257", "from -256 to 256"),
+        ("p^-300", "from -256 to 256"),
+        ("p^(1000/3)", "from -256 to 256"),
+        ("J[1, 1]*exp(1000)", "1.8e308"),
+        ("1e30^25", "1.8e308"),
+        ("cosh(p)*exp(exp(exp(10)))", "1.8e308"),
+    ] {
+        let message = refused(declared, text);
+        assert!(message.contains(said), "{text}: {message}");
+    }
+    for text in [
+        "log(p)",
+        "log(-p)",
+        "log(1 - p^2)",
+        "sqrt(0)",
+        "sqrt(p - 1)",
+        "sqrt(-p)",
+        "log(dot(Γ, Γ))",
+        "log(2 + sin(p))",
+        "log(1 - tanh(p))",
+        "tr((hat(v) + Id)^-1)",
+        "tr((S*S - J)^-1)",
+        "p^256 + p^-256 + p^1.4",
+        "exp(-1000)*p",
+        "exp(700)*p",
+        "abs(p)^(1/3)",
+    ] {
+        assert!(
+            checked(declared, text).is_ok(),
+            "{}",
+            refused(declared, text)
+        );
+    }
+    // Whatever the expression is for.
+    let message = refused("param p: Real; assume log(-p^2) > 0;", "p");
+    assert!(message.contains("negative or zero"), "{message}");
 }

@@ -118,7 +118,7 @@ fn collect(d: &Derivation, e: &Expr, all: &mut Vec<Guard>) {
             (None, false) => guard(d, Domain::NotNegative, Named::Power, a, all),
         },
         Node::Quotient(_, b) => guard(d, Domain::NotZero, Named::Quotient, b, all),
-        Node::Inverse(a) if !invertible(d, a) => {
+        Node::Inverse(a) if !expr::is_invertible(&d.letters.symbols, a) => {
             guard(
                 d,
                 Domain::NotZero,
@@ -131,17 +131,6 @@ fn collect(d: &Derivation, e: &Expr, all: &mut Vec<Guard>) {
     }
     for child in e.children() {
         collect(d, child, all);
-    }
-}
-
-/// Whether a matrix is made of what is invertible by itself.
-fn invertible(d: &Derivation, e: &Expr) -> bool {
-    match e.node() {
-        Node::Letter(l) => d.letters.symbols.get(l.symbol).structure.is_invertible(),
-        Node::Identity(_) => true,
-        Node::Transpose(a) | Node::Inverse(a) | Node::Neg(a) => invertible(d, a),
-        Node::Product(factors) => factors.iter().all(|f| invertible(d, f)),
-        _ => false,
     }
 }
 

@@ -408,6 +408,18 @@ pub fn inverse(symbols: &Symbols, a: Expr) -> Expr {
     }
 }
 
+/// Whether a matrix is made of what is invertible by itself.
+pub fn is_invertible(symbols: &Symbols, e: &Expr) -> bool {
+    let go = |x: &Expr| is_invertible(symbols, x);
+    match e.node() {
+        Node::Letter(l) => symbols.get(l.symbol).structure.is_invertible(),
+        Node::Identity(_) => true,
+        Node::Transpose(a) | Node::Inverse(a) | Node::Neg(a) => go(a),
+        Node::Product(factors) => factors.iter().all(go),
+        _ => false,
+    }
+}
+
 /// The trace.
 pub fn trace(a: Expr) -> Expr {
     match a.node() {

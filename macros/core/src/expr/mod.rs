@@ -11,6 +11,7 @@ mod gradient;
 mod presence;
 mod projection;
 mod quaternion;
+pub(crate) mod range;
 mod rigid;
 pub mod shape;
 pub(crate) mod spelling;

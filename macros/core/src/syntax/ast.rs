@@ -95,6 +95,19 @@ pub enum Comparison {
     AtMost,
 }
 
+impl Comparison {
+    /// What holds where an inequality does not.
+    pub fn opposite(self) -> Option<Comparison> {
+        match self {
+            Comparison::Equal => None,
+            Comparison::Greater => Some(Comparison::AtMost),
+            Comparison::AtLeast => Some(Comparison::Less),
+            Comparison::Less => Some(Comparison::AtLeast),
+            Comparison::AtMost => Some(Comparison::Greater),
+        }
+    }
+}
+
 /// A statement.
 #[derive(Clone, Debug)]
 pub enum Statement {

@@ -1,6 +1,8 @@
 //! Expressions: a Pratt parser with the precedence of mathematics, lowest first: `+ -`, then
 //! `* /` and juxtaposition, then unary `-`, then postfix `^T ^-1 ^number [i] [i, j]`. What could be
-//! read in two ways is refused: `2h`, and juxtaposition after a divisor.
+//! read in two ways is refused, see [`ambiguous`].
+
+mod ambiguous;
 
 use super::ast::{Expression, Kind};
 use super::token::{Cursor, Token};
@@ -12,6 +14,9 @@ const FOLLOWING: [&str; 4] = ["at", "on", "periodic", "in"];
 
 /// More transposes and powers on one operand than anybody writes.
 const MOST_POSTFIXES: usize = 16;
+
+/// Largest exponent, of either sign.
+const LARGEST_EXPONENT: i64 = 256;
 
 type Parsed = Result<Expression, Diagnostic>;
 
@@ -58,15 +63,17 @@ fn starts_operand(c: &Cursor) -> bool {
 }
 
 fn product(c: &mut Cursor) -> Parsed {
+    let mut opened = matches!(c.peek(), Some(Token::Open('(')));
     let mut factors = vec![signed(c)?];
     loop {
         if c.take_punct('*') {
+            opened = matches!(c.peek(), Some(Token::Open('(')));
             factors.push(signed(c)?);
         } else if c.take_punct('/') {
             let numerator = joined(factors);
             let divisor = signed(c)?;
             if starts_operand(c) {
-                return Err(after_divisor(c, &divisor));
+                return Err(ambiguous::after_divisor(c, &divisor));
             }
             let place = numerator.place.to(divisor.place);
             factors = vec![Expression {
@@ -74,55 +81,15 @@ fn product(c: &mut Cursor) -> Parsed {
                 place,
             }];
         } else if starts_operand(c) {
+            if let Some(error) = ambiguous::after_factor(c, factors.last(), opened) {
+                return Err(error);
+            }
+            opened = matches!(c.peek(), Some(Token::Open('(')));
             factors.push(postfix(c)?);
         } else {
             return Ok(joined(factors));
         }
     }
-}
-
-/// What a message calls an operand: as it was written where that is one word.
-fn spelled(e: &Expression) -> &str {
-    match &e.kind {
-        Kind::Name(name) => name,
-        _ => "a",
-    }
-}
-
-/// `x/a b`: nobody knows whether `b` is above or below the line.
-fn after_divisor(c: &Cursor, divisor: &Expression) -> Diagnostic {
-    let next = match c.peek() {
-        Some(Token::Glued(number, name)) => return glued(c, number, name),
-        Some(Token::Name(n)) => n.clone(),
-        Some(Token::Number(n)) => n.clone(),
-        _ => "(...)".to_owned(),
-    };
-    let a = match &divisor.kind {
-        Kind::Number(q) if q.denominator() == 1 => q.numerator().to_string(),
-        _ => spelled(divisor).to_owned(),
-    };
-    Diagnostic::new(
-        divisor.place.to(c.place()),
-        "after `/` a product without `*` can be read in two ways",
-    )
-    .help(format!(
-        "write `/({a}*{next})` to divide by both, or `/{a}*{next}` to multiply by what follows"
-    ))
-}
-
-/// `2h`: no product, and after `/` read in two ways.
-fn glued(c: &Cursor, number: &str, name: &str) -> Diagnostic {
-    let divides = c.follows_punct('/');
-    let d = Diagnostic::new(
-        c.place(),
-        format!("`{number}{name}` is a number glued to a name"),
-    );
-    d.help(match divides {
-        true => format!(
-            "write `/({number}*{name})` to divide by both, or `/{number}*{name}` to multiply by `{name}`"
-        ),
-        false => format!("write `{number}*{name}`"),
-    })
 }
 
 fn joined(mut factors: Vec<Expression>) -> Expression {
@@ -181,7 +148,11 @@ fn postfix(c: &mut Cursor) -> Parsed {
         } else if c.take_word("T") {
             Kind::Transpose(Box::new(e.clone()))
         } else {
-            Kind::Power(Box::new(e.clone()), exponent(c)?)
+            let q = exponent(c)?;
+            if let Some(error) = ambiguous::after_exponent(c, &e, q) {
+                return Err(error);
+            }
+            Kind::Power(Box::new(e.clone()), q)
         };
         let place = e.place.to(c.last_place());
         e = Expression { kind, place };
@@ -210,6 +181,21 @@ fn indices(c: &mut Cursor) -> Result<Vec<u64>, Diagnostic> {
 
 /// After `^`: a number, `-1`, or a fraction in parentheses.
 fn exponent(c: &mut Cursor) -> Result<Rational, Diagnostic> {
+    let start = c.place();
+    let value = signed_exponent(c)?;
+    let size = match value.is_negative() {
+        true => value.negated(),
+        false => value,
+    };
+    if size > Rational::integer(LARGEST_EXPONENT) {
+        let message = format!("exponents go from -{LARGEST_EXPONENT} to {LARGEST_EXPONENT}");
+        let remedy = "make the power a parameter, or write it by `exp` and `log`";
+        return Err(Diagnostic::new(start.to(c.last_place()), message).help(remedy));
+    }
+    Ok(value)
+}
+
+fn signed_exponent(c: &mut Cursor) -> Result<Rational, Diagnostic> {
     let parenthesis = c.take_delimiter('(');
     let minus = c.take_punct('-');
     let mut value = match c.peek() {
@@ -218,7 +204,7 @@ fn exponent(c: &mut Cursor) -> Result<Rational, Diagnostic> {
             c.advance();
             value
         }
-        Some(Token::Glued(number, name)) => return Err(glued(c, number, name)),
+        Some(Token::Glued(number, name)) => return Err(ambiguous::glued(c, number, name)),
         _ => {
             return Err(c.unexpected("`T`, `-1` or a number after `^`").help(
                 "`x^T` is the transpose, `x^-1` the inverse, `x^2` and `x^(1/2)` are powers",
@@ -283,7 +269,7 @@ fn operand(c: &mut Cursor) -> Parsed {
                 place: start,
             })
         }
-        Some(Token::Glued(number, name)) => Err(glued(c, &number, &name)),
+        Some(Token::Glued(number, name)) => Err(ambiguous::glued(c, &number, &name)),
         Some(Token::Open('(')) => {
             c.advance();
             let mut inner = expression(c)?;

@@ -155,13 +155,13 @@ impl Elaborator<'_> {
                     _ => expr::part(Part::Skew, a),
                 })
             }
-            "sqrt" => Ok(expr::power(
-                self.of_shape(first, Shape::SCALAR)?,
-                Rational::HALF,
-            )),
-            _ if Function::named(f).is_some() => {
+            "sqrt" => {
                 let a = self.of_shape(first, Shape::SCALAR)?;
-                Ok(Function::named(f).map_or(a.clone(), |function| expr::call(function, a)))
+                self.power(a, Rational::HALF, first.place, place)
+            }
+            _ if let Some(function) = Function::named(f) => {
+                let a = self.of_shape(first, Shape::SCALAR)?;
+                self.function(function, a, first.place, place)
             }
             "hat" | "quat" => {
                 let a = argument(Some(Shape::vector(Dim::Fixed(3))))?;

@@ -110,6 +110,12 @@ impl Elaborator<'_> {
                 "this is identically zero and has no inverse",
             ));
         }
+        if !expr::is_invertible(&self.names.symbols, &a) && self.vanishes(&expr::det(a.clone())) {
+            let message = "this matrix has no inverse: its determinant is zero for all values";
+            return fail(Diagnostic::new(place, message).help(
+                "a skew matrix of odd size is singular, such as `hat(v)`, and so is `a*b^T`; add a regular matrix, for example `Id`",
+            ));
+        }
         Ok(expr::inverse(&self.names.symbols, a))
     }
 

@@ -1,0 +1,62 @@
+//! Domains of functions: an argument for which a function has a value nowhere is refused on its tokens,
+//! and so is a number beyond the largest double. What may be inside is left to `new` and to the step.
+
+use super::{Elaborated, Elaborator, fail};
+use crate::algebra::Rational;
+use crate::diagnostic::{Diagnostic, Place};
+use crate::expr::range::range;
+use crate::expr::{self, Expr, Function};
+
+/// What is wrong with an argument that has to be positive, if it never is.
+fn never_positive(e: &Expr, vanishes: bool) -> Option<&'static str> {
+    let r = range(e);
+    match (vanishes, r.is_negative(), r.is_not_positive()) {
+        (true, ..) => Some("zero"),
+        (_, true, _) => Some("negative"),
+        (.., true) => Some("negative or zero"),
+        _ => None,
+    }
+}
+
+impl Elaborator<'_> {
+    /// A power of a number.
+    pub(super) fn power(&self, base: Expr, q: Rational, at: Place, place: Place) -> Elaborated {
+        if q.is_negative() && self.vanishes(&base) {
+            let message = "a negative power of what is identically zero";
+            return fail(Diagnostic::new(at, message).help("its base must not be zero"));
+        }
+        if q.as_integer().is_none()
+            && !base.is_zero()
+            && let Some(always) = never_positive(&base, false)
+        {
+            let message = format!("the base of a root is {always} here for all values");
+            return fail(Diagnostic::new(at, message).help(
+                "roots and powers with a fraction are real for positive numbers only: is the sign wrong?",
+            ));
+        }
+        self.finite(expr::power(base, q), place)
+    }
+
+    /// A function of a number.
+    pub(super) fn function(&self, f: Function, a: Expr, at: Place, place: Place) -> Elaborated {
+        if f == Function::Log
+            && let Some(always) = never_positive(&a, self.vanishes(&a))
+        {
+            let message = format!("the argument of `log` is {always} here for all values");
+            return fail(
+                Diagnostic::new(at, message)
+                    .help("the logarithm is real for positive numbers only: is the sign wrong?"),
+            );
+        }
+        self.finite(expr::call(f, a), place)
+    }
+
+    /// The expression, unless it is a number that no double holds.
+    pub(super) fn finite(&self, e: Expr, place: Place) -> Elaborated {
+        if range(&e).overflows() {
+            let message = "this number is beyond the largest, 1.8e308";
+            return fail(Diagnostic::new(place, message).help("state the model in other units"));
+        }
+        Ok(e)
+    }
+}

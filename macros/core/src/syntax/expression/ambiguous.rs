@@ -1,0 +1,139 @@
+//! What could be read in two ways, or is written as in another language: each is refused with both
+//! ways to write it. Takes what was read and the cursor after it; gives the error, if there is one.
+
+use super::{Cursor, Expression, Kind, Token};
+use crate::algebra::Rational;
+use crate::diagnostic::Diagnostic;
+
+/// Types that Rust glues to numbers.
+const SUFFIXES: [&str; 14] = [
+    "f32", "f64", "i8", "i16", "i32", "i64", "i128", "isize", "u8", "u16", "u32", "u64", "u128",
+    "usize",
+];
+
+/// What a message calls an operand: as it was written where that is one word.
+fn spelled(e: &Expression) -> &str {
+    match &e.kind {
+        Kind::Name(name) => name,
+        _ => "a",
+    }
+}
+
+/// `x/a b`: nobody knows whether `b` is above or below the line.
+pub(super) fn after_divisor(c: &Cursor, divisor: &Expression) -> Diagnostic {
+    let next = match c.peek() {
+        Some(Token::Glued(number, name)) => return glued(c, number, name),
+        Some(Token::Name(n)) => n.clone(),
+        Some(Token::Number(n)) => n.clone(),
+        _ => "(...)".to_owned(),
+    };
+    let a = match &divisor.kind {
+        Kind::Number(q) if q.denominator() == 1 => q.numerator().to_string(),
+        _ => spelled(divisor).to_owned(),
+    };
+    Diagnostic::new(
+        divisor.place.to(c.place()),
+        "after `/` a product without `*` can be read in two ways",
+    )
+    .help(format!(
+        "write `/({a}*{next})` to divide by both, or `/{a}*{next}` to multiply by what follows"
+    ))
+}
+
+/// `2h`: no product, and after `/` read in two ways; `0x10` and `2f64` are numbers of other languages.
+pub(super) fn glued(c: &Cursor, number: &str, name: &str) -> Diagnostic {
+    if let Some(value) = of_another_base(number, name) {
+        let message = format!("`{number}{name}`: numbers are written in decimal digits");
+        return Diagnostic::new(c.place(), message).help(match value {
+            Some(value) => format!("write `{value}`"),
+            None => "write it in decimal digits, such as `16`".to_owned(),
+        });
+    }
+    if SUFFIXES.contains(&name) {
+        let message = format!("`{number}{name}`: numbers have no type here, they are exact");
+        return Diagnostic::new(c.place(), message).help(format!("write `{number}`"));
+    }
+    let divides = c.follows_punct('/');
+    let d = Diagnostic::new(
+        c.place(),
+        format!("`{number}{name}` is a number glued to a name"),
+    );
+    d.help(match divides {
+        true => format!(
+            "write `/({number}*{name})` to divide by both, or `/{number}*{name}` to multiply by `{name}`"
+        ),
+        false => format!("write `{number}*{name}`"),
+    })
+}
+
+/// The value of `0x10`, `0o17` or `0b11`, which came as `0` and the rest; `Some(None)` where it has
+/// none that fits.
+fn of_another_base(number: &str, name: &str) -> Option<Option<u128>> {
+    let base = match name.as_bytes().first()? {
+        b'x' => 16,
+        b'o' => 8,
+        b'b' => 2,
+        _ => return None,
+    };
+    let digits = name[1..].replace('_', "");
+    let all = !digits.is_empty() && digits.chars().all(|c| c.is_digit(base));
+    (number == "0" && all).then(|| u128::from_str_radix(&digits, base).ok())
+}
+
+/// What stands without `*` after a factor: a number (`v[1] 2`, `(a + b)2`: a product, a power, an
+/// index?), or parentheses after what looks like a call, an index or a power (`dot(a, b)(2)`).
+/// `opened` is whether the factor began with a parenthesis.
+pub(super) fn after_factor(
+    c: &Cursor,
+    factor: Option<&Expression>,
+    opened: bool,
+) -> Option<Diagnostic> {
+    let factor = factor?;
+    let (what, remedy) = match c.peek()? {
+        Token::Number(n) => (
+            format!("`{n}` stands after a factor without `*`"),
+            format!("write `*{n}` for the product, `^{n}` for a power"),
+        ),
+        Token::Open('(') => {
+            let inner = match &factor.kind {
+                Kind::Neg(inner) => &inner.kind,
+                other => other,
+            };
+            let what = match inner {
+                Kind::Call(..) => "a function",
+                Kind::Component(..) => "a component",
+                Kind::Power(..) => "a power",
+                _ => return None,
+            };
+            if opened {
+                return None;
+            }
+            (
+                format!("parentheses stand after {what} without `*`"),
+                "write `*(...)` for the product".to_owned(),
+            )
+        }
+        _ => return None,
+    };
+    Some(Diagnostic::new(factor.place.to(c.place()), what).help(remedy))
+}
+
+/// `x^1/2` is half of `x`, and nobody writes the exponent 1 who does not mean the root; `x^2/2` is
+/// half of the square.
+pub(super) fn after_exponent(c: &Cursor, base: &Expression, q: Rational) -> Option<Diagnostic> {
+    let one = q.is_one() || q == Rational::MINUS_ONE;
+    let Some(Token::Number(n)) = c.peek_at(1).filter(|_| one && c.is_punct('/')) else {
+        return None;
+    };
+    let (x, sign) = (spelled(base), if q.is_negative() { "-" } else { "" });
+    let whole = match q.is_negative() {
+        true => format!("({x}^-1)/{n}"),
+        false => format!("{x}/{n}"),
+    };
+    let message = format!("`{x}^{sign}1/{n}` can be read in two ways");
+    Some(
+        Diagnostic::new(base.place.to(c.place()), message).help(format!(
+            "write `{x}^({sign}1/{n})` for the exponent {sign}1/{n}, or `{whole}` to divide by {n}"
+        )),
+    )
+}
