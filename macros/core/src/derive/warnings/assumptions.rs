@@ -8,8 +8,9 @@ use super::{Inputs, Topic, Warning};
 use crate::algebra::exact;
 use crate::check::spec::Assumption;
 use crate::diagnostic::Diagnostic;
+use crate::expr::range::range;
 use crate::expr::symbol::{SymbolId, Symbols};
-use crate::expr::{self};
+use crate::expr::{self, Expr};
 use crate::interpret::Assignment;
 use crate::syntax::ast::Comparison;
 
@@ -86,7 +87,25 @@ fn shown(x: &Inputs, a: &Assumption) -> String {
     format!("`{} {relation} {}`", x.text(&a.left), x.text(&a.right))
 }
 
+/// Whether the ranges of functions show that it always holds: a number that underflows says otherwise.
+fn by_range(left: &Expr, relation: Comparison, right: &Expr) -> bool {
+    if !left.shape().is_scalar() {
+        return false;
+    }
+    let r = range(&expr::sub(left.clone(), right.clone()));
+    match relation {
+        Comparison::Equal => false,
+        Comparison::Greater => r.is_positive(),
+        Comparison::AtLeast => r.is_not_negative(),
+        Comparison::Less => r.is_negative(),
+        Comparison::AtMost => r.is_not_positive(),
+    }
+}
+
 fn always(s: &Symbols, a: &Assumption, budget: &Budget) -> bool {
+    if by_range(&a.left, a.relation, &a.right) {
+        return true;
+    }
     let Some(opposite) = Condition::opposite(s, a) else {
         return exact::vanishes(s, &expr::sub(a.left.clone(), a.right.clone()));
     };
@@ -94,6 +113,16 @@ fn always(s: &Symbols, a: &Assumption, budget: &Budget) -> bool {
 }
 
 fn never(s: &Symbols, list: &[&Assumption], budget: &Budget) -> bool {
+    let beyond = |a: &&Assumption| match a.relation.opposite() {
+        Some(opposite) => by_range(&a.left, opposite, &a.right),
+        None => {
+            by_range(&a.left, Comparison::Greater, &a.right)
+                || by_range(&a.left, Comparison::Less, &a.right)
+        }
+    };
+    if list.iter().any(beyond) {
+        return true;
+    }
     let conditions: Vec<Condition> = list.iter().map(|a| Condition::of(s, a)).collect();
     fails(s, &conditions, budget)
 }

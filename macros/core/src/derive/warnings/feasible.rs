@@ -34,14 +34,7 @@ impl Condition {
 
     /// That an inequality does not hold; nothing for an equation.
     pub(super) fn opposite(symbols: &Symbols, a: &Assumption) -> Option<Condition> {
-        let relation = match a.relation {
-            Comparison::Equal => return None,
-            Comparison::Greater => Comparison::AtMost,
-            Comparison::AtLeast => Comparison::Less,
-            Comparison::Less => Comparison::AtLeast,
-            Comparison::AtMost => Comparison::Greater,
-        };
-        Some(Condition::new(symbols, a, relation))
+        Some(Condition::new(symbols, a, a.relation.opposite()?))
     }
 
     fn new(symbols: &Symbols, a: &Assumption, relation: Comparison) -> Condition {

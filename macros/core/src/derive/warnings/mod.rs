@@ -4,6 +4,7 @@
 //! what is derived, and work is bounded: what is too large to decide is not warned of.
 
 mod assumptions;
+mod difference;
 mod draw;
 mod effect;
 mod feasible;
@@ -12,6 +13,7 @@ mod order;
 #[cfg(test)]
 mod point_masses;
 mod sign;
+mod terms;
 #[cfg(test)]
 mod tests;
 
@@ -173,13 +175,18 @@ pub(crate) fn warnings(x: &Inputs) -> Vec<Warning> {
     all.extend(sign::degenerate(x));
     all.extend(sign::sign(x));
     // Of a power of the step that is wrong one warning is enough.
-    let power_is_wrong =
+    let mut power_is_wrong =
         x.limit.is_err() || x.kinetic.is_some_and(|k| k.rank.is_some_and(|r| r.0 == 0));
+    if !power_is_wrong {
+        let vanishing = terms::vanishing(x);
+        power_is_wrong = vanishing.is_some();
+        all.extend(vanishing);
+    }
     if !power_is_wrong {
         all.extend(order::order(x));
     }
     all.extend(effect::parameters(x));
-    all.extend(effect::terms(x));
+    all.extend(terms::without_effect(x));
     all.extend(effect::kinks(x));
     all.extend(assumptions::assumptions(x));
     all

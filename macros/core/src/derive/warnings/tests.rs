@@ -155,14 +155,16 @@ fn first_order_that_is_not_asked_for_is_said() {
     let sided = topics(&plane("m*f*X*(next(Y) - Y)"));
     assert_eq!(sided, [FirstOrder]);
     assert_eq!(topics(&plane("m*f*(X + next(X))/2*(next(Y) - Y)")), []);
-    // A potential with an even power of the step.
-    assert_eq!(top("-tr(J*Ω)/h - h^2*dot(gU, Γ)"), [FirstOrder]);
-    // Total differences, of either parity, leave the scheme as it is.
-    assert_eq!(top("-tr(J*Ω)/h - h*dot(gU, Γ) + dot(gU, next(Γ) - Γ)"), []);
+    // A correction with an even power of the step.
     assert_eq!(
-        top("-tr(J*Ω)/h - h*dot(gU, Γ) + h*dot(gU, next(Γ) - Γ)"),
-        []
+        top("-tr(J*Ω)/h - h*dot(gU, Γ) - h^2*dot(gU, Γ)^2"),
+        [FirstOrder]
     );
+    // Total differences, of either parity, leave the scheme as it is.
+    for difference in ["dot(gU, next(Γ) - Γ)", "h*dot(gU, next(Γ) - Γ)"] {
+        let with = top(&format!("-tr(J*Ω)/h - h*dot(gU, Γ) + {difference}"));
+        assert_eq!(with, [ConstantTerm], "{difference}");
+    }
     // What is asked for is not warned of, but what else is of first order is.
     for rule in ["incoming", "outgoing"] {
         let rule = |l: &str| topics(&format!("{TOP} node {rule}; lagrangian = {l};"));
@@ -218,6 +220,94 @@ fn constant_potentials_are_said() {
 }
 
 #[test]
+fn what_the_motion_does_not_depend_on_is_said() {
+    let with = |term: &str| {
+        topics(&format!(
+            "{TOP} param p, q: Real; param n: Vec<3>;
+             lagrangian = -(1 + q^2)*tr(J*Ω)/h - h*(1 + dot(n, n))*dot(gU, Γ) {term};"
+        ))
+    };
+    for term in [
+        // Constants with a parameter of their own, beside a potential.
+        "- h*p",
+        "- p/h",
+        "- p",
+        "+ h*p*dot(n, n)",
+        "- h^2*p*dot(gU, z)",
+        "- h*exp(p)*sqrt(1 + q^2)",
+        // Total differences: one term, a product, in pairs.
+        "+ p*dot(gU, next(Γ) - Γ)",
+        "+ p*(dot(n, next(Γ)) - dot(n, Γ))",
+        "+ p*dot(n, next(Γ))^3 - p*dot(n, Γ)^3",
+        "+ dot(gU, next(Γ))^2 - dot(gU, Γ)^2",
+        "+ h*(dot(n, next(Γ))^2 - dot(n, Γ)^2)",
+        "+ p*dot(n, (next(Γ) + Γ)/2)*0 + p*(Γ[1] + next(Γ)[1])*(Γ[1] - next(Γ)[1])",
+        // Constant by what the group keeps.
+        "+ p*dot(Γ, next(Γ) - Ω^T*Γ)",
+        "+ h*p*dot(next(Γ), next(Γ))",
+    ] {
+        let mut found = with(&format!("+ p*0 + 0*q {term}"));
+        found.retain(|t| *t != UnusedParameter);
+        assert_eq!(found, [ConstantTerm], "{term}");
+    }
+    for term in [
+        "- h*p*dot(gU, Γ)^2",
+        "+ p*dot(gU, next(Γ) - Γ)*dot(n, Γ + next(Γ))",
+        // A constant that normalises what moves.
+        "+ h*(1 + dot(n, n))*dot(gU, z) - h*p*dot(n, Γ)",
+        "+ (1 + q^2)*tr(J)/h - h*p*dot(n, Γ)",
+        "- h*p*(1 - dot(n, Γ))",
+    ] {
+        let found = with(term);
+        assert!(!found.contains(&ConstantTerm), "{term}: {found:?}");
+    }
+    let text = words(&format!(
+        "{TOP} param p: Real; lagrangian = -tr(J*Ω)/h - h*dot(gU, Γ) - h*p;"
+    ));
+    assert!(text.contains("does not depend on `p`"), "{text}");
+    // In space, on every other group, and stated by the configuration.
+    let difference = "p*dot(z, pos(next(G)) - pos(G))";
+    for update in ["G*V", "V*G"] {
+        let found = topics(&format!(
+            "param J: Sym<3>; param m, p: Real; param z: Vec<3>; group G: SE<3> velocity V;
+             constraint next(G) = {update}; let d = pos(next(G)) - pos(G);
+             lagrangian = -tr(J*rot(G)^T*rot(next(G)))/h + m*dot(d, d)/(2*h)
+                 - h*dot(z, pos(G)) + {difference};"
+        ));
+        assert_eq!(found, [ConstantTerm], "{update}");
+    }
+}
+
+#[test]
+fn a_potential_with_a_wrong_power_of_the_step_is_said() {
+    let point = |term: &str| {
+        topics(&format!(
+            "{POINT} param z, w: Vec<3>; let d = pos(next(G)) - pos(G);
+             lagrangian = -tr(J*rot(G)^T*rot(next(G)))/h + m*(1 + dot(w, w))*dot(d, d)/(2*h) {term};"
+        ))
+    };
+    assert_eq!(point("- h*dot(z, pos(G))"), []);
+    for wrong in [
+        "- h^2*dot(z, pos(G))",
+        "- h^3*dot(z, pos(G))",
+        "- h^3*dot(w, pos(G))",
+        "- h^3*dot(w, pos(G)) - h^2*dot(z, pos(G))^2",
+        "- h*dot(w, pos(G)) - h^3*dot(z, pos(G))",
+    ] {
+        let found = point(wrong);
+        assert!(found.contains(&NoLimit), "{wrong}: {found:?}");
+        assert!(!found.contains(&FirstOrder), "{wrong}: {found:?}");
+    }
+    // A correction of the order of the step to a potential that is there, and one scaled.
+    assert!(!point("- h*dot(z, pos(G)) - h^3*dot(z, z)*dot(z, pos(G))^2").contains(&NoLimit));
+    let scaled = |l: &str| topics(&format!("{TOP} scale -h; lagrangian = {l};"));
+    assert_eq!(scaled("tr(J*Ω) + h^2*dot(gU, Γ)"), []);
+    assert_eq!(scaled("tr(J*Ω) + h^4*dot(gU, Γ)"), [NoLimit]);
+    let text = words(&format!("{TOP} lagrangian = -tr(J*Ω)/h - h^3*dot(gU, Γ);"));
+    assert!(text.contains("and this is to `h^3`"), "{text}");
+}
+
+#[test]
 fn functions_that_are_not_smooth_are_said() {
     assert_eq!(top("-tr(J*Ω)/h - h*abs(dot(gU, Γ))"), [NotSmooth]);
     assert_eq!(
@@ -250,6 +340,13 @@ fn assumptions_that_say_nothing_are_told() {
         "assume cross(a, a) == 0;",
         "assume dot(a, b)^2 <= dot(a, a)*dot(b, b);",
         "assume dot(a, a) >= -1;",
+        "assume exp(m) > 0;",
+        "assume 1/cosh(m) > 0;",
+        "assume tanh(m) < 1;",
+        "assume exp(-dot(a, a)) <= 1;",
+        "assume sin(m) <= 1;",
+        "assume abs(m) >= 0;",
+        "assume sqrt(1 + m^2) >= 1;",
     ] {
         assert_eq!(with(empty), [Assumption], "{empty}");
     }
@@ -258,6 +355,10 @@ fn assumptions_that_say_nothing_are_told() {
         "assume 2 < 1;",
         "assume dot(a, a) < 0;",
         "assume dot(a, a) == -1;",
+        "assume exp(m) <= 0;",
+        "assume exp(m) == 0;",
+        "assume sin(m) > 1;",
+        "assume m > 0; assume exp(m) < 0;",
         "assume dot(a, b)^2 > dot(a, a)*dot(b, b);",
         "assume m > 0; assume m < 0;",
         "assume m > 2; assume dot(a, a) == 1; assume m*dot(a, a) < 1;",
@@ -277,6 +378,9 @@ fn assumptions_that_say_nothing_are_told() {
         "assume det(J) > 0;",
         "assume dot(a, b)^2 < 0.999*dot(a, a)*dot(b, b);",
         "assume tr(J) == 1;",
+        "assume exp(m) > 1;",
+        "assume abs(m) > 0;",
+        "assume log(1 + m^2) > 0;",
     ] {
         let found = with(sound);
         assert!(!found.contains(&Assumption), "{sound}: {found:?}");

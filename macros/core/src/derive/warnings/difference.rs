@@ -1,0 +1,62 @@
+//! Total differences `F(end) - F(start)` and constants: what the motion does not depend on. Takes terms
+//! of the action; says whether they are one, decided at exact points.
+
+use super::{Inputs, LARGEST};
+use crate::check::spec::Side;
+use crate::derive::lie;
+use crate::derive::reversal::by_configuration;
+use crate::derive::variation::at;
+use crate::expr::{self, Expr, Letter, Shift};
+
+/// Most nodes that are differentiated, over all pairs of ends.
+const EVALUATED: u64 = 100_000;
+
+/// Whether an expression does not change when a node moves, velocities on its outgoing edge with it.
+pub(super) fn is_kept(x: &Inputs, e: &Expr) -> bool {
+    let mut list = x.variations.iter();
+    list.all(|v| x.vanishes(&expr::directional(&x.letters.symbols, e, &v.on_outgoing())))
+}
+
+/// The derivatives of an expression as the element at the end of the edge moves and that at its start
+/// stays: the velocity alone changes.
+fn at_the_end<'a>(x: &'a Inputs, e: &'a Expr) -> impl Iterator<Item = Expr> + 'a {
+    let s = &x.letters.symbols;
+    let ends = x.spec.configurations.iter().zip(&x.letters.direction);
+    ends.map(move |(c, eta)| {
+        let eta = lie::element(s, c.group, *eta);
+        let w = expr::here(s, c.velocity);
+        let change = match c.side {
+            Side::Body => expr::mul(w, eta),
+            Side::Spatial => expr::mul(eta, w),
+        };
+        expr::directional(s, e, &[(at(c.velocity, Shift::HERE), change)])
+    })
+}
+
+/// The expression by the velocities and the configuration at the start of the edge.
+pub(super) fn on_edge(x: &Inputs, e: &Expr) -> Expr {
+    let e = expr::substitute(&x.letters.symbols, e, &x.spec.end_of_edge());
+    by_configuration(x.spec, &e)
+}
+
+/// Whether `e`, of [`on_edge`], is constant along every motion.
+pub(super) fn is_constant(x: &Inputs, e: &Expr) -> bool {
+    is_kept(x, e) && at_the_end(x, e).all(|d| x.vanishes(&d))
+}
+
+/// Whether `e` is `F(q1, h) - F(q0, h)`, a constant among them: no derivative of it mixes its two ends,
+/// and it is constant where they meet. `false` for what is too large.
+pub(super) fn is_total(x: &Inputs, e: &Expr) -> bool {
+    let e = on_edge(x, e);
+    let pairs = (x.spec.configurations.len() as u64).pow(2);
+    if pairs * u64::from(e.size()) > EVALUATED {
+        return false;
+    }
+    let still = x.spec.configurations.iter().map(|c| {
+        let identity = expr::identity(c.group.size());
+        (at(c.velocity, Shift::HERE), identity)
+    });
+    let still: Vec<(Letter, Expr)> = still.collect();
+    let met = expr::substitute(&x.letters.symbols, &e, &still);
+    is_kept(x, &met) && at_the_end(x, &e).all(|d| d.size() <= LARGEST && is_kept(x, &d))
+}

@@ -1,0 +1,267 @@
+//! Terms of the Lagrangian without effect: constants, total differences, and potentials that vanish in
+//! the limit of small steps. Takes the Lagrangian as it was typed; gives warnings.
+
+use super::difference::{is_constant, is_kept, is_total, on_edge};
+use super::{Inputs, Topic, Warning};
+use crate::algebra::Rational;
+use crate::derive::action::{split, summands};
+use crate::derive::reversal::by_configuration;
+use crate::derive::variation::at;
+use crate::diagnostic::{Diagnostic, Place};
+use crate::expr::shape::Structure;
+use crate::expr::symbol::{Role, SymbolId};
+use crate::expr::{self, Expr, Letter, Node, Shift};
+
+/// Most nodes of the action, times parameters and pairs of ends, that are differentiated.
+const EVALUATED: u64 = 50_000;
+
+const HELP: &str = "the group leaves such terms unchanged, as it does the length of a carried vector: \
+                    let the potential depend on the configuration, or leave it out";
+
+const IDLE: &str = "multiply it by a quantity that moves, as in `h*dot(gU, Γ)`, or leave it out";
+
+/// Whether an expression holds anything but parameters and the step.
+fn moves(x: &Inputs, e: &Expr) -> bool {
+    let s = &x.letters.symbols;
+    let letters = expr::letters(e);
+    let mut roles = letters.iter().map(|l| s.get(l.symbol).role);
+    roles.any(|r| !matches!(r, Role::Parameter | Role::Step))
+}
+
+/// The Lagrangian as typed: the terms of its sum as they stand, where it is one, and all of them with
+/// common factors multiplied in.
+fn typed(x: &Inputs) -> (Vec<Expr>, Vec<Expr>) {
+    let whole = &x.spec.typed;
+    let addends = match whole.node() {
+        Node::Sum(list) => list.clone(),
+        _ => vec![whole.clone()],
+    };
+    (addends, summands(whole))
+}
+
+fn warn(place: Place, message: String, help: &str) -> Warning {
+    Warning::new(
+        Topic::ConstantTerm,
+        Diagnostic::new(place, message).help(help),
+    )
+}
+
+/// Warnings of a constant potential, and of terms and parameters on which the motion does not depend.
+pub(super) fn without_effect(x: &Inputs) -> Vec<Warning> {
+    let s = &x.letters.symbols;
+    let (addends, all) = typed(x);
+    let nodal = &x.action.nodal;
+    if !nodal.is_zero() && is_kept(x, nodal) {
+        let term = all.iter().find(|t| moves(x, t) && split(s, t).0.is_zero());
+        let message = match x.vanishes(nodal) {
+            true => "the terms at nodes are a total difference, which has no effect on the motion"
+                .to_owned(),
+            false => format!(
+                "the potential is constant along every motion: {} exerts no force",
+                x.text(nodal)
+            ),
+        };
+        return vec![warn(place(x, term), message, HELP)];
+    }
+    let mut out = Vec::new();
+    let mut told: Vec<Letter> = Vec::new();
+    for term in addends.iter().filter(|t| moves(x, t)) {
+        let why = if is_constant(x, &on_edge(x, term)) {
+            "is constant along every motion: it has no effect"
+        } else if is_total(x, term) {
+            "is a total difference, F(end of the step) - F(start): it has no effect on the motion"
+        } else {
+            continue;
+        };
+        told.extend(expr::letters(term));
+        let message = format!("the term {} {why}", x.text(term));
+        out.push(warn(place(x, Some(term)), message, HELP));
+    }
+    for (last, first) in pairs(x, &addends) {
+        let message = format!(
+            "the terms {} and {} are a total difference, F(end of the step) - F(start): together they have no effect on the motion",
+            x.text(last),
+            x.text(first)
+        );
+        told.extend(expr::letters(last));
+        out.push(warn(place(x, Some(last)), message, IDLE));
+    }
+    for term in all.iter().filter(|t| moves(x, t) && !addends.contains(t)) {
+        if is_constant(x, &on_edge(x, term)) {
+            let message = format!(
+                "the term {} is constant along every motion: it has no effect",
+                x.text(term)
+            );
+            out.push(warn(place(x, Some(term)), message, HELP));
+        }
+    }
+    // A potential without a configuration, and no other potential.
+    let lone = all.iter().find(|t| !moves(x, t) && power(x, t) == Some(1));
+    if let (Some(term), true) = (lone, nodal.is_zero()) {
+        told.extend(expr::letters(term));
+        let message = format!(
+            "the potential is constant: {} holds no configuration and exerts no force",
+            x.text(term)
+        );
+        out.push(warn(place(x, Some(term)), message, IDLE));
+    }
+    for p in idle(x) {
+        if told.iter().any(|l| l.symbol == p) {
+            continue;
+        }
+        let holding: Vec<&Expr> = addends.iter().filter(|t| holds(x, t, p)).collect();
+        let Some(first) = holding.first() else {
+            continue;
+        };
+        told.extend(
+            expr::letters(first)
+                .into_iter()
+                .filter(|_| holding.len() == 1),
+        );
+        let terms: Vec<String> = holding.iter().map(|t| x.text(t)).collect();
+        let message = format!(
+            "the motion does not depend on `{}`: what holds it, {}, adds up to a constant or to a total difference",
+            s.get(p).name,
+            terms.join(" and ")
+        );
+        out.push(warn(place(x, Some(first)), message, IDLE));
+    }
+    out
+}
+
+/// Terms at the end of a step, each with one at the start that takes it off.
+fn pairs<'a>(x: &Inputs, addends: &'a [Expr]) -> Vec<(&'a Expr, &'a Expr)> {
+    let s = &x.letters.symbols;
+    let at_level = |t: &Expr, level: i8| {
+        let letters = expr::letters(t);
+        let mut moving = letters
+            .iter()
+            .filter(|l| !matches!(s.get(l.symbol).role, Role::Parameter | Role::Step));
+        moves(x, t)
+            && moving.all(|l| l.shift.time == level && s.get(l.symbol).role != Role::Velocity)
+    };
+    let last = addends.iter().filter(|t| at_level(t, Shift::NEXT.time));
+    last.filter_map(|t| {
+        let moved = expr::shift_time(s, t, -Shift::NEXT.time);
+        let mut first = addends.iter().filter(|f| at_level(f, 0));
+        let found = first.find(|f| x.vanishes(&expr::add(moved.clone(), (*f).clone())))?;
+        Some((t, found))
+    })
+    .collect()
+}
+
+/// Whether a term holds a parameter, in a definition of what is carried too.
+fn holds(x: &Inputs, term: &Expr, p: SymbolId) -> bool {
+    let letters = expr::letters(&by_configuration(x.spec, term));
+    letters.iter().any(|l| l.symbol == p)
+}
+
+/// Parameters on which the action depends by a constant or a total difference only.
+fn idle(x: &Inputs) -> Vec<SymbolId> {
+    let s = &x.letters.symbols;
+    let total = by_configuration(x.spec, &x.spec.typed);
+    let updates = x.spec.configurations.iter().map(|c| &c.update);
+    let updates = updates.chain(x.spec.advected.iter().map(|a| &a.update));
+    let elsewhere: Vec<Letter> = x
+        .spec
+        .scale
+        .iter()
+        .chain(updates)
+        .flat_map(expr::letters)
+        .collect();
+    let free = |p: &SymbolId| {
+        let fits = !matches!(
+            s.get(*p).structure,
+            Structure::Orthogonal | Structure::UnitQuaternion | Structure::RigidMotion
+        );
+        fits && holds(x, &total, *p) && !elsewhere.iter().any(|l| l.symbol == *p)
+    };
+    let parameters: Vec<SymbolId> = x.spec.parameters.iter().copied().filter(free).collect();
+    let pairs = (x.spec.configurations.len() as u64).pow(2) * parameters.len() as u64;
+    if pairs * u64::from(total.size()) > EVALUATED {
+        return Vec::new();
+    }
+    let without = |p: &SymbolId| {
+        // In a direction of its own shape and structure: the letter of another node.
+        let change = [(at(*p, Shift::HERE), expr::letter(s, *p, Shift::NEXT))];
+        is_total(x, &expr::directional(s, &total, &change))
+    };
+    parameters.into_iter().filter(without).collect()
+}
+
+/// The power of the step that a term is proportional to, as a physical action.
+fn power(x: &Inputs, term: &Expr) -> Option<i32> {
+    let s = &x.letters.symbols;
+    let h = at(x.spec.step, Shift::HERE);
+    let physical = match &x.spec.scale {
+        Some(scale) => expr::quotient(term.clone(), scale.clone()),
+        None => term.clone(),
+    };
+    let two = Rational::integer(2);
+    let twice = [(h, expr::scale(two, expr::here(s, x.spec.step)))];
+    let doubled = expr::substitute(s, &physical, &twice);
+    (-3..=6).find(|n| {
+        two.power(*n).is_some_and(|factor| {
+            let expected = expr::scale(factor, physical.clone());
+            x.vanishes(&expr::sub(doubled.clone(), expected))
+        })
+    })
+}
+
+/// The warning of potentials that vanish in the limit of small steps. A correction to another term is
+/// one that holds nothing of its own.
+pub(super) fn vanishing(x: &Inputs) -> Option<Warning> {
+    let s = &x.letters.symbols;
+    let (_, all) = typed(x);
+    let (moving, h): (Vec<&Expr>, _) = (
+        all.iter().filter(|t| moves(x, t)).collect(),
+        at(x.spec.step, Shift::HERE),
+    );
+    let vanishes = |t: &Expr| expr::contains(t, h) && power(x, t).is_some_and(|n| n >= 2);
+    let (gone, left): (Vec<&Expr>, Vec<&Expr>) = moving.iter().partition(|t| vanishes(t));
+    let known: Vec<SymbolId> = left
+        .iter()
+        .flat_map(|t| expr::letters(&by_configuration(x.spec, t)))
+        .map(|l| l.symbol)
+        .collect();
+    let own = |t: &Expr| {
+        let letters = expr::letters(&by_configuration(x.spec, t));
+        letters.into_iter().find(|l| {
+            let role = s.get(l.symbol).role;
+            matches!(role, Role::Parameter | Role::Advected) && !known.contains(&l.symbol)
+        })
+    };
+    let no_potential = !x.action.nodal.is_zero() && !left.iter().any(|t| split(s, t).0.is_zero());
+    let term = gone.iter().find(|t| no_potential || own(t).is_some())?;
+    let n = power(x, term)?;
+    let d = Diagnostic::new(
+        place(x, Some(term)),
+        format!(
+            "the term {} vanishes in the limit of small steps: the action of a step is proportional \
+             to `h`, and this is to `h^{n}`",
+            x.text(term)
+        ),
+    )
+    .help(
+        "the Lagrangian states (kinetic - potential energy) times the step: multiply a potential by \
+         `h` once, as in `-h*dot(gU, Γ)`",
+    );
+    Some(Warning::new(Topic::NoLimit, d))
+}
+
+/// Where a term was typed: that of the same term without signs and divisors, else the Lagrangian.
+fn place(x: &Inputs, term: Option<&Expr>) -> Place {
+    fn core(e: &Expr) -> &Expr {
+        match e.node() {
+            Node::Neg(a) | Node::Quotient(a, _) => core(a),
+            _ => e,
+        }
+    }
+    let found = term.and_then(|t| {
+        let mut typed = x.spec.terms.iter();
+        typed
+            .find(|(e, _)| core(e) == core(t))
+            .map(|(_, place)| *place)
+    });
+    found.unwrap_or(x.spec.lagrangian_place)
+}
