@@ -7,7 +7,7 @@ use super::spec::{Dimension, Group};
 use crate::diagnostic::{Diagnostic, Errors, Place, closest};
 use crate::expr::Expr;
 use crate::expr::shape::{Shape, Structure};
-use crate::expr::spelling::seen;
+use crate::expr::spelling::{seen, seen_typeset, twin};
 use crate::expr::symbol::{Role, SymbolId, Symbols, ascii};
 use crate::syntax::ast::{Model, Name, Statement};
 use crate::syntax::{FUNCTIONS, HIDEABLE};
@@ -46,6 +46,8 @@ pub struct Declared {
     pub configurations: Vec<DeclaredGroup>,
     pub advected: Vec<DeclaredAdvected>,
     places: Vec<(String, Place)>,
+    /// What is typeset, as a reader sees it: the name that says so, and where.
+    typeset: Vec<(String, Name)>,
 }
 
 /// Names with a fixed meaning.
@@ -72,7 +74,9 @@ pub fn is_rust_word(name: &str) -> bool {
 fn unusable(name: &Name) -> Option<Diagnostic> {
     let text = name.text.as_str();
     let function = FUNCTIONS.contains(&text) && !HIDEABLE.contains(&text);
-    let printed = PRINTED.into_iter().find(|sign| seen(sign) == seen(text));
+    let printed = PRINTED
+        .into_iter()
+        .find(|sign| seen(sign, "") == seen(text, ""));
     let message = if RESERVED.contains(&text) || function {
         format!("`{text}` has a fixed meaning in the language")
     } else if let Some(sign) = printed {
@@ -85,6 +89,18 @@ fn unusable(name: &Name) -> Option<Diagnostic> {
         return None;
     };
     Some(Diagnostic::new(name.place, message).help("choose another name"))
+}
+
+/// The characters of two names that look like one letter and are two, with their numbers.
+fn foreign(a: &str, b: &str) -> Option<String> {
+    let strange = |text: &str| text.chars().find(|c| twin(*c).is_some());
+    let c = strange(a).or_else(|| strange(b))?;
+    let plain = twin(c)?;
+    Some(format!(
+        "`{c}` is U+{:04X}, which looks like `{plain}`, U+{:04X}, and is another character: write `{plain}` everywhere",
+        u32::from(c),
+        u32::from(plain)
+    ))
 }
 
 /// The model's name is that of a type.
@@ -112,12 +128,14 @@ fn model_name(name: &Name, errors: &mut Errors) {
 /// Reads all declarations of a model.
 pub fn declare(model: &Model, errors: &mut Errors) -> Declared {
     let mut symbols = Symbols::default();
+    symbols.count_time_by("k");
     model_name(&model.name, errors);
     let (mut time_index, mut step_name) = ("k".to_owned(), "h".to_owned());
     let mut step_place = None;
     for statement in &model.statements {
         if let Statement::Time { index, step } = statement {
             time_index = index.text.clone();
+            symbols.count_time_by(&time_index);
             step_name = step.text.clone();
             step_place = Some(step.place);
             errors.extend(unusable(step));
@@ -134,6 +152,7 @@ pub fn declare(model: &Model, errors: &mut Errors) -> Declared {
         configurations: Vec::new(),
         advected: Vec::new(),
         places: Vec::new(),
+        typeset: Vec::new(),
     };
     if let Some(place) = step_place {
         d.places.push((step_name, place));
@@ -170,7 +189,7 @@ impl Declared {
                         let id = self
                             .symbols
                             .add(&name.text, shape, structure, Role::Parameter);
-                        self.symbols.describe(id, name.typeset.clone(), docs);
+                        self.symbols.describe(id, name.latex(), docs);
                         self.parameters.push(id);
                         self.parameter_places.push(name.place);
                     }
@@ -194,8 +213,8 @@ impl Declared {
                 let structure = kind.structure();
                 let symbols = &mut self.symbols;
                 let element = symbols.add(&name.text, shape, structure, Role::Element);
-                symbols.describe(element, name.typeset.clone(), docs);
-                let typeset = velocity.typeset.clone();
+                symbols.describe(element, name.latex(), docs);
+                let typeset = velocity.latex();
                 let velocity = symbols.add(&velocity.text, shape, structure, Role::Velocity);
                 symbols.describe(velocity, typeset, &[]);
                 self.configurations.push(DeclaredGroup {
@@ -222,7 +241,7 @@ impl Declared {
                     let quantity = self
                         .symbols
                         .add(&name.text, shape, structure, Role::Advected);
-                    self.symbols.describe(quantity, name.typeset.clone(), docs);
+                    self.symbols.describe(quantity, name.latex(), docs);
                     self.advected.push(DeclaredAdvected {
                         quantity,
                         place: name.place,
@@ -272,26 +291,76 @@ impl Declared {
             );
             return false;
         }
+        let seen = |text: &str| seen(text, &self.time_index);
         if let Some((other, first)) = self.places.iter().find(|(n, _)| seen(n) == seen(text)) {
-            errors.push(
-                Diagnostic::new(
-                    name.place,
-                    format!("`{text}` and `{other}` print alike, as one name"),
-                )
-                .help("choose names that differ in print: Greek words become letters, digits and what follows `_` become subscripts")
-                .also(*first, format!("`{other}` is declared here")),
+            let d = Diagnostic::new(
+                name.place,
+                format!("`{text}` and `{other}` print alike, as one name"),
             );
+            errors.push(match foreign(text, other) {
+                Some(characters) => d.help(characters),
+                None => d.help(format!("choose names that differ in print: Greek words become letters, digits and what follows `_` become subscripts, and `_{}` is the index of what moves", self.time_index)),
+            }
+            .also(*first, format!("`{other}` is declared here")));
             return false;
         }
-        if self.symbols.find(text) == Some(self.step) {
+        let step = &self.symbols.get(self.step).name;
+        if seen(step) == seen(text) {
+            let message = match step == text {
+                true => format!("`{text}` is the time step"),
+                false => format!("`{text}` prints as the time step `{step}` does"),
+            };
             errors.push(
-                Diagnostic::new(name.place, format!("`{text}` is the time step"))
+                Diagnostic::new(name.place, message)
                     .help("choose another name, or rename the step: `time k step dt;`"),
             );
             return false;
         }
+        errors.extend(self.typeset_as_another(name));
+        let latex = self.in_latex(name);
+        self.typeset.push((latex, name.clone()));
         self.places.push((name.text.clone(), name.place));
         true
+    }
+
+    /// A name in formulas of LaTeX, as a reader sees it.
+    fn in_latex(&self, name: &Name) -> String {
+        match &name.typeset {
+            Some((latex, _)) => seen_typeset(latex, &self.time_index),
+            None => seen(&name.text, &self.time_index),
+        }
+    }
+
+    /// What is wrong with how a name is typeset: another one stands there already. Its uses are fine.
+    fn typeset_as_another(&self, name: &Name) -> Option<Diagnostic> {
+        let latex = self.in_latex(name);
+        let text = &name.text;
+        let help = "write another text after `as`: in formulas only names that differ in print can be told apart, an index in time not counted";
+        if let Some((shown, place)) = &name.typeset {
+            let fixed = PRINTED.into_iter().find(|sign| seen(sign, "") == latex);
+            let step = &self.symbols.get(self.step).name;
+            let message = match fixed {
+                Some(sign) => format!(
+                    "`{shown}` prints as `{sign}`, which has a fixed meaning in derivations"
+                ),
+                None if seen(step, &self.time_index) == latex => {
+                    format!("`{shown}` prints as the time step `{step}` does")
+                }
+                None => String::new(),
+            };
+            if !message.is_empty() {
+                return Some(Diagnostic::new(*place, message).help(help));
+            }
+        }
+        let (_, other) = self.typeset.iter().find(|(l, _)| *l == latex)?;
+        let place = |n: &Name| n.typeset.as_ref().map_or(n.place, |(_, place)| *place);
+        let message = format!("`{text}` and `{}` are typeset alike", other.text);
+        let first = format!("`{}` is declared here", other.text);
+        Some(
+            Diagnostic::new(place(name), message)
+                .help(help)
+                .also(place(other), first),
+        )
     }
 
     /// Whether the name was declared, successfully or not.

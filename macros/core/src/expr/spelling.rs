@@ -2,7 +2,12 @@
 //! word, subscripts and a superscript. Greek words become Greek letters, trailing digits become
 //! subscripts. Two names that read the same are the same to a reader, however they are spelt.
 
+mod confusable;
+mod typeset;
+
 use super::symbol::GREEK;
+pub(crate) use confusable::{skeleton, twin};
+pub(crate) use typeset::seen_typeset;
 
 /// A name in its parts.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -87,27 +92,48 @@ fn latin(text: &str) -> String {
     text.chars().map(|c| twin(c).unwrap_or(c)).collect()
 }
 
-/// A name as a reader sees it: one text for all spellings that print alike.
-pub(crate) fn seen(text: &str) -> String {
-    let parsed = parse(text);
-    let script = |text: &str| {
-        let mut out = String::new();
-        let mut word = String::new();
-        for c in text.chars().chain([' ']) {
-            if c.is_alphabetic() {
-                word.push(c);
-                continue;
-            }
-            out.push_str(&letter(&std::mem::take(&mut word)));
-            if !c.is_whitespace() {
-                out.push(c);
-            }
+/// The text of a script with Greek words as letters.
+fn script(text: &str) -> String {
+    let mut out = String::new();
+    let mut word = String::new();
+    for c in text.chars().chain([' ']) {
+        if c.is_alphabetic() {
+            word.push(c);
+            continue;
         }
-        out
-    };
-    let below: Vec<String> = parsed.subs.iter().map(|s| script(s)).collect();
+        out.push_str(&letter(&std::mem::take(&mut word)));
+        if !c.is_whitespace() {
+            out.push(c);
+        }
+    }
+    out
+}
+
+/// What a base with scripts looks like. An index in time at its end, `k`, `k+1` or `k-1`, is left out:
+/// what moves bears it besides.
+fn shown(base: &str, mut below: Vec<String>, above: &str, index: &str) -> String {
+    let last = below.last().map(|l| {
+        let stem = l.trim_end_matches("+1").trim_end_matches("-1");
+        let rest = Some(index).filter(|i| !i.is_empty());
+        let rest = rest
+            .and_then(|i| stem.strip_suffix(i))
+            .map(|r| r.trim_end_matches(','));
+        rest.filter(|r| r.chars().all(|c| c.is_ascii_digit()))
+            .map(str::to_owned)
+    });
+    if let Some(Some(rest)) = last {
+        below.pop();
+        below.extend(Some(rest).filter(|r| !r.is_empty()));
+    }
+    latin(&format!("{base}_{}^{above}", below.join(",")))
+}
+
+/// A name as a reader sees it: one text for all spellings that print alike, as `index` counts time.
+pub(crate) fn seen(text: &str, index: &str) -> String {
+    let parsed = parse(&skeleton(text));
+    let below = parsed.subs.iter().map(|s| script(s)).collect();
     let above = parsed.sup.as_deref().map(script).unwrap_or_default();
-    latin(&format!("{}_{}^{above}", parsed.base, below.join(",")))
+    shown(&parsed.base, below, &above, index)
 }
 
 #[cfg(test)]
@@ -142,11 +168,46 @@ mod tests {
             ("chi_0k", "χ_{0 k}"),
             ("J^R_{k+1}", "J_{k+1}^R"),
             ("Mu", "M"),
+            // An index in time stands on what moves.
+            ("x_k", "x"),
+            ("x_{k+1}", "x"),
+            ("x1_k", "x_1"),
+            // Other characters of the same form.
+            ("µ", "μ"),
+            ("Ω", "\u{2126}"),
+            ("K", "\u{212a}"),
+            ("𝑥_1", "x1"),
+            ("ｘ", "x"),
+            ("а", "a"),
+            ("Гx", "Γx"),
+            ("é", "e\u{301}"),
+            ("ı", "i"),
+            ("ϐ", "β"),
         ] {
-            assert_eq!(seen(a), seen(b));
+            assert_eq!(seen(a, "k"), seen(b, "k"), "{a} {b}");
         }
-        for (a, b) in [("mu", "nu"), ("mu", "mu1"), ("Mu", "mu"), ("x_1", "x^1")] {
-            assert_ne!(seen(a), seen(b));
+        for (a, b) in [
+            ("mu", "nu"),
+            ("mu", "mu1"),
+            ("Mu", "mu"),
+            ("x_1", "x^1"),
+            ("x_k", "y"),
+            ("x_ok", "x_o"),
+            ("x_n", "x"),
+            ("ϕ", "φ"),
+            ("ϵ", "ε"),
+            ("ϑ", "θ"),
+            ("ϖ", "π"),
+            ("ϱ", "ρ"),
+            ("ς", "σ"),
+            ("ℓ", "l"),
+            ("I", "l"),
+            ("ρ", "p"),
+            ("é", "e"),
+            ("ж", "x"),
+        ] {
+            assert_ne!(seen(a, "k"), seen(b, "k"), "{a} {b}");
         }
+        assert_eq!(seen("x_n", "n"), seen("x", "n"));
     }
 }

@@ -2,7 +2,7 @@
 //! that can appear in an expression, in order of declaration.
 
 use super::shape::{Dim, Shape, Structure};
-use super::spelling::seen;
+use super::spelling::{seen, seen_typeset};
 use std::collections::BTreeSet;
 
 /// Index of a symbol in its table.
@@ -55,6 +55,8 @@ pub struct Symbols {
     list: Vec<Symbol>,
     /// Their names as readers see them.
     seen: BTreeSet<String>,
+    /// The index that counts time; empty where none was given.
+    time_index: String,
     dims: Vec<NamedSize>,
 }
 
@@ -73,7 +75,7 @@ const LARGEST_TRIED: u64 = 8;
 impl Symbols {
     /// Adds a symbol and returns its index.
     pub fn add(&mut self, name: &str, shape: Shape, structure: Structure, role: Role) -> SymbolId {
-        self.seen.insert(seen(name));
+        self.seen.insert(seen(name, &self.time_index));
         self.list.push(Symbol {
             name: name.to_owned(),
             ascii: ascii(name),
@@ -86,10 +88,15 @@ impl Symbols {
         SymbolId((self.list.len() - 1) as u32)
     }
 
+    /// Says by which index time is counted: `x_k` then prints as `x` at a node.
+    pub fn count_time_by(&mut self, index: &str) {
+        self.time_index = index.to_owned();
+    }
+
     /// Says how a symbol is typeset and what it means, as its declaration does.
     pub fn describe(&mut self, id: SymbolId, typeset: Option<String>, docs: &[String]) {
         // Letters of the derivation keep clear of it, as of the name itself.
-        let printed = typeset.iter().map(|t| seen(&t.replace(['\\', ' '], "")));
+        let printed = typeset.iter().map(|t| seen_typeset(t, &self.time_index));
         self.seen.extend(printed);
         if let Some(symbol) = self.list.get_mut(id.0 as usize) {
             symbol.typeset = typeset;
@@ -161,7 +168,7 @@ impl Symbols {
     pub fn fresh_name(&self, base: &str) -> String {
         let mut name = base.to_owned();
         let mut n = 1u32;
-        while self.seen.contains(&seen(&name)) {
+        while self.seen.contains(&seen(&name, &self.time_index)) {
             name = format!("{base}{n}");
             n += 1;
         }
@@ -179,7 +186,7 @@ impl Symbol {
 }
 
 /// Greek letters with their ASCII names, the public ones in files.
-pub const GREEK: [(char, &str); 49] = [
+pub const GREEK: [(char, &str); 54] = [
     ('α', "alpha"),
     ('β', "beta"),
     ('γ', "gamma"),
@@ -199,6 +206,12 @@ pub const GREEK: [(char, &str); 49] = [
     ('ρ', "rho"),
     ('ς', "varsigma"),
     ('σ', "sigma"),
+    // Variants, by their names in HTML where LaTeX means the plain letter by the shorter one.
+    ('ϵ', "straightepsilon"),
+    ('ϑ', "vartheta"),
+    ('ϕ', "straightphi"),
+    ('ϖ', "varpi"),
+    ('ϱ', "varrho"),
     ('τ', "tau"),
     ('υ', "upsilon"),
     ('φ', "phi"),
@@ -230,6 +243,32 @@ pub const GREEK: [(char, &str); 49] = [
     ('Ψ', "Psi"),
     ('Ω', "Omega"),
 ];
+
+/// The command of LaTeX for a letter of [`GREEK`]; for the capitals that look Latin there is none.
+pub(crate) fn greek_command(word: &str) -> String {
+    let latin = match word {
+        "Alpha" => "A",
+        "Beta" => "B",
+        "Epsilon" => "E",
+        "Zeta" => "Z",
+        "Eta" => "H",
+        "Iota" => "I",
+        "Kappa" => "K",
+        "Mu" => "M",
+        "Nu" => "N",
+        "Omicron" => "O",
+        "Rho" => "P",
+        "Tau" => "T",
+        "Chi" => "X",
+        "omicron" => return "o".to_owned(),
+        "epsilon" => return "\\varepsilon".to_owned(),
+        "phi" => return "\\varphi".to_owned(),
+        "straightepsilon" => return "\\epsilon".to_owned(),
+        "straightphi" => return "\\phi".to_owned(),
+        _ => return format!("\\{word}"),
+    };
+    format!("\\mathrm{{{latin}}}")
+}
 
 /// The ASCII twin of a name: Greek letters spelled out, other non-ASCII characters as `u` and
 /// their code point in hexadecimal.

@@ -7,9 +7,9 @@ use crate::expr::symbol::GREEK;
 /// Signs besides the Greek letters.
 const SIGNS: [(&str, &str); 14] = [
     ("varepsilon", "ε"),
-    ("vartheta", "ϑ"),
+    ("epsilon", "ϵ"),
     ("varphi", "φ"),
-    ("varrho", "ρ"),
+    ("phi", "ϕ"),
     ("ell", "ℓ"),
     ("hbar", "ħ"),
     ("partial", "∂"),
@@ -120,9 +120,12 @@ fn command(rest: &mut Rest) -> Layout {
         rest.0.next();
         return Layout::Sign(Sign::Thin);
     }
-    let signs = GREEK.iter().map(|(c, name)| (*name, c.to_string()));
-    let signs = signs.chain(SIGNS.map(|(name, sign)| (name, sign.to_owned())));
-    if let Some((_, sign)) = signs.into_iter().find(|(name, _)| *name == word) {
+    // The plain letters of the engine are the curly ones of LaTeX.
+    let signs = SIGNS
+        .map(|(name, sign)| (name, sign.to_owned()))
+        .into_iter();
+    let mut signs = signs.chain(GREEK.iter().map(|(c, name)| (*name, c.to_string())));
+    if let Some((_, sign)) = signs.find(|(name, _)| *name == word) {
         return Layout::Identifier(sign);
     }
     match word.as_str() {

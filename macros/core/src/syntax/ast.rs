@@ -11,8 +11,15 @@ pub struct Name {
     pub text: String,
     /// Its token.
     pub place: Place,
-    /// How it is typeset, in LaTeX, where a declaration says so.
-    pub typeset: Option<String>,
+    /// How it is typeset, in LaTeX, where a declaration says so, and the token that does.
+    pub typeset: Option<(String, Place)>,
+}
+
+impl Name {
+    /// How it is typeset, where a declaration says so.
+    pub fn latex(&self) -> Option<String> {
+        self.typeset.as_ref().map(|(text, _)| text.clone())
+    }
 }
 
 /// An expression.

@@ -1,9 +1,10 @@
 //! How a declared name is typeset: `as "m g \chi"` behind its shape. Takes tokens; gives LaTeX that
-//! any formula can hold.
+//! any formula can hold, and refuses what would act on the rest of a document.
 
 use super::ast::Name;
 use super::token::{Cursor, Token};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, closest};
+use crate::expr::symbol::{GREEK, greek_command};
 
 /// `as "m g \chi"`, one for each of the names: how they are typeset.
 pub(super) fn typeset(c: &mut Cursor, names: &mut [Name]) -> Result<(), Diagnostic> {
@@ -22,7 +23,7 @@ pub(super) fn typeset(c: &mut Cursor, names: &mut [Name]) -> Result<(), Diagnost
                 .help("write for example `param gU: Vec<3> as \"m g \\chi\";`, in Rust `as r\"m g \\chi\"`"));
         };
         match latex(literal) {
-            Ok(text) => name.typeset = Some(text),
+            Ok(text) => name.typeset = Some((text, c.place())),
             Err(why) => {
                 let d = Diagnostic::new(c.place(), format!("this is no name in LaTeX: {why}"));
                 return Err(d.help("write what stands between two dollars, such as `m g \\chi` or `J_{\\mathrm{eff}}`"));
@@ -55,20 +56,124 @@ fn latex(literal: &str) -> Result<String, String> {
     if text.is_empty() || text.chars().count() > LONGEST_NAME {
         return Err(format!("it has between 1 and {LONGEST_NAME} characters"));
     }
-    if let Some(c) = text
-        .chars()
-        .find(|c| c.is_control() || "$%#&~\"".contains(*c))
-    {
-        return Err(format!("it holds `{}`", c.escape_default()));
-    }
-    let mut depth = 0i32;
-    let mut closed = true;
-    for c in text.chars() {
-        depth += i32::from(c == '{') - i32::from(c == '}');
-        closed &= depth >= 0;
-    }
-    if depth != 0 || !closed || text.ends_with(['\\', '_', '^']) {
-        return Err("its braces are not paired, or something is missing at its end".to_owned());
-    }
+    let mut rest = text.chars().peekable();
+    row(&mut rest, 0)?;
     Ok(text)
+}
+
+type Rest<'a> = std::iter::Peekable<std::str::Chars<'a>>;
+
+/// Letters and signs that LaTeX knows besides Greek letters.
+const SIGNS: &str = "varepsilon varphi ell hbar partial nabla infty prime dagger ddagger ast star circ bullet \
+    cdot cdots ldots dots times pm mp oplus otimes perp parallel top bot imath jmath aleph Re Im wp langle rangle \
+    lvert rvert lVert rVert vert Vert mid wedge vee flat sharp natural diamond triangle square odot ominus \
+    quad qquad epsilon phi max min";
+
+/// Accents, fonts and the like, which take one argument.
+const OVER: &str = "hat widehat bar overline underline tilde widetilde vec dot ddot check breve acute grave mathring \
+    overrightarrow mathrm mathit mathnormal mathbf mathsf mathtt mathcal mathscr mathbb mathfrak boldsymbol bm text \
+    textrm textit textbf textsf operatorname sqrt";
+
+/// Fractions, which take two.
+const FRACTIONS: &str = "frac tfrac dfrac";
+
+/// Deepest nesting of braces.
+const DEEPEST: usize = 8;
+
+/// A row of pieces with scripts, up to its closing brace or the end: what may stand in a formula
+/// wherever a letter does, and nothing that acts on the rest of the document.
+fn row(rest: &mut Rest, depth: usize) -> Result<(), String> {
+    let unpaired = || "its braces are not paired, or something is missing at its end".to_owned();
+    if depth > DEEPEST {
+        return Err(format!("its braces are nested deeper than {DEEPEST}"));
+    }
+    let (mut below, mut above) = (false, false);
+    while let Some(c) = rest.next() {
+        match c {
+            '}' if depth > 0 => return Ok(()),
+            '}' => return Err(unpaired()),
+            '_' | '^' => {
+                let taken = if c == '_' { &mut below } else { &mut above };
+                if std::mem::replace(taken, true) {
+                    return Err(format!(
+                        "two scripts by `{c}` stand on one letter: write them as one, `x{c}{{1 2}}`"
+                    ));
+                }
+                argument(rest, depth)?;
+            }
+            c if c.is_whitespace() && !c.is_control() => {}
+            c => {
+                (below, above) = (false, false);
+                piece(c, rest, depth)?;
+            }
+        }
+    }
+    match depth {
+        0 => Ok(()),
+        _ => Err(unpaired()),
+    }
+}
+
+/// What a script or a command applies to: a group in braces, or one piece.
+fn argument(rest: &mut Rest, depth: usize) -> Result<(), String> {
+    while rest.next_if(|c| c.is_whitespace()).is_some() {}
+    match rest.next() {
+        None | Some('}' | '_' | '^') => {
+            Err("its braces are not paired, or something is missing at its end".to_owned())
+        }
+        Some(c) => piece(c, rest, depth),
+    }
+}
+
+fn piece(c: char, rest: &mut Rest, depth: usize) -> Result<(), String> {
+    match c {
+        '{' => row(rest, depth + 1),
+        '\\' => command(rest, depth),
+        c if c.is_control() || "$%#&~\"".contains(c) => {
+            Err(format!("it holds `{}`", c.escape_default()))
+        }
+        c if !c.is_ascii() => Err(match GREEK.iter().find(|(letter, _)| *letter == c) {
+            Some((_, name)) => format!("it holds `{c}`, in LaTeX `{}`", greek_command(name)),
+            None => format!("it holds `{c}`, which is no letter of LaTeX"),
+        }),
+        _ => Ok(()),
+    }
+}
+
+fn command(rest: &mut Rest, depth: usize) -> Result<(), String> {
+    let mut word = String::new();
+    while let Some(c) = rest.next_if(char::is_ascii_alphabetic) {
+        word.push(c);
+    }
+    if word.is_empty() {
+        return match rest.next() {
+            Some(',' | ';' | ':' | '!' | ' ') => Ok(()),
+            Some(c) => Err(format!(
+                "`\\{}` is no letter and no space",
+                c.escape_default()
+            )),
+            None => Err("something is missing at its end".to_owned()),
+        };
+    }
+    let among = |list: &str| list.split_whitespace().any(|w| w == word);
+    let greek = GREEK
+        .iter()
+        .any(|(_, name)| *name == word && !name.starts_with("straight"));
+    let arguments = match (among(OVER), among(FRACTIONS)) {
+        (true, _) => 1,
+        (_, true) => 2,
+        _ if greek || among(SIGNS) => 0,
+        _ => {
+            let known = [SIGNS, OVER, FRACTIONS]
+                .into_iter()
+                .flat_map(str::split_whitespace);
+            let known = known.chain(GREEK.iter().map(|(_, name)| *name));
+            let near = closest(&word, known).map(|near| format!(", did you mean `\\{near}`?"));
+            return Err(format!(
+                "`\\{word}` is no letter, sign, accent or font of a name{}",
+                near.unwrap_or_default()
+            ));
+        }
+    };
+    (0..arguments).try_for_each(|_| argument(rest, depth))
 }

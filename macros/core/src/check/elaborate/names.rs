@@ -6,6 +6,7 @@ use crate::check::messages::shape_text;
 use crate::diagnostic::{Diagnostic, Place, closest};
 use crate::expr;
 use crate::expr::shape::{Dim, Shape};
+use crate::expr::spelling::skeleton;
 use crate::syntax::FUNCTIONS;
 
 /// What the functions of the language are called elsewhere.
@@ -59,15 +60,24 @@ impl Elaborator<'_> {
             };
             return Ok(expr::unit(size, axis as u8));
         }
-        let declared = self
+        let declared: Vec<&String> = self
             .names
             .symbols
             .ids()
-            .map(|id| &self.names.symbols.get(id).name);
+            .map(|id| &self.names.symbols.get(id).name)
+            .collect();
         let bound = self.bindings.iter().map(|(b, _)| b);
+        let alike = {
+            let mut known = declared.iter().copied().chain(bound.clone());
+            known.find(|other| skeleton(other) == skeleton(n)).cloned()
+        };
         let mut d = Diagnostic::new(place, format!("`{n}` is not declared"));
         if self.names.was_declared(n) || self.unbound.contains(&(n.to_owned(), true)) {
             d = Diagnostic::following(place, format!("`{n}` has a faulty declaration"));
+        } else if let Some(other) = alike {
+            d = d.help(format!(
+                "`{other}` is declared, which looks like it and is written with other characters: copy it from there"
+            ));
         } else if n == "T" {
             d = d.help("`T` is the transpose and only stands after `^`");
         } else if self.unbound.contains(&(n.to_owned(), false)) {
@@ -76,7 +86,8 @@ impl Elaborator<'_> {
         } else if FUNCTIONS.contains(&n) {
             d = Diagnostic::new(place, format!("`{n}` is a function of the language"))
                 .help(format!("write `{n}(...)`"));
-        } else if let Some(near) = closest(n, declared.chain(bound).map(String::as_str)) {
+        } else if let Some(near) = closest(n, declared.into_iter().chain(bound).map(String::as_str))
+        {
             d = d.help(format!("did you mean `{near}`?"));
         } else if let Some(written) = otherwise(n) {
             d = d.help(format!("the language writes `{written}`"));

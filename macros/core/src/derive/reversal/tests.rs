@@ -69,7 +69,9 @@ fn every_group_on_either_side() {
             assert_eq!(found(&both), (true, false), "{both}");
             let sided = model(&format!("{kinetic} - h*({potential})*({at_end})^2"));
             assert_eq!(found(&sided), (false, true), "{sided}");
-            let even = model(&format!("{kinetic} - h^2*({potential})*({at_end})"));
+            let even = model(&format!(
+                "{kinetic} - h*{potential} - h^2*({potential})*({at_end})"
+            ));
             assert_eq!(found(&even), (false, true), "{even}");
             let difference = model(&format!("{kinetic} - h*({potential}) + h*({at_end}) "));
             assert!(!found(&difference).1, "{difference}");

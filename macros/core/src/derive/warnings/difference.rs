@@ -13,8 +13,12 @@ const EVALUATED: u64 = 100_000;
 
 /// Whether an expression does not change when a node moves, velocities on its outgoing edge with it.
 pub(super) fn is_kept(x: &Inputs, e: &Expr) -> bool {
-    let mut list = x.variations.iter();
-    list.all(|v| x.vanishes(&expr::directional(&x.letters.symbols, e, &v.on_outgoing())))
+    x.variations.iter().all(|v| {
+        let changes = v.on_outgoing();
+        // Of many bodies a term holds one or two.
+        let apart = !changes.iter().any(|(l, _)| expr::contains(e, *l));
+        apart || x.vanishes(&expr::directional(&x.letters.symbols, e, &changes))
+    })
 }
 
 /// The derivatives of an expression as the element at the end of the edge moves and that at its start
@@ -22,6 +26,7 @@ pub(super) fn is_kept(x: &Inputs, e: &Expr) -> bool {
 fn at_the_end<'a>(x: &'a Inputs, e: &'a Expr) -> impl Iterator<Item = Expr> + 'a {
     let s = &x.letters.symbols;
     let ends = x.spec.configurations.iter().zip(&x.letters.direction);
+    let ends = ends.filter(|(c, _)| expr::contains(e, at(c.velocity, Shift::HERE)));
     ends.map(move |(c, eta)| {
         let eta = lie::element(s, c.group, *eta);
         let w = expr::here(s, c.velocity);

@@ -1,7 +1,8 @@
 //! LaTeX for single characters, names and words: Greek letters and signs by their commands,
 //! everything that LaTeX reads escaped.
 
-use crate::expr::symbol::GREEK;
+use crate::expr::spelling::twin;
+use crate::expr::symbol::{GREEK, greek_command};
 
 /// A letter, or several set as one name.
 pub(super) fn identifier(s: &str) -> String {
@@ -49,33 +50,14 @@ pub(super) fn symbol_of(c: char, words: bool) -> String {
         '~' => "\\sim ".to_owned(),
         '^' => "\\wedge ".to_owned(),
         '<' | '>' | '|' if words => format!("${c}$"),
-        _ if c.is_ascii() || words => c.to_string(),
+        _ if c.is_ascii() => c.to_string(),
+        // The micro sign is a letter mu, and the sign of the ohm a letter omega.
+        _ if twin(c).is_some_and(|t| t.is_ascii() || GREEK.iter().any(|(g, _)| *g == t)) => {
+            symbol_of(twin(c).unwrap_or(c), words)
+        }
+        _ if words => c.to_string(),
         _ => format!("\\text{{{c}}}"),
     }
-}
-
-/// LaTeX has no commands for the capitals that look Latin.
-fn greek_command(word: &str) -> String {
-    let latin = match word {
-        "Alpha" => "A",
-        "Beta" => "B",
-        "Epsilon" => "E",
-        "Zeta" => "Z",
-        "Eta" => "H",
-        "Iota" => "I",
-        "Kappa" => "K",
-        "Mu" => "M",
-        "Nu" => "N",
-        "Omicron" => "O",
-        "Rho" => "P",
-        "Tau" => "T",
-        "Chi" => "X",
-        "omicron" => return "o".to_owned(),
-        "epsilon" => return "\\varepsilon".to_owned(),
-        "phi" => return "\\varphi".to_owned(),
-        _ => return format!("\\{word}"),
-    };
-    format!("\\mathrm{{{latin}}}")
 }
 
 /// Small letters below the line.

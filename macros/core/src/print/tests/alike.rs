@@ -51,7 +51,8 @@ fn occurrences(text: &str, letter: &str) -> usize {
 fn every_letter_of_a_derivation_prints_as_no_other() {
     let own = [
         "mu", "xi", "zeta", "eta", "Theta", "lambda", "iota", "M", "Mu", "P", "m", "mu1", "xi_1",
-        "V_q", "V", "dq", "L", "K", "C", "N", "U_1", "A", "B", "g", "v", "a", "ℒ", "dzeta", "dζ",
+        "V_q", "V", "M_k", "P_k1", "mu_k", "m_k", "dq", "L", "K", "C", "N", "U_1", "A", "B", "g",
+        "v", "a", "ℒ", "dzeta", "dζ",
     ];
     for name in own {
         for model in models(name) {
@@ -59,7 +60,7 @@ fn every_letter_of_a_derivation_prints_as_no_other() {
             let mut names = BTreeSet::new();
             for id in d.letters.symbols.ids() {
                 let symbol = &d.letters.symbols.get(id).name;
-                assert!(names.insert(seen(symbol)), "{symbol} twice in {model}");
+                assert!(names.insert(seen(symbol, "k")), "{symbol} twice in {model}");
             }
         }
     }
@@ -100,6 +101,18 @@ fn names_that_print_as_another_are_refused() {
         ("E_1", "prints as `E1`"),
         ("E4", "prints as `E4`"),
         ("ℓ", "prints as `ℓ`"),
+        ("µ, μ", "U+00B5"),
+        ("μ, µ", "U+00B5"),
+        ("mu, µ", "print alike"),
+        ("a, а", "U+0430"),
+        ("аb, ab", "U+0430"),
+        ("\u{2126}, Ω", "U+2126"),
+        ("x, 𝑥", "print alike"),
+        ("é, e\u{301}", "print alike"),
+        ("һ", "prints as the time step `h`"),
+        ("W_k", "print alike"),
+        ("a, a_k", "index of what moves"),
+        ("Е1", "prints as `E1`"),
     ] {
         let model = format!(
             "model M {{ param J: Sym<3>; param {names}: Real; group G: SO<3> velocity W; \
@@ -107,6 +120,87 @@ fn names_that_print_as_another_are_refused() {
         );
         let message = derive_source(&model).map_or_else(|e| e.to_string(), |_| String::new());
         assert!(message.contains(said), "{names}: {message}");
+    }
+    // Letters that differ to the eye are names of their own.
+    let model = "model M { param J: Sym<3>; param ϵ, ε, ϑ, θ, ϕ, φ, ϖ, π, ϱ, ρ, ς, σ, p, ж: Real; \
+                 group G: SO<3> velocity W; constraint next(G) = G*W; \
+                 lagrangian = -(ϵ*ε + ϑ*θ + ϕ*φ + ϖ*π + ϱ*ρ + ς*σ + p*ж)*tr(J*W)/h; }";
+    let d = derive_source(model).unwrap_or_else(|e| panic!("{e}"));
+    let latex = printed(&d, Format::Latex);
+    for command in [
+        "\\epsilon ",
+        "\\varepsilon ",
+        "\\vartheta ",
+        "\\theta ",
+        "\\phi ",
+        "\\varphi ",
+        "\\varpi ",
+        "\\pi ",
+        "\\varrho ",
+        "\\rho ",
+        "\\varsigma ",
+        "\\sigma ",
+    ] {
+        let command = command.trim_end();
+        let mut found = latex.match_indices(command);
+        let whole = found.any(|(i, _)| {
+            !latex[i + command.len()..].starts_with(|c: char| c.is_ascii_alphabetic())
+        });
+        assert!(whole, "{command}\n{latex}");
+    }
+    let other = "model M { param J: Sym<3>; param µ: Real; group G: SO<3> velocity W; \
+                 constraint next(G) = G*W; lagrangian = -μ*tr(J*W)/h; }";
+    let message = derive_source(other).map_or_else(|e| e.to_string(), |_| String::new());
+    assert!(message.contains("looks like it"), "{message}");
+}
+
+#[test]
+fn names_that_are_typeset_as_another_are_refused() {
+    let with = |names: &str| {
+        format!(
+            "model M {{ param J: Sym<3>; param {names}; group G: SO<3> velocity W; \
+             constraint next(G) = G*W; lagrangian = -tr(J*W)/h; }}"
+        )
+    };
+    for (names, said) in [
+        (r#"a, b: Real as "x", "x""#, "`b` and `a` are typeset alike"),
+        (r#"a, b: Real as "x_{1}", "{x}_1""#, "typeset alike"),
+        (r#"a, b: Real as "\hat x", "\hat{x}""#, "typeset alike"),
+        (r#"a: Real as "J""#, "`a` and `J` are typeset alike"),
+        (r#"a: Real as "W""#, "`W` and `a` are typeset alike"),
+        (r#"a: Real as "W_k""#, "typeset alike"),
+        (r#"a: Real as "G_{k+1}""#, "typeset alike"),
+        (
+            r#"mu, a: Real as "m", "\mu"; param b: Real as "m""#,
+            "typeset alike",
+        ),
+        (r#"a: Real as "h""#, "the time step `h`"),
+        (r#"a: Real as "\ell""#, "prints as `ℓ`"),
+        (r#"a: Real as "E_1""#, "prints as `E1`"),
+        (r#"a: Real as "\mathrm{Id}""#, "prints as `Id`"),
+    ] {
+        let message = derive_source(&with(names)).map_or_else(|e| e.to_string(), |_| String::new());
+        assert!(message.contains(said), "{names}: {message}");
+        assert_eq!(message.matches("help").count(), 1, "{names}: {message}");
+    }
+    for names in [
+        r#"a, b: Real as "x", "y""#,
+        r#"a, b: Real as "x", "\mathbf{x}""#,
+        r#"a, b: Real as "\phi", "\varphi""#,
+        r#"a, b: Real as "b", "a""#,
+    ] {
+        assert!(derive_source(&with(names)).is_ok(), "{names}");
+    }
+    // Letters of the engine make way.
+    let d = derive_source(&with(r#"a: Real as "M_k""#)).unwrap_or_else(|e| panic!("{e}"));
+    for id in d
+        .letters
+        .symbols
+        .ids()
+        .filter(|id| d.spec.symbols.ids().all(|i| i != *id))
+    {
+        let name = &d.letters.symbols.get(id).name;
+        assert_ne!(seen(name, "k"), seen("M", "k"), "{name}");
     }
 }
 
@@ -117,7 +211,7 @@ fn letters_keep_clear_of_typeset_names() {
                  constraint next(q) = W^T*q; lagrangian = -tr(J*W)/h - h*dot(p, q); }";
     let d = derive_source(model).unwrap_or_else(|e| panic!("{e}"));
     for id in d.letters.symbols.ids() {
-        let name = seen(&d.letters.symbols.get(id).name);
-        assert!(name != seen("mu") && name != seen("xi"), "{name}");
+        let name = seen(&d.letters.symbols.get(id).name, "k");
+        assert!(name != seen("mu", "k") && name != seen("xi", "k"), "{name}");
     }
 }

@@ -116,6 +116,22 @@ fn wrong_names_are_refused() {
         ("\"a\\\"", "token"),
         ("\"a\", \"b\"", "expected `;`"),
         ("3", "between quotes"),
+        (r#""\\input{x}""#, "`\\input` is no letter"),
+        (r#""\\end{document}""#, "`\\end` is no letter"),
+        (r#""\\write18{ls}""#, "`\\write` is no letter"),
+        (r#""\\def\\x{1}""#, "`\\def` is no letter"),
+        (r#""^^5cinput""#, "missing at its end"),
+        (r#""x_1_2""#, "two scripts by `_`"),
+        (r#""x_{1}^{2}^{3}""#, "two scripts by `^`"),
+        (r#""\\hat""#, "missing at its end"),
+        (r#""\\frac{1}""#, "missing at its end"),
+        (r#""{\\hat}""#, "missing at its end"),
+        (r#""x_{}}""#, "not paired"),
+        (r#""\\{x""#, "is no letter"),
+        (r#""\\lamda""#, "did you mean `\\lambda`?"),
+        (r#""μ""#, "in LaTeX `\\mu`"),
+        (r#""ж""#, "no letter of LaTeX"),
+        (r#""x\\\\y""#, "is no letter"),
     ] {
         match with(name) {
             Ok(_) => panic!("{name}"),
@@ -128,6 +144,10 @@ fn wrong_names_are_refused() {
         "\"\\\\xi\"",
         "r\"\\xi\"",
         "r#\"\\xi\"#",
+        "r\"\\hat{\\boldsymbol\\omega}_{\\mathrm{eff}, 1}^2\"",
+        "r\"\\tfrac{m}{2} g\\,\\chi'\"",
+        "r\"\\mathcal I_0\"",
+        "r\"|x|\"",
     ] {
         assert!(with(name).is_ok(), "{name}");
     }
