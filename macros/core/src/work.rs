@@ -33,6 +33,8 @@ thread_local! {
     static BOUNDED: Cell<bool> = const { Cell::new(false) };
     static MADE: Cell<u64> = const { Cell::new(0) };
     static TAKEN: Cell<u64> = const { Cell::new(0) };
+    /// Nodes of the expression that was too large to make; 0 where none was.
+    static ASKED: Cell<u32> = const { Cell::new(0) };
 }
 
 /// The work of this thread from `begin` on, bounded until it is dropped.
@@ -43,6 +45,7 @@ pub(crate) struct Count {
 impl Count {
     /// Begins to count from zero.
     pub(crate) fn begin() -> Count {
+        ASKED.set(0);
         Count {
             before: (BOUNDED.replace(true), MADE.replace(0), TAKEN.replace(0)),
         }
@@ -77,10 +80,30 @@ pub(crate) fn make(size: u32) -> bool {
     let made = MADE.get().saturating_add(1);
     MADE.set(match size > LARGEST {
         // One that is never walked to its end: the model is given up.
-        true if BOUNDED.get() => u64::MAX,
+        true if BOUNDED.get() => {
+            ASKED.set(ASKED.get().max(size));
+            u64::MAX
+        }
         _ => made,
     });
     !exhausted()
+}
+
+/// What was asked for beyond what a derivation is given, with the number and the limit.
+pub(crate) fn excess() -> Option<String> {
+    let asked = ASKED.get();
+    match (exhausted(), cut_short()) {
+        (true, _) if asked > 0 => Some(format!(
+            "an expression of its derivation has {asked} nodes, and at most {LARGEST} are taken"
+        )),
+        (true, _) => Some(format!(
+            "its derivation makes more than {NODES} nodes of expressions, the most that is given"
+        )),
+        (_, true) => Some(format!(
+            "its derivation takes more than {PRODUCTS} products of numbers, the most that is given"
+        )),
+        _ => None,
+    }
 }
 
 /// Books products of numbers; `false` when there are none left.

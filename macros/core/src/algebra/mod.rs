@@ -34,8 +34,24 @@ const WORK_LIMIT: u64 = 150_000;
 /// Nodes evaluated at exact points for one model; beyond it only normal forms decide.
 const EVALUATION_LIMIT: u64 = 300_000;
 
-/// Longest word and largest number of terms kept; beyond that the work is refused too.
+/// Largest number of terms kept; beyond that the work is refused too.
 const TERM_LIMIT: usize = 4_000;
+
+/// Longest word kept.
+const WORD_LIMIT: usize = 64;
+
+/// Why a normal form was given up.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Excess {
+    /// So many terms.
+    Terms(usize),
+    /// A word of so many factors.
+    Word(usize),
+    /// A coefficient or an exponent that exact fractions do not hold.
+    Coefficient,
+    /// So many nodes to be evaluated at points.
+    Evaluated(u64),
+}
 
 /// The normal-form engine of one model: its symbols, the opaque quantities met so far (inverses
 /// of sums, roots of sums, ...) and the work spent.
@@ -45,6 +61,7 @@ pub struct Algebra<'a> {
     numbers: RefCell<Vec<Opaque>>,
     work: Cell<u64>,
     evaluated: Cell<u64>,
+    excess: Cell<Option<Excess>>,
     /// Whether letters of SE(3) are written by their rotations and translations.
     blocks: Cell<bool>,
 }
@@ -85,6 +102,7 @@ impl<'a> Algebra<'a> {
             numbers: RefCell::default(),
             work: Cell::new(0),
             evaluated: Cell::new(0),
+            excess: Cell::new(None),
             blocks: Cell::new(false),
         }
     }
@@ -101,6 +119,7 @@ impl<'a> Algebra<'a> {
     pub(crate) fn charge(&self, other: &Algebra) {
         self.work.set(other.work.get());
         self.evaluated.set(other.evaluated.get());
+        self.excess.set(self.excess.get().or(other.excess.get()));
     }
 
     /// The symbols.
@@ -141,6 +160,9 @@ impl<'a> Algebra<'a> {
     fn vanishes_at_points(&self, e: &Expr) -> bool {
         let spent = self.evaluated.get().saturating_add(u64::from(e.size()));
         self.evaluated.set(spent);
+        if spent > EVALUATION_LIMIT {
+            self.note(Excess::Evaluated(spent));
+        }
         spent <= EVALUATION_LIMIT && exact::vanishes(self.symbols, e)
     }
 
@@ -168,7 +190,39 @@ impl<'a> Algebra<'a> {
 
     /// Gives up on the present model.
     fn exhaust(&self) {
+        self.note(Excess::Coefficient);
         self.work.set(u64::MAX);
+    }
+
+    fn note(&self, excess: Excess) {
+        self.excess.set(self.excess.get().or(Some(excess)));
+    }
+
+    /// What was too large, with the number that was found and the limit; nothing where all was decided.
+    pub(crate) fn excess(&self) -> Option<String> {
+        if let Some(text) = crate::work::excess() {
+            return Some(text);
+        }
+        let spent = self.work.get();
+        Some(match self.excess.get() {
+            Some(Excess::Terms(n)) => {
+                format!("a normal form has {n} terms, and at most {TERM_LIMIT} are taken")
+            }
+            Some(Excess::Word(n)) => format!(
+                "a product in its normal form has {n} factors, and at most {WORD_LIMIT} are taken"
+            ),
+            Some(Excess::Coefficient) => {
+                "a coefficient of its normal form is no fraction of whole numbers below 2^127"
+                    .to_owned()
+            }
+            _ if spent > WORK_LIMIT => format!(
+                "its normal forms take {spent} products of terms, and at most {WORK_LIMIT} are taken"
+            ),
+            Some(Excess::Evaluated(n)) => format!(
+                "its identities have {n} nodes to be evaluated, and at most {EVALUATION_LIMIT} are"
+            ),
+            None => return None,
+        })
     }
 
     fn intern(

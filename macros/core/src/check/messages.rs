@@ -18,12 +18,26 @@ pub fn shape_text(symbols: &Symbols, shape: Shape) -> String {
     }
 }
 
-pub fn too_large(place: Place) -> Diagnostic {
-    Diagnostic::new(
+/// An expression of so many nodes where so many are taken; `lets` says whether the model has any.
+pub fn too_large(place: Place, size: u32, largest: u32, lets: bool) -> Diagnostic {
+    let d = Diagnostic::new(
         place,
-        "this expression is too large to derive from (nested `let`s multiply)",
-    )
-    .help("shorten it, or make parts of it parameters")
+        format!(
+            "this expression is too large: it has {size} quantities, numbers and operations, and at most {largest} are taken"
+        ),
+    );
+    let d = d.help("shorten it, by fewer terms or bodies, or make parts of it parameters");
+    match lets {
+        true => d.help("what a `let` stands for is counted wherever it is used"),
+        false => d,
+    }
+}
+
+/// Beyond what is counted while names and shapes are checked.
+pub fn too_much_work(place: Place, excess: Option<String>) -> Diagnostic {
+    let excess = excess.map(|e| format!(": {e}")).unwrap_or_default();
+    Diagnostic::new(place, format!("this model is too large to derive{excess}"))
+        .help("shorten it, or make parts of it parameters")
 }
 
 pub fn no_lagrangian(place: Place) -> Diagnostic {

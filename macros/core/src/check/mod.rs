@@ -29,7 +29,7 @@ pub fn check(model: &Model) -> Result<Spec, Errors> {
     let _count = work::Count::begin();
     let checked = checked(model);
     match work::exhausted() {
-        true => Err(messages::too_large(model.name.place).into()),
+        true => Err(messages::too_much_work(model.name.place, work::excess()).into()),
         false => checked,
     }
 }
@@ -42,7 +42,8 @@ fn checked(model: &Model) -> Result<Spec, Errors> {
         Statement::Let { name, .. } => Some(name.text.clone()),
         _ => None,
     });
-    let mut elaborator = Elaborator::new(&names, lets.collect());
+    let lets: Vec<String> = lets.collect();
+    let mut elaborator = Elaborator::new(&names, lets.clone());
     let mut typed: Option<(Expr, crate::diagnostic::Place)> = None;
     let mut scale = None;
     let mut assumptions = Vec::new();
@@ -52,7 +53,7 @@ fn checked(model: &Model) -> Result<Spec, Errors> {
         match statement {
             Statement::Let { name, value } => match elaborator.any(value) {
                 Ok(e) if e.size() > LARGEST => {
-                    errors.push(messages::too_large(value.place));
+                    errors.push(messages::too_large(value.place, e.size(), LARGEST, true));
                     elaborator.spoil(name);
                 }
                 Ok(e) => elaborator.bind(name, e, &mut errors),
@@ -118,7 +119,11 @@ fn checked(model: &Model) -> Result<Spec, Errors> {
             Statement::Node(rule, _) => node_rule = *rule,
             Statement::Lagrangian(value) => match elaborator.number(value) {
                 Ok(_) if typed.is_some() => errors.push(messages::second_lagrangian(value.place)),
-                Ok(e) if e.size() > LARGEST => errors.push(messages::too_large(value.place)),
+                Ok(e) if e.size() > LARGEST => {
+                    let lets = !lets.is_empty();
+                    errors.push(messages::too_large(value.place, e.size(), LARGEST, lets));
+                    typed = Some((expr::integer(0), value.place));
+                }
                 Ok(e) => {
                     let parts = elaborate::terms(value).into_iter();
                     let parts = parts.filter_map(|t| Some((elaborator.number(t).ok()?, t.place)));

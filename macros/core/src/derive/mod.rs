@@ -214,18 +214,30 @@ fn letters(spec: &Spec) -> Letters {
 /// refused: what was found until then is void, errors among it.
 pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
     let count = Count::begin();
-    let whole = spec.lagrangian_place;
+    let whole = place_of_most(&spec);
     let derived = derived(spec, &count);
     match work::exhausted() {
-        true => Err(too_large(whole).into()),
+        true => Err(too_large(whole, work::excess()).into()),
         false => derived,
     }
 }
 
-fn too_large(place: Place) -> Diagnostic {
-    let message = "this model is too large to derive: its normal form does not fit";
+/// Where most of a Lagrangian stands: one term, if it is more than half of it, or all of them.
+fn place_of_most(spec: &Spec) -> Place {
+    let largest = spec.terms.iter().max_by_key(|(e, _)| e.size());
+    let half = spec.lagrangian.size() / 2;
+    let found = largest.filter(|(e, _)| e.size() > half);
+    found.map_or(spec.lagrangian_place, |(_, place)| *place)
+}
+
+/// The refusal of a model, with what is more than is taken.
+fn too_large(place: Place, excess: Option<String>) -> Diagnostic {
+    let message = match excess {
+        Some(excess) => format!("this model is too large to derive: {excess}"),
+        None => "this model is too large to derive".to_owned(),
+    };
     Diagnostic::new(place, message)
-        .help("reduce powers of sums and nested products, or make parts of it parameters")
+        .help("take fewer bodies or terms, lower powers of sums and less nested products, or make parts parameters")
 }
 
 /// All results, in the order in which each needs those before it.
@@ -233,9 +245,9 @@ fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
     let spec = reduction::reduce(spec)?;
     let letters = letters(&spec);
     let algebra = Algebra::new(&letters.symbols);
-    let whole = spec.lagrangian_place;
+    let whole = place_of_most(&spec);
     let bounded = |algebra: &Algebra| match algebra.exhausted() {
-        true => Err(Errors::from(too_large(whole))),
+        true => Err(Errors::from(too_large(whole, algebra.excess()))),
         false => Ok(()),
     };
     let action = action::action(&spec);
@@ -287,7 +299,7 @@ fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
         .map(|l| continuous::continuous(&spec, &letters, &variations, l, &algebra));
     // Everything until here must be decided; the search for invariants may be cut short.
     if work::cut_short() {
-        return Err(too_large(whole).into());
+        return Err(too_large(whole, work::excess()).into());
     }
     let bracket = bracket::bracket(&spec, &letters, &variations);
     let (invariants, integrability) = invariants::invariants(&invariants::Inputs {

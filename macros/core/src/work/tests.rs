@@ -1,7 +1,7 @@
 //! How work grows with models: many groups, many quantities, words and powers that multiply out.
 //! Takes families of models of increasing size; asserts counts, which are the same on every machine.
 
-use super::{NODES, PRODUCTS, Work};
+use super::{LARGEST, NODES, PRODUCTS, Work};
 use crate::pipeline::derive_source;
 
 /// Statements of `count` groups and what the kinetic energy of each adds to the Lagrangian.
@@ -158,6 +158,44 @@ fn what_multiplies_out_beyond_the_limits_is_refused() {
     let power = "*(1 + dot(a, J*g) + tr(S) + det(S))".repeat(30);
     let message = refusal(&potential("", &power[1..]));
     assert!(message.contains("too large"), "{message}");
+}
+
+#[test]
+fn what_is_too_large_is_said_with_the_number_and_the_limit() {
+    // The number that was found stands before the limit, and is beyond it.
+    let beyond = |message: &str, limit: u64| {
+        let numbers: Vec<u64> = message
+            .split(|c: char| !c.is_ascii_digit())
+            .filter_map(|n| n.parse().ok())
+            .collect();
+        let at = numbers.iter().position(|n| *n == limit);
+        at.is_some_and(|i| i > 0 && numbers[i - 1] > limit)
+    };
+    let sum = |count: usize| {
+        let terms: Vec<String> = (0..count).map(|k| format!("{}*g[1]*a[2]", k + 2)).collect();
+        potential("", &terms.join("+"))
+    };
+    for model in [sum(160), sum(300)] {
+        let message = refusal(&model);
+        assert!(beyond(&message, 1_000), "{message}");
+        // No `let` and no second message of a Lagrangian that is missing.
+        assert!(
+            !message.contains("`let`") && !message.contains("no Lagrangian"),
+            "{message}"
+        );
+    }
+    let nested = "let x = dot(a, g); ".to_owned()
+        + "let y = x*x + x^3 + exp(x); let z = y*y + y^3 + exp(y) + y; let w = z*z*z*z + exp(z*z*z);
+           let u = w*w*w*w + exp(w*w*w);";
+    let message = refusal(&potential(&nested, "u"));
+    assert!(
+        beyond(&message, 1_000) && message.contains("a `let` stands for"),
+        "{message}"
+    );
+    let power = "*(1 + dot(a, J*g) + tr(S) + det(S))".repeat(30);
+    let message = refusal(&potential("", &power[1..]));
+    let limits = [4_000, 150_000, u64::from(LARGEST)];
+    assert!(limits.iter().any(|l| beyond(&message, *l)), "{message}");
 }
 
 #[test]

@@ -61,7 +61,7 @@ pub fn reduce(mut spec: Spec) -> Result<Spec, Errors> {
         expr::add(edge, nodal),
     );
     let Some(known) = proof.zero(&difference) else {
-        return Err(too_large(&spec).into());
+        return Err(too_large(&spec, &proof).into());
     };
     let place = spec.configurations.first().map(|c| (c.place, c.name_place));
     let (place, name_place) = place.unwrap_or((spec.lagrangian_place, spec.name_place));
@@ -119,12 +119,13 @@ fn velocities_remain(spec: &Spec) -> Result<(), Errors> {
     errors.propagate()
 }
 
-fn too_large(spec: &Spec) -> Diagnostic {
-    Diagnostic::new(
-        spec.lagrangian_place,
-        "the reduction of this Lagrangian cannot be proved: its normal form does not fit",
-    )
-    .help("state the reduced model: velocities and advected quantities in place of `next(...)`")
+fn too_large(spec: &Spec, algebra: &Algebra) -> Diagnostic {
+    let message = match algebra.excess() {
+        Some(excess) => format!("the reduction of this Lagrangian is too large: {excess}"),
+        None => "the reduction of this Lagrangian cannot be proved".to_owned(),
+    };
+    Diagnostic::new(crate::derive::place_of_most(spec), message)
+        .help("state the reduced model: velocities and advected quantities in place of `next(...)`")
 }
 
 /// The terms that break the invariance, each with what is left over.
@@ -174,7 +175,7 @@ fn refusal(spec: &Spec, algebra: &Algebra, forward: &[(Letter, Expr)]) -> Errors
         );
     }
     if errors.iter().next().is_none() {
-        errors.push(too_large(spec));
+        errors.push(too_large(spec, algebra));
     }
     errors
 }
