@@ -205,7 +205,12 @@ impl PoinsotError {
                 "give the mass an extent, so that J has rank two or three: add to it the second \
                  moments of the mass about its own centre; a hundredth of J will do"
             }
-            Self::NotFinite { .. } | Self::NotSymmetric { .. } | Self::Triangle { .. } => {
+            Self::Triangle { .. } => {
+                "the Moser-Veselov equation is solved for second moments J = tr(I)/2 - I that are not \
+                 negative, as those of a real mass distribution; positive moments of inertia alone are \
+                 not enough"
+            }
+            Self::NotFinite { .. } | Self::NotSymmetric { .. } => {
                 "give the matrix of second moments J = tr(I)/2 - I of a real mass distribution"
             }
         };

@@ -52,6 +52,15 @@ pub(super) fn given<'a, 'i>(
     }
 }
 
+/// What the key of a given field is called in messages: `I` where it is the inertia that was given.
+pub(super) fn shown_key(table: &DeTable<'_>, field: &Field, fields: &[Field]) -> String {
+    match given(table, field, fields) {
+        Given::Inertia(_) if table.contains_key(field.ascii) => format!("{}.I", field.ascii),
+        Given::Inertia(_) => key(field, fields).unwrap_or_else(|| field.ascii.to_owned()),
+        Given::Own(_) | Given::Twice(_) | Given::Missing => field.ascii.to_owned(),
+    }
+}
+
 /// What to write for a matrix of second moments besides itself.
 pub(super) fn words(field: &Field) -> &'static str {
     match field.kind {
@@ -68,10 +77,27 @@ pub(super) fn second_moments(field: &Field, value: &DeValue<'_>) -> Result<Vec<f
         kind: Kind::Diagonal,
         ..*field
     };
-    let entries = numbers(&inertia, value).map_err(|_| {
-        "expected the principal moments of inertia [a, b, c] or the matrix [[..], ..]".to_owned()
+    let wanted = "expected the principal moments of inertia [a, b, c] or the matrix [[..], ..]";
+    let entries = numbers(&inertia, value).map_err(|message| {
+        // What is said of one entry stands; of the whole, it is the inertia that was asked for.
+        match message.split_once(", found ") {
+            Some((_, found)) => format!("{wanted}, found {found}"),
+            None => message,
+        }
     })?;
     let n = field.rows;
+    for i in 0..n {
+        for j in i + 1..n {
+            let (upper, lower) = (entries[i * n + j], entries[j * n + i]);
+            let rounding = 4.0 * f64::EPSILON * upper.abs().max(lower.abs());
+            if (upper - lower).abs() > rounding {
+                let (row, column) = (i + 1, j + 1);
+                return Err(format!(
+                    "not symmetric: entry ({row}, {column}) is {upper} but ({column}, {row}) is {lower}"
+                ));
+            }
+        }
+    }
     let half: f64 = (0..n).map(|i| 0.5 * entries[i * n + i]).sum();
     Ok(entries
         .iter()

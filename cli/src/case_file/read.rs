@@ -244,8 +244,10 @@ fn fields(
                 return Err(file.wrong(Some(&span), &message));
             }
         };
-        let found = found
-            .map_err(|message| file.wrong(Some(&value.span()), &format!("{key}: {message}")))?;
+        let found = found.map_err(|message| {
+            let shown = inertia::shown_key(table, field, fields);
+            file.wrong(Some(&value.span()), &format!("{name}.{shown}: {message}"))
+        })?;
         lines.insert(key, file.line(&value.span()));
         values.push(found);
     }

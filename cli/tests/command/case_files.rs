@@ -427,6 +427,20 @@ fn wrong_inertias_are_named() {
         ),
         ("I = [1, 1]", "principal moments of inertia"),
         ("I = 3", "principal moments of inertia"),
+        ("I = [1, 1]", "parameters.I: expected"),
+        (
+            "I = [[2, 0.1, 0], [0.2, 3, 0], [0, 0, 4]]",
+            "parameters.I: not symmetric: entry (1, 2) is 0.1 but (2, 1) is 0.2",
+        ),
+        (
+            "J = { I = [[2, 0, 0], [0, 3, 1], [0, 0, 4]] }",
+            "parameters.J.I: not symmetric: entry (2, 3) is 1 but (3, 2) is 0",
+        ),
+        (
+            "I = [1, nan, 1]",
+            "parameters.I: NaN is not a finite number",
+        ),
+        ("I = [1, 'a', 1]", "parameters.I: expected"),
         ("J = { I = [1, 1, 1], K = 2 }", "symmetric 3x3 matrix"),
         ("I1 = [1, 1, 1]", "unknown key `I1`"),
         ("", "missing key `parameters.J`"),
@@ -437,6 +451,30 @@ fn wrong_inertias_are_named() {
     // Inertia where the model asks for inertia is what it says.
     let found = shipped_with("cayley-klein", "I", "I = { I = [1, 1, 1] }");
     assert!(found.is_err());
+}
+
+#[test]
+fn an_inertia_that_no_body_has_is_refused_by_its_moments() {
+    // I = (2.5, 1.3, 0.8) is positive, and J = (-0.2, 1, 1.5) is not.
+    let gallery = Gallery::shipped();
+    let folder = Folder::new("no-body");
+    let text = on(&gallery, &["case", "free-body"]).out;
+    for line in [
+        "I = [2.5, 1.3, 0.8]",
+        "J = [[-0.2, 0, 0], [0, 1, 0], [0, 0, 1.5]]",
+    ] {
+        let file = folder.write("a.toml", &replaced(&text, "J", line));
+        let ran = on(
+            &gallery,
+            &["run", "free-body", "--case", &file, "--steps", "1"],
+        );
+        for words in [
+            "of the two others, which no body can have",
+            "positive moments of inertia alone are not enough",
+        ] {
+            assert!(ran.err.contains(words), "{line}: {}", ran.err);
+        }
+    }
 }
 
 #[test]
