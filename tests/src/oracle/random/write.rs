@@ -100,7 +100,7 @@ impl Names<'_> {
     }
 
     /// A product without a star, unless the language would read it otherwise or refuse it: two
-    /// numbers, what follows a divisor, and parentheses after a name.
+    /// numbers, what follows a divisor, and parentheses after a name, a call, a component or a power.
     fn juxtaposed(&self, a: &Expr, b: &Expr) -> String {
         let (left, right) = (
             self.write(a, Binding::Product),
@@ -109,7 +109,7 @@ impl Names<'_> {
         let digit = |text: &str| text.starts_with(|first: char| first.is_ascii_digit());
         let call = right.starts_with('(')
             && !left.ends_with("^T")
-            && left.ends_with(|last: char| last.is_alphanumeric() || last == '_');
+            && left.ends_with(|last: char| last.is_alphanumeric() || "_])".contains(last));
         if digit(&right) || call || matches!(a, Expr::Quotient(..)) {
             format!("{left}*{right}")
         } else {

@@ -119,21 +119,13 @@ pub(super) fn after_factor(
 }
 
 /// `x^1/2` is half of `x`, and nobody writes the exponent 1 who does not mean the root; `x^2/2` is
-/// half of the square.
+/// half of the square, and `x^-1/2` of the inverse.
 pub(super) fn after_exponent(c: &Cursor, base: &Expression, q: Rational) -> Option<Diagnostic> {
-    let one = q.is_one() || q == Rational::MINUS_ONE;
-    let Some(Token::Number(n)) = c.peek_at(1).filter(|_| one && c.is_punct('/')) else {
+    let Some(Token::Number(n)) = c.peek_at(1).filter(|_| q.is_one() && c.is_punct('/')) else {
         return None;
     };
-    let (x, sign) = (spelled(base), if q.is_negative() { "-" } else { "" });
-    let whole = match q.is_negative() {
-        true => format!("({x}^-1)/{n}"),
-        false => format!("{x}/{n}"),
-    };
-    let message = format!("`{x}^{sign}1/{n}` can be read in two ways");
-    Some(
-        Diagnostic::new(base.place.to(c.place()), message).help(format!(
-            "write `{x}^({sign}1/{n})` for the exponent {sign}1/{n}, or `{whole}` to divide by {n}"
-        )),
-    )
+    let x = spelled(base);
+    let message = format!("`{x}^1/{n}` can be read in two ways");
+    let help = format!("write `{x}^(1/{n})` for the exponent 1/{n}, or `{x}/{n}` to divide by {n}");
+    Some(Diagnostic::new(base.place.to(c.place()), message).help(help))
 }
