@@ -148,7 +148,7 @@ macro_rules! awkward_names {
                 skew_part solve solve_or_nan symmetric_part unit BodyMomentum SpatialMomentum
                 Rotation Poinsot QuaternionBody KineticWarning Edge Moving Free newton validate emitted
                 // Locals and parameters of functions.
-                after axis before body e edge found guess h_ here i inertia initial j kinetic
+                after axis before body e edge found guess here i inertia initial j kinetic
                 matrix model momenta momentum momentum_next n node out parameters parts potential
                 residual scratch solved solver state tangent total trial value velocity work x
                 field expected t1 t2 t3 momenta_six configurations
