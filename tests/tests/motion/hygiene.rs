@@ -148,7 +148,7 @@ macro_rules! awkward_names {
                 skew_part solve solve_or_nan symmetric_part unit BodyMomentum SpatialMomentum
                 Rotation Poinsot QuaternionBody KineticWarning Edge Moving Free newton validate emitted
                 // Locals and parameters of functions.
-                after axis before body e edge found guess h_ here i inertia initial j kinetic
+                after axis before body e edge found guess here i inertia initial j kinetic
                 matrix model momenta momentum momentum_next n node out parameters parts potential
                 residual scratch solved solver state tangent total trial value velocity work x
                 field expected t1 t2 t3 momenta_six configurations
@@ -337,7 +337,8 @@ macro_rules! attitudes {
     }};
 }
 
-/// Runs both statements and compares them, digit by digit.
+/// Runs both statements and compares them: but for rounding, since how often Newton's method
+/// corrects depends on the bounds of rounding of what is written.
 macro_rules! same_motion {
     (
         [$awkward:ident $plain:ident] [$awkward_p:ident $plain_p:ident]
@@ -355,7 +356,11 @@ macro_rules! same_motion {
             $plain_i { $($value)* },
             $($element)*
         );
-        assert_eq!(awkward, plain);
+        assert_eq!(awkward.len(), plain.len());
+        for (x, y) in awkward.iter().zip(&plain) {
+            // Some ten roundings a step.
+            assert!((x - y).abs() < 1e-13, "{x} {y}");
+        }
     }};
 }
 
