@@ -2,7 +2,7 @@
 //! so that a bad solve does not show in what is conserved; it shows here.
 //! Takes two lengths; says how they compare.
 
-use crate::scalar::larger;
+use crate::scalar::largest;
 
 /// A part of the equations of a step: the momentum carried to its end, less the one that its
 /// velocity brings there.
@@ -23,9 +23,10 @@ impl Residual {
             false => self.size / self.scale,
         }
     }
+
     /// The largest of the parts of a step, each in units of its own terms; NaN where one is.
     #[must_use]
     pub fn largest(parts: &[Self]) -> f64 {
-        parts.iter().map(Self::relative).fold(0.0, larger)
+        largest(parts.iter().map(Self::relative))
     }
 }

@@ -74,8 +74,8 @@ pub fn run(
 
 /// As [`run`], with what was done up to where the run stopped, and why it did, if it did:
 ///
-/// - the first [`StepError`](crate::StepError). The trajectory then stands at the node before it, which is the last
-///   sample;
+/// - the first [`StepError`](crate::StepError). The trajectory then stands at the node before it,
+///   which is the last sample;
 /// - the first number that is NaN or infinite: of an invariant or its natural scale at any node, of an
 ///   observable at a node that is sampled. The trajectory stands there; summary and samples are those
 ///   of the nodes before.

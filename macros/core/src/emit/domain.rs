@@ -366,7 +366,6 @@ fn on_edge(d: &Derivation, names: &Names, list: &[Guard]) -> TokenStream {
         return TokenStream::new();
     }
     let s = &d.letters.symbols;
-    let (_before, _after) = (names.local("before"), names.local("after"));
     let step = variable(s, d.spec.step);
     let rest: Vec<(Letter, Expr)> = d
         .spec
