@@ -111,7 +111,7 @@ pub mod coupled_bodies {
     #[derive(Clone, Copy, Debug)]
     pub struct CoupledBodiesWorkspace<T = f64> {
         h: T,
-        search: newton::Search<T, [Rotation<T>; 2], 6>,
+        search: newton::Search<T, [Rotation<T>; 2], CoupledBodiesNode<T>, 6>,
     }
     impl<T: Real> CoupledBodiesWorkspace<T> {
         /// How the last step was solved: tangents, corrections, and the residual before the last.
@@ -119,6 +119,7 @@ pub mod coupled_bodies {
             self.search.last()
         }
     }
+    type CoupledBodiesNode<T> = (newton::Turn<SMatrix<T, 3, 3>>, [T; 0]);
     impl<T: Real> CoupledBodies<T> {
         /// Starts a trajectory with step `h` from data at node 0.
         ///
@@ -179,8 +180,8 @@ pub mod coupled_bodies {
         /// One step, in place. Solved thus: several velocities are solved together: Newton on the derived residuals.
         ///
         /// # Errors
-        /// When the iteration does not converge: which equation is worst, and which step could be
-        /// solved; the state is then unchanged.
+        /// When no velocity that follows from rest solves the equations: which of them fails, and
+        /// which step could be solved; the state is then unchanged.
         #[inline]
         pub fn step(
             &self,
@@ -202,28 +203,15 @@ pub mod coupled_bodies {
             let k3 = eps * s1;
             let k5 = crossed(&d1, &R);
             let k6 = crossing(&R.transpose(), &s2);
-            let momentum = size_of(&momenta[0]) + size_of(&momenta[1]);
-            let mut iteration = work.search.begin(state.node, momentum);
+            let (given, values) = ((newton::Turn(R), []), (newton::Turn(R), []));
+            let mut iteration = work.search.begin(state.node, values);
             let found: newton::Solved<[Rotation<T>; 2]> = loop {
                 let trial = iteration.trial();
                 if iteration.wants_scale() {
-                    let Ω1 = trial[0].matrix();
-                    let Ω2 = trial[1].matrix();
                     iteration
-                        .set_scale(
-                            length(
-                                    &((-(J1 / h))
-                                        - ((R * ((Ω2 - SMatrix::<T, 3, 3>::identity()) * d2))
-                                            * d1.transpose() * eps) / h),
-                                )
-                                .magnitude()
-                                + length(
-                                        &((-(J2 / h))
-                                            - (R.tr_mul(&((Ω1 - SMatrix::<T, 3, 3>::identity()) * d1))
-                                                * d2.transpose() * eps) / h),
-                                    )
-                                    .magnitude(),
-                        );
+                        .set_scale(|lane| {
+                            self.rounding(h, &given, &momenta, &trial, lane)
+                        });
                 }
                 let Ω1 = trial[0].matrix();
                 let Ω2 = trial[1].matrix();
@@ -267,10 +255,37 @@ pub mod coupled_bodies {
                             },
                         );
                 }
-                match iteration.correct() {
-                    newton::Progress::Continue => {}
-                    newton::Progress::Solved(solved) => break solved,
-                    newton::Progress::Failed(e) => return Err(self.refused(*state, h, e)),
+                let failed = match iteration.correct() {
+                    newton::Progress::Continue => continue,
+                    newton::Progress::Solved(solved) => {
+                        if iteration.is_principal(&solved.element) {
+                            break solved;
+                        }
+                        Ok(solved)
+                    }
+                    newton::Progress::Failed(e) => Err(e),
+                };
+                let asked = failed.as_ref().ok().map(|solved| &solved.element);
+                let traced = self
+                    .principal(
+                        h,
+                        &given,
+                        &values,
+                        &momenta,
+                        iteration.certificate(),
+                        asked,
+                    );
+                match (traced, failed) {
+                    (Ok(None), Ok(solved)) => break solved,
+                    (Ok(Some(root)), _) if iteration.restart(root) => {}
+                    (Ok(_), Err(e)) => return Err(self.refused(*state, h, e)),
+                    (Ok(_), Ok(_)) => {
+                        return Err(self.refused(*state, h, iteration.unpolished()));
+                    }
+                    (Err(fold), failed) => {
+                        let e = iteration.folded(fold, failed.err());
+                        return Err(self.refused(*state, h, e));
+                    }
                 }
             };
             let solved = found.element;
@@ -310,10 +325,11 @@ pub mod coupled_bodies {
             h: T,
             e: newton::NewtonError,
         ) -> StepError {
+            const CONFIGURATIONS: &[&str] = &["Λ1", "Λ2"];
             let e = e
                 .explained(
                     h,
-                    &["Λ1", "Λ2"],
+                    &CONFIGURATIONS,
                     |h| {
                         let (mut trial, search) = (state, newton::Search::to_try());
                         self.step(
@@ -326,6 +342,169 @@ pub mod coupled_bodies {
                     },
                 );
             StepCause::from(e).at_node(state.node)
+        }
+        /// The residual of the equations of a step.
+        #[cold]
+        #[inline(never)]
+        #[allow(unused_variables)]
+        fn residual_at(
+            &self,
+            h: T,
+            given: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
+            momenta: &[SVector<T, 3>; 2],
+            trial: &[Rotation<T>; 2],
+        ) -> SVector<T, 6> {
+            let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
+            let R = given.0.0;
+            let Ω1 = trial[0].matrix();
+            let Ω2 = trial[1].matrix();
+            let t1 = h.powi(-1);
+            let t2 = R * d2;
+            joined::<
+                T,
+                2,
+                6,
+            >(
+                &[
+                    ((d1.cross(&t2) + (R * (Ω2 * d2)).cross(&d1)) * eps * t1
+                        - axial_of_difference(&(J1 * Ω1.transpose())) * t1)
+                        - momenta[0],
+                    (R.tr_mul(&(Ω1 * d1 - d1).cross(&t2)) * eps * t1
+                        - axial_of_difference(&(J2 * Ω2.transpose())) * t1) - momenta[1],
+                ],
+            )
+        }
+        /// Their tangent.
+        #[cold]
+        #[inline(never)]
+        #[allow(unused_variables)]
+        fn tangent_at(
+            &self,
+            h: T,
+            values: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
+            Ω1: SMatrix<T, 3, 3>,
+            Ω2: SMatrix<T, 3, 3>,
+        ) -> SMatrix<T, 6, 6> {
+            let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
+            let R = values.0.0;
+            let t1 = h.powi(-1);
+            assembled::<
+                T,
+                2,
+                6,
+            >(
+                &[
+                    [
+                        (trace_complement(&(Ω1 * J1))) * Ω1 * t1,
+                        crossed(&d1, &(R * crossing(&Ω2, &d2))) * eps * t1,
+                    ],
+                    [
+                        R.tr_mul(&crossed(&(R * d2), &crossing(&Ω1, &d1))) * eps * t1,
+                        (trace_complement(&(Ω2 * J2))) * Ω2 * t1,
+                    ],
+                ],
+            )
+        }
+        /// Bounds of the rounding of the residual, in one lane.
+        #[cold]
+        #[inline(never)]
+        fn rounding(
+            &self,
+            h: T,
+            given: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
+            momenta: &[SVector<T, 3>; 2],
+            trial: &[Rotation<T>; 2],
+            lane: usize,
+        ) -> SVector<f64, 6> {
+            let change = &mut |x: T| newton::Enclosure::<0>::exactly(x.lane(lane));
+            let model = CoupledBodies::<newton::Enclosure<0>> {
+                parameters: self.parameters.over(change),
+            };
+            let (step, given, momenta) = (
+                h.over(change),
+                given.over(change),
+                momenta.map(|part| part.over(change)),
+            );
+            let change = &mut |x: T| newton::Enclosure::<0>::rounded(x.lane(lane));
+            let trial = [trial[0].over(change), trial[1].over(change)];
+            model.residual_at(step, &given, &momenta, &trial).map(|x| x.rest())
+        }
+        /// Finds the principal root, or shows that the solution is.
+        #[cold]
+        #[inline(never)]
+        fn principal(
+            &self,
+            h: T,
+            given: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
+            values: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
+            momenta: &[SVector<T, 3>; 2],
+            certificate: &mut newton::Certificate<
+                (newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
+                6,
+            >,
+            solution: Option<&[Rotation<T>; 2]>,
+        ) -> Result<Option<newton::Anchor<[Rotation<T>; 2], 6>>, newton::Fold> {
+            let first = solution.copied().unwrap_or_else(Group::<T>::identity);
+            let mut verdict = newton::Verdict::<[Rotation<T>; 2], 6>::about(first);
+            for lane in 0..T::LANES {
+                let change = &mut |x: T| newton::Enclosure::<18>::exactly(x.lane(lane));
+                let (bound, bound_step) = (
+                    CoupledBodies::<newton::Enclosure<18>> {
+                        parameters: self.parameters.over(change),
+                    },
+                    h.over(change),
+                );
+                let change = &mut |x: T| x.lane(lane);
+                let (model, step) = (
+                    CoupledBodies::<f64> {
+                        parameters: self.parameters.over(change),
+                    },
+                    h.over(change),
+                );
+                let (given, near, momenta) = (
+                    given.over(change),
+                    values.over(change),
+                    momenta.map(|part| part.over(change)),
+                );
+                let found = match solution {
+                    Some(found) => Some([found[0].over(change), found[1].over(change)]),
+                    None => None,
+                };
+                let equations = newton::Equations {
+                    residual: |trial: &[Rotation<f64>; 2]| {
+                        model.residual_at(step, &given, &momenta, trial)
+                    },
+                    tangent: |trial: &[Rotation<f64>; 2]| {
+                        let Ω1 = trial[0].matrix();
+                        let Ω2 = trial[1].matrix();
+                        model.tangent_at(step, &near, Ω1, Ω2)
+                    },
+                    enclosed: |spread, trial: &[newton::RotationRegion<18>; 2]| {
+                        let Ω1 = trial[0].matrix();
+                        let Ω2 = trial[1].matrix();
+                        let values = newton::NodeValues::enclosed(values, lane, spread);
+                        bound.tangent_at(bound_step, &values, Ω1, Ω2)
+                    },
+                };
+                let generous = certificate.is_generous();
+                let traced = newton::trace::<
+                    _,
+                    [newton::RotationRegion<18>; 2],
+                    _,
+                    _,
+                    _,
+                    6,
+                    18,
+                >(&equations, found.as_ref(), generous);
+                if let Some(root) = verdict
+                    .add(traced.map_err(|fold| fold.in_lane(lane))?)
+                {
+                    let all = verdict.root_mut();
+                    all[0] = all[0].over(&mut newton::Numbers::of(&root[0]).put(lane));
+                    all[1] = all[1].over(&mut newton::Numbers::of(&root[1]).put(lane));
+                }
+            }
+            Ok(verdict.close(certificate, values))
         }
         /// `R` at the node of this state.
         #[inline]

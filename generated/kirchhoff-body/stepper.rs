@@ -93,7 +93,7 @@ pub mod kirchhoff_body {
     #[derive(Clone, Copy, Debug)]
     pub struct KirchhoffBodyWorkspace<T = f64> {
         h: T,
-        search: newton::Search<T, [RigidMotion<T>; 1], 6>,
+        search: newton::Search<T, [RigidMotion<T>; 1], KirchhoffBodyNode<T>, 6>,
     }
     impl<T: Real> KirchhoffBodyWorkspace<T> {
         /// How the last step was solved: tangents, corrections, and the residual before the last.
@@ -101,6 +101,7 @@ pub mod kirchhoff_body {
             self.search.last()
         }
     }
+    type KirchhoffBodyNode<T> = [T; 0];
     impl<T: Real> KirchhoffBody<T> {
         /// Starts a trajectory with step `h` from data at node 0.
         ///
@@ -151,8 +152,8 @@ pub mod kirchhoff_body {
         /// One step, in place. Solved thus: the group is not SO(n): Newton on the derived residual.
         ///
         /// # Errors
-        /// When the iteration does not converge: which equation is worst, and which step could be
-        /// solved; the state is then unchanged.
+        /// When no velocity that follows from rest solves the equations: which of them fails, and
+        /// which step could be solved; the state is then unchanged.
         #[inline]
         pub fn step(
             &self,
@@ -173,88 +174,15 @@ pub mod kirchhoff_body {
                 .cross(&(rows_from::<T, 4, 3, 1>(&P, 0))) * T::from_f64(0.5) * h;
             let k3 = rows_from::<T, 4, 3, 1>(&P, 0) * T::from_f64(0.5) * h * b[3];
             let k4 = T::from_f64(0.25) * s1;
-            let momentum = size_of(&momenta[0]) + size_of(&momenta[1]);
-            let mut iteration = work.search.begin(state.node, momentum);
+            let (given, values) = ((P, []), []);
+            let mut iteration = work.search.begin(state.node, values);
             let found: newton::Solved<[RigidMotion<T>; 1]> = loop {
                 let trial = iteration.trial();
                 if iteration.wants_scale() {
-                    let V = trial[0].matrix();
-                    let t1 = motion_translation(&V);
-                    let t2 = motion_rotation(&V);
-                    let t3 = t1 + t2.tr_mul(&t1);
-                    let t4 = T::from_f64(2.0) * h;
-                    let t5 = (into_rows::<
-                        T,
-                        4,
-                        3,
-                        4,
-                    >(&((M * t3) * unit::<T, 4>(3).transpose()), 0) * T::from_f64(0.25))
-                        / t4;
-                    let t6 = t1.transpose();
-                    let t7 = (into_rows::<
-                        T,
-                        4,
-                        3,
-                        4,
-                    >(&into_columns::<T, 4, 3, 3>(&(t1 * ((t6 + t6 * t2) * M)), 0), 0)
-                        * T::from_f64(0.25)) / t4;
-                    let t8 = (into_rows::<
-                        T,
-                        4,
-                        3,
-                        4,
-                    >(&((t2 * (M * t3)) * unit::<T, 4>(3).transpose()), 0)
-                        * T::from_f64(0.25)) / t4;
-                    let t9 = vee(&t2);
                     iteration
-                        .set_scale(
-                            length(
-                                    &(t5
-                                        - (into_rows::<
-                                            T,
-                                            4,
-                                            3,
-                                            4,
-                                        >(&into_columns::<T, 4, 3, 3>(&J, 0), 0)) / h + t7 + t8 + t5
-                                        + t7 + t8
-                                        + into_rows::<
-                                            T,
-                                            4,
-                                            3,
-                                            4,
-                                        >(
-                                            &into_columns::<
-                                                T,
-                                                4,
-                                                3,
-                                                3,
-                                            >(&hat(&((D * t3 * T::from_f64(0.5)) / h)), 0),
-                                            0,
-                                        ) * T::from_f64(0.5)
-                                        + (into_rows::<
-                                            T,
-                                            4,
-                                            3,
-                                            4,
-                                        >(&(D.tr_mul(&t9) * unit::<T, 4>(3).transpose()), 0)
-                                            * T::from_f64(0.5)) / h
-                                        + (into_rows::<
-                                            T,
-                                            4,
-                                            3,
-                                            4,
-                                        >(&into_columns::<T, 4, 3, 3>(&(t1 * t9.tr_mul(&D)), 0), 0)
-                                            * T::from_f64(0.5)) / h
-                                        + (into_rows::<
-                                            T,
-                                            4,
-                                            3,
-                                            4,
-                                        >(&((t2 * D.tr_mul(&t9)) * unit::<T, 4>(3).transpose()), 0)
-                                            * T::from_f64(0.5)) / h),
-                                )
-                                .magnitude(),
-                        );
+                        .set_scale(|lane| {
+                            self.rounding(h, &given, &momenta, &trial, lane)
+                        });
                 }
                 let (V_rot, V_pos) = (trial[0].rotation.matrix(), trial[0].translation);
                 if iteration
@@ -327,10 +255,37 @@ pub mod kirchhoff_body {
                             },
                         );
                 }
-                match iteration.correct() {
-                    newton::Progress::Continue => {}
-                    newton::Progress::Solved(solved) => break solved,
-                    newton::Progress::Failed(e) => return Err(self.refused(*state, h, e)),
+                let failed = match iteration.correct() {
+                    newton::Progress::Continue => continue,
+                    newton::Progress::Solved(solved) => {
+                        if iteration.is_principal(&solved.element) {
+                            break solved;
+                        }
+                        Ok(solved)
+                    }
+                    newton::Progress::Failed(e) => Err(e),
+                };
+                let asked = failed.as_ref().ok().map(|solved| &solved.element);
+                let traced = self
+                    .principal(
+                        h,
+                        &given,
+                        &values,
+                        &momenta,
+                        iteration.certificate(),
+                        asked,
+                    );
+                match (traced, failed) {
+                    (Ok(None), Ok(solved)) => break solved,
+                    (Ok(Some(root)), _) if iteration.restart(root) => {}
+                    (Ok(_), Err(e)) => return Err(self.refused(*state, h, e)),
+                    (Ok(_), Ok(_)) => {
+                        return Err(self.refused(*state, h, iteration.unpolished()));
+                    }
+                    (Err(fold), failed) => {
+                        let e = iteration.folded(fold, failed.err());
+                        return Err(self.refused(*state, h, e));
+                    }
                 }
             };
             let solved = found.element;
@@ -394,10 +349,11 @@ pub mod kirchhoff_body {
             h: T,
             e: newton::NewtonError,
         ) -> StepError {
+            const CONFIGURATIONS: &[&str] = &["G"];
             let e = e
                 .explained(
                     h,
-                    &["G"],
+                    &CONFIGURATIONS,
                     |h| {
                         let (mut trial, search) = (state, newton::Search::to_try());
                         self.step(
@@ -410,6 +366,201 @@ pub mod kirchhoff_body {
                     },
                 );
             StepCause::from(e).at_node(state.node)
+        }
+        /// The residual of the equations of a step.
+        #[cold]
+        #[inline(never)]
+        #[allow(unused_variables)]
+        fn residual_at(
+            &self,
+            h: T,
+            given: &(SVector<T, 4>, [T; 0]),
+            momenta: &[SVector<T, 3>; 2],
+            trial: &[RigidMotion<T>; 1],
+        ) -> SVector<T, 6> {
+            let KirchhoffBodyParameters { J, M, D, b, Z, .. } = self.parameters;
+            let P = given.0;
+            let (V_rot, V_pos) = (trial[0].rotation.matrix(), trial[0].translation);
+            let t1 = h.powi(-1);
+            let t2 = V_rot.tr_mul(&V_pos) + V_pos;
+            let t3 = D.tr_mul(&vee(&V_rot)) * T::from_f64(0.5);
+            joined::<
+                T,
+                2,
+                6,
+            >(
+                &[
+                    ((V_pos.cross(&(M * t2 * T::from_f64(0.25) + t3))
+                        + vee(
+                            &(crossing(&V_rot, &(D * t2)) * T::from_f64(0.5)
+                                - J * V_rot.transpose() * T::from_f64(2.0)),
+                        )) * t1
+                        + (rows_from::<T, 4, 3, 1>(&b, 0))
+                            .cross(&(rows_from::<T, 4, 3, 1>(&P, 0))) * T::from_f64(0.5)
+                            * h) - momenta[0],
+                    ((SMatrix::<T, 3, 3>::identity() + V_rot)
+                        * (M
+                            * ((V_rot.transpose() + SMatrix::<T, 3, 3>::identity())
+                                * V_pos) * T::from_f64(0.25) + t3) * t1
+                        + rows_from::<T, 4, 3, 1>(&P, 0) * T::from_f64(0.5) * h * b[3])
+                        - momenta[1],
+                ],
+            )
+        }
+        /// Their tangent.
+        #[cold]
+        #[inline(never)]
+        #[allow(unused_variables)]
+        fn tangent_at(
+            &self,
+            h: T,
+            values: &[T; 0],
+            V_rot: SMatrix<T, 3, 3>,
+            V_pos: SVector<T, 3>,
+        ) -> SMatrix<T, 6, 6> {
+            let KirchhoffBodyParameters { J, M, D, b, Z, .. } = self.parameters;
+            let t1 = h.powi(-1);
+            let t2 = crossing(&V_rot, &(D * V_rot.tr_mul(&V_pos)));
+            let t3 = crossing(&V_rot, &(D * V_pos));
+            let t4 = crossing(&M, &(V_rot.tr_mul(&V_pos)));
+            let t5 = trace_complement(&V_rot.transpose());
+            let t6 = vee(&V_rot);
+            let t7 = t5 * D * T::from_f64(0.25);
+            let t8 = D.tr_mul(&t5) * T::from_f64(0.25);
+            let t9 = SMatrix::<T, 3, 3>::identity() + V_rot;
+            assembled::<
+                T,
+                2,
+                6,
+            >(
+                &[
+                    [
+                        ((SMatrix::<T, 3, 3>::identity()
+                            * (J * V_rot.transpose()).trace() - V_rot * J
+                            + (trace_complement(&t2)) * T::from_f64(0.25)
+                            + (trace_complement(&t3)) * T::from_f64(0.25)) * V_rot
+                            + crossed(&V_pos, &(t4 + D.tr_mul(&t5))) * T::from_f64(0.25)
+                            + t5 * crossing(&D, &(V_rot.tr_mul(&V_pos)))
+                                * T::from_f64(0.25)) * t1,
+                        ((hat(
+                            &((-(M * V_rot.tr_mul(&V_pos) * T::from_f64(0.25)))
+                                - D.tr_mul(&t6) * T::from_f64(0.5)),
+                        ) + (crossed(&V_pos, &M) - hat(&(M * V_pos))) * T::from_f64(0.25)
+                            + t7) * V_rot + crossed(&V_pos, &M) * T::from_f64(0.25) + t7)
+                            * t1,
+                    ],
+                    [
+                        (V_rot
+                            * ((t4 - hat(&(M * V_rot.tr_mul(&V_pos))))
+                                * T::from_f64(0.25) - hat(&(M * V_pos)) * T::from_f64(0.25)
+                                - hat(&(D.tr_mul(&t6))) * T::from_f64(0.5) + t8)
+                            + crossing(&M, &(V_rot.tr_mul(&V_pos))) * T::from_f64(0.25)
+                            + t8) * t1,
+                        t9 * (M * t9) * T::from_f64(0.25) * t1,
+                    ],
+                ],
+            )
+        }
+        /// Bounds of the rounding of the residual, in one lane.
+        #[cold]
+        #[inline(never)]
+        fn rounding(
+            &self,
+            h: T,
+            given: &(SVector<T, 4>, [T; 0]),
+            momenta: &[SVector<T, 3>; 2],
+            trial: &[RigidMotion<T>; 1],
+            lane: usize,
+        ) -> SVector<f64, 6> {
+            let change = &mut |x: T| newton::Enclosure::<0>::exactly(x.lane(lane));
+            let model = KirchhoffBody::<newton::Enclosure<0>> {
+                parameters: self.parameters.over(change),
+            };
+            let (step, given, momenta) = (
+                h.over(change),
+                given.over(change),
+                momenta.map(|part| part.over(change)),
+            );
+            let change = &mut |x: T| newton::Enclosure::<0>::rounded(x.lane(lane));
+            let trial = [trial[0].over(change)];
+            model.residual_at(step, &given, &momenta, &trial).map(|x| x.rest())
+        }
+        /// Finds the principal root, or shows that the solution is.
+        #[cold]
+        #[inline(never)]
+        fn principal(
+            &self,
+            h: T,
+            given: &(SVector<T, 4>, [T; 0]),
+            values: &[T; 0],
+            momenta: &[SVector<T, 3>; 2],
+            certificate: &mut newton::Certificate<[T; 0], 6>,
+            solution: Option<&[RigidMotion<T>; 1]>,
+        ) -> Result<Option<newton::Anchor<[RigidMotion<T>; 1], 6>>, newton::Fold> {
+            let first = solution.copied().unwrap_or_else(Group::<T>::identity);
+            let mut verdict = newton::Verdict::<[RigidMotion<T>; 1], 6>::about(first);
+            for lane in 0..T::LANES {
+                let change = &mut |x: T| newton::Enclosure::<12>::exactly(x.lane(lane));
+                let (bound, bound_step) = (
+                    KirchhoffBody::<newton::Enclosure<12>> {
+                        parameters: self.parameters.over(change),
+                    },
+                    h.over(change),
+                );
+                let change = &mut |x: T| x.lane(lane);
+                let (model, step) = (
+                    KirchhoffBody::<f64> {
+                        parameters: self.parameters.over(change),
+                    },
+                    h.over(change),
+                );
+                let (given, near, momenta) = (
+                    given.over(change),
+                    values.over(change),
+                    momenta.map(|part| part.over(change)),
+                );
+                let found = match solution {
+                    Some(found) => Some([found[0].over(change)]),
+                    None => None,
+                };
+                let equations = newton::Equations {
+                    residual: |trial: &[RigidMotion<f64>; 1]| {
+                        model.residual_at(step, &given, &momenta, trial)
+                    },
+                    tangent: |trial: &[RigidMotion<f64>; 1]| {
+                        let (V_rot, V_pos) = (
+                            trial[0].rotation.matrix(),
+                            trial[0].translation,
+                        );
+                        model.tangent_at(step, &near, V_rot, V_pos)
+                    },
+                    enclosed: |spread, trial: &[newton::MotionRegion<12>; 1]| {
+                        let (V_rot, V_pos) = (
+                            trial[0].rotation.matrix(),
+                            trial[0].translation,
+                        );
+                        let values = newton::NodeValues::enclosed(values, lane, spread);
+                        bound.tangent_at(bound_step, &values, V_rot, V_pos)
+                    },
+                };
+                let generous = certificate.is_generous();
+                let traced = newton::trace::<
+                    _,
+                    [newton::MotionRegion<12>; 1],
+                    _,
+                    _,
+                    _,
+                    6,
+                    12,
+                >(&equations, found.as_ref(), generous);
+                if let Some(root) = verdict
+                    .add(traced.map_err(|fold| fold.in_lane(lane))?)
+                {
+                    let all = verdict.root_mut();
+                    all[0] = all[0].over(&mut newton::Numbers::of(&root[0]).put(lane));
+                }
+            }
+            Ok(verdict.close(certificate, values))
         }
         /// `P` at the node of this state.
         #[inline]

@@ -129,6 +129,29 @@ impl<const N: usize, T: Real> Group<T> for Linear<N, T> {
             None => f64::NAN,
         }
     }
+
+    /// The length of all entries of `Q - 1` together.
+    #[inline]
+    fn extents(&self, out: &mut [f64]) {
+        if let Some(first) = out.first_mut() {
+            *first = self.off_identity().greatest().sqrt();
+        }
+    }
+
+    #[inline]
+    fn is_within(&self, reach: &[f64]) -> bool {
+        let reach = reach.first().copied().unwrap_or(0.0);
+        (self.off_identity() - T::from_f64(reach * reach)).nowhere_positive()
+    }
+}
+
+impl<const N: usize, T: Real> Linear<N, T> {
+    /// The sum of the squares of the entries of `Q - 1`.
+    #[inline]
+    fn off_identity(&self) -> T {
+        let off = self.matrix - SMatrix::identity();
+        off.iter().fold(T::zero(), |sum, x| sum + *x * *x)
+    }
 }
 
 impl<const N: usize, T: Real> Coadjoint<T> for Linear<N, T> {

@@ -77,6 +77,31 @@ pub trait Group<T>: Copy {
 
     /// How far rounding has carried the element off the group, in the units of its entries.
     fn distance_from_group(&self) -> f64;
+
+    /// How many parts the coordinates have, each measured by its own length: angles and
+    /// translations do not add up.
+    const PARTS: usize = 1;
+
+    /// The part that a coordinate belongs to.
+    #[must_use]
+    fn part_of(_index: usize) -> usize {
+        0
+    }
+
+    /// Whether the coordinates of a part are pure numbers, as angles are. Those that are lengths
+    /// follow the angles of the same element.
+    #[must_use]
+    fn is_pure(_part: usize) -> bool {
+        true
+    }
+
+    /// Bounds of the lengths of the coordinates `xi` of the element seen from the neutral one,
+    /// `identity().retract(xi)`, part by part, the largest of all lanes; infinite or NaN where
+    /// there are none.
+    fn extents(&self, out: &mut [f64]);
+
+    /// Whether these bounds do not exceed `reach`.
+    fn is_within(&self, reach: &[f64]) -> bool;
 }
 
 /// How covectors of the Lie algebra, momenta, change between body and space.

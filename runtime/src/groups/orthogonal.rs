@@ -141,6 +141,35 @@ impl<const N: usize, T: Real> Group<T> for Orthogonal<N, T> {
         let gram = self.matrix.tr_mul(&self.matrix) - SMatrix::identity();
         largest(gram.iter().map(|x| x.magnitude()))
     }
+
+    /// With the angles `a` of its planes, `|xi|^2 = 4 sum tan^2(a/2)` is bounded by the entries of
+    /// `R - 1`, of which the squares add up to `8 sum sin^2(a/2)`.
+    #[inline]
+    fn extents(&self, out: &mut [f64]) {
+        let eighth = self.off_identity();
+        let square = (eighth * T::from_f64(4.0) / (T::one() - eighth)).greatest();
+        if let Some(first) = out.first_mut() {
+            let inside = eighth.greatest() < 1.0;
+            *first = if inside { square.sqrt() } else { f64::INFINITY };
+        }
+    }
+
+    #[inline]
+    fn is_within(&self, reach: &[f64]) -> bool {
+        let reach = reach.first().copied().unwrap_or(0.0);
+        let eighth = self.off_identity();
+        let four = eighth * T::from_f64(4.0);
+        (four - (T::one() - eighth) * T::from_f64(reach * reach)).nowhere_positive()
+    }
+}
+
+impl<const N: usize, T: Real> Orthogonal<N, T> {
+    /// An eighth of the sum of the squares of the entries of `R - 1`.
+    #[inline]
+    fn off_identity(&self) -> T {
+        let off = self.matrix - SMatrix::identity();
+        off.iter().fold(T::zero(), |sum, x| sum + *x * *x) * T::from_f64(0.125)
+    }
 }
 
 impl<const N: usize, T: Real> Coadjoint<T> for Orthogonal<N, T> {

@@ -49,6 +49,34 @@ impl<T, G: Group<T>, const COUNT: usize> Group<T> for [G; COUNT] {
     fn distance_from_group(&self) -> f64 {
         largest(self.iter().map(Group::distance_from_group))
     }
+
+    const PARTS: usize = COUNT * G::PARTS;
+
+    fn part_of(index: usize) -> usize {
+        let each = G::DIMENSION.max(1);
+        index / each * G::PARTS + G::part_of(index % each)
+    }
+
+    fn is_pure(part: usize) -> bool {
+        G::is_pure(part % G::PARTS.max(1))
+    }
+
+    #[inline]
+    fn extents(&self, out: &mut [f64]) {
+        for (factor, own) in self.iter().zip(out.chunks_mut(G::PARTS.max(1))) {
+            factor.extents(own);
+        }
+    }
+
+    #[inline(always)]
+    fn is_within(&self, reach: &[f64]) -> bool {
+        let mut all = true;
+        for (i, factor) in self.iter().enumerate() {
+            let own = reach.get(i * G::PARTS..).unwrap_or(&[]);
+            all &= factor.is_within(own);
+        }
+        all
+    }
 }
 
 /// The product of different groups.
@@ -103,6 +131,56 @@ macro_rules! product_of {
             #[inline]
             fn distance_from_group(&self) -> f64 {
                 largest([$(self.$index.distance_from_group()),+])
+            }
+
+            const PARTS: usize = 0 $(+ $group::PARTS)+;
+
+            fn part_of(index: usize) -> usize {
+                let (mut rest, mut before) = (index, 0);
+                $(
+                    if rest < $group::DIMENSION {
+                        return before + $group::part_of(rest);
+                    }
+                    rest -= $group::DIMENSION;
+                    before += $group::PARTS;
+                )+
+                let _ = rest;
+                before
+            }
+
+            fn is_pure(part: usize) -> bool {
+                let mut rest = part;
+                $(
+                    if rest < $group::PARTS {
+                        return $group::is_pure(rest);
+                    }
+                    rest -= $group::PARTS;
+                )+
+                let _ = rest;
+                true
+            }
+
+            #[inline]
+            fn extents(&self, out: &mut [f64]) {
+                let mut rest = out;
+                $(
+                    let (own, others) = rest.split_at_mut($group::PARTS.min(rest.len()));
+                    self.$index.extents(own);
+                    rest = others;
+                )+
+                let _ = rest;
+            }
+
+            #[inline(always)]
+            fn is_within(&self, reach: &[f64]) -> bool {
+                let (mut all, mut rest) = (true, reach);
+                $(
+                    let (own, others) = rest.split_at($group::PARTS.min(rest.len()));
+                    all &= self.$index.is_within(own);
+                    rest = others;
+                )+
+                let _ = rest;
+                all
             }
         }
     };

@@ -167,6 +167,33 @@ impl<T: Real> Group<T> for RigidMotion<T> {
     fn distance_from_group(&self) -> f64 {
         Group::<T>::distance_from_group(&self.rotation)
     }
+
+    const PARTS: usize = 2;
+
+    fn part_of(index: usize) -> usize {
+        usize::from(index >= 3)
+    }
+
+    fn is_pure(part: usize) -> bool {
+        part == 0
+    }
+
+    #[inline]
+    fn extents(&self, out: &mut [f64]) {
+        self.rotation.extents(out);
+        let x = &self.translation;
+        if let Some(second) = out.get_mut(1) {
+            *second = x.dot(x).greatest().sqrt();
+        }
+    }
+
+    #[inline(always)]
+    fn is_within(&self, reach: &[f64]) -> bool {
+        let x = &self.translation;
+        let linear = reach.get(1).copied().unwrap_or(0.0);
+        let beyond = x.dot(x) - T::from_f64(linear * linear);
+        self.rotation.is_within(reach) & beyond.nowhere_positive()
+    }
 }
 
 impl<T: Real> Coadjoint<T> for RigidMotion<T> {

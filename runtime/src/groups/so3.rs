@@ -390,6 +390,25 @@ impl<T: Real> Group<T> for Rotation<T> {
     fn distance_from_group(&self) -> f64 {
         (norm_squared(self.q) - T::one()).magnitude()
     }
+
+    /// Twice the tangent of half the angle.
+    #[inline]
+    fn extents(&self, out: &mut [f64]) {
+        let [w, x, y, z] = self.q;
+        let four = T::from_f64(4.0);
+        let length = (four * (x * x + y * y + z * z) / (w * w)).greatest();
+        if let Some(first) = out.first_mut() {
+            *first = length.sqrt();
+        }
+    }
+
+    #[inline(always)]
+    fn is_within(&self, reach: &[f64]) -> bool {
+        let [w, x, y, z] = self.q;
+        let reach = reach.first().copied().unwrap_or(0.0);
+        let quarter = T::from_f64(0.25 * reach * reach);
+        (x * x + y * y + z * z - quarter * (w * w)).nowhere_positive()
+    }
 }
 
 impl<T: Real> Coadjoint<T> for Rotation<T> {

@@ -115,6 +115,21 @@ impl<T: Real> Group<T> for UnitQuaternion<T> {
     fn distance_from_group(&self) -> f64 {
         Group::<T>::distance_from_group(&self.0)
     }
+
+    /// As of the rotation; infinite in the half of the group around -1.
+    #[inline]
+    fn extents(&self, out: &mut [f64]) {
+        self.0.extents(out);
+        let near = self.real().least() > 0.0;
+        if let (Some(first), false) = (out.first_mut(), near) {
+            *first = f64::INFINITY;
+        }
+    }
+
+    #[inline(always)]
+    fn is_within(&self, reach: &[f64]) -> bool {
+        self.0.is_within(reach) & (self.real().least() > 0.0)
+    }
 }
 
 impl<T: Real> Coadjoint<T> for UnitQuaternion<T> {

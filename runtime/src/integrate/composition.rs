@@ -7,6 +7,7 @@
 //! [`Reversible`], and a composition of it does not build.
 
 use super::{Reversible, Stepper};
+use crate::solvers::largest_step::SHORTER;
 use crate::solvers::left_factor::Unsolved;
 use crate::solvers::moser_veselov::{MoserVeselovError, largest_step};
 use crate::solvers::newton::NewtonError;
@@ -213,7 +214,9 @@ fn in_all<T: Real>(cause: StepCause, h: T, share: f64) -> StepCause {
             })
         }
         StepCause::Newton(e) => {
+            // Nearer to a fold rounding decides.
             let (h, largest_step) = in_lane(usize::from(e.lane));
+            let largest_step = largest_step.map(|x| x * SHORTER[0]);
             StepCause::Newton(NewtonError {
                 h,
                 largest_step,

@@ -156,6 +156,21 @@ fn weight<T: Real>(x: T) -> f64 {
     (x.where_positive(x) - (-x).where_positive(x)).least()
 }
 
+/// A power of two near `1 / sqrt(|x|)`, lane by lane; 1 for zero. Rows and columns of a matrix
+/// multiplied by those of its diagonal have one size, whatever their units.
+pub fn balance<T: Real>(x: T) -> T {
+    let mut scale = T::one();
+    for lane in 0..T::LANES {
+        let x = x.lane(lane).abs();
+        let exponent = (x.to_bits() >> 52) as i32 - 1023;
+        if x.is_normal() {
+            let root = f64::from((-exponent).div_euclid(2)).exp2();
+            scale.set_lane(lane, T::One::from_f64(root));
+        }
+    }
+    scale
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -15,7 +15,9 @@ mod singular_values;
 mod skew;
 
 pub use eigenvalues::symmetric_eigenvalues;
-pub use elimination::{determinant, inverse, inverse_leading, solve, solve_leading, solve_many};
+pub use elimination::{
+    balance, determinant, inverse, inverse_leading, solve, solve_leading, solve_many,
+};
 pub use factors::Factors;
 pub use frame::principal_frame;
 pub use inclusion::{columns_from, inclusion, into_columns, into_rows, rows_from};

@@ -4,6 +4,7 @@
 mod double;
 mod double_double;
 mod dual;
+mod enclosure;
 mod lanes;
 mod largest;
 pub(crate) mod one;
@@ -11,6 +12,7 @@ mod over;
 
 pub use double_double::DoubleDouble;
 pub use dual::Dual;
+pub use enclosure::Enclosure;
 pub use lanes::Lanes;
 pub use largest::{larger, largest};
 pub use one::InLanes;

@@ -93,6 +93,17 @@ impl<T: Real, const K: usize> OfScalars for [T; K] {
     }
 }
 
+/// Several values, one inside the other: `(a, (b, (c, [])))`.
+impl<A: OfScalars, B: OfScalars<Scalar = A::Scalar>> OfScalars for (A, B) {
+    type Scalar = A::Scalar;
+    type Over<U: Real> = (A::Over<U>, B::Over<U>);
+
+    #[inline]
+    fn over<U: Real>(&self, change: &mut impl FnMut(A::Scalar) -> U) -> Self::Over<U> {
+        (self.0.over(change), self.1.over(change))
+    }
+}
+
 /// Implements [`OfScalars`] for a type of the runtime, given its fields.
 macro_rules! of_scalars {
     ($Type:ident $(<$N:ident>)? { $($field:tt),+ }) => {

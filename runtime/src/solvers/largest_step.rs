@@ -17,7 +17,7 @@ pub(crate) const SHORTEST_SHARE: f64 = f64::from_bits((1023 - 380) << 52);
 const CONFIRMED: u32 = 4;
 
 /// Shares of the largest step that must do as well.
-const SHORTER: [f64; 13] = [
+pub(crate) const SHORTER: [f64; 13] = [
     1.0 - 1e-6,
     0.999,
     0.99,

@@ -2,9 +2,22 @@
 //! Takes a guess or the solutions before, the residual and its tangent; gives a converged element
 //! or an error.
 
+mod bounds;
+mod certificate;
 mod failure;
+mod lasting;
+mod node;
+mod principal;
+mod region;
 
+pub use crate::scalar::Enclosure;
+pub use bounds::{
+    LinearRegion, MotionRegion, OrthogonalRegion, QuaternionRegion, Region, RotationRegion,
+};
+pub use certificate::{Anchor, Certificate, Numbers, Verdict};
 pub use failure::{NewtonError, NewtonFailure};
+pub use node::{NodeValues, Spread, Turn};
+pub use principal::{Equations, Fold, Traced, trace};
 
 use crate::groups::Group;
 use crate::linalg::Factors;
@@ -14,16 +27,26 @@ use nalgebra::{SMatrix, SVector};
 /// Iterations after which the method gives up; quadratic convergence needs fewer than ten.
 const MOST_ITERATIONS: usize = 50;
 
-/// A residual this many roundings of its terms is zero: the residual of a matrix equation is a sum
-/// of about sixteen rounded products of the size `scale`.
+/// A residual below this many roundings of its equation's own terms is zero: it is a sum of some
+/// ten rounded products.
 const CONVERGED_ROUNDINGS: f64 = 16.0;
 
 /// Below this the residual is nothing but rounding, and a further step would only change it.
 const POLISHED_ROUNDINGS: f64 = 4.0;
 
-/// Ill-conditioned terms may keep the residual above [`CONVERGED_ROUNDINGS`]; when it stops falling
-/// below this many roundings, rounding is the reason.
-const STAGNATED_ROUNDINGS: f64 = 1e3;
+/// Two evaluations may differ by twice their bounds of rounding, [`BOUND_ROUNDINGS`] each. Where the
+/// residual stops falling below this, rounding is the reason.
+const STAGNATED_ROUNDINGS: f64 = 64.0;
+
+/// A bound of the rounding of an equation is taken to be this many roundings of its terms.
+const BOUND_ROUNDINGS: f64 = 8.0;
+
+/// After so many steps the size of the terms is asked for again: it varies little along a
+/// trajectory.
+const OLDEST_SCALE: u32 = 256;
+
+/// After so many iterations as well: the terms may have grown.
+const LATE: usize = 8;
 
 /// A factored tangent serves further corrections while each leaves less than this of the residual;
 /// past that a tangent at the new place pays.
@@ -43,9 +66,16 @@ pub struct Solved<G> {
     pub element: G,
     /// Newton steps made, the polishing one included.
     pub iterations: usize,
-    /// The largest residual component before the last step, over all lanes.
+    /// The residual before the last step over the size of its terms: the largest of all equations
+    /// and lanes.
     pub residual: f64,
 }
+
+/// The neutral element is where the last attempt starts.
+const LAST_ATTEMPT: u32 = 2;
+
+/// An equation whose terms are smaller than this part of others of its kind is judged by those.
+const LEAST_SHARE: f64 = 1e-30;
 
 /// How many solutions the next guess is made from.
 const REMEMBERED: usize = 6;
@@ -56,15 +86,19 @@ const REMEMBERED: usize = 6;
 /// What it remembers decides how many iterations a step takes, and rounding; not which equations
 /// are solved.
 #[derive(Clone, Copy, Debug)]
-pub struct Search<T, G, const D: usize> {
+pub struct Search<T, G, V, const D: usize> {
     /// A ring, twice in a row, the newest at `newest`.
     past: [G; 2 * REMEMBERED],
     newest: usize,
     known: usize,
     /// The node of the step that follows the newest solution.
     next: u64,
-    /// The size of the residual's terms besides the momenta, where it was last asked for.
-    scale: f64,
+    /// One over the size of the terms of each equation.
+    weights: SVector<T, D>,
+    /// How many steps ago they were asked for.
+    weighed: u32,
+    /// Which solutions are principal roots.
+    certificate: Certificate<V, D>,
     /// The tangent factored last.
     factors: Factors<T, D>,
     /// How many steps ago that was.
@@ -81,13 +115,12 @@ pub struct Summary {
     pub tangents: usize,
     /// Corrections made, those with a kept tangent included.
     pub corrections: usize,
-    /// The largest component of the residual before the last of them.
+    /// The residual before the last of them over the size of its terms: the largest of all
+    /// equations.
     pub residual: f64,
-    /// The size of the terms that the residual is made of.
-    pub scale: f64,
 }
 
-impl<T: Real, G: Group<T>, const D: usize> Search<T, G, D> {
+impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Search<T, G, V, D> {
     /// Nothing known: the first guess is the neutral element.
     #[must_use]
     pub fn from_rest() -> Self {
@@ -96,14 +129,15 @@ impl<T: Real, G: Group<T>, const D: usize> Search<T, G, D> {
             newest: 0,
             known: 0,
             next: 0,
-            scale: f64::NAN,
+            weights: SVector::zeros(),
+            weighed: OLDEST_SCALE,
+            certificate: Certificate::none(),
             factors: Factors::none(),
             age: OLDEST_TANGENT,
             last: Summary {
                 tangents: 0,
                 corrections: 0,
                 residual: 0.0,
-                scale: 0.0,
             },
             tries: false,
         }
@@ -131,13 +165,17 @@ impl<T: Real, G: Group<T>, const D: usize> Search<T, G, D> {
         self.last
     }
 
-    /// Begins the solution of the step that leaves `node`; `momentum` is the size of the momenta
-    /// there. The first trial is foreseen from the past; if that leads nowhere, the last solution
-    /// is tried, then the neutral element.
+    /// Begins the solution of the step that leaves `node`, where the tangent depends on `values`. The
+    /// first trial is foreseen from the past; if that leads nowhere, the last solution is tried, then
+    /// the neutral element.
     #[inline(always)]
-    pub fn begin(&mut self, node: u64, momentum: f64) -> Newton<'_, T, G, D> {
+    pub fn begin(&mut self, node: u64, values: V) -> Newton<'_, T, G, V, D> {
         if node != self.next {
             self.known = 0;
+            self.age = OLDEST_TANGENT;
+            self.weighed = OLDEST_SCALE;
+        }
+        if self.certificate.wants_tangent(&values) {
             self.age = OLDEST_TANGENT;
         }
         self.last.tangents = 0;
@@ -148,13 +186,15 @@ impl<T: Real, G: Group<T>, const D: usize> Search<T, G, D> {
             self.start(1)
         };
         let attempt = if foreseen { 0 } else { 1 };
-        let scale = if foreseen { self.scale } else { f64::NAN };
+        if !foreseen {
+            self.weighed = OLDEST_SCALE;
+        }
         Newton {
             search: self,
+            values,
             trial: first,
             attempt,
-            momentum,
-            scale: scale + momentum,
+            anchor: None,
             residual: SVector::zeros(),
             size: f64::NAN,
             previous: f64::INFINITY,
@@ -191,7 +231,6 @@ impl<T: Real, G: Group<T>, const D: usize> Search<T, G, D> {
         self.last = Summary {
             corrections: solution.iterations,
             residual: solution.residual,
-            scale: self.scale,
             ..self.last
         };
         let solution = solution.element;
@@ -204,6 +243,8 @@ impl<T: Real, G: Group<T>, const D: usize> Search<T, G, D> {
         self.known = (self.known + 1).min(REMEMBERED);
         self.next = node + 1;
         self.age = self.age.saturating_add(1);
+        self.weighed = self.weighed.saturating_add(1);
+        self.certificate.count();
     }
 }
 
@@ -219,10 +260,10 @@ impl<T: Real, G: Group<T>, const D: usize> Search<T, G, D> {
 /// ```
 ///
 /// The tangent is the derivative of the residual with respect to the coordinates of
-/// [`Group::retract`] at 0. It is factored once and kept while the corrections shrink fast. With
-/// `scale`, the natural size of the residual's terms, a solution is accepted when the residual is
-/// below `16 EPSILON scale` and one more correction is made, or is sure to fall below a quarter of
-/// that with the next one, or has stopped falling below `1e3 EPSILON scale`. The size of the
+/// [`Group::retract`] at 0. It is factored once and kept while the corrections shrink fast. Each
+/// equation is judged by the size of its own terms, its scale. A solution is accepted when every
+/// residual is below `16 EPSILON scale` and one more correction is made, or is sure to fall below a
+/// quarter of that with the next one, or has stopped falling below `64 EPSILON scale`. The size of the
 /// residual is that of its real parts, in every lane: from a real solution one more step makes the
 /// first derivatives exact whatever they were, so that step follows for dual numbers, with a
 /// tangent of its own.
@@ -230,12 +271,12 @@ impl<T: Real, G: Group<T>, const D: usize> Search<T, G, D> {
 /// Of the `D` components the first [`Group::DIMENSION`] are looked at, so that one `D` can serve
 /// several sizes of a group.
 #[derive(Debug)]
-pub struct Newton<'a, T, G, const D: usize> {
-    search: &'a mut Search<T, G, D>,
+pub struct Newton<'a, T, G, V, const D: usize> {
+    search: &'a mut Search<T, G, V, D>,
+    values: V,
     trial: G,
     attempt: u32,
-    momentum: f64,
-    scale: f64,
+    anchor: Option<Anchor<G, D>>,
     residual: SVector<T, D>,
     size: f64,
     previous: f64,
@@ -253,31 +294,87 @@ pub enum Progress<G> {
     Failed(NewtonError),
 }
 
-impl<T: Real, G: Group<T>, const D: usize> Newton<'_, T, G, D> {
+impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_, T, G, V, D> {
     /// The element at which the equations are wanted.
     #[inline(always)]
     pub fn trial(&self) -> G {
         self.trial
     }
 
-    /// Whether the size of the residual's terms is not known yet. It varies little along a
-    /// trajectory and is asked for at its first step and where an attempt fails.
+    /// Whether the sizes of the terms are not known, or too old. At a start they are asked for at
+    /// every trial: at rest, the first one, the bounds of terms with a kink there are void.
     #[inline(always)]
     pub fn wants_scale(&self) -> bool {
-        self.scale.is_nan()
+        self.search.weighed >= OLDEST_SCALE || self.attempt > 0
     }
 
-    /// The size of the residual's terms at the trial, besides the momenta.
+    /// The sizes of the terms at the trial: `rounding` bounds the rounding of each residual in a
+    /// lane, in plain numbers.
     #[cold]
-    pub fn set_scale(&mut self, scale: f64) {
-        self.search.scale = scale;
-        self.scale = scale + self.momentum;
+    pub fn set_scale(&mut self, rounding: impl Fn(usize) -> SVector<f64, D>) {
+        for lane in 0..T::LANES {
+            let mut scales = rounding(lane) / (BOUND_ROUNDINGS * f64::EPSILON / 2.0);
+            for i in 0..G::DIMENSION.min(D) {
+                // An equation without terms is measured by the others of its kind.
+                let part = (0..G::DIMENSION.min(D)).filter(|k| G::part_of(*k) == G::part_of(i));
+                let most = part.fold(0.0, |most: f64, k| most.max(scales[k]));
+                scales[i] = scales[i].max(LEAST_SHARE * most);
+            }
+            for (weight, scale) in self.search.weights.iter_mut().zip(&scales) {
+                let weight_in_lane = (1.0 / scale).min(f64::MAX);
+                weight.set_lane(lane, T::One::from_f64(weight_in_lane));
+            }
+        }
+        self.search.weighed = 0;
+    }
+
+    /// Whether the solution found is the principal root: by a proof that still holds, or because
+    /// this is where it was looked for.
+    #[inline(always)]
+    pub fn is_principal(&self, solution: &G) -> bool {
+        let certificate = &self.search.certificate;
+        certificate.holds(solution, &self.values) || self.is_anchored(solution)
+    }
+
+    /// Whether it is where it was looked for.
+    #[cold]
+    fn is_anchored(&self, solution: &G) -> bool {
+        let anchor = self.anchor.as_ref();
+        anchor.is_some_and(|a| a.root.inverse().compose(solution).is_within(&a.reach))
+    }
+
+    /// What a proof begins with.
+    #[cold]
+    pub fn certificate(&mut self) -> &mut Certificate<V, D> {
+        let search = &mut *self.search;
+        search.certificate.ask::<T, G>(&search.factors);
+        &mut search.certificate
+    }
+
+    /// Begins again at the principal root. False where that has been done: it cannot be polished.
+    #[cold]
+    pub fn restart(&mut self, anchor: Anchor<G, D>) -> bool {
+        if self.anchor.is_some() {
+            return false;
+        }
+        self.attempt = LAST_ATTEMPT;
+        self.begin_at(anchor.root);
+        self.anchor = Some(anchor);
+        true
+    }
+
+    fn begin_at(&mut self, trial: G) {
+        self.trial = trial;
+        self.search.weighed = OLDEST_SCALE;
+        self.search.age = OLDEST_TANGENT;
+        self.previous = f64::INFINITY;
+        self.iteration = 0;
     }
 
     /// Takes the residual at the trial; says whether the tangent there is wanted.
     #[inline(always)]
     pub fn assess(&mut self, residual: SVector<T, D>) -> bool {
-        self.size = largest(&residual);
+        self.size = largest(&residual.component_mul(&self.search.weights));
         self.residual = residual;
         if T::ORDER > 0 {
             return true;
@@ -286,22 +383,22 @@ impl<T: Real, G: Group<T>, const D: usize> Newton<'_, T, G, D> {
             return self.size > WORTH_KEEPING * self.previous && !self.polished();
         }
         // What is foreseen to rounding needs no more than the tangent of a step before.
-        !(self.size <= CONVERGED_ROUNDINGS * T::EPSILON * self.scale
-            && self.search.age < OLDEST_TANGENT)
+        !(self.size <= CONVERGED_ROUNDINGS * T::EPSILON && self.search.age < OLDEST_TANGENT)
     }
 
     /// Whether the residual is nothing but rounding. What is only foreseen is corrected once.
     #[inline(always)]
     fn polished(&self) -> bool {
-        T::ORDER == 0
-            && self.iteration > 0
-            && self.size <= POLISHED_ROUNDINGS * T::EPSILON * self.scale
+        T::ORDER == 0 && self.iteration > 0 && self.size <= POLISHED_ROUNDINGS * T::EPSILON
     }
 
     /// Takes the tangent at the trial.
     #[inline(always)]
     pub fn set_tangent(&mut self, tangent: &SMatrix<T, D, D>) {
-        self.search.factors.set(tangent, G::DIMENSION);
+        let search = &mut *self.search;
+        search.factors.set(tangent, G::DIMENSION);
+        let (factors, trial) = (&search.factors, &self.trial);
+        search.certificate.note(factors, trial, &self.values);
         self.search.age = 0;
         self.search.last.tangents += 1;
     }
@@ -315,7 +412,7 @@ impl<T: Real, G: Group<T>, const D: usize> Newton<'_, T, G, D> {
         let size = self.size;
         // What is left after the next correction, if it does as well as the last.
         let foreseen = FORESIGHT * size * (size / self.previous);
-        let unit = T::EPSILON * self.scale;
+        let unit = T::EPSILON;
         let done = size <= CONVERGED_ROUNDINGS * unit
             || (size <= STAGNATED_ROUNDINGS * unit && size >= 0.5 * self.previous)
             || (T::ORDER == 0 && self.iteration > 0 && foreseen <= POLISHED_ROUNDINGS * unit);
@@ -329,6 +426,9 @@ impl<T: Real, G: Group<T>, const D: usize> Newton<'_, T, G, D> {
         }
         self.previous = size;
         self.iteration += 1;
+        if self.iteration == LATE {
+            self.search.weighed = OLDEST_SCALE;
+        }
         if self.iteration == MOST_ITERATIONS || !size.is_finite() {
             return self.failed();
         }
@@ -349,13 +449,9 @@ impl<T: Real, G: Group<T>, const D: usize> Newton<'_, T, G, D> {
     #[inline(never)]
     fn failed(&mut self) -> Progress<G> {
         // Without a past, every attempt would be the first.
-        if self.attempt < 2 && self.search.known > 0 {
+        if self.attempt < LAST_ATTEMPT && self.search.known > 0 {
             self.attempt += 1;
-            self.trial = self.search.start(self.attempt);
-            self.scale = f64::NAN;
-            self.previous = f64::INFINITY;
-            self.iteration = 0;
-            self.search.age = OLDEST_TANGENT;
+            self.begin_at(self.search.start(self.attempt));
             return Progress::Continue;
         }
         let (failure, iterations) = if !self.size.is_finite() {
@@ -367,11 +463,46 @@ impl<T: Real, G: Group<T>, const D: usize> Newton<'_, T, G, D> {
         };
         let looked_at = G::DIMENSION.min(D);
         let residual = self.residual.as_slice().get(..looked_at).unwrap_or(&[]);
-        let tolerance = CONVERGED_ROUNDINGS * T::EPSILON * self.scale;
         Progress::Failed(NewtonError {
             tried: self.search.tries,
-            ..NewtonError::of::<T, G>(failure, iterations, residual, tolerance)
+            ..NewtonError::of::<T, G>(
+                failure,
+                iterations,
+                residual,
+                self.search.weights.as_slice(),
+            )
         })
+    }
+
+    /// The principal root was found, but is no root to rounding.
+    #[cold]
+    #[inline(never)]
+    pub fn unpolished(&self) -> NewtonError {
+        let looked_at = G::DIMENSION.min(D);
+        let residual = self.residual.as_slice().get(..looked_at).unwrap_or(&[]);
+        NewtonError {
+            tried: self.search.tries,
+            ..NewtonError::of::<T, G>(
+                NewtonFailure::NotConverged,
+                self.iteration,
+                residual,
+                self.search.weights.as_slice(),
+            )
+        }
+    }
+
+    /// There is no principal root; `failure` says why another way failed before.
+    #[cold]
+    #[inline(never)]
+    pub fn folded(&self, fold: Fold, failure: Option<NewtonError>) -> NewtonError {
+        match failure {
+            // Nothing was followed.
+            Some(e) if fold.share == 0.0 => e,
+            _ => NewtonError {
+                tried: self.search.tries,
+                ..NewtonError::at_fold::<T, G>(fold)
+            },
+        }
     }
 }
 
@@ -386,16 +517,17 @@ pub fn solve<T: Real, G: Group<T>, const D: usize>(
     mut residual: impl FnMut(&G) -> SVector<T, D>,
     mut tangent: impl FnMut(&G) -> SMatrix<T, D, D>,
 ) -> Result<Solved<G>, NewtonError> {
-    let mut search = Search::from_rest();
+    let mut search = Search::<T, G, [T; 0], D>::from_rest();
     search.past = [guess; 2 * REMEMBERED];
     (search.known, search.next) = (1, 1);
-    let mut newton = search.begin(1, 0.0);
+    let mut newton = search.begin(1, []);
     // One attempt.
-    newton.attempt = 2;
+    newton.attempt = LAST_ATTEMPT;
+    let rounding = SVector::repeat(scale * BOUND_ROUNDINGS * f64::EPSILON / 2.0);
     loop {
         let trial = newton.trial();
         if newton.wants_scale() {
-            newton.set_scale(scale);
+            newton.set_scale(|_| rounding);
         }
         if newton.assess(residual(&trial)) {
             newton.set_tangent(&tangent(&trial));

@@ -1,5 +1,8 @@
-//! Scalars, groups, solvers, orders and the integration loop, without the engine. One binary, since linking is most of
-//! what a test costs.
+//! Scalars, groups, solvers, orders, the integration loop, and models of every group that are solved by Newton's method. One
+//! binary, since linking is most of what a test costs.
+
+// The fields of the models are Greek letters, as in the papers.
+#![allow(mixed_script_confusables)]
 
 mod common;
 mod composition;
@@ -10,7 +13,9 @@ mod integrate;
 mod left_factor;
 mod newton;
 mod order;
+mod principal;
 mod quaternions_and_motions;
 mod scalars;
 mod scalars_through_solvers;
 mod unit_quaternions;
+mod units;

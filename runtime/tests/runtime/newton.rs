@@ -165,3 +165,29 @@ fn failures_carry_numbers() {
     );
     assert_eq!((stuck.worst.part, stuck.residual), (Part::Axis(2), 1e-3));
 }
+
+/// A residual that never falls below so many roundings of its terms.
+fn noisy(roundings: f64) -> Result<Solved<Rotation>, NewtonError> {
+    let sign = core::cell::Cell::new(1.0);
+    solve(
+        Rotation::identity(),
+        1.0,
+        |_: &Rotation| {
+            sign.set(-sign.get());
+            Vector3::new(sign.get() * roundings * f64::EPSILON / 2.0, 0.0, 0.0)
+        },
+        |_| Matrix3::identity(),
+    )
+}
+
+#[test]
+fn what_stagnates_above_rounding_is_no_solution() {
+    // Two evaluations differ by at most twice the bound of their rounding.
+    for fine in [1.0, 10.0, 40.0] {
+        assert!(noisy(fine).is_ok(), "{fine}");
+    }
+    for coarse in [100.0, 1e3, 1e5, 1e9] {
+        let e = noisy(coarse).expect_err("noise is no root");
+        assert_eq!(e.failure, NewtonFailure::NotConverged, "{coarse}");
+    }
+}

@@ -254,7 +254,7 @@ fn newton_steps_in_ensembles_are_those_alone_bit_for_bit() {
 #[test]
 fn bodies_that_step_alone_fail_as_those_in_lanes_do() {
     let mut bodies = hinged_tops(BODIES);
-    bodies[17].0.K *= 300.0;
+    bodies[17].0.K *= 3000.0;
     let mut ensemble = Ensemble::<HingedTop, 4>::start(bodies.clone(), H).expect("slow at first");
     let before = states(&ensemble);
     let refused = ensemble.run(200).expect_err("too stiff");

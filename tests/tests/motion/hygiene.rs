@@ -337,7 +337,8 @@ macro_rules! attitudes {
     }};
 }
 
-/// Runs both statements and compares them, digit by digit.
+/// Runs both statements and compares them: but for rounding, since how often Newton's method
+/// corrects depends on the bounds of rounding of what is written.
 macro_rules! same_motion {
     (
         [$awkward:ident $plain:ident] [$awkward_p:ident $plain_p:ident]
@@ -355,7 +356,11 @@ macro_rules! same_motion {
             $plain_i { $($value)* },
             $($element)*
         );
-        assert_eq!(awkward, plain);
+        assert_eq!(awkward.len(), plain.len());
+        for (x, y) in awkward.iter().zip(&plain) {
+            // Some ten roundings a step.
+            assert!((x - y).abs() < 1e-13, "{x} {y}");
+        }
     }};
 }
 

@@ -27,7 +27,7 @@ fn refusal<M: Model<Scalar = f64>>(model: &M, state: &M::State, h: f64) -> Optio
 }
 
 /// How much longer than the step offered a step is that must be refused.
-const LONGER: f64 = 1e-6;
+const LONGER: f64 = 4e-6;
 
 /// Of `count` draws with a step far too long: how many offer a step, and how many of those are
 /// refused a little beyond it.
@@ -123,12 +123,13 @@ fn the_bound_of_a_body_about_an_axis_is_met_and_the_axis_named() {
         let bound = moment / 2.0;
         let e = refusal(&model, &state, 3.0 * bound).expect("too long");
         let largest = e.largest_step.expect("searched");
-        // At the bound the solution is a double root: the residual is rounding where the step is
-        // within some thousand roundings of it.
-        assert!((largest / bound - 1.0).abs() < 1e-11, "{e}: {bound}");
+        // At the bound the solution is a double root, where the curve that leads to it folds: what
+        // is nearer than 1e-6 is not offered.
+        let short = 1.0 - largest / bound;
+        assert!(0.0 < short && short < 3e-6, "{e}: {bound}");
         assert_eq!(e.worst.part, Part::Axis(axis as u8), "{e}");
         assert_eq!(e.configuration(), Some(["Λ1", "Λ2"][body]), "{e}");
-        assert!(e.to_string().contains("3.000000 times the largest"), "{e}");
+        assert!(e.to_string().contains("3.00000"), "{e}");
         assert!(refusal(&model, &state, 0.999 * bound).is_none());
         assert!(refusal(&model, &state, 1.001 * bound).is_some());
         // Of twice the momentum that step would be too long: the test can fail.

@@ -21,6 +21,7 @@ pub mod recognise;
 pub mod reduction;
 pub mod reversal;
 pub mod rounding;
+pub mod seen_from_body;
 pub mod tangent;
 pub mod transport;
 pub mod variation;
@@ -242,6 +243,7 @@ fn too_large(place: Place, excess: Option<String>) -> Diagnostic {
 
 /// All results, in the order in which each needs those before it.
 fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
+    let stated = spec.clone();
     let spec = reduction::reduce(spec)?;
     let letters = letters(&spec);
     let algebra = Algebra::new(&letters.symbols);
@@ -273,7 +275,7 @@ fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
     });
     bounded(&algebra)?;
     let certificate = certificate?;
-    let solve = recognise::recognise(&spec, &letters, &balances, &transports, &algebra);
+    let solve = recognise::recognise(&stated, &spec, &letters, &balances, &transports, &algebra);
     let carries = carry::carries(&carry::Inputs {
         spec: &spec,
         letters: &letters,

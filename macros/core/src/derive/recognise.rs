@@ -5,6 +5,7 @@
 use super::balance::{Balance, shorter};
 use super::kinetic::Kinetic;
 use super::quaternionic::{self, Quaternionic};
+use super::seen_from_body::seen_from_body;
 use super::transport::Transport;
 use super::variation::at;
 use super::{Derivation, Letters};
@@ -80,6 +81,9 @@ pub struct Solve {
     /// `C` seen from the other frame, where it is constant along the motion: made of parameters and
     /// of advected quantities by their reference values.
     pub turned: Option<Expr>,
+    /// The momenta that Newton's method solves for, where spatial velocities are seen from the body
+    /// for it.
+    pub seen_from_body: Option<Vec<Expr>>,
 }
 
 impl Solve {
@@ -112,8 +116,9 @@ impl Derivation {
     }
 }
 
-/// Recognises.
+/// Recognises; `stated` is the model before its reduction.
 pub fn recognise(
+    stated: &Spec,
     spec: &Spec,
     letters: &Letters,
     balances: &[Balance],
@@ -197,11 +202,16 @@ pub fn recognise(
             "several velocities are solved together: Newton on the derived residuals".to_owned(),
         ),
     };
+    let by_newton = matches!(method, Method::Newton);
+    let seen_from_body = by_newton
+        .then(|| seen_from_body(stated, spec, letters, balances))
+        .flatten();
     Solve {
         riccati,
         method,
         reason,
         turned,
+        seen_from_body,
     }
 }
 

@@ -110,19 +110,52 @@ pub fn offset(d: &Derivation, i: usize) -> TokenStream {
 
 /// The type of an element over the scalar `T`.
 pub fn ty(d: &Derivation, i: usize) -> TokenStream {
+    ty_over(d, i, &quote!(T))
+}
+
+/// The type of an element over a scalar.
+pub fn ty_over(d: &Derivation, i: usize, scalar: &TokenStream) -> TokenStream {
     let s = &d.letters.symbols;
     match of(d, i) {
-        Family::Rotation => quote!(Rotation<T>),
+        Family::Rotation => quote!(Rotation<#scalar>),
         Family::Orthogonal(n) => {
             let n = size(s, n);
-            quote!(Orthogonal<#n, T>)
+            quote!(Orthogonal<#n, #scalar>)
         }
         Family::Linear(n) => {
             let n = size(s, n);
-            quote!(Linear<#n, T>)
+            quote!(Linear<#n, #scalar>)
         }
-        Family::Quaternion => quote!(UnitQuaternion<T>),
-        Family::Motion => quote!(RigidMotion<T>),
+        Family::Quaternion => quote!(UnitQuaternion<#scalar>),
+        Family::Motion => quote!(RigidMotion<#scalar>),
+    }
+}
+
+/// The type of all elements near one, in so many variables.
+pub fn region(d: &Derivation, i: usize, variables: &Literal) -> TokenStream {
+    let s = &d.letters.symbols;
+    match of(d, i) {
+        Family::Rotation => quote!(newton::RotationRegion<#variables>),
+        Family::Orthogonal(n) => {
+            let n = size(s, n);
+            quote!(newton::OrthogonalRegion<#n, #variables>)
+        }
+        Family::Linear(n) => {
+            let n = size(s, n);
+            quote!(newton::LinearRegion<#n, #variables>)
+        }
+        Family::Quaternion => quote!(newton::QuaternionRegion<#variables>),
+        Family::Motion => quote!(newton::MotionRegion<#variables>),
+    }
+}
+
+/// How many variables that takes, in threes, at most.
+pub fn variables(d: &Derivation, i: usize) -> u64 {
+    match of(d, i) {
+        Family::Rotation => 9,
+        Family::Quaternion => 6,
+        Family::Motion => 12,
+        Family::Orthogonal(_) | Family::Linear(_) => 3 * most_coordinates(d, i).div_ceil(3),
     }
 }
 

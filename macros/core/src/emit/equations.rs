@@ -3,13 +3,15 @@
 //! blocks of three where the groups are those of space, by coordinates and columns elsewhere.
 
 use super::element::{self, Bundle, stack};
-use super::expression::{Bindings, program};
+use super::expression::{Bindings, program, ty};
+use super::items::letters_of;
 use super::names::{Names, variable};
 use super::step::at;
 use crate::derive::parts::{Parts, Velocity};
 use crate::derive::tangent::Direction;
 use crate::derive::{Derivation, lie};
-use crate::expr::{self, Expr, Node, Shift};
+use crate::expr::symbol::{Role, Symbols};
+use crate::expr::{self, Expr, Letter, Node, Shift};
 use crate::schedule;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
@@ -32,12 +34,30 @@ pub(super) struct Equations<'a> {
 pub(super) struct Written {
     /// What both need of the trial.
     pub at_trial: TokenStream,
+    /// The names that this binds, and their types over `T`.
+    pub velocities: Vec<(Ident, TokenStream)>,
     /// The residual, as the body of a block.
     pub residual: TokenStream,
     /// The tangent, as the body of a block.
     pub tangent: TokenStream,
-    /// The momenta of the node, one by one.
-    pub momenta: Vec<TokenStream>,
+    /// The same two without anything computed before.
+    pub alone: Alone,
+    /// The type of the momenta of the node together, over `T`.
+    pub momenta: TokenStream,
+    /// Those momenta with `change` made to every number.
+    pub momenta_over: TokenStream,
+}
+
+/// Residual and tangent as functions of their own, and what they ask of the node.
+pub(super) struct Alone {
+    /// The residual, as the body of a block.
+    pub residual: TokenStream,
+    /// The tangent, as the body of a block.
+    pub tangent: TokenStream,
+    /// Elements and quantities at the node that the residual needs.
+    pub given: Vec<Letter>,
+    /// Those that the tangent needs.
+    pub values: Vec<Letter>,
 }
 
 impl Equations<'_> {
@@ -73,6 +93,8 @@ impl Equations<'_> {
         }
         let bundle = Bundle::of(d);
         let mut velocities = TokenStream::new();
+        let mut bound = Vec::new();
+        let (three, rotation) = (quote!(SVector<T, 3>), quote!(SMatrix<T, 3, 3>));
         let mut known = TokenStream::new();
         let mut given = Vec::new();
         for (i, (v, value)) in parts.velocities.iter().zip(node).enumerate() {
@@ -82,11 +104,13 @@ impl Equations<'_> {
                 Velocity::Rotation(w) => {
                     let w = name(*w);
                     velocities.extend(quote!(let #w = #part.matrix();));
+                    bound.push((w, rotation.clone()));
                     given.push(value.clone());
                 }
                 Velocity::Quaternion(re, im) => {
                     let (re, im) = (name(*re), name(*im));
                     velocities.extend(quote!(let (#re, #im) = (#part.real(), #part.imaginary());));
+                    bound.extend([(re, quote!(T)), (im, three.clone())]);
                     given.push(value.clone());
                 }
                 Velocity::Motion(rot, pos) => {
@@ -94,6 +118,7 @@ impl Equations<'_> {
                     velocities.extend(
                         quote!(let (#rot, #pos) = (#part.rotation.matrix(), #part.translation);),
                     );
+                    bound.extend([(rot, rotation.clone()), (pos, three.clone())]);
                     let both = self.names.local(&match i {
                         0 => "momenta_six".to_owned(),
                         _ => format!("momenta_six_{i}"),
@@ -115,6 +140,36 @@ impl Equations<'_> {
                 quote!(#mu[#i])
             })
             .collect();
+        let residual_of =
+            |values: &[TokenStream], lets: TokenStream| match (values, momenta.as_slice()) {
+                ([value], [own]) => quote!(#lets (#value) - #own),
+                _ => {
+                    let rows = values.iter().zip(&momenta);
+                    let rows = rows.map(|(value, own)| quote!((#value) - #own));
+                    quote!(#lets joined::<T, #count, #total>(&[#(#rows),*]))
+                }
+            };
+        let tangent_of = |values: &[TokenStream], lets: TokenStream| match values {
+            [only] => quote!(#lets #only),
+            _ => {
+                let rows = values.chunks(given.len()).map(|row| quote!([#(#row),*]));
+                quote!(#lets assembled::<T, #count, #total>(&[#(#rows),*]))
+            }
+        };
+        let alone = {
+            let list: Vec<Expr> = list.iter().map(|e| expr::factored(s, e)).collect();
+            let p = schedule::program(s, &list, "t");
+            let (lets, values) = program(&p, self.bindings);
+            let residual = residual_of(&values, lets);
+            let p = schedule::program(s, &blocks, "t");
+            let (lets, values) = program(&p, self.bindings);
+            Alone {
+                residual,
+                tangent: tangent_of(&values, lets),
+                given: at_the_node(s, &list),
+                values: at_the_node(s, &blocks),
+            }
+        };
         let varies = |l| parts.varies(l);
         let mut at_node = schedule::Known::new(s, &varies, "k");
         let list: Vec<Expr> = list
@@ -142,30 +197,20 @@ impl Equations<'_> {
         }
         let p = schedule::program(s, &list, "t");
         let (lets, values) = program(&p, &bindings);
-        let residual = match (values.as_slice(), momenta.as_slice()) {
-            ([value], [own]) => quote!(#lets (#value) - #own),
-            _ => {
-                let rows = values.iter().zip(&momenta);
-                let rows = rows.map(|(value, own)| quote!((#value) - #own));
-                quote!(#lets joined::<T, #count, #total>(&[#(#rows),*]))
-            }
-        };
+        let residual = residual_of(&values, lets);
         let p = schedule::program(s, &blocks, "t");
         let (lets, values) = program(&p, &bindings);
-        let tangent = match values.as_slice() {
-            [only] => quote!(#lets #only),
-            _ => {
-                let rows = values.chunks(given.len()).map(|row| quote!([#(#row),*]));
-                quote!(#lets assembled::<T, #count, #total>(&[#(#rows),*]))
-            }
-        };
+        let tangent = tangent_of(&values, lets);
         Some((
             known,
             Written {
                 at_trial: velocities,
+                velocities: bound,
                 residual,
                 tangent,
-                momenta,
+                alone,
+                momenta: quote!([SVector<T, 3>; #count]),
+                momenta_over: quote!(#mu.map(|part| part.over(change))),
             },
         ))
     }
@@ -185,6 +230,11 @@ impl Equations<'_> {
                 quote!(let #w = #part.matrix();)
             })
             .collect();
+        let bound = d.spec.configurations.iter().map(|c| {
+            let symbol = s.get(c.velocity);
+            (variable(s, c.velocity), ty(s, symbol.shape))
+        });
+        let bound: Vec<(Ident, TokenStream)> = bound.collect();
         let node = bundle.value(node);
         let known = quote!(let #mu: #covectors = #node;);
         let momenta: Vec<TokenStream> = (0..bodies).map(|i| bundle.part(quote!(#mu), i)).collect();
@@ -202,6 +252,7 @@ impl Equations<'_> {
             let parts: #covectors = #parts;
             #stacked
         };
+        let mut derived = Vec::new();
         // The derivative along Ω η for every basis element of every velocity.
         let mut columns = TokenStream::new();
         for j in 0..bodies {
@@ -213,6 +264,7 @@ impl Equations<'_> {
                 .iter()
                 .map(|m| expr::directional(s, m, &along))
                 .collect();
+            derived.extend(derivatives.iter().cloned());
             let p = schedule::program(s, &derivatives, "t");
             let (lets, values) = program(&p, self.bindings);
             let eta = variable(s, eta);
@@ -241,14 +293,30 @@ impl Equations<'_> {
             #columns
             matrix
         };
+        let over: Vec<TokenStream> = momenta.iter().map(|m| quote!(#m.over(change))).collect();
+        let alone = Alone {
+            residual: residual.clone(),
+            tangent: tangent.clone(),
+            given: at_the_node(s, list),
+            values: at_the_node(s, &derived),
+        };
         (
             known,
             Written {
                 at_trial: velocities,
+                velocities: bound,
                 residual,
                 tangent,
-                momenta,
+                alone,
+                momenta: covectors,
+                momenta_over: bundle.value(&over),
             },
         )
     }
+}
+
+/// What stands for something at the node: elements and advected quantities.
+fn at_the_node(s: &Symbols, list: &[Expr]) -> Vec<Letter> {
+    let at_node = |l: &Letter| matches!(s.get(l.symbol).role, Role::Element | Role::Advected);
+    letters_of(list).into_iter().filter(at_node).collect()
 }

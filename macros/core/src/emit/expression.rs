@@ -42,7 +42,8 @@ impl Bindings {
         found.map(|(_, local)| local)
     }
 
-    fn find(&self, symbols: &Symbols, letter: Letter) -> Ident {
+    /// The local that holds a letter.
+    pub fn local(&self, symbols: &Symbols, letter: Letter) -> Ident {
         let found = self.list.iter().find(|(l, _)| *l == letter);
         found.map_or_else(
             || variable(symbols, letter.symbol),
@@ -124,7 +125,7 @@ impl Writer<'_> {
         match e.node() {
             Node::Number(q) => rational(*q),
             Node::Letter(l) => {
-                let local = self.bindings.find(self.symbols, *l);
+                let local = self.bindings.local(self.symbols, *l);
                 quote!(#local)
             }
             Node::Identity(_) => quote!(SMatrix::<T, #rows, #cols>::identity()),

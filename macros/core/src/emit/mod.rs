@@ -20,6 +20,7 @@ mod left_factor;
 mod names;
 mod newton;
 mod notes;
+mod principal;
 mod quaternionic;
 mod residual;
 mod residual_of_step;

@@ -104,7 +104,7 @@ const TYPES: [&str; 56] = [
 ];
 
 /// Methods and constants that every model has.
-const MEMBERS: [&str; 35] = [
+const MEMBERS: [&str; 39] = [
     "kinetic_warning",
     "ADMITTED",
     "CARD",
@@ -140,6 +140,10 @@ const MEMBERS: [&str; 35] = [
     "workspace",
     "workspace_with",
     "arrived",
+    "principal",
+    "residual_at",
+    "rounding",
+    "tangent_at",
 ];
 
 /// The model, a configuration or an advected quantity whose name emitted items need for
@@ -182,7 +186,7 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
 
 /// What emitted functions call by a plain name, and what they name themselves: a local of the
 /// model under such a name would hide it. The test of hygiene states a model with all of them.
-const INSIDE: [&str; 120] = [
+const INSIDE: [&str; 144] = [
     "KineticWarning",
     "BodyImpulse",
     "BodyMomentum",
@@ -303,6 +307,30 @@ const INSIDE: [&str; 120] = [
     "SideBySide",
     "TurnedRotation",
     "advance_side_by_side",
+    "anchor",
+    "asked",
+    "bound",
+    "bound_step",
+    "certificate",
+    "change",
+    "equations",
+    "failed",
+    "first",
+    "fold",
+    "generous",
+    "given",
+    "lane",
+    "model",
+    "near",
+    "newton",
+    "root",
+    "solution",
+    "solved",
+    "spread",
+    "step",
+    "traced",
+    "values",
+    "verdict",
 ];
 
 /// The symbol's name as a local variable: its own, unless the emitted code needs that one itself.

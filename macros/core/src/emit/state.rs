@@ -99,7 +99,10 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
         }
         Method::LeftFactor | Method::Davenport => super::left_factor::work(d),
         Method::Newton => (
-            quote!(search: newton::Search<T, #elements, #dimension>,),
+            {
+                let (values, used) = (item(d, "Node"), g.used());
+                quote!(search: newton::Search<T, #elements, #values #used, #dimension>,)
+            },
             " The step and the last velocities, from which the next solve starts.",
         ),
     };

@@ -26,6 +26,7 @@ pub fn start_and_step(d: &Derivation, names: &Names) -> TokenStream {
     let start = start(d, names);
     let factor = items::factor_of_state(d);
     let access = advected_access(d, names);
+    let mut beside = TokenStream::new();
     let step = match (&d.solve.method, d.solve.riccati.first()) {
         (Method::FreeMoserVeselov, _) => free_step(d, names),
         (Method::ForcedMoserVeselov, Some(Riccati::Exact(mv))) => super::forced::step(d, names, mv),
@@ -35,12 +36,18 @@ pub fn start_and_step(d: &Derivation, names: &Names) -> TokenStream {
         (Method::LeftFactor | Method::Davenport, Some(Riccati::Exact(mv))) => {
             super::left_factor::step(d, names, mv)
         }
-        _ => super::newton::step(d, names),
+        _ => {
+            let (values, step) = super::newton::step(d, names);
+            beside = values;
+            step
+        }
     };
     let tested = super::domain::tested_step(d, names);
     let g = Generics::of(d);
     let (bound, used) = (g.bound(), g.used());
     quote! {
+        #beside
+
         impl #bound #name #used {
             #start
             #factor
@@ -271,7 +278,7 @@ pub(super) fn finish(
         out.extend(match c.side {
             Side::Body => quote!(let #moved = state.#element * #omega;),
             // What was solved for is the velocity seen from the body.
-            Side::Spatial if d.solve.turned.is_some() => {
+            Side::Spatial if d.solve.turned.is_some() || d.solve.seen_from_body.is_some() => {
                 quote!(let #moved = state.#element * #omega;)
             }
             Side::Spatial => quote!(let #moved = #omega * state.#element;),

@@ -2,16 +2,17 @@
 //! step could have been made from the same state.
 //! Takes the last residual and a way to try other steps; gives the error.
 
+use super::Fold;
 use crate::groups::{Coordinate, Group};
 use crate::said::{AtMost, Plain, Times, in_lane, instead};
 use crate::scalar::Real;
-use crate::solvers::largest_step::largest_step;
+use crate::solvers::largest_step::{SHORTER, largest_step};
 use crate::{StepCause, StepError};
 use core::cell::Cell;
 use core::fmt;
 
 /// What went wrong.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NewtonFailure {
     /// The residual is still too large.
     NotConverged,
@@ -19,6 +20,12 @@ pub enum NewtonFailure {
     SingularTangent,
     /// The residual became NaN or infinite.
     NotFinite,
+    /// There is no principal root: on the way from rest to the momenta of the node the tangent
+    /// becomes singular, or the equations lose their meaning.
+    Fold {
+        /// What part of the way there is.
+        share: f64,
+    },
 }
 
 /// The equations of a step that Newton's method did not solve.
@@ -28,7 +35,8 @@ pub struct NewtonError {
     pub failure: NewtonFailure,
     /// Corrections made.
     pub iterations: u8,
-    /// The largest component of the residual, over all lanes; NaN if any is.
+    /// The residual that is largest compared with the terms of its equation, over all lanes; NaN
+    /// if any is.
     pub residual: f64,
     /// What it should have come below.
     pub tolerance: f64,
@@ -45,10 +53,13 @@ pub struct NewtonError {
     /// The lane it is in; 0 for types without lanes.
     pub lane: u8,
     /// The configurations of the model, in their order.
-    pub(crate) configurations: &'static [&'static str],
+    pub(crate) configurations: &'static &'static [&'static str],
     /// Whether the step was only tried.
     pub(crate) tried: bool,
 }
+
+/// Where the names are not known.
+const NO_NAMES: &[&str] = &[];
 
 impl NewtonError {
     /// The failure at this residual.
@@ -58,27 +69,47 @@ impl NewtonError {
         failure: NewtonFailure,
         iterations: usize,
         residual: &[T],
-        tolerance: f64,
+        weights: &[T],
     ) -> Self {
         let (mut size, mut index, mut lane) = (0.0, 0, 0);
-        for (i, x) in residual.iter().enumerate() {
+        let (mut worst, mut weight) = (0.0, f64::NAN);
+        for (i, (x, w)) in residual.iter().zip(weights).enumerate() {
             for at in 0..T::LANES {
-                let x = x.lane(at).abs();
-                if x > size || (x.is_nan() && !f64::is_nan(size)) {
-                    (size, index, lane) = (x, i, at);
+                let (x, w) = (x.lane(at).abs(), w.lane(at));
+                if w * x > size || (x.is_nan() && !f64::is_nan(size)) {
+                    (size, index, lane) = (w * x, i, at);
+                    (worst, weight) = (x, w);
                 }
             }
         }
         Self {
             failure,
             iterations: u8::try_from(iterations).unwrap_or(u8::MAX),
-            residual: size,
-            tolerance,
+            residual: worst,
+            tolerance: super::CONVERGED_ROUNDINGS * T::EPSILON / weight,
             h: None,
             largest_step: None,
             worst: G::coordinate(index),
             lane: u8::try_from(lane).unwrap_or(u8::MAX),
-            configurations: &[],
+            configurations: &NO_NAMES,
+            tried: false,
+        }
+    }
+
+    /// No principal root.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn at_fold<T: Real, G: Group<T>>(fold: Fold) -> Self {
+        Self {
+            failure: NewtonFailure::Fold { share: fold.share },
+            iterations: 0,
+            residual: 0.0,
+            tolerance: 0.0,
+            h: None,
+            largest_step: None,
+            worst: G::coordinate(fold.fastest),
+            lane: u8::try_from(fold.lane).unwrap_or(u8::MAX),
+            configurations: &NO_NAMES,
             tried: false,
         }
     }
@@ -99,7 +130,7 @@ impl NewtonError {
     pub fn explained<T: Real>(
         self,
         h: T,
-        configurations: &'static [&'static str],
+        configurations: &'static &'static [&'static str],
         step: impl Fn(T) -> Result<(), StepError>,
     ) -> Self {
         if self.tried {
@@ -117,7 +148,11 @@ impl NewtonError {
             }
             Err(_) => None,
         };
-        let share = largest_step(1.0, fits);
+        // The search has tried this part of what it found as well.
+        let share = match largest_step(1.0, fits) {
+            1.0 => 1.0,
+            share => share * SHORTER[0],
+        };
         let NewtonError { worst, lane, .. } = match share > 0.0 && share < 1.0 {
             true => nearest.get(),
             false => self,
@@ -158,6 +193,11 @@ impl fmt::Display for NewtonError {
             NewtonFailure::NotFinite => write!(
                 f,
                 "the residual is NaN or infinite at Newton iteration {iterations}"
+            )?,
+            NewtonFailure::Fold { share } => write!(
+                f,
+                "no velocity that follows from rest: the tangent becomes singular when {share:.6} \
+                 of the momentum is reached"
             )?,
         }
         match self.configuration() {

@@ -1,0 +1,93 @@
+//! The equations of a step of spatial statements with every velocity seen from the body: the same
+//! action varied from the right. What is added up over the distance from the origin then drops out
+//! of them before any number does, and a body that is constant in its own frame is constant in them.
+//! Takes the model; gives the momenta of the outgoing edges, where that makes them simpler.
+
+use super::Letters;
+use super::balance::{self, Balance};
+use super::variation::{self, at};
+use super::{action, reduction};
+use crate::algebra::Algebra;
+use crate::check::spec::{Group, Side, Spec};
+use crate::expr::symbol::Role;
+use crate::expr::{self, Expr, Letter, Shift};
+
+/// Node momenta by the outgoing edge, with everything at its end written by its start and the
+/// velocities.
+pub fn outgoing(spec: &Spec, letters: &Letters, balances: &[Balance]) -> Vec<Expr> {
+    let (s, forward) = (&letters.symbols, spec.end_of_edge());
+    let list = balances.iter();
+    list.map(|b| expr::substitute(s, &b.outgoing, &forward))
+        .collect()
+}
+
+/// The same of a model with spatial velocities as body covectors of `W = Λ⁻¹ V Λ`, written with the
+/// letters of the `V`. `stated` is the model before its reduction to quantities that the other side
+/// carries. None where nothing is gained: where rotations only are stated in space, and
+/// the equations ask more of a node than they do as stated.
+pub fn seen_from_body(
+    stated: &Spec,
+    spec: &Spec,
+    letters: &Letters,
+    balances: &[Balance],
+) -> Option<Vec<Expr>> {
+    let spatial = |side| side == Side::Spatial;
+    if !spec.configurations.iter().any(|c| spatial(c.side)) {
+        return None;
+    }
+    let turned = reduction::reduce(turned(stated, letters)).ok()?;
+    let own = super::letters(&turned);
+    let algebra = Algebra::new(&own.symbols);
+    let variations = variation::variations(&turned, &own, &algebra).ok()?;
+    let action = action::action(&turned);
+    let found = balance::balances(&turned, &own, &action, &variations, &algebra);
+    // What the reduction found is no quantity of the model: it stands for its definition.
+    let found_here = turned.advected.iter().filter(|a| a.found);
+    let defined: Option<Vec<(Letter, Expr)>> = found_here
+        .map(|a| Some((at(a.quantity, Shift::HERE), a.definition.clone()?)))
+        .collect();
+    let defined = defined?;
+    let found = outgoing(&turned, &own, &found);
+    let found: Vec<Expr> = found
+        .iter()
+        .map(|e| expr::substitute(&own.symbols, e, &defined))
+        .collect();
+    // Elements of these groups are no isometries.
+    let needed = spec.configurations.iter().any(|c| {
+        spatial(c.side) && matches!(c.group, Group::RigidMotions | Group::GeneralLinear(_))
+    });
+    let asked = |list: &[Expr]| {
+        let mut letters: Vec<Letter> = list.iter().flat_map(expr::letters).collect();
+        letters.sort();
+        letters.dedup();
+        let at_node = |l: &&Letter| {
+            let role = spec.symbols.get(l.symbol).role;
+            matches!(role, Role::Element | Role::Advected)
+        };
+        letters.iter().filter(at_node).count()
+    };
+    (needed || asked(&found) < asked(&outgoing(spec, letters, balances))).then_some(found)
+}
+
+/// The model with `Λ V Λ⁻¹` for every spatial velocity `V`, which then stands on the right.
+fn turned(spec: &Spec, letters: &Letters) -> Spec {
+    let s = &letters.symbols;
+    let mut turned = spec.clone();
+    let mut velocities = Vec::new();
+    for c in &mut turned.configurations {
+        if c.side == Side::Body {
+            continue;
+        }
+        let (g, v) = (expr::here(s, c.element), expr::here(s, c.velocity));
+        let letter = at(c.velocity, Shift::HERE);
+        let seen = expr::product([g.clone(), v.clone(), expr::inverse(s, g.clone())]);
+        velocities.push((letter, seen));
+        c.side = Side::Body;
+        c.update = expr::mul(g, v);
+    }
+    turned.lagrangian = expr::substitute(s, &turned.lagrangian, &velocities);
+    for a in &mut turned.advected {
+        a.update = expr::substitute(s, &a.update, &velocities);
+    }
+    turned
+}

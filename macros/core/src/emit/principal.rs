@@ -1,0 +1,274 @@
+//! What the proof that a root is the principal one asks of a model: residual and tangent of one
+//! step as functions of the values at its node, over any scalar.
+//! Takes the equations; gives the functions.
+
+use super::element::{self, Bundle};
+use super::equations::Written;
+use super::expression::{Bindings, ty};
+use super::items::parameter_locals;
+use super::names::{item, variable};
+use super::sizes::Generics;
+use crate::derive::Derivation;
+use crate::expr::shape::Structure;
+use crate::expr::{Letter, Shift};
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::{format_ident, quote};
+
+/// More variables than this are bounded together: numbers that follow each of them get long.
+const MOST_VARIABLES: u64 = 36;
+
+/// Where the functions come from.
+pub(super) struct Principal<'a> {
+    /// The model.
+    pub d: &'a Derivation,
+    /// Where values at the node are found.
+    pub bindings: &'a Bindings,
+    /// The equations.
+    pub equations: &'a Written,
+    /// The local that holds the momenta of the node.
+    pub momenta: &'a Ident,
+    /// The local that holds the trial.
+    pub trial: &'a Ident,
+}
+
+impl Principal<'_> {
+    /// How the values of a letter are kept: rotations have entries between -1 and 1.
+    fn is_turn(&self, l: Letter) -> bool {
+        let symbol = self.d.letters.symbols.get(l.symbol);
+        match symbol.structure {
+            Structure::Orthogonal | Structure::UnitQuaternion => true,
+            Structure::General
+            | Structure::Invertible
+            | Structure::Symmetric
+            | Structure::Skew
+            | Structure::Diagonal
+            | Structure::RigidMotion => false,
+        }
+    }
+
+    /// Values at the node, one inside the other.
+    pub fn packed(&self, letters: &[Letter]) -> TokenStream {
+        let s = &self.d.letters.symbols;
+        letters.iter().rev().fold(quote!([]), |rest, l| {
+            let local = self.bindings.local(s, *l);
+            let value = match (s.get(l.symbol).shape.is_scalar(), self.is_turn(*l)) {
+                (true, _) => quote!(SMatrix::<T, 1, 1>::repeat(#local)),
+                (false, true) => quote!(newton::Turn(#local)),
+                (false, false) => quote!(#local),
+            };
+            quote!((#value, #rest))
+        })
+    }
+
+    /// The type of the values that the tangent needs.
+    pub fn node_type(&self) -> TokenStream {
+        let d = self.d;
+        let declared = Generics::of(d).parameters();
+        let (name, values) = (
+            item(d, "Node"),
+            Self::packed_type(d, &self.equations.alone.values),
+        );
+        quote!(type #name #declared = #values;)
+    }
+
+    /// Their type.
+    fn packed_type(d: &Derivation, letters: &[Letter]) -> TokenStream {
+        let s = &d.letters.symbols;
+        letters.iter().rev().fold(quote!([T; 0]), |rest, l| {
+            let shape = s.get(l.symbol).shape;
+            let own = ty(s, shape);
+            let kept = match (shape.is_scalar(), s.get(l.symbol).structure) {
+                (true, _) => quote!(SMatrix<T, 1, 1>),
+                (_, Structure::Orthogonal | Structure::UnitQuaternion) => {
+                    quote!(newton::Turn<#own>)
+                }
+                _ => own,
+            };
+            quote!((#kept, #rest))
+        })
+    }
+
+    /// `let` statements that take them apart.
+    fn unpacked(&self, source: &Ident, letters: &[Letter]) -> TokenStream {
+        let s = &self.d.letters.symbols;
+        let mut at = quote!(#source);
+        let mut out = TokenStream::new();
+        for l in letters {
+            let local = self.bindings.local(s, *l);
+            let value = match (s.get(l.symbol).shape.is_scalar(), self.is_turn(*l)) {
+                (true, _) => quote!(#at.0[0]),
+                (false, true) => quote!(#at.0.0),
+                (false, false) => quote!(#at.0),
+            };
+            out.extend(quote!(let #local = #value;));
+            at = quote!(#at.1);
+        }
+        out
+    }
+
+    /// The functions.
+    pub fn functions(&self) -> TokenStream {
+        let Self {
+            d,
+            equations,
+            trial,
+            momenta,
+            ..
+        } = *self;
+        let s = &d.letters.symbols;
+        let name = item(d, "");
+        let g = Generics::of(d);
+        let bundle = Bundle::of(d);
+        let bodies = d.spec.configurations.len();
+        let step = variable(s, d.spec.step);
+        let dimension = element::total(d);
+        let variables: u64 = (0..bodies).map(|i| element::variables(d, i)).sum();
+        let variables = match variables {
+            n if n <= MOST_VARIABLES => Literal::usize_unsuffixed(n as usize),
+            _ => Literal::usize_unsuffixed(0),
+        };
+        let types: Vec<TokenStream> = (0..bodies).map(|i| element::ty(d, i)).collect();
+        let elements = bundle.ty(&types);
+        let (plain, bound) = (quote!(f64), quote!(newton::Enclosure<#variables>));
+        let over = |scalar: &TokenStream| {
+            let types: Vec<TokenStream> = (0..bodies)
+                .map(|i| element::ty_over(d, i, scalar))
+                .collect();
+            bundle.ty(&types)
+        };
+        let changed = |element: TokenStream| {
+            let parts: Vec<TokenStream> = (0..bodies)
+                .map(|i| {
+                    let part = bundle.part(element.clone(), i);
+                    quote!(#part.over(change))
+                })
+                .collect();
+            bundle.value(&parts)
+        };
+        let (given_letters, values_letters) = (&equations.alone.given, &equations.alone.values);
+        let given_type = Self::packed_type(d, given_letters);
+        let values_type = Self::packed_type(d, values_letters);
+        let (given, values) = (format_ident!("given"), format_ident!("values"));
+        let (open_given, open_values) = (
+            self.unpacked(&given, given_letters),
+            self.unpacked(&values, values_letters),
+        );
+        let parameters = {
+            let all: Vec<Letter> = d
+                .spec
+                .parameters
+                .iter()
+                .map(|p| Letter {
+                    symbol: *p,
+                    shift: Shift::HERE,
+                })
+                .collect();
+            parameter_locals(d, quote!(self.parameters), &all)
+        };
+        let momenta_type = &equations.momenta;
+        let momenta_over = &equations.momenta_over;
+        let at_trial = &equations.at_trial;
+        let (residual, tangent) = (&equations.alone.residual, &equations.alone.tangent);
+        let own = |scalar: &TokenStream| {
+            let used = g.used_over_tokens(scalar);
+            quote!(#name::#used { parameters: self.parameters.over(change) })
+        };
+        let rounded = quote!(newton::Enclosure<0>);
+        let plain_elements = over(&plain);
+        let regions: Vec<TokenStream> = (0..bodies)
+            .map(|i| element::region(d, i, &variables))
+            .collect();
+        let regions = bundle.ty(&regions);
+        let (velocity_names, velocity_types): (Vec<Ident>, Vec<TokenStream>) =
+            equations.velocities.iter().cloned().unzip();
+        let (model_rounded, model_plain, model_bound) = (own(&rounded), own(&plain), own(&bound));
+        let trial_over = changed(quote!(#trial));
+        let found_over = changed(quote!(found));
+        let put = (0..bodies).map(|i| {
+            let (to, from) = (bundle.part(quote!(all), i), bundle.part(quote!(root), i));
+            quote!(#to = #to.over(&mut newton::Numbers::of(&#from).put(lane));)
+        });
+        quote! {
+            /// The residual of the equations of a step.
+            #[cold]
+            #[inline(never)]
+            #[allow(unused_variables)]
+            fn residual_at(&self, #step: T, #given: &#given_type, #momenta: &#momenta_type, #trial: &#elements) -> SVector<T, #dimension> {
+                #parameters
+                #open_given
+                #at_trial
+                #residual
+            }
+
+            /// Their tangent.
+            #[cold]
+            #[inline(never)]
+            #[allow(unused_variables)]
+            fn tangent_at(&self, #step: T, #values: &#values_type, #(#velocity_names: #velocity_types),*) -> SMatrix<T, #dimension, #dimension> {
+                #parameters
+                #open_values
+                #tangent
+            }
+
+            /// Bounds of the rounding of the residual, in one lane.
+            #[cold]
+            #[inline(never)]
+            fn rounding(&self, #step: T, #given: &#given_type, #momenta: &#momenta_type, #trial: &#elements, lane: usize) -> SVector<f64, #dimension> {
+                let change = &mut |x: T| newton::Enclosure::<0>::exactly(x.lane(lane));
+                let model = #model_rounded;
+                let (step, given, momenta) = (#step.over(change), #given.over(change), #momenta_over);
+                let change = &mut |x: T| newton::Enclosure::<0>::rounded(x.lane(lane));
+                let trial = #trial_over;
+                model.residual_at(step, &given, &momenta, &trial).map(|x| x.rest())
+            }
+
+            /// Finds the principal root, or shows that the solution is.
+            #[cold]
+            #[inline(never)]
+            fn principal(
+                &self,
+                #step: T,
+                #given: &#given_type,
+                #values: &#values_type,
+                #momenta: &#momenta_type,
+                certificate: &mut newton::Certificate<#values_type, #dimension>,
+                solution: Option<&#elements>,
+            ) -> Result<Option<newton::Anchor<#elements, #dimension>>, newton::Fold> {
+                let first = solution.copied().unwrap_or_else(Group::<T>::identity);
+                let mut verdict = newton::Verdict::<#elements, #dimension>::about(first);
+                for lane in 0..T::LANES {
+                    let change = &mut |x: T| newton::Enclosure::<#variables>::exactly(x.lane(lane));
+                    let (bound, bound_step) = (#model_bound, #step.over(change));
+                    let change = &mut |x: T| x.lane(lane);
+                    let (model, step) = (#model_plain, #step.over(change));
+                    let (given, near, momenta) = (#given.over(change), #values.over(change), #momenta_over);
+                    let found = match solution {
+                        Some(found) => Some(#found_over),
+                        None => None,
+                    };
+                    let equations = newton::Equations {
+                        residual: |trial: &#plain_elements| model.residual_at(step, &given, &momenta, trial),
+                        tangent: |#trial: &#plain_elements| {
+                            #at_trial
+                            model.tangent_at(step, &near, #(#velocity_names),*)
+                        },
+                        enclosed: |spread, #trial: &#regions| {
+                            #at_trial
+                            let values = newton::NodeValues::enclosed(#values, lane, spread);
+                            bound.tangent_at(bound_step, &values, #(#velocity_names),*)
+                        },
+                    };
+                    let generous = certificate.is_generous();
+                    let traced = newton::trace::<_, #regions, _, _, _, #dimension, #variables>(
+                        &equations, found.as_ref(), generous,
+                    );
+                    if let Some(root) = verdict.add(traced.map_err(|fold| fold.in_lane(lane))?) {
+                        let all = verdict.root_mut();
+                        #(#put)*
+                    }
+                }
+                Ok(verdict.close(certificate, #values))
+            }
+        }
+    }
+}

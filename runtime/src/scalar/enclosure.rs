@@ -1,0 +1,495 @@
+//! Numbers that are known to lie within bounds: how far a function strays while its arguments move
+//! over a whole region, and what rounding may have done to it. Takes centres and how far arguments
+//! move; gives bounds that hold for every value in between.
+
+use super::Real;
+use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use num_traits::{One, Zero};
+
+/// All numbers `middle + s + sum_k linear_k e_k + r` with `|s| <= still`, `|r| <= rest`: affine in
+/// `K` variables that several numbers share, the remainder bounded (affine arithmetic; Comba and
+/// Stolfi 1993). The variables come by threes, 0 to 2, 3 to 5, ..., each a vector no longer than 1,
+/// as the axes of space do. What is not known but does not move with the variables is `s`: the
+/// value where all of them vanish is `middle + s`, so that `still` bounds what is not known there,
+/// and the others what the variables change. Bounds that cannot be given, as of a quotient by what
+/// may vanish, are NaN.
+///
+/// Every operation adds its own rounding to the remainder, so that with arguments that do not move
+/// the remainder is a running error bound (Wilkinson).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Enclosure<const K: usize> {
+    middle: f64,
+    linear: [f64; K],
+    still: f64,
+    rest: f64,
+}
+
+/// The relative error of one rounded operation.
+const UNIT: f64 = f64::EPSILON / 2.0;
+
+impl<const K: usize> Enclosure<K> {
+    /// One number.
+    #[inline]
+    #[must_use]
+    pub const fn exactly(middle: f64) -> Self {
+        Self {
+            middle,
+            linear: [0.0; K],
+            still: 0.0,
+            rest: 0.0,
+        }
+    }
+
+    /// A number that was rounded once.
+    #[inline]
+    #[must_use]
+    pub fn rounded(middle: f64) -> Self {
+        Self {
+            rest: UNIT * middle.abs(),
+            ..Self::exactly(middle)
+        }
+    }
+
+    /// All numbers not farther than `radius` from `middle`; which of them does not depend on the
+    /// variables.
+    #[inline]
+    #[must_use]
+    pub fn around(middle: f64, radius: f64) -> Self {
+        Self {
+            still: radius.abs(),
+            ..Self::exactly(middle)
+        }
+    }
+
+    /// `radius` times the variable of this index; all that is not farther from 0 where there is no
+    /// such variable.
+    #[inline]
+    #[must_use]
+    pub fn variable(radius: f64, index: usize) -> Self {
+        let mut x = Self::exactly(0.0);
+        match x.linear.get_mut(index) {
+            Some(own) => *own = radius,
+            None => x.rest = radius.abs(),
+        }
+        x
+    }
+
+    /// The centre.
+    #[inline]
+    #[must_use]
+    pub const fn middle(&self) -> f64 {
+        self.middle
+    }
+
+    /// How far the number moves with a variable.
+    #[inline]
+    #[must_use]
+    pub fn along(&self, index: usize) -> f64 {
+        self.linear.get(index).copied().unwrap_or(0.0)
+    }
+
+    /// The bound of what is not known where the variables vanish.
+    #[inline]
+    #[must_use]
+    pub const fn still(&self) -> f64 {
+        self.still
+    }
+
+    /// The bound of what the variables change besides what is affine in them, and of rounding.
+    #[inline]
+    #[must_use]
+    pub const fn rest(&self) -> f64 {
+        self.rest
+    }
+
+    /// The same, moved by as much as that besides.
+    #[inline]
+    #[must_use]
+    pub fn and_moved(self, radius: f64) -> Self {
+        Self {
+            rest: self.rest + radius.abs(),
+            ..self
+        }
+    }
+
+    /// The number times an exact one.
+    #[inline]
+    #[must_use]
+    pub fn times(mut self, factor: f64) -> Self {
+        self.middle *= factor;
+        for x in &mut self.linear {
+            *x *= factor;
+        }
+        self.still *= factor.abs();
+        self.rest = self.rest * factor.abs() + UNIT * self.middle.abs();
+        self
+    }
+
+    /// How far the affine part moves.
+    #[inline(always)]
+    fn swing(&self) -> f64 {
+        let lengths = self.linear.chunks(3).map(|three| {
+            let square = three.iter().fold(0.0, |sum, x| sum + x * x);
+            square.sqrt()
+        });
+        lengths.sum()
+    }
+
+    /// How far the variables move it.
+    #[inline(always)]
+    fn moved(&self) -> f64 {
+        self.swing() + self.rest
+    }
+
+    /// How far the number may be from its centre.
+    #[inline(always)]
+    fn radius(&self) -> f64 {
+        self.moved() + self.still
+    }
+
+    /// The bounds.
+    #[inline(always)]
+    fn ends(&self) -> [f64; 2] {
+        let radius = self.radius();
+        [self.middle - radius, self.middle + radius]
+    }
+
+    fn unknown() -> Self {
+        Self::around(f64::NAN, f64::NAN)
+    }
+
+    /// A function of the number by its value and slope in the centre and a bound of its second
+    /// derivative in between; `steps` roundings are made in it.
+    #[inline]
+    fn through(self, value: f64, slope: f64, bend: f64, steps: f64) -> Self {
+        let moved = self.moved();
+        Self {
+            middle: value,
+            linear: self.linear.map(|x| x * slope),
+            still: (slope.abs() + 0.5 * bend * self.still) * self.still,
+            rest: self.rest * slope.abs()
+                + bend * (self.still + 0.5 * moved) * moved
+                + steps * UNIT * value.abs(),
+        }
+    }
+}
+
+impl<const K: usize> Add for Enclosure<K> {
+    type Output = Self;
+    #[inline]
+    fn add(mut self, other: Self) -> Self {
+        self.middle += other.middle;
+        for (x, y) in self.linear.iter_mut().zip(other.linear) {
+            *x += y;
+        }
+        self.still += other.still;
+        self.rest += other.rest + UNIT * self.middle.abs();
+        self
+    }
+}
+
+impl<const K: usize> Neg for Enclosure<K> {
+    type Output = Self;
+    #[inline]
+    fn neg(self) -> Self {
+        Self {
+            middle: -self.middle,
+            linear: self.linear.map(|x| -x),
+            still: self.still,
+            rest: self.rest,
+        }
+    }
+}
+
+impl<const K: usize> Sub for Enclosure<K> {
+    type Output = Self;
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl<const K: usize> Mul for Enclosure<K> {
+    type Output = Self;
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        let (a, b) = (self.middle, other.middle);
+        let middle = a * b;
+        let mut linear = self.linear;
+        for (x, y) in linear.iter_mut().zip(other.linear) {
+            *x = *x * b + y * a;
+        }
+        let (size, other_size) = (a.abs() + self.still, b.abs() + other.still);
+        let (moved, other_moved) = (self.moved(), other.moved());
+        let still = a.abs() * other.still + self.still * other_size;
+        let rest = a.abs() * other.rest
+            + b.abs() * self.rest
+            + self.still * other_moved
+            + other.still * moved
+            + moved * other_moved
+            + UNIT * size * other_size;
+        Self {
+            middle,
+            linear,
+            still,
+            rest,
+        }
+    }
+}
+
+impl<const K: usize> Div for Enclosure<K> {
+    type Output = Self;
+    #[inline]
+    fn div(self, other: Self) -> Self {
+        let [low, high] = other.ends();
+        let nearest = if low > 0.0 { low } else { -high };
+        // False for NaN.
+        let positive = nearest > 0.0;
+        if !positive {
+            return Self::unknown();
+        }
+        let value = 1.0 / other.middle;
+        let bend = 2.0 / (nearest * nearest * nearest);
+        self * other.through(value, -value * value, bend, 1.0)
+    }
+}
+
+macro_rules! assigned {
+    ($($Trait:ident $function:ident $operator:tt),+) => {$(
+        impl<const K: usize> $Trait for Enclosure<K> {
+            #[inline]
+            fn $function(&mut self, other: Self) {
+                *self = *self $operator other;
+            }
+        }
+    )+};
+}
+
+assigned!(AddAssign add_assign +, SubAssign sub_assign -, MulAssign mul_assign *, DivAssign div_assign /);
+
+impl<const K: usize> Zero for Enclosure<K> {
+    #[inline]
+    fn zero() -> Self {
+        Self::exactly(0.0)
+    }
+
+    #[inline]
+    fn is_zero(&self) -> bool {
+        *self == Self::exactly(0.0)
+    }
+}
+
+impl<const K: usize> One for Enclosure<K> {
+    #[inline]
+    fn one() -> Self {
+        Self::exactly(1.0)
+    }
+}
+
+impl<const K: usize> Real for Enclosure<K> {
+    type One = Self;
+    const EPSILON: f64 = UNIT;
+    /// Shortcuts of plain numbers are not taken.
+    const ORDER: u32 = 1;
+
+    #[inline]
+    fn one_of(&self, _: usize) -> Self {
+        *self
+    }
+
+    #[inline]
+    fn set_lane(&mut self, _: usize, one: Self) {
+        *self = one;
+    }
+
+    #[inline]
+    fn from_f64(x: f64) -> Self {
+        Self::exactly(x)
+    }
+
+    #[inline]
+    fn value(self) -> f64 {
+        self.middle
+    }
+
+    fn magnitude(self) -> f64 {
+        self.middle.abs() + self.radius()
+    }
+
+    #[inline]
+    fn least(self) -> f64 {
+        let [low, _] = self.ends();
+        low
+    }
+
+    #[inline]
+    fn greatest(self) -> f64 {
+        let [_, high] = self.ends();
+        high
+    }
+
+    /// Where the sign is not known, both: what lies between 0 and `then`.
+    fn where_positive(self, then: Self) -> Self {
+        let [low, high] = self.ends();
+        if low > 0.0 {
+            return then;
+        }
+        if high <= 0.0 {
+            return Self::zero();
+        }
+        let half = then.times(0.5);
+        half.and_moved(0.5 * then.magnitude())
+    }
+
+    fn sqrt(self) -> Self {
+        if self.is_zero() {
+            return self;
+        }
+        let [low, _] = self.ends();
+        let positive = low > 0.0;
+        if !positive {
+            return Self::unknown();
+        }
+        let root = self.middle.sqrt();
+        self.through(root, 0.5 / root, 0.25 / (low * low.sqrt()), 1.0)
+    }
+
+    fn exp(self) -> Self {
+        let value = self.middle.exp();
+        let [_, high] = self.ends();
+        self.through(value, value, high.exp(), 2.0)
+    }
+
+    fn ln(self) -> Self {
+        let [low, _] = self.ends();
+        let positive = low > 0.0;
+        if !positive {
+            return Self::unknown();
+        }
+        let bend = 1.0 / (low * low);
+        self.through(self.middle.ln(), 1.0 / self.middle, bend, 2.0)
+    }
+
+    fn sin(self) -> Self {
+        let (sin, cos) = self.middle.sin_cos();
+        // The argument's own rounding is in its remainder; near a zero of the sine the value is
+        // small, not its error.
+        self.through(sin, cos, 1.0, 2.0)
+    }
+
+    fn cos(self) -> Self {
+        let (sin, cos) = self.middle.sin_cos();
+        self.through(cos, -sin, 1.0, 2.0)
+    }
+
+    fn sinh(self) -> Self {
+        let (value, slope) = (self.middle.sinh(), self.middle.cosh());
+        self.through(value, slope, self.magnitude().sinh(), 2.0)
+    }
+
+    fn cosh(self) -> Self {
+        let (value, slope) = (self.middle.cosh(), self.middle.sinh());
+        self.through(value, slope, self.magnitude().cosh(), 2.0)
+    }
+
+    fn tanh(self) -> Self {
+        let value = self.middle.tanh();
+        // The second derivative, -2 t (1 - t^2), is at most 4/sqrt(27).
+        self.through(value, 1.0 - value * value, 0.77, 2.0)
+    }
+
+    /// Whether bounds could be given.
+    fn is_finite(self) -> bool {
+        self.magnitude().is_finite()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    type E = Enclosure<2>;
+
+    /// A function with every operation, on any scalar.
+    fn sample<T: Real>(x: T, y: T) -> T {
+        let root = (T::from_f64(3.0) + x * y).sqrt();
+        let wave = (x + y).sin() * (x - y).cos();
+        let grown = (x * T::from_f64(0.5)).exp() + (T::from_f64(2.0) + y).ln();
+        let flat = (x * y).tanh() + y.cosh() - x.sinh() + (x + T::from_f64(0.05)).abs();
+        (root - wave) / (T::from_f64(2.0) + grown) + x.powi(3) * flat - y.powr(1, 1)
+    }
+
+    #[test]
+    fn every_value_lies_within_the_bounds() {
+        for radius in [0.3, 0.1, 0.01, 1e-6] {
+            for (a, b) in [(0.2, -0.1), (-0.4, 0.3), (0.0, 0.0)] {
+                let moved = |x: f64, i| E::exactly(x) + E::variable(radius, i);
+                let all = sample(moved(a, 0), moved(b, 1));
+                let mut width = 0.0_f64;
+                for i in -8..=8_i32 {
+                    for j in -8..=8_i32 {
+                        if i * i + j * j > 64 {
+                            continue;
+                        }
+                        let (s, t) = (f64::from(i) / 8.0, f64::from(j) / 8.0);
+                        let value = sample(a + radius * s, b + radius * t);
+                        assert!(all.least() <= value && value <= all.greatest());
+                        let affine = all.middle() + s * all.along(0) + t * all.along(1);
+                        assert!((value - affine).abs() <= all.rest() * (1.0 + 1e-12));
+                        width = width.max((value - all.middle()).abs());
+                    }
+                }
+                // The bounds are worth something: the remainder is of second order.
+                assert!(all.rest() < 12.0 * radius * radius + 1e-15);
+                assert!(width > 0.05 * radius);
+            }
+        }
+    }
+
+    #[test]
+    fn rounding_is_bounded_and_not_by_much_too_much() {
+        use crate::DoubleDouble;
+        for i in 0..200 {
+            let (x, y) = (0.31 * f64::from(i).sin(), 0.4 * f64::from(i).cos());
+            let bound = sample(E::exactly(x), E::exactly(y));
+            let exact = sample(DoubleDouble::from_f64(x), DoubleDouble::from_f64(y));
+            let plain = sample(x, y);
+            let error = (exact - DoubleDouble::from_f64(plain)).value().abs();
+            assert!(error <= bound.rest(), "{error} {}", bound.rest());
+            assert!(bound.rest() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn what_is_not_known_is_kept_from_what_moves() {
+        for (spread, radius) in [(0.2, 0.1), (0.05, 0.2), (0.2, 1e-6), (1e-9, 0.1)] {
+            let (a, b) = (E::around(0.2, spread), E::exactly(-0.1));
+            let all = sample(a, b + E::variable(radius, 1));
+            let moves = all.along(1).abs() + all.rest();
+            for i in -8..=8_i32 {
+                let x = 0.2 + spread * f64::from(i) / 8.0;
+                let at_rest = sample(x, -0.1);
+                assert!((at_rest - all.middle()).abs() <= all.still() * (1.0 + 1e-12) + 1e-15);
+                for j in -8..=8_i32 {
+                    let value = sample(x, -0.1 + radius * f64::from(j) / 8.0);
+                    assert!(
+                        (value - at_rest).abs() <= moves * (1.0 + 1e-12),
+                        "{spread} {radius}"
+                    );
+                    assert!(all.least() <= value && value <= all.greatest());
+                }
+            }
+            // As small as the move, however much is not known.
+            assert!(moves < 12.0 * radius, "{spread} {radius}: {moves}");
+        }
+    }
+
+    #[test]
+    fn what_may_vanish_bounds_nothing() {
+        let x = E::variable(1.0, 0);
+        for bad in [E::one() / x, x.sqrt(), x.ln(), E::one() / E::zero()] {
+            assert!(!bad.is_finite() && bad.least().is_nan() && bad.greatest().is_nan());
+        }
+        assert!(E::zero().sqrt().is_zero());
+    }
+}

@@ -1,0 +1,258 @@
+//! What is known to be principal without another proof: velocities near rest, at nodes near one.
+//! Takes what was found out lane by lane; gives a test that every step can afford.
+
+use super::node::{NodeValues, Spread};
+use super::principal::Traced;
+use crate::groups::Group;
+use crate::linalg::Factors;
+use crate::scalar::{OfScalars, Real};
+
+/// Steps without a proof that lasts, after which one is looked for again.
+const PATIENCE: u32 = 16;
+
+/// What a factored tangent serves for: nodes as near to its own as this part of their values.
+const DRIFT: f64 = 0.03;
+
+/// Steps for which a proof made at one node serves where the tangent is another at every node.
+const LASTS: u32 = 1024;
+
+/// By how much the inverse of a later tangent may be larger than that at the proof, and what two
+/// parts may have in common besides, as a share of what each has by itself.
+const LARGER: f64 = 1.5;
+const COMMON: f64 = 0.2;
+
+/// Velocities that are principal roots: those whose coordinates do not exceed `reach`, part by
+/// part. Where the tangent is the same at every node, that is proved once for all steps.
+///
+/// Elsewhere it is proved at `node`, and anew after [`LASTS`] steps. In between it serves at nodes
+/// within `spread` of this one where the inverse of the tangent does not exceed `inverse`, part by
+/// part, which each new tangent is asked: the tangent moves with the velocity by the same order of
+/// magnitude everywhere, and where a fold comes near its inverse grows. A proof for each step costs
+/// a hundred times the step.
+#[derive(Clone, Copy, Debug)]
+pub struct Certificate<V, const D: usize> {
+    reach: [f64; D],
+    node: Option<V>,
+    spread: Spread,
+    inverse: [[f64; D]; D],
+    /// The node of the tangent factored last.
+    factored: Option<V>,
+    /// Whether its inverse is bounded so.
+    bounded: bool,
+    /// For how many steps more.
+    left: u32,
+    misses: u32,
+}
+
+impl<V, const D: usize> Certificate<V, D> {
+    /// For nothing.
+    #[must_use]
+    pub fn none() -> Self {
+        Self {
+            reach: [0.0; D],
+            node: None,
+            spread: Spread::HERE,
+            inverse: [[f64::NAN; D]; D],
+            factored: None,
+            bounded: false,
+            left: 0,
+            misses: 0,
+        }
+    }
+}
+
+impl<V: NodeValues, const D: usize> Certificate<V, D> {
+    /// Whether a velocity that solves the equations at this node is the principal root.
+    #[inline(always)]
+    pub(super) fn holds<G: Group<V::Scalar>>(&self, velocity: &G, values: &V) -> bool {
+        let Some(node) = &self.node else {
+            return false;
+        };
+        let everywhere = !V::ANY;
+        velocity.is_within(&self.reach)
+            && (everywhere || self.bounded && self.left > 0 && values.is_near(node, self.spread))
+    }
+
+    /// Whether a tangent must be factored before it can hold at this node.
+    #[inline(always)]
+    pub(super) fn wants_tangent(&self, values: &V) -> bool {
+        let served = |at: &V| self.bounded && values.is_near(at, Spread::drifted(DRIFT));
+        V::ANY && self.node.is_some() && !self.factored.as_ref().is_some_and(served)
+    }
+
+    /// Before a proof with this tangent: until there is one, nothing holds.
+    #[cold]
+    pub(super) fn ask<T: Real, G: Group<T>>(&mut self, factors: &Factors<T, D>) {
+        if !V::ANY {
+            return;
+        }
+        let now = factors.inverse_bounds(G::part_of);
+        self.inverse = core::array::from_fn(|a| {
+            core::array::from_fn(|b| LARGER * now[a][b] + COMMON * (now[a][a] * now[b][b]).sqrt())
+        });
+        self.left = 0;
+    }
+
+    /// Counts a step.
+    #[inline(always)]
+    pub(super) fn count(&mut self) {
+        self.left = self.left.saturating_sub(1);
+    }
+
+    /// Takes note of a tangent that was factored at a trial.
+    #[inline(always)]
+    pub(super) fn note<T: Real, G: Group<T>>(
+        &mut self,
+        factors: &Factors<T, D>,
+        trial: &G,
+        values: &V,
+    ) {
+        if !V::ANY || self.node.is_none() {
+            return;
+        }
+        let found = factors.inverse_bounds(G::part_of);
+        let mut bounded = trial.is_within(&self.reach);
+        for (own, most) in found.iter().zip(&self.inverse).take(G::PARTS) {
+            for (x, most) in own.iter().zip(most).take(G::PARTS) {
+                // NaN is not bounded.
+                bounded &= x <= most;
+            }
+        }
+        self.factored = Some(*values);
+        self.bounded = bounded;
+    }
+
+    /// Whether it is worth while to look for a proof that lasts.
+    #[must_use]
+    pub fn is_generous(&self) -> bool {
+        self.misses.is_multiple_of(PATIENCE)
+    }
+}
+
+/// A solution to be polished, in the only place where it may be.
+#[derive(Clone, Copy, Debug)]
+pub struct Anchor<G, const D: usize> {
+    pub(super) root: G,
+    pub(super) reach: [f64; D],
+}
+
+/// What was found out of all lanes together.
+#[derive(Clone, Copy, Debug)]
+pub struct Verdict<G, const D: usize> {
+    anchor: Anchor<G, D>,
+    elsewhere: bool,
+    reach: [f64; D],
+    spread: Spread,
+}
+
+impl<G: Copy, const D: usize> Verdict<G, D> {
+    /// Of no lane yet; `solution` is what is asked about.
+    #[must_use]
+    pub fn about(solution: G) -> Self {
+        Self {
+            anchor: Anchor {
+                root: solution,
+                reach: [f64::INFINITY; D],
+            },
+            elsewhere: false,
+            reach: [f64::INFINITY; D],
+            spread: Spread {
+                turned: true,
+                share: f64::INFINITY,
+            },
+        }
+    }
+
+    /// Adds a lane; its root, where that is another than the solution.
+    pub fn add<L>(&mut self, lane: Traced<L, D>) -> Option<L> {
+        let least = |all: &mut [f64; D], own: [f64; D]| {
+            for (x, y) in all.iter_mut().zip(own) {
+                *x = x.min(y);
+            }
+        };
+        match lane {
+            Traced::Principal { reach, spread } => {
+                least(&mut self.reach, reach);
+                self.spread = self.spread.and(spread);
+                None
+            }
+            Traced::Elsewhere { root, reach } => {
+                self.elsewhere = true;
+                least(&mut self.anchor.reach, reach);
+                Some(root)
+            }
+        }
+    }
+
+    /// The roots found so far, to be put right where a lane has another.
+    pub fn root_mut(&mut self) -> &mut G {
+        &mut self.anchor.root
+    }
+
+    /// Renews the certificate; gives the roots where the solution is none in some lane.
+    pub fn close<V: NodeValues>(
+        self,
+        certificate: &mut Certificate<V, D>,
+        values: &V,
+    ) -> Option<Anchor<G, D>>
+    where
+        G: Group<V::Scalar>,
+    {
+        if self.elsewhere {
+            certificate.misses = certificate.misses.wrapping_add(1);
+            return Some(self.anchor);
+        }
+        let lasts = self.reach.first().is_some_and(|x| *x > 0.0);
+        if lasts {
+            *certificate = Certificate {
+                reach: self.reach,
+                node: Some(*values),
+                spread: self.spread,
+                factored: Some(*values),
+                bounded: true,
+                left: LASTS,
+                misses: 0,
+                ..*certificate
+            };
+        } else {
+            certificate.misses = certificate.misses.wrapping_add(1);
+        }
+        None
+    }
+}
+
+/// The numbers of an element in one lane put into that of all lanes.
+#[derive(Clone, Copy, Debug)]
+pub struct Numbers {
+    list: [f64; 64],
+    count: usize,
+}
+
+impl Numbers {
+    /// Those of an element: an 8 x 8 matrix has the most.
+    pub fn of<X: OfScalars<Scalar = f64>>(element: &X) -> Self {
+        let mut numbers = Self {
+            list: [0.0; 64],
+            count: 0,
+        };
+        let _ = element.over(&mut |x: f64| {
+            if let Some(place) = numbers.list.get_mut(numbers.count) {
+                *place = x;
+            }
+            numbers.count += 1;
+            x
+        });
+        numbers
+    }
+
+    /// The same element over all lanes, this one put into its lane.
+    pub fn put<T: Real>(&self, lane: usize) -> impl FnMut(T) -> T {
+        let mut place = 0;
+        move |mut x: T| {
+            let own = self.list.get(place).copied().unwrap_or(f64::NAN);
+            x.set_lane(lane, T::One::from_f64(own));
+            place += 1;
+            x
+        }
+    }
+}

@@ -1,0 +1,368 @@
+//! The principal root of the equations of a step.
+//!
+//! With the momenta `m` of the node and everything known there held fixed, the equations read
+//! `T(Ω) = m`. Their principal root is the end of the curve `T(Ω_τ) = T_0 + τ (m - T_0)` that
+//! starts at rest, `Ω_0 = 1`, `T_0 = T(1)`, as `τ` goes from 0 to 1; it exists as long as the
+//! tangent stays regular along the curve and the curve in the domain of the equations. Where the
+//! tangent becomes singular, at a fold, the curve turns back: beyond it the equations may have
+//! other roots, which no motion of small steps leads to.
+//!
+//! Along a trajectory of principal roots the velocity changes continuously, unless a step comes to
+//! a fold, where it is refused. The converse does not hold: a root that follows the last one
+//! continuously may have passed around a fold, and is no principal one then. Such a step is refused.
+//!
+//! Takes the equations of one lane; gives the root, with a region in which it is the only one.
+
+use super::bounds::Region;
+use super::lasting::lasting;
+use super::node::Spread;
+use super::region::Strain;
+use crate::groups::Group;
+use crate::linalg::{balance, inverse_leading};
+use crate::scalar::Enclosure;
+use nalgebra::{SMatrix, SVector};
+
+/// Stages on the way; each leaves at most two thirds of what is left before a fold.
+const MOST_STAGES: usize = 400;
+
+/// The shortest stage tried: closer to a fold rounding decides.
+const SHORTEST: f64 = 1e-14;
+
+/// Corrections by which a stage is solved.
+const MOST_CORRECTIONS: usize = 12;
+
+/// A stage is solved when its last correction is this part of the region, at most.
+const SOLVED: f64 = 1e-9;
+
+/// Where nothing moves, regions have this size.
+const LITTLE: f64 = 1e-6;
+
+/// The root of a stage stays off the edge of its region.
+const INNER: f64 = 0.99;
+
+/// How much larger than what is needed a region is tried.
+const MARGIN: f64 = 1.6;
+
+/// What was found out about a solution of one lane.
+#[derive(Clone, Copy, Debug)]
+pub enum Traced<G, const D: usize> {
+    /// It is the principal root, as is every solution within `reach` of rest at a node within
+    /// `spread` of this one.
+    Principal {
+        /// Lengths of the coordinates, part by part.
+        reach: [f64; D],
+        /// For which nodes.
+        spread: Spread,
+    },
+    /// There was none, or it is another: this is the principal root.
+    Elsewhere {
+        /// The root, to the precision of a stage.
+        root: G,
+        /// Within these lengths of it there is no other.
+        reach: [f64; D],
+    },
+}
+
+/// The curve could not be followed to its end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fold {
+    /// How far it was followed: the part of the way from rest to the momenta.
+    pub share: f64,
+    /// The coordinate of the velocity that moved fastest there.
+    pub fastest: usize,
+    /// The lane.
+    pub lane: usize,
+}
+
+impl Fold {
+    fn at(share: f64, fastest: usize) -> Self {
+        Self {
+            share,
+            fastest,
+            lane: 0,
+        }
+    }
+
+    /// The same in a lane.
+    #[must_use]
+    pub fn in_lane(self, lane: usize) -> Self {
+        Self { lane, ..self }
+    }
+}
+
+/// The equations of one lane.
+pub struct Equations<R, A, B> {
+    /// The residual `T(Ω) - m`.
+    pub residual: R,
+    /// The tangent of `T` along the algebra.
+    pub tangent: A,
+    /// The tangent at all elements of a region, for all nodes as near as that.
+    pub enclosed: B,
+}
+
+/// Finds the principal root, or shows that `solution` is. With `generous` it looks for a proof that
+/// serves for later steps too.
+///
+/// # Errors
+/// [`Fold`] where there is none, as far as can be followed.
+#[cold]
+#[inline(never)]
+pub fn trace<G, E, R, A, B, const D: usize, const K: usize>(
+    equations: &Equations<R, A, B>,
+    solution: Option<&G>,
+    generous: bool,
+) -> Result<Traced<G, D>, Fold>
+where
+    G: Group<f64>,
+    E: Region<K, Centre = G>,
+    R: Fn(&G) -> SVector<f64, D>,
+    A: Fn(&G) -> SMatrix<f64, D, D>,
+    B: Fn(Spread, &E) -> SMatrix<Enclosure<K>, D, D>,
+{
+    let rest = G::identity();
+    let at_rest = (equations.residual)(&rest);
+    let Some(mut stage) = Stage::at(equations, rest, at_rest) else {
+        return Err(Fold::at(0.0, 0));
+    };
+    let units = stage.units();
+    let fold = |share: f64, way: &SVector<f64, D>| Fold::at(share, fastest::<G, D>(way, &units));
+    let mut whole = stage.toward(&SVector::zeros());
+    if !whole.iter().all(|x| x.is_finite()) {
+        return Err(Fold::at(0.0, 0));
+    }
+    let lengths = lengths::<G, D>(&whole);
+    if let (Some(found), true) = (solution, generous) {
+        let mut own = [0.0; D];
+        found.extents(&mut own);
+        let wanted = core::array::from_fn(|b| own[b].max(lengths[b]).max(0.01 * units[b]));
+        if let Some(proved) = lasting(equations, &stage, &wanted) {
+            return Ok(proved);
+        }
+    }
+    let (mut share, mut length) = (0.0, 1.0_f64);
+    // What the velocity moves by on the way, in every direction a little.
+    let mut course = course(&lengths, &units, 1.0);
+    let mut radii = [0.0; D];
+    for _ in 0..MOST_STAGES {
+        if share >= 1.0 {
+            break;
+        }
+        let left = 1.0 - share;
+        let mut accepted = None;
+        let mut tries = 0;
+        while accepted.is_none() {
+            length = length.min(left);
+            if length < SHORTEST {
+                return Err(fold(share, &whole));
+            }
+            let end = if length >= left { 1.0 } else { share + length };
+            let goal = at_rest * (1.0 - end);
+            let toward = stage.toward(&goal);
+            let own = self::lengths::<G, D>(&toward);
+            radii = course.map(|x| MARGIN * length * x);
+            let whole = stage.strain::<E, R, A, B, K>(equations, &radii);
+            let mut moved = whole.spread(&own);
+            if moved.is_some() {
+                let inner = radii.map(|r| 0.5 * r);
+                let half = stage.strain::<E, R, A, B, K>(equations, &inner);
+                moved = whole.mean(&half).spread(&own);
+            }
+            let inner = radii.map(|r| INNER * r);
+            let enough = moved.is_some_and(|y| fits::<G, D>(&y, &inner));
+            if enough {
+                accepted = stage
+                    .solve(equations, &toward, &goal, &radii)
+                    .map(|next| (next, end));
+            } else if let (Some(y), true) = (moved, tries % 2 == 0) {
+                // The region has the wrong shape, perhaps.
+                let grown = |b: usize| (y[b] / length).clamp(0.2 * course[b], 5.0 * course[b]);
+                course = core::array::from_fn(grown);
+                tries += 1;
+                continue;
+            }
+            tries = 0;
+            if accepted.is_none() {
+                length *= 0.5;
+            }
+        }
+        let Some((next, end)) = accepted else {
+            return Err(fold(share, &whole));
+        };
+        if end >= 1.0 {
+            return Ok(verdict(next, &radii, solution));
+        }
+        share = end;
+        length *= 2.0;
+        let left = (equations.residual)(&next);
+        stage = Stage::at(equations, next, left).ok_or_else(|| fold(share, &whole))?;
+        whole = stage.toward(&SVector::zeros());
+        course = self::course(&self::lengths::<G, D>(&whole), &units, 1.0 / (1.0 - share));
+    }
+    Err(fold(share, &whole))
+}
+
+/// How far each part moves per way to the momenta, at least a little in every direction.
+fn course<const D: usize>(lengths: &[f64; D], units: &[f64; D], rate: f64) -> [f64; D] {
+    let shares = lengths.iter().zip(units).map(|(x, u)| x / u);
+    let most = shares.filter(|x| x.is_finite()).fold(LITTLE, f64::max);
+    core::array::from_fn(|b| rate * lengths[b].max(0.05 * most * units[b]))
+}
+
+/// The coordinate that moves most.
+fn fastest<G: Group<f64>, const D: usize>(x: &SVector<f64, D>, units: &[f64; D]) -> usize {
+    let share = |k: usize| x[k].abs() / units.get(G::part_of(k)).copied().unwrap_or(1.0);
+    (0..G::DIMENSION.min(D))
+        .max_by(|i, j| share(*i).total_cmp(&share(*j)))
+        .unwrap_or(0)
+}
+
+/// Whether the solution is the root in the region around it.
+fn verdict<G: Group<f64>, const D: usize>(
+    root: G,
+    radii: &[f64; D],
+    solution: Option<&G>,
+) -> Traced<G, D> {
+    // The region is that around the beginning of the last stage, of which the root is off the edge.
+    let reach = radii.map(|r| 1e-3 * r);
+    match solution {
+        Some(found) if root.inverse().compose(found).is_within(&reach) => Traced::Principal {
+            reach: [0.0; D],
+            spread: Spread::HERE,
+        },
+        _ => Traced::Elsewhere { root, reach },
+    }
+}
+
+/// The beginning of a stage: a point of the curve.
+pub(super) struct Stage<G, const D: usize> {
+    element: G,
+    residual: SVector<f64, D>,
+    tangent: SMatrix<f64, D, D>,
+    inverse: SMatrix<f64, D, D>,
+}
+
+impl<G: Group<f64>, const D: usize> Stage<G, D> {
+    /// `None` where the tangent is singular or not finite.
+    fn at<R, A, B>(
+        equations: &Equations<R, A, B>,
+        element: G,
+        residual: SVector<f64, D>,
+    ) -> Option<Self>
+    where
+        R: Fn(&G) -> SVector<f64, D>,
+        A: Fn(&G) -> SMatrix<f64, D, D>,
+    {
+        let tangent = (equations.tangent)(&element);
+        let inverse = scaled_inverse(&tangent, G::DIMENSION.min(D))?;
+        Some(Self {
+            element,
+            residual,
+            tangent,
+            inverse,
+        })
+    }
+
+    /// The inverse of the tangent.
+    pub(super) fn inverse(&self) -> &SMatrix<f64, D, D> {
+        &self.inverse
+    }
+
+    /// `B` times what the residual changes by on the way to `goal`.
+    fn toward(&self, goal: &SVector<f64, D>) -> SVector<f64, D> {
+        self.inverse * (goal - self.residual)
+    }
+
+    /// What a length of each part is measured by: 1 for pure numbers; for translations the radius
+    /// that makes them weigh as much as the angles of the same element.
+    fn units(&self) -> [f64; D] {
+        let block = |b: usize| {
+            let size = G::DIMENSION.min(D);
+            let own = (0..size).filter(|k| G::part_of(*k) == b);
+            own.fold(0.0, |most: f64, k| most.max(self.tangent[(k, k)].abs()))
+        };
+        core::array::from_fn(|b| {
+            if b >= G::PARTS || G::is_pure(b) {
+                return 1.0;
+            }
+            let unit = (block(b.saturating_sub(1)) / block(b)).sqrt();
+            if unit.is_finite() { unit } else { 0.0 }
+        })
+    }
+
+    /// The strain over the region around this point.
+    fn strain<E, R, A, B, const K: usize>(
+        &self,
+        equations: &Equations<R, A, B>,
+        radii: &[f64; D],
+    ) -> Strain<D>
+    where
+        E: Region<K, Centre = G>,
+        B: Fn(Spread, &E) -> SMatrix<Enclosure<K>, D, D>,
+    {
+        let region = E::around(&self.element, radii, 0);
+        let tangent = (equations.enclosed)(Spread::HERE, &region);
+        Strain::over::<E, K>(&self.inverse, &tangent, radii)
+    }
+
+    /// The only point of the region where the residual is `goal`.
+    fn solve<R, A, B>(
+        &self,
+        equations: &Equations<R, A, B>,
+        first: &SVector<f64, D>,
+        goal: &SVector<f64, D>,
+        radii: &[f64; D],
+    ) -> Option<G>
+    where
+        R: Fn(&G) -> SVector<f64, D>,
+        A: Fn(&G) -> SMatrix<f64, D, D>,
+    {
+        let mut at = self.element.retract(first.as_slice());
+        for _ in 0..MOST_CORRECTIONS {
+            let inverse = scaled_inverse(&(equations.tangent)(&at), G::DIMENSION.min(D))?;
+            let step = inverse * (goal - (equations.residual)(&at));
+            at = at.retract(step.as_slice());
+            let own = lengths::<G, D>(&step);
+            let parts = own.iter().zip(radii).take(G::PARTS);
+            // Also refuses NaN.
+            if parts.clone().all(|(x, r)| *x <= SOLVED * r) {
+                let mut from = [0.0; D];
+                self.element.inverse().compose(&at).extents(&mut from);
+                return fits::<G, D>(&from, radii).then_some(at);
+            }
+        }
+        None
+    }
+}
+
+/// Whether no part exceeds its bound; false for NaN.
+pub(super) fn fits<G: Group<f64>, const D: usize>(lengths: &[f64; D], bounds: &[f64; D]) -> bool {
+    lengths
+        .iter()
+        .zip(bounds)
+        .take(G::PARTS)
+        .all(|(x, r)| x <= r)
+}
+
+/// The lengths of the parts.
+fn lengths<G: Group<f64>, const D: usize>(x: &SVector<f64, D>) -> [f64; D] {
+    let mut squares = [0.0; D];
+    for (k, x) in x.iter().enumerate().take(G::DIMENSION) {
+        if let Some(square) = squares.get_mut(G::part_of(k)) {
+            *square += x * x;
+        }
+    }
+    squares.map(f64::sqrt)
+}
+
+/// The inverse of the leading block, its rows and columns brought to one size by powers of two:
+/// the choice of pivots then does not depend on units.
+fn scaled_inverse<const D: usize>(
+    a: &SMatrix<f64, D, D>,
+    size: usize,
+) -> Option<SMatrix<f64, D, D>> {
+    let scale: [f64; D] = core::array::from_fn(|i| balance(a[(i, i)]));
+    let scaled = SMatrix::<f64, D, D>::from_fn(|i, j| a[(i, j)] * scale[i] * scale[j]);
+    let inverse = inverse_leading(&scaled, size)?;
+    let whole = SMatrix::<f64, D, D>::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]);
+    whole.iter().all(|x| x.is_finite()).then_some(whole)
+}
