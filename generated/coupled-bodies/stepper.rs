@@ -330,10 +330,9 @@ pub mod coupled_bodies {
                 .explained(
                     h,
                     &CONFIGURATIONS,
-                    |h| {
-                        let (mut trial, search) = (state, newton::Search::to_try());
+                    |h, search| {
                         self.step(
-                            &mut trial,
+                            &mut { state },
                             &mut CoupledBodiesWorkspace {
                                 h,
                                 search,
@@ -486,7 +485,7 @@ pub mod coupled_bodies {
                         bound.tangent_at(bound_step, &values, Ω1, Ω2)
                     },
                 };
-                let generous = certificate.is_generous();
+                let care = certificate.care();
                 let traced = newton::trace::<
                     _,
                     [newton::RotationRegion<18>; 2],
@@ -495,7 +494,7 @@ pub mod coupled_bodies {
                     _,
                     6,
                     18,
-                >(&equations, found.as_ref(), generous);
+                >(&equations, found.as_ref(), care);
                 if let Some(root) = verdict
                     .add(traced.map_err(|fold| fold.in_lane(lane))?)
                 {

@@ -354,10 +354,9 @@ pub mod kirchhoff_body {
                 .explained(
                     h,
                     &CONFIGURATIONS,
-                    |h| {
-                        let (mut trial, search) = (state, newton::Search::to_try());
+                    |h, search| {
                         self.step(
-                            &mut trial,
+                            &mut { state },
                             &mut KirchhoffBodyWorkspace {
                                 h,
                                 search,
@@ -543,7 +542,7 @@ pub mod kirchhoff_body {
                         bound.tangent_at(bound_step, &values, V_rot, V_pos)
                     },
                 };
-                let generous = certificate.is_generous();
+                let care = certificate.care();
                 let traced = newton::trace::<
                     _,
                     [newton::MotionRegion<12>; 1],
@@ -552,7 +551,7 @@ pub mod kirchhoff_body {
                     _,
                     6,
                     12,
-                >(&equations, found.as_ref(), generous);
+                >(&equations, found.as_ref(), care);
                 if let Some(root) = verdict
                     .add(traced.map_err(|fold| fold.in_lane(lane))?)
                 {

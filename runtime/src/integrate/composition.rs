@@ -7,9 +7,9 @@
 //! [`Reversible`], and a composition of it does not build.
 
 use super::{Reversible, Stepper};
-use crate::solvers::largest_step::SHORTER;
+use crate::solvers::largest_step::{confirmed_step, largest_step};
 use crate::solvers::left_factor::Unsolved;
-use crate::solvers::moser_veselov::{MoserVeselovError, largest_step};
+use crate::solvers::moser_veselov::MoserVeselovError;
 use crate::solvers::newton::NewtonError;
 use crate::solvers::unit_quaternions::QuaternionError;
 use crate::{Real, StartError, StepCause, StepError};
@@ -127,7 +127,7 @@ impl<S: Reversible> Composition<S> {
                 .workspace(state, h * S::Scalar::from_f64(factor))
                 .map_err(|e| match e {
                     StartError::Refused(cause) => {
-                        let share = feasible(model, state, h, &factors);
+                        let share = feasible(model, state, h, &factors, &cause);
                         StartError::Refused(in_all(cause, h, share))
                     }
                     other => other,
@@ -154,7 +154,7 @@ impl<S: Stepper> Composition<S> {
         for stage in &mut self.stages {
             if let Err(e) = model.advance(&mut moving, &mut stage.workspace) {
                 let factors: Vec<f64> = self.stages.iter().map(|stage| stage.factor).collect();
-                let share = feasible(model, state, self.h, &factors);
+                let share = feasible(model, state, self.h, &factors, &e.cause);
                 return Err(in_all(e.cause, self.h, share).at_node(node));
             }
         }
@@ -167,18 +167,45 @@ impl<S: Stepper> Composition<S> {
 /// passes through other states, so that what the refused factor could do does not tell it.
 #[cold]
 #[inline(never)]
-fn feasible<S: Stepper>(model: &S, state: &S::State, h: S::Scalar, factors: &[f64]) -> f64 {
-    let made = |share: f64| {
-        let mut moving = *state;
-        for factor in factors {
-            let part = h * S::Scalar::from_f64(share * factor);
-            // A step of the whole must also start: each of its parts from the first state.
-            model.attempt(state, part)?;
-            moving = model.attempt(&moving, part)?;
-        }
-        Some(0.0)
+fn feasible<S: Stepper>(
+    model: &S,
+    state: &S::State,
+    h: S::Scalar,
+    factors: &[f64],
+    refused: &StepCause,
+) -> f64 {
+    let part = |share: f64| move |factor: &f64| h * S::Scalar::from_f64(share * factor);
+    let tried = |share| {
+        let parts = factors.iter().map(part(share));
+        composed(state, parts, |from, h| model.attempt(from, h))
     };
-    largest_step(1.0, made)
+    let made = |share| {
+        let parts = factors.iter().map(part(share));
+        composed(state, parts, |from, h| {
+            let (mut moving, mut workspace) = (*from, model.workspace(from, h).ok()?);
+            model.advance(&mut moving, &mut workspace).ok()?;
+            Some(moving)
+        })
+    };
+    match refused {
+        StepCause::Newton(_) => confirmed_step(tried, made),
+        _ => largest_step(1.0, tried),
+    }
+}
+
+/// Zero if the steps can be made one after the other, and each of them from the first state, as it
+/// must to be prepared.
+fn composed<S: Copy, T: Copy>(
+    state: &S,
+    steps: impl Iterator<Item = T>,
+    step: impl Fn(&S, T) -> Option<S>,
+) -> Option<f64> {
+    let mut moving = *state;
+    for h in steps {
+        step(state, h)?;
+        moving = step(&moving, h)?;
+    }
+    Some(0.0)
 }
 
 /// The cause said of the composed step instead of the factor that failed, with the part of the step
@@ -214,9 +241,7 @@ fn in_all<T: Real>(cause: StepCause, h: T, share: f64) -> StepCause {
             })
         }
         StepCause::Newton(e) => {
-            // Nearer to a fold rounding decides.
             let (h, largest_step) = in_lane(usize::from(e.lane));
-            let largest_step = largest_step.map(|x| x * SHORTER[0]);
             StepCause::Newton(NewtonError {
                 h,
                 largest_step,

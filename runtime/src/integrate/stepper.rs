@@ -33,7 +33,8 @@ pub trait Stepper {
     ) -> Result<(), StepError>;
 
     /// The state after one step of `h` in a workspace of its own, or none: for searches that try
-    /// many steps, to which the reason of a refusal is nothing.
+    /// many steps, to which the reason of a refusal is nothing. That the step can be made is not
+    /// proved: what is offered in the end is made once more as any other.
     #[must_use]
     fn attempt(&self, state: &Self::State, h: Self::Scalar) -> Option<Self::State> {
         let mut moving = *state;

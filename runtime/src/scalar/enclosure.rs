@@ -125,6 +125,49 @@ impl<const K: usize> Enclosure<K> {
         self
     }
 
+    /// Adds the number times an exact one.
+    #[inline(always)]
+    pub fn add_times(&mut self, x: &Self, factor: f64) {
+        let term = x.middle * factor;
+        self.middle += term;
+        for (sum, x) in self.linear.iter_mut().zip(&x.linear) {
+            *sum += x * factor;
+        }
+        let size = factor.abs();
+        self.still += x.still * size;
+        self.rest += x.rest * size + UNIT * (term.abs() + self.middle.abs());
+    }
+
+    /// Adds the product of two numbers of which it is known how far the variables move them, see
+    /// [`moved`](Self::moved).
+    #[inline(always)]
+    pub fn add_product(&mut self, [x, y]: [&Self; 2], [x_moved, y_moved]: [f64; 2]) {
+        let (a, b) = (x.middle, y.middle);
+        self.middle += a * b;
+        for (sum, (x, y)) in self.linear.iter_mut().zip(x.linear.iter().zip(&y.linear)) {
+            *sum += x * b + y * a;
+        }
+        let [still, rest] = x.spread_of_product(y, [x_moved, y_moved]);
+        self.still += still;
+        self.rest += rest + UNIT * self.middle.abs();
+    }
+
+    /// What a product adds to what is not known, and to the remainder.
+    #[inline(always)]
+    fn spread_of_product(&self, other: &Self, [moved, other_moved]: [f64; 2]) -> [f64; 2] {
+        let (a, b) = (self.middle.abs(), other.middle.abs());
+        let (size, other_size) = (a + self.still, b + other.still);
+        [
+            a * other.still + self.still * other_size,
+            a * other.rest
+                + b * self.rest
+                + self.still * other_moved
+                + other.still * moved
+                + moved * other_moved
+                + UNIT * size * other_size,
+        ]
+    }
+
     /// How far the affine part moves.
     #[inline(always)]
     fn swing(&self) -> f64 {
@@ -137,7 +180,8 @@ impl<const K: usize> Enclosure<K> {
 
     /// How far the variables move it.
     #[inline(always)]
-    fn moved(&self) -> f64 {
+    #[must_use]
+    pub fn moved(&self) -> f64 {
         self.swing() + self.rest
     }
 
@@ -214,22 +258,13 @@ impl<const K: usize> Mul for Enclosure<K> {
     #[inline]
     fn mul(self, other: Self) -> Self {
         let (a, b) = (self.middle, other.middle);
-        let middle = a * b;
         let mut linear = self.linear;
-        for (x, y) in linear.iter_mut().zip(other.linear) {
+        for (x, y) in linear.iter_mut().zip(&other.linear) {
             *x = *x * b + y * a;
         }
-        let (size, other_size) = (a.abs() + self.still, b.abs() + other.still);
-        let (moved, other_moved) = (self.moved(), other.moved());
-        let still = a.abs() * other.still + self.still * other_size;
-        let rest = a.abs() * other.rest
-            + b.abs() * self.rest
-            + self.still * other_moved
-            + other.still * moved
-            + moved * other_moved
-            + UNIT * size * other_size;
+        let [still, rest] = self.spread_of_product(&other, [self.moved(), other.moved()]);
         Self {
-            middle,
+            middle: a * b,
             linear,
             still,
             rest,

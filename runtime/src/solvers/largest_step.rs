@@ -33,6 +33,11 @@ pub(crate) const SHORTER: [f64; 13] = [
     0.6,
 ];
 
+/// How close to the bound the search comes that has a closed form to compare with, and the one
+/// whose trials cost a hundred steps each.
+const TO_ROUNDING: f64 = 2e-15;
+const ROUGHLY: f64 = 1e-7;
+
 /// How often the search goes below a shorter step that does not do.
 const RETURNS: usize = 8;
 
@@ -46,6 +51,33 @@ const RETURNS: usize = 8;
 /// can be made, not which could be made instead.
 #[must_use]
 pub fn largest_step(h: f64, solvable: impl Fn(f64) -> Option<f64>) -> f64 {
+    search(h, TO_ROUNDING, solvable)
+}
+
+/// The largest share of a step that a search over cheap trials finds, less a millionth, and that a
+/// dear one confirms. Where it confirms none of that size, all trials are dear.
+pub(crate) fn confirmed_step(
+    cheap: impl Fn(f64) -> Option<f64>,
+    dear: impl Fn(f64) -> Option<f64>,
+) -> f64 {
+    let found = search(1.0, ROUGHLY, cheap);
+    let whole = (found >= 1.0).then_some(1.0);
+    let shares = whole.into_iter().chain(SHORTER);
+    let mut offers = shares.map(|x| found * x).filter(|x| *x > 0.0);
+    let confirmed = |share: &f64| search_of(|| dear(*share)).is_some_and(|found| found.is_some());
+    match offers.find(confirmed) {
+        Some(share) => share,
+        None => SHORTER[0] * search(1.0, ROUGHLY, dear),
+    }
+}
+
+/// Whatever is tried in it looks for no other step. None inside another search.
+fn search_of<R>(trial: impl FnOnce() -> R) -> Option<R> {
+    let _search = Search::begin()?;
+    Some(trial())
+}
+
+fn search(h: f64, precision: f64, solvable: impl Fn(f64) -> Option<f64>) -> f64 {
     let Some(_search) = Search::begin() else {
         return 0.0;
     };
@@ -59,7 +91,7 @@ pub fn largest_step(h: f64, solvable: impl Fn(f64) -> Option<f64>) -> f64 {
         let Some((low, high)) = bracket(refused, fits) else {
             return 0.0;
         };
-        found = between(low, high, fits);
+        found = between(low, high, precision, fits);
         let mut tried = SHORTER.iter().map(|share| found * share);
         match tried.rfind(|share| !fits(*share)) {
             None => break,
@@ -113,14 +145,15 @@ fn bracket(refused: f64, fits: impl Fn(f64) -> bool) -> Option<(f64, f64)> {
     Some((longest?, shortest_refused))
 }
 
-/// The boundary between a share that does and one that does not.
-fn between(mut low: f64, mut high: f64, fits: impl Fn(f64) -> bool) -> f64 {
-    // Octaves first; the rest is down to rounding.
+/// The boundary between a share that does and one that does not, less a part of at most
+/// `precision`.
+fn between(mut low: f64, mut high: f64, precision: f64, fits: impl Fn(f64) -> bool) -> f64 {
+    // Octaves first.
     while high > 4.0 * low {
         let middle = (low * high).sqrt();
         *if fits(middle) { &mut low } else { &mut high } = middle;
     }
-    for _ in 0..50 {
+    while high - low > precision * low {
         let middle = 0.5 * (low + high);
         *if fits(middle) { &mut low } else { &mut high } = middle;
     }
@@ -129,7 +162,7 @@ fn between(mut low: f64, mut high: f64, fits: impl Fn(f64) -> bool) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::largest_step;
+    use super::{confirmed_step, largest_step};
     use core::cell::Cell;
 
     #[test]
@@ -173,6 +206,36 @@ mod tests {
         assert_eq!(largest_step(0.5, Some), 0.5);
         assert_eq!(largest_step(1.0, |h| Some(h * 1e300)), 0.0);
         assert_eq!(largest_step(1.0, |_| Some(f64::NAN)), 0.0);
+    }
+
+    #[test]
+    fn what_cheap_trials_find_is_confirmed() {
+        for bound in [0.9, 0.03, 1e-9, 2.0] {
+            let (cheap, dear) = (Cell::new(0), Cell::new(0));
+            let below = |bound: f64, trials: &Cell<u32>, share: f64| {
+                trials.set(trials.get() + 1);
+                (share < bound).then_some(0.0)
+            };
+            let found = confirmed_step(|x| below(bound, &cheap, x), |x| below(bound, &dear, x));
+            let wanted = bound.min(1.0);
+            assert!(
+                wanted * (1.0 - 2e-6) < found && found <= wanted,
+                "{bound}: {found}"
+            );
+            assert!(
+                cheap.get() < 70 && dear.get() == 1,
+                "{bound}: {cheap:?} {dear:?}"
+            );
+            // Dear trials refuse more: a little, then nearly all.
+            for refused in [0.95 * bound, 1e-5 * bound] {
+                let found =
+                    confirmed_step(|x| below(bound, &cheap, x), |x| below(refused, &dear, x));
+                assert!(
+                    0.9 * refused.min(1.0) < found && found <= refused.min(1.0),
+                    "{found}"
+                );
+            }
+        }
     }
 
     #[test]

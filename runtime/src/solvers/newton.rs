@@ -17,7 +17,7 @@ pub use bounds::{
 pub use certificate::{Anchor, Certificate, Numbers, Verdict};
 pub use failure::{NewtonError, NewtonFailure};
 pub use node::{NodeValues, Spread, Turn};
-pub use principal::{Equations, Fold, Traced, trace};
+pub use principal::{Care, Equations, Fold, Traced, trace};
 
 use crate::groups::Group;
 use crate::linalg::Factors;
@@ -104,8 +104,6 @@ pub struct Search<T, G, V, const D: usize> {
     /// How many steps ago that was.
     age: u32,
     last: Summary,
-    /// Whether steps are only tried: a refusal then looks for no other.
-    tries: bool,
 }
 
 /// How a step was solved.
@@ -139,24 +137,34 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Search<T, 
                 corrections: 0,
                 residual: 0.0,
             },
-            tries: false,
         }
     }
 
-    /// The same for a step that is only tried, in the search of one that can be made.
+    /// The same for a step that is only tried, in the search of one that can be made: its root is
+    /// followed from rest without a proof. [`to_offer`](Self::to_offer) gives that.
     #[cold]
     #[must_use]
     pub fn to_try() -> Self {
         Self {
-            tries: true,
+            certificate: Certificate::to_try(),
             ..Self::from_rest()
         }
     }
 
-    /// Whether steps are only tried: what refuses one then looks for no other.
+    /// The same for a step that is offered instead of one refused.
+    #[cold]
+    #[must_use]
+    pub fn to_offer() -> Self {
+        Self {
+            certificate: Certificate::to_offer(),
+            ..Self::from_rest()
+        }
+    }
+
+    /// Whether no step follows: what refuses one then looks for no other.
     #[must_use]
     pub fn tries(&self) -> bool {
-        self.tries
+        self.certificate.tries()
     }
 
     /// How the last step was solved; zeros before the first.
@@ -464,7 +472,7 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_,
         let looked_at = G::DIMENSION.min(D);
         let residual = self.residual.as_slice().get(..looked_at).unwrap_or(&[]);
         Progress::Failed(NewtonError {
-            tried: self.search.tries,
+            tried: self.search.tries(),
             ..NewtonError::of::<T, G>(
                 failure,
                 iterations,
@@ -481,7 +489,7 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_,
         let looked_at = G::DIMENSION.min(D);
         let residual = self.residual.as_slice().get(..looked_at).unwrap_or(&[]);
         NewtonError {
-            tried: self.search.tries,
+            tried: self.search.tries(),
             ..NewtonError::of::<T, G>(
                 NewtonFailure::NotConverged,
                 self.iteration,
@@ -499,7 +507,7 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_,
             // Nothing was followed.
             Some(e) if fold.share == 0.0 => e,
             _ => NewtonError {
-                tried: self.search.tries,
+                tried: self.search.tries(),
                 ..NewtonError::at_fold::<T, G>(fold)
             },
         }

@@ -13,6 +13,7 @@
 
 pub mod models;
 mod oracle;
+pub mod stated;
 
 use crate::common::Random;
 use clebsch::integrate::Stepper;
@@ -21,6 +22,7 @@ use clebsch::solvers::moser_veselov::largest_step;
 use clebsch::{BodyImpulse, RigidMotion};
 use models::*;
 use oracle::{Curve, follow};
+use stated::*;
 use std::cell::Cell;
 
 /// Problems of each model.
@@ -64,7 +66,12 @@ fn judge<J: Judged>(name: &str, unit: &DVector<f64>) {
             // Within a search no other step is looked for, which takes a hundred times as long.
             let next = Cell::new(None);
             let _ = largest_step(1.0, |_| {
-                next.set(p.model.attempt(&state, h));
+                if let Ok(mut work) = p.model.workspace(&state, h) {
+                    let mut moving = state;
+                    if p.model.advance(&mut moving, &mut work).is_ok() {
+                        next.set(Some(moving));
+                    }
+                }
                 Some(0.0)
             });
             Some(J::between(&here, &next.take()?))

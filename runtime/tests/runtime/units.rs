@@ -6,6 +6,7 @@
 
 use crate::common::Random;
 use crate::principal::models::*;
+use crate::principal::stated::*;
 use clebsch::integrate::{Model, Residual};
 use clebsch::nalgebra::{Matrix3, SVector, Vector3, Vector4};
 use clebsch::{BodyImpulse, BodyMomentum, BodyMomentumMatrix, Linear, RigidMotion, UnitQuaternion};

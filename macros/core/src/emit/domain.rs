@@ -254,7 +254,7 @@ pub(super) fn tested_step(d: &Derivation, names: &Names) -> TokenStream {
             let contact = match work.search.tries() {
                 true => contact,
                 false => contact.with_trials(work.h, |h| {
-                    let (mut moving, search) = (*state, newton::Search::to_try());
+                    let (mut moving, search) = (*state, newton::Search::to_offer());
                     self.step(&mut moving, &mut #work { h, search }).is_ok()
                 }),
             };

@@ -317,7 +317,7 @@ const INSIDE: [&str; 144] = [
     "failed",
     "first",
     "fold",
-    "generous",
+    "care",
     "given",
     "lane",
     "model",

@@ -188,9 +188,8 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
         #[inline(never)]
         fn refused(&self, state: #state #used, h: T, e: newton::NewtonError) -> StepError {
             const CONFIGURATIONS: &[&str] = &[#(#configurations),*];
-            let e = e.explained(h, &CONFIGURATIONS, |h| {
-                let (mut trial, search) = (state, newton::Search::to_try());
-                self.step(&mut trial, &mut #work { h, search })
+            let e = e.explained(h, &CONFIGURATIONS, |h, search| {
+                self.step(&mut { state }, &mut #work { h, search })
             });
             StepCause::from(e).at_node(state.#node)
         }

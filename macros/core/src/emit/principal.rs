@@ -258,9 +258,9 @@ impl Principal<'_> {
                             bound.tangent_at(bound_step, &values, #(#velocity_names),*)
                         },
                     };
-                    let generous = certificate.is_generous();
+                    let care = certificate.care();
                     let traced = newton::trace::<_, #regions, _, _, _, #dimension, #variables>(
-                        &equations, found.as_ref(), generous,
+                        &equations, found.as_ref(), care,
                     );
                     if let Some(root) = verdict.add(traced.map_err(|fold| fold.in_lane(lane))?) {
                         let all = verdict.root_mut();

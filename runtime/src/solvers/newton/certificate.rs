@@ -2,7 +2,7 @@
 //! Takes what was found out lane by lane; gives a test that every step can afford.
 
 use super::node::{NodeValues, Spread};
-use super::principal::Traced;
+use super::principal::{Care, Traced};
 use crate::groups::Group;
 use crate::linalg::Factors;
 use crate::scalar::{OfScalars, Real};
@@ -10,11 +10,12 @@ use crate::scalar::{OfScalars, Real};
 /// Steps without a proof that lasts, after which one is looked for again.
 const PATIENCE: u32 = 16;
 
-/// What a factored tangent serves for: nodes as near to its own as this part of their values.
-const DRIFT: f64 = 0.03;
+/// What a factored tangent serves for: nodes as near to its own as this part of their values. The
+/// root that it leads to is near the one foreseen: another is only met with new tangents.
+const DRIFT: f64 = 0.25;
 
 /// Steps for which a proof made at one node serves where the tangent is another at every node.
-const LASTS: u32 = 1024;
+const LASTS: u32 = 16384;
 
 /// By how much the inverse of a later tangent may be larger than that at the proof, and what two
 /// parts may have in common besides, as a share of what each has by itself.
@@ -24,7 +25,7 @@ const COMMON: f64 = 0.2;
 /// Velocities that are principal roots: those whose coordinates do not exceed `reach`, part by
 /// part. Where the tangent is the same at every node, that is proved once for all steps.
 ///
-/// Elsewhere it is proved at `node`, and anew after [`LASTS`] steps. In between it serves at nodes
+/// Elsewhere it is proved at `node`, and anew after 16384 steps. In between it serves at nodes
 /// within `spread` of this one where the inverse of the tangent does not exceed `inverse`, part by
 /// part, which each new tangent is asked: the tangent moves with the velocity by the same order of
 /// magnitude everywhere, and where a fold comes near its inverse grows. A proof for each step costs
@@ -42,6 +43,18 @@ pub struct Certificate<V, const D: usize> {
     /// For how many steps more.
     left: u32,
     misses: u32,
+    purpose: Purpose,
+}
+
+/// What steps are made for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Purpose {
+    /// To go on from there.
+    Run,
+    /// To offer this one instead of one refused.
+    Offer,
+    /// To find out which one to offer: the roots are followed, not proved.
+    Trial,
 }
 
 impl<V, const D: usize> Certificate<V, D> {
@@ -57,6 +70,25 @@ impl<V, const D: usize> Certificate<V, D> {
             bounded: false,
             left: 0,
             misses: 0,
+            purpose: Purpose::Run,
+        }
+    }
+
+    /// For nothing, where one step is tried.
+    #[must_use]
+    pub(super) fn to_try() -> Self {
+        Self {
+            purpose: Purpose::Trial,
+            ..Self::none()
+        }
+    }
+
+    /// For nothing, where one step is to be offered.
+    #[must_use]
+    pub(super) fn to_offer() -> Self {
+        Self {
+            purpose: Purpose::Offer,
+            ..Self::none()
         }
     }
 }
@@ -122,10 +154,18 @@ impl<V: NodeValues, const D: usize> Certificate<V, D> {
         self.bounded = bounded;
     }
 
-    /// Whether it is worth while to look for a proof that lasts.
+    /// Whether no step follows.
+    pub(super) fn tries(&self) -> bool {
+        self.purpose != Purpose::Run
+    }
+
+    /// What the step at hand is worth: a proof that lasts where one may be found and will be used.
     #[must_use]
-    pub fn is_generous(&self) -> bool {
-        self.misses.is_multiple_of(PATIENCE)
+    pub fn care(&self) -> Care {
+        Care {
+            lasting: !self.tries() && self.misses.is_multiple_of(PATIENCE),
+            proved: self.purpose != Purpose::Trial,
+        }
     }
 }
 

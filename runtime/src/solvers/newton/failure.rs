@@ -2,11 +2,11 @@
 //! step could have been made from the same state.
 //! Takes the last residual and a way to try other steps; gives the error.
 
-use super::Fold;
+use super::{Fold, NodeValues, Search};
 use crate::groups::{Coordinate, Group};
 use crate::said::{AtMost, Plain, Times, in_lane, instead};
 use crate::scalar::Real;
-use crate::solvers::largest_step::{SHORTER, largest_step};
+use crate::solvers::largest_step::confirmed_step;
 use crate::{StepCause, StepError};
 use core::cell::Cell;
 use core::fmt;
@@ -24,7 +24,7 @@ pub enum NewtonFailure {
     /// becomes singular, or the equations lose their meaning.
     Fold {
         /// What part of the way there is.
-        share: f64,
+        share: f32,
     },
 }
 
@@ -101,7 +101,9 @@ impl NewtonError {
     #[inline(never)]
     pub(super) fn at_fold<T: Real, G: Group<T>>(fold: Fold) -> Self {
         Self {
-            failure: NewtonFailure::Fold { share: fold.share },
+            failure: NewtonFailure::Fold {
+                share: fold.share as f32,
+            },
             iterations: 0,
             residual: 0.0,
             tolerance: 0.0,
@@ -122,22 +124,21 @@ impl NewtonError {
     }
 
     /// The same error with the step size that was refused, the largest that could be made, and the
-    /// names of the configurations. `step` makes a step of another size from the same state in a
-    /// workspace of [`Search::to_try`](super::Search::to_try).
+    /// names of the configurations. `step` makes a step of another size from the same state.
     #[cold]
     #[inline(never)]
     #[must_use]
-    pub fn explained<T: Real>(
+    pub fn explained<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize>(
         self,
         h: T,
         configurations: &'static &'static [&'static str],
-        step: impl Fn(T) -> Result<(), StepError>,
+        step: impl Fn(T, Search<T, G, V, D>) -> Result<(), StepError>,
     ) -> Self {
         if self.tried {
             return self;
         }
         let nearest = Cell::new(self);
-        let fits = |share: f64| match step(h * T::from_f64(share)) {
+        let tried = |share: f64, search| match step(h * T::from_f64(share), search) {
             Ok(()) => Some(0.0),
             Err(StepError {
                 cause: StepCause::Newton(e),
@@ -148,11 +149,10 @@ impl NewtonError {
             }
             Err(_) => None,
         };
-        // The search has tried this part of what it found as well.
-        let share = match largest_step(1.0, fits) {
-            1.0 => 1.0,
-            share => share * SHORTER[0],
-        };
+        let share = confirmed_step(
+            |share| tried(share, Search::to_try()),
+            |share| tried(share, Search::to_offer()),
+        );
         let NewtonError { worst, lane, .. } = match share > 0.0 && share < 1.0 {
             true => nearest.get(),
             false => self,

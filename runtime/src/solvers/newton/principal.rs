@@ -25,14 +25,34 @@ use nalgebra::{SMatrix, SVector};
 /// Stages on the way; each leaves at most two thirds of what is left before a fold.
 const MOST_STAGES: usize = 400;
 
-/// The shortest stage tried: closer to a fold rounding decides.
-const SHORTEST: f64 = 1e-14;
+/// What a step is worth that is looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Care {
+    /// Whether a proof is looked for that serves for later steps too.
+    pub lasting: bool,
+    /// Whether every stage is proved; else how the tangent changes on it is taken from its end.
+    pub proved: bool,
+}
+
+/// The shortest stage tried, as a part of the way: a root so close to a fold is not taken. Rounding
+/// decides there.
+const SHORTEST: f64 = 1e-9;
+
+/// The strain aimed at over a stage: up to a fold each stage then leaves the same part of the way.
+const AIM: f64 = 0.55;
+
+/// By how much one stage may be longer than the last.
+const LONGER: f64 = 4.0;
+
+/// What is left of a stage that was not accepted, at most and at least.
+const SHORTER: [f64; 2] = [0.8, 0.2];
 
 /// Corrections by which a stage is solved.
 const MOST_CORRECTIONS: usize = 12;
 
-/// A stage is solved when its last correction is this part of the region, at most.
-const SOLVED: f64 = 1e-9;
+/// A stage is solved when its last correction is this part of the region, at most: that is
+/// quadratic in what is left. Close to a fold rounding permits no less.
+const SOLVED: f64 = 1e-6;
 
 /// Where nothing moves, regions have this size.
 const LITTLE: f64 = 1e-6;
@@ -100,8 +120,7 @@ pub struct Equations<R, A, B> {
     pub enclosed: B,
 }
 
-/// Finds the principal root, or shows that `solution` is. With `generous` it looks for a proof that
-/// serves for later steps too.
+/// Finds the principal root, or shows that `solution` is.
 ///
 /// # Errors
 /// [`Fold`] where there is none, as far as can be followed.
@@ -110,7 +129,7 @@ pub struct Equations<R, A, B> {
 pub fn trace<G, E, R, A, B, const D: usize, const K: usize>(
     equations: &Equations<R, A, B>,
     solution: Option<&G>,
-    generous: bool,
+    care: Care,
 ) -> Result<Traced<G, D>, Fold>
 where
     G: Group<f64>,
@@ -131,7 +150,7 @@ where
         return Err(Fold::at(0.0, 0));
     }
     let lengths = lengths::<G, D>(&whole);
-    if let (Some(found), true) = (solution, generous) {
+    if let (Some(found), true) = (solution, care.lasting) {
         let mut own = [0.0; D];
         found.extents(&mut own);
         let wanted = core::array::from_fn(|b| own[b].max(lengths[b]).max(0.01 * units[b]));
@@ -149,7 +168,8 @@ where
         }
         let left = 1.0 - share;
         let mut accepted = None;
-        let mut tries = 0;
+        let mut next_length = length;
+        let [most, least] = SHORTER;
         while accepted.is_none() {
             length = length.min(left);
             if length < SHORTEST {
@@ -160,29 +180,27 @@ where
             let toward = stage.toward(&goal);
             let own = self::lengths::<G, D>(&toward);
             radii = course.map(|x| MARGIN * length * x);
-            let whole = stage.strain::<E, R, A, B, K>(equations, &radii);
-            let mut moved = whole.spread(&own);
-            if moved.is_some() {
-                let inner = radii.map(|r| 0.5 * r);
-                let half = stage.strain::<E, R, A, B, K>(equations, &inner);
-                moved = whole.mean(&half).spread(&own);
-            }
+            let (moved, strain) = match care.proved {
+                true => stage.move_within::<E, R, A, B, K>(equations, &radii, &own),
+                false => stage.move_foreseen(equations, &toward, &radii, &own),
+            };
+            // Lengths are in proportion to strains.
+            let longer = match strain.is_nan() {
+                true => least,
+                false => (AIM / strain).min(LONGER),
+            };
+            next_length = longer * length;
             let inner = radii.map(|r| INNER * r);
             let enough = moved.is_some_and(|y| fits::<G, D>(&y, &inner));
             if enough {
                 accepted = stage
                     .solve(equations, &toward, &goal, &radii)
                     .map(|next| (next, end));
-            } else if let (Some(y), true) = (moved, tries % 2 == 0) {
-                // The region has the wrong shape, perhaps.
-                let grown = |b: usize| (y[b] / length).clamp(0.2 * course[b], 5.0 * course[b]);
-                course = core::array::from_fn(grown);
-                tries += 1;
-                continue;
+            } else if let Some(y) = moved {
+                course = reshaped(&course, &y, &own);
             }
-            tries = 0;
             if accepted.is_none() {
-                length *= 0.5;
+                length = next_length.max(least * length).min(most * length);
             }
         }
         let Some((next, end)) = accepted else {
@@ -192,7 +210,7 @@ where
             return Ok(verdict(next, &radii, solution));
         }
         share = end;
-        length *= 2.0;
+        length = next_length;
         let left = (equations.residual)(&next);
         stage = Stage::at(equations, next, left).ok_or_else(|| fold(share, &whole))?;
         whole = stage.toward(&SVector::zeros());
@@ -205,7 +223,25 @@ where
 fn course<const D: usize>(lengths: &[f64; D], units: &[f64; D], rate: f64) -> [f64; D] {
     let shares = lengths.iter().zip(units).map(|(x, u)| x / u);
     let most = shares.filter(|x| x.is_finite()).fold(LITTLE, f64::max);
+    // A body may go many times its own size in a step, and need not turn for that.
+    let most = most.min(1.0);
     core::array::from_fn(|b| rate * lengths[b].max(0.05 * most * units[b]))
+}
+
+/// By how much a part of a region is widened at once.
+const WIDER: f64 = 5.0;
+
+/// The course, wider in the parts that move more than foreseen, compared with the one that moves
+/// furthest.
+fn reshaped<const D: usize>(course: &[f64; D], moved: &[f64; D], own: &[f64; D]) -> [f64; D] {
+    let share = |b: usize| own[b] / course[b];
+    let rate = |b: usize| moved[b] / course[b];
+    let most = (0..D).fold(0, |most, b| if share(b) > share(most) { b } else { most });
+    core::array::from_fn(|b| match rate(b) / rate(most) {
+        wider if wider > 1.0 => course[b] * wider.min(WIDER),
+        // Also where nothing is known.
+        _ => course[b],
+    })
 }
 
 /// The coordinate that moves most.
@@ -287,6 +323,47 @@ impl<G: Group<f64>, const D: usize> Stage<G, D> {
             let unit = (block(b.saturating_sub(1)) / block(b)).sqrt();
             if unit.is_finite() { unit } else { 0.0 }
         })
+    }
+
+    /// A bound of how far the velocity moves, part by part, where the equations move by `own`
+    /// seen through `B`; holds if it does not exceed the radii. The strain besides.
+    fn move_within<E, R, A, B, const K: usize>(
+        &self,
+        equations: &Equations<R, A, B>,
+        radii: &[f64; D],
+        own: &[f64; D],
+    ) -> (Option<[f64; D]>, f64)
+    where
+        E: Region<K, Centre = G>,
+        B: Fn(Spread, &E) -> SMatrix<Enclosure<K>, D, D>,
+    {
+        let whole = self.strain::<E, R, A, B, K>(equations, radii);
+        let moved = whole.spread(own).and_then(|moved| {
+            if fits::<G, D>(&moved, radii) {
+                return Some(moved);
+            }
+            let half = self.strain::<E, R, A, B, K>(equations, &radii.map(|r| 0.5 * r));
+            whole.mean(&half).spread(own)
+        });
+        (moved, whole.largest(radii))
+    }
+
+    /// The same with the tangent at one point in place of all of them.
+    fn move_foreseen<R, A, B>(
+        &self,
+        equations: &Equations<R, A, B>,
+        toward: &SVector<f64, D>,
+        radii: &[f64; D],
+        own: &[f64; D],
+    ) -> (Option<[f64; D]>, f64)
+    where
+        A: Fn(&G) -> SMatrix<f64, D, D>,
+    {
+        let end = self.element.retract((toward * MARGIN).as_slice());
+        let whole = Strain::of::<G>(&(self.inverse * (equations.tangent)(&end)));
+        let regular = whole.spread(own).is_some();
+        let moved = whole.mean(&Strain::none::<G>()).spread(own);
+        (moved.filter(|_| regular), whole.largest(radii))
     }
 
     /// The strain over the region around this point.

@@ -6,6 +6,7 @@ use super::bounds::Region;
 use crate::groups::Group;
 use crate::scalar::Enclosure;
 use nalgebra::SMatrix;
+use num_traits::Zero;
 
 /// `|B DT(c) - 1|` part by part, the largest over a region around its centre, where `B` inverts
 /// the tangent in the centre: entry `(a, b)` bounds what the coordinates of part `b` do to the
@@ -33,27 +34,33 @@ impl<const D: usize> Strain<D> {
     ) -> Self {
         let size = R::Centre::DIMENSION.min(D);
         let none = Enclosure::exactly(0.0);
+        let moves = tangent.map(|x| x.moved());
         let mut moved = SMatrix::<Enclosure<K>, D, D>::repeat(none);
         R::chart_tangent(radii, 0, &mut |k, j, x| {
             if k < size && j < size {
+                let own = x.moved();
                 for i in 0..size {
-                    moved[(i, j)] += tangent[(i, k)] * x;
+                    let factors = [&tangent[(i, k)], &x];
+                    moved[(i, j)].add_product(factors, [moves[(i, k)], own]);
                 }
             }
         });
         let mut strain = SMatrix::<Enclosure<K>, D, D>::repeat(none);
         for j in 0..size {
             for k in 0..size {
+                // Bodies that do not touch one another.
+                if moved[(k, j)].is_zero() {
+                    continue;
+                }
                 for i in 0..size {
-                    strain[(i, j)] += moved[(k, j)].times(inverse[(i, k)]);
+                    strain[(i, j)].add_times(&moved[(k, j)], inverse[(i, k)]);
                 }
             }
             strain[(j, j)] -= Enclosure::exactly(1.0);
         }
-        let parts = R::Centre::PARTS.min(D);
-        let mut entries = [[0.0; D]; D];
-        for (a, row) in entries.iter_mut().enumerate().take(parts) {
-            for (b, entry) in row.iter_mut().enumerate().take(parts) {
+        let mut bounds = Self::none::<R::Centre>();
+        for (a, row) in bounds.entries.iter_mut().enumerate().take(bounds.parts) {
+            for (b, entry) in row.iter_mut().enumerate().take(bounds.parts) {
                 let norm = |of: &dyn Fn(&Enclosure<K>) -> f64| {
                     norm::<R::Centre, K, D>(&strain, [a, b], of)
                 };
@@ -67,7 +74,38 @@ impl<const D: usize> Strain<D> {
                 *entry = bound;
             }
         }
-        Self { entries, parts }
+        bounds
+    }
+
+    /// None.
+    pub(super) fn none<G: Group<f64>>() -> Self {
+        Self {
+            entries: [[0.0; D]; D],
+            parts: G::PARTS.min(D),
+        }
+    }
+
+    /// Of one point, where `B` times the tangent is this.
+    pub(super) fn of<G: Group<f64>>(moved: &SMatrix<f64, D, D>) -> Self {
+        let change = (moved - SMatrix::identity()).map(Enclosure::<0>::exactly);
+        let mut strain = Self::none::<G>();
+        for (a, row) in strain.entries.iter_mut().enumerate().take(strain.parts) {
+            for (b, entry) in row.iter_mut().enumerate().take(strain.parts) {
+                *entry = norm::<G, 0, D>(&change, [a, b], &|x| x.middle().abs());
+            }
+        }
+        strain
+    }
+
+    /// The strain of the part that has the most, where all move by as much as their radii; NaN
+    /// where it is not known.
+    pub(super) fn largest(&self, radii: &[f64; D]) -> f64 {
+        let moved = self.entries.iter().map(|row| {
+            let pairs = row.iter().zip(radii).take(self.parts);
+            pairs.map(|(e, r)| e * r).sum::<f64>()
+        });
+        let shares = moved.zip(radii).take(self.parts).map(|(x, r)| x / r);
+        shares.fold(0.0, largest)
     }
 
     /// A bound of the mean along lines from the centre, given the strain over half the region.
