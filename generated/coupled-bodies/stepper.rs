@@ -203,14 +203,14 @@ pub mod coupled_bodies {
             let k3 = eps * s1;
             let k5 = crossed(&d1, &R);
             let k6 = crossing(&R.transpose(), &s2);
-            let (given, values) = ((newton::Turn(R), []), (newton::Turn(R), []));
-            let mut iteration = work.search.begin(state.node, values);
+            let mut iteration = work.search.begin(state.node, (newton::Turn(R), []));
             let found: newton::Solved<[Rotation<T>; 2]> = loop {
                 let trial = iteration.trial();
                 if iteration.wants_scale() {
                     iteration
                         .set_scale(|lane| {
-                            self.rounding(h, &given, &momenta, &trial, lane)
+                            self
+                                .rounding(h, &(newton::Turn(R), []), &momenta, &trial, lane)
                         });
                 }
                 let Ω1 = trial[0].matrix();
@@ -255,36 +255,24 @@ pub mod coupled_bodies {
                             },
                         );
                 }
-                let failed = match iteration.correct() {
-                    newton::Progress::Continue => continue,
-                    newton::Progress::Solved(solved) => {
-                        if iteration.is_principal(&solved.element) {
+                match iteration.correct() {
+                    newton::Progress::Continue => {}
+                    newton::Progress::Solved(
+                        solved,
+                    ) if iteration.is_principal(&solved.element) => break solved,
+                    ended => {
+                        if let Some(solved) = self
+                            .settled(
+                                h,
+                                state,
+                                &(newton::Turn(R), []),
+                                &momenta,
+                                &mut iteration,
+                                ended,
+                            )?
+                        {
                             break solved;
                         }
-                        Ok(solved)
-                    }
-                    newton::Progress::Failed(e) => Err(e),
-                };
-                let asked = failed.as_ref().ok().map(|solved| &solved.element);
-                let traced = self
-                    .principal(
-                        h,
-                        &given,
-                        &values,
-                        &momenta,
-                        iteration.certificate(),
-                        asked,
-                    );
-                match (traced, failed) {
-                    (Ok(None), Ok(solved)) => break solved,
-                    (Ok(Some(root)), _) if iteration.restart(root) => {}
-                    (Ok(_), Err(e)) => return Err(self.refused(*state, h, e)),
-                    (Ok(_), Ok(_)) => {
-                        return Err(self.refused(*state, h, iteration.unpolished()));
-                    }
-                    (Err(fold), failed) => {
-                        let e = iteration.folded(fold, failed.err());
-                        return Err(self.refused(*state, h, e));
                     }
                 }
             };
@@ -315,6 +303,43 @@ pub mod coupled_bodies {
             state.node += 1;
             work.search.remember(state.node - 1, &found);
             Ok(())
+        }
+        /// The solution to be taken where the one found is not known to be principal, or none was
+        /// found. None where the iteration begins again, at the principal root.
+        #[cold]
+        #[inline(never)]
+        fn settled(
+            &self,
+            h: T,
+            state: &CoupledBodiesState<T>,
+            given: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
+            momenta: &[SVector<T, 3>; 2],
+            iteration: &mut newton::Newton<
+                '_,
+                T,
+                [Rotation<T>; 2],
+                CoupledBodiesNode<T>,
+                6,
+            >,
+            ended: newton::Progress<[Rotation<T>; 2]>,
+        ) -> Result<Option<newton::Solved<[Rotation<T>; 2]>>, StepError> {
+            let failed = match ended {
+                newton::Progress::Continue => return Ok(None),
+                newton::Progress::Solved(solved) => Ok(solved),
+                newton::Progress::Failed(e) => Err(e),
+            };
+            let asked = failed.as_ref().ok().map(|solved| &solved.element);
+            let values = iteration.values();
+            let traced = self
+                .principal(h, given, &values, momenta, iteration.certificate(), asked);
+            let e = match (traced, failed) {
+                (Ok(None), Ok(solved)) => return Ok(Some(solved)),
+                (Ok(Some(root)), _) if iteration.restart(root) => return Ok(None),
+                (Ok(_), Err(e)) => e,
+                (Ok(_), Ok(_)) => iteration.unpolished(),
+                (Err(fold), failed) => iteration.folded(fold, failed.err()),
+            };
+            Err(self.refused(*state, h, e))
         }
         /// Says which equation is worst, and which step could be solved.
         #[cold]

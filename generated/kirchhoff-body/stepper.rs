@@ -174,14 +174,13 @@ pub mod kirchhoff_body {
                 .cross(&(rows_from::<T, 4, 3, 1>(&P, 0))) * T::from_f64(0.5) * h;
             let k3 = rows_from::<T, 4, 3, 1>(&P, 0) * T::from_f64(0.5) * h * b[3];
             let k4 = T::from_f64(0.25) * s1;
-            let (given, values) = ((P, []), []);
-            let mut iteration = work.search.begin(state.node, values);
+            let mut iteration = work.search.begin(state.node, []);
             let found: newton::Solved<[RigidMotion<T>; 1]> = loop {
                 let trial = iteration.trial();
                 if iteration.wants_scale() {
                     iteration
                         .set_scale(|lane| {
-                            self.rounding(h, &given, &momenta, &trial, lane)
+                            self.rounding(h, &(P, []), &momenta, &trial, lane)
                         });
                 }
                 let (V_rot, V_pos) = (trial[0].rotation.matrix(), trial[0].translation);
@@ -255,36 +254,24 @@ pub mod kirchhoff_body {
                             },
                         );
                 }
-                let failed = match iteration.correct() {
-                    newton::Progress::Continue => continue,
-                    newton::Progress::Solved(solved) => {
-                        if iteration.is_principal(&solved.element) {
+                match iteration.correct() {
+                    newton::Progress::Continue => {}
+                    newton::Progress::Solved(
+                        solved,
+                    ) if iteration.is_principal(&solved.element) => break solved,
+                    ended => {
+                        if let Some(solved) = self
+                            .settled(
+                                h,
+                                state,
+                                &(P, []),
+                                &momenta,
+                                &mut iteration,
+                                ended,
+                            )?
+                        {
                             break solved;
                         }
-                        Ok(solved)
-                    }
-                    newton::Progress::Failed(e) => Err(e),
-                };
-                let asked = failed.as_ref().ok().map(|solved| &solved.element);
-                let traced = self
-                    .principal(
-                        h,
-                        &given,
-                        &values,
-                        &momenta,
-                        iteration.certificate(),
-                        asked,
-                    );
-                match (traced, failed) {
-                    (Ok(None), Ok(solved)) => break solved,
-                    (Ok(Some(root)), _) if iteration.restart(root) => {}
-                    (Ok(_), Err(e)) => return Err(self.refused(*state, h, e)),
-                    (Ok(_), Ok(_)) => {
-                        return Err(self.refused(*state, h, iteration.unpolished()));
-                    }
-                    (Err(fold), failed) => {
-                        let e = iteration.folded(fold, failed.err());
-                        return Err(self.refused(*state, h, e));
                     }
                 }
             };
@@ -339,6 +326,43 @@ pub mod kirchhoff_body {
             state.node += 1;
             work.search.remember(state.node - 1, &found);
             Ok(())
+        }
+        /// The solution to be taken where the one found is not known to be principal, or none was
+        /// found. None where the iteration begins again, at the principal root.
+        #[cold]
+        #[inline(never)]
+        fn settled(
+            &self,
+            h: T,
+            state: &KirchhoffBodyState<T>,
+            given: &(SVector<T, 4>, [T; 0]),
+            momenta: &[SVector<T, 3>; 2],
+            iteration: &mut newton::Newton<
+                '_,
+                T,
+                [RigidMotion<T>; 1],
+                KirchhoffBodyNode<T>,
+                6,
+            >,
+            ended: newton::Progress<[RigidMotion<T>; 1]>,
+        ) -> Result<Option<newton::Solved<[RigidMotion<T>; 1]>>, StepError> {
+            let failed = match ended {
+                newton::Progress::Continue => return Ok(None),
+                newton::Progress::Solved(solved) => Ok(solved),
+                newton::Progress::Failed(e) => Err(e),
+            };
+            let asked = failed.as_ref().ok().map(|solved| &solved.element);
+            let values = iteration.values();
+            let traced = self
+                .principal(h, given, &values, momenta, iteration.certificate(), asked);
+            let e = match (traced, failed) {
+                (Ok(None), Ok(solved)) => return Ok(Some(solved)),
+                (Ok(Some(root)), _) if iteration.restart(root) => return Ok(None),
+                (Ok(_), Err(e)) => e,
+                (Ok(_), Ok(_)) => iteration.unpolished(),
+                (Err(fold), failed) => iteration.folded(fold, failed.err()),
+            };
+            Err(self.refused(*state, h, e))
         }
         /// Says which equation is worst, and which step could be solved.
         #[cold]

@@ -309,6 +309,18 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_,
         self.trial
     }
 
+    /// The values at the node that the tangent depends on.
+    #[cold]
+    pub fn values(&self) -> V {
+        self.values
+    }
+
+    /// Whether no step follows.
+    #[cold]
+    pub fn tries(&self) -> bool {
+        self.search.tries()
+    }
+
     /// Whether the sizes of the terms are not known, or too old. At a start they are asked for at
     /// every trial: at rest, the first one, the bounds of terms with a kink there are void.
     #[inline(always)]
@@ -554,7 +566,8 @@ fn largest<T: Real, const D: usize>(v: &SVector<T, D>) -> f64 {
     let (mut sum, mut largest) = (T::zero(), 0.0);
     for x in v.iter() {
         sum += *x;
-        let (above, below) = (x.greatest(), -x.least());
+        // Of one lane that is one number.
+        let (above, below) = (x.greatest().abs(), x.least().abs());
         let size = if above > below { above } else { below };
         largest = if size > largest { size } else { largest };
     }

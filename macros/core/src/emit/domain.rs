@@ -249,11 +249,19 @@ pub(super) fn tested_step(d: &Derivation, names: &Names) -> TokenStream {
     let (node, before) = (names.local("node"), names.local("before"));
     let inside = inside(d, names);
     let method = format!(" One step, in place. Solved thus: {}.", d.how_solved());
-    let trials = matches!(d.solve.method, Method::Newton).then(|| {
+    let searched = matches!(d.solve.method, Method::Newton);
+    let (asked, taken) = match searched {
+        true => (
+            quote!(work.h, work.search.tries(),),
+            quote!(h: T, tries: bool,),
+        ),
+        false => Default::default(),
+    };
+    let trials = searched.then(|| {
         quote! {
-            let contact = match work.search.tries() {
+            let contact = match tries {
                 true => contact,
-                false => contact.with_trials(work.h, |h| {
+                false => contact.with_trials(h, |h| {
                     let (mut moving, search) = (*state, newton::Search::to_offer());
                     self.step(&mut moving, &mut #work { h, search }).is_ok()
                 }),
@@ -274,7 +282,7 @@ pub(super) fn tested_step(d: &Derivation, names: &Names) -> TokenStream {
                 Ok(()) => Ok(()),
                 Err(contact) => {
                     *state = #before;
-                    Err(self.left_domain(state, work, contact))
+                    Err(self.left_domain(state, #asked contact))
                 }
             }
         }
@@ -282,7 +290,7 @@ pub(super) fn tested_step(d: &Derivation, names: &Names) -> TokenStream {
         /// Says what the step met, and which step could be made.
         #[cold]
         #[inline(never)]
-        fn left_domain(&self, state: &#state #used, work: &#work #used, contact: domain::Contact) -> StepError {
+        fn left_domain(&self, state: &#state #used, #taken contact: domain::Contact) -> StepError {
             #trials
             StepCause::from(contact).at_node(state.#node)
         }

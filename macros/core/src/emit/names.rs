@@ -104,7 +104,7 @@ const TYPES: [&str; 56] = [
 ];
 
 /// Methods and constants that every model has.
-const MEMBERS: [&str; 39] = [
+const MEMBERS: [&str; 40] = [
     "kinetic_warning",
     "ADMITTED",
     "CARD",
@@ -143,6 +143,7 @@ const MEMBERS: [&str; 39] = [
     "principal",
     "residual_at",
     "rounding",
+    "settled",
     "tangent_at",
 ];
 

@@ -91,6 +91,10 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
         principal.packed(&equations.alone.given),
         principal.packed(&equations.alone.values),
     );
+    let (lane, ended) = (names.local("lane"), names.local("ended"));
+    let given_type = Principal::packed_type(d, &equations.alone.given);
+    let (momenta_type, node_type) = (&equations.momenta, item(d, "Node"));
+    let dimension = element::total(d);
     let functions = principal.functions();
     let remembered = quote!(work.search.remember(state.#node - 1, &#found););
     let mut after = bindings.clone();
@@ -125,7 +129,7 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
                 let mut moved = *state;
                 #(#moves)*
                 if let Err(contact) = self.stays_inside(state, &moved, #step) {
-                    return Err(self.left_domain(state, work, contact));
+                    return Err(self.left_domain(state, #step, #newton.tries(), contact));
                 }
             }
         }
@@ -143,44 +147,63 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
             #parameters
             #locals
             #known
-            let (given, values) = (#given, #values);
-            let mut #newton = work.search.begin(state.#node, values);
+            let mut #newton = work.search.begin(state.#node, #values);
             let #found: newton::Solved<#elements> = loop {
                 let #trial = #newton.trial();
                 if #newton.wants_scale() {
-                    #newton.set_scale(|lane| self.rounding(#step, &given, &#mu, &#trial, lane));
+                    #newton.set_scale(|#lane| self.rounding(#step, &#given, &#mu, &#trial, #lane));
                 }
                 #at_trial
                 if #newton.assess({ #residual_body }) {
                     #newton.set_tangent(&{ #tangent_body });
                 }
-                let failed = match #newton.correct() {
-                    newton::Progress::Continue => continue,
-                    newton::Progress::Solved(solved) => {
-                        if #newton.is_principal(&solved.element) {
-                            break solved;
+                match #newton.correct() {
+                    newton::Progress::Continue => {}
+                    newton::Progress::Solved(#solved) if #newton.is_principal(&#solved.element) => break #solved,
+                    #ended => {
+                        if let Some(#solved) = self.settled(#step, state, &#given, &#mu, &mut #newton, #ended)? {
+                            break #solved;
                         }
-                        Ok(solved)
-                    }
-                    newton::Progress::Failed(e) => Err(e),
-                };
-                let asked = failed.as_ref().ok().map(|solved| &solved.element);
-                let traced = self.principal(#step, &given, &values, &#mu, #newton.certificate(), asked);
-                match (traced, failed) {
-                    (Ok(None), Ok(solved)) => break solved,
-                    (Ok(Some(root)), _) if #newton.restart(root) => {}
-                    (Ok(_), Err(e)) => return Err(self.refused(*state, #step, e)),
-                    (Ok(_), Ok(_)) => return Err(self.refused(*state, #step, #newton.unpolished())),
-                    (Err(fold), failed) => {
-                        #contact
-                        let e = #newton.folded(fold, failed.err());
-                        return Err(self.refused(*state, #step, e));
                     }
                 }
             };
             let #solved = #found.element;
             #matrices
             #rest
+        }
+
+        /// The solution to be taken where the one found is not known to be principal, or none was
+        /// found. None where the iteration begins again, at the principal root.
+        #[cold]
+        #[inline(never)]
+        fn settled(
+            &self,
+            #step: T,
+            state: &#state #used,
+            given: &#given_type,
+            momenta: &#momenta_type,
+            #newton: &mut newton::Newton<'_, T, #elements, #node_type #used, #dimension>,
+            ended: newton::Progress<#elements>,
+        ) -> Result<Option<newton::Solved<#elements>>, StepError> {
+            let failed = match ended {
+                newton::Progress::Continue => return Ok(None),
+                newton::Progress::Solved(solved) => Ok(solved),
+                newton::Progress::Failed(e) => Err(e),
+            };
+            let asked = failed.as_ref().ok().map(|solved| &solved.element);
+            let values = #newton.values();
+            let traced = self.principal(#step, given, &values, momenta, #newton.certificate(), asked);
+            let e = match (traced, failed) {
+                (Ok(None), Ok(solved)) => return Ok(Some(solved)),
+                (Ok(Some(root)), _) if #newton.restart(root) => return Ok(None),
+                (Ok(_), Err(e)) => e,
+                (Ok(_), Ok(_)) => #newton.unpolished(),
+                (Err(fold), failed) => {
+                    #contact
+                    #newton.folded(fold, failed.err())
+                }
+            };
+            Err(self.refused(*state, #step, e))
         }
 
         /// Says which equation is worst, and which step could be solved.

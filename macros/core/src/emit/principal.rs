@@ -72,7 +72,7 @@ impl Principal<'_> {
     }
 
     /// Their type.
-    fn packed_type(d: &Derivation, letters: &[Letter]) -> TokenStream {
+    pub fn packed_type(d: &Derivation, letters: &[Letter]) -> TokenStream {
         let s = &d.letters.symbols;
         letters.iter().rev().fold(quote!([T; 0]), |rest, l| {
             let shape = s.get(l.symbol).shape;

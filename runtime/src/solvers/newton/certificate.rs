@@ -40,6 +40,8 @@ pub struct Certificate<V, const D: usize> {
     factored: Option<V>,
     /// Whether its inverse is bounded so.
     bounded: bool,
+    /// Whether it is too far from the node at hand to serve there.
+    stale: bool,
     /// For how many steps more.
     left: u32,
     misses: u32,
@@ -68,6 +70,7 @@ impl<V, const D: usize> Certificate<V, D> {
             inverse: [[f64::NAN; D]; D],
             factored: None,
             bounded: false,
+            stale: false,
             left: 0,
             misses: 0,
             purpose: Purpose::Run,
@@ -107,9 +110,10 @@ impl<V: NodeValues, const D: usize> Certificate<V, D> {
 
     /// Whether a tangent must be factored before it can hold at this node.
     #[inline(always)]
-    pub(super) fn wants_tangent(&self, values: &V) -> bool {
+    pub(super) fn wants_tangent(&mut self, values: &V) -> bool {
         let served = |at: &V| self.bounded && values.is_near(at, Spread::drifted(DRIFT));
-        V::ANY && self.node.is_some() && !self.factored.as_ref().is_some_and(served)
+        self.stale = V::ANY && self.node.is_some() && !self.factored.as_ref().is_some_and(served);
+        self.stale
     }
 
     /// Before a proof with this tangent: until there is one, nothing holds.
@@ -131,7 +135,7 @@ impl<V: NodeValues, const D: usize> Certificate<V, D> {
         self.left = self.left.saturating_sub(1);
     }
 
-    /// Takes note of a tangent that was factored at a trial.
+    /// Takes note of a tangent that was factored at a trial, where the one noted last does not serve.
     #[inline(always)]
     pub(super) fn note<T: Real, G: Group<T>>(
         &mut self,
@@ -139,7 +143,7 @@ impl<V: NodeValues, const D: usize> Certificate<V, D> {
         trial: &G,
         values: &V,
     ) {
-        if !V::ANY || self.node.is_none() {
+        if !V::ANY || !self.stale {
             return;
         }
         let found = factors.inverse_bounds(G::part_of);
