@@ -495,15 +495,15 @@ pub mod coupled_bodies {
                     None => None,
                 };
                 let equations = newton::Equations {
-                    residual: |trial: &[Rotation<f64>; 2]| {
+                    residual: &|trial: &[Rotation<f64>; 2]| {
                         model.residual_at(step, &given, &momenta, trial)
                     },
-                    tangent: |trial: &[Rotation<f64>; 2]| {
+                    tangent: &|trial: &[Rotation<f64>; 2]| {
                         let Ω1 = trial[0].matrix();
                         let Ω2 = trial[1].matrix();
                         model.tangent_at(step, &near, Ω1, Ω2)
                     },
-                    enclosed: |spread, trial: &[newton::RotationRegion<18>; 2]| {
+                    enclosed: &|spread, trial: &[newton::RotationRegion<18>; 2]| {
                         let Ω1 = trial[0].matrix();
                         let Ω2 = trial[1].matrix();
                         let values = newton::NodeValues::enclosed(values, lane, spread);
@@ -511,15 +511,7 @@ pub mod coupled_bodies {
                     },
                 };
                 let care = certificate.care();
-                let traced = newton::trace::<
-                    _,
-                    [newton::RotationRegion<18>; 2],
-                    _,
-                    _,
-                    _,
-                    6,
-                    18,
-                >(&equations, found.as_ref(), care);
+                let traced = newton::trace(&equations, found.as_ref(), care);
                 if let Some(root) = verdict
                     .add(traced.map_err(|fold| fold.in_lane(lane))?)
                 {

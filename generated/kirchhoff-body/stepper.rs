@@ -547,17 +547,17 @@ pub mod kirchhoff_body {
                     None => None,
                 };
                 let equations = newton::Equations {
-                    residual: |trial: &[RigidMotion<f64>; 1]| {
+                    residual: &|trial: &[RigidMotion<f64>; 1]| {
                         model.residual_at(step, &given, &momenta, trial)
                     },
-                    tangent: |trial: &[RigidMotion<f64>; 1]| {
+                    tangent: &|trial: &[RigidMotion<f64>; 1]| {
                         let (V_rot, V_pos) = (
                             trial[0].rotation.matrix(),
                             trial[0].translation,
                         );
                         model.tangent_at(step, &near, V_rot, V_pos)
                     },
-                    enclosed: |spread, trial: &[newton::MotionRegion<12>; 1]| {
+                    enclosed: &|spread, trial: &[newton::MotionRegion<12>; 1]| {
                         let (V_rot, V_pos) = (
                             trial[0].rotation.matrix(),
                             trial[0].translation,
@@ -567,15 +567,7 @@ pub mod kirchhoff_body {
                     },
                 };
                 let care = certificate.care();
-                let traced = newton::trace::<
-                    _,
-                    [newton::MotionRegion<12>; 1],
-                    _,
-                    _,
-                    _,
-                    6,
-                    12,
-                >(&equations, found.as_ref(), care);
+                let traced = newton::trace(&equations, found.as_ref(), care);
                 if let Some(root) = verdict
                     .add(traced.map_err(|fold| fold.in_lane(lane))?)
                 {

@@ -188,7 +188,7 @@ fn feasible<S: Stepper>(
         })
     };
     match refused {
-        StepCause::Newton(_) => confirmed_step(tried, made),
+        StepCause::Newton(_) => confirmed_step(&tried, &made),
         _ => largest_step(1.0, tried),
     }
 }

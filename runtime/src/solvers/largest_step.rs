@@ -51,14 +51,14 @@ const RETURNS: usize = 8;
 /// can be made, not which could be made instead.
 #[must_use]
 pub fn largest_step(h: f64, solvable: impl Fn(f64) -> Option<f64>) -> f64 {
-    search(h, TO_ROUNDING, solvable)
+    search(h, TO_ROUNDING, &solvable)
 }
 
 /// The largest share of a step that a search over cheap trials finds, less a millionth, and that a
 /// dear one confirms. Where it confirms none of that size, all trials are dear.
 pub(crate) fn confirmed_step(
-    cheap: impl Fn(f64) -> Option<f64>,
-    dear: impl Fn(f64) -> Option<f64>,
+    cheap: &dyn Fn(f64) -> Option<f64>,
+    dear: &dyn Fn(f64) -> Option<f64>,
 ) -> f64 {
     let found = search(1.0, ROUGHLY, cheap);
     let whole = (found >= 1.0).then_some(1.0);
@@ -77,7 +77,7 @@ fn search_of<R>(trial: impl FnOnce() -> R) -> Option<R> {
     Some(trial())
 }
 
-fn search(h: f64, precision: f64, solvable: impl Fn(f64) -> Option<f64>) -> f64 {
+fn search(h: f64, precision: f64, solvable: &dyn Fn(f64) -> Option<f64>) -> f64 {
     let Some(_search) = Search::begin() else {
         return 0.0;
     };
@@ -88,10 +88,10 @@ fn search(h: f64, precision: f64, solvable: impl Fn(f64) -> Option<f64>) -> f64 
     let mut refused = 1.0;
     let mut found = 0.0;
     for _ in 0..RETURNS {
-        let Some((low, high)) = bracket(refused, fits) else {
+        let Some((low, high)) = bracket(refused, &fits) else {
             return 0.0;
         };
-        found = between(low, high, precision, fits);
+        found = between(low, high, precision, &fits);
         let mut tried = SHORTER.iter().map(|share| found * share);
         match tried.rfind(|share| !fits(*share)) {
             None => break,
@@ -125,7 +125,7 @@ impl Drop for Search {
 
 /// Two shares of the step below `refused`: one that does, as do some shorter ones, and a longer
 /// one that does not.
-fn bracket(refused: f64, fits: impl Fn(f64) -> bool) -> Option<(f64, f64)> {
+fn bracket(refused: f64, fits: &dyn Fn(f64) -> bool) -> Option<(f64, f64)> {
     let (mut share, mut shortest_refused) = (refused, refused);
     let mut longest = None;
     let mut confirmed = 0;
@@ -147,7 +147,7 @@ fn bracket(refused: f64, fits: impl Fn(f64) -> bool) -> Option<(f64, f64)> {
 
 /// The boundary between a share that does and one that does not, less a part of at most
 /// `precision`.
-fn between(mut low: f64, mut high: f64, precision: f64, fits: impl Fn(f64) -> bool) -> f64 {
+fn between(mut low: f64, mut high: f64, precision: f64, fits: &dyn Fn(f64) -> bool) -> f64 {
     // Octaves first.
     while high > 4.0 * low {
         let middle = (low * high).sqrt();

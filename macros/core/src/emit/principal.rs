@@ -247,21 +247,19 @@ impl Principal<'_> {
                         None => None,
                     };
                     let equations = newton::Equations {
-                        residual: |trial: &#plain_elements| model.residual_at(step, &given, &momenta, trial),
-                        tangent: |#trial: &#plain_elements| {
+                        residual: &|trial: &#plain_elements| model.residual_at(step, &given, &momenta, trial),
+                        tangent: &|#trial: &#plain_elements| {
                             #at_trial
                             model.tangent_at(step, &near, #(#velocity_names),*)
                         },
-                        enclosed: |spread, #trial: &#regions| {
+                        enclosed: &|spread, #trial: &#regions| {
                             #at_trial
                             let values = newton::NodeValues::enclosed(#values, lane, spread);
                             bound.tangent_at(bound_step, &values, #(#velocity_names),*)
                         },
                     };
                     let care = certificate.care();
-                    let traced = newton::trace::<_, #regions, _, _, _, #dimension, #variables>(
-                        &equations, found.as_ref(), care,
-                    );
+                    let traced = newton::trace(&equations, found.as_ref(), care);
                     if let Some(root) = verdict.add(traced.map_err(|fold| fold.in_lane(lane))?) {
                         let all = verdict.root_mut();
                         #(#put)*

@@ -149,10 +149,9 @@ impl NewtonError {
             }
             Err(_) => None,
         };
-        let share = confirmed_step(
-            |share| tried(share, Search::to_try()),
-            |share| tried(share, Search::to_offer()),
-        );
+        let share = confirmed_step(&|share| tried(share, Search::to_try()), &|share| {
+            tried(share, Search::to_offer())
+        });
         let NewtonError { worst, lane, .. } = match share > 0.0 && share < 1.0 {
             true => nearest.get(),
             false => self,

@@ -7,22 +7,19 @@ use super::node::Spread;
 use super::principal::{Equations, Stage, Traced, fits};
 use super::region::Strain;
 use crate::groups::Group;
-use crate::scalar::Enclosure;
-use nalgebra::SMatrix;
 
 /// How much larger than the velocity at hand the regions are.
 const TIMES: [f64; 5] = [1.5, 1.8, 2.4, 4.0, 8.0];
 
 /// Looks for the largest reach of at least `wanted`.
-pub(super) fn lasting<G, E, R, A, B, const D: usize, const K: usize>(
-    equations: &Equations<R, A, B>,
+pub(super) fn lasting<G, E, const D: usize, const K: usize>(
+    equations: &Equations<G, E, D, K>,
     rest: &Stage<G, D>,
     wanted: &[f64; D],
 ) -> Option<Traced<G, D>>
 where
     G: Group<f64>,
     E: Region<K, Centre = G>,
-    B: Fn(Spread, &E) -> SMatrix<Enclosure<K>, D, D>,
 {
     let strain = |radii: &[f64; D]| {
         let region = E::around(&G::identity(), radii, 0);

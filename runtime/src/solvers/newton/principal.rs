@@ -110,14 +110,15 @@ impl Fold {
     }
 }
 
-/// The equations of one lane.
-pub struct Equations<R, A, B> {
+/// The equations of one lane. What follows the curve is compiled once for each group, not for every
+/// model and scalar.
+pub struct Equations<'a, G, E, const D: usize, const K: usize> {
     /// The residual `T(Ω) - m`.
-    pub residual: R,
+    pub residual: &'a dyn Fn(&G) -> SVector<f64, D>,
     /// The tangent of `T` along the algebra.
-    pub tangent: A,
+    pub tangent: &'a dyn Fn(&G) -> SMatrix<f64, D, D>,
     /// The tangent at all elements of a region, for all nodes as near as that.
-    pub enclosed: B,
+    pub enclosed: &'a dyn Fn(Spread, &E) -> SMatrix<Enclosure<K>, D, D>,
 }
 
 /// Finds the principal root, or shows that `solution` is.
@@ -126,17 +127,14 @@ pub struct Equations<R, A, B> {
 /// [`Fold`] where there is none, as far as can be followed.
 #[cold]
 #[inline(never)]
-pub fn trace<G, E, R, A, B, const D: usize, const K: usize>(
-    equations: &Equations<R, A, B>,
+pub fn trace<G, E, const D: usize, const K: usize>(
+    equations: &Equations<G, E, D, K>,
     solution: Option<&G>,
     care: Care,
 ) -> Result<Traced<G, D>, Fold>
 where
     G: Group<f64>,
     E: Region<K, Centre = G>,
-    R: Fn(&G) -> SVector<f64, D>,
-    A: Fn(&G) -> SMatrix<f64, D, D>,
-    B: Fn(Spread, &E) -> SMatrix<Enclosure<K>, D, D>,
 {
     let rest = G::identity();
     let at_rest = (equations.residual)(&rest);
@@ -167,8 +165,8 @@ where
 }
 
 /// Follows the curve stage by stage from rest, each stage proved or foreseen from its end.
-fn follow<G, E, R, A, B, const D: usize, const K: usize>(
-    equations: &Equations<R, A, B>,
+fn follow<G, E, const D: usize, const K: usize>(
+    equations: &Equations<G, E, D, K>,
     rest: Stage<G, D>,
     solution: Option<&G>,
     proved: bool,
@@ -176,9 +174,6 @@ fn follow<G, E, R, A, B, const D: usize, const K: usize>(
 where
     G: Group<f64>,
     E: Region<K, Centre = G>,
-    R: Fn(&G) -> SVector<f64, D>,
-    A: Fn(&G) -> SMatrix<f64, D, D>,
-    B: Fn(Spread, &E) -> SMatrix<Enclosure<K>, D, D>,
 {
     let at_rest = rest.residual;
     let units = rest.units();
@@ -209,7 +204,7 @@ where
             let own = self::lengths::<G, D>(&toward);
             radii = course.map(|x| MARGIN * length * x);
             let (moved, strain) = match proved {
-                true => stage.move_within::<E, R, A, B, K>(equations, &radii, &own),
+                true => stage.move_within::<E, K>(equations, &radii, &own),
                 false => stage.move_foreseen(equations, &toward, &radii, &own),
             };
             // Lengths are in proportion to strains.
@@ -308,15 +303,11 @@ pub(super) struct Stage<G, const D: usize> {
 
 impl<G: Group<f64>, const D: usize> Stage<G, D> {
     /// `None` where the tangent is singular or not finite.
-    fn at<R, A, B>(
-        equations: &Equations<R, A, B>,
+    fn at<E, const K: usize>(
+        equations: &Equations<G, E, D, K>,
         element: G,
         residual: SVector<f64, D>,
-    ) -> Option<Self>
-    where
-        R: Fn(&G) -> SVector<f64, D>,
-        A: Fn(&G) -> SMatrix<f64, D, D>,
-    {
+    ) -> Option<Self> {
         let tangent = (equations.tangent)(&element);
         let inverse = scaled_inverse(&tangent, G::DIMENSION.min(D))?;
         Some(Self {
@@ -356,38 +347,34 @@ impl<G: Group<f64>, const D: usize> Stage<G, D> {
 
     /// A bound of how far the velocity moves, part by part, where the equations move by `own`
     /// seen through `B`; holds if it does not exceed the radii. The strain besides.
-    fn move_within<E, R, A, B, const K: usize>(
+    fn move_within<E, const K: usize>(
         &self,
-        equations: &Equations<R, A, B>,
+        equations: &Equations<G, E, D, K>,
         radii: &[f64; D],
         own: &[f64; D],
     ) -> (Option<[f64; D]>, f64)
     where
         E: Region<K, Centre = G>,
-        B: Fn(Spread, &E) -> SMatrix<Enclosure<K>, D, D>,
     {
-        let whole = self.strain::<E, R, A, B, K>(equations, radii);
+        let whole = self.strain::<E, K>(equations, radii);
         let moved = whole.spread(own).and_then(|moved| {
             if fits::<G, D>(&moved, radii) {
                 return Some(moved);
             }
-            let half = self.strain::<E, R, A, B, K>(equations, &radii.map(|r| 0.5 * r));
+            let half = self.strain::<E, K>(equations, &radii.map(|r| 0.5 * r));
             whole.mean(&half).spread(own)
         });
         (moved, whole.largest(radii))
     }
 
     /// The same with the tangent at one point in place of all of them.
-    fn move_foreseen<R, A, B>(
+    fn move_foreseen<E, const K: usize>(
         &self,
-        equations: &Equations<R, A, B>,
+        equations: &Equations<G, E, D, K>,
         toward: &SVector<f64, D>,
         radii: &[f64; D],
         own: &[f64; D],
-    ) -> (Option<[f64; D]>, f64)
-    where
-        A: Fn(&G) -> SMatrix<f64, D, D>,
-    {
+    ) -> (Option<[f64; D]>, f64) {
         let end = self.element.retract((toward * MARGIN).as_slice());
         let whole = Strain::of::<G>(&(self.inverse * (equations.tangent)(&end)));
         let regular = whole.spread(own).is_some();
@@ -396,14 +383,13 @@ impl<G: Group<f64>, const D: usize> Stage<G, D> {
     }
 
     /// The strain over the region around this point.
-    fn strain<E, R, A, B, const K: usize>(
+    fn strain<E, const K: usize>(
         &self,
-        equations: &Equations<R, A, B>,
+        equations: &Equations<G, E, D, K>,
         radii: &[f64; D],
     ) -> Strain<D>
     where
         E: Region<K, Centre = G>,
-        B: Fn(Spread, &E) -> SMatrix<Enclosure<K>, D, D>,
     {
         let region = E::around(&self.element, radii, 0);
         let tangent = (equations.enclosed)(Spread::HERE, &region);
@@ -411,17 +397,13 @@ impl<G: Group<f64>, const D: usize> Stage<G, D> {
     }
 
     /// The only point of the region where the residual is `goal`.
-    fn solve<R, A, B>(
+    fn solve<E, const K: usize>(
         &self,
-        equations: &Equations<R, A, B>,
+        equations: &Equations<G, E, D, K>,
         first: &SVector<f64, D>,
         goal: &SVector<f64, D>,
         radii: &[f64; D],
-    ) -> Option<G>
-    where
-        R: Fn(&G) -> SVector<f64, D>,
-        A: Fn(&G) -> SMatrix<f64, D, D>,
-    {
+    ) -> Option<G> {
         let mut at = self.element.retract(first.as_slice());
         for _ in 0..MOST_CORRECTIONS {
             let inverse = scaled_inverse(&(equations.tangent)(&at), G::DIMENSION.min(D))?;
