@@ -601,15 +601,15 @@ pub mod body_in_quadratic_field {
             after: &BodyInQuadraticFieldState<T>,
         ) -> T {
             let BodyInQuadraticFieldParameters { J, K, .. } = self.parameters;
+            let Ω_matrix = (before.Λ.inverse() * after.Λ).matrix();
             let Λ = before.Λ.matrix();
             let Γ_reference = before.Γ;
             let Γ = Λ.tr_mul(&Γ_reference);
-            let Ω = (before.Λ.inverse() * after.Λ).matrix();
             let Λ_next = after.Λ.matrix();
-            let Γ_reference = after.Γ;
+            let Γ_reference = before.Γ;
             let Γ_next = Λ_next.tr_mul(&Γ_reference);
             let t1 = h.powi(-2);
-            t1 * J.trace() - t1 * (J * Ω).trace()
+            t1 * J.trace() - t1 * (J * Ω_matrix).trace()
                 + T::from_f64(0.25) * Γ.dot(&(K * Γ))
                 + T::from_f64(0.25) * Γ_next.dot(&(K * Γ_next))
         }

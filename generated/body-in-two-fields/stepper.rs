@@ -608,17 +608,17 @@ pub mod body_in_two_fields {
             after: &BodyInTwoFieldsState<T>,
         ) -> T {
             let BodyInTwoFieldsParameters { J, gU, p, z, b, .. } = self.parameters;
+            let Ω_matrix = (before.Λ.inverse() * after.Λ).matrix();
             let Λ = before.Λ.matrix();
             let Γ = Λ.tr_mul(&z);
             let B = Λ.tr_mul(&b);
-            let Ω = (before.Λ.inverse() * after.Λ).matrix();
             let Λ_next = after.Λ.matrix();
             let Γ_next = Λ_next.tr_mul(&z);
             let B_next = Λ_next.tr_mul(&b);
             let t1 = h.powi(-2);
-            t1 * J.trace() - t1 * (J * Ω).trace() + T::from_f64(0.5) * gU.dot(&Γ)
-                + T::from_f64(0.5) * gU.dot(&Γ_next) - T::from_f64(0.5) * p.dot(&B)
-                - T::from_f64(0.5) * p.dot(&B_next)
+            t1 * J.trace() - t1 * (J * Ω_matrix).trace()
+                + T::from_f64(0.5) * gU.dot(&Γ) + T::from_f64(0.5) * gU.dot(&Γ_next)
+                - T::from_f64(0.5) * p.dot(&B) - T::from_f64(0.5) * p.dot(&B_next)
         }
     }
     /// One trajectory of the model, its type hidden.

@@ -403,9 +403,9 @@ pub mod body_n {
             after: &BodyNState<N, T>,
         ) -> T {
             let BodyNParameters { C, .. } = self.parameters;
-            let Ω = (before.Λ.inverse() * after.Λ).matrix();
+            let Ω_matrix = (before.Λ.inverse() * after.Λ).matrix();
             let t1 = h.powi(-2);
-            t1 * C.trace() - t1 * (C * Ω.transpose()).trace()
+            t1 * C.trace() - t1 * (C * Ω_matrix.transpose()).trace()
         }
     }
     /// One trajectory of the model, its type hidden.

@@ -490,14 +490,14 @@ pub mod cayley_klein_spatial {
             after: &CayleyKleinSpatialState<T>,
         ) -> T {
             let CayleyKleinSpatialParameters { c, .. } = self.parameters;
+            let w_matrix = (after.q * before.q.inverse()).matrix();
             let q = before.q.matrix();
             let I_reference = before.I;
             let I = quaternion_rotation(&q)
                 * (I_reference * quaternion_rotation(&q).transpose());
-            let w = (after.q * before.q.inverse()).matrix();
-            let t1 = quaternion_imaginary(&w);
+            let t1 = quaternion_imaginary(&w_matrix);
             (T::from_f64(2.0) * t1.dot(&((I - SMatrix::<T, 3, 3>::identity() * c) * t1)))
-                / (h * h) - (T::from_f64(4.0) * c * quaternion_real(&w)) / (h * h)
+                / (h * h) - (T::from_f64(4.0) * c * quaternion_real(&w_matrix)) / (h * h)
                 + (T::from_f64(4.0) * c) / (h * h)
         }
     }

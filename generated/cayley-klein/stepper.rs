@@ -420,10 +420,10 @@ pub mod cayley_klein {
             after: &CayleyKleinState<T>,
         ) -> T {
             let CayleyKleinParameters { I, c, .. } = self.parameters;
-            let W = (before.q.inverse() * after.q).matrix();
-            let t1 = quaternion_imaginary(&W);
+            let W_matrix = (before.q.inverse() * after.q).matrix();
+            let t1 = quaternion_imaginary(&W_matrix);
             (T::from_f64(2.0) * t1.dot(&((I - SMatrix::<T, 3, 3>::identity() * c) * t1)))
-                / (h * h) - (T::from_f64(4.0) * c * quaternion_real(&W)) / (h * h)
+                / (h * h) - (T::from_f64(4.0) * c * quaternion_real(&W_matrix)) / (h * h)
                 + (T::from_f64(4.0) * c) / (h * h)
         }
     }

@@ -882,17 +882,18 @@ pub mod coupled_bodies {
             after: &CoupledBodiesState<T>,
         ) -> T {
             let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
+            let Ω1_matrix = (before.Λ1.inverse() * after.Λ1).matrix();
+            let Ω2_matrix = (before.Λ2.inverse() * after.Λ2).matrix();
             let Λ1 = before.Λ1.matrix();
             let Λ2 = before.Λ2.matrix();
             let R = Λ1.tr_mul(&Λ2);
-            let Ω1 = (before.Λ1.inverse() * after.Λ1).matrix();
-            let Ω2 = (before.Λ2.inverse() * after.Λ2).matrix();
-            J1.trace() / (h * h) - (J1 * Ω1).trace() / (h * h)
-                - (J2 * Ω2).trace() / (h * h)
+            J1.trace() / (h * h) - (J1 * Ω1_matrix).trace() / (h * h)
+                - (J2 * Ω2_matrix).trace() / (h * h)
                 - (eps
-                    * ((Ω1 - SMatrix::<T, 3, 3>::identity()) * d1)
-                        .dot(&(R * ((Ω2 - SMatrix::<T, 3, 3>::identity()) * d2))))
-                    / (h * h) + J2.trace() / (h * h)
+                    * ((Ω1_matrix - SMatrix::<T, 3, 3>::identity()) * d1)
+                        .dot(
+                            &(R * ((Ω2_matrix - SMatrix::<T, 3, 3>::identity()) * d2)),
+                        )) / (h * h) + J2.trace() / (h * h)
         }
     }
     /// One trajectory of the model, its type hidden.

@@ -488,12 +488,12 @@ pub mod free_body_spatial {
             before: &FreeBodySpatialState<T>,
             after: &FreeBodySpatialState<T>,
         ) -> T {
+            let ω_matrix = (after.Λ * before.Λ.inverse()).matrix();
             let Λ = before.Λ.matrix();
             let J_reference = before.J;
             let J = Λ * (J_reference * Λ.transpose());
-            let ω = (after.Λ * before.Λ.inverse()).matrix();
             let t1 = h.powi(-2);
-            t1 * J.trace() - t1 * (ω * J).trace()
+            t1 * J.trace() - t1 * (ω_matrix * J).trace()
         }
     }
     /// One trajectory of the model, its type hidden.

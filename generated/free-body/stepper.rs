@@ -410,9 +410,9 @@ pub mod free_body {
             after: &FreeBodyState<T>,
         ) -> T {
             let FreeBodyParameters { J, .. } = self.parameters;
-            let Ω = (before.Λ.inverse() * after.Λ).matrix();
+            let Ω_matrix = (before.Λ.inverse() * after.Λ).matrix();
             let t1 = h.powi(-2);
-            t1 * J.trace() - t1 * (J * Ω).trace()
+            t1 * J.trace() - t1 * (J * Ω_matrix).trace()
         }
     }
     /// One trajectory of the model, its type hidden.

@@ -677,17 +677,18 @@ pub mod heavy_top_spatial {
             after: &HeavyTopSpatialState<T>,
         ) -> T {
             let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
+            let ω_matrix = (after.Λ * before.Λ.inverse()).matrix();
             let Λ = before.Λ.matrix();
             let J_reference = before.J;
             let J = Λ * (J_reference * Λ.transpose());
             let χ_reference = before.χ;
             let χ = Λ * χ_reference;
-            let ω = (after.Λ * before.Λ.inverse()).matrix();
             let Λ_next = after.Λ.matrix();
-            let χ_reference = after.χ;
+            let χ_reference = before.χ;
             let χ_next = Λ_next * χ_reference;
             let t1 = h.powi(-2);
-            t1 * J.trace() - t1 * (ω * J).trace() + T::from_f64(0.5) * w * z.dot(&χ)
+            t1 * J.trace() - t1 * (ω_matrix * J).trace()
+                + T::from_f64(0.5) * w * z.dot(&χ)
                 + T::from_f64(0.5) * w * z.dot(&χ_next)
         }
     }

@@ -561,14 +561,14 @@ pub mod heavy_top {
             after: &HeavyTopState<T>,
         ) -> T {
             let HeavyTopParameters { J, gU, z, .. } = self.parameters;
+            let Ω_matrix = (before.Λ.inverse() * after.Λ).matrix();
             let Λ = before.Λ.matrix();
             let Γ = Λ.tr_mul(&z);
-            let Ω = (before.Λ.inverse() * after.Λ).matrix();
             let Λ_next = after.Λ.matrix();
             let Γ_next = Λ_next.tr_mul(&z);
             let t1 = h.powi(-2);
-            t1 * J.trace() - t1 * (J * Ω).trace() + T::from_f64(0.5) * gU.dot(&Γ)
-                + T::from_f64(0.5) * gU.dot(&Γ_next)
+            t1 * J.trace() - t1 * (J * Ω_matrix).trace()
+                + T::from_f64(0.5) * gU.dot(&Γ) + T::from_f64(0.5) * gU.dot(&Γ_next)
         }
     }
     /// One trajectory of the model, its type hidden.

@@ -1021,13 +1021,13 @@ pub mod kirchhoff_body {
             after: &KirchhoffBodyState<T>,
         ) -> T {
             let KirchhoffBodyParameters { J, M, D, b, Z, .. } = self.parameters;
+            let V_matrix = (before.G.inverse() * after.G).matrix();
             let G = before.G.matrix();
             let P = G.tr_mul(&Z);
-            let V = (before.G.inverse() * after.G).matrix();
             let G_next = after.G.matrix();
             let P_next = G_next.tr_mul(&Z);
-            let t1 = motion_rotation(&V);
-            let t2 = motion_translation(&V);
+            let t1 = motion_rotation(&V_matrix);
+            let t2 = motion_translation(&V_matrix);
             let t3 = t2 + t1.tr_mul(&t2);
             (T::from_f64(2.0)
                 * (t3 * T::from_f64(0.5)).dot(&(M * t3 * T::from_f64(0.5))))

@@ -216,7 +216,7 @@ mod tests {
                 trials.set(trials.get() + 1);
                 (share < bound).then_some(0.0)
             };
-            let found = confirmed_step(|x| below(bound, &cheap, x), |x| below(bound, &dear, x));
+            let found = confirmed_step(&|x| below(bound, &cheap, x), &|x| below(bound, &dear, x));
             let wanted = bound.min(1.0);
             assert!(
                 wanted * (1.0 - 2e-6) < found && found <= wanted,
@@ -229,7 +229,7 @@ mod tests {
             // Dear trials refuse more: a little, then nearly all.
             for refused in [0.95 * bound, 1e-5 * bound] {
                 let found =
-                    confirmed_step(|x| below(bound, &cheap, x), |x| below(refused, &dear, x));
+                    confirmed_step(&|x| below(bound, &cheap, x), &|x| below(refused, &dear, x));
                 assert!(
                     0.9 * refused.min(1.0) < found && found <= refused.min(1.0),
                     "{found}"

@@ -6,6 +6,7 @@
 
 mod common;
 mod composition;
+mod discrete_energy;
 mod forced;
 mod free;
 mod groups;

@@ -1,16 +1,14 @@
 //! `discrete_energy`: how the action of the step between two nodes falls when the step grows.
 //! Takes the derived expression; gives a function of two consecutive states.
 
-use super::expression::{Bindings, program};
-use super::items::{letters_of, node_locals, parameter_locals, text, with_transports};
-use super::names::{Names, item, own, variable};
+use super::between::{Edge, edge_between};
+use super::expression::program;
+use super::items::text;
+use super::names::{Names, item, variable};
 use super::sizes::Generics;
-use super::step::at;
-use crate::check::spec::Side;
 use crate::derive::Derivation;
-use crate::expr::Shift;
 use crate::schedule;
-use proc_macro2::{Ident, TokenStream};
+use proc_macro2::TokenStream;
 use quote::quote;
 
 /// The function.
@@ -21,37 +19,13 @@ pub fn discrete_energy(d: &Derivation, names: &Names) -> TokenStream {
     let g = Generics::of(d);
     let (bound, used) = (g.bound(), g.used());
     let (before, after) = (names.local("before"), names.local("after"));
-    let needed = letters_of([&energy.value]);
-    let mut all = with_transports(d, &needed, 0);
-    all.extend(with_transports(d, &needed, 1));
-    let parameters = parameter_locals(d, quote!(self.parameters), &all);
-    let mut bindings = Bindings::new();
-    let node = |source: &Ident, level: i8, bindings: &mut Bindings| {
-        let element = |i: usize| {
-            let e = own(d, d.spec.configurations[i].element);
-            quote!(#source.#e.matrix())
-        };
-        let reference = |id| {
-            let r = own(d, id);
-            quote!(#source.#r)
-        };
-        node_locals(d, names, level, &needed, &element, &reference, bindings)
-    };
-    let here = node(&before, 0, &mut bindings);
-    let mut velocities = TokenStream::new();
-    for c in &d.spec.configurations {
-        let (e, local) = (own(d, c.element), variable(s, c.velocity));
-        let value = match c.side {
-            Side::Body => quote!((#before.#e.inverse() * #after.#e).matrix()),
-            Side::Spatial => quote!((#after.#e * #before.#e.inverse()).matrix()),
-        };
-        if needed.contains(&at(c.velocity, Shift::HERE)) {
-            velocities.extend(quote!(let #local = #value;));
-        }
-        bindings.bind(at(c.velocity, Shift::HERE), local);
-    }
-    let next = node(&after, 1, &mut bindings);
-    let p = schedule::program(s, std::slice::from_ref(&energy.value), "t");
+    let wanted = std::slice::from_ref(&energy.value);
+    let Edge {
+        parameters,
+        locals,
+        bindings,
+    } = edge_between(d, names, wanted);
+    let p = schedule::program(s, wanted, "t");
     let (lets, values) = program(&p, &bindings);
     let (value, step) = (&values[0], variable(s, d.spec.step));
     let (how, why) = d.discrete_energy();
@@ -69,9 +43,7 @@ pub fn discrete_energy(d: &Derivation, names: &Names) -> TokenStream {
                 #after: &#state #used,
             ) -> T {
                 #parameters
-                #here
-                #velocities
-                #next
+                #locals
                 #lets
                 #value
             }
