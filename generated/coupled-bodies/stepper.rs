@@ -208,7 +208,7 @@ pub mod coupled_bodies {
                 let trial = iteration.trial();
                 if iteration.wants_scale() {
                     iteration
-                        .set_scale(|lane| {
+                        .set_scale(move |lane| {
                             self
                                 .rounding(h, &(newton::Turn(R), []), &momenta, &trial, lane)
                         });
@@ -264,9 +264,9 @@ pub mod coupled_bodies {
                         if let Some(solved) = self
                             .settled(
                                 h,
-                                state,
-                                &(newton::Turn(R), []),
-                                &momenta,
+                                *state,
+                                (newton::Turn(R), []),
+                                momenta,
                                 &mut iteration,
                                 ended,
                             )?
@@ -311,9 +311,9 @@ pub mod coupled_bodies {
         fn settled(
             &self,
             h: T,
-            state: &CoupledBodiesState<T>,
-            given: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
-            momenta: &[SVector<T, 3>; 2],
+            state: CoupledBodiesState<T>,
+            given: (newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
+            momenta: [SVector<T, 3>; 2],
             iteration: &mut newton::Newton<
                 '_,
                 T,
@@ -331,7 +331,7 @@ pub mod coupled_bodies {
             let asked = failed.as_ref().ok().map(|solved| &solved.element);
             let values = iteration.values();
             let traced = self
-                .principal(h, given, &values, momenta, iteration.certificate(), asked);
+                .principal(h, &given, &values, &momenta, iteration.certificate(), asked);
             let e = match (traced, failed) {
                 (Ok(None), Ok(solved)) => return Ok(Some(solved)),
                 (Ok(Some(root)), _) if iteration.restart(root) => return Ok(None),
@@ -339,7 +339,7 @@ pub mod coupled_bodies {
                 (Ok(_), Ok(_)) => iteration.unpolished(),
                 (Err(fold), failed) => iteration.folded(fold, failed.err()),
             };
-            Err(self.refused(*state, h, e))
+            Err(self.refused(state, h, e))
         }
         /// Says which equation is worst, and which step could be solved.
         #[cold]

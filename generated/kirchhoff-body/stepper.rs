@@ -179,7 +179,7 @@ pub mod kirchhoff_body {
                 let trial = iteration.trial();
                 if iteration.wants_scale() {
                     iteration
-                        .set_scale(|lane| {
+                        .set_scale(move |lane| {
                             self.rounding(h, &(P, []), &momenta, &trial, lane)
                         });
                 }
@@ -261,14 +261,7 @@ pub mod kirchhoff_body {
                     ) if iteration.is_principal(&solved.element) => break solved,
                     ended => {
                         if let Some(solved) = self
-                            .settled(
-                                h,
-                                state,
-                                &(P, []),
-                                &momenta,
-                                &mut iteration,
-                                ended,
-                            )?
+                            .settled(h, *state, (P, []), momenta, &mut iteration, ended)?
                         {
                             break solved;
                         }
@@ -334,9 +327,9 @@ pub mod kirchhoff_body {
         fn settled(
             &self,
             h: T,
-            state: &KirchhoffBodyState<T>,
-            given: &(SVector<T, 4>, [T; 0]),
-            momenta: &[SVector<T, 3>; 2],
+            state: KirchhoffBodyState<T>,
+            given: (SVector<T, 4>, [T; 0]),
+            momenta: [SVector<T, 3>; 2],
             iteration: &mut newton::Newton<
                 '_,
                 T,
@@ -354,7 +347,7 @@ pub mod kirchhoff_body {
             let asked = failed.as_ref().ok().map(|solved| &solved.element);
             let values = iteration.values();
             let traced = self
-                .principal(h, given, &values, momenta, iteration.certificate(), asked);
+                .principal(h, &given, &values, &momenta, iteration.certificate(), asked);
             let e = match (traced, failed) {
                 (Ok(None), Ok(solved)) => return Ok(Some(solved)),
                 (Ok(Some(root)), _) if iteration.restart(root) => return Ok(None),
@@ -362,7 +355,7 @@ pub mod kirchhoff_body {
                 (Ok(_), Ok(_)) => iteration.unpolished(),
                 (Err(fold), failed) => iteration.folded(fold, failed.err()),
             };
-            Err(self.refused(*state, h, e))
+            Err(self.refused(state, h, e))
         }
         /// Says which equation is worst, and which step could be solved.
         #[cold]

@@ -230,6 +230,15 @@ pub fn with_transports(d: &Derivation, needed: &[Letter], level: i8) -> Vec<Lett
     all
 }
 
+/// How the quantities go on that no constant reference tells: from the values at the node and the
+/// velocity.
+pub fn advances(d: &Derivation) -> impl Iterator<Item = &Expr> {
+    let pairs = d.spec.advected.iter().zip(&d.transports);
+    pairs
+        .filter(|(_, t)| matches!(t, Transport::Advanced))
+        .map(|(a, _)| &a.update)
+}
+
 /// Locals for what is known at one node: matrices of the elements and advected quantities, as far
 /// as `needed` asks for them. `element(i)` gives the matrix, `reference(id)` the
 /// value at the identity.

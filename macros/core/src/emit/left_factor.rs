@@ -4,7 +4,7 @@
 
 use super::element::{self, Family, family};
 use super::expression::{Bindings, Writer, program, ty as quantity};
-use super::items::{letters_of, parameter_locals, text, with_transports};
+use super::items::{advances, letters_of, parameter_locals, text, with_transports};
 use super::names::{Names, item, own, per_configuration, tagged, variable};
 use super::sizes::{Generics, size};
 use super::step::{at, finish, here, step_signature};
@@ -279,8 +279,9 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
     let mut bindings = Bindings::new();
     let list: Vec<&Expr> = d.carries.iter().flat_map(Carry::parts).collect();
     let velocity = at(c.velocity, Shift::HERE);
-    let uses_velocity = list.iter().any(|e| expr::contains(e, velocity));
-    let mut needed: Vec<Letter> = letters_of(list.iter().copied());
+    let onwards = || list.iter().copied().chain(advances(d));
+    let uses_velocity = onwards().any(|e| expr::contains(e, velocity));
+    let mut needed: Vec<Letter> = letters_of(onwards());
     if let (Side::Body, [Carry::Through { leave, .. }], true) =
         (c.side, d.carries.as_slice(), rotations)
         && !leave.is_zero()
@@ -294,7 +295,14 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
     let matrix = uses_velocity.then(|| {
         let name = tagged(d, names, c.velocity, "matrix");
         bindings.bind(velocity, name.clone());
-        quote!(let #name = #omega.matrix();)
+        // What was solved for may be the velocity seen from the body.
+        match d.solve.turned {
+            Some(_) => {
+                let own = own(d, c.element);
+                quote!(let #name = (state.#own * #omega * state.#own.inverse()).matrix();)
+            }
+            None => quote!(let #name = #omega.matrix();),
+        }
     });
     let rest = finish(
         d,

@@ -4,7 +4,7 @@
 use super::element::{self, Bundle, Family, family};
 use super::equations::Equations;
 use super::expression::Bindings;
-use super::items::{letters_of, parameter_locals, with_transports};
+use super::items::{advances, letters_of, parameter_locals, with_transports};
 use super::names::{Names, item, own, per_configuration, tagged, variable};
 use super::principal::Principal;
 use super::sizes::Generics;
@@ -53,6 +53,7 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
         }
     }
     needed.extend(letters_of(d.carries.iter().flat_map(Carry::parts)));
+    needed.extend(letters_of(advances(d)));
     let mut all = with_transports(d, &needed, 0);
     all.extend(with_transports(d, &needed, 1));
     let parameters = parameter_locals(d, quote!(self.parameters), &all);
@@ -126,15 +127,17 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
         });
         quote! {
             if let Ok(solved) = &failed {
-                let mut moved = *state;
+                let mut moved = state;
                 #(#moves)*
-                if let Err(contact) = self.stays_inside(state, &moved, #step) {
-                    return Err(self.left_domain(state, #step, #newton.tries(), contact));
+                if let Err(contact) = self.stays_inside(&state, &moved, #step) {
+                    return Err(self.left_domain(&state, #step, #newton.tries(), contact));
                 }
             }
         }
     });
     let method = format!(" One step, in place. Solved thus: {}.", d.how_solved());
+    // What cold functions are given is copied where they are called: a value whose address is taken
+    // anywhere in the loop would live in memory.
     let step = quote! {
         #[doc = #method]
         ///
@@ -151,7 +154,7 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
             let #found: newton::Solved<#elements> = loop {
                 let #trial = #newton.trial();
                 if #newton.wants_scale() {
-                    #newton.set_scale(|#lane| self.rounding(#step, &#given, &#mu, &#trial, #lane));
+                    #newton.set_scale(move |#lane| self.rounding(#step, &#given, &#mu, &#trial, #lane));
                 }
                 #at_trial
                 if #newton.assess({ #residual_body }) {
@@ -161,7 +164,7 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
                     newton::Progress::Continue => {}
                     newton::Progress::Solved(#solved) if #newton.is_principal(&#solved.element) => break #solved,
                     #ended => {
-                        if let Some(#solved) = self.settled(#step, state, &#given, &#mu, &mut #newton, #ended)? {
+                        if let Some(#solved) = self.settled(#step, *state, #given, #mu, &mut #newton, #ended)? {
                             break #solved;
                         }
                     }
@@ -179,9 +182,9 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
         fn settled(
             &self,
             #step: T,
-            state: &#state #used,
-            given: &#given_type,
-            momenta: &#momenta_type,
+            state: #state #used,
+            given: #given_type,
+            momenta: #momenta_type,
             #newton: &mut newton::Newton<'_, T, #elements, #node_type #used, #dimension>,
             ended: newton::Progress<#elements>,
         ) -> Result<Option<newton::Solved<#elements>>, StepError> {
@@ -192,7 +195,7 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
             };
             let asked = failed.as_ref().ok().map(|solved| &solved.element);
             let values = #newton.values();
-            let traced = self.principal(#step, given, &values, momenta, #newton.certificate(), asked);
+            let traced = self.principal(#step, &given, &values, &momenta, #newton.certificate(), asked);
             let e = match (traced, failed) {
                 (Ok(None), Ok(solved)) => return Ok(Some(solved)),
                 (Ok(Some(root)), _) if #newton.restart(root) => return Ok(None),
@@ -203,7 +206,7 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
                     #newton.folded(fold, failed.err())
                 }
             };
-            Err(self.refused(*state, #step, e))
+            Err(self.refused(state, #step, e))
         }
 
         /// Says which equation is worst, and which step could be solved.
