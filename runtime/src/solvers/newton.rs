@@ -9,6 +9,7 @@ mod lasting;
 mod node;
 mod principal;
 mod region;
+mod stage;
 
 pub use crate::scalar::Enclosure;
 pub use bounds::{
@@ -353,14 +354,10 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_,
     #[inline(always)]
     pub fn is_principal(&self, solution: &G) -> bool {
         let certificate = &self.search.certificate;
-        certificate.holds(solution, &self.values) || self.is_anchored(solution)
-    }
-
-    /// Whether it is where it was looked for.
-    #[cold]
-    fn is_anchored(&self, solution: &G) -> bool {
-        let anchor = self.anchor.as_ref();
-        anchor.is_some_and(|a| a.root.inverse().compose(solution).is_within(&a.reach))
+        certificate.holds(solution, &self.values)
+            || self
+                .anchor
+                .is_some_and(|anchor| anchor.holds::<T>(*solution))
     }
 
     /// What a proof begins with.

@@ -12,6 +12,7 @@ mod free;
 mod groups;
 mod integrate;
 mod left_factor;
+mod linear_group;
 mod newton;
 mod order;
 mod principal;

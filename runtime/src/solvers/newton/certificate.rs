@@ -15,7 +15,7 @@ const PATIENCE: u32 = 16;
 const DRIFT: f64 = 0.25;
 
 /// Steps for which a proof made at one node serves where the tangent is another at every node.
-const LASTS: u32 = 16384;
+const LASTS: u32 = 65536;
 
 /// By how much the inverse of a later tangent may be larger than that at the proof, and what two
 /// parts may have in common besides, as a share of what each has by itself.
@@ -25,7 +25,7 @@ const COMMON: f64 = 0.2;
 /// Velocities that are principal roots: those whose coordinates do not exceed `reach`, part by
 /// part. Where the tangent is the same at every node, that is proved once for all steps.
 ///
-/// Elsewhere it is proved at `node`, and anew after 16384 steps. In between it serves at nodes
+/// Elsewhere it is proved at `node`, and anew after 65536 steps. In between it serves at nodes
 /// within `spread` of this one where the inverse of the tangent does not exceed `inverse`, part by
 /// part, which each new tangent is asked: the tangent moves with the velocity by the same order of
 /// magnitude everywhere, and where a fold comes near its inverse grows. A proof for each step costs
@@ -178,6 +178,18 @@ impl<V: NodeValues, const D: usize> Certificate<V, D> {
 pub struct Anchor<G, const D: usize> {
     pub(super) root: G,
     pub(super) reach: [f64; D],
+}
+
+impl<G: Copy, const D: usize> Anchor<G, D> {
+    /// Whether the solution is in that place.
+    #[cold]
+    pub(super) fn holds<T>(self, solution: G) -> bool
+    where
+        G: Group<T>,
+    {
+        let from = self.root.inverse().compose(&solution);
+        from.is_within(&self.reach)
+    }
 }
 
 /// What was found out of all lanes together.

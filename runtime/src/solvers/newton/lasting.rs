@@ -4,8 +4,9 @@
 
 use super::bounds::Region;
 use super::node::Spread;
-use super::principal::{Equations, Stage, Traced, fits};
+use super::principal::{Equations, Traced};
 use super::region::Strain;
+use super::stage::{Stage, fits};
 use crate::groups::Group;
 
 /// How much larger than the velocity at hand the regions are.

@@ -16,14 +16,17 @@
 use super::bounds::Region;
 use super::lasting::lasting;
 use super::node::Spread;
-use super::region::Strain;
+use super::region::largest;
+use super::stage::{MARGIN, Stage, fits, lengths};
 use crate::groups::Group;
-use crate::linalg::{balance, inverse_leading};
 use crate::scalar::Enclosure;
 use nalgebra::{SMatrix, SVector};
 
 /// Stages on the way; each leaves at most two thirds of what is left before a fold.
 const MOST_STAGES: usize = 1000;
+
+/// Stages that are proved: bounds so poor that more are needed take seconds.
+const MOST_PROOFS: usize = 64;
 
 /// What a step is worth that is looked at.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,21 +50,11 @@ const LONGER: f64 = 4.0;
 /// What is left of a stage that was not accepted, at most and at least.
 const SHORTER: [f64; 2] = [0.8, 0.2];
 
-/// Corrections by which a stage is solved.
-const MOST_CORRECTIONS: usize = 12;
-
-/// A stage is solved when its last correction is this part of the region, at most: that is
-/// quadratic in what is left. Close to a fold rounding permits no less.
-const SOLVED: f64 = 1e-6;
-
 /// Where nothing moves, regions have this size.
 const LITTLE: f64 = 1e-6;
 
 /// The root of a stage stays off the edge of its region.
 const INNER: f64 = 0.99;
-
-/// How much larger than what is needed a region is tried.
-const MARGIN: f64 = 1.6;
 
 /// What was found out about a solution of one lane.
 #[derive(Clone, Copy, Debug)]
@@ -155,13 +148,13 @@ where
             return Ok(proved);
         }
     }
-    // A refusal needs no proof: what cannot be followed without one is not followed with one, a
-    // hundred times more slowly.
-    let foreseen = follow(equations, stage, solution, false)?;
-    match care.proved {
-        true => follow(equations, stage, solution, true),
-        false => Ok(foreseen),
+    // What cannot be followed without a proof is not followed with one, a hundred times more slowly.
+    let mut found = follow(equations, stage, solution, false);
+    if found.is_ok() && care.proved {
+        found = follow(equations, stage, solution, true);
     }
+    // That there is no proof does not mean that there is a fold.
+    found.or_else(|_| closely(equations, stage, solution))
 }
 
 /// Follows the curve stage by stage from rest, each stage proved or foreseen from its end.
@@ -185,7 +178,8 @@ where
     // What the velocity moves by on the way, in every direction a little.
     let mut course = course(&lengths, &units, 1.0);
     let mut radii = [0.0; D];
-    for _ in 0..MOST_STAGES {
+    let most_stages = if proved { MOST_PROOFS } else { MOST_STAGES };
+    for _ in 0..most_stages {
         if share >= 1.0 {
             break;
         }
@@ -242,6 +236,69 @@ where
     Err(fold(share, &whole))
 }
 
+/// How much the tangent may change to the middle and to the end of a short stage.
+const SHORT: f64 = 0.5;
+
+/// The shortest of those, as a part of the way.
+const SHORTEST_SHORT: f64 = 1e-6;
+
+/// Follows the curve in short stages where a proof fails: bounds over a region are poor where the
+/// coordinates are ill conditioned, as at nearly singular elements of GL(n). The tangent is looked
+/// at in the middle and at the end of each stage, its root is solved for; not a proof.
+fn closely<G, E, const D: usize, const K: usize>(
+    equations: &Equations<G, E, D, K>,
+    rest: Stage<G, D>,
+    solution: Option<&G>,
+) -> Result<Traced<G, D>, Fold>
+where
+    G: Group<f64>,
+{
+    let (at_rest, units) = (rest.residual, rest.units());
+    let (mut stage, mut share, mut length) = (rest, 0.0, 1.0_f64);
+    for _ in 0..MOST_STAGES {
+        let left = 1.0 - share;
+        length = length.min(left);
+        let end = if length >= left { 1.0 } else { share + length };
+        let goal = at_rest * (1.0 - end);
+        let toward = stage.toward(&goal);
+        let fold = || Fold::at(share, fastest::<G, D>(&toward, &units));
+        if length < SHORTEST_SHORT {
+            return Err(fold());
+        }
+        let radii = course(&lengths::<G, D>(&toward), &units, 1.0);
+        let strains = [0.5, 1.0].map(|part| stage.strain_at(equations, &(toward * part)));
+        let strain = strains
+            .map(|x| x.largest(&radii))
+            .into_iter()
+            .fold(0.0, largest);
+        let within = radii.map(|r| 2.0 * r);
+        let next = match strain <= SHORT {
+            true => stage.solve(equations, &toward, &goal, &within),
+            false => None,
+        };
+        let [most, least] = SHORTER;
+        let longer = match strain.is_nan() {
+            true => least,
+            false => (0.5 * SHORT / strain).clamp(least, LONGER),
+        };
+        let Some(next) = next else {
+            length *= longer.min(most);
+            continue;
+        };
+        if end >= 1.0 {
+            return Ok(verdict(next, &radii, solution));
+        }
+        let residual = (equations.residual)(&next);
+        stage = Stage::at(equations, next, residual).ok_or_else(fold)?;
+        share = end;
+        length *= longer;
+    }
+    Err(Fold::at(
+        share,
+        fastest::<G, D>(&stage.toward(&SVector::zeros()), &units),
+    ))
+}
+
 /// How far each part moves per way to the momenta, at least a little in every direction.
 fn course<const D: usize>(lengths: &[f64; D], units: &[f64; D], rate: f64) -> [f64; D] {
     let shares = lengths.iter().zip(units).map(|(x, u)| x / u);
@@ -290,167 +347,4 @@ fn verdict<G: Group<f64>, const D: usize>(
         },
         _ => Traced::Elsewhere { root, reach },
     }
-}
-
-/// The beginning of a stage: a point of the curve.
-#[derive(Clone, Copy)]
-pub(super) struct Stage<G, const D: usize> {
-    element: G,
-    residual: SVector<f64, D>,
-    tangent: SMatrix<f64, D, D>,
-    inverse: SMatrix<f64, D, D>,
-}
-
-impl<G: Group<f64>, const D: usize> Stage<G, D> {
-    /// `None` where the tangent is singular or not finite.
-    fn at<E, const K: usize>(
-        equations: &Equations<G, E, D, K>,
-        element: G,
-        residual: SVector<f64, D>,
-    ) -> Option<Self> {
-        let tangent = (equations.tangent)(&element);
-        let inverse = scaled_inverse(&tangent, G::DIMENSION.min(D))?;
-        Some(Self {
-            element,
-            residual,
-            tangent,
-            inverse,
-        })
-    }
-
-    /// The inverse of the tangent.
-    pub(super) fn inverse(&self) -> &SMatrix<f64, D, D> {
-        &self.inverse
-    }
-
-    /// `B` times what the residual changes by on the way to `goal`.
-    fn toward(&self, goal: &SVector<f64, D>) -> SVector<f64, D> {
-        self.inverse * (goal - self.residual)
-    }
-
-    /// What a length of each part is measured by: 1 for pure numbers; for translations the radius
-    /// that makes them weigh as much as the angles of the same element.
-    fn units(&self) -> [f64; D] {
-        let block = |b: usize| {
-            let size = G::DIMENSION.min(D);
-            let own = (0..size).filter(|k| G::part_of(*k) == b);
-            own.fold(0.0, |most: f64, k| most.max(self.tangent[(k, k)].abs()))
-        };
-        core::array::from_fn(|b| {
-            if b >= G::PARTS || G::is_pure(b) {
-                return 1.0;
-            }
-            let unit = (block(b.saturating_sub(1)) / block(b)).sqrt();
-            if unit.is_finite() { unit } else { 0.0 }
-        })
-    }
-
-    /// A bound of how far the velocity moves, part by part, where the equations move by `own`
-    /// seen through `B`; holds if it does not exceed the radii. The strain besides.
-    fn move_within<E, const K: usize>(
-        &self,
-        equations: &Equations<G, E, D, K>,
-        radii: &[f64; D],
-        own: &[f64; D],
-    ) -> (Option<[f64; D]>, f64)
-    where
-        E: Region<K, Centre = G>,
-    {
-        let whole = self.strain::<E, K>(equations, radii);
-        let moved = whole.spread(own).and_then(|moved| {
-            if fits::<G, D>(&moved, radii) {
-                return Some(moved);
-            }
-            let half = self.strain::<E, K>(equations, &radii.map(|r| 0.5 * r));
-            whole.mean(&half).spread(own)
-        });
-        (moved, whole.largest(radii))
-    }
-
-    /// The same with the tangent at one point in place of all of them.
-    fn move_foreseen<E, const K: usize>(
-        &self,
-        equations: &Equations<G, E, D, K>,
-        toward: &SVector<f64, D>,
-        radii: &[f64; D],
-        own: &[f64; D],
-    ) -> (Option<[f64; D]>, f64) {
-        let end = self.element.retract((toward * MARGIN).as_slice());
-        let whole = Strain::of::<G>(&(self.inverse * (equations.tangent)(&end)));
-        let regular = whole.spread(own).is_some();
-        let moved = whole.mean(&Strain::none::<G>()).spread(own);
-        (moved.filter(|_| regular), whole.largest(radii))
-    }
-
-    /// The strain over the region around this point.
-    fn strain<E, const K: usize>(
-        &self,
-        equations: &Equations<G, E, D, K>,
-        radii: &[f64; D],
-    ) -> Strain<D>
-    where
-        E: Region<K, Centre = G>,
-    {
-        let region = E::around(&self.element, radii, 0);
-        let tangent = (equations.enclosed)(Spread::HERE, &region);
-        Strain::over::<E, K>(&self.inverse, &tangent, radii)
-    }
-
-    /// The only point of the region where the residual is `goal`.
-    fn solve<E, const K: usize>(
-        &self,
-        equations: &Equations<G, E, D, K>,
-        first: &SVector<f64, D>,
-        goal: &SVector<f64, D>,
-        radii: &[f64; D],
-    ) -> Option<G> {
-        let mut at = self.element.retract(first.as_slice());
-        for _ in 0..MOST_CORRECTIONS {
-            let inverse = scaled_inverse(&(equations.tangent)(&at), G::DIMENSION.min(D))?;
-            let step = inverse * (goal - (equations.residual)(&at));
-            at = at.retract(step.as_slice());
-            let own = lengths::<G, D>(&step);
-            let parts = own.iter().zip(radii).take(G::PARTS);
-            // Also refuses NaN.
-            if parts.clone().all(|(x, r)| *x <= SOLVED * r) {
-                let mut from = [0.0; D];
-                self.element.inverse().compose(&at).extents(&mut from);
-                return fits::<G, D>(&from, radii).then_some(at);
-            }
-        }
-        None
-    }
-}
-
-/// Whether no part exceeds its bound; false for NaN.
-pub(super) fn fits<G: Group<f64>, const D: usize>(lengths: &[f64; D], bounds: &[f64; D]) -> bool {
-    lengths
-        .iter()
-        .zip(bounds)
-        .take(G::PARTS)
-        .all(|(x, r)| x <= r)
-}
-
-/// The lengths of the parts.
-fn lengths<G: Group<f64>, const D: usize>(x: &SVector<f64, D>) -> [f64; D] {
-    let mut squares = [0.0; D];
-    for (k, x) in x.iter().enumerate().take(G::DIMENSION) {
-        if let Some(square) = squares.get_mut(G::part_of(k)) {
-            *square += x * x;
-        }
-    }
-    squares.map(f64::sqrt)
-}
-
-/// The inverse of the leading block, its rows and columns brought to one size by powers of two:
-/// the choice of pivots then does not depend on units.
-fn scaled_inverse<const D: usize>(
-    a: &SMatrix<f64, D, D>,
-    size: usize,
-) -> Option<SMatrix<f64, D, D>> {
-    let scale: [f64; D] = core::array::from_fn(|i| balance(a[(i, i)]));
-    let scaled = SMatrix::<f64, D, D>::from_fn(|i, j| a[(i, j)] * scale[i] * scale[j]);
-    let inverse = inverse_leading(&scaled, size)?;
-    let whole = SMatrix::<f64, D, D>::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]);
-    whole.iter().all(|x| x.is_finite()).then_some(whole)
 }

@@ -189,6 +189,6 @@ fn norm<G: Group<f64>, const K: usize, const D: usize>(
 }
 
 /// The larger number; NaN stays.
-fn largest(a: f64, b: f64) -> f64 {
+pub(super) fn largest(a: f64, b: f64) -> f64 {
     if a > b || a.is_nan() { a } else { b }
 }
