@@ -239,9 +239,6 @@ where
 /// How much the tangent may change to the middle and to the end of a short stage.
 const SHORT: f64 = 0.5;
 
-/// The shortest of those, as a part of the way.
-const SHORTEST_SHORT: f64 = 1e-6;
-
 /// Follows the curve in short stages where a proof fails: bounds over a region are poor where the
 /// coordinates are ill conditioned, as at nearly singular elements of GL(n). The tangent is looked
 /// at in the middle and at the end of each stage, its root is solved for; not a proof.
@@ -262,7 +259,7 @@ where
         let goal = at_rest * (1.0 - end);
         let toward = stage.toward(&goal);
         let fold = || Fold::at(share, fastest::<G, D>(&toward, &units));
-        if length < SHORTEST_SHORT {
+        if length < SHORTEST {
             return Err(fold());
         }
         let radii = course(&lengths::<G, D>(&toward), &units, 1.0);
