@@ -183,6 +183,8 @@ impl Staging {
         // Looked at after the move, so that no run can exchange it between the look and the move.
         match standing::look(&aside, &self.known) {
             Ok(Ok(now)) if now == *standing => Ok(Some(aside)),
+            // An empty folder holds nothing to lose: a run that ends at this moment takes the name by it.
+            _ if fs::remove_dir(&aside).is_ok() => Ok(None),
             _ => Err(format!(
                 "what stands there changed during the run, and is not replaced{}",
                 self.give_back(&aside)
@@ -193,10 +195,12 @@ impl Staging {
     /// Moves what was set aside back where it was, or beside it when the place is taken; what to say
     /// then.
     fn give_back(&self, aside: &Path) -> String {
+        // An empty folder put back could take the place of results that another run has just set aside.
+        if fs::remove_dir(aside).is_ok() {
+            return String::new();
+        }
         match place(aside, &self.target) {
             Ok(()) => String::new(),
-            // An empty folder is the name taken by a run that ends at this moment: it needs none any more.
-            Err(_) if fs::remove_dir(aside).is_ok() => String::new(),
             Err(_) => format!("; what stood there before is in {}", self.beside(aside)),
         }
     }

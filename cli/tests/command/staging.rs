@@ -234,6 +234,17 @@ fn force_replaces_only_what_stood_there_at_the_start() {
     let done = run_while(event, &out, &["--force"]);
     kept_beside(&done, &format!("{out}-2"));
     assert_eq!(steps_in(&out), 7);
+    // An empty folder takes its place, as does the name of a run that ends at this moment.
+    let out = folder.path("emptied");
+    earlier(&out);
+    let other = out.clone();
+    let event = move || {
+        fs::remove_dir_all(&other).expect("removed");
+        fs::create_dir(&other).expect("a folder");
+    };
+    let done = run_while(event, &out, &["--force"]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert_eq!(steps_in(&out), 20);
     // It is gone: nothing is to be replaced.
     let out = folder.path("gone");
     earlier(&out);
@@ -248,6 +259,7 @@ fn force_replaces_only_what_stood_there_at_the_start() {
     assert_eq!(
         folder.names(),
         [
+            "emptied",
             "foreign",
             "foreign-2",
             "gone",
