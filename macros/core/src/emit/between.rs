@@ -2,12 +2,11 @@
 //! Takes expressions of an edge; gives the parameters, the statements that bind their letters, and the bindings.
 
 use super::expression::Bindings;
-use super::items::{letters_of, node_locals, parameter_locals, with_transports};
+use super::items::{advanced, letters_of, node_locals, parameter_locals, with_transports};
 use super::names::{Names, own, tagged};
 use super::step::at;
 use crate::check::spec::Side;
 use crate::derive::Derivation;
-use crate::derive::transport::Transport;
 use crate::expr::{self, Expr, Shift};
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -24,8 +23,8 @@ pub(super) struct Edge {
 pub(super) fn edge_between(d: &Derivation, names: &Names, wanted: &[Expr]) -> Edge {
     let (before, after) = (names.local("before"), names.local("after"));
     let mut needed = letters_of(wanted);
-    for (a, t) in d.spec.advected.iter().zip(&d.transports) {
-        if matches!(t, Transport::Advanced) && needed.contains(&at(a.quantity, Shift::NEXT)) {
+    for a in advanced(d) {
+        if needed.contains(&at(a.quantity, Shift::NEXT)) {
             needed.extend(expr::letters(&a.update));
         }
     }

@@ -5,7 +5,7 @@ use super::expression::{Bindings, Writer, ty};
 use super::names::{Names, field, item, own, tagged, variable};
 use super::sizes::Generics;
 use crate::algebra::Rational;
-use crate::check::spec::Assumption;
+use crate::check::spec::{Advected, Assumption};
 use crate::derive::Derivation;
 use crate::derive::recognise::{Method, Riccati};
 use crate::derive::transport::Transport;
@@ -230,13 +230,13 @@ pub fn with_transports(d: &Derivation, needed: &[Letter], level: i8) -> Vec<Lett
     all
 }
 
-/// How the quantities go on that no constant reference tells: from the values at the node and the
-/// velocity.
-pub fn advances(d: &Derivation) -> impl Iterator<Item = &Expr> {
+/// The quantities that no constant reference carries: their constraint advances them, from the
+/// values at the node and the velocity.
+pub fn advanced(d: &Derivation) -> impl Iterator<Item = &Advected> {
     let pairs = d.spec.advected.iter().zip(&d.transports);
     pairs
         .filter(|(_, t)| matches!(t, Transport::Advanced))
-        .map(|(a, _)| &a.update)
+        .map(|(a, _)| a)
 }
 
 /// Locals for what is known at one node: matrices of the elements and advected quantities, as far

@@ -4,7 +4,7 @@
 
 use super::element::{self, Family, family};
 use super::expression::{Bindings, Writer, program, ty as quantity};
-use super::items::{advances, letters_of, parameter_locals, text, with_transports};
+use super::items::{advanced, letters_of, parameter_locals, text, with_transports};
 use super::names::{Names, item, own, per_configuration, tagged, variable};
 use super::sizes::{Generics, size};
 use super::step::{at, finish, here, step_signature};
@@ -279,7 +279,7 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
     let mut bindings = Bindings::new();
     let list: Vec<&Expr> = d.carries.iter().flat_map(Carry::parts).collect();
     let velocity = at(c.velocity, Shift::HERE);
-    let onwards = || list.iter().copied().chain(advances(d));
+    let onwards = || list.iter().copied().chain(advanced(d).map(|a| &a.update));
     let uses_velocity = onwards().any(|e| expr::contains(e, velocity));
     let mut needed: Vec<Letter> = letters_of(onwards());
     if let (Side::Body, [Carry::Through { leave, .. }], true) =

@@ -4,7 +4,7 @@
 use super::element::{self, Bundle, Family, family};
 use super::equations::Equations;
 use super::expression::Bindings;
-use super::items::{advances, letters_of, parameter_locals, with_transports};
+use super::items::{advanced, letters_of, parameter_locals, with_transports};
 use super::names::{Names, item, own, per_configuration, tagged, variable};
 use super::principal::Principal;
 use super::sizes::Generics;
@@ -53,7 +53,7 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
         }
     }
     needed.extend(letters_of(d.carries.iter().flat_map(Carry::parts)));
-    needed.extend(letters_of(advances(d)));
+    needed.extend(letters_of(advanced(d).map(|a| &a.update)));
     let mut all = with_transports(d, &needed, 0);
     all.extend(with_transports(d, &needed, 1));
     let parameters = parameter_locals(d, quote!(self.parameters), &all);
@@ -184,18 +184,18 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
             #step: T,
             state: #state #used,
             given: #given_type,
-            momenta: #momenta_type,
+            #mu: #momenta_type,
             #newton: &mut newton::Newton<'_, T, #elements, #node_type #used, #dimension>,
-            ended: newton::Progress<#elements>,
+            #ended: newton::Progress<#elements>,
         ) -> Result<Option<newton::Solved<#elements>>, StepError> {
-            let failed = match ended {
+            let failed = match #ended {
                 newton::Progress::Continue => return Ok(None),
                 newton::Progress::Solved(solved) => Ok(solved),
                 newton::Progress::Failed(e) => Err(e),
             };
             let asked = failed.as_ref().ok().map(|solved| &solved.element);
             let values = #newton.values();
-            let traced = self.principal(#step, &given, &values, &momenta, #newton.certificate(), asked);
+            let traced = self.principal(#step, &given, &values, &#mu, #newton.certificate(), asked);
             let e = match (traced, failed) {
                 (Ok(None), Ok(solved)) => return Ok(Some(solved)),
                 (Ok(Some(root)), _) if #newton.restart(root) => return Ok(None),

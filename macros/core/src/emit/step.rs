@@ -259,14 +259,7 @@ pub(super) fn finish(
     let parts = d.carries.iter().flat_map(Carry::parts);
     let wanted: Vec<Expr> = parts.cloned().collect();
     let mut needed = letters_of(&wanted);
-    let advanced: Vec<_> = d
-        .spec
-        .advected
-        .iter()
-        .zip(&d.transports)
-        .filter(|(_, t)| matches!(t, Transport::Advanced))
-        .map(|(a, _)| a.quantity)
-        .collect();
+    let advanced: Vec<_> = items::advanced(d).map(|a| a.quantity).collect();
     needed.extend(advanced.iter().map(|q| at(*q, Shift::NEXT)));
     let mut out = TokenStream::new();
     let mut assignments = TokenStream::new();

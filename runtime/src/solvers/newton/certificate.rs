@@ -29,7 +29,7 @@ const COMMON: f64 = 0.2;
 /// within `spread` of this one where the inverse of the tangent does not exceed `inverse`, part by
 /// part, which each new tangent is asked: the tangent moves with the velocity by the same order of
 /// magnitude everywhere, and where a fold comes near its inverse grows. A proof for each step costs
-/// a hundred times the step.
+/// a hundred times the step; where none is found, its root is followed closely instead.
 #[derive(Clone, Copy, Debug)]
 pub struct Certificate<V, const D: usize> {
     reach: [f64; D],

@@ -11,15 +11,15 @@
 //! a fold, where it is refused. The converse does not hold: a root that follows the last one
 //! continuously may have passed around a fold, and is no principal one then. Such a step is refused.
 //!
-//! Takes the equations of one lane; gives the root, with a region in which it is the only one.
+//! Takes the equations of one lane; gives the root, with a region in which it is the only one. Where
+//! bounds are too poor for a proof of that, the curve is followed in short stages without one.
 
 use super::bounds::Region;
 use super::lasting::lasting;
 use super::node::Spread;
-use super::region::largest;
 use super::stage::{MARGIN, Stage, fits, lengths};
 use crate::groups::Group;
-use crate::scalar::Enclosure;
+use crate::scalar::{Enclosure, largest};
 use nalgebra::{SMatrix, SVector};
 
 /// Stages on the way; each leaves at most two thirds of what is left before a fold.
@@ -33,7 +33,8 @@ const MOST_PROOFS: usize = 64;
 pub struct Care {
     /// Whether a proof is looked for that serves for later steps too.
     pub lasting: bool,
-    /// Whether every stage is proved; else how the tangent changes on it is taken from its end.
+    /// Whether a proof of every stage is looked for; else how the tangent changes on it is taken
+    /// from its end. Where that fails the curve is followed closely, without a proof.
     pub proved: bool,
 }
 
@@ -71,7 +72,7 @@ pub enum Traced<G, const D: usize> {
     Elsewhere {
         /// The root, to the precision of a stage.
         root: G,
-        /// Within these lengths of it there is no other.
+        /// Within these lengths of it there is no other, as far as stages were proved.
         reach: [f64; D],
     },
 }
@@ -264,10 +265,7 @@ where
         }
         let radii = course(&lengths::<G, D>(&toward), &units, 1.0);
         let strains = [0.5, 1.0].map(|part| stage.strain_at(equations, &(toward * part)));
-        let strain = strains
-            .map(|x| x.largest(&radii))
-            .into_iter()
-            .fold(0.0, largest);
+        let strain = largest(strains.map(|x| x.largest(&radii)));
         let within = radii.map(|r| 2.0 * r);
         let next = match strain <= SHORT {
             true => stage.solve(equations, &toward, &goal, &within),

@@ -4,7 +4,7 @@
 
 use super::bounds::Region;
 use crate::groups::Group;
-use crate::scalar::Enclosure;
+use crate::scalar::{Enclosure, larger, largest};
 use nalgebra::SMatrix;
 use num_traits::Zero;
 
@@ -105,7 +105,7 @@ impl<const D: usize> Strain<D> {
             pairs.map(|(e, r)| e * r).sum::<f64>()
         });
         let shares = moved.zip(radii).take(self.parts).map(|(x, r)| x / r);
-        shares.fold(0.0, largest)
+        largest(shares)
     }
 
     /// A bound of the mean along lines from the centre, given the strain over half the region.
@@ -183,12 +183,7 @@ fn norm<G: Group<f64>, const K: usize, const D: usize>(
             row += x;
             columns[j] += x;
         }
-        widest = largest(widest, row);
+        widest = larger(widest, row);
     }
-    (widest * columns.into_iter().fold(0.0, largest)).sqrt()
-}
-
-/// The larger number; NaN stays.
-pub(super) fn largest(a: f64, b: f64) -> f64 {
-    if a > b || a.is_nan() { a } else { b }
+    (widest * largest(columns)).sqrt()
 }
