@@ -4,6 +4,7 @@
 
 use super::Letters;
 use super::action::Action;
+use super::axial;
 use super::balance::{Balance, shorter};
 use super::lie;
 use super::rounding::Rounding;
@@ -167,12 +168,13 @@ impl Work<'_> {
             .collect();
         let shape = self.inputs.balances[i].outgoing.shape();
         let total = expr::sum(each.clone(), shape);
-        let apart = expr::sum(
-            each.iter()
-                .map(|e| self.best(self.forms(e)))
-                .collect::<Vec<_>>(),
-            shape,
-        );
+        let xi = self.inputs.letters.variation[i];
+        let apart = each.iter().zip(&terms).map(|(e, t)| {
+            let axial = axial::covector(self.symbols, c, xi, t, &along);
+            let all = axial.into_iter().chain([e.clone()]);
+            self.best(all.flat_map(|e| self.forms(&e)).collect())
+        });
+        let apart = expr::sum(apart.collect::<Vec<_>>(), shape);
         let mut all = vec![apart];
         all.extend(self.forms(&total));
         self.best(all)

@@ -4,6 +4,7 @@
 
 pub mod action;
 mod assumptions;
+mod axial;
 pub mod balance;
 pub mod bracket;
 pub mod carry;
