@@ -160,7 +160,7 @@ pub mod body_in_quadratic_field {
         /// A workspace for steps of `h`, of either sign, from any state.
         ///
         /// # Errors
-        /// When the first step cannot be solved.
+        /// When `h` is zero or not finite, or the first step cannot be solved.
         pub fn workspace(
             &self,
             state: &BodyInQuadraticFieldState<T>,
@@ -171,13 +171,14 @@ pub mod body_in_quadratic_field {
         /// The same with the solver named.
         ///
         /// # Errors
-        /// When the first step cannot be solved.
+        /// When `h` is zero or not finite, or the first step cannot be solved.
         pub fn workspace_with(
             &self,
             state: &BodyInQuadraticFieldState<T>,
             h: T,
             method: Method,
         ) -> Result<BodyInQuadraticFieldWorkspace<T>, StartError> {
+            validate::directed_step(h)?;
             let state = *state;
             let work = BodyInQuadraticFieldWorkspace {
                 h,
@@ -491,8 +492,8 @@ pub mod body_in_quadratic_field {
             let Γ_before = before.Γ;
             let Γ = here.Γ;
             let Γ_next = after.Γ;
-            let Ω_before = (before.Λ.inverse() * here.Λ).matrix();
-            let Ω = (here.Λ.inverse() * after.Λ).matrix();
+            let Ω_before = before.Λ.body_velocity(&here.Λ).matrix();
+            let Ω = here.Λ.body_velocity(&after.Λ).matrix();
             let t1 = h.powi(-1);
             let t2 = -((K * Γ).cross(&Γ) * T::from_f64(0.5) * h);
             let parts: [SVector<T, 3>; 1] = [
@@ -506,7 +507,8 @@ pub mod body_in_quadratic_field {
         /// What the step of size `h` from one state to the next leaves of its equations: the
         /// momentum that is carried to the second state, less the one that the motion between
         /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of.
+        /// motion apart, each with the size of the terms it is made of: those of a velocity are
+        /// the two elements it is made from, as they are stored.
         pub fn residual(
             &self,
             before: &BodyInQuadraticFieldState<T>,
@@ -514,7 +516,7 @@ pub mod body_in_quadratic_field {
             h: T,
         ) -> [Residual; 1] {
             let BodyInQuadraticFieldParameters { J, K, .. } = self.parameters;
-            let Ω_matrix = (before.Λ.inverse() * after.Λ).matrix();
+            let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
             let Λ_next = after.Λ.matrix();
             let Γ_reference = before.Γ;
             let Γ_next = Λ_next.tr_mul(&Γ_reference);
@@ -601,7 +603,7 @@ pub mod body_in_quadratic_field {
             after: &BodyInQuadraticFieldState<T>,
         ) -> T {
             let BodyInQuadraticFieldParameters { J, K, .. } = self.parameters;
-            let Ω_matrix = (before.Λ.inverse() * after.Λ).matrix();
+            let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
             let Λ = before.Λ.matrix();
             let Γ_reference = before.Γ;
             let Γ = Λ.tr_mul(&Γ_reference);

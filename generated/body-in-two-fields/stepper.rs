@@ -152,7 +152,7 @@ pub mod body_in_two_fields {
         /// A workspace for steps of `h`, of either sign, from any state.
         ///
         /// # Errors
-        /// When the first step cannot be solved.
+        /// When `h` is zero or not finite, or the first step cannot be solved.
         pub fn workspace(
             &self,
             state: &BodyInTwoFieldsState<T>,
@@ -163,13 +163,14 @@ pub mod body_in_two_fields {
         /// The same with the solver named.
         ///
         /// # Errors
-        /// When the first step cannot be solved.
+        /// When `h` is zero or not finite, or the first step cannot be solved.
         pub fn workspace_with(
             &self,
             state: &BodyInTwoFieldsState<T>,
             h: T,
             method: Method,
         ) -> Result<BodyInTwoFieldsWorkspace<T>, StartError> {
+            validate::directed_step(h)?;
             let state = *state;
             let work = BodyInTwoFieldsWorkspace {
                 h,
@@ -490,8 +491,8 @@ pub mod body_in_two_fields {
             let Λ = here.Λ.matrix();
             let Γ = Λ.tr_mul(&z);
             let B = Λ.tr_mul(&b);
-            let Ω_before = (before.Λ.inverse() * here.Λ).matrix();
-            let Ω = (here.Λ.inverse() * after.Λ).matrix();
+            let Ω_before = before.Λ.body_velocity(&here.Λ).matrix();
+            let Ω = here.Λ.body_velocity(&after.Λ).matrix();
             let t1 = h.powi(-1);
             let t2 = -(gU.cross(&Γ) * T::from_f64(0.5) * h);
             let t3 = p.cross(&B) * T::from_f64(0.5) * h;
@@ -506,7 +507,8 @@ pub mod body_in_two_fields {
         /// What the step of size `h` from one state to the next leaves of its equations: the
         /// momentum that is carried to the second state, less the one that the motion between
         /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of.
+        /// motion apart, each with the size of the terms it is made of: those of a velocity are
+        /// the two elements it is made from, as they are stored.
         pub fn residual(
             &self,
             before: &BodyInTwoFieldsState<T>,
@@ -514,7 +516,7 @@ pub mod body_in_two_fields {
             h: T,
         ) -> [Residual; 1] {
             let BodyInTwoFieldsParameters { J, gU, p, z, b, .. } = self.parameters;
-            let Ω_matrix = (before.Λ.inverse() * after.Λ).matrix();
+            let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
             let Λ_next = after.Λ.matrix();
             let Γ_next = Λ_next.tr_mul(&z);
             let B_next = Λ_next.tr_mul(&b);
@@ -608,7 +610,7 @@ pub mod body_in_two_fields {
             after: &BodyInTwoFieldsState<T>,
         ) -> T {
             let BodyInTwoFieldsParameters { J, gU, p, z, b, .. } = self.parameters;
-            let Ω_matrix = (before.Λ.inverse() * after.Λ).matrix();
+            let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
             let Λ = before.Λ.matrix();
             let Γ = Λ.tr_mul(&z);
             let B = Λ.tr_mul(&b);

@@ -141,7 +141,7 @@ pub mod body_n {
         /// A workspace for steps of `h`, of either sign, from any state.
         ///
         /// # Errors
-        /// When the first step cannot be solved.
+        /// When `h` is zero or not finite, or the first step cannot be solved.
         pub fn workspace(
             &self,
             state: &BodyNState<N, T>,
@@ -152,13 +152,14 @@ pub mod body_n {
         /// The same with the solver named.
         ///
         /// # Errors
-        /// When the first step cannot be solved.
+        /// When `h` is zero or not finite, or the first step cannot be solved.
         pub fn workspace_with(
             &self,
             state: &BodyNState<N, T>,
             h: T,
             method: Method,
         ) -> Result<BodyNWorkspace<N, T>, StartError> {
+            validate::directed_step(h)?;
             let state = *state;
             let work = BodyNWorkspace { h, method };
             let (mut trial, mut scratch) = (state, work);
@@ -322,8 +323,8 @@ pub mod body_n {
             after: &BodyNConfiguration<N, T>,
         ) -> SVector<T, 28> {
             let BodyNParameters { C, .. } = self.parameters;
-            let Ω_before = (before.Λ.inverse() * here.Λ).matrix();
-            let Ω = (here.Λ.inverse() * after.Λ).matrix();
+            let Ω_before = before.Λ.body_velocity(&here.Λ).matrix();
+            let Ω = here.Λ.body_velocity(&after.Λ).matrix();
             let t1 = h.powi(-1);
             let parts: [SMatrix<T, N, N>; 1] = [
                 C.tr_mul(&Ω_before) * t1 - Ω_before.tr_mul(&C) * t1
@@ -342,7 +343,8 @@ pub mod body_n {
         /// What the step of size `h` from one state to the next leaves of its equations: the
         /// momentum that is carried to the second state, less the one that the motion between
         /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of.
+        /// motion apart, each with the size of the terms it is made of: those of a velocity are
+        /// the two elements it is made from, as they are stored.
         pub fn residual(
             &self,
             before: &BodyNState<N, T>,
@@ -350,7 +352,7 @@ pub mod body_n {
             h: T,
         ) -> [Residual; 1] {
             let BodyNParameters { C, .. } = self.parameters;
-            let Ω_matrix = (before.Λ.inverse() * after.Λ).matrix();
+            let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
             let t1 = h.powi(-1);
             let t2 = (t1 * t1).sqrt();
             let t3 = (C.tr_mul(&C)).trace().sqrt();
@@ -403,7 +405,7 @@ pub mod body_n {
             after: &BodyNState<N, T>,
         ) -> T {
             let BodyNParameters { C, .. } = self.parameters;
-            let Ω_matrix = (before.Λ.inverse() * after.Λ).matrix();
+            let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
             let t1 = h.powi(-2);
             t1 * C.trace() - t1 * (C * Ω_matrix.transpose()).trace()
         }

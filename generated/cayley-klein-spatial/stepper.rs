@@ -127,12 +127,13 @@ pub mod cayley_klein_spatial {
         /// A workspace for steps of `h`, of either sign, from any state.
         ///
         /// # Errors
-        /// When the first step cannot be solved.
+        /// When `h` is zero or not finite, or the first step cannot be solved.
         pub fn workspace(
             &self,
             state: &CayleyKleinSpatialState<T>,
             h: T,
         ) -> Result<CayleyKleinSpatialWorkspace<T>, StartError> {
+            validate::directed_step(h)?;
             let state = *state;
             let work = CayleyKleinSpatialWorkspace {
                 h,
@@ -347,8 +348,8 @@ pub mod cayley_klein_spatial {
             let I_before = before.I;
             let I = here.I;
             let I_next = after.I;
-            let w_before = (here.q * before.q.inverse()).matrix();
-            let w = (after.q * here.q.inverse()).matrix();
+            let w_before = before.q.spatial_velocity(&here.q).matrix();
+            let w = here.q.spatial_velocity(&after.q).matrix();
             let t1 = h.powi(-1);
             let t2 = quaternion_imaginary(&w_before);
             let t3 = quaternion_imaginary(&w);
@@ -375,7 +376,8 @@ pub mod cayley_klein_spatial {
         /// What the step of size `h` from one state to the next leaves of its equations: the
         /// momentum that is carried to the second state, less the one that the motion between
         /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of.
+        /// motion apart, each with the size of the terms it is made of: those of a velocity are
+        /// the two elements it is made from, as they are stored.
         pub fn residual(
             &self,
             before: &CayleyKleinSpatialState<T>,
@@ -383,7 +385,7 @@ pub mod cayley_klein_spatial {
             h: T,
         ) -> [Residual; 1] {
             let CayleyKleinSpatialParameters { c, .. } = self.parameters;
-            let w_matrix = (after.q * before.q.inverse()).matrix();
+            let w_matrix = before.q.spatial_velocity(&after.q).matrix();
             let q = before.q.matrix();
             let I_reference = before.I;
             let I = quaternion_rotation(&q)
@@ -408,7 +410,8 @@ pub mod cayley_klein_spatial {
                         scale: length(&momentum).magnitude()
                             + (T::from_f64(2.0) * t5 * t3.dot(&t3).sqrt()
                                 + T::from_f64(2.0) * t5 * t6 * t2.dot(&t2).sqrt()
-                                + t5 * t6 * t4.dot(&t4).sqrt())
+                                + t5 * t6 * t4.dot(&t4).sqrt() + T::from_f64(2.0) * t5 * t6
+                                + t5 * t6)
                                 .magnitude(),
                     }
                 },
@@ -490,7 +493,7 @@ pub mod cayley_klein_spatial {
             after: &CayleyKleinSpatialState<T>,
         ) -> T {
             let CayleyKleinSpatialParameters { c, .. } = self.parameters;
-            let w_matrix = (after.q * before.q.inverse()).matrix();
+            let w_matrix = before.q.spatial_velocity(&after.q).matrix();
             let q = before.q.matrix();
             let I_reference = before.I;
             let I = quaternion_rotation(&q)

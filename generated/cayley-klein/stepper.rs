@@ -125,12 +125,13 @@ pub mod cayley_klein {
         /// A workspace for steps of `h`, of either sign, from any state.
         ///
         /// # Errors
-        /// When the first step cannot be solved.
+        /// When `h` is zero or not finite, or the first step cannot be solved.
         pub fn workspace(
             &self,
             state: &CayleyKleinState<T>,
             h: T,
         ) -> Result<CayleyKleinWorkspace<T>, StartError> {
+            validate::directed_step(h)?;
             let state = *state;
             let work = CayleyKleinWorkspace {
                 h,
@@ -301,8 +302,8 @@ pub mod cayley_klein {
             after: &CayleyKleinConfiguration<T>,
         ) -> SVector<T, 3> {
             let CayleyKleinParameters { I, c, .. } = self.parameters;
-            let W_before = (before.q.inverse() * here.q).matrix();
-            let W = (here.q.inverse() * after.q).matrix();
+            let W_before = before.q.body_velocity(&here.q).matrix();
+            let W = here.q.body_velocity(&after.q).matrix();
             let t1 = h.powi(-1);
             let t2 = quaternion_imaginary(&W_before);
             let t3 = quaternion_imaginary(&W);
@@ -329,7 +330,8 @@ pub mod cayley_klein {
         /// What the step of size `h` from one state to the next leaves of its equations: the
         /// momentum that is carried to the second state, less the one that the motion between
         /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of.
+        /// motion apart, each with the size of the terms it is made of: those of a velocity are
+        /// the two elements it is made from, as they are stored.
         pub fn residual(
             &self,
             before: &CayleyKleinState<T>,
@@ -337,7 +339,7 @@ pub mod cayley_klein {
             h: T,
         ) -> [Residual; 1] {
             let CayleyKleinParameters { I, c, .. } = self.parameters;
-            let W_matrix = (before.q.inverse() * after.q).matrix();
+            let W_matrix = before.q.body_velocity(&after.q).matrix();
             let t1 = h.powi(-1);
             let t2 = quaternion_imaginary(&W_matrix);
             let t3 = quaternion_imaginary(
@@ -360,7 +362,8 @@ pub mod cayley_klein {
                         scale: length(&momentum).magnitude()
                             + (T::from_f64(2.0) * t5 * t3.dot(&t3).sqrt()
                                 + T::from_f64(2.0) * t5 * t6 * t2.dot(&t2).sqrt()
-                                + t5 * t6 * t4.dot(&t4).sqrt())
+                                + t5 * t6 * t4.dot(&t4).sqrt() + T::from_f64(2.0) * t5 * t6
+                                + t5 * t6)
                                 .magnitude(),
                     }
                 },
@@ -420,7 +423,7 @@ pub mod cayley_klein {
             after: &CayleyKleinState<T>,
         ) -> T {
             let CayleyKleinParameters { I, c, .. } = self.parameters;
-            let W_matrix = (before.q.inverse() * after.q).matrix();
+            let W_matrix = before.q.body_velocity(&after.q).matrix();
             let t1 = quaternion_imaginary(&W_matrix);
             (T::from_f64(2.0) * t1.dot(&((I - SMatrix::<T, 3, 3>::identity() * c) * t1)))
                 / (h * h) - (T::from_f64(4.0) * c * quaternion_real(&W_matrix)) / (h * h)

@@ -161,12 +161,13 @@ pub mod coupled_bodies {
         /// A workspace for steps of `h`, of either sign, from any state.
         ///
         /// # Errors
-        /// When the first step cannot be solved.
+        /// When `h` is zero or not finite, or the first step cannot be solved.
         pub fn workspace(
             &self,
             state: &CoupledBodiesState<T>,
             h: T,
         ) -> Result<CoupledBodiesWorkspace<T>, StartError> {
+            validate::directed_step(h)?;
             let state = *state;
             let work = CoupledBodiesWorkspace {
                 h,
@@ -675,10 +676,10 @@ pub mod coupled_bodies {
             let Λ1 = here.Λ1.matrix();
             let Λ2 = here.Λ2.matrix();
             let R = Λ1.tr_mul(&Λ2);
-            let Ω1_before = (before.Λ1.inverse() * here.Λ1).matrix();
-            let Ω1 = (here.Λ1.inverse() * after.Λ1).matrix();
-            let Ω2_before = (before.Λ2.inverse() * here.Λ2).matrix();
-            let Ω2 = (here.Λ2.inverse() * after.Λ2).matrix();
+            let Ω1_before = before.Λ1.body_velocity(&here.Λ1).matrix();
+            let Ω1 = here.Λ1.body_velocity(&after.Λ1).matrix();
+            let Ω2_before = before.Λ2.body_velocity(&here.Λ2).matrix();
+            let Ω2 = here.Λ2.body_velocity(&after.Λ2).matrix();
             let t1 = h.powi(-1);
             let t2 = d1.cross(&(R * d2));
             let parts: [SVector<T, 3>; 2] = [
@@ -712,7 +713,8 @@ pub mod coupled_bodies {
         /// What the step of size `h` from one state to the next leaves of its equations: the
         /// momentum that is carried to the second state, less the one that the motion between
         /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of.
+        /// motion apart, each with the size of the terms it is made of: those of a velocity are
+        /// the two elements it is made from, as they are stored.
         pub fn residual(
             &self,
             before: &CoupledBodiesState<T>,
@@ -720,8 +722,8 @@ pub mod coupled_bodies {
             h: T,
         ) -> [Residual; 2] {
             let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
-            let Ω1_matrix = (before.Λ1.inverse() * after.Λ1).matrix();
-            let Ω2_matrix = (before.Λ2.inverse() * after.Λ2).matrix();
+            let Ω1_matrix = before.Λ1.body_velocity(&after.Λ1).matrix();
+            let Ω2_matrix = before.Λ2.body_velocity(&after.Λ2).matrix();
             let Λ1 = before.Λ1.matrix();
             let Λ2 = before.Λ2.matrix();
             let R = Λ1.tr_mul(&Λ2);
@@ -882,8 +884,8 @@ pub mod coupled_bodies {
             after: &CoupledBodiesState<T>,
         ) -> T {
             let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
-            let Ω1_matrix = (before.Λ1.inverse() * after.Λ1).matrix();
-            let Ω2_matrix = (before.Λ2.inverse() * after.Λ2).matrix();
+            let Ω1_matrix = before.Λ1.body_velocity(&after.Λ1).matrix();
+            let Ω2_matrix = before.Λ2.body_velocity(&after.Λ2).matrix();
             let Λ1 = before.Λ1.matrix();
             let Λ2 = before.Λ2.matrix();
             let R = Λ1.tr_mul(&Λ2);

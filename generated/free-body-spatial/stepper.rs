@@ -163,13 +163,14 @@ pub mod free_body_spatial {
         /// A workspace for steps of `h`, of either sign, from any state.
         ///
         /// # Errors
-        /// When the first step cannot be solved.
+        /// When `h` is zero or not finite, or the first step cannot be solved.
         pub fn workspace(
             &self,
             state: &FreeBodySpatialState<T>,
             h: T,
             order: Order,
         ) -> Result<FreeBodySpatialWorkspace<T>, StartError> {
+            validate::directed_step(h)?;
             let state = *state;
             let work = FreeBodySpatialWorkspace {
                 h,
@@ -376,8 +377,8 @@ pub mod free_body_spatial {
             let J_before = before.J;
             let J = here.J;
             let J_next = after.J;
-            let ω_before = (here.Λ * before.Λ.inverse()).matrix();
-            let ω = (after.Λ * here.Λ.inverse()).matrix();
+            let ω_before = before.Λ.spatial_velocity(&here.Λ).matrix();
+            let ω = here.Λ.spatial_velocity(&after.Λ).matrix();
             let t1 = h.powi(-1);
             let parts: [SVector<T, 3>; 1] = [
                 axial_of_difference(&(ω_before * J_before)) * t1
@@ -390,14 +391,15 @@ pub mod free_body_spatial {
         /// What the step of size `h` from one state to the next leaves of its equations: the
         /// momentum that is carried to the second state, less the one that the motion between
         /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of.
+        /// motion apart, each with the size of the terms it is made of: those of a velocity are
+        /// the two elements it is made from, as they are stored.
         pub fn residual(
             &self,
             before: &FreeBodySpatialState<T>,
             after: &FreeBodySpatialState<T>,
             h: T,
         ) -> [Residual; 1] {
-            let ω_matrix = (after.Λ * before.Λ.inverse()).matrix();
+            let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
             let Λ = before.Λ.matrix();
             let J_reference = before.J;
             let J = Λ * (J_reference * Λ.transpose());
@@ -488,7 +490,7 @@ pub mod free_body_spatial {
             before: &FreeBodySpatialState<T>,
             after: &FreeBodySpatialState<T>,
         ) -> T {
-            let ω_matrix = (after.Λ * before.Λ.inverse()).matrix();
+            let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
             let Λ = before.Λ.matrix();
             let J_reference = before.J;
             let J = Λ * (J_reference * Λ.transpose());

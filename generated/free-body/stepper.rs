@@ -156,13 +156,14 @@ pub mod free_body {
         /// A workspace for steps of `h`, of either sign, from any state.
         ///
         /// # Errors
-        /// When the first step cannot be solved.
+        /// When `h` is zero or not finite, or the first step cannot be solved.
         pub fn workspace(
             &self,
             state: &FreeBodyState<T>,
             h: T,
             order: Order,
         ) -> Result<FreeBodyWorkspace<T>, StartError> {
+            validate::directed_step(h)?;
             let state = *state;
             let work = FreeBodyWorkspace {
                 h,
@@ -319,8 +320,8 @@ pub mod free_body {
             after: &FreeBodyConfiguration<T>,
         ) -> SVector<T, 3> {
             let FreeBodyParameters { J, .. } = self.parameters;
-            let Ω_before = (before.Λ.inverse() * here.Λ).matrix();
-            let Ω = (here.Λ.inverse() * after.Λ).matrix();
+            let Ω_before = before.Λ.body_velocity(&here.Λ).matrix();
+            let Ω = here.Λ.body_velocity(&after.Λ).matrix();
             let t1 = h.powi(-1);
             let parts: [SVector<T, 3>; 1] = [
                 axial_of_difference(&(J * Ω_before)) * t1
@@ -333,7 +334,8 @@ pub mod free_body {
         /// What the step of size `h` from one state to the next leaves of its equations: the
         /// momentum that is carried to the second state, less the one that the motion between
         /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of.
+        /// motion apart, each with the size of the terms it is made of: those of a velocity are
+        /// the two elements it is made from, as they are stored.
         pub fn residual(
             &self,
             before: &FreeBodyState<T>,
@@ -341,7 +343,7 @@ pub mod free_body {
             h: T,
         ) -> [Residual; 1] {
             let FreeBodyParameters { J, .. } = self.parameters;
-            let Ω_matrix = (before.Λ.inverse() * after.Λ).matrix();
+            let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
             let t1 = h.powi(-1);
             let _ = h;
             [
@@ -410,7 +412,7 @@ pub mod free_body {
             after: &FreeBodyState<T>,
         ) -> T {
             let FreeBodyParameters { J, .. } = self.parameters;
-            let Ω_matrix = (before.Λ.inverse() * after.Λ).matrix();
+            let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
             let t1 = h.powi(-2);
             t1 * J.trace() - t1 * (J * Ω_matrix).trace()
         }

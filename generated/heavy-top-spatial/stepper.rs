@@ -159,7 +159,7 @@ pub mod heavy_top_spatial {
         /// A workspace for steps of `h`, of either sign, from any state.
         ///
         /// # Errors
-        /// When the first step cannot be solved.
+        /// When `h` is zero or not finite, or the first step cannot be solved.
         pub fn workspace(
             &self,
             state: &HeavyTopSpatialState<T>,
@@ -170,13 +170,14 @@ pub mod heavy_top_spatial {
         /// The same with the solver named.
         ///
         /// # Errors
-        /// When the first step cannot be solved.
+        /// When `h` is zero or not finite, or the first step cannot be solved.
         pub fn workspace_with(
             &self,
             state: &HeavyTopSpatialState<T>,
             h: T,
             method: Method,
         ) -> Result<HeavyTopSpatialWorkspace<T>, StartError> {
+            validate::directed_step(h)?;
             let state = *state;
             let work = HeavyTopSpatialWorkspace {
                 h,
@@ -529,8 +530,8 @@ pub mod heavy_top_spatial {
             let χ = here.χ;
             let J_next = after.J;
             let χ_next = after.χ;
-            let ω_before = (here.Λ * before.Λ.inverse()).matrix();
-            let ω = (after.Λ * here.Λ.inverse()).matrix();
+            let ω_before = before.Λ.spatial_velocity(&here.Λ).matrix();
+            let ω = here.Λ.spatial_velocity(&after.Λ).matrix();
             let t1 = h.powi(-1);
             let t2 = z.cross(&χ) * T::from_f64(0.5) * h * w;
             let parts: [SVector<T, 3>; 1] = [
@@ -544,7 +545,8 @@ pub mod heavy_top_spatial {
         /// What the step of size `h` from one state to the next leaves of its equations: the
         /// momentum that is carried to the second state, less the one that the motion between
         /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of.
+        /// motion apart, each with the size of the terms it is made of: those of a velocity are
+        /// the two elements it is made from, as they are stored.
         pub fn residual(
             &self,
             before: &HeavyTopSpatialState<T>,
@@ -552,7 +554,7 @@ pub mod heavy_top_spatial {
             h: T,
         ) -> [Residual; 1] {
             let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
-            let ω_matrix = (after.Λ * before.Λ.inverse()).matrix();
+            let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
             let Λ = before.Λ.matrix();
             let J_reference = before.J;
             let J = Λ * (J_reference * Λ.transpose());
@@ -677,7 +679,7 @@ pub mod heavy_top_spatial {
             after: &HeavyTopSpatialState<T>,
         ) -> T {
             let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
-            let ω_matrix = (after.Λ * before.Λ.inverse()).matrix();
+            let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
             let Λ = before.Λ.matrix();
             let J_reference = before.J;
             let J = Λ * (J_reference * Λ.transpose());

@@ -144,7 +144,7 @@ pub mod heavy_top {
         /// A workspace for steps of `h`, of either sign, from any state.
         ///
         /// # Errors
-        /// When the first step cannot be solved.
+        /// When `h` is zero or not finite, or the first step cannot be solved.
         pub fn workspace(
             &self,
             state: &HeavyTopState<T>,
@@ -155,13 +155,14 @@ pub mod heavy_top {
         /// The same with the solver named.
         ///
         /// # Errors
-        /// When the first step cannot be solved.
+        /// When `h` is zero or not finite, or the first step cannot be solved.
         pub fn workspace_with(
             &self,
             state: &HeavyTopState<T>,
             h: T,
             method: Method,
         ) -> Result<HeavyTopWorkspace<T>, StartError> {
+            validate::directed_step(h)?;
             let state = *state;
             let work = HeavyTopWorkspace {
                 h,
@@ -457,8 +458,8 @@ pub mod heavy_top {
             let HeavyTopParameters { J, gU, z, .. } = self.parameters;
             let Λ = here.Λ.matrix();
             let Γ = Λ.tr_mul(&z);
-            let Ω_before = (before.Λ.inverse() * here.Λ).matrix();
-            let Ω = (here.Λ.inverse() * after.Λ).matrix();
+            let Ω_before = before.Λ.body_velocity(&here.Λ).matrix();
+            let Ω = here.Λ.body_velocity(&after.Λ).matrix();
             let t1 = h.powi(-1);
             let t2 = -(gU.cross(&Γ) * T::from_f64(0.5) * h);
             let parts: [SVector<T, 3>; 1] = [
@@ -472,7 +473,8 @@ pub mod heavy_top {
         /// What the step of size `h` from one state to the next leaves of its equations: the
         /// momentum that is carried to the second state, less the one that the motion between
         /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of.
+        /// motion apart, each with the size of the terms it is made of: those of a velocity are
+        /// the two elements it is made from, as they are stored.
         pub fn residual(
             &self,
             before: &HeavyTopState<T>,
@@ -480,7 +482,7 @@ pub mod heavy_top {
             h: T,
         ) -> [Residual; 1] {
             let HeavyTopParameters { J, gU, z, .. } = self.parameters;
-            let Ω_matrix = (before.Λ.inverse() * after.Λ).matrix();
+            let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
             let Λ_next = after.Λ.matrix();
             let Γ_next = Λ_next.tr_mul(&z);
             let t1 = h.powi(-1);
@@ -561,7 +563,7 @@ pub mod heavy_top {
             after: &HeavyTopState<T>,
         ) -> T {
             let HeavyTopParameters { J, gU, z, .. } = self.parameters;
-            let Ω_matrix = (before.Λ.inverse() * after.Λ).matrix();
+            let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
             let Λ = before.Λ.matrix();
             let Γ = Λ.tr_mul(&z);
             let Λ_next = after.Λ.matrix();

@@ -133,12 +133,13 @@ pub mod kirchhoff_body {
         /// A workspace for steps of `h`, of either sign, from any state.
         ///
         /// # Errors
-        /// When the first step cannot be solved.
+        /// When `h` is zero or not finite, or the first step cannot be solved.
         pub fn workspace(
             &self,
             state: &KirchhoffBodyState<T>,
             h: T,
         ) -> Result<KirchhoffBodyWorkspace<T>, StartError> {
+            validate::directed_step(h)?;
             let state = *state;
             let work = KirchhoffBodyWorkspace {
                 h,
@@ -714,8 +715,8 @@ pub mod kirchhoff_body {
             let KirchhoffBodyParameters { J, M, D, b, Z, .. } = self.parameters;
             let G = here.G.matrix();
             let P = G.tr_mul(&Z);
-            let V_before = (before.G.inverse() * here.G).matrix();
-            let V = (here.G.inverse() * after.G).matrix();
+            let V_before = before.G.body_velocity(&here.G).matrix();
+            let V = here.G.body_velocity(&after.G).matrix();
             let t1 = h.powi(-1);
             let t2 = motion_rotation(&V_before);
             let t3 = t2.transpose();
@@ -804,7 +805,8 @@ pub mod kirchhoff_body {
         /// What the step of size `h` from one state to the next leaves of its equations: the
         /// momentum that is carried to the second state, less the one that the motion between
         /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of.
+        /// motion apart, each with the size of the terms it is made of: those of a velocity are
+        /// the two elements it is made from, as they are stored.
         pub fn residual(
             &self,
             before: &KirchhoffBodyState<T>,
@@ -812,7 +814,8 @@ pub mod kirchhoff_body {
             h: T,
         ) -> [Residual; 2] {
             let KirchhoffBodyParameters { J, M, D, b, Z, .. } = self.parameters;
-            let V_matrix = (before.G.inverse() * after.G).matrix();
+            let V_matrix = before.G.body_velocity(&after.G).matrix();
+            let G = before.G.matrix();
             let G_next = after.G.matrix();
             let P_next = G_next.tr_mul(&Z);
             let t1 = h.powi(-1);
@@ -828,6 +831,9 @@ pub mod kirchhoff_body {
             let t11 = (D.tr_mul(&D)).trace().sqrt();
             let t12 = T::from_f64(0.5) * (h * h).sqrt() * b.dot(&b).sqrt()
                 * P_next.dot(&P_next).sqrt();
+            let t13 = motion_translation(&G);
+            let t14 = motion_translation(&G_next);
+            let t15 = t13.dot(&t13).sqrt() + t14.dot(&t14).sqrt();
             let _ = h;
             [
                 {
@@ -858,7 +864,13 @@ pub mod kirchhoff_body {
                                 + T::from_f64(0.25) * t7 * t8 * t10 * t9 * t10
                                 + T::from_f64(0.5) * t7 * t11 * t9 * t9 * t10
                                 + T::from_f64(2.0) * t7 * (J * J).trace().sqrt() * t9
-                                + t7 * t9 * t11 * t9 * t10 + t7 * t9 * t11 * t10 + t12)
+                                + t7 * t9 * t11 * t9 * t10 + t7 * t9 * t11 * t10 + t12
+                                + T::from_f64(0.25) * t7
+                                    * (t8 * t9 * t15 * t9 * t10 + t8 * t9 * t10 * t9 * t15)
+                                + T::from_f64(0.25) * t7
+                                    * (t8 * t15 * t9 * t10 + t8 * t10 * t9 * t15)
+                                + T::from_f64(0.5) * t7 * t11 * t9 * t9 * t15
+                                + t7 * t9 * t11 * t9 * t15 + t7 * t9 * t11 * t15)
                                 .magnitude(),
                     }
                 },
@@ -888,7 +900,11 @@ pub mod kirchhoff_body {
                                 + T::from_f64(0.5) * t7 * t11 * t9
                                 + T::from_f64(0.25) * t7 * t9 * t8 * t9 * t10
                                 + T::from_f64(0.25) * t7 * t9 * t8 * t10
-                                + T::from_f64(0.5) * t7 * t9 * t11 * t9 + t12)
+                                + T::from_f64(0.5) * t7 * t9 * t11 * t9 + t12
+                                + T::from_f64(0.25) * t7 * t8 * t9 * t15
+                                + T::from_f64(0.25) * t7 * t8 * t15
+                                + T::from_f64(0.25) * t7 * t9 * t8 * t9 * t15
+                                + T::from_f64(0.25) * t7 * t9 * t8 * t15)
                                 .magnitude(),
                     }
                 },
@@ -1014,7 +1030,7 @@ pub mod kirchhoff_body {
             after: &KirchhoffBodyState<T>,
         ) -> T {
             let KirchhoffBodyParameters { J, M, D, b, Z, .. } = self.parameters;
-            let V_matrix = (before.G.inverse() * after.G).matrix();
+            let V_matrix = before.G.body_velocity(&after.G).matrix();
             let G = before.G.matrix();
             let P = G.tr_mul(&Z);
             let G_next = after.G.matrix();

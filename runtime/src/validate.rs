@@ -269,6 +269,18 @@ pub fn positive_step<T: Real>(h: T) -> Result<(), ParameterError> {
     })
 }
 
+/// As [`positive_step`], for steps forwards or backwards in time: lanes of one sign.
+///
+/// # Errors
+/// Carries the lane nearest to zero.
+pub fn directed_step<T: Real>(h: T) -> Result<(), ParameterError> {
+    let backwards = h.greatest() < 0.0;
+    positive_step(if backwards { -h } else { h }).map_err(|e| ParameterError {
+        remedy: "give a finite step size, of either sign, that is 1e-307 at least",
+        ..e
+    })
+}
+
 /// An assumption of the model, already evaluated.
 ///
 /// # Errors

@@ -58,6 +58,19 @@ pub trait Group<T>: Copy {
     /// The inverse element.
     fn inverse(&self) -> Self;
 
+    /// The velocity of the edge from this node to the `next` one in the frame of the body,
+    /// `self^-1 . next`.
+    #[inline]
+    fn body_velocity(&self, next: &Self) -> Self {
+        self.inverse().compose(next)
+    }
+
+    /// The same in the frame of space, `next . self^-1`.
+    #[inline]
+    fn spatial_velocity(&self, next: &Self) -> Self {
+        next.compose(&self.inverse())
+    }
+
     /// `self . retraction(xi)`: the element perturbed on the right (body side) by the algebra
     /// coordinates `xi`. Coordinates that are missing count as zero, surplus ones are ignored.
     fn retract(&self, xi: &[T]) -> Self;

@@ -134,6 +134,29 @@ impl<T: Real> Group<T> for RigidMotion<T> {
 
     super::own_operations!();
 
+    /// `(R^T R', R^T (x' - x))`: two places near each other are subtracted before anything is rounded
+    /// to their distance from the origin.
+    #[inline]
+    fn body_velocity(&self, next: &Self) -> Self {
+        let way = next.translation - self.translation;
+        Self {
+            rotation: self.rotation.body_velocity(&next.rotation),
+            translation: self.rotation.inverse_rotate(&way),
+        }
+    }
+
+    /// `(R' R^T, x' - R' R^T x)`, the translation by differences: `(x' - x) - (R' - R) R^T x`.
+    #[inline]
+    fn spatial_velocity(&self, next: &Self) -> Self {
+        let way = next.translation - self.translation;
+        let turned = next.rotation.matrix() - self.rotation.matrix();
+        let seen_from_body = self.rotation.inverse_rotate(&self.translation);
+        Self {
+            rotation: self.rotation.spatial_velocity(&next.rotation),
+            translation: way - turned * seen_from_body,
+        }
+    }
+
     /// `self . [cay(ω) v; 0 1]`: it agrees with the exponential to first order and needs no
     /// trigonometry.
     #[inline]

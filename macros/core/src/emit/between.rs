@@ -36,8 +36,8 @@ pub(super) fn edge_between(d: &Derivation, names: &Names, wanted: &[Expr]) -> Ed
     for c in &d.spec.configurations {
         let (own, name) = (own(d, c.element), tagged(d, names, c.velocity, "matrix"));
         let value = match c.side {
-            Side::Body => quote!((#before.#own.inverse() * #after.#own).matrix()),
-            Side::Spatial => quote!((#after.#own * #before.#own.inverse()).matrix()),
+            Side::Body => quote!(#before.#own.body_velocity(&#after.#own).matrix()),
+            Side::Spatial => quote!(#before.#own.spatial_velocity(&#after.#own).matrix()),
         };
         locals.extend(quote!(let #name = #value;));
         bindings.bind(at(c.velocity, Shift::HERE), name);

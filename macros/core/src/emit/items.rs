@@ -4,14 +4,13 @@
 use super::expression::{Bindings, Writer, ty};
 use super::names::{Names, field, item, own, tagged, variable};
 use super::sizes::Generics;
-use crate::algebra::Rational;
 use crate::check::spec::{Advected, Assumption};
 use crate::derive::Derivation;
 use crate::derive::recognise::{Method, Riccati};
 use crate::derive::transport::Transport;
-use crate::expr::shape::{Shape, Structure};
-use crate::expr::symbol::{SymbolId, Symbols};
-use crate::expr::{self, Expr, Letter, Node, Shift};
+use crate::expr::shape::Structure;
+use crate::expr::symbol::SymbolId;
+use crate::expr::{self, Expr, Letter, Shift};
 use crate::print::{Format, Style, expression};
 use crate::syntax::ast::Comparison;
 use proc_macro2::{Literal, TokenStream};
@@ -318,41 +317,6 @@ pub fn node_locals(
     out
 }
 
-/// A number that no value of the expression exceeds, from the lengths of its letters: what its
-/// rounding is measured by.
-pub(crate) fn magnitude(s: &Symbols, e: &Expr) -> Expr {
-    let of = |x: &Expr| magnitude(s, x);
-    let own = |x: &Expr| {
-        let square = if x.shape().is_scalar() {
-            expr::mul(x.clone(), x.clone())
-        } else if x.shape().is_vector() {
-            expr::dot(x.clone(), x.clone())
-        } else {
-            expr::trace(expr::mul(expr::transpose(s, x.clone()), x.clone()))
-        };
-        expr::power(square, Rational::HALF)
-    };
-    match e.node() {
-        Node::Number(q) if q.is_negative() => expr::number(q.negated()),
-        Node::Number(_) => e.clone(),
-        Node::Zero(_) => expr::integer(0),
-        Node::Identity(_) | Node::Unit(..) | Node::Inclusion(..) => expr::integer(1),
-        Node::Sum(list) => expr::sum(list.iter().map(of).collect::<Vec<_>>(), Shape::SCALAR),
-        Node::Product(list) => expr::product(list.iter().map(of).collect::<Vec<_>>()),
-        Node::Dot(a, b) | Node::Cross(a, b) => expr::mul(of(a), of(b)),
-        Node::Neg(a) | Node::Transpose(a) | Node::Part(_, a) | Node::Vee(a) => of(a),
-        Node::Hat(a) | Node::Trace(a) => expr::scale(Rational::integer(2), of(a)),
-        Node::Letter(_)
-        | Node::Quotient(..)
-        | Node::Power(..)
-        | Node::Inverse(_)
-        | Node::Det(_)
-        | Node::Adjugate(_)
-        | Node::Map(..)
-        | Node::Call(..) => own(e),
-    }
-}
-
 fn assumption(d: &Derivation, a: &Assumption) -> TokenStream {
     let s = &d.letters.symbols;
     let none = Bindings::new();
@@ -371,7 +335,10 @@ fn assumption(d: &Derivation, a: &Assumption) -> TokenStream {
     let holds = shown.unwrap_or_else(|| {
         // Equal to the rounding of a few operations on numbers of the size of the terms, which may
         // cancel: a difference of large terms is no small number.
-        let bound = w.operand(&magnitude(s, &expr::sub(a.left.clone(), a.right.clone())));
+        let bound = w.operand(&expr::magnitude(
+            s,
+            &expr::sub(a.left.clone(), a.right.clone()),
+        ));
         let gap = if a.left.shape().is_scalar() {
             quote!(#difference.magnitude())
         } else {

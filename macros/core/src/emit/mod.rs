@@ -31,7 +31,6 @@ mod stepper;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use items::magnitude;
 pub(crate) use notes::notes;
 
 use crate::derive::Derivation;

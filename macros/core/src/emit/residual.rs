@@ -91,8 +91,8 @@ pub fn balance(d: &Derivation, names: &Names) -> TokenStream {
                 tagged(d, names, c.velocity, "before")
             };
             let value = match c.side {
-                Side::Body => quote!((#from.#e.inverse() * #to.#e).matrix()),
-                Side::Spatial => quote!((#to.#e * #from.#e.inverse()).matrix()),
+                Side::Body => quote!(#from.#e.body_velocity(&#to.#e).matrix()),
+                Side::Spatial => quote!(#from.#e.spatial_velocity(&#to.#e).matrix()),
             };
             velocities.extend(quote!(let #local = #value;));
             bindings.bind(

@@ -4,14 +4,14 @@
 
 use super::between::{Edge, edge_between};
 use super::expression::program;
-use super::items::magnitude;
 use super::names::{Names, item, own, per_configuration, variable};
 use super::sizes::Generics;
-use crate::check::spec::Side;
+use super::step::at;
+use crate::check::spec::{Group, Side};
 use crate::derive::Derivation;
 use crate::derive::lie::IMPULSE;
 use crate::derive::parts::rows;
-use crate::expr::Expr;
+use crate::expr::{self, Expr, Letter, Shift};
 use crate::schedule;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
@@ -44,7 +44,9 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
             }
         }
     }
-    sizes.extend(brought.iter().map(|e| magnitude(s, e)));
+    let paths = paths(d);
+    let size = |e: &Expr| expr::magnitude_between(s, e, &paths);
+    sizes.extend(brought.iter().map(size));
     let all: Vec<Expr> = brought.iter().chain(&sizes).cloned().collect();
     let Edge {
         parameters,
@@ -72,7 +74,8 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
             /// What the step of size `h` from one state to the next leaves of its equations: the
             /// momentum that is carried to the second state, less the one that the motion between
             /// them brings there. One part a configuration, angular and linear ones of a rigid
-            /// motion apart, each with the size of the terms it is made of.
+            /// motion apart, each with the size of the terms it is made of: those of a velocity are
+            /// the two elements it is made from, as they are stored.
             pub fn residual(&self, #before: &#state #used, #after: &#state #used, #step: T) -> [Residual; #count] {
                 #parameters
                 #locals
@@ -82,4 +85,20 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
             }
         }
     }
+}
+
+/// For each velocity in SE(3) the distances of its two ends from the origin of space: a stored place
+/// is rounded to them.
+fn paths(d: &Derivation) -> Vec<(Letter, Expr)> {
+    let s = &d.letters.symbols;
+    let list = d.spec.configurations.iter();
+    let rigid = list.filter(|c| c.group == Group::RigidMotions);
+    let size = |shift, element| {
+        let place = expr::column(s, &expr::letter(s, element, shift));
+        expr::length(s, &place)
+    };
+    let path = |element| expr::add(size(Shift::HERE, element), size(Shift::NEXT, element));
+    rigid
+        .map(|c| (at(c.velocity, Shift::HERE), path(c.element)))
+        .collect()
 }

@@ -29,6 +29,7 @@ pub(super) fn start(d: &Derivation, state_of: TokenStream, fields: TokenStream) 
     };
     let admitted = super::domain::of_step(d);
     let tried = quote! {
+        validate::directed_step(h)?;
         #admitted
         let state = *state;
         let work = #bare { h, #fields };
@@ -65,7 +66,7 @@ pub(super) fn start(d: &Derivation, state_of: TokenStream, fields: TokenStream) 
             /// A workspace for steps of `h`, of either sign, from any state.
             ///
             /// # Errors
-            /// When the first step cannot be solved.
+            /// When `h` is zero or not finite, or the first step cannot be solved.
             pub fn workspace(&self, state: &#state, h: T, order: Order) -> Result<#work, StartError> {
                 #tried
             }
@@ -96,7 +97,7 @@ pub(super) fn start(d: &Derivation, state_of: TokenStream, fields: TokenStream) 
             /// A workspace for steps of `h`, of either sign, from any state.
             ///
             /// # Errors
-            /// When the first step cannot be solved.
+            /// When `h` is zero or not finite, or the first step cannot be solved.
             pub fn workspace(&self, state: &#state, h: T) -> Result<#work, StartError> {
                 self.workspace_with(state, h, self.method)
             }
@@ -104,7 +105,7 @@ pub(super) fn start(d: &Derivation, state_of: TokenStream, fields: TokenStream) 
             /// The same with the solver named.
             ///
             /// # Errors
-            /// When the first step cannot be solved.
+            /// When `h` is zero or not finite, or the first step cannot be solved.
             pub fn workspace_with(&self, state: &#state, h: T, method: Method) -> Result<#work, StartError> {
                 #tried
             }
@@ -127,7 +128,7 @@ pub(super) fn start(d: &Derivation, state_of: TokenStream, fields: TokenStream) 
             /// A workspace for steps of `h`, of either sign, from any state.
             ///
             /// # Errors
-            /// When the first step cannot be solved.
+            /// When `h` is zero or not finite, or the first step cannot be solved.
             pub fn workspace(&self, state: &#state, h: T) -> Result<#work, StartError> {
                 #tried
             }

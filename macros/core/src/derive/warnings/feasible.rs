@@ -5,7 +5,6 @@
 use super::draw;
 use crate::check::spec::Assumption;
 use crate::derive::bracket;
-use crate::emit::magnitude;
 use crate::expr::shape::Structure;
 use crate::expr::symbol::{SymbolId, Symbols};
 use crate::expr::{self, Expr};
@@ -40,7 +39,7 @@ impl Condition {
     fn new(symbols: &Symbols, a: &Assumption, relation: Comparison) -> Condition {
         let difference = expr::sub(a.left.clone(), a.right.clone());
         Condition {
-            bound: magnitude(symbols, &difference),
+            bound: expr::magnitude(symbols, &difference),
             difference,
             relation,
         }

@@ -1,0 +1,136 @@
+//! Numbers that no value of an expression exceeds, from the lengths of its letters: what its rounding
+//! is measured by. Between two stored nodes a velocity is a difference, as uncertain as they are.
+//! Takes an expression; gives one without cancellation.
+
+use super::shape::{Shape, Structure};
+use super::symbol::Symbols;
+use super::{
+    Expr, Letter, Map, Node, Rational, add, dot, integer, mul, number, power, sum, trace, transpose,
+};
+
+/// How large the terms of an expression are.
+pub(crate) fn magnitude(s: &Symbols, e: &Expr) -> Expr {
+    Terms {
+        symbols: s,
+        paths: None,
+    }
+    .of(e)
+    .value
+}
+
+/// The same of an expression whose velocities are made from the elements at two nodes, with what it
+/// changes by, to first order and in units of rounding, where these are rounded: the imaginary part of
+/// a quaternion is as uncertain as the quaternion is, a translation as the places between which it
+/// goes. `paths` gives the size of those for each velocity in SE(3).
+pub(crate) fn magnitude_between(s: &Symbols, e: &Expr, paths: &[(Letter, Expr)]) -> Expr {
+    let terms = Terms {
+        symbols: s,
+        paths: Some(paths),
+    };
+    let Size { value, stored } = terms.of(e);
+    add(value, stored)
+}
+
+/// Whether the expression is a product of elements of SU(2).
+fn unit_quaternions(s: &Symbols, e: &Expr) -> bool {
+    match e.node() {
+        Node::Letter(l) => s.get(l.symbol).structure == Structure::UnitQuaternion,
+        Node::Transpose(a) | Node::Neg(a) | Node::Inverse(a) => unit_quaternions(s, a),
+        Node::Product(factors) => factors.iter().all(|f| unit_quaternions(s, f)),
+        _ => false,
+    }
+}
+
+/// The length of the value itself.
+pub(crate) fn length(s: &Symbols, x: &Expr) -> Expr {
+    let square = if x.shape().is_scalar() {
+        mul(x.clone(), x.clone())
+    } else if x.shape().is_vector() {
+        dot(x.clone(), x.clone())
+    } else {
+        trace(mul(transpose(s, x.clone()), x.clone()))
+    };
+    power(square, Rational::HALF)
+}
+
+/// How large a value is, and how large its change where stored elements change by their rounding.
+struct Size {
+    value: Expr,
+    stored: Expr,
+}
+
+struct Terms<'a> {
+    symbols: &'a Symbols,
+    /// Present between two nodes.
+    paths: Option<&'a [(Letter, Expr)]>,
+}
+
+impl Terms<'_> {
+    fn of(&self, e: &Expr) -> Size {
+        let of = |x: &Expr| self.of(x);
+        let exact = |value| Size {
+            value,
+            stored: integer(0),
+        };
+        match e.node() {
+            Node::Number(q) if q.is_negative() => exact(number(q.negated())),
+            Node::Number(_) => exact(e.clone()),
+            Node::Zero(_) => exact(integer(0)),
+            Node::Identity(_) | Node::Unit(..) | Node::Inclusion(..) => exact(integer(1)),
+            Node::Sum(list) => {
+                let all: Vec<Size> = list.iter().map(of).collect();
+                let total = |part: &dyn Fn(&Size) -> Expr| {
+                    sum(all.iter().map(part).collect::<Vec<_>>(), Shape::SCALAR)
+                };
+                Size {
+                    value: total(&|x| x.value.clone()),
+                    stored: total(&|x| x.stored.clone()),
+                }
+            }
+            Node::Product(list) => {
+                let all = list.iter().map(of);
+                all.reduce(times).unwrap_or_else(|| exact(integer(1)))
+            }
+            Node::Dot(a, b) | Node::Cross(a, b) => times(of(a), of(b)),
+            Node::Neg(a) | Node::Transpose(a) | Node::Part(_, a) | Node::Vee(a) => of(a),
+            Node::Hat(a) | Node::Trace(a) => times(exact(integer(2)), of(a)),
+            Node::Letter(_)
+            | Node::Quotient(..)
+            | Node::Power(..)
+            | Node::Inverse(_)
+            | Node::Det(_)
+            | Node::Adjugate(_)
+            | Node::Map(..)
+            | Node::Call(..) => Size {
+                value: length(self.symbols, e),
+                stored: self.stored(e).unwrap_or_else(|| integer(0)),
+            },
+        }
+    }
+
+    /// The size of the two stored elements of which a small part of a velocity is made.
+    fn stored(&self, e: &Expr) -> Option<Expr> {
+        let paths = self.paths?;
+        match e.node() {
+            Node::Map(Map::Imaginary, a) if unit_quaternions(self.symbols, a) => Some(integer(1)),
+            Node::Map(Map::Translation, a) => {
+                let Node::Letter(l) = a.node() else {
+                    return None;
+                };
+                let known = paths.iter().find(|(velocity, _)| velocity == l);
+                known.map(|(_, size)| size.clone())
+            }
+            _ => None,
+        }
+    }
+}
+
+fn times(a: Size, b: Size) -> Size {
+    Size {
+        stored: add(
+            mul(a.stored, b.value.clone()),
+            mul(a.value.clone(), b.stored),
+        ),
+        value: mul(a.value, b.value),
+    }
+}
