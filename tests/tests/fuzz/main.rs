@@ -11,8 +11,12 @@ use clebsch_tests::oracle::points::Source;
 use probe::{Input, Report, probe_all};
 use std::sync::{Mutex, MutexGuard};
 
-/// Inputs of each kind.
-const INPUTS: u64 = 100_000;
+/// Inputs of each kind; a hundred thousand by `FUZZ_INPUTS=100000`.
+fn inputs() -> u64 {
+    let asked = std::env::var("FUZZ_INPUTS").ok();
+    asked.and_then(|n| n.parse().ok()).unwrap_or(20_000)
+}
+
 /// Threads that probe; the machines this runs on have two cores.
 const THREADS: u64 = 2;
 
@@ -35,7 +39,7 @@ fn judge(report: &Report) {
 #[test]
 fn random_token_streams() {
     let _turn = alone();
-    judge(&probe_all(THREADS, INPUTS, |number| {
+    judge(&probe_all(THREADS, inputs(), |number| {
         let mut source = Source::seeded(number);
         Input {
             name: format!("token stream {number}"),
@@ -51,7 +55,7 @@ fn mutated_models() {
         .iter()
         .map(|text| tokens::lex(text))
         .collect();
-    let report = probe_all(THREADS, INPUTS, |number| {
+    let report = probe_all(THREADS, inputs(), |number| {
         let mut source = Source::seeded(number ^ 0x00f0_0d00);
         Input {
             name: format!("mutated model {number}"),
@@ -60,7 +64,7 @@ fn mutated_models() {
     });
     // Some mutants are valid models: otherwise nothing but the parser is tested.
     assert!(
-        report.accepted * 100 >= INPUTS,
+        report.accepted * 100 >= inputs(),
         "only {} were valid",
         report.accepted
     );

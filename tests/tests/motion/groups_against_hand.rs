@@ -1,4 +1,4 @@
-//! Generated steppers on SU(2) and SE(3) against hand-written ones: one step from ten thousand random states each, the
+//! Generated steppers on SU(2) and SE(3) against hand-written ones: one step from two thousand random states each, the
 //! generated ones through their cards. Takes nothing but seeds; every datum changed by a millionth is noticed, shown too.
 
 use clebsch::card::{Field, Settings};
@@ -13,7 +13,7 @@ use std::array::from_fn;
 /// Some thirty roundings of numbers of order one, for data that are not magnified.
 const ONE_STEP: f64 = 1e-14;
 
-const STATES: u32 = 10_000;
+const STATES: u32 = 2_000;
 
 /// Relative change of a datum by which conditioning is measured, and by which it is mistaken: far above rounding, far
 /// below one.

@@ -105,7 +105,7 @@ clebsch::model! {
 }
 
 /// Random points and random states for every model.
-const POINTS: usize = 200;
+const POINTS: usize = 60;
 /// Agreement of residuals, relative to the sum of the sizes of the summands.
 const AGREEMENT: f64 = 1e-12;
 /// What rounding leaves of a solved equation: a thousand roundings of 1e-16, magnified by the

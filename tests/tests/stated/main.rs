@@ -1,0 +1,24 @@
+//! Steppers of models that are stated here, on every group and of any size: what the gallery does not show. Beside
+//! `motion`, so that the two are compiled side by side.
+
+// The fields of the models are Greek letters, as in the papers.
+#![allow(mixed_script_confusables, confusable_idents)]
+// Some models are of first order or without a limit on purpose, of which the macro warns by this lint.
+#![allow(deprecated)]
+
+mod body_n;
+mod carried_momentum;
+mod carried_references;
+mod dimensions_against_hand;
+mod high_order;
+mod hygiene;
+mod joint_symmetries;
+mod left_domain;
+mod newton_refusals;
+mod oracle_compiled;
+mod oracle_self;
+mod oracle_typed;
+mod printed_formulas;
+mod stated_any_dimension;
+mod stated_models;
+mod unit_quaternions;
