@@ -2,13 +2,15 @@
 //! two steps whose nodes leave the unreduced action stationary. Takes the models of the package; gives
 //! agreement to rounding. The oracle knows the model as a tree, never as text.
 
+mod compiled;
+
 use clebsch::card::{Card, Field, Kind, Settings};
-use clebsch_compiled::{Compiled, Given, MODELS};
 use clebsch_tests::oracle::points::Source;
 use clebsch_tests::oracle::wide::grid::Grid;
 use clebsch_tests::oracle::wide::grow::AROUND;
 use clebsch_tests::oracle::wide::model::{Family, Model, Role};
 use clebsch_tests::oracle::wide::point::{Node, Point, Variation};
+use compiled::{Compiled, Given, MODELS};
 
 /// Random points for every model.
 const POINTS: u64 = 4;
