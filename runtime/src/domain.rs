@@ -3,7 +3,7 @@
 
 mod segment;
 
-use crate::groups::Linear;
+use crate::groups::{Group, Linear};
 use crate::linalg::{determinant, singular_ratio};
 use crate::said::Plain;
 use crate::scalar::Real;
@@ -172,7 +172,7 @@ pub fn invertible<T: Real, const N: usize>(
     after: &Linear<N, T>,
     h: T,
 ) -> Result<(), Contact> {
-    let velocity = before.inverse() * *after;
+    let velocity = before.body_velocity(after);
     let (v, end) = (velocity.matrix(), after.matrix());
     let away = v - SMatrix::identity();
     let squares = |a: &SMatrix<T, N, N>| a.iter().fold(T::zero(), |sum, x| sum + *x * *x);

@@ -7,6 +7,14 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use std::array::from_fn;
 
+/// How many are asked for by an environment variable, for longer runs than those of the suite;
+/// `usual` where it is absent or no number.
+#[must_use]
+pub fn asked_for(variable: &str, usual: u64) -> u64 {
+    let asked = std::env::var(variable).ok();
+    asked.and_then(|n| n.parse().ok()).unwrap_or(usual)
+}
+
 /// A seeded source of random numbers.
 #[derive(Clone, Debug)]
 pub struct Source(Xoshiro256PlusPlus);

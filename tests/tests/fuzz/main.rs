@@ -7,14 +7,13 @@ mod memory;
 mod probe;
 mod tokens;
 
-use clebsch_tests::oracle::points::Source;
+use clebsch_tests::oracle::points::{Source, asked_for};
 use probe::{Input, Report, probe_all};
 use std::sync::{Mutex, MutexGuard};
 
 /// Inputs of each kind; a hundred thousand by `FUZZ_INPUTS=100000`.
 fn inputs() -> u64 {
-    let asked = std::env::var("FUZZ_INPUTS").ok();
-    asked.and_then(|n| n.parse().ok()).unwrap_or(20_000)
+    asked_for("FUZZ_INPUTS", 20_000)
 }
 
 /// Threads that probe; the machines this runs on have two cores.

@@ -2,7 +2,7 @@
 //! for steps from a tenth to 1e-6 and below. Takes pairs and single bodies stated in space, maps of GL(3), bodies whose tensor is
 //! constant on the other side; a step that solves its equations badly is told by its residual, since carrying hides it.
 
-use clebsch::integrate::Residual;
+use clebsch::integrate::{Residual, Stepper};
 use clebsch::nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use clebsch::{
     BodyImpulse, BodyMomentum, Linear, RigidMotion, Rotation, SpatialMomentum,
@@ -153,6 +153,25 @@ fn solved(parts: &[Residual]) {
     }
 }
 
+/// All steps keep what is conserved to its rounding, and solve their equations.
+fn keeps<M: Stepper, const R: usize, const C: usize, const N: usize>(
+    model: &M,
+    mut state: M::State,
+    mut work: M::Workspace,
+    h: f64,
+    conserved: impl Fn(&M::State) -> SMatrix<f64, R, C>,
+    residual: impl Fn(&M::State, &M::State) -> [Residual; N],
+) {
+    let start = conserved(&state);
+    for _ in 0..STEPS {
+        let before = state;
+        model.advance(&mut state, &mut work).unwrap();
+        let off = largest(&(conserved(&state) - start));
+        assert!(off <= EXACT * start.norm(), "h = {h:e}: {off:e}");
+        solved(&residual(&before, &state));
+    }
+}
+
 /// The same of parts that are solved for together: about a far origin the angular terms are as much larger than the
 /// linear ones as the body is away. Newton's method takes a residual that stops falling below a thousand roundings.
 fn together(parts: &[Residual]) {
@@ -189,16 +208,11 @@ fn pair_in_space(j: Matrix3<f64>) -> (PairInSpace, PairInSpaceInitial) {
 fn the_total_momentum_of_a_pair_in_space() {
     for h in SIZES {
         let (model, initial) = pair_in_space(tensor());
-        let (mut state, mut work) = model.start(initial, h).unwrap();
+        let (state, work) = model.start(initial, h).unwrap();
         let total = |s: &PairInSpaceState| s.spatial_momentum_A().0 + s.spatial_momentum_B().0;
-        let start = total(&state);
-        for _ in 0..STEPS {
-            let before = state;
-            model.step(&mut state, &mut work).unwrap();
-            let off = largest(&(total(&state) - start));
-            assert!(off <= EXACT * start.norm(), "h = {h:e}: {off:e}");
-            solved(&model.residual(&before, &state, h));
-        }
+        keeps(&model, state, work, h, total, |a, b| {
+            model.residual(a, b, h)
+        });
     }
 }
 
@@ -220,16 +234,11 @@ fn the_total_momentum_of_a_pair_stated_by_its_attitudes() {
             spatial_momentum_A: SpatialMomentum(MOMENTA[0]),
             spatial_momentum_B: SpatialMomentum(MOMENTA[1]),
         };
-        let (mut state, mut work) = model.start(initial, h).unwrap();
+        let (state, work) = model.start(initial, h).unwrap();
         let total = |s: &PairUnreducedState| s.spatial_momentum_A().0 + s.spatial_momentum_B().0;
-        let start = total(&state);
-        for _ in 0..STEPS {
-            let before = state;
-            model.step(&mut state, &mut work).unwrap();
-            let off = largest(&(total(&state) - start));
-            assert!(off <= EXACT * start.norm(), "h = {h:e}: {off:e}");
-            solved(&model.residual(&before, &state, h));
-        }
+        keeps(&model, state, work, h, total, |a, b| {
+            model.residual(a, b, h)
+        });
     }
 }
 
@@ -249,16 +258,11 @@ fn the_total_momentum_of_bodies_of_two_groups() {
             spatial_momentum_q: SpatialMomentum(MOMENTA[0]),
             spatial_momentum_R: SpatialMomentum(MOMENTA[1]),
         };
-        let (mut state, mut work) = model.start(initial, h).unwrap();
+        let (state, work) = model.start(initial, h).unwrap();
         let total = |s: &MixedPairState| s.spatial_momentum_q().0 + s.spatial_momentum_R().0;
-        let start = total(&state);
-        for _ in 0..STEPS {
-            let before = state;
-            model.step(&mut state, &mut work).unwrap();
-            let off = largest(&(total(&state) - start));
-            assert!(off <= EXACT * start.norm(), "h = {h:e}: {off:e}");
-            solved(&model.residual(&before, &state, h));
-        }
+        keeps(&model, state, work, h, total, |a, b| {
+            model.residual(a, b, h)
+        });
     }
 }
 
@@ -350,19 +354,14 @@ fn the_angular_momentum_of_an_elastic_body() {
             I: tensor(),
             B: Matrix3::identity(),
         };
-        let (mut state, mut work) = model.start(initial, h).unwrap();
+        let (state, work) = model.start(initial, h).unwrap();
         let turning = |s: &ElasticInSpaceState| {
             let m = s.spatial_momentum().0;
             m - m.transpose()
         };
-        let start = turning(&state);
-        for _ in 0..STEPS {
-            let before = state;
-            model.step(&mut state, &mut work).unwrap();
-            let off = largest(&(turning(&state) - start));
-            assert!(off <= EXACT * start.norm(), "h = {h:e}: {off:e}");
-            solved(&model.residual(&before, &state, h));
-        }
+        keeps(&model, state, work, h, turning, |a, b| {
+            model.residual(a, b, h)
+        });
     }
 }
 

@@ -14,6 +14,7 @@ use clebsch::{BodyMomentum, NewtonError, Rotation, StartError, StepCause};
 use clebsch_models::coupled_bodies::{
     CoupledBodies, CoupledBodiesInitial, CoupledBodiesParameters, CoupledBodiesState,
 };
+use clebsch_tests::oracle::points::asked_for;
 use clebsch_tests::physics::draws::Draws;
 use clebsch_tests::physics::measure::worse;
 use drawn::{Coupled, Drawn, Fluid, InFourDimensions, Mixed, Quaternion, Rough, Stiff};
@@ -248,8 +249,7 @@ const ROUNDING: f64 = 1e-12;
 /// Problems drawn of each model; a million in all by `NEWTON_PROBLEMS=200000`. Every one is proved
 /// anew, which takes milliseconds.
 fn problems() -> u64 {
-    let asked = std::env::var("NEWTON_PROBLEMS").ok();
-    asked.and_then(|n| n.parse().ok()).unwrap_or(2000)
+    asked_for("NEWTON_PROBLEMS", 2000)
 }
 
 /// The first three nodes.

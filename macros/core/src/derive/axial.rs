@@ -12,84 +12,100 @@ use crate::expr::{self, Expr, Letter, Shift};
 
 const VECTOR: Shape = Shape::vector(Dim::Fixed(3));
 
-/// The derivative of the number `e` along a turn `xi` of the ends of the edge of `c`, as a covector.
-/// None where the velocity does not stand in it by axial vectors alone.
-pub(super) fn covector(
-    symbols: &Symbols,
-    c: &Configuration,
-    xi: SymbolId,
-    e: &Expr,
-    along: &[(Letter, Expr)],
-) -> Option<Expr> {
-    let mut own = symbols.clone();
-    let mut fresh = |base: &str| {
-        let name = own.fresh_name(base);
-        own.add(&name, VECTOR, Structure::General, Role::Derived)
-    };
-    let velocity = expr::here(symbols, c.velocity);
-    let mut parts = Vec::new();
-    match c.group {
-        Group::SpecialOrthogonal(Dim::Fixed(3)) => parts.push(expr::vee(velocity)),
-        Group::UnitQuaternions => {
-            let rotation = expr::rotation(symbols, velocity.clone());
-            parts.extend([expr::imaginary(velocity), expr::vee(rotation)]);
-        }
-        _ => return None,
-    }
-    let turn = fresh("t");
-    let parts: Vec<(Expr, SymbolId)> = parts.into_iter().map(|a| (a, fresh("a"))).collect();
-    let written = by_parts(&own, e, &parts);
-    let letter = at(c.velocity, Shift::HERE);
-    if written == *e || expr::contains(&written, letter) {
-        return None;
-    }
-    // The turn as a vector, wherever the variation is its matrix.
-    let turn_letter = expr::here(&own, turn);
-    let as_vector = match c.group.coordinates() {
-        Some(_) => turn_letter.clone(),
-        None => expr::hat(turn_letter.clone()),
-    };
-    let as_vector = [(at(xi, Shift::HERE), as_vector)];
-    let algebra = Algebra::new(&own);
-    let mut changes = Vec::new();
-    for (l, amount) in along {
-        let amount = expr::substitute(&own, amount, &as_vector);
-        if *l != letter {
-            changes.push((*l, amount));
-            continue;
-        }
-        for (part, axis) in &parts {
-            let whole = expr::directional(&own, part, &[(letter, amount.clone())]);
-            let turned = expr::cross(turn_letter.clone(), part.clone());
-            let by = |s| expr::here(s, *axis);
-            if algebra.is_zero(&expr::sub(whole.clone(), turned.clone())) {
-                changes.push((
-                    at(*axis, Shift::HERE),
-                    expr::cross(turn_letter.clone(), by(&own)),
-                ));
-            } else if algebra.is_zero(&expr::add(whole, turned)) {
-                changes.push((
-                    at(*axis, Shift::HERE),
-                    expr::cross(by(&own), turn_letter.clone()),
-                ));
-            } else {
-                return None;
-            }
-        }
-    }
-    let change = expr::directional(&own, &written, &changes);
-    let covector = expr::gradient(&own, &change, at(turn, Shift::HERE));
-    let back: Vec<(Letter, Expr)> = parts
-        .into_iter()
-        .map(|(part, axis)| (at(axis, Shift::HERE), part))
-        .collect();
-    Some(expr::substitute(&own, &covector, &back))
+/// How everything on an edge changes when its ends are turned alike, with letters for the axial
+/// vectors of one velocity.
+pub(super) struct Axial {
+    symbols: Symbols,
+    velocity: Letter,
+    /// The turn, a vector.
+    turn: Letter,
+    /// Axial vectors of the velocity, and the letters that stand for them.
+    parts: Vec<(Expr, Letter)>,
+    changes: Vec<(Letter, Expr)>,
 }
 
-/// The expression with letters for the axial vectors.
-fn by_parts(s: &Symbols, e: &Expr, parts: &[(Expr, SymbolId)]) -> Expr {
-    match parts.iter().find(|(part, _)| part == e) {
-        Some((_, axis)) => expr::here(s, *axis),
-        None => expr::rebuild(s, e, &mut |x| by_parts(s, x, parts)),
+impl Axial {
+    /// `along` is how everything changes with the variation `xi` of the configuration. None for
+    /// groups whose velocities have no axis.
+    pub(super) fn of(
+        symbols: &Symbols,
+        c: &Configuration,
+        xi: SymbolId,
+        along: &[(Letter, Expr)],
+    ) -> Option<Axial> {
+        let matrix = expr::here(symbols, c.velocity);
+        let parts = match c.group {
+            Group::SpecialOrthogonal(Dim::Fixed(3)) => vec![expr::vee(matrix)],
+            Group::UnitQuaternions => {
+                let rotation = expr::rotation(symbols, matrix.clone());
+                vec![expr::imaginary(matrix), expr::vee(rotation)]
+            }
+            _ => return None,
+        };
+        let mut symbols = symbols.clone();
+        let mut fresh = |base: &str| {
+            let name = symbols.fresh_name(base);
+            let symbol = symbols.add(&name, VECTOR, Structure::General, Role::Derived);
+            at(symbol, Shift::HERE)
+        };
+        let turn = fresh("t");
+        let parts: Vec<(Expr, Letter)> = parts.into_iter().map(|a| (a, fresh("a"))).collect();
+        // The turn as a vector, wherever the variation is its matrix.
+        let here = |l: Letter| expr::here(&symbols, l.symbol);
+        let as_vector = match c.group.coordinates() {
+            Some(_) => here(turn),
+            None => expr::hat(here(turn)),
+        };
+        let as_vector = [(at(xi, Shift::HERE), as_vector)];
+        let algebra = Algebra::new(&symbols);
+        let velocity = at(c.velocity, Shift::HERE);
+        let mut changes = Vec::new();
+        for (l, amount) in along {
+            let change = (*l, expr::substitute(&symbols, amount, &as_vector));
+            if *l != velocity {
+                changes.push(change);
+                continue;
+            }
+            for (part, axis) in &parts {
+                let whole = expr::directional(&symbols, part, std::slice::from_ref(&change));
+                let (t, a) = (here(turn), here(*axis));
+                let turns = [expr::cross(t.clone(), a.clone()), expr::cross(a, t)];
+                let turned = turns.into_iter().find(|turned| {
+                    let of_part = [(*axis, part.clone())];
+                    let there = expr::substitute(&symbols, turned, &of_part);
+                    algebra.is_zero(&expr::sub(whole.clone(), there))
+                });
+                changes.push((*axis, turned?));
+            }
+        }
+        Some(Axial {
+            symbols,
+            velocity,
+            turn,
+            parts,
+            changes,
+        })
+    }
+
+    /// The derivative of a number along the turn, as a covector. None where the velocity does not
+    /// stand in it by axial vectors alone.
+    pub(super) fn covector(&self, e: &Expr) -> Option<Expr> {
+        let s = &self.symbols;
+        let written = self.written(e);
+        if written == *e || expr::contains(&written, self.velocity) {
+            return None;
+        }
+        let change = expr::directional(s, &written, &self.changes);
+        let covector = expr::gradient(s, &change, self.turn);
+        let back: Vec<(Letter, Expr)> = self.parts.iter().map(|(a, l)| (*l, a.clone())).collect();
+        Some(expr::substitute(s, &covector, &back))
+    }
+
+    /// The expression with letters for the axial vectors.
+    fn written(&self, e: &Expr) -> Expr {
+        match self.parts.iter().find(|(part, _)| part == e) {
+            Some((_, axis)) => expr::here(&self.symbols, axis.symbol),
+            None => expr::rebuild(&self.symbols, e, &mut |x| self.written(x)),
+        }
     }
 }

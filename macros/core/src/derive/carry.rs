@@ -4,7 +4,7 @@
 
 use super::Letters;
 use super::action::Action;
-use super::axial;
+use super::axial::Axial;
 use super::balance::{Balance, shorter};
 use super::lie;
 use super::rounding::Rounding;
@@ -169,9 +169,10 @@ impl Work<'_> {
         let shape = self.inputs.balances[i].outgoing.shape();
         let total = expr::sum(each.clone(), shape);
         let xi = self.inputs.letters.variation[i];
+        let axial = Axial::of(self.symbols, c, xi, &along);
         let apart = each.iter().zip(&terms).map(|(e, t)| {
-            let axial = axial::covector(self.symbols, c, xi, t, &along);
-            let all = axial.into_iter().chain([e.clone()]);
+            let turned = axial.as_ref().and_then(|axial| axial.covector(t));
+            let all = turned.into_iter().chain([e.clone()]);
             self.best(all.flat_map(|e| self.forms(&e)).collect())
         });
         let apart = expr::sum(apart.collect::<Vec<_>>(), shape);

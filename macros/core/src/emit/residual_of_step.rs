@@ -23,7 +23,7 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
     let (before, after) = (names.local("before"), names.local("after"));
     let step = variable(s, d.spec.step);
     // What the edge brings, in parts that are measured by themselves, and the sizes of their terms.
-    let (mut brought, mut sizes, mut carried) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut brought, mut carried) = (Vec::new(), Vec::new());
     for (i, (c, b)) in d.spec.configurations.iter().zip(&d.balances).enumerate() {
         let (field, own) = (per_configuration(d, "momentum", i), own(d, c.element));
         let momentum = match c.side {
@@ -45,9 +45,10 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
         }
     }
     let paths = paths(d);
-    let size = |e: &Expr| expr::magnitude_between(s, e, &paths);
-    sizes.extend(brought.iter().map(size));
-    let all: Vec<Expr> = brought.iter().chain(&sizes).cloned().collect();
+    let sizes = brought
+        .iter()
+        .map(|e| expr::magnitude_between(s, e, &paths));
+    let all: Vec<Expr> = brought.iter().cloned().chain(sizes).collect();
     let Edge {
         parameters,
         locals,
