@@ -11,10 +11,10 @@ use clebsch_models::cayley_klein_spatial::{
 use clebsch_models::kirchhoff_body::{
     KirchhoffBody, KirchhoffBodyInitial, KirchhoffBodyParameters,
 };
-use clebsch_tests::handwritten;
-use clebsch_tests::handwritten::attitude::{Matrix, Quaternion, Vector};
-use clebsch_tests::physics::systems::{submerged, submerged_body};
-use clebsch_tests::reference::H;
+use clebsch_oracle::handwritten;
+use clebsch_oracle::handwritten::attitude::{Matrix, Quaternion, Vector};
+use clebsch_oracle::physics::systems::{submerged, submerged_body};
+use clebsch_oracle::reference::H;
 
 const MOMENTS: Vector = [3.5, 2.5, 2.0];
 

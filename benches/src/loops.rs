@@ -5,7 +5,7 @@
 macro_rules! generated {
     ($model:expr, $initial:expr) => {{
         let model = $model.expect("parameters");
-        let start = model.start($initial, clebsch_tests::reference::H);
+        let start = model.start($initial, clebsch_oracle::reference::H);
         let (state, workspace) = start.expect("solvable");
         move || {
             let whole = std::hint::black_box((model, state, workspace));

@@ -12,10 +12,10 @@ mod steppers;
 mod systems;
 
 use blocks::compare;
-use clebsch_tests::physics::cases::{
+use clebsch_oracle::physics::cases::{
     Start, asymmetric_body, generic_top, lagrange_top, symmetric_body,
 };
-use clebsch_tests::physics::systems::{generic_pair, reference_pair};
+use clebsch_oracle::physics::systems::{generic_pair, reference_pair};
 use groups::{
     generated_cayley_klein, generated_cayley_klein_spatial, generated_kirchhoff_body,
     written_cayley_klein, written_kirchhoff_body,

@@ -6,8 +6,8 @@ use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{BodyMomentum, Rotation};
 use clebsch_models::free_body::{FreeBody, FreeBodyInitial, FreeBodyParameters};
 use clebsch_models::heavy_top::{HeavyTop, HeavyTopInitial, HeavyTopParameters};
-use clebsch_tests::handwritten;
-use clebsch_tests::physics::cases::Start;
+use clebsch_oracle::handwritten;
+use clebsch_oracle::physics::cases::Start;
 use std::hint::black_box;
 
 fn matrix(start: &Start) -> Matrix3<f64> {

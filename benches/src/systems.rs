@@ -20,14 +20,14 @@ use clebsch_models::free_body_spatial::{
 use clebsch_models::heavy_top_spatial::{
     HeavyTopSpatial, HeavyTopSpatialInitial, HeavyTopSpatialParameters,
 };
-use clebsch_tests::handwritten;
-use clebsch_tests::handwritten::attitude::{Matrix, Quaternion, Vector, apply_transposed};
-use clebsch_tests::handwritten::coupled_bodies::Pair;
-use clebsch_tests::physics::cases::generic_top;
-use clebsch_tests::physics::systems::{
+use clebsch_oracle::handwritten;
+use clebsch_oracle::handwritten::attitude::{Matrix, Quaternion, Vector, apply_transposed};
+use clebsch_oracle::handwritten::coupled_bodies::Pair;
+use clebsch_oracle::physics::cases::generic_top;
+use clebsch_oracle::physics::systems::{
     body_in, quadratic_field, spatial_body, spatial_top, two_fields,
 };
-use clebsch_tests::reference::H;
+use clebsch_oracle::reference::H;
 use std::hint::black_box;
 
 fn matrix(rows: &Matrix) -> Matrix3<f64> {

@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 /// The generator, by itself: a build script needs neither runtime nor engine.
 #[allow(dead_code, unused_imports)]
-#[path = "../src/oracle"]
+#[path = "../oracle/src/oracle"]
 mod oracle {
     pub mod dual;
     pub mod points;
@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("cargo::rerun-if-env-changed=CLEBSCH_RANDOM_MODELS");
     println!("cargo::rerun-if-env-changed=CLEBSCH_RANDOM_FIRST");
     println!("cargo::rerun-if-changed=build.rs");
-    println!("cargo::rerun-if-changed=../src/oracle");
+    println!("cargo::rerun-if-changed=../oracle/src/oracle");
     let given = |name: &str| std::env::var(name).ok().and_then(|text| text.parse().ok());
     let count = given("CLEBSCH_RANDOM_MODELS").unwrap_or(MODELS);
     let first = given("CLEBSCH_RANDOM_FIRST").unwrap_or(0);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Reference states of the discrete motions in tests/src/reference, computed from the equations alone.
+"""Reference states of the discrete motions in tests/oracle/src/reference, computed from the equations alone.
 
     python3 tests/reference/generate.py > tests/reference/states.txt
 

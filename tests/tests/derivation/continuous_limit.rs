@@ -4,8 +4,8 @@
 //! is not the limit.
 
 use clebsch_core::{Assignment, Derivation, derive_source};
-use clebsch_tests::oracle::points::Source;
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::oracle::points::Source;
+use clebsch_oracle::physics::measure::worse;
 
 /// Square matrices of any size, row by row.
 #[derive(Clone)]

@@ -11,8 +11,8 @@ use clebsch_core::interpret::{Assignment, Matrix, evaluate};
 use clebsch_core::print::{Format, Style, expression};
 use clebsch_core::schedule::Known;
 use clebsch_core::{Derivation, derive_source};
-use clebsch_tests::physics::draws::Draws;
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::physics::draws::Draws;
+use clebsch_oracle::physics::measure::worse;
 
 /// Each a statement whose velocities are coupled, not linear in them, or of another group.
 const MODELS: [(&str, &str); 6] = [

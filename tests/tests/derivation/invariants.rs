@@ -3,7 +3,7 @@
 //! to be bounded moves, and what an assumption excludes is refused.
 
 use clebsch::card::{Card, Conserved, Settings};
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::physics::measure::worse;
 
 clebsch::model! {
     /// Lagrange's top by what is assumed of its parameters.

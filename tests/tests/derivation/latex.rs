@@ -217,8 +217,8 @@ fn documents() -> Vec<(String, String)> {
         .map(|e| (e.card.name.to_owned(), e.card.source.to_owned()))
         .collect();
     for text in [
-        clebsch_tests::oracle::action::mixed::REDUCED,
-        clebsch_tests::oracle::action::mixed::UNREDUCED,
+        clebsch_oracle::oracle::action::mixed::REDUCED,
+        clebsch_oracle::oracle::action::mixed::UNREDUCED,
         "model Ellipsoid {
             dim n in 2..=4; param C0, I0: Sym<n>; param a, b, c: Real;
             group Q: GL<n> velocity G; advected C: Sym<n> = Q^T*C0*Q;

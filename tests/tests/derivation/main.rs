@@ -10,7 +10,6 @@
 mod allocations;
 mod architecture;
 mod bracket;
-mod compile_fail;
 mod continuous_limit;
 mod documents;
 mod equations_of_a_step;

@@ -4,14 +4,14 @@
 
 use super::oracle_bridge::{AGREEMENT, assignment, disagreement};
 use clebsch_core::{Derivation, derive_source};
-use clebsch_tests::oracle::action::bodies::{FreeBody, HeavyTop, Stated};
-use clebsch_tests::oracle::action::coupled::CoupledBodies;
-use clebsch_tests::oracle::action::spatial::HeavyTopSpatial;
-use clebsch_tests::oracle::action::{Variation, rotations, stationarity};
-use clebsch_tests::oracle::points::{Given, Source};
-use clebsch_tests::oracle::random::RandomLagrangian;
-use clebsch_tests::oracle::random::sample::Sample;
-use clebsch_tests::oracle::square::Square;
+use clebsch_oracle::oracle::action::bodies::{FreeBody, HeavyTop, Stated};
+use clebsch_oracle::oracle::action::coupled::CoupledBodies;
+use clebsch_oracle::oracle::action::spatial::HeavyTopSpatial;
+use clebsch_oracle::oracle::action::{Variation, rotations, stationarity};
+use clebsch_oracle::oracle::points::{Given, Source};
+use clebsch_oracle::oracle::random::RandomLagrangian;
+use clebsch_oracle::oracle::random::sample::Sample;
+use clebsch_oracle::oracle::square::Square;
 use std::array::from_fn;
 
 /// Points at which a mutant may be noticed; one is enough for nearly all.

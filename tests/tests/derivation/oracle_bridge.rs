@@ -2,9 +2,9 @@
 //! Takes the plain data of the oracle; gives assignments for the engine and compares residuals.
 
 use clebsch_core::Assignment;
-use clebsch_tests::oracle::action::Variation;
-use clebsch_tests::oracle::points::Given;
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::oracle::action::Variation;
+use clebsch_oracle::oracle::points::Given;
+use clebsch_oracle::physics::measure::worse;
 
 /// Agreement asked of a residual, relative to the sum of the sizes of its summands. Rounding leaves about
 /// 1e-14; inverses and quotients of random matrices lose some digits more.

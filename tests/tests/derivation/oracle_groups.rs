@@ -4,12 +4,12 @@
 
 use super::oracle_bridge::{AGREEMENT, assignment, disagreement};
 use clebsch_core::{Derivation, derive_source};
-use clebsch_tests::oracle::action::motions::{self, KirchhoffBody, MotionSum, twists};
-use clebsch_tests::oracle::action::quaternions::{self, CayleyKlein, QuaternionSum, halves};
-use clebsch_tests::oracle::action::{DiscreteAction, Side, stationarity};
-use clebsch_tests::oracle::points::{Given, Source};
-use clebsch_tests::oracle::square::Square;
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::oracle::action::motions::{self, KirchhoffBody, MotionSum, twists};
+use clebsch_oracle::oracle::action::quaternions::{self, CayleyKlein, QuaternionSum, halves};
+use clebsch_oracle::oracle::action::{DiscreteAction, Side, stationarity};
+use clebsch_oracle::oracle::points::{Given, Source};
+use clebsch_oracle::oracle::square::Square;
+use clebsch_oracle::physics::measure::worse;
 use std::array::from_fn;
 
 /// Random points for every system.

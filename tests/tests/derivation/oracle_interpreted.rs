@@ -4,19 +4,19 @@
 
 use super::oracle_bridge::{AGREEMENT, assignment, disagreement};
 use clebsch_core::derive_source;
-use clebsch_tests::oracle::action::bodies::{
+use clebsch_oracle::oracle::action::bodies::{
     FourDimensional, FreeBody, HeavyTop, QuadraticField, Stated, TwoVectors,
 };
-use clebsch_tests::oracle::action::coupled::CoupledBodies;
-use clebsch_tests::oracle::action::elastic::{EllipsoidConvective, EllipsoidSpatial, entries};
-use clebsch_tests::oracle::action::spatial::{FreeBodySpatial, HeavyTopSpatial};
-use clebsch_tests::oracle::action::{Side, rotations, stationarity};
-use clebsch_tests::oracle::points::Source;
-use clebsch_tests::oracle::random::RandomLagrangian;
-use clebsch_tests::oracle::random::sample::Sample;
-use clebsch_tests::oracle::random::tree::{Kind, Role};
-use clebsch_tests::oracle::square::Square;
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::oracle::action::coupled::CoupledBodies;
+use clebsch_oracle::oracle::action::elastic::{EllipsoidConvective, EllipsoidSpatial, entries};
+use clebsch_oracle::oracle::action::spatial::{FreeBodySpatial, HeavyTopSpatial};
+use clebsch_oracle::oracle::action::{Side, rotations, stationarity};
+use clebsch_oracle::oracle::points::Source;
+use clebsch_oracle::oracle::random::RandomLagrangian;
+use clebsch_oracle::oracle::random::sample::Sample;
+use clebsch_oracle::oracle::random::tree::{Kind, Role};
+use clebsch_oracle::oracle::square::Square;
+use clebsch_oracle::physics::measure::worse;
 use std::array::from_fn;
 use std::panic::catch_unwind;
 

@@ -11,15 +11,15 @@ use clebsch_models::cayley_klein::{CayleyKlein, CayleyKleinInitial, CayleyKleinP
 use clebsch_models::kirchhoff_body::{
     KirchhoffBody, KirchhoffBodyInitial, KirchhoffBodyParameters,
 };
-use clebsch_tests::oracle::action::mixed::{self, Mixed};
-use clebsch_tests::oracle::action::motions::{self, twists};
-use clebsch_tests::oracle::action::quaternions::{self, halves};
-use clebsch_tests::oracle::action::{
+use clebsch_oracle::oracle::action::mixed::{self, Mixed};
+use clebsch_oracle::oracle::action::motions::{self, twists};
+use clebsch_oracle::oracle::action::quaternions::{self, halves};
+use clebsch_oracle::oracle::action::{
     DiscreteAction, Side, Variation, stationarity, stationarity_along,
 };
-use clebsch_tests::oracle::points::Source;
-use clebsch_tests::oracle::square::Square;
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::oracle::points::Source;
+use clebsch_oracle::oracle::square::Square;
+use clebsch_oracle::physics::measure::worse;
 use std::array::from_fn;
 
 const POINTS: usize = 1000;
@@ -93,7 +93,7 @@ fn worst<const G: usize, A: DiscreteAction<4, G>>(
     [text, other]: [&str; 2],
     system: impl Fn(&mut Source) -> (A, f64),
     node: fn(&mut Source) -> [Square<f64, 4>; G],
-    given: impl Fn(&A, &[[Square<f64, 4>; G]; 3]) -> Vec<clebsch_tests::oracle::points::Given>,
+    given: impl Fn(&A, &[[Square<f64, 4>; G]; 3]) -> Vec<clebsch_oracle::oracle::points::Given>,
     oracle: impl Fn(&A, &[[Square<f64, 4>; G]; 3]) -> Variation,
 ) -> (f64, f64) {
     let (d, other) = (derive(text), derive(other));

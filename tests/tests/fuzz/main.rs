@@ -7,7 +7,7 @@ mod memory;
 mod probe;
 mod tokens;
 
-use clebsch_tests::oracle::points::{Source, asked_for};
+use clebsch_oracle::oracle::points::{Source, asked_for};
 use probe::{Input, Report, probe_all};
 use std::sync::{Mutex, MutexGuard};
 

@@ -2,14 +2,14 @@
 //! Takes a seeded source; gives texts of at most 10 kB made of the tokens of the model language, of Rust,
 //! and of models that are valid before they are mutated.
 
-use clebsch_tests::oracle::action::bodies::{
+use clebsch_oracle::oracle::action::bodies::{
     FourDimensional, FreeBody, HeavyTop, QuadraticField, Stated, TwoVectors,
 };
-use clebsch_tests::oracle::action::coupled::CoupledBodies;
-use clebsch_tests::oracle::action::elastic::{EllipsoidConvective, EllipsoidSpatial};
-use clebsch_tests::oracle::action::spatial::{FreeBodySpatial, HeavyTopSpatial};
-use clebsch_tests::oracle::points::Source;
-use clebsch_tests::oracle::random::RandomLagrangian;
+use clebsch_oracle::oracle::action::coupled::CoupledBodies;
+use clebsch_oracle::oracle::action::elastic::{EllipsoidConvective, EllipsoidSpatial};
+use clebsch_oracle::oracle::action::spatial::{FreeBodySpatial, HeavyTopSpatial};
+use clebsch_oracle::oracle::points::Source;
+use clebsch_oracle::oracle::random::RandomLagrangian;
 
 /// The longest text.
 const LONGEST: usize = 10_000;

@@ -3,7 +3,7 @@
 
 use super::allocations::allocations;
 use super::generated_motion::{GeneratedBody, GeneratedTop};
-use clebsch_tests::physics::cases::{asymmetric_body, generic_top, lagrange_top};
+use clebsch_oracle::physics::cases::{asymmetric_body, generic_top, lagrange_top};
 use std::hint::black_box;
 
 #[test]

@@ -4,11 +4,11 @@
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{BodyMomentum, UnitQuaternion};
 use clebsch_models::cayley_klein::{CayleyKlein, CayleyKleinInitial, CayleyKleinParameters};
-use clebsch_tests::handwritten::attitude::{Quaternion, Vector, dot};
-use clebsch_tests::handwritten::cayley_klein::CayleyKlein as Implicit;
-use clebsch_tests::handwritten::cayley_klein_symmetric::SymmetricCayleyKlein as Explicit;
-use clebsch_tests::oracle::points::Source;
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::handwritten::attitude::{Quaternion, Vector, dot};
+use clebsch_oracle::handwritten::cayley_klein::CayleyKlein as Implicit;
+use clebsch_oracle::handwritten::cayley_klein_symmetric::SymmetricCayleyKlein as Explicit;
+use clebsch_oracle::oracle::points::Source;
+use clebsch_oracle::physics::measure::worse;
 
 const H: f64 = 0.1;
 
@@ -64,7 +64,7 @@ fn invariants_stay_for_a_million_steps() {
         for _ in 0..1_000_000 {
             body.step();
         }
-        let now = clebsch_tests::handwritten::attitude::apply(
+        let now = clebsch_oracle::handwritten::attitude::apply(
             &body.quaternion().normalised().matrix(),
             &body.body_momentum(),
         );

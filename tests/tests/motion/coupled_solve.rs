@@ -8,7 +8,7 @@ use clebsch_models::coupled_bodies::{
     CoupledBodies, CoupledBodiesConfiguration, CoupledBodiesInitial, CoupledBodiesParameters,
     CoupledBodiesState,
 };
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::physics::measure::worse;
 
 type Wide = DoubleDouble;
 

@@ -18,7 +18,7 @@ use clebsch_models::heavy_top::{HeavyTop, HeavyTopInitial, HeavyTopParameters};
 use clebsch_models::kirchhoff_body::{
     KirchhoffBody, KirchhoffBodyInitial, KirchhoffBodyParameters,
 };
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::physics::measure::worse;
 use rand_xoshiro::Xoshiro256StarStar;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 

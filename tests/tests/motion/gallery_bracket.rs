@@ -14,8 +14,8 @@ use clebsch_core::expr::shape::Structure;
 use clebsch_core::interpret::{Assignment, Matrix};
 use clebsch_core::{Derivation, derive_source};
 use clebsch_models::Case;
-use clebsch_tests::physics::draws::Draws;
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::physics::draws::Draws;
+use clebsch_oracle::physics::measure::worse;
 
 /// Rounding of a product of three matrices of up to twelve rows with entries of order one to ten,
 /// over the largest entry, with a wide margin.

@@ -4,9 +4,9 @@
 
 use clebsch::card::{Card, Conserved, OpenError, Settings, Trajectory};
 use clebsch_models::Case;
-use clebsch_tests::physics::measure::worse;
-use clebsch_tests::physics::order::orders;
-use clebsch_tests::physics::trend::trend;
+use clebsch_oracle::physics::measure::worse;
+use clebsch_oracle::physics::order::orders;
+use clebsch_oracle::physics::trend::trend;
 
 const MILLION: u64 = 1_000_000;
 

@@ -8,10 +8,10 @@ use clebsch::{
     Rotation, SpatialMomentum, UnitQuaternion,
 };
 use clebsch_models::Case;
-use clebsch_tests::handwritten::attitude::Vector;
-use clebsch_tests::physics::draws::Draws;
-use clebsch_tests::physics::measure::worse;
-use clebsch_tests::physics::symplectic::{
+use clebsch_oracle::handwritten::attitude::Vector;
+use clebsch_oracle::physics::draws::Draws;
+use clebsch_oracle::physics::measure::worse;
+use clebsch_oracle::physics::symplectic::{
     defect_of_motion, defect_of_product, defect_of_rotations,
 };
 

@@ -2,13 +2,13 @@
 //! motions. Takes nothing but seeds; a stepper with a fault fails both comparisons, which is shown here too.
 
 use super::generated_motion::{GeneratedBody, GeneratedTop};
-use clebsch_tests::handwritten::free_body::FreeBody;
-use clebsch_tests::handwritten::heavy_top::HeavyTop;
-use clebsch_tests::physics::cases::{Start, hanging_top, lagrange_top, symmetric_body};
-use clebsch_tests::physics::draws::Draws;
-use clebsch_tests::physics::faults::{Fault, FaultyTop};
-use clebsch_tests::physics::measure::{apart, worse};
-use clebsch_tests::physics::motion::Motion;
+use clebsch_oracle::handwritten::free_body::FreeBody;
+use clebsch_oracle::handwritten::heavy_top::HeavyTop;
+use clebsch_oracle::physics::cases::{Start, hanging_top, lagrange_top, symmetric_body};
+use clebsch_oracle::physics::draws::Draws;
+use clebsch_oracle::physics::faults::{Fault, FaultyTop};
+use clebsch_oracle::physics::measure::{apart, worse};
+use clebsch_oracle::physics::motion::Motion;
 
 /// Some twenty roundings of numbers of order one; momenta are compared relative to |mu|.
 const ONE_STEP: f64 = 1e-14;

@@ -2,16 +2,16 @@
 //! The same measurements reject steppers with a fault: see the tests of the hand-written steppers.
 
 use super::generated_motion::{GeneratedBody, GeneratedTop};
-use clebsch_tests::handwritten::attitude::{apply, cross, dot};
-use clebsch_tests::physics::cases::Start;
-use clebsch_tests::physics::cases::{
+use clebsch_oracle::handwritten::attitude::{apply, cross, dot};
+use clebsch_oracle::physics::cases::Start;
+use clebsch_oracle::physics::cases::{
     asymmetric_body, flat_body, generic_top, hanging_top, lagrange_top, steady_body, symmetric_body,
 };
-use clebsch_tests::physics::measure::worse;
-use clebsch_tests::physics::measure::{energies, free_drift, top_drift};
-use clebsch_tests::physics::motion::Motion;
-use clebsch_tests::physics::trend::trend;
-use clebsch_tests::physics::truth::inverse_inertia;
+use clebsch_oracle::physics::measure::worse;
+use clebsch_oracle::physics::measure::{energies, free_drift, top_drift};
+use clebsch_oracle::physics::motion::Motion;
+use clebsch_oracle::physics::trend::trend;
+use clebsch_oracle::physics::truth::inverse_inertia;
 
 const MILLION: u64 = 1_000_000;
 

@@ -16,12 +16,12 @@ use clebsch_models::kirchhoff_body::{
     KirchhoffBody, KirchhoffBodyInitial, KirchhoffBodyParameters, KirchhoffBodyState,
     KirchhoffBodyWorkspace,
 };
-use clebsch_tests::physics::measure::worse;
-use clebsch_tests::physics::order::confirms;
-use clebsch_tests::reference::quaternion::{
+use clebsch_oracle::physics::measure::worse;
+use clebsch_oracle::physics::order::confirms;
+use clebsch_oracle::reference::quaternion::{
     M0, MOMENTS, MOMENTUM_C0, MOMENTUM_C1, QUATERNION_C0, QUATERNION_C1,
 };
-use clebsch_tests::reference::{H, NODES, TOLERANCE};
+use clebsch_oracle::reference::{H, NODES, TOLERANCE};
 
 fn lifted<T: Real, const R: usize>(v: &SVector<f64, R>) -> SVector<T, R> {
     v.map(T::from_f64)

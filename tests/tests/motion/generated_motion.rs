@@ -12,9 +12,9 @@ use clebsch_models::free_body::{
 use clebsch_models::heavy_top::{
     HeavyTop, HeavyTopInitial, HeavyTopParameters, HeavyTopState, HeavyTopWorkspace,
 };
-use clebsch_tests::handwritten::attitude::{Matrix, Quaternion, Vector};
-use clebsch_tests::physics::cases::Start;
-use clebsch_tests::physics::motion::Motion;
+use clebsch_oracle::handwritten::attitude::{Matrix, Quaternion, Vector};
+use clebsch_oracle::physics::cases::Start;
+use clebsch_oracle::physics::motion::Motion;
 
 /// A matrix given by rows.
 pub fn matrix(rows: &Matrix) -> Matrix3<f64> {

@@ -2,11 +2,11 @@
 //! The same measurement finds order one for one-sided readings: see the tests of the hand-written steppers.
 
 use super::generated_motion::{GeneratedBody, GeneratedTop};
-use clebsch_tests::physics::cases::{Start, asymmetric_body, generic_top, lagrange_top};
-use clebsch_tests::physics::motion::Motion;
-use clebsch_tests::physics::order::{confirms, errors, orders};
-use clebsch_tests::physics::truth::{Phase, flow};
-use clebsch_tests::reference::asymmetric_body_errors;
+use clebsch_oracle::physics::cases::{Start, asymmetric_body, generic_top, lagrange_top};
+use clebsch_oracle::physics::motion::Motion;
+use clebsch_oracle::physics::order::{confirms, errors, orders};
+use clebsch_oracle::physics::truth::{Phase, flow};
+use clebsch_oracle::reference::asymmetric_body_errors;
 
 /// Rounding of the coarsest numbers that enter an error: a few thousand steps of the motion and the series.
 const FLOOR: f64 = 1e-13;

@@ -6,11 +6,11 @@ use super::generated_motion::{
 };
 use clebsch::nalgebra::Vector3;
 use clebsch::{BodyMomentum, Rotation};
-use clebsch_tests::handwritten::attitude::{Matrix, Vector};
-use clebsch_tests::physics::against_reference;
-use clebsch_tests::physics::cases::Start;
-use clebsch_tests::physics::motion::Motion;
-use clebsch_tests::reference::TOLERANCE;
+use clebsch_oracle::handwritten::attitude::{Matrix, Vector};
+use clebsch_oracle::physics::against_reference;
+use clebsch_oracle::physics::cases::Start;
+use clebsch_oracle::physics::motion::Motion;
+use clebsch_oracle::reference::TOLERANCE;
 
 clebsch::model! {
     /// The heavy top with the whole potential at the head of each edge: its node momentum is N_{k+1}.

@@ -6,11 +6,11 @@ use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{BodyMomentum, Dual, Rotation};
 use clebsch_models::free_body::{FreeBody, FreeBodyInitial, FreeBodyParameters};
 use clebsch_models::heavy_top::{HeavyTop, HeavyTopInitial, HeavyTopParameters};
-use clebsch_tests::handwritten::attitude::Vector;
-use clebsch_tests::physics::cases::Start;
-use clebsch_tests::physics::draws::Draws;
-use clebsch_tests::physics::measure::worse;
-use clebsch_tests::physics::symplectic::{Jacobian, defect};
+use clebsch_oracle::handwritten::attitude::Vector;
+use clebsch_oracle::physics::cases::Start;
+use clebsch_oracle::physics::draws::Draws;
+use clebsch_oracle::physics::measure::worse;
+use clebsch_oracle::physics::symplectic::{Jacobian, defect};
 
 /// A number with derivatives with respect to (xi, mu).
 type Number = Dual<6>;

@@ -3,11 +3,11 @@
 
 use clebsch::card::{Field, Settings};
 use clebsch_models::find;
-use clebsch_tests::handwritten::attitude::{Quaternion, Vector, apply};
-use clebsch_tests::handwritten::cayley_klein::CayleyKlein;
-use clebsch_tests::handwritten::kirchhoff_body::{KirchhoffBody, Momentum, Submerged};
-use clebsch_tests::oracle::points::Source;
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::handwritten::attitude::{Quaternion, Vector, apply};
+use clebsch_oracle::handwritten::cayley_klein::CayleyKlein;
+use clebsch_oracle::handwritten::kirchhoff_body::{KirchhoffBody, Momentum, Submerged};
+use clebsch_oracle::oracle::points::Source;
+use clebsch_oracle::physics::measure::worse;
 use std::array::from_fn;
 
 /// Some thirty roundings of numbers of order one, for data that are not magnified.

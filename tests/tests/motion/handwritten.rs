@@ -1,23 +1,23 @@
 //! The hand-written steppers against reference numbers, the continuous motion and their conservation laws; and every
 //! measurement shown to reject a stepper that is wrong on purpose. Takes nothing of the library under test.
 
-use clebsch_tests::handwritten::attitude::{Quaternion, add_scaled, apply};
-use clebsch_tests::handwritten::free_body::FreeBody;
-use clebsch_tests::handwritten::heavy_top::HeavyTop;
-use clebsch_tests::handwritten::one_sided_top::OneSidedTop;
-use clebsch_tests::handwritten::principal_axes::PrincipalAxes;
-use clebsch_tests::physics::cases::{
+use clebsch_oracle::handwritten::attitude::{Quaternion, add_scaled, apply};
+use clebsch_oracle::handwritten::free_body::FreeBody;
+use clebsch_oracle::handwritten::heavy_top::HeavyTop;
+use clebsch_oracle::handwritten::one_sided_top::OneSidedTop;
+use clebsch_oracle::handwritten::principal_axes::PrincipalAxes;
+use clebsch_oracle::physics::cases::{
     Start, asymmetric_body, flat_body, generic_top, hanging_top, lagrange_top, symmetric_body,
 };
-use clebsch_tests::physics::draws::Draws;
-use clebsch_tests::physics::faults::{Fault, FaultyTop};
-use clebsch_tests::physics::measure::{apart, energies, free_drift, top_drift};
-use clebsch_tests::physics::motion::Motion;
-use clebsch_tests::physics::order::{confirms, errors, orders};
-use clebsch_tests::physics::trend::trend;
-use clebsch_tests::physics::truth::{Phase, flow, inverse_inertia};
-use clebsch_tests::physics::{against_reference, measure};
-use clebsch_tests::reference::{TOLERANCE, asymmetric_body_errors, body_sym};
+use clebsch_oracle::physics::draws::Draws;
+use clebsch_oracle::physics::faults::{Fault, FaultyTop};
+use clebsch_oracle::physics::measure::{apart, energies, free_drift, top_drift};
+use clebsch_oracle::physics::motion::Motion;
+use clebsch_oracle::physics::order::{confirms, errors, orders};
+use clebsch_oracle::physics::trend::trend;
+use clebsch_oracle::physics::truth::{Phase, flow, inverse_inertia};
+use clebsch_oracle::physics::{against_reference, measure};
+use clebsch_oracle::reference::{TOLERANCE, asymmetric_body_errors, body_sym};
 
 fn body(start: &Start) -> FreeBody {
     FreeBody::start(

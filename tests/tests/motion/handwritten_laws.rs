@@ -1,18 +1,18 @@
 //! Hand-written steppers of spatial forms, coupled bodies, SU(2), fields and n dimensions: what they conserve over 1e5
 //! steps, and their order. Takes nothing of the library under test.
 
-use clebsch_tests::handwritten::attitude::{Quaternion, add_scaled, apply, cross, dot};
-use clebsch_tests::handwritten::body_n::{BodyN, Square};
-use clebsch_tests::handwritten::cayley_klein::CayleyKlein;
-use clebsch_tests::handwritten::coupled_bodies::CoupledBodies;
-use clebsch_tests::handwritten::free_body_spatial::FreeBodySpatial;
-use clebsch_tests::physics::measure::worse;
-use clebsch_tests::physics::order::orders;
-use clebsch_tests::physics::systems::{
+use clebsch_oracle::handwritten::attitude::{Quaternion, add_scaled, apply, cross, dot};
+use clebsch_oracle::handwritten::body_n::{BodyN, Square};
+use clebsch_oracle::handwritten::cayley_klein::CayleyKlein;
+use clebsch_oracle::handwritten::coupled_bodies::CoupledBodies;
+use clebsch_oracle::handwritten::free_body_spatial::FreeBodySpatial;
+use clebsch_oracle::physics::measure::worse;
+use clebsch_oracle::physics::order::orders;
+use clebsch_oracle::physics::systems::{
     body_in, body_n, generic_pair, quadratic_body, quadratic_field, reference_pair, relative,
     spatial_body, spatial_top, submerged_body, total, two_fields,
 };
-use clebsch_tests::reference::H;
+use clebsch_oracle::reference::H;
 
 const LONG: u64 = 100_000;
 

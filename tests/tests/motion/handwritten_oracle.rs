@@ -5,21 +5,21 @@
 // Loops over the indices of small arrays read as the formulas they were typed from.
 #![allow(clippy::needless_range_loop)]
 
-use clebsch_tests::handwritten::attitude::{Quaternion, Vector, apply_transposed};
-use clebsch_tests::handwritten::body_in_field::{BodyInField, Field, QuadraticField, TwoFields};
-use clebsch_tests::handwritten::body_n::BodyN;
-use clebsch_tests::handwritten::cayley_klein::CayleyKlein;
-use clebsch_tests::handwritten::coupled_bodies::{CoupledBodies, Pair};
-use clebsch_tests::handwritten::free_body_spatial::FreeBodySpatial;
-use clebsch_tests::handwritten::heavy_top_spatial::{HeavyTopSpatial, SpatialTop};
-use clebsch_tests::handwritten::kirchhoff_body::{KirchhoffBody, Momentum, Submerged};
-use clebsch_tests::oracle::action::{
+use clebsch_oracle::handwritten::attitude::{Quaternion, Vector, apply_transposed};
+use clebsch_oracle::handwritten::body_in_field::{BodyInField, Field, QuadraticField, TwoFields};
+use clebsch_oracle::handwritten::body_n::BodyN;
+use clebsch_oracle::handwritten::cayley_klein::CayleyKlein;
+use clebsch_oracle::handwritten::coupled_bodies::{CoupledBodies, Pair};
+use clebsch_oracle::handwritten::free_body_spatial::FreeBodySpatial;
+use clebsch_oracle::handwritten::heavy_top_spatial::{HeavyTopSpatial, SpatialTop};
+use clebsch_oracle::handwritten::kirchhoff_body::{KirchhoffBody, Momentum, Submerged};
+use clebsch_oracle::oracle::action::{
     DiscreteAction, NodeRule, Variation, bodies, coupled, momentum_in, momentum_out, rotations,
     spatial, stationarity,
 };
-use clebsch_tests::oracle::dual::Number;
-use clebsch_tests::oracle::points::Source;
-use clebsch_tests::oracle::square::{Square, constant_column, dot, vee};
+use clebsch_oracle::oracle::dual::Number;
+use clebsch_oracle::oracle::points::Source;
+use clebsch_oracle::oracle::square::{Square, constant_column, dot, vee};
 use std::array::from_fn;
 
 /// Random states of every system.

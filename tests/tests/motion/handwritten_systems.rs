@@ -1,22 +1,22 @@
 //! Hand-written steppers of spatial forms, coupled bodies, SU(2), fields and n dimensions: against reference numbers,
 //! against each other where two describe one motion, and Newton against the fixed point of the thesis. Takes nothing of the library under test.
 
-use clebsch_tests::handwritten::attitude::{
+use clebsch_oracle::handwritten::attitude::{
     Matrix, Quaternion, Vector, add_scaled, apply, cross, dot,
 };
-use clebsch_tests::handwritten::body_in_field::TwoFields;
-use clebsch_tests::handwritten::body_n::{product, transposed};
-use clebsch_tests::handwritten::cayley_klein::CayleyKlein;
-use clebsch_tests::handwritten::coupled_bodies::{CoupledBodies, MOST_ITERATIONS, Pair, RESIDUAL};
-use clebsch_tests::handwritten::coupled_fixed_point::FixedPoint;
-use clebsch_tests::handwritten::free_body::FreeBody;
-use clebsch_tests::handwritten::heavy_top::HeavyTop;
-use clebsch_tests::physics::cases::{diagonal, generic_top, lagrange_top};
-use clebsch_tests::physics::measure::{matrices, vectors, worse};
-use clebsch_tests::physics::systems::{
+use clebsch_oracle::handwritten::body_in_field::TwoFields;
+use clebsch_oracle::handwritten::body_n::{product, transposed};
+use clebsch_oracle::handwritten::cayley_klein::CayleyKlein;
+use clebsch_oracle::handwritten::coupled_bodies::{CoupledBodies, MOST_ITERATIONS, Pair, RESIDUAL};
+use clebsch_oracle::handwritten::coupled_fixed_point::FixedPoint;
+use clebsch_oracle::handwritten::free_body::FreeBody;
+use clebsch_oracle::handwritten::heavy_top::HeavyTop;
+use clebsch_oracle::physics::cases::{diagonal, generic_top, lagrange_top};
+use clebsch_oracle::physics::measure::{matrices, vectors, worse};
+use clebsch_oracle::physics::systems::{
     body_in, generic_pair, poinsot, reference_pair, relative, spatial_body, spatial_top, total,
 };
-use clebsch_tests::reference::{
+use clebsch_oracle::reference::{
     H, NODES, TOLERANCE, coupled_sym, quaternion, spatial, top_lagrange,
 };
 

@@ -5,7 +5,7 @@ use clebsch::card::{Card, OpenError, Settings, Trajectory};
 use clebsch::solvers::Method;
 use clebsch::{StartError, StepCause};
 use clebsch_models::gallery;
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::physics::measure::worse;
 
 /// Nodes that are compared: long enough for a wrong solution to show, too short for the motion to amplify rounding.
 const STEPS: usize = 50;

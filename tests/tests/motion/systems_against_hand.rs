@@ -18,17 +18,17 @@ use clebsch_models::free_body_spatial::{
 use clebsch_models::heavy_top_spatial::{
     HeavyTopSpatial, HeavyTopSpatialInitial, HeavyTopSpatialParameters,
 };
-use clebsch_tests::handwritten;
-use clebsch_tests::handwritten::attitude::{
+use clebsch_oracle::handwritten;
+use clebsch_oracle::handwritten::attitude::{
     Matrix, Quaternion, Vector, apply, apply_transposed, dot,
 };
-use clebsch_tests::handwritten::body_in_field::{BodyInField, QuadraticField, TwoFields};
-use clebsch_tests::handwritten::coupled_bodies::Pair;
-use clebsch_tests::handwritten::free_body_spatial::seen_from_space;
-use clebsch_tests::handwritten::heavy_top_spatial::SpatialTop;
-use clebsch_tests::physics::cases::Start;
-use clebsch_tests::physics::draws::Draws;
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::handwritten::body_in_field::{BodyInField, QuadraticField, TwoFields};
+use clebsch_oracle::handwritten::coupled_bodies::Pair;
+use clebsch_oracle::handwritten::free_body_spatial::seen_from_space;
+use clebsch_oracle::handwritten::heavy_top_spatial::SpatialTop;
+use clebsch_oracle::physics::cases::Start;
+use clebsch_oracle::physics::draws::Draws;
+use clebsch_oracle::physics::measure::worse;
 
 /// Some thirty roundings of numbers of order one, for data that are not magnified.
 const ONE_STEP: f64 = 1e-14;

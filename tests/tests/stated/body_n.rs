@@ -10,11 +10,11 @@ use clebsch::{BodyMomentumMatrix, Orthogonal, StartError, StepCause};
 use clebsch_models::body_n::{
     BodyN, BodyNConfiguration, BodyNInitial, BodyNParameters, BodyNState, BodyNWorkspace,
 };
-use clebsch_tests::oracle::action::{DiscreteAction, momentum_out, sensitivity, stationarity};
-use clebsch_tests::oracle::dual::Number;
-use clebsch_tests::oracle::points::Source;
-use clebsch_tests::oracle::square::Square;
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::oracle::action::{DiscreteAction, momentum_out, sensitivity, stationarity};
+use clebsch_oracle::oracle::dual::Number;
+use clebsch_oracle::oracle::points::Source;
+use clebsch_oracle::oracle::square::Square;
+use clebsch_oracle::physics::measure::worse;
 use std::array::from_fn;
 
 const H: f64 = 0.1;

@@ -5,7 +5,7 @@
 
 use clebsch::nalgebra::{Matrix3, Matrix4, Vector3, Vector4, Vector6};
 use clebsch::{BodyImpulse, BodyMomentum, RigidMotion, Rotation};
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::physics::measure::worse;
 
 clebsch::model! {
     /// A body in a uniform field and in one with a gradient, of which it is told what they are in space.

@@ -3,10 +3,10 @@
 
 use clebsch::nalgebra::SMatrix;
 use clebsch::{BodyMomentumMatrix, Orthogonal};
-use clebsch_tests::handwritten::body_n::BodyN as Written;
-use clebsch_tests::oracle::points::Source;
-use clebsch_tests::oracle::square::Square;
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::handwritten::body_n::BodyN as Written;
+use clebsch_oracle::oracle::points::Source;
+use clebsch_oracle::oracle::square::Square;
+use clebsch_oracle::physics::measure::worse;
 use std::array::from_fn;
 
 clebsch::model! {

@@ -12,7 +12,7 @@ use clebsch_models::coupled_bodies::{
 };
 use clebsch_models::free_body::FreeBody;
 use clebsch_models::heavy_top::{HeavyTop, HeavyTopInitial, HeavyTopParameters, HeavyTopState};
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::physics::measure::worse;
 
 type Quad = DoubleDouble;
 

@@ -14,9 +14,9 @@ use clebsch::{BodyMomentum, NewtonError, Rotation, StartError, StepCause};
 use clebsch_models::coupled_bodies::{
     CoupledBodies, CoupledBodiesInitial, CoupledBodiesParameters, CoupledBodiesState,
 };
-use clebsch_tests::oracle::points::asked_for;
-use clebsch_tests::physics::draws::Draws;
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::oracle::points::asked_for;
+use clebsch_oracle::physics::draws::Draws;
+use clebsch_oracle::physics::measure::worse;
 use drawn::{Coupled, Drawn, Fluid, InFourDimensions, Mixed, Quaternion, Rough, Stiff};
 use std::cell::Cell;
 

@@ -13,15 +13,15 @@ use clebsch_models::free_body::{
 use clebsch_models::heavy_top::{
     HeavyTop, HeavyTopConfiguration, HeavyTopInitial, HeavyTopParameters,
 };
-use clebsch_tests::oracle::action::bodies::{self, Stated};
-use clebsch_tests::oracle::action::{
+use clebsch_oracle::oracle::action::bodies::{self, Stated};
+use clebsch_oracle::oracle::action::{
     DiscreteAction, momentum_in, momentum_out, rotations, sensitivity, stationarity,
 };
-use clebsch_tests::oracle::points::{Given, Source};
-use clebsch_tests::oracle::random::RandomLagrangian;
-use clebsch_tests::oracle::random::sample::Sample;
-use clebsch_tests::oracle::square::Square;
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::oracle::points::{Given, Source};
+use clebsch_oracle::oracle::random::RandomLagrangian;
+use clebsch_oracle::oracle::random::sample::Sample;
+use clebsch_oracle::oracle::square::Square;
+use clebsch_oracle::physics::measure::worse;
 use std::array::from_fn;
 
 /// Random points and random states for every model.

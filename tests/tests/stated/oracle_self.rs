@@ -2,19 +2,19 @@
 //! Takes its systems at random points; gives agreement with differences of the action, with the discrete
 //! Euler-Lagrange equations of the free body and the heavy top in closed form, and with conservation laws.
 
-use clebsch_tests::oracle::action::bodies::{FreeBody, HeavyTop, Stated, TwoVectors};
-use clebsch_tests::oracle::action::coupled::CoupledBodies;
-use clebsch_tests::oracle::action::elastic::{EllipsoidConvective, entries};
-use clebsch_tests::oracle::action::spatial::{FreeBodySpatial, HeavyTopSpatial};
-use clebsch_tests::oracle::action::{
+use clebsch_oracle::oracle::action::bodies::{FreeBody, HeavyTop, Stated, TwoVectors};
+use clebsch_oracle::oracle::action::coupled::CoupledBodies;
+use clebsch_oracle::oracle::action::elastic::{EllipsoidConvective, entries};
+use clebsch_oracle::oracle::action::spatial::{FreeBodySpatial, HeavyTopSpatial};
+use clebsch_oracle::oracle::action::{
     DiscreteAction, Side, momentum_in, momentum_out, rotations, stationarity,
 };
-use clebsch_tests::oracle::dual::{Dual, Number};
-use clebsch_tests::oracle::points::Source;
-use clebsch_tests::oracle::random::RandomLagrangian;
-use clebsch_tests::oracle::random::sample::Sample;
-use clebsch_tests::oracle::square::{Square, cross, dot, vee};
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::oracle::dual::{Dual, Number};
+use clebsch_oracle::oracle::points::Source;
+use clebsch_oracle::oracle::random::RandomLagrangian;
+use clebsch_oracle::oracle::random::sample::Sample;
+use clebsch_oracle::oracle::square::{Square, cross, dot, vee};
+use clebsch_oracle::physics::measure::worse;
 use std::array::from_fn;
 
 /// Rounding of a few hundred operations, each of a relative error of 1e-16, on the natural scale.

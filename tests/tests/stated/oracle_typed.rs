@@ -1,7 +1,7 @@
 //! Five random Lagrangians typed as model invocations: what the macro makes of a model nobody has seen.
 //! The text is the generator's own; a test holds it against the generator.
 
-use clebsch_tests::oracle::random::RandomLagrangian;
+use clebsch_oracle::oracle::random::RandomLagrangian;
 
 /// The seeds of the models below: powers of the velocity with a name for its skew part; a quotient by an
 /// advected quantity; one-sided nodes with triple products and an inverse; the spatial side with another name

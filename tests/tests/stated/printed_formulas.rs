@@ -9,7 +9,7 @@ use clebsch::card::{Card, Settings, Trajectory};
 use clebsch_core::check::spec::Side;
 use clebsch_core::derive::invariants::Kind;
 use clebsch_core::{Derivation, derive_source};
-use clebsch_tests::printed::{Value, quaternion};
+use clebsch_oracle::printed::{Value, quaternion};
 use reading::{ROUNDING, evaluated, printed};
 
 clebsch::model! {

@@ -3,13 +3,13 @@
 
 use clebsch::nalgebra::{SMatrix, SVector};
 use clebsch::{BodyMomentumMatrix, Linear, Orthogonal, SpatialMomentumMatrix};
-use clebsch_tests::oracle::action::{
+use clebsch_oracle::oracle::action::{
     DiscreteAction, Side, momentum_in, momentum_out, sensitivity, stationarity,
 };
-use clebsch_tests::oracle::dual::Number;
-use clebsch_tests::oracle::points::Source;
-use clebsch_tests::oracle::square::{Square, dot};
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::oracle::dual::Number;
+use clebsch_oracle::oracle::points::Source;
+use clebsch_oracle::oracle::square::{Square, dot};
+use clebsch_oracle::physics::measure::worse;
 use std::array::from_fn;
 
 clebsch::model! {
@@ -419,7 +419,7 @@ impl<const N: usize> System<N> for Convective<N> {
         source.invertible()
     }
     fn basis() -> Vec<Square<f64, N>> {
-        clebsch_tests::oracle::action::elastic::entries()
+        clebsch_oracle::oracle::action::elastic::entries()
     }
     emitted!(
         EllipsoidN, EllipsoidNParameters, EllipsoidNConfiguration, EllipsoidNInitial, Q, Linear,
@@ -467,7 +467,7 @@ impl System<2> for Planar {
         source.invertible()
     }
     fn basis() -> Vec<Square<f64, 2>> {
-        clebsch_tests::oracle::action::elastic::entries()
+        clebsch_oracle::oracle::action::elastic::entries()
     }
     emitted!(
         Ellipsoid2, Ellipsoid2Parameters, Ellipsoid2Configuration, Ellipsoid2Initial, Q, Linear,

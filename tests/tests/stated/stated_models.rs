@@ -5,8 +5,8 @@
 
 use clebsch::nalgebra::{Matrix3, SVector, Vector3};
 use clebsch::{BodyMomentum, Rotation, SpatialMomentum};
-use clebsch_tests::physics::measure::worse;
-use clebsch_tests::reference::{H, NODES, TOLERANCE, coupled_sym, spatial, top_lagrange};
+use clebsch_oracle::physics::measure::worse;
+use clebsch_oracle::reference::{H, NODES, TOLERANCE, coupled_sym, spatial, top_lagrange};
 
 clebsch::model! {
     /// Free rigid body, spatial representation (thesis 2.5.5).

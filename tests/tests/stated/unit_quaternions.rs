@@ -16,11 +16,11 @@ use clebsch_models::cayley_klein::{
 use clebsch_models::cayley_klein_spatial::{
     CayleyKleinSpatial, CayleyKleinSpatialInitial, CayleyKleinSpatialParameters,
 };
-use clebsch_tests::oracle::action::quaternions::{self, QuaternionSum, halves, left};
-use clebsch_tests::oracle::action::{DiscreteAction, Side, stationarity};
-use clebsch_tests::oracle::points::Source;
-use clebsch_tests::oracle::square::Square;
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::oracle::action::quaternions::{self, QuaternionSum, halves, left};
+use clebsch_oracle::oracle::action::{DiscreteAction, Side, stationarity};
+use clebsch_oracle::oracle::points::Source;
+use clebsch_oracle::oracle::square::Square;
+use clebsch_oracle::physics::measure::worse;
 
 clebsch::model! {
     /// A top, seen from the body; its inertia has axes of its own.

@@ -5,11 +5,11 @@
 mod compiled;
 
 use clebsch::card::{Card, Field, Kind, Settings};
-use clebsch_tests::oracle::points::Source;
-use clebsch_tests::oracle::wide::grid::Grid;
-use clebsch_tests::oracle::wide::grow::AROUND;
-use clebsch_tests::oracle::wide::model::{Family, Model, Role};
-use clebsch_tests::oracle::wide::point::{Node, Point, Variation};
+use clebsch_oracle::oracle::points::Source;
+use clebsch_oracle::oracle::wide::grid::Grid;
+use clebsch_oracle::oracle::wide::grow::AROUND;
+use clebsch_oracle::oracle::wide::model::{Family, Model, Role};
+use clebsch_oracle::oracle::wide::point::{Node, Point, Variation};
 use compiled::{Compiled, Given, MODELS};
 
 /// Random points for every model.

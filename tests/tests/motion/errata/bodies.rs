@@ -5,11 +5,11 @@ use super::{
     Matrix, Vector, ad_star, bracket, id, inner, judge, length, minus, residual, size, skew, sym,
 };
 use clebsch_core::derive_source;
-use clebsch_tests::oracle::action::bodies::{HeavyTop, Stated};
-use clebsch_tests::oracle::action::coupled::CoupledBodies;
-use clebsch_tests::oracle::points::Source;
-use clebsch_tests::oracle::square::{cross, dot, hat, outer, vee};
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::oracle::action::bodies::{HeavyTop, Stated};
+use clebsch_oracle::oracle::action::coupled::CoupledBodies;
+use clebsch_oracle::oracle::points::Source;
+use clebsch_oracle::oracle::square::{cross, dot, hat, outer, vee};
+use clebsch_oracle::physics::measure::worse;
 use std::array::from_fn;
 
 #[test]

@@ -2,11 +2,11 @@
 //! the judge.
 
 use super::{Matrix, ad_star, id, inner, judge, size};
-use clebsch_tests::oracle::action::elastic::entries;
-use clebsch_tests::oracle::action::{DiscreteAction, stationarity};
-use clebsch_tests::oracle::dual::Number;
-use clebsch_tests::oracle::points::Source;
-use clebsch_tests::oracle::square::Square;
+use clebsch_oracle::oracle::action::elastic::entries;
+use clebsch_oracle::oracle::action::{DiscreteAction, stationarity};
+use clebsch_oracle::oracle::dual::Number;
+use clebsch_oracle::oracle::points::Source;
+use clebsch_oracle::oracle::square::Square;
 use std::array::from_fn;
 
 #[test]

@@ -9,10 +9,10 @@ mod quaternions;
 mod steps;
 mod waters;
 
-use clebsch_tests::oracle::action::{DiscreteAction, rotations, stationarity};
-use clebsch_tests::oracle::points::Source;
-use clebsch_tests::oracle::square::Square;
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::oracle::action::{DiscreteAction, rotations, stationarity};
+use clebsch_oracle::oracle::points::Source;
+use clebsch_oracle::oracle::square::Square;
+use clebsch_oracle::physics::measure::worse;
 use std::array::from_fn;
 
 type Matrix = Square<f64, 3>;

@@ -2,9 +2,9 @@
 //! written out, so that nothing here knows how the runtime keeps a quaternion.
 
 use super::{Vector, judge, judge_within, length, minus};
-use clebsch_tests::oracle::points::Source;
-use clebsch_tests::oracle::square::{cross, dot};
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::oracle::points::Source;
+use clebsch_oracle::oracle::square::{cross, dot};
+use clebsch_oracle::physics::measure::worse;
 use std::array::from_fn;
 
 /// A complex number.

@@ -5,8 +5,8 @@ use super::{Matrix, Vector, judge, size, skew};
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{BodyMomentum, Dual, Rotation};
 use clebsch_models::free_body::{FreeBody, FreeBodyInitial, FreeBodyParameters};
-use clebsch_tests::oracle::square::{Square, cross, hat};
-use clebsch_tests::physics::symplectic::{Jacobian, defect};
+use clebsch_oracle::oracle::square::{Square, cross, hat};
+use clebsch_oracle::physics::symplectic::{Jacobian, defect};
 use std::array::from_fn;
 
 fn rotation(v: &Vector) -> Matrix {

@@ -2,8 +2,8 @@
 //! one to the judge.
 
 use super::judge;
-use clebsch_tests::oracle::points::Source;
-use clebsch_tests::physics::measure::worse;
+use clebsch_oracle::oracle::points::Source;
+use clebsch_oracle::physics::measure::worse;
 use std::array::from_fn;
 
 /// A particle of mass `m` on the f-plane with `R = f0 (-y, x)/2`.

@@ -20,7 +20,7 @@ use clebsch_models::kirchhoff_body::{
     KirchhoffBody, KirchhoffBodyConfiguration, KirchhoffBodyInitial, KirchhoffBodyParameters,
     KirchhoffBodyState,
 };
-use clebsch_tests::physics::draws::Draws;
+use clebsch_oracle::physics::draws::Draws;
 
 clebsch::model! {
     /// Not separable: the potential of an edge depends on how far the body turns in it.

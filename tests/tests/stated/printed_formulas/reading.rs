@@ -5,7 +5,7 @@ use clebsch_core::Derivation;
 use clebsch_core::check::spec::Group;
 use clebsch_core::expr::{self, shape::Dim};
 use clebsch_core::print::{Format, Style, expression};
-use clebsch_tests::printed::{Value, value};
+use clebsch_oracle::printed::{Value, value};
 
 /// A printed formula and the function differ by the rounding of a few hundred operations on numbers of order one, and
 /// what the inverse of an inertia with a condition of some tens makes of it.
