@@ -43,9 +43,9 @@ fn tables(file: &str, source: &str) -> BTreeMap<String, Vec<String>> {
 }
 
 fn all_tables() -> BTreeMap<String, Vec<String>> {
-    let mut all = tables("", &page("src/reference.rs"));
+    let mut all = tables("", &page("oracle/src/reference.rs"));
     for file in ["coupled_sym", "quaternion", "spatial"] {
-        let source = page(&format!("src/reference/{file}.rs"));
+        let source = page(&format!("oracle/src/reference/{file}.rs"));
         all.extend(tables(&format!("{file}."), &source));
     }
     all
