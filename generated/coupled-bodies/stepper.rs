@@ -181,8 +181,7 @@ pub mod coupled_bodies {
         /// One step, in place. Solved thus: several velocities are solved together: Newton on the derived residuals.
         ///
         /// # Errors
-        /// When no velocity that follows from rest solves the equations: which of them fails, and
-        /// which step could be solved; the state is then unchanged.
+        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
         #[inline]
         pub fn step(
             &self,
@@ -194,85 +193,87 @@ pub mod coupled_bodies {
             let Λ1 = state.Λ1.matrix();
             let Λ2 = state.Λ2.matrix();
             let R = Λ1.tr_mul(&Λ2);
-            let momenta: [SVector<T, 3>; 2] = [
-                Λ1.tr_mul(&state.momentum_Λ1.0),
-                Λ2.tr_mul(&state.momentum_Λ2.0),
-            ];
-            let s1 = h.powi(-1);
-            let s2 = R * d2;
-            let k2 = d1.cross(&s2);
-            let k3 = eps * s1;
-            let k5 = crossed(&d1, &R);
-            let k6 = crossing(&R.transpose(), &s2);
-            let mut iteration = work.search.begin(state.node, (newton::Turn(R), []));
-            let found: newton::Solved<[Rotation<T>; 2]> = loop {
-                let trial = iteration.trial();
-                if iteration.wants_scale() {
-                    iteration
-                        .set_scale(move |lane| {
-                            self
-                                .rounding(h, &(newton::Turn(R), []), &momenta, &trial, lane)
-                        });
-                }
-                let Ω1 = trial[0].matrix();
-                let Ω2 = trial[1].matrix();
-                if iteration
-                    .assess({
-                        joined::<
-                            T,
-                            2,
-                            6,
-                        >(
-                            &[
-                                (((R * (Ω2 * d2)).cross(&d1) + k2) * k3
-                                    - axial_of_difference(&(J1 * Ω1.transpose())) * s1)
-                                    - momenta[0],
-                                (R.tr_mul(&(Ω1 * d1 - d1).cross(&s2)) * k3
-                                    - axial_of_difference(&(J2 * Ω2.transpose())) * s1)
-                                    - momenta[1],
-                            ],
-                        )
-                    })
-                {
-                    iteration
-                        .set_tangent(
-                            &{
-                                assembled::<
-                                    T,
-                                    2,
-                                    6,
-                                >(
-                                    &[
-                                        [
-                                            (trace_complement(&(Ω1 * J1))) * Ω1 * s1,
-                                            k5 * crossing(&Ω2, &d2) * k3,
+            let found: newton::Solved<[Rotation<T>; 2]> = {
+                let momenta: [SVector<T, 3>; 2] = [
+                    Λ1.tr_mul(&state.momentum_Λ1.0),
+                    Λ2.tr_mul(&state.momentum_Λ2.0),
+                ];
+                let s1 = h.powi(-1);
+                let s2 = R * d2;
+                let k2 = d1.cross(&s2);
+                let k3 = eps * s1;
+                let k5 = crossed(&d1, &R);
+                let k6 = crossing(&R.transpose(), &s2);
+                let mut iteration = work.search.begin(state.node, (newton::Turn(R), []));
+                loop {
+                    let trial = iteration.trial();
+                    if iteration.wants_scale() {
+                        iteration
+                            .set_scale(move |lane| {
+                                self
+                                    .rounding(h, &(newton::Turn(R), []), &momenta, &trial, lane)
+                            });
+                    }
+                    let Ω1 = trial[0].matrix();
+                    let Ω2 = trial[1].matrix();
+                    if iteration
+                        .assess({
+                            joined::<
+                                T,
+                                2,
+                                6,
+                            >(
+                                &[
+                                    (((R * (Ω2 * d2)).cross(&d1) + k2) * k3
+                                        - axial_of_difference(&(J1 * Ω1.transpose())) * s1)
+                                        - momenta[0],
+                                    (R.tr_mul(&(Ω1 * d1 - d1).cross(&s2)) * k3
+                                        - axial_of_difference(&(J2 * Ω2.transpose())) * s1)
+                                        - momenta[1],
+                                ],
+                            )
+                        })
+                    {
+                        iteration
+                            .set_tangent(
+                                &{
+                                    assembled::<
+                                        T,
+                                        2,
+                                        6,
+                                    >(
+                                        &[
+                                            [
+                                                (trace_complement(&(Ω1 * J1))) * Ω1 * s1,
+                                                k5 * crossing(&Ω2, &d2) * k3,
+                                            ],
+                                            [
+                                                k6 * crossing(&Ω1, &d1) * k3,
+                                                (trace_complement(&(Ω2 * J2))) * Ω2 * s1,
+                                            ],
                                         ],
-                                        [
-                                            k6 * crossing(&Ω1, &d1) * k3,
-                                            (trace_complement(&(Ω2 * J2))) * Ω2 * s1,
-                                        ],
-                                    ],
-                                )
-                            },
-                        );
-                }
-                match iteration.correct() {
-                    newton::Progress::Continue => {}
-                    newton::Progress::Solved(
-                        solved,
-                    ) if iteration.is_principal(&solved.element) => break solved,
-                    ended => {
-                        if let Some(solved) = self
-                            .settled(
-                                h,
-                                *state,
-                                (newton::Turn(R), []),
-                                momenta,
-                                &mut iteration,
-                                ended,
-                            )?
-                        {
-                            break solved;
+                                    )
+                                },
+                            );
+                    }
+                    match iteration.correct() {
+                        newton::Progress::Continue => {}
+                        newton::Progress::Solved(
+                            solved,
+                        ) if iteration.is_principal(&solved.element) => break solved,
+                        ended => {
+                            if let Some(solved) = self
+                                .settled(
+                                    h,
+                                    *state,
+                                    (newton::Turn(R), []),
+                                    momenta,
+                                    &mut iteration,
+                                    ended,
+                                )?
+                            {
+                                break solved;
+                            }
                         }
                     }
                 }
@@ -373,13 +374,13 @@ pub mod coupled_bodies {
         #[inline(never)]
         #[allow(unused_variables)]
         fn residual_at(
-            &self,
+            parameters: &CoupledBodiesParameters<T>,
             h: T,
             given: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
             momenta: &[SVector<T, 3>; 2],
             trial: &[Rotation<T>; 2],
         ) -> SVector<T, 6> {
-            let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
+            let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = *parameters;
             let R = given.0.0;
             let Ω1 = trial[0].matrix();
             let Ω2 = trial[1].matrix();
@@ -404,13 +405,13 @@ pub mod coupled_bodies {
         #[inline(never)]
         #[allow(unused_variables)]
         fn tangent_at(
-            &self,
+            parameters: &CoupledBodiesParameters<T>,
             h: T,
             values: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
             Ω1: SMatrix<T, 3, 3>,
             Ω2: SMatrix<T, 3, 3>,
         ) -> SMatrix<T, 6, 6> {
-            let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
+            let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = *parameters;
             let R = values.0.0;
             let t1 = h.powi(-1);
             assembled::<
@@ -442,9 +443,7 @@ pub mod coupled_bodies {
             lane: usize,
         ) -> SVector<f64, 6> {
             let change = &mut |x: T| newton::Enclosure::<0>::exactly(x.lane(lane));
-            let model = CoupledBodies::<newton::Enclosure<0>> {
-                parameters: self.parameters.over(change),
-            };
+            let parameters = self.parameters.over(change);
             let (step, given, momenta) = (
                 h.over(change),
                 given.over(change),
@@ -452,7 +451,10 @@ pub mod coupled_bodies {
             );
             let change = &mut |x: T| newton::Enclosure::<0>::rounded(x.lane(lane));
             let trial = [trial[0].over(change), trial[1].over(change)];
-            model.residual_at(step, &given, &momenta, &trial).map(|x| x.rest())
+            CoupledBodies::<
+                newton::Enclosure<0>,
+            >::residual_at(&parameters, step, &given, &momenta, &trial)
+                .map(|x| x.rest())
         }
         /// Finds the principal root, or shows that the solution is.
         #[cold]
@@ -473,19 +475,9 @@ pub mod coupled_bodies {
             let mut verdict = newton::Verdict::<[Rotation<T>; 2], 6>::about(first);
             for lane in 0..T::LANES {
                 let change = &mut |x: T| newton::Enclosure::<18>::exactly(x.lane(lane));
-                let (bound, bound_step) = (
-                    CoupledBodies::<newton::Enclosure<18>> {
-                        parameters: self.parameters.over(change),
-                    },
-                    h.over(change),
-                );
+                let (bound, bound_step) = (self.parameters.over(change), h.over(change));
                 let change = &mut |x: T| x.lane(lane);
-                let (model, step) = (
-                    CoupledBodies::<f64> {
-                        parameters: self.parameters.over(change),
-                    },
-                    h.over(change),
-                );
+                let (parameters, step) = (self.parameters.over(change), h.over(change));
                 let (given, near, momenta) = (
                     given.over(change),
                     values.over(change),
@@ -496,19 +488,23 @@ pub mod coupled_bodies {
                     None => None,
                 };
                 let equations = newton::Equations {
-                    residual: &|trial: &[Rotation<f64>; 2]| {
-                        model.residual_at(step, &given, &momenta, trial)
-                    },
+                    residual: &|trial: &[Rotation<f64>; 2]| CoupledBodies::<
+                        f64,
+                    >::residual_at(&parameters, step, &given, &momenta, trial),
                     tangent: &|trial: &[Rotation<f64>; 2]| {
                         let Ω1 = trial[0].matrix();
                         let Ω2 = trial[1].matrix();
-                        model.tangent_at(step, &near, Ω1, Ω2)
+                        CoupledBodies::<
+                            f64,
+                        >::tangent_at(&parameters, step, &near, Ω1, Ω2)
                     },
                     enclosed: &|spread, trial: &[newton::RotationRegion<18>; 2]| {
                         let Ω1 = trial[0].matrix();
                         let Ω2 = trial[1].matrix();
                         let values = newton::NodeValues::enclosed(values, lane, spread);
-                        bound.tangent_at(bound_step, &values, Ω1, Ω2)
+                        CoupledBodies::<
+                            newton::Enclosure<18>,
+                        >::tangent_at(&bound, bound_step, &values, Ω1, Ω2)
                     },
                 };
                 let care = certificate.care();

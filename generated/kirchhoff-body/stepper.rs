@@ -153,8 +153,7 @@ pub mod kirchhoff_body {
         /// One step, in place. Solved thus: the group is not SO(n): Newton on the derived residual.
         ///
         /// # Errors
-        /// When no velocity that follows from rest solves the equations: which of them fails, and
-        /// which step could be solved; the state is then unchanged.
+        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
         #[inline]
         pub fn step(
             &self,
@@ -165,106 +164,118 @@ pub mod kirchhoff_body {
             let KirchhoffBodyParameters { J, M, D, b, Z, .. } = self.parameters;
             let G = state.G.matrix();
             let P = G.tr_mul(&Z);
-            let momenta_six = state.momentum.to_body(&state.G).0;
-            let momenta: [SVector<T, 3>; 2] = [
-                rows_from::<T, 6, 3, 1>(&momenta_six, 0),
-                rows_from::<T, 6, 3, 1>(&momenta_six, 3),
-            ];
-            let s1 = h.powi(-1);
-            let k2 = (rows_from::<T, 4, 3, 1>(&b, 0))
-                .cross(&(rows_from::<T, 4, 3, 1>(&P, 0))) * T::from_f64(0.5) * h;
-            let k3 = rows_from::<T, 4, 3, 1>(&P, 0) * T::from_f64(0.5) * h * b[3];
-            let k4 = T::from_f64(0.25) * s1;
-            let mut iteration = work.search.begin(state.node, []);
-            let found: newton::Solved<[RigidMotion<T>; 1]> = loop {
-                let trial = iteration.trial();
-                if iteration.wants_scale() {
-                    iteration
-                        .set_scale(move |lane| {
-                            self.rounding(h, &(P, []), &momenta, &trial, lane)
-                        });
-                }
-                let (V_rot, V_pos) = (trial[0].rotation.matrix(), trial[0].translation);
-                if iteration
-                    .assess({
-                        let t1 = V_rot.tr_mul(&V_pos) + V_pos;
-                        let t2 = D.tr_mul(&vee(&V_rot)) * T::from_f64(0.5);
-                        joined::<
-                            T,
-                            2,
-                            6,
-                        >(
-                            &[
-                                ((V_pos.cross(&(M * t1 * T::from_f64(0.25) + t2))
-                                    + vee(
-                                        &(crossing(&V_rot, &(D * t1)) * T::from_f64(0.5)
-                                            - J * V_rot.transpose() * T::from_f64(2.0)),
-                                    )) * s1 + k2) - momenta[0],
-                                ((V_rot + SMatrix::<T, 3, 3>::identity())
-                                    * (M
-                                        * ((V_rot.transpose() + SMatrix::<T, 3, 3>::identity())
-                                            * V_pos) * T::from_f64(0.25) + t2) * s1 + k3) - momenta[1],
-                            ],
-                        )
-                    })
-                {
-                    iteration
-                        .set_tangent(
-                            &{
-                                let t1 = crossing(&V_rot, &(D * V_rot.tr_mul(&V_pos)));
-                                let t2 = crossing(&V_rot, &(D * V_pos));
-                                let t3 = crossing(&M, &(V_rot.tr_mul(&V_pos)));
-                                let t4 = trace_complement(&V_rot.transpose());
-                                let t5 = vee(&V_rot);
-                                let t6 = t4 * D * T::from_f64(0.25);
-                                let t7 = D.tr_mul(&t4) * T::from_f64(0.25);
-                                let t8 = V_rot + SMatrix::<T, 3, 3>::identity();
-                                assembled::<
-                                    T,
-                                    2,
-                                    6,
-                                >(
-                                    &[
-                                        [
-                                            ((SMatrix::<T, 3, 3>::identity()
-                                                * (J * V_rot.transpose()).trace() - V_rot * J
-                                                + (trace_complement(&t1)) * T::from_f64(0.25)
-                                                + (trace_complement(&t2)) * T::from_f64(0.25)) * V_rot
-                                                + crossed(&V_pos, &(t3 + D.tr_mul(&t4))) * T::from_f64(0.25)
-                                                + t4 * crossing(&D, &(V_rot.tr_mul(&V_pos)))
-                                                    * T::from_f64(0.25)) * s1,
-                                            ((hat(
-                                                &((-(M * V_rot.tr_mul(&V_pos) * T::from_f64(0.25)))
-                                                    - D.tr_mul(&t5) * T::from_f64(0.5)),
-                                            )
-                                                + (crossed(&V_pos, &M) - hat(&(M * V_pos)))
-                                                    * T::from_f64(0.25) + t6) * V_rot
-                                                + crossed(&V_pos, &M) * T::from_f64(0.25) + t6) * s1,
+            let found: newton::Solved<[RigidMotion<T>; 1]> = {
+                let momenta_six = state.momentum.to_body(&state.G).0;
+                let momenta: [SVector<T, 3>; 2] = [
+                    rows_from::<T, 6, 3, 1>(&momenta_six, 0),
+                    rows_from::<T, 6, 3, 1>(&momenta_six, 3),
+                ];
+                let s1 = h.powi(-1);
+                let k2 = (rows_from::<T, 4, 3, 1>(&b, 0))
+                    .cross(&(rows_from::<T, 4, 3, 1>(&P, 0))) * T::from_f64(0.5) * h;
+                let k3 = rows_from::<T, 4, 3, 1>(&P, 0) * T::from_f64(0.5) * h * b[3];
+                let k4 = T::from_f64(0.25) * s1;
+                let mut iteration = work.search.begin(state.node, []);
+                loop {
+                    let trial = iteration.trial();
+                    if iteration.wants_scale() {
+                        iteration
+                            .set_scale(move |lane| {
+                                self.rounding(h, &(P, []), &momenta, &trial, lane)
+                            });
+                    }
+                    let (V_rot, V_pos) = (
+                        trial[0].rotation.matrix(),
+                        trial[0].translation,
+                    );
+                    if iteration
+                        .assess({
+                            let t1 = V_rot.tr_mul(&V_pos) + V_pos;
+                            let t2 = D.tr_mul(&vee(&V_rot)) * T::from_f64(0.5);
+                            joined::<
+                                T,
+                                2,
+                                6,
+                            >(
+                                &[
+                                    ((V_pos.cross(&(M * t1 * T::from_f64(0.25) + t2))
+                                        + vee(
+                                            &(crossing(&V_rot, &(D * t1)) * T::from_f64(0.5)
+                                                - J * V_rot.transpose() * T::from_f64(2.0)),
+                                        )) * s1 + k2) - momenta[0],
+                                    ((V_rot + SMatrix::<T, 3, 3>::identity())
+                                        * (M
+                                            * ((V_rot.transpose() + SMatrix::<T, 3, 3>::identity())
+                                                * V_pos) * T::from_f64(0.25) + t2) * s1 + k3) - momenta[1],
+                                ],
+                            )
+                        })
+                    {
+                        iteration
+                            .set_tangent(
+                                &{
+                                    let t1 = crossing(&V_rot, &(D * V_rot.tr_mul(&V_pos)));
+                                    let t2 = crossing(&V_rot, &(D * V_pos));
+                                    let t3 = crossing(&M, &(V_rot.tr_mul(&V_pos)));
+                                    let t4 = trace_complement(&V_rot.transpose());
+                                    let t5 = vee(&V_rot);
+                                    let t6 = t4 * D * T::from_f64(0.25);
+                                    let t7 = D.tr_mul(&t4) * T::from_f64(0.25);
+                                    let t8 = V_rot + SMatrix::<T, 3, 3>::identity();
+                                    assembled::<
+                                        T,
+                                        2,
+                                        6,
+                                    >(
+                                        &[
+                                            [
+                                                ((SMatrix::<T, 3, 3>::identity()
+                                                    * (J * V_rot.transpose()).trace() - V_rot * J
+                                                    + (trace_complement(&t1)) * T::from_f64(0.25)
+                                                    + (trace_complement(&t2)) * T::from_f64(0.25)) * V_rot
+                                                    + crossed(&V_pos, &(t3 + D.tr_mul(&t4))) * T::from_f64(0.25)
+                                                    + t4 * crossing(&D, &(V_rot.tr_mul(&V_pos)))
+                                                        * T::from_f64(0.25)) * s1,
+                                                ((hat(
+                                                    &((-(M * V_rot.tr_mul(&V_pos) * T::from_f64(0.25)))
+                                                        - D.tr_mul(&t5) * T::from_f64(0.5)),
+                                                )
+                                                    + (crossed(&V_pos, &M) - hat(&(M * V_pos)))
+                                                        * T::from_f64(0.25) + t6) * V_rot
+                                                    + crossed(&V_pos, &M) * T::from_f64(0.25) + t6) * s1,
+                                            ],
+                                            [
+                                                (V_rot
+                                                    * ((t3 - hat(&(M * V_rot.tr_mul(&V_pos))))
+                                                        * T::from_f64(0.25) - hat(&(M * V_pos)) * T::from_f64(0.25)
+                                                        - hat(&(D.tr_mul(&t5))) * T::from_f64(0.5) + t7)
+                                                    + crossing(&M, &(V_rot.tr_mul(&V_pos))) * T::from_f64(0.25)
+                                                    + t7) * s1,
+                                                t8 * (M * t8) * k4,
+                                            ],
                                         ],
-                                        [
-                                            (V_rot
-                                                * ((t3 - hat(&(M * V_rot.tr_mul(&V_pos))))
-                                                    * T::from_f64(0.25) - hat(&(M * V_pos)) * T::from_f64(0.25)
-                                                    - hat(&(D.tr_mul(&t5))) * T::from_f64(0.5) + t7)
-                                                + crossing(&M, &(V_rot.tr_mul(&V_pos))) * T::from_f64(0.25)
-                                                + t7) * s1,
-                                            t8 * (M * t8) * k4,
-                                        ],
-                                    ],
-                                )
-                            },
-                        );
-                }
-                match iteration.correct() {
-                    newton::Progress::Continue => {}
-                    newton::Progress::Solved(
-                        solved,
-                    ) if iteration.is_principal(&solved.element) => break solved,
-                    ended => {
-                        if let Some(solved) = self
-                            .settled(h, *state, (P, []), momenta, &mut iteration, ended)?
-                        {
-                            break solved;
+                                    )
+                                },
+                            );
+                    }
+                    match iteration.correct() {
+                        newton::Progress::Continue => {}
+                        newton::Progress::Solved(
+                            solved,
+                        ) if iteration.is_principal(&solved.element) => break solved,
+                        ended => {
+                            if let Some(solved) = self
+                                .settled(
+                                    h,
+                                    *state,
+                                    (P, []),
+                                    momenta,
+                                    &mut iteration,
+                                    ended,
+                                )?
+                            {
+                                break solved;
+                            }
                         }
                     }
                 }
@@ -389,13 +400,13 @@ pub mod kirchhoff_body {
         #[inline(never)]
         #[allow(unused_variables)]
         fn residual_at(
-            &self,
+            parameters: &KirchhoffBodyParameters<T>,
             h: T,
             given: &(SVector<T, 4>, [T; 0]),
             momenta: &[SVector<T, 3>; 2],
             trial: &[RigidMotion<T>; 1],
         ) -> SVector<T, 6> {
-            let KirchhoffBodyParameters { J, M, D, b, Z, .. } = self.parameters;
+            let KirchhoffBodyParameters { J, M, D, b, Z, .. } = *parameters;
             let P = given.0;
             let (V_rot, V_pos) = (trial[0].rotation.matrix(), trial[0].translation);
             let t1 = h.powi(-1);
@@ -429,13 +440,13 @@ pub mod kirchhoff_body {
         #[inline(never)]
         #[allow(unused_variables)]
         fn tangent_at(
-            &self,
+            parameters: &KirchhoffBodyParameters<T>,
             h: T,
             values: &[T; 0],
             V_rot: SMatrix<T, 3, 3>,
             V_pos: SVector<T, 3>,
         ) -> SMatrix<T, 6, 6> {
-            let KirchhoffBodyParameters { J, M, D, b, Z, .. } = self.parameters;
+            let KirchhoffBodyParameters { J, M, D, b, Z, .. } = *parameters;
             let t1 = h.powi(-1);
             let t2 = crossing(&V_rot, &(D * V_rot.tr_mul(&V_pos)));
             let t3 = crossing(&V_rot, &(D * V_pos));
@@ -490,9 +501,7 @@ pub mod kirchhoff_body {
             lane: usize,
         ) -> SVector<f64, 6> {
             let change = &mut |x: T| newton::Enclosure::<0>::exactly(x.lane(lane));
-            let model = KirchhoffBody::<newton::Enclosure<0>> {
-                parameters: self.parameters.over(change),
-            };
+            let parameters = self.parameters.over(change);
             let (step, given, momenta) = (
                 h.over(change),
                 given.over(change),
@@ -500,7 +509,10 @@ pub mod kirchhoff_body {
             );
             let change = &mut |x: T| newton::Enclosure::<0>::rounded(x.lane(lane));
             let trial = [trial[0].over(change)];
-            model.residual_at(step, &given, &momenta, &trial).map(|x| x.rest())
+            KirchhoffBody::<
+                newton::Enclosure<0>,
+            >::residual_at(&parameters, step, &given, &momenta, &trial)
+                .map(|x| x.rest())
         }
         /// Finds the principal root, or shows that the solution is.
         #[cold]
@@ -518,19 +530,9 @@ pub mod kirchhoff_body {
             let mut verdict = newton::Verdict::<[RigidMotion<T>; 1], 6>::about(first);
             for lane in 0..T::LANES {
                 let change = &mut |x: T| newton::Enclosure::<12>::exactly(x.lane(lane));
-                let (bound, bound_step) = (
-                    KirchhoffBody::<newton::Enclosure<12>> {
-                        parameters: self.parameters.over(change),
-                    },
-                    h.over(change),
-                );
+                let (bound, bound_step) = (self.parameters.over(change), h.over(change));
                 let change = &mut |x: T| x.lane(lane);
-                let (model, step) = (
-                    KirchhoffBody::<f64> {
-                        parameters: self.parameters.over(change),
-                    },
-                    h.over(change),
-                );
+                let (parameters, step) = (self.parameters.over(change), h.over(change));
                 let (given, near, momenta) = (
                     given.over(change),
                     values.over(change),
@@ -541,15 +543,17 @@ pub mod kirchhoff_body {
                     None => None,
                 };
                 let equations = newton::Equations {
-                    residual: &|trial: &[RigidMotion<f64>; 1]| {
-                        model.residual_at(step, &given, &momenta, trial)
-                    },
+                    residual: &|trial: &[RigidMotion<f64>; 1]| KirchhoffBody::<
+                        f64,
+                    >::residual_at(&parameters, step, &given, &momenta, trial),
                     tangent: &|trial: &[RigidMotion<f64>; 1]| {
                         let (V_rot, V_pos) = (
                             trial[0].rotation.matrix(),
                             trial[0].translation,
                         );
-                        model.tangent_at(step, &near, V_rot, V_pos)
+                        KirchhoffBody::<
+                            f64,
+                        >::tangent_at(&parameters, step, &near, V_rot, V_pos)
                     },
                     enclosed: &|spread, trial: &[newton::MotionRegion<12>; 1]| {
                         let (V_rot, V_pos) = (
@@ -557,7 +561,9 @@ pub mod kirchhoff_body {
                             trial[0].translation,
                         );
                         let values = newton::NodeValues::enclosed(values, lane, spread);
-                        bound.tangent_at(bound_step, &values, V_rot, V_pos)
+                        KirchhoffBody::<
+                            newton::Enclosure<12>,
+                        >::tangent_at(&bound, bound_step, &values, V_rot, V_pos)
                     },
                 };
                 let care = certificate.care();

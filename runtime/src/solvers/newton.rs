@@ -162,6 +162,18 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Search<T, 
         }
     }
 
+    /// A search for other velocities of the same step, with the same purpose.
+    #[cold]
+    #[must_use]
+    pub fn alike<G2: Group<T>, V2: NodeValues<Scalar = T>, const E: usize>(
+        &self,
+    ) -> Search<T, G2, V2, E> {
+        Search {
+            certificate: self.certificate.alike(),
+            ..Search::from_rest()
+        }
+    }
+
     /// Whether no step follows: what refuses one then looks for no other.
     #[must_use]
     pub fn tries(&self) -> bool {

@@ -6,6 +6,7 @@
 // Some models are of first order or without a limit on purpose, of which the macro warns by this lint.
 #![allow(deprecated)]
 
+mod blocks;
 mod body_n;
 mod carried_momentum;
 mod carried_references;

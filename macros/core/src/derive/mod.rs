@@ -6,6 +6,7 @@ pub mod action;
 mod assumptions;
 mod axial;
 pub mod balance;
+pub mod blocks;
 pub mod bracket;
 pub mod carry;
 pub mod certificate;

@@ -3,6 +3,7 @@
 //! (an exact matrix Riccati equation), else Newton on the derived residual and tangent.
 
 use super::balance::{Balance, shorter};
+use super::blocks::{self, Block};
 use super::kinetic::Kinetic;
 use super::quaternionic::{self, Quaternionic};
 use super::seen_from_body::seen_from_body;
@@ -67,6 +68,8 @@ pub enum Method {
     Davenport,
     /// Newton on the group, residual and tangent derived.
     Newton,
+    /// Each of several blocks by a method of its own; see [`Solve::blocks`].
+    Blocks,
 }
 
 /// What must be solved and how.
@@ -84,6 +87,8 @@ pub struct Solve {
     /// The momenta that Newton's method solves for, where spatial velocities are seen from the body
     /// for it.
     pub seen_from_body: Option<Vec<Expr>>,
+    /// What is solved together, where that is not the whole model: none or several.
+    pub blocks: Vec<Block>,
 }
 
 impl Solve {
@@ -95,8 +100,26 @@ impl Solve {
         match self.method {
             Method::FreeMoserVeselov | Method::ForcedMoserVeselov => true,
             Method::LeftFactor => self.riccati.iter().all(symmetric),
+            Method::Blocks => self.blocks.iter().any(|b| match b.method {
+                Method::LeftFactor => b.members.iter().all(|i| symmetric(&self.riccati[*i])),
+                _ => false,
+            }),
             Method::Davenport | Method::UnitQuaternions | Method::Newton => false,
         }
+    }
+
+    /// Whether the velocity that is found for a configuration is the one seen from the body,
+    /// though it is stated in space.
+    pub fn finds_body_velocity(&self, i: usize) -> bool {
+        let by_newton = match self.method {
+            Method::Newton => true,
+            Method::Blocks => self
+                .blocks
+                .iter()
+                .any(|b| b.is_newton() && b.members.contains(&i)),
+            _ => false,
+        };
+        self.turned.is_some() || by_newton && self.seen_from_body.is_some()
     }
 }
 
@@ -130,10 +153,21 @@ pub fn recognise(
         .enumerate()
         .map(|(i, b)| riccati(spec, letters, b, i, transports, algebra))
         .collect();
-    let three = |i: usize| {
-        let size = spec.configurations[i].group.size();
-        size == Dim::Fixed(3) && spec.configurations[i].group.is_orthogonal()
-    };
+    let blocks = blocks::blocks(spec, letters, balances, &riccati);
+    if blocks.len() > 1 {
+        let newton = blocks.iter().any(Block::is_newton);
+        return Solve {
+            riccati,
+            method: Method::Blocks,
+            reason: blocks::reasons(letters, spec, &blocks),
+            turned: None,
+            seen_from_body: newton
+                .then(|| seen_from_body(stated, spec, letters, balances))
+                .flatten(),
+            blocks,
+        };
+    }
+    let three = |i: usize| is_of_space(&spec.configurations[i]);
     let turned = match riccati.as_slice() {
         // Symmetric factors in three dimensions have steppers of their own.
         [Riccati::Exact(mv)] if three(0) && mv.symmetric && keeps_edge(mv) => None,
@@ -212,7 +246,13 @@ pub fn recognise(
         reason,
         turned,
         seen_from_body,
+        blocks: Vec::new(),
     }
+}
+
+/// Whether a configuration is a rotation of space.
+pub(super) fn is_of_space(c: &Configuration) -> bool {
+    c.group.size() == Dim::Fixed(3) && c.group.is_orthogonal()
 }
 
 /// The factor of a spatial velocity seen from the body, `Λ^T C Λ`, if it is constant there: then
@@ -247,7 +287,7 @@ fn turned(
 }
 
 /// Whether `C` is made of parameters only: it is then validated once.
-fn is_constant(letters: &Letters, mv: &MoserVeselov) -> bool {
+pub(super) fn is_constant(letters: &Letters, mv: &MoserVeselov) -> bool {
     let s = &letters.symbols;
     let letters = expr::letters(&mv.factor);
     letters

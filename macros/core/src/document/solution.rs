@@ -311,7 +311,10 @@ fn method(sheet: &Sheet, section: &mut Section) {
         return;
     }
     let why = d.solve.reason.as_str();
-    let why = why.split(": Newton on").next().unwrap_or(why);
+    let why = match d.solve.method {
+        Method::Blocks => why,
+        _ => why.split(": Newton on").next().unwrap_or(why),
+    };
     let letter = d.solve.riccati.first().and_then(|r| match r {
         Riccati::Exact(mv) | Riccati::Coupled(mv) => Some(factor(sheet, mv, 0).0),
         Riccati::Quaternionic(_) | Riccati::None(_) => None,
@@ -361,6 +364,7 @@ fn method(sheet: &Sheet, section: &mut Section) {
                 }
                 Method::Davenport => "The stepper solves it as an eigenvalue problem at each node: ",
                 Method::UnitQuaternions => "The stepper solves it so: ",
+                Method::Blocks => "The stepper solves ",
                 Method::FreeMoserVeselov | Method::ForcedMoserVeselov | Method::Newton => {
                     "The stepper iterates with Newton's method on the group: "
                 }

@@ -188,7 +188,8 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                         | Method::UnitQuaternions
                         | Method::LeftFactor
                         | Method::Davenport
-                        | Method::Newton => {
+                        | Method::Newton
+                        | Method::Blocks => {
                             match family(&d.spec.configurations[*i]) {
                                 Family::Rotation
                                 | Family::Linear(_)
@@ -244,6 +245,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
             | Method::Davenport => "Moser-Veselov",
             Method::UnitQuaternions => "Unit quaternions",
             Method::Newton => "Newton",
+            Method::Blocks => "Blocks",
         },
         d.how_solved()
     );

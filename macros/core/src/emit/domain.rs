@@ -250,13 +250,23 @@ pub(super) fn tested_step(d: &Derivation, names: &Names) -> TokenStream {
     let inside = inside(d, names);
     let method = format!(" One step, in place. Solved thus: {}.", d.how_solved());
     let searched = matches!(d.solve.method, Method::Newton);
-    let (asked, taken) = match searched {
-        true => (
+    let (asked, taken) = match d.solve.method {
+        Method::Newton => (
             quote!(work.h, work.search.tries(),),
             quote!(h: T, tries: bool,),
         ),
-        false => Default::default(),
+        Method::Blocks => (quote!(work.h,), quote!(h: T,)),
+        _ => Default::default(),
     };
+    let in_blocks = matches!(d.solve.method, Method::Blocks).then(|| {
+        let trial = super::blocks::trial(d, "to_offer");
+        quote! {
+            let contact = contact.with_trials(h, |h| {
+                let mut moving = *state;
+                self.step(&mut moving, &mut #trial).is_ok()
+            });
+        }
+    });
     let trials = searched.then(|| {
         quote! {
             let contact = match tries {
@@ -292,6 +302,7 @@ pub(super) fn tested_step(d: &Derivation, names: &Names) -> TokenStream {
         #[inline(never)]
         fn left_domain(&self, state: &#state #used, #taken contact: domain::Contact) -> StepError {
             #trials
+            #in_blocks
             StepCause::from(contact).at_node(state.#node)
         }
 

@@ -13,8 +13,8 @@ use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::print::{Format, Style, expression};
 use crate::syntax::ast::Comparison;
-use proc_macro2::{Literal, TokenStream};
-use quote::quote;
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::{format_ident, quote};
 
 /// An expression as text for documentation and messages.
 pub fn text(d: &Derivation, e: &Expr) -> String {
@@ -56,7 +56,6 @@ fn prepared(d: &Derivation, e: &Expr) -> (TokenStream, TokenStream) {
         writer.write(e)
     };
     let (value, label) = (write(e), text(d, e));
-    let named = |name: TokenStream| quote!(#name::new(#value).map_err(|e| e.in_field(#label)));
     match (real(d), &d.solve.method) {
         (Some(real), _) => {
             let real = write(real);
@@ -65,8 +64,11 @@ fn prepared(d: &Derivation, e: &Expr) -> (TokenStream, TokenStream) {
                 quote!(QuaternionBody::new(#label, #value, #real)),
             )
         }
-        (None, Method::LeftFactor) => (super::left_factor::ty(d), named(quote!(LeftFactor))),
-        (None, _) => (quote!(Poinsot<T>), named(quote!(Poinsot))),
+        (None, Method::LeftFactor) => super::left_factor::prepared(d, 0, e),
+        (None, _) => (
+            quote!(Poinsot<T>),
+            quote!(Poinsot::new(#value).map_err(|e| e.in_field(#label))),
+        ),
     }
 }
 
@@ -386,22 +388,36 @@ pub fn model(d: &Derivation, documented: bool) -> TokenStream {
         .flat_map(|a| [&a.left, &a.right])
         .collect();
     let numbers = constant.and_then(|_| real(d));
-    let mut needed = letters_of(constant.into_iter().chain(numbers).chain(assumed));
+    let in_blocks = super::blocks::factors(d).into_iter().map(|(_, _, e)| e);
+    let mut needed = letters_of(
+        constant
+            .into_iter()
+            .chain(numbers)
+            .chain(assumed)
+            .chain(in_blocks),
+    );
     let (arguments, inside) = super::domain::of_parameters(d);
     needed.extend(arguments);
     let locals = parameter_locals(d, quote!(parameters), &needed);
     let assumptions = d.spec.assumptions.iter().map(|a| assumption(d, a));
-    let (field, build, init) = match constant {
-        Some(e) => {
-            let (kind, made) = prepared(d, e);
-            (
-                quote!(factor: #kind,),
-                quote!(let factor = #made?;),
-                quote!(factor,),
-            )
-        }
-        None => Default::default(),
-    };
+    let mut kept: Vec<(Ident, TokenStream, TokenStream)> = Vec::new();
+    if let Some(e) = constant {
+        let (kind, made) = prepared(d, e);
+        kept.push((format_ident!("factor"), kind, made));
+    }
+    for (name, i, e) in super::blocks::factors(d) {
+        let (kind, made) = super::left_factor::prepared(d, i, e);
+        kept.push((name, kind, made));
+    }
+    let field: TokenStream = kept
+        .iter()
+        .map(|(name, kind, _)| quote!(#name: #kind,))
+        .collect();
+    let build: TokenStream = kept
+        .iter()
+        .map(|(name, _, made)| quote!(let #name = #made?;))
+        .collect();
+    let init: TokenStream = kept.iter().map(|(name, _, _)| quote!(#name,)).collect();
     let (solver_field, solver_init, with_solver) = super::left_factor::of_model(d);
     let docs = crate::document::rustdoc(d, documented);
     let source = crate::document::source(d);

@@ -19,9 +19,23 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 /// The type of the prepared factor.
-pub(super) fn ty(d: &Derivation) -> TokenStream {
-    let n = size(&d.letters.symbols, d.spec.configurations[0].group.size());
+fn ty(d: &Derivation, i: usize) -> TokenStream {
+    let n = size(&d.letters.symbols, d.spec.configurations[i].group.size());
     quote!(LeftFactor<#n, T>)
+}
+
+/// The type of the prepared factor of a configuration, and its constructor applied to the factor.
+pub(super) fn prepared(d: &Derivation, i: usize, e: &Expr) -> (TokenStream, TokenStream) {
+    let none = Bindings::new();
+    let writer = Writer {
+        symbols: &d.letters.symbols,
+        bindings: &none,
+    };
+    let (value, label) = (writer.write(e), text(d, e));
+    (
+        ty(d, i),
+        quote!(LeftFactor::new(#value).map_err(|e| e.in_field(#label))),
+    )
 }
 
 /// Whether the solver can be chosen.
@@ -31,6 +45,7 @@ fn chooses(d: &Derivation) -> bool {
         | Method::ForcedMoserVeselov
         | Method::LeftFactor
         | Method::Davenport => true,
+        Method::Blocks => d.solve.blocks.iter().any(|b| !b.is_newton()),
         Method::UnitQuaternions | Method::Newton => false,
     }
 }
@@ -40,8 +55,23 @@ fn default(d: &Derivation) -> TokenStream {
     let n = size(&d.letters.symbols, d.spec.configurations[0].group.size());
     match d.solve.method {
         Method::Davenport => quote!(Method::Davenport),
+        Method::Blocks if known_at_nodes(d) => quote!(Method::Davenport),
+        Method::Blocks => {
+            let exact = d.solve.blocks.iter().filter(|b| !b.is_newton());
+            let sizes = exact.flat_map(|b| &b.members).map(|i| {
+                let n = size(&d.letters.symbols, d.spec.configurations[*i].group.size());
+                quote!(#n == 3)
+            });
+            quote!(Method::of_size(if #(#sizes)&&* { 3 } else { 4 }))
+        }
         _ => quote!(Method::of_size(#n)),
     }
+}
+
+/// Whether a block has a factor that is known at each node only.
+fn known_at_nodes(d: &Derivation) -> bool {
+    let mut blocks = d.solve.blocks.iter();
+    blocks.any(|b| matches!(b.method, Method::Davenport))
 }
 
 /// The solver that `open` takes, where one can be chosen.
@@ -69,8 +99,17 @@ pub(super) fn of_model(d: &Derivation) -> (TokenStream, TokenStream, TokenStream
 
 /// The names of the solvers that can be chosen, the one taken otherwise first.
 pub(super) fn offered(d: &Derivation) -> TokenStream {
+    let mut exact = d.solve.blocks.iter().filter(|b| !b.is_newton());
+    let of_space = |i: &usize| family(&d.spec.configurations[*i]) == Family::Rotation;
     match (chooses(d), family(&d.spec.configurations[0])) {
         (false, _) => quote!(&[]),
+        (true, _) if known_at_nodes(d) => quote!(&Method::DAVENPORT_FIRST),
+        (true, _) if matches!(d.solve.method, Method::Blocks) => {
+            match exact.all(|b| b.members.iter().all(of_space)) {
+                true => quote!(&Method::NAMES),
+                false => quote!(&Method::ANY_SIZE),
+            }
+        }
         (true, Family::Rotation) if matches!(d.solve.method, Method::Davenport) => {
             quote!(&Method::DAVENPORT_FIRST)
         }
@@ -107,7 +146,7 @@ pub(super) fn work(d: &Derivation) -> (TokenStream, &'static str) {
         return (quote!(method: Method,), " The step and the solver's name.");
     };
     let s = &d.letters.symbols;
-    let kind = ty(d);
+    let kind = ty(d, 0);
     let types = references(turned, d)
         .into_iter()
         .map(|id| quantity(s, s.get(id).shape));
@@ -152,7 +191,7 @@ fn factor_at(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
             bindings: &bindings,
         }
         .write(turned);
-        let kind = ty(d);
+        let kind = ty(d, 0);
         return quote! {
             /// The left factor seen from the body, where it is constant along the motion.
             #[cold]

@@ -3,6 +3,7 @@
 //! this version has no stepper for is refused before, in [`refusal`].
 
 mod between;
+mod blocks;
 mod card;
 mod discrete_energy;
 mod domain;
@@ -34,6 +35,7 @@ mod tests;
 pub(crate) use notes::notes;
 
 use crate::derive::Derivation;
+use crate::derive::recognise::Method;
 use crate::diagnostic::{Diagnostic, Errors};
 pub use formula::formula;
 use names::Names;
@@ -42,6 +44,9 @@ use quote::{format_ident, quote};
 
 /// Coordinates of the largest Lie algebras whose tangents are kept as dense work arrays: SO(8).
 const MOST_COORDINATES: u64 = 28;
+
+/// Bodies of different groups whose velocities are solved together.
+const MOST_DIFFERENT: usize = 3;
 
 /// Most sizes for which one model is compiled and described.
 const MOST_SIZES: u64 = 32;
@@ -74,16 +79,55 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
             .help("narrow the ranges of `dim`, or write numbers in their place"),
         );
     }
-    if d.spec.configurations.len() > 3 {
-        return Some(
-            Diagnostic::new(
-                d.spec.name_place,
-                "this version emits steppers for at most three bodies",
-            )
-            .help("`clebsch derive` prints the equations for any number"),
-        );
+    if let Some(refused) = too_many_together(d) {
+        return Some(refused);
     }
     names::refusal(d)
+}
+
+/// The refusal of a block that is too large for a dense tangent, or of more groups than a product has.
+fn too_many_together(d: &Derivation) -> Option<Diagnostic> {
+    let everything: Vec<usize> = (0..d.spec.configurations.len()).collect();
+    let together: Vec<&[usize]> = match d.solve.method {
+        Method::Newton => vec![&everything],
+        Method::Blocks => {
+            let newton = d.solve.blocks.iter().filter(|b| b.is_newton());
+            newton.map(|b| b.members.as_slice()).collect()
+        }
+        _ => Vec::new(),
+    };
+    let families = |members: &[usize]| {
+        let list = members
+            .iter()
+            .map(|i| element::family(&d.spec.configurations[*i]));
+        let list: Vec<_> = list.collect();
+        list.windows(2).all(|w| w[0] == w[1])
+    };
+    let coordinates = |members: &[usize]| -> u64 {
+        members
+            .iter()
+            .map(|i| element::most_coordinates(d, *i))
+            .sum()
+    };
+    let refused = together.into_iter().find(|members| {
+        coordinates(members) > MOST_COORDINATES
+            || members.len() > MOST_DIFFERENT && !families(members)
+    })?;
+    let name = |i: &usize| {
+        let velocity = d.spec.configurations[*i].velocity;
+        d.letters.symbols.get(velocity).name.clone()
+    };
+    let names: Vec<String> = refused.iter().map(name).collect();
+    let message = format!(
+        "{} stand in one another's equations and would be solved together: this version emits \
+         steppers for at most {MOST_DIFFERENT} such bodies of different groups, and for at most \
+         {MOST_COORDINATES} coordinates",
+        names.join(", ")
+    );
+    Some(
+        Diagnostic::new(d.spec.name_place, message)
+            .help("`clebsch derive` prints the equations for any number; forces between bodies that depend on configurations, not on velocities, leave every body a block of its own"),
+    )
 }
 
 /// The Rust items of a model. `documented` puts the whole derivation into the rustdoc of the model.

@@ -1,5 +1,6 @@
-//! The step of a model whose velocities are found by Newton's method: residual and tangent are
-//! both derived, all configurations are solved together.
+//! The equations of velocities that are found together by Newton's method: residual and tangent are
+//! both derived. Takes the derivation and what is solved together, the whole model or a block of
+//! it; gives the loop that solves, the functions beside it, and the step where that is all.
 
 use super::element::{self, Bundle, Family, family};
 use super::equations::Equations;
@@ -8,153 +9,196 @@ use super::items::{advanced, letters_of, parameter_locals, with_transports};
 use super::names::{Names, item, own, per_configuration, tagged, variable};
 use super::principal::Principal;
 use super::sizes::Generics;
-use super::step::{at, finish, here};
+use super::step::{at, finish, here, step_signature};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::carry::Carry;
 use crate::derive::seen_from_body::outgoing;
-use crate::expr::Shift;
-use proc_macro2::TokenStream;
-use quote::quote;
+use crate::expr::{Expr, Letter, Shift};
+use proc_macro2::{Ident, TokenStream};
+use quote::{format_ident, quote};
 
-/// The type of what the tangent asks of a node, and `step`.
-pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
-    let s = &d.letters.symbols;
-    let bodies = d.spec.configurations.len();
-    let bundle = Bundle::of(d);
-    let types: Vec<TokenStream> = (0..bodies).map(|i| element::ty(d, i)).collect();
-    let elements = bundle.ty(&types);
-    let used = Generics::of(d).used();
-    let (state, work) = (item(d, "State"), item(d, "Workspace"));
-    let node = names.local("node");
-    let step = variable(s, d.spec.step);
-    let (trial, mu, newton, found, solved) = (
-        names.local("trial"),
-        names.local("momenta"),
-        names.local("iteration"),
-        names.local("found"),
-        names.local("solved"),
-    );
-    let from_body = d.solve.seen_from_body.as_ref();
-    let side = |i: usize| match from_body {
-        Some(_) => Side::Body,
-        None => d.spec.configurations[i].side,
-    };
-    let momenta = match from_body {
-        Some(list) => list.clone(),
-        None => outgoing(&d.spec, &d.letters, &d.balances),
-    };
-    // Everything known at the node.
-    let mut bindings = Bindings::new();
-    let mut needed = letters_of(&momenta);
-    for (i, c) in d.spec.configurations.iter().enumerate() {
-        if side(i) == Side::Body && family(c) == Family::Rotation {
-            needed.push(at(c.element, Shift::HERE));
+/// What is solved together.
+pub(super) struct Together<'a> {
+    /// The model.
+    pub whole: &'a Derivation,
+    /// What is solved, as a model of its own; the model where that is all of it.
+    pub block: &'a Derivation,
+    /// Which configurations of the model these are.
+    pub members: &'a [usize],
+    /// Its number, from 1, where there are several blocks.
+    pub number: Option<usize>,
+    /// The names of the model.
+    pub names: &'a Names,
+}
+
+/// The code of it.
+pub(super) struct Loop {
+    /// The type of what the tangent asks of a node.
+    pub node_type: TokenStream,
+    /// An expression: the solution found, or an error returned.
+    pub solve: TokenStream,
+    /// The functions of the stepper that this calls.
+    pub functions: TokenStream,
+}
+
+impl Together<'_> {
+    /// A name of the block: the same as in a model of one block, with its number behind.
+    pub fn name(&self, base: &str) -> Ident {
+        match self.number {
+            Some(n) => self.names.local(&format!("{base}_{n}")),
+            None => format_ident!("{base}"),
         }
     }
-    needed.extend(letters_of(d.carries.iter().flat_map(Carry::parts)));
-    needed.extend(letters_of(advanced(d).map(|a| &a.update)));
-    let mut all = with_transports(d, &needed, 0);
-    all.extend(with_transports(d, &needed, 1));
-    let parameters = parameter_locals(d, quote!(self.parameters), &all);
-    let locals = here(d, names, &needed, &mut bindings);
-    // Node momenta.
-    let node_momenta: Vec<TokenStream> = (0..bodies)
-        .map(|i| {
-            let field = per_configuration(d, "momentum", i);
-            let c = &d.spec.configurations[i];
-            let (element, own) = (variable(s, c.element), own(d, c.element));
-            match (side(i), family(c)) {
-                (Side::Body, Family::Rotation) => quote!(#element.tr_mul(&state.#field.0)),
-                (Side::Body, _) => quote!(state.#field.to_body(&state.#own).0),
-                (Side::Spatial, _) => quote!(state.#field.0),
-            }
-        })
-        .collect();
-    let solved_for = Equations {
-        d,
-        names,
-        bindings: &bindings,
-        trial: &trial,
-        momenta: &mu,
-    };
-    let (known, equations) = solved_for.write(&momenta, &node_momenta);
-    let (at_trial, residual_body, tangent_body) =
-        (&equations.at_trial, &equations.residual, &equations.tangent);
-    let principal = Principal {
-        d,
-        bindings: &bindings,
-        equations: &equations,
-        momenta: &mu,
-        trial: &trial,
-    };
-    let (given, values) = (
-        principal.packed(&equations.alone.given),
-        principal.packed(&equations.alone.values),
-    );
-    let (lane, ended) = (names.local("lane"), names.local("ended"));
-    let given_type = Principal::packed_type(d, &equations.alone.given);
-    let (momenta_type, node_type) = (&equations.momenta, item(d, "Node"));
-    let dimension = element::total(d);
-    let functions = principal.functions();
-    let remembered = quote!(work.search.remember(state.#node - 1, &#found););
-    let mut after = bindings.clone();
-    let matrices: TokenStream = (0..bodies)
-        .map(|i| {
-            let c = &d.spec.configurations[i];
-            let (w, own) = (c.velocity, own(d, c.element));
-            let name = tagged(d, names, w, "matrix");
-            after.bind(at(w, Shift::HERE), name.clone());
-            let part = bundle.part(quote!(#solved), i);
-            match side(i) == c.side {
-                true => quote!(let #name = #part.matrix();),
-                false => quote!(let #name = (state.#own * #part * state.#own.inverse()).matrix();),
-            }
-        })
-        .collect();
-    let configurations = d.spec.configurations.iter().map(|c| &s.get(c.element).name);
-    let solved_at = |i: usize| bundle.part(quote!(#solved), i);
-    let rest = finish(d, names, &mut after, &solved_at, remembered);
-    let head = super::domain::step_head(d);
-    // A root beyond the edge of the domain is no principal one: what was met is said.
-    let contact = super::domain::is_guarded(d).then(|| {
-        let moves = d.spec.configurations.iter().enumerate().map(|(i, c)| {
-            let (own, part) = (own(d, c.element), bundle.part(quote!(solved.element), i));
-            match side(i) {
-                Side::Body => quote!(moved.#own = state.#own * #part;),
-                Side::Spatial => quote!(moved.#own = #part * state.#own;),
-            }
-        });
-        quote! {
-            if let Ok(solved) = &failed {
-                let mut moved = state;
-                #(#moves)*
-                if let Err(contact) = self.stays_inside(&state, &moved, #step) {
-                    return Err(self.left_domain(&state, #step, #newton.tries(), contact));
-                }
+
+    /// The type of values at a node that the tangent depends on.
+    pub fn node_type_name(&self) -> Ident {
+        let number = self.number.map(|n| n.to_string()).unwrap_or_default();
+        item(self.whole, &format!("Node{number}"))
+    }
+
+    /// The type of the velocities together.
+    pub fn elements(&self) -> TokenStream {
+        let d = self.block;
+        let types: Vec<TokenStream> = (0..self.members.len()).map(|i| element::ty(d, i)).collect();
+        Bundle::of(d).ty(&types)
+    }
+
+    /// The type of the search of one solution after the other.
+    pub fn search_type(&self) -> TokenStream {
+        let used = Generics::of(self.whole).used();
+        let (elements, values) = (self.elements(), self.node_type_name());
+        let dimension = element::total(self.block);
+        quote!(newton::Search<T, #elements, #values #used, #dimension>)
+    }
+
+    /// The side on which a velocity is found.
+    pub fn side(&self, i: usize) -> Side {
+        match self.block.solve.seen_from_body {
+            Some(_) => Side::Body,
+            None => self.block.spec.configurations[i].side,
+        }
+    }
+
+    /// The momenta of the outgoing edge that are solved for.
+    pub fn momenta(&self) -> Vec<Expr> {
+        let d = self.block;
+        match &d.solve.seen_from_body {
+            Some(list) => list.clone(),
+            None => outgoing(&d.spec, &d.letters, &d.balances),
+        }
+    }
+
+    /// What the equations need of the node.
+    pub fn needed(&self) -> Vec<Letter> {
+        let mut needed = letters_of(&self.momenta());
+        for (i, c) in self.block.spec.configurations.iter().enumerate() {
+            if self.side(i) == Side::Body && family(c) == Family::Rotation {
+                needed.push(at(c.element, Shift::HERE));
             }
         }
-    });
-    let method = format!(" One step, in place. Solved thus: {}.", d.how_solved());
-    // What cold functions are given is copied where they are called: a value whose address is taken
-    // anywhere in the loop would live in memory.
-    let step = quote! {
-        #[doc = #method]
-        ///
-        /// # Errors
-        /// When no velocity that follows from rest solves the equations: which of them fails, and
-        /// which step could be solved; the state is then unchanged.
-        #[inline]
-        #head(&self, state: &mut #state #used, work: &mut #work #used) -> Result<(), StepError> {
-            let #step = work.h;
-            #parameters
-            #locals
+        needed
+    }
+
+    /// The momentum of a configuration at the node, on the side of [`Together::side`].
+    fn node_momentum(&self, i: usize) -> TokenStream {
+        let d = self.whole;
+        let c = &self.block.spec.configurations[i];
+        let field = per_configuration(d, "momentum", self.members[i]);
+        let (element, own) = (variable(&d.letters.symbols, c.element), own(d, c.element));
+        match (self.side(i), family(c)) {
+            (Side::Body, Family::Rotation) => quote!(#element.tr_mul(&state.#field.0)),
+            (Side::Body, _) => quote!(state.#field.to_body(&state.#own).0),
+            (Side::Spatial, _) => quote!(state.#field.0),
+        }
+    }
+
+    /// One velocity of a solution.
+    pub fn part(&self, solution: TokenStream, i: usize) -> TokenStream {
+        Bundle::of(self.block).part(solution, i)
+    }
+
+    /// The matrices of the velocities in the frames in which they are stated; `after` learns their
+    /// names.
+    pub fn matrices(&self, solved: &Ident, after: &mut Bindings) -> TokenStream {
+        let d = self.whole;
+        let mut out = TokenStream::new();
+        for (i, c) in self.block.spec.configurations.iter().enumerate() {
+            let own = own(d, c.element);
+            let name = tagged(d, self.names, c.velocity, "matrix");
+            after.bind(at(c.velocity, Shift::HERE), name.clone());
+            let part = self.part(quote!(#solved), i);
+            out.extend(match self.side(i) == c.side {
+                true => quote!(let #name = #part.matrix();),
+                false => quote!(let #name = (state.#own * #part * state.#own.inverse()).matrix();),
+            });
+        }
+        out
+    }
+
+    /// The code. `bindings` know what stands at the node; `search` is the field of the workspace, `tried`
+    /// the workspace of a trial step `h` with a given `search`.
+    pub fn code(&self, bindings: &Bindings, search: &Ident, tried: &TokenStream) -> Loop {
+        let (d, names) = (self.block, self.names);
+        let s = &d.letters.symbols;
+        let elements = self.elements();
+        let used = Generics::of(d).used();
+        let state = item(d, "State");
+        let node = names.local("node");
+        let step = variable(s, d.spec.step);
+        let [trial, mu, newton] = ["trial", "momenta", "iteration"].map(|base| names.local(base));
+        let [lane, ended, solved] = ["lane", "ended", "solved"].map(|base| names.local(base));
+        let [residual_at, settled, principal, refused, rounding] =
+            ["residual_at", "settled", "principal", "refused", "rounding"].map(|f| self.name(f));
+        let tangent_at = self.name("tangent_at");
+        let node_momenta: Vec<TokenStream> = (0..self.members.len())
+            .map(|i| self.node_momentum(i))
+            .collect();
+        let solved_for = Equations {
+            d,
+            names,
+            bindings,
+            trial: &trial,
+            momenta: &mu,
+        };
+        let (known, equations) = solved_for.write(&self.momenta(), &node_momenta);
+        let (at_trial, residual_body, tangent_body) =
+            (&equations.at_trial, &equations.residual, &equations.tangent);
+        let principal_root = Principal {
+            d,
+            bindings,
+            equations: &equations,
+            momenta: &mu,
+            trial: &trial,
+            residual_at: &residual_at,
+            tangent_at: &tangent_at,
+            rounding: &rounding,
+            principal: &principal,
+        };
+        let (given, values) = (
+            principal_root.packed(&equations.alone.given),
+            principal_root.packed(&equations.alone.values),
+        );
+        let given_type = Principal::packed_type(d, &equations.alone.given);
+        let momenta_type = &equations.momenta;
+        let dimension = element::total(d);
+        let values_type = self.node_type_name();
+        let functions = principal_root.functions();
+        let configurations = d.spec.configurations.iter().map(|c| &s.get(c.element).name);
+        let contact = self.contact(&step, &newton);
+        let chosen = super::left_factor::default_solver(self.whole);
+        let (method, with_method) = match chosen.is_some() {
+            true => (quote!(method: Method,), quote!(, method)),
+            false => Default::default(),
+        };
+        let of_work = chosen.map(|_| quote!(, work.method));
+        let solve = quote! {
             #known
-            let mut #newton = work.search.begin(state.#node, #values);
-            let #found: newton::Solved<#elements> = loop {
+            let mut #newton = work.#search.begin(state.#node, #values);
+            loop {
                 let #trial = #newton.trial();
                 if #newton.wants_scale() {
-                    #newton.set_scale(move |#lane| self.rounding(#step, &#given, &#mu, &#trial, #lane));
+                    #newton.set_scale(move |#lane| self.#rounding(#step, &#given, &#mu, &#trial, #lane));
                 }
                 #at_trial
                 if #newton.assess({ #residual_body }) {
@@ -164,63 +208,160 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
                     newton::Progress::Continue => {}
                     newton::Progress::Solved(#solved) if #newton.is_principal(&#solved.element) => break #solved,
                     #ended => {
-                        if let Some(#solved) = self.settled(#step, *state, #given, #mu, &mut #newton, #ended)? {
+                        if let Some(#solved) = self.#settled(#step, *state, #given, #mu, &mut #newton, #ended #of_work)? {
                             break #solved;
                         }
                     }
                 }
+            }
+        };
+        // What cold functions are given is copied where they are called: a value whose address is taken
+        // anywhere in the loop would live in memory.
+        let functions = quote! {
+            /// The solution to be taken where the one found is not known to be principal, or none was
+            /// found. None where the iteration begins again, at the principal root.
+            #[cold]
+            #[inline(never)]
+            fn #settled(
+                &self,
+                #step: T,
+                state: #state #used,
+                given: #given_type,
+                #mu: #momenta_type,
+                #newton: &mut newton::Newton<'_, T, #elements, #values_type #used, #dimension>,
+                #ended: newton::Progress<#elements>,
+                #method
+            ) -> Result<Option<newton::Solved<#elements>>, StepError> {
+                let failed = match #ended {
+                    newton::Progress::Continue => return Ok(None),
+                    newton::Progress::Solved(solved) => Ok(solved),
+                    newton::Progress::Failed(e) => Err(e),
+                };
+                let asked = failed.as_ref().ok().map(|solved| &solved.element);
+                let values = #newton.values();
+                let traced = self.#principal(#step, &given, &values, &#mu, #newton.certificate(), asked);
+                let e = match (traced, failed) {
+                    (Ok(None), Ok(solved)) => return Ok(Some(solved)),
+                    (Ok(Some(root)), _) if #newton.restart(root) => return Ok(None),
+                    (Ok(_), Err(e)) => e,
+                    (Ok(_), Ok(_)) => #newton.unpolished(),
+                    (Err(fold), failed) => {
+                        #contact
+                        #newton.folded(fold, failed.err())
+                    }
+                };
+                Err(self.#refused(state, #step, e #with_method))
+            }
+
+            /// Says which equation is worst, and which step could be solved.
+            #[cold]
+            #[inline(never)]
+            fn #refused(&self, state: #state #used, h: T, e: newton::NewtonError, #method) -> StepError {
+                const CONFIGURATIONS: &[&str] = &[#(#configurations),*];
+                let e = e.explained(h, &CONFIGURATIONS, |h, search| {
+                    self.step(&mut { state }, &mut #tried)
+                });
+                StepCause::from(e).at_node(state.#node)
+            }
+
+            #functions
+        };
+        Loop {
+            node_type: principal_root.node_type(&values_type),
+            solve,
+            functions,
+        }
+    }
+
+    /// A root beyond the edge of the domain is no principal one: what was met is said, where the
+    /// whole motion of the step is known.
+    fn contact(&self, step: &Ident, newton: &Ident) -> Option<TokenStream> {
+        let d = self.block;
+        if self.number.is_some() || !super::domain::is_guarded(d) {
+            return None;
+        }
+        let moves = d.spec.configurations.iter().enumerate().map(|(i, c)| {
+            let (own, part) = (own(d, c.element), self.part(quote!(solved.element), i));
+            match self.side(i) {
+                Side::Body => quote!(moved.#own = state.#own * #part;),
+                Side::Spatial => quote!(moved.#own = #part * state.#own;),
+            }
+        });
+        Some(quote! {
+            if let Ok(solved) = &failed {
+                let mut moved = state;
+                #(#moves)*
+                if let Err(contact) = self.stays_inside(&state, &moved, #step) {
+                    return Err(self.left_domain(&state, #step, #newton.tries(), contact));
+                }
+            }
+        })
+    }
+}
+
+/// What the step needs of the node beside the equations: to go on from there.
+pub(super) fn onwards(d: &Derivation) -> Vec<Letter> {
+    let mut needed = letters_of(d.carries.iter().flat_map(Carry::parts));
+    needed.extend(letters_of(advanced(d).map(|a| &a.update)));
+    needed
+}
+
+/// All velocities together.
+fn all<'a>(d: &'a Derivation, names: &'a Names, members: &'a [usize]) -> Together<'a> {
+    Together {
+        whole: d,
+        block: d,
+        members,
+        number: None,
+        names,
+    }
+}
+
+/// The type of the search where all velocities are found together.
+pub(super) fn search_of_all(d: &Derivation, names: &Names) -> TokenStream {
+    let members: Vec<usize> = (0..d.spec.configurations.len()).collect();
+    all(d, names, &members).search_type()
+}
+
+/// The type of what the tangent asks of a node, and `step`, where all velocities are found together.
+pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
+    let members: Vec<usize> = (0..d.spec.configurations.len()).collect();
+    let all = all(d, names, &members);
+    let mut needed = all.needed();
+    needed.extend(onwards(d));
+    let mut letters = with_transports(d, &needed, 0);
+    letters.extend(with_transports(d, &needed, 1));
+    let parameters = parameter_locals(d, quote!(self.parameters), &letters);
+    let mut bindings = Bindings::new();
+    let locals = here(d, names, &needed, &mut bindings);
+    let work = item(d, "Workspace");
+    let search = format_ident!("search");
+    let Loop {
+        node_type,
+        solve,
+        functions,
+    } = all.code(&bindings, &search, &quote!(#work { h, search }));
+    let [found, solved, node] = ["found", "solved", "node"].map(|base| names.local(base));
+    let elements = all.elements();
+    let mut after = bindings.clone();
+    let matrices = all.matrices(&solved, &mut after);
+    let remembered = quote!(work.search.remember(state.#node - 1, &#found););
+    let solved_at = |i: usize| all.part(quote!(#solved), i);
+    let rest = finish(d, names, &mut after, &solved_at, remembered);
+    let step = variable(&d.letters.symbols, d.spec.step);
+    let step = step_signature(
+        d,
+        quote! {
+            let #step = work.h;
+            #parameters
+            #locals
+            let #found: newton::Solved<#elements> = {
+                #solve
             };
             let #solved = #found.element;
             #matrices
             #rest
-        }
-
-        /// The solution to be taken where the one found is not known to be principal, or none was
-        /// found. None where the iteration begins again, at the principal root.
-        #[cold]
-        #[inline(never)]
-        fn settled(
-            &self,
-            #step: T,
-            state: #state #used,
-            given: #given_type,
-            #mu: #momenta_type,
-            #newton: &mut newton::Newton<'_, T, #elements, #node_type #used, #dimension>,
-            #ended: newton::Progress<#elements>,
-        ) -> Result<Option<newton::Solved<#elements>>, StepError> {
-            let failed = match #ended {
-                newton::Progress::Continue => return Ok(None),
-                newton::Progress::Solved(solved) => Ok(solved),
-                newton::Progress::Failed(e) => Err(e),
-            };
-            let asked = failed.as_ref().ok().map(|solved| &solved.element);
-            let values = #newton.values();
-            let traced = self.principal(#step, &given, &values, &#mu, #newton.certificate(), asked);
-            let e = match (traced, failed) {
-                (Ok(None), Ok(solved)) => return Ok(Some(solved)),
-                (Ok(Some(root)), _) if #newton.restart(root) => return Ok(None),
-                (Ok(_), Err(e)) => e,
-                (Ok(_), Ok(_)) => #newton.unpolished(),
-                (Err(fold), failed) => {
-                    #contact
-                    #newton.folded(fold, failed.err())
-                }
-            };
-            Err(self.refused(state, #step, e))
-        }
-
-        /// Says which equation is worst, and which step could be solved.
-        #[cold]
-        #[inline(never)]
-        fn refused(&self, state: #state #used, h: T, e: newton::NewtonError) -> StepError {
-            const CONFIGURATIONS: &[&str] = &[#(#configurations),*];
-            let e = e.explained(h, &CONFIGURATIONS, |h, search| {
-                self.step(&mut { state }, &mut #work { h, search })
-            });
-            StepCause::from(e).at_node(state.#node)
-        }
-
-        #functions
-    };
-    (principal.node_type(), step)
+        },
+    );
+    (node_type, quote!(#step #functions))
 }

@@ -29,6 +29,14 @@ pub(super) struct Principal<'a> {
     pub momenta: &'a Ident,
     /// The local that holds the trial.
     pub trial: &'a Ident,
+    /// The names of the functions.
+    pub residual_at: &'a Ident,
+    /// The tangent.
+    pub tangent_at: &'a Ident,
+    /// The bounds of rounding.
+    pub rounding: &'a Ident,
+    /// The search for the principal root.
+    pub principal: &'a Ident,
 }
 
 impl Principal<'_> {
@@ -61,13 +69,9 @@ impl Principal<'_> {
     }
 
     /// The type of the values that the tangent needs.
-    pub fn node_type(&self) -> TokenStream {
-        let d = self.d;
-        let declared = Generics::of(d).parameters();
-        let (name, values) = (
-            item(d, "Node"),
-            Self::packed_type(d, &self.equations.alone.values),
-        );
+    pub fn node_type(&self, name: &Ident) -> TokenStream {
+        let declared = Generics::of(self.d).parameters();
+        let values = Self::packed_type(self.d, &self.equations.alone.values);
         quote!(type #name #declared = #values;)
     }
 
@@ -113,6 +117,10 @@ impl Principal<'_> {
             equations,
             trial,
             momenta,
+            residual_at,
+            tangent_at,
+            rounding,
+            principal,
             ..
         } = *self;
         let s = &d.letters.symbols;
@@ -163,15 +171,16 @@ impl Principal<'_> {
                     shift: Shift::HERE,
                 })
                 .collect();
-            parameter_locals(d, quote!(self.parameters), &all)
+            parameter_locals(d, quote!(*parameters), &all)
         };
         let momenta_type = &equations.momenta;
         let momenta_over = &equations.momenta_over;
         let at_trial = &equations.at_trial;
         let (residual, tangent) = (&equations.alone.residual, &equations.alone.tangent);
+        let (given_parameters, used) = (item(d, "Parameters"), g.used());
         let own = |scalar: &TokenStream| {
             let used = g.used_over_tokens(scalar);
-            quote!(#name::#used { parameters: self.parameters.over(change) })
+            quote!(#name::#used)
         };
         let rounded = quote!(newton::Enclosure<0>);
         let plain_elements = over(&plain);
@@ -193,7 +202,7 @@ impl Principal<'_> {
             #[cold]
             #[inline(never)]
             #[allow(unused_variables)]
-            fn residual_at(&self, #step: T, #given: &#given_type, #momenta: &#momenta_type, #trial: &#elements) -> SVector<T, #dimension> {
+            fn #residual_at(parameters: &#given_parameters #used, #step: T, #given: &#given_type, #momenta: &#momenta_type, #trial: &#elements) -> SVector<T, #dimension> {
                 #parameters
                 #open_given
                 #at_trial
@@ -204,7 +213,7 @@ impl Principal<'_> {
             #[cold]
             #[inline(never)]
             #[allow(unused_variables)]
-            fn tangent_at(&self, #step: T, #values: &#values_type, #(#velocity_names: #velocity_types),*) -> SMatrix<T, #dimension, #dimension> {
+            fn #tangent_at(parameters: &#given_parameters #used, #step: T, #values: &#values_type, #(#velocity_names: #velocity_types),*) -> SMatrix<T, #dimension, #dimension> {
                 #parameters
                 #open_values
                 #tangent
@@ -213,19 +222,19 @@ impl Principal<'_> {
             /// Bounds of the rounding of the residual, in one lane.
             #[cold]
             #[inline(never)]
-            fn rounding(&self, #step: T, #given: &#given_type, #momenta: &#momenta_type, #trial: &#elements, lane: usize) -> SVector<f64, #dimension> {
+            fn #rounding(&self, #step: T, #given: &#given_type, #momenta: &#momenta_type, #trial: &#elements, lane: usize) -> SVector<f64, #dimension> {
                 let change = &mut |x: T| newton::Enclosure::<0>::exactly(x.lane(lane));
-                let model = #model_rounded;
+                let parameters = self.parameters.over(change);
                 let (step, given, momenta) = (#step.over(change), #given.over(change), #momenta_over);
                 let change = &mut |x: T| newton::Enclosure::<0>::rounded(x.lane(lane));
                 let trial = #trial_over;
-                model.residual_at(step, &given, &momenta, &trial).map(|x| x.rest())
+                #model_rounded::#residual_at(&parameters, step, &given, &momenta, &trial).map(|x| x.rest())
             }
 
             /// Finds the principal root, or shows that the solution is.
             #[cold]
             #[inline(never)]
-            fn principal(
+            fn #principal(
                 &self,
                 #step: T,
                 #given: &#given_type,
@@ -238,24 +247,24 @@ impl Principal<'_> {
                 let mut verdict = newton::Verdict::<#elements, #dimension>::about(first);
                 for lane in 0..T::LANES {
                     let change = &mut |x: T| newton::Enclosure::<#variables>::exactly(x.lane(lane));
-                    let (bound, bound_step) = (#model_bound, #step.over(change));
+                    let (bound, bound_step) = (self.parameters.over(change), #step.over(change));
                     let change = &mut |x: T| x.lane(lane);
-                    let (model, step) = (#model_plain, #step.over(change));
+                    let (parameters, step) = (self.parameters.over(change), #step.over(change));
                     let (given, near, momenta) = (#given.over(change), #values.over(change), #momenta_over);
                     let found = match solution {
                         Some(found) => Some(#found_over),
                         None => None,
                     };
                     let equations = newton::Equations {
-                        residual: &|trial: &#plain_elements| model.residual_at(step, &given, &momenta, trial),
+                        residual: &|trial: &#plain_elements| #model_plain::#residual_at(&parameters, step, &given, &momenta, trial),
                         tangent: &|#trial: &#plain_elements| {
                             #at_trial
-                            model.tangent_at(step, &near, #(#velocity_names),*)
+                            #model_plain::#tangent_at(&parameters, step, &near, #(#velocity_names),*)
                         },
                         enclosed: &|spread, #trial: &#regions| {
                             #at_trial
                             let values = newton::NodeValues::enclosed(#values, lane, spread);
-                            bound.tangent_at(bound_step, &values, #(#velocity_names),*)
+                            #model_bound::#tangent_at(&bound, bound_step, &values, #(#velocity_names),*)
                         },
                     };
                     let care = certificate.care();

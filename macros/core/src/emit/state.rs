@@ -61,11 +61,6 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
     }
     let g = Generics::of(d);
     let (declared, bound, used) = (g.declared(), g.bound(), g.used());
-    let types: Vec<TokenStream> = (0..d.spec.configurations.len())
-        .map(|i| element::ty(d, i))
-        .collect();
-    let elements = element::Bundle::of(d).ty(&types);
-    let dimension = element::total(d);
     let (work_field, work_doc) = match d.solve.method {
         Method::FreeMoserVeselov if !factor_references(d).is_empty() => {
             let kept = factor_references(d).into_iter().map(|id| {
@@ -98,13 +93,14 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
             )
         }
         Method::LeftFactor | Method::Davenport => super::left_factor::work(d),
-        Method::Newton => (
-            {
-                let (values, used) = (item(d, "Node"), g.used());
-                quote!(search: newton::Search<T, #elements, #values #used, #dimension>,)
-            },
-            " The step and the last velocities, from which the next solve starts.",
-        ),
+        Method::Newton => {
+            let search = super::newton::search_of_all(d, names);
+            (
+                quote!(search: #search,),
+                " The step and the last velocities, from which the next solve starts.",
+            )
+        }
+        Method::Blocks => super::blocks::work(d, names),
     };
     let rounding = matches!(d.solve.method, Method::FreeMoserVeselov).then(|| {
         quote! {

@@ -36,6 +36,11 @@ pub fn start_and_step(d: &Derivation, names: &Names) -> TokenStream {
         (Method::LeftFactor | Method::Davenport, Some(Riccati::Exact(mv))) => {
             super::left_factor::step(d, names, mv)
         }
+        (Method::Blocks, _) => {
+            let (values, step) = super::blocks::step(d, names);
+            beside = values;
+            step
+        }
         _ => {
             let (values, step) = super::newton::step(d, names);
             beside = values;
@@ -167,6 +172,7 @@ fn start(d: &Derivation, names: &Names) -> TokenStream {
         }
         Method::LeftFactor | Method::Davenport => super::left_factor::work_init(d),
         Method::Newton => quote!(search: newton::Search::from_rest(),),
+        Method::Blocks => super::blocks::work_init(d),
     };
     let state_of = quote! {
         #(#checks)*
@@ -271,7 +277,7 @@ pub(super) fn finish(
         out.extend(match c.side {
             Side::Body => quote!(let #moved = state.#element * #omega;),
             // What was solved for is the velocity seen from the body.
-            Side::Spatial if d.solve.turned.is_some() || d.solve.seen_from_body.is_some() => {
+            Side::Spatial if d.solve.finds_body_velocity(i) => {
                 quote!(let #moved = state.#element * #omega;)
             }
             Side::Spatial => quote!(let #moved = #omega * state.#element;),

@@ -187,6 +187,20 @@ pub fn traits(d: &Derivation, names: &Names) -> TokenStream {
             }
         }
     });
+    let attempt = match d.solve.method {
+        Method::Blocks => {
+            let trial = super::blocks::trial(d, "to_try");
+            Some(quote! {
+                #[cold]
+                fn attempt(&self, state: &Self::State, h: T) -> Option<Self::State> {
+                    let mut moving = *state;
+                    self.step(&mut moving, &mut #trial).ok()?;
+                    Some(moving)
+                }
+            })
+        }
+        _ => attempt,
+    };
     let reversible = d
         .reversible
         .then(|| quote!(impl #bound Reversible for #name #used {}));

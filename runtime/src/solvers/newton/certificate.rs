@@ -86,6 +86,15 @@ impl<V, const D: usize> Certificate<V, D> {
         }
     }
 
+    /// For nothing, with the same purpose.
+    #[must_use]
+    pub(super) fn alike<W, const E: usize>(&self) -> Certificate<W, E> {
+        Certificate {
+            purpose: self.purpose,
+            ..Certificate::none()
+        }
+    }
+
     /// For nothing, where one step is to be offered.
     #[must_use]
     pub(super) fn to_offer() -> Self {

@@ -1,0 +1,151 @@
+//! What a step solves together: the velocities that stand in one another's equations, directly or
+//! through others. Each block of them is recognised and solved by itself; forces between blocks are
+//! made of what is known at the node.
+//! Takes the balances and their Riccati forms; gives the blocks and the method of each.
+
+use super::balance::Balance;
+use super::recognise::{Method, Riccati, Solve, is_constant, is_of_space};
+use super::seen_from_body::outgoing;
+use super::variation::at;
+use super::{Derivation, Letters};
+use crate::check::spec::Spec;
+use crate::expr::{self, Shift};
+
+/// Configurations whose velocities are solved together.
+#[derive(Clone, Debug)]
+pub struct Block {
+    /// Which ones, in the order of the model.
+    pub members: Vec<usize>,
+    /// How: a left factor, Davenport's eigenvalue problem or Newton.
+    pub method: Method,
+    /// Why so, in one clause.
+    pub reason: String,
+}
+
+impl Block {
+    /// Whether it is solved by Newton's method.
+    pub fn is_newton(&self) -> bool {
+        matches!(self.method, Method::Newton)
+    }
+}
+
+/// The blocks of a model, in the order of their first members.
+pub fn blocks(
+    spec: &Spec,
+    letters: &Letters,
+    balances: &[Balance],
+    riccati: &[Riccati],
+) -> Vec<Block> {
+    let momenta = outgoing(spec, letters, balances);
+    let velocities = spec.configurations.iter();
+    let velocities: Vec<_> = velocities.map(|c| at(c.velocity, Shift::HERE)).collect();
+    // The first member of the block of each configuration; an action couples both ways.
+    let mut first: Vec<usize> = (0..velocities.len()).collect();
+    for (i, momentum) in momenta.iter().enumerate() {
+        for (j, w) in velocities.iter().enumerate() {
+            if !expr::contains(momentum, *w) || first[i] == first[j] {
+                continue;
+            }
+            let (low, high) = (first[i].min(first[j]), first[i].max(first[j]));
+            for f in first.iter_mut().filter(|f| **f == high) {
+                *f = low;
+            }
+        }
+    }
+    let starts = (0..first.len()).filter(|i| first[*i] == *i);
+    let members = starts.map(|i| (0..first.len()).filter(|j| first[*j] == i).collect());
+    members
+        .map(|members| block(spec, letters, riccati, members))
+        .collect()
+}
+
+fn block(spec: &Spec, letters: &Letters, riccati: &[Riccati], members: Vec<usize>) -> Block {
+    let (method, reason) = match members.as_slice() {
+        [i] => match &riccati[*i] {
+            Riccati::Exact(mv) if is_constant(letters, mv) => (
+                Method::LeftFactor,
+                "C is constant: Moser-Veselov".to_owned(),
+            ),
+            Riccati::Exact(_) if is_of_space(&spec.configurations[*i]) => (
+                Method::Davenport,
+                "C is known at each node: the largest real eigenvalue of a 4 x 4 matrix".to_owned(),
+            ),
+            Riccati::None(why) => (Method::Newton, format!("{why}: Newton")),
+            _ => (Method::Newton, "Newton on the derived residual".to_owned()),
+        },
+        _ => (
+            Method::Newton,
+            "solved together: Newton on the derived residuals".to_owned(),
+        ),
+    };
+    Block {
+        members,
+        method,
+        reason,
+    }
+}
+
+/// The methods of all blocks in one sentence, equal ones together.
+pub fn reasons(letters: &Letters, spec: &Spec, blocks: &[Block]) -> String {
+    let name = |i: &usize| {
+        let velocity = spec.configurations[*i].velocity;
+        letters.symbols.get(velocity).name.clone()
+    };
+    let mut groups: Vec<(&str, Vec<String>)> = Vec::new();
+    for b in blocks {
+        let names: Vec<String> = b.members.iter().map(name).collect();
+        let names = names.join(" and ");
+        match groups.iter_mut().find(|(reason, _)| *reason == b.reason) {
+            Some((_, list)) => list.push(names),
+            None => groups.push((&b.reason, vec![names])),
+        }
+    }
+    let each = |(reason, list): &(&str, Vec<String>)| match list.len() {
+        1 => format!("{}, {reason}", list[0]),
+        _ => format!("{} each by itself, {reason}", list.join(", ")),
+    };
+    let clauses: Vec<String> = groups.iter().map(each).collect();
+    format!(
+        "every block of velocities by itself: {}",
+        clauses.join("; ")
+    )
+}
+
+impl Derivation {
+    /// A block seen as a model of its own, with what belongs to the others known: its
+    /// configurations, their equations and how those are solved. Everything else is that of the
+    /// whole.
+    pub fn of_block(&self, b: &Block) -> Derivation {
+        fn part<T: Clone>(list: &[T], members: &[usize]) -> Vec<T> {
+            let kept = members.iter().filter_map(|i| list.get(*i));
+            kept.cloned().collect()
+        }
+        let mut own = self.clone();
+        let members = b.members.as_slice();
+        own.spec.configurations = part(&self.spec.configurations, members);
+        let letters = &mut own.letters;
+        for list in [
+            &mut letters.variation,
+            &mut letters.direction,
+            &mut letters.rate,
+            &mut letters.acceleration,
+            &mut letters.momentum,
+            &mut letters.edge_momentum,
+            &mut letters.node_momentum,
+        ] {
+            *list = part(list, members);
+        }
+        own.balances = part(&self.balances, members);
+        own.carries = part(&self.carries, members);
+        let seen = self.solve.seen_from_body.as_ref();
+        own.solve = Solve {
+            riccati: part(&self.solve.riccati, members),
+            method: b.method.clone(),
+            reason: b.reason.clone(),
+            turned: None,
+            seen_from_body: seen.map(|list| part(list, members)),
+            blocks: Vec::new(),
+        };
+        own
+    }
+}

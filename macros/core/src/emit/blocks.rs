@@ -1,0 +1,283 @@
+//! The step of a model whose velocities are found in several blocks: what is known at the node once
+//! for all of them, then each block by its own method, then the way to the next node together.
+//! Takes the derivation; gives the factors that the model keeps, the workspace and `step`.
+
+use super::element::{Family, family};
+use super::expression::{Bindings, program};
+use super::items::{letters_of, parameter_locals, with_transports};
+use super::left_factor::default_solver;
+use super::names::{Names, item, own, per_configuration, tagged, variable};
+use super::newton::{Together, onwards};
+use super::sizes::Generics;
+use super::step::{at, finish, here, step_signature};
+use crate::check::spec::Side;
+use crate::derive::Derivation;
+use crate::derive::blocks::Block;
+use crate::derive::recognise::{Method, MoserVeselov, Riccati};
+use crate::expr::{self, Expr, Shift};
+use crate::schedule;
+use proc_macro2::{Ident, TokenStream};
+use quote::{format_ident, quote};
+
+/// The blocks with their numbers, from 1.
+fn numbered(d: &Derivation) -> impl Iterator<Item = (usize, &Block)> {
+    d.solve.blocks.iter().enumerate().map(|(i, b)| (i + 1, b))
+}
+
+/// Numbers and seats of the blocks that Newton's method solves.
+fn by_newton(d: &Derivation) -> impl Iterator<Item = (usize, &Block)> {
+    numbered(d).filter(|(_, b)| b.is_newton())
+}
+
+/// The configuration and the equation of a block that is solved by itself.
+fn exact<'a>(d: &'a Derivation, b: &'a Block) -> Option<(usize, &'a MoserVeselov)> {
+    match (&b.method, b.members.as_slice()) {
+        (Method::LeftFactor | Method::Davenport, [i]) => match &d.solve.riccati[*i] {
+            Riccati::Exact(mv) => Some((*i, mv)),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// The constant factors that the model keeps: their fields, and which configurations they belong to.
+pub(super) fn factors(d: &Derivation) -> Vec<(Ident, usize, &Expr)> {
+    let constant = numbered(d).filter(|(_, b)| matches!(b.method, Method::LeftFactor));
+    constant
+        .filter_map(|(n, b)| {
+            exact(d, b).map(|(i, mv)| (format_ident!("factor_{n}"), i, &mv.factor))
+        })
+        .collect()
+}
+
+fn search(n: usize) -> Ident {
+    format_ident!("search_{n}")
+}
+
+/// Calls `f` with each block of Newton's method as a model of its own.
+fn each_newton<R>(
+    d: &Derivation,
+    names: &Names,
+    mut f: impl FnMut(usize, &Together) -> R,
+) -> Vec<R> {
+    by_newton(d)
+        .map(|(n, b)| {
+            let block = d.of_block(b);
+            f(
+                n,
+                &Together {
+                    whole: d,
+                    block: &block,
+                    members: &b.members,
+                    number: Some(n),
+                    names,
+                },
+            )
+        })
+        .collect()
+}
+
+/// The fields of the workspace and its documentation.
+pub(super) fn work(d: &Derivation, names: &Names) -> (TokenStream, &'static str) {
+    let method = default_solver(d).map(|_| quote!(method: Method,));
+    let searches = each_newton(d, names, |n, t| {
+        let (field, ty) = (search(n), t.search_type());
+        quote!(#field: #ty,)
+    });
+    let doc = match (method.is_some(), searches.is_empty()) {
+        (true, true) => " The step and the solver's name.",
+        (false, _) => " The step and the last velocities, from which the next solves start.",
+        (true, false) => {
+            " The step, the solver's name, and the last velocities, from which the next solves start."
+        }
+    };
+    (quote!(#method #(#searches)*), doc)
+}
+
+/// The values of those fields, every search made by `made`, the solver's name in a local.
+fn filled(d: &Derivation, made: impl Fn(usize) -> TokenStream) -> TokenStream {
+    let method = default_solver(d).map(|_| quote!(method,));
+    let searches = by_newton(d).map(|(n, _)| {
+        let (field, value) = (search(n), made(n));
+        quote!(#field: #value,)
+    });
+    quote!(#method #(#searches)*)
+}
+
+/// The values of those fields at the start.
+pub(super) fn work_init(d: &Derivation) -> TokenStream {
+    filled(d, |_| quote!(newton::Search::from_rest()))
+}
+
+/// The workspace of a trial step `h` with the model's solver: each search by the constructor named.
+pub(super) fn trial(d: &Derivation, constructor: &str) -> TokenStream {
+    let work = item(d, "Workspace");
+    let constructor = format_ident!("{constructor}");
+    let method = default_solver(d).map(|_| quote!(let method = self.method;));
+    let fields = filled(d, |_| quote!(newton::Search::#constructor()));
+    quote!({ #method #work { h, #fields } })
+}
+
+/// The types of what tangents ask of a node, and `step`.
+pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
+    let s = &d.letters.symbols;
+    let state = item(d, "State");
+    let used = Generics::of(d).used();
+    let node = names.local("node");
+    let step = variable(s, d.spec.step);
+    let work = item(d, "Workspace");
+    // What is known at the node, for all blocks together.
+    let mut known: Vec<Expr> = Vec::new();
+    let mut needed = onwards(d);
+    for b in &d.solve.blocks {
+        let Some((i, mv)) = exact(d, b) else { continue };
+        known.push(mv.rest.clone());
+        if matches!(b.method, Method::Davenport) {
+            known.push(mv.factor.clone());
+        }
+        let c = &d.spec.configurations[i];
+        if c.side == Side::Body && family(c) == Family::Rotation {
+            needed.push(at(c.element, Shift::HERE));
+        }
+    }
+    let known: Vec<Expr> = known.iter().map(|e| expr::factored(s, e)).collect();
+    needed.extend(letters_of(&known));
+    for list in each_newton(d, names, |_, t| t.needed()) {
+        needed.extend(list);
+    }
+    needed.sort();
+    needed.dedup();
+    let mut letters = with_transports(d, &needed, 0);
+    letters.extend(with_transports(d, &needed, 1));
+    let parameters = parameter_locals(d, quote!(self.parameters), &letters);
+    let mut bindings = Bindings::new();
+    let locals = here(d, names, &needed, &mut bindings);
+    let p = schedule::program(s, &known, "b");
+    let (lets, values) = program(&p, &bindings);
+    let mut values = values.into_iter();
+    let mut after = bindings.clone();
+    let (mut solves, mut beside) = (TokenStream::new(), TokenStream::new());
+    let (mut node_types, mut remembered) = (TokenStream::new(), TokenStream::new());
+    let mut found: Vec<TokenStream> = vec![TokenStream::new(); d.spec.configurations.len()];
+    let mut refuses = false;
+    for (n, b) in numbered(d) {
+        if let Some((i, mv)) = exact(d, b) {
+            refuses = true;
+            let rest = values.next().filter(|_| !mv.rest.is_zero());
+            let factor = match b.method {
+                Method::Davenport => values.next(),
+                _ => None,
+            };
+            let omega = variable(s, d.spec.configurations[i].velocity);
+            let solve = alone(d, n, i, rest, factor, &step);
+            solves.extend(quote! {
+                let #omega = match #solve {
+                    Ok(solved) => solved,
+                    Err(e) => return Err(self.refused(*state, work, e)),
+                };
+            });
+            found[i] = quote!(#omega);
+            continue;
+        }
+        let block = d.of_block(b);
+        let together = Together {
+            whole: d,
+            block: &block,
+            members: &b.members,
+            number: Some(n),
+            names,
+        };
+        let field = search(n);
+        // The others are searched for in the same way.
+        let fields = filled(d, |m| match m == n {
+            true => quote!(search),
+            false => quote!(search.alike()),
+        });
+        let tried = quote!(#work { h, #fields });
+        let code = together.code(&bindings, &field, &tried);
+        let [solution, solved] = ["found", "solved"].map(|base| together.name(base));
+        let (elements, solve) = (together.elements(), code.solve);
+        solves.extend(quote! {
+            let #solution: newton::Solved<#elements> = { #solve };
+            let #solved = #solution.element;
+        });
+        solves.extend(together.matrices(&solved, &mut after));
+        remembered.extend(quote!(work.#field.remember(state.#node - 1, &#solution);));
+        for (k, i) in b.members.iter().enumerate() {
+            found[*i] = together.part(quote!(#solved), k);
+        }
+        beside.extend(code.functions);
+        node_types.extend(code.node_type);
+    }
+    let moving = d.carries.iter().flat_map(|c| c.parts());
+    let updates = super::items::advanced(d).map(|a| &a.update);
+    let moving: Vec<&Expr> = moving.chain(updates).collect();
+    for b in &d.solve.blocks {
+        let Some((i, _)) = exact(d, b) else { continue };
+        let velocity = at(d.spec.configurations[i].velocity, Shift::HERE);
+        if moving.iter().any(|e| expr::contains(e, velocity)) {
+            let omega = &found[i];
+            let name = tagged(d, names, velocity.symbol, "matrix");
+            solves.extend(quote!(let #name = #omega.matrix();));
+            after.bind(velocity, name);
+        }
+    }
+    let rest = finish(d, names, &mut after, &|i| found[i].clone(), remembered);
+    let step_function = step_signature(
+        d,
+        quote! {
+            let #step = work.h;
+            #parameters
+            #locals
+            #lets
+            #solves
+            #rest
+        },
+    );
+    let refused = refuses.then(|| {
+        let trial = filled(d, |_| quote!(newton::Search::to_offer()));
+        quote! {
+            /// Says how far the step is beyond the bound, and which step could be made.
+            #[cold]
+            #[inline(never)]
+            fn refused(&self, state: #state #used, work: &#work #used, e: Unsolved) -> StepError {
+                let method = work.method;
+                let e = e.with_searched_step(work.h.value(), |h| {
+                    let h = T::from_f64(h);
+                    let made = self.step(&mut { state }, &mut #work { h, #trial });
+                    made.ok().map(|()| 0.0)
+                });
+                StepCause::from(e).at_node(state.#node)
+            }
+        }
+    });
+    (node_types, quote!(#step_function #refused #beside))
+}
+
+/// The solution of a Moser-Veselov equation that is a block by itself.
+fn alone(
+    d: &Derivation,
+    n: usize,
+    i: usize,
+    rest: Option<TokenStream>,
+    factor: Option<TokenStream>,
+    step: &Ident,
+) -> TokenStream {
+    let c = &d.spec.configurations[i];
+    let momentum = per_configuration(d, "momentum", i);
+    let (element, own) = (variable(&d.letters.symbols, c.element), own(d, c.element));
+    let rotations = family(c) == Family::Rotation;
+    let at_node = match (c.side, rotations) {
+        (Side::Body, true) => quote!(#element.tr_mul(&state.#momentum.0)),
+        (Side::Body, false) => quote!(state.#momentum.to_body(&state.#own).0),
+        (Side::Spatial, _) => quote!(state.#momentum.0),
+    };
+    let minus = rest.map(|rest| quote!(- (#rest)));
+    let scaled = quote!(((#at_node #minus) * #step));
+    let prepared = format_ident!("factor_{n}");
+    match (factor, rotations) {
+        (Some(factor), _) => quote!(rotation_at(&(#factor), &#scaled, work.method)),
+        (None, true) => quote!(self.#prepared.rotation(&#scaled, work.method)),
+        (None, false) => quote!(self.#prepared.solve(&skew_part(&#scaled), work.method)),
+    }
+}
