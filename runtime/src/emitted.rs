@@ -29,6 +29,7 @@ pub use crate::solvers::left_factor::{
 };
 pub use crate::solvers::moser_veselov::{Edge, Free, MoserVeselovError, Order, Poinsot, forced};
 pub use crate::solvers::newton;
+pub use crate::solvers::two_sided::two_sided;
 pub use crate::solvers::unit_quaternions::{QuaternionBody, QuaternionError};
 pub use crate::validate;
 pub use crate::{ParameterError, StartError, StepCause, StepError};

@@ -7,6 +7,7 @@ use crate::said::place;
 use crate::solvers::left_factor::{LeftFactorError, Unsolved};
 use crate::solvers::moser_veselov::{MoserVeselovError, PoinsotError};
 use crate::solvers::newton::NewtonError;
+use crate::solvers::two_sided::SingularFactor;
 use crate::solvers::unit_quaternions::QuaternionError;
 use core::fmt;
 
@@ -339,6 +340,8 @@ pub enum StepCause {
     LeftFactor(Unsolved),
     /// The left factor made of the state is none.
     Factor(LeftFactorError),
+    /// The linear equation of the step does not determine the velocity.
+    Singular(SingularFactor),
     /// The Newton iteration failed.
     Newton(NewtonError),
     /// The step leaves what the model is defined on.
@@ -400,6 +403,7 @@ impl fmt::Display for StepCause {
             Self::Quaternions(error) => write!(f, "{error}"),
             Self::LeftFactor(error) => write!(f, "{error}"),
             Self::Factor(error) => write!(f, "the left factor of this state: {error}"),
+            Self::Singular(error) => write!(f, "{error}"),
             Self::Newton(error) => write!(f, "{error}"),
             Self::Contact(contact) => write!(f, "{contact}"),
             Self::NotFinite { what } => write!(
@@ -417,6 +421,7 @@ impl std::error::Error for StepCause {
             Self::Quaternions(error) => Some(error),
             Self::LeftFactor(error) => Some(error),
             Self::Factor(error) => Some(error),
+            Self::Singular(error) => Some(error),
             Self::Newton(error) => Some(error),
             Self::Contact(contact) => Some(contact),
             Self::NotFinite { .. } => None,

@@ -88,6 +88,11 @@ pub fn summary(d: &Derivation) -> String {
             show(&q.edge.factor),
             show(&q.real)
         ),
+        Riccati::Linear(form) => format!(
+            "none; linear, L = {}, R = {}",
+            show(&form.left),
+            show(&form.right)
+        ),
         Riccati::None(why) => format!("none: {why}"),
     });
     lines.push(format!(

@@ -66,6 +66,12 @@ impl<const N: usize, T: Real> Linear<N, T> {
         }
     }
 
+    /// The map that a step has found; what makes of it a singular one is refused after the step.
+    #[inline]
+    pub(crate) fn stepped(matrix: SMatrix<T, N, N>) -> Self {
+        Self { matrix }
+    }
+
     /// The matrix, reference -> space.
     #[inline]
     pub fn matrix(&self) -> SMatrix<T, N, N> {

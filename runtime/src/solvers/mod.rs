@@ -7,6 +7,7 @@ pub mod left_factor;
 mod method;
 pub mod moser_veselov;
 pub mod newton;
+pub mod two_sided;
 pub mod unit_quaternions;
 
 pub use method::{Method, NoSuchMethod};

@@ -11,6 +11,7 @@ mod body_n;
 mod carried_momentum;
 mod carried_references;
 mod dimensions_against_hand;
+mod ellipsoids;
 mod high_order;
 mod hygiene;
 mod joint_symmetries;

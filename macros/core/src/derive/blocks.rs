@@ -16,13 +16,23 @@ use crate::expr::{self, Shift};
 pub struct Block {
     /// Which ones, in the order of the model.
     pub members: Vec<usize>,
-    /// How: a left factor, Davenport's eigenvalue problem or Newton.
+    /// How: a left factor, Davenport's eigenvalue problem, a linear balance or Newton.
     pub method: Method,
     /// Why so, in one clause.
     pub reason: String,
 }
 
 impl Block {
+    /// Whether its balance is linear in the velocity.
+    pub fn is_linear(&self) -> bool {
+        matches!(self.method, Method::Linear)
+    }
+
+    /// Whether it is a Moser-Veselov equation with a left factor known at the node.
+    pub fn has_factor(&self) -> bool {
+        matches!(self.method, Method::LeftFactor | Method::Davenport)
+    }
+
     /// Whether it is solved by Newton's method.
     pub fn is_newton(&self) -> bool {
         matches!(self.method, Method::Newton)
@@ -70,6 +80,10 @@ fn block(spec: &Spec, letters: &Letters, riccati: &[Riccati], members: Vec<usize
                 Method::Davenport,
                 "C is known at each node: the largest real eigenvalue of a 4 x 4 matrix".to_owned(),
             ),
+            Riccati::Linear(_) => (
+                Method::Linear,
+                "the balance is linear: two small linear systems".to_owned(),
+            ),
             Riccati::None(why) => (Method::Newton, format!("{why}: Newton")),
             _ => (Method::Newton, "Newton on the derived residual".to_owned()),
         },
@@ -105,6 +119,9 @@ pub fn reasons(letters: &Letters, spec: &Spec, blocks: &[Block]) -> String {
         _ => format!("{} each by itself, {reason}", list.join(", ")),
     };
     let clauses: Vec<String> = groups.iter().map(each).collect();
+    if let [only] = blocks {
+        return only.reason.clone();
+    }
     format!(
         "every block of velocities by itself: {}",
         clauses.join("; ")

@@ -12,6 +12,7 @@ pub mod carry;
 pub mod certificate;
 pub mod clebsch;
 pub mod continuous;
+pub mod explicit;
 pub mod invariants;
 pub mod kinetic;
 pub mod lie;

@@ -4,6 +4,7 @@
 
 use super::balance::{Balance, shorter};
 use super::blocks::{self, Block};
+use super::explicit::{self, Explicit};
 use super::kinetic::Kinetic;
 use super::quaternionic::{self, Quaternionic};
 use super::seen_from_body::seen_from_body;
@@ -25,6 +26,8 @@ pub enum Riccati {
     Coupled(MoserVeselov),
     /// None, but the equation of SU(2) that takes its place.
     Quaternionic(Quaternionic),
+    /// None, but a balance that is linear in the velocity; GL(n).
+    Linear(Explicit),
     /// None, with the reason.
     None(String),
 }
@@ -66,6 +69,8 @@ pub enum Method {
     LeftFactor,
     /// By Davenport's eigenvalue problem, which takes any `C` known at the node; SO(3).
     Davenport,
+    /// Explicitly, by two small linear systems: the balance is linear in the velocity; GL(n).
+    Linear,
     /// Newton on the group, residual and tangent derived.
     Newton,
     /// Each of several blocks by a method of its own; see [`Solve::blocks`].
@@ -104,7 +109,7 @@ impl Solve {
                 Method::LeftFactor => b.members.iter().all(|i| symmetric(&self.riccati[*i])),
                 _ => false,
             }),
-            Method::Davenport | Method::UnitQuaternions | Method::Newton => false,
+            Method::Davenport | Method::UnitQuaternions | Method::Linear | Method::Newton => false,
         }
     }
 
@@ -154,7 +159,7 @@ pub fn recognise(
         .map(|(i, b)| riccati(spec, letters, b, i, transports, algebra))
         .collect();
     let blocks = blocks::blocks(spec, letters, balances, &riccati);
-    if blocks.len() > 1 {
+    if blocks.len() > 1 || blocks.iter().any(Block::is_linear) {
         let newton = blocks.iter().any(Block::is_newton);
         return Solve {
             riccati,
@@ -478,6 +483,12 @@ fn riccati(
             Err(why) => Riccati::None(why),
         };
     }
+    if matches!(c.group, Group::GeneralLinear(_)) {
+        return match explicit::form(spec, letters, b, i, algebra) {
+            Ok(form) => Riccati::Linear(form),
+            Err(why) => Riccati::None(why),
+        };
+    }
     if !c.group.is_orthogonal() {
         return Riccati::None("the group is not SO(n)".to_owned());
     }
@@ -611,7 +622,7 @@ fn split(algebra: &Algebra, poly: &Poly, velocity: SymbolId, s: &Symbols) -> Opt
     (agrees && !x.is_zero()).then_some((x, rest))
 }
 
-fn word_mentions(f: &Factor, wanted: &impl Fn(&Factor) -> bool) -> bool {
+pub(super) fn word_mentions(f: &Factor, wanted: &impl Fn(&Factor) -> bool) -> bool {
     match f {
         Factor::Hat(word)
         | Factor::Vee { word, .. }
@@ -624,7 +635,7 @@ fn word_mentions(f: &Factor, wanted: &impl Fn(&Factor) -> bool) -> bool {
     }
 }
 
-fn mentions(algebra: &Algebra, monomial: &Monomial, velocity: SymbolId) -> bool {
+pub(super) fn mentions(algebra: &Algebra, monomial: &Monomial, velocity: SymbolId) -> bool {
     let term = crate::algebra::Term {
         monomial: monomial.clone(),
         word: Vec::new(),

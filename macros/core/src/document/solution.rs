@@ -3,6 +3,7 @@
 
 use super::sheet::{Sheet, listed};
 use crate::check::spec::Configuration;
+use crate::derive::explicit::Explicit;
 use crate::derive::recognise::{Method, MoserVeselov, Riccati};
 use crate::emit;
 use crate::expr::symbol::Role;
@@ -35,6 +36,10 @@ pub fn moser_veselov(sheet: &Sheet, doc: &mut Document) {
                 super::quaternionic::equation(sheet, section, c, q, i);
                 continue;
             }
+            Riccati::Linear(form) => {
+                linear(sheet, section, c, form, i);
+                continue;
+            }
             Riccati::Exact(mv) => (mv, false),
             Riccati::Coupled(mv) => (mv, true),
         };
@@ -47,6 +52,28 @@ pub fn moser_veselov(sheet: &Sheet, doc: &mut Document) {
         }
     }
     method(sheet, section);
+}
+
+/// A balance that is linear in the velocity, solved for it.
+fn linear(sheet: &Sheet, section: &mut Section, c: &Configuration, form: &Explicit, i: usize) {
+    let d = sheet.d;
+    let s = sheet.symbols();
+    let mu = expr::here(s, d.letters.node_momentum[i]);
+    section.paragraph([
+        "There is no Riccati form for ".into(),
+        sheet.here(c.velocity).into(),
+        ": the group is not SO(n). Equation ".into(),
+        Inline::reference(&format!("outgoing {i}")),
+        " is linear in it, with factors that are known at the node, and is solved by".into(),
+    ]);
+    let known = expr::sub(mu, form.rest.clone());
+    let change = expr::product([
+        expr::inverse(s, form.left.clone()),
+        known,
+        expr::inverse(s, form.right.clone()),
+    ]);
+    let solved = expr::add(expr::identity(c.group.size()), change);
+    section.equation(Formula::equal(sheet.here(c.velocity), sheet.math(&solved)));
 }
 
 /// The letter that stands for the factor: the factor itself where that is one letter.
@@ -317,7 +344,7 @@ fn method(sheet: &Sheet, section: &mut Section) {
     };
     let letter = d.solve.riccati.first().and_then(|r| match r {
         Riccati::Exact(mv) | Riccati::Coupled(mv) => Some(factor(sheet, mv, 0).0),
-        Riccati::Quaternionic(_) | Riccati::None(_) => None,
+        Riccati::Quaternionic(_) | Riccati::Linear(_) | Riccati::None(_) => None,
     });
     let degenerate = degenerate(sheet);
     if d.solve.needs_second_moments()
@@ -339,13 +366,19 @@ fn method(sheet: &Sheet, section: &mut Section) {
         Riccati::Exact(mv) | Riccati::Coupled(mv) => {
             expr::contains_role(sheet.symbols(), &mv.factor, Role::Advected)
         }
-        Riccati::Quaternionic(_) | Riccati::None(_) => false,
+        Riccati::Quaternionic(_) | Riccati::Linear(_) | Riccati::None(_) => false,
     });
     let constant = if carried {
         " is constant in the body, where it is solved"
     } else {
         " is constant"
     };
+    if let [only] = d.solve.blocks.as_slice()
+        && only.is_linear()
+    {
+        section.text("The stepper is explicit: it solves two small linear systems a step.");
+        return;
+    }
     let words = match (d.solve.method.clone(), letter) {
         (Method::FreeMoserVeselov, Some(letter)) => vec![
             "The stepper solves it explicitly, by the root of one quartic for the whole trajectory: ".into(),
@@ -365,7 +398,10 @@ fn method(sheet: &Sheet, section: &mut Section) {
                 Method::Davenport => "The stepper solves it as an eigenvalue problem at each node: ",
                 Method::UnitQuaternions => "The stepper solves it so: ",
                 Method::Blocks => "The stepper solves ",
-                Method::FreeMoserVeselov | Method::ForcedMoserVeselov | Method::Newton => {
+                Method::FreeMoserVeselov
+                | Method::ForcedMoserVeselov
+                | Method::Linear
+                | Method::Newton => {
                     "The stepper iterates with Newton's method on the group: "
                 }
             };

@@ -4,7 +4,7 @@
 
 use super::element::{Family, family};
 use super::expression::{Bindings, program};
-use super::items::{letters_of, parameter_locals, with_transports};
+use super::items::{letters_of, parameter_locals, text, with_transports};
 use super::left_factor::default_solver;
 use super::names::{Names, item, own, per_configuration, tagged, variable};
 use super::newton::{Together, onwards};
@@ -13,6 +13,7 @@ use super::step::{at, finish, here, step_signature};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::blocks::Block;
+use crate::derive::explicit::Explicit;
 use crate::derive::recognise::{Method, MoserVeselov, Riccati};
 use crate::expr::{self, Expr, Shift};
 use crate::schedule;
@@ -36,6 +37,17 @@ fn exact<'a>(d: &'a Derivation, b: &'a Block) -> Option<(usize, &'a MoserVeselov
             Riccati::Exact(mv) => Some((*i, mv)),
             _ => None,
         },
+        _ => None,
+    }
+}
+
+/// The configuration and the form of a block whose balance is linear.
+fn linear<'a>(d: &'a Derivation, b: &'a Block) -> Option<(usize, &'a Explicit)> {
+    let [i] = b.members.as_slice() else {
+        return None;
+    };
+    match &d.solve.riccati[*i] {
+        Riccati::Linear(form) => Some((*i, form)),
         _ => None,
     }
 }
@@ -130,6 +142,9 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
     let mut known: Vec<Expr> = Vec::new();
     let mut needed = onwards(d);
     for b in &d.solve.blocks {
+        if let Some((_, form)) = linear(d, b) {
+            known.extend([&form.rest, &form.left, &form.right].map(Expr::clone));
+        }
         let Some((i, mv)) = exact(d, b) else { continue };
         known.push(mv.rest.clone());
         if matches!(b.method, Method::Davenport) {
@@ -161,6 +176,21 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
     let mut found: Vec<TokenStream> = vec![TokenStream::new(); d.spec.configurations.len()];
     let mut refuses = false;
     for (n, b) in numbered(d) {
+        if let Some((i, form)) = linear(d, b) {
+            let rest = values.next().filter(|_| !form.rest.is_zero());
+            let (left, right) = (values.next(), values.next());
+            let omega = variable(s, d.spec.configurations[i].velocity);
+            let (at_node, minus) = (at_node(d, i), rest.map(|rest| quote!(- (#rest))));
+            let names = [text(d, &form.left), text(d, &form.right)];
+            solves.extend(quote! {
+                let #omega = match two_sided(&(#left), &(#at_node #minus), &(#right), &[#(#names),*]) {
+                    Ok(solved) => solved,
+                    Err(e) => return Err(StepCause::Singular(e).at_node(state.#node)),
+                };
+            });
+            found[i] = quote!(#omega);
+            continue;
+        }
         if let Some((i, mv)) = exact(d, b) {
             refuses = true;
             let rest = values.next().filter(|_| !mv.rest.is_zero());
@@ -213,7 +243,10 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
     let updates = super::items::advanced(d).map(|a| &a.update);
     let moving: Vec<&Expr> = moving.chain(updates).collect();
     for b in &d.solve.blocks {
-        let Some((i, _)) = exact(d, b) else { continue };
+        let alone = exact(d, b).map(|(i, _)| i);
+        let Some(i) = alone.or(linear(d, b).map(|(i, _)| i)) else {
+            continue;
+        };
         let velocity = at(d.spec.configurations[i].velocity, Shift::HERE);
         if moving.iter().any(|e| expr::contains(e, velocity)) {
             let omega = &found[i];
@@ -254,6 +287,18 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
     (node_types, quote!(#step_function #refused #beside))
 }
 
+/// The momentum of a configuration at the node, in the frame in which its velocity is stated.
+fn at_node(d: &Derivation, i: usize) -> TokenStream {
+    let c = &d.spec.configurations[i];
+    let momentum = per_configuration(d, "momentum", i);
+    let (element, own) = (variable(&d.letters.symbols, c.element), own(d, c.element));
+    match (c.side, family(c) == Family::Rotation) {
+        (Side::Body, true) => quote!(#element.tr_mul(&state.#momentum.0)),
+        (Side::Body, false) => quote!(state.#momentum.to_body(&state.#own).0),
+        (Side::Spatial, _) => quote!(state.#momentum.0),
+    }
+}
+
 /// The solution of a Moser-Veselov equation that is a block by itself.
 fn alone(
     d: &Derivation,
@@ -263,15 +308,8 @@ fn alone(
     factor: Option<TokenStream>,
     step: &Ident,
 ) -> TokenStream {
-    let c = &d.spec.configurations[i];
-    let momentum = per_configuration(d, "momentum", i);
-    let (element, own) = (variable(&d.letters.symbols, c.element), own(d, c.element));
-    let rotations = family(c) == Family::Rotation;
-    let at_node = match (c.side, rotations) {
-        (Side::Body, true) => quote!(#element.tr_mul(&state.#momentum.0)),
-        (Side::Body, false) => quote!(state.#momentum.to_body(&state.#own).0),
-        (Side::Spatial, _) => quote!(state.#momentum.0),
-    };
+    let rotations = family(&d.spec.configurations[i]) == Family::Rotation;
+    let at_node = at_node(d, i);
     let minus = rest.map(|rest| quote!(- (#rest)));
     let scaled = quote!(((#at_node #minus) * #step));
     let prepared = format_ident!("factor_{n}");

@@ -188,6 +188,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                         | Method::UnitQuaternions
                         | Method::LeftFactor
                         | Method::Davenport
+                        | Method::Linear
                         | Method::Newton
                         | Method::Blocks => {
                             match family(&d.spec.configurations[*i]) {
@@ -245,6 +246,8 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
             | Method::Davenport => "Moser-Veselov",
             Method::UnitQuaternions => "Unit quaternions",
             Method::Newton => "Newton",
+            Method::Blocks if d.solve.blocks.len() == 1 => "Explicit",
+            Method::Linear => "Explicit",
             Method::Blocks => "Blocks",
         },
         d.how_solved()

@@ -10,6 +10,7 @@ use super::sizes::{Generics, size};
 use super::step::{at, finish, here, step_signature};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
+use crate::derive::blocks::Block;
 use crate::derive::carry::Carry;
 use crate::derive::recognise::{Method, MoserVeselov};
 use crate::expr::symbol::{Role, SymbolId};
@@ -45,8 +46,8 @@ fn chooses(d: &Derivation) -> bool {
         | Method::ForcedMoserVeselov
         | Method::LeftFactor
         | Method::Davenport => true,
-        Method::Blocks => d.solve.blocks.iter().any(|b| !b.is_newton()),
-        Method::UnitQuaternions | Method::Newton => false,
+        Method::Blocks => d.solve.blocks.iter().any(Block::has_factor),
+        Method::UnitQuaternions | Method::Linear | Method::Newton => false,
     }
 }
 
@@ -57,7 +58,7 @@ fn default(d: &Derivation) -> TokenStream {
         Method::Davenport => quote!(Method::Davenport),
         Method::Blocks if known_at_nodes(d) => quote!(Method::Davenport),
         Method::Blocks => {
-            let exact = d.solve.blocks.iter().filter(|b| !b.is_newton());
+            let exact = d.solve.blocks.iter().filter(|b| b.has_factor());
             let sizes = exact.flat_map(|b| &b.members).map(|i| {
                 let n = size(&d.letters.symbols, d.spec.configurations[*i].group.size());
                 quote!(#n == 3)
@@ -99,7 +100,7 @@ pub(super) fn of_model(d: &Derivation) -> (TokenStream, TokenStream, TokenStream
 
 /// The names of the solvers that can be chosen, the one taken otherwise first.
 pub(super) fn offered(d: &Derivation) -> TokenStream {
-    let mut exact = d.solve.blocks.iter().filter(|b| !b.is_newton());
+    let mut exact = d.solve.blocks.iter().filter(|b| b.has_factor());
     let of_space = |i: &usize| family(&d.spec.configurations[*i]) == Family::Rotation;
     match (chooses(d), family(&d.spec.configurations[0])) {
         (false, _) => quote!(&[]),

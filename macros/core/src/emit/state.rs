@@ -100,7 +100,7 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
                 " The step and the last velocities, from which the next solve starts.",
             )
         }
-        Method::Blocks => super::blocks::work(d, names),
+        Method::Linear | Method::Blocks => super::blocks::work(d, names),
     };
     let rounding = matches!(d.solve.method, Method::FreeMoserVeselov).then(|| {
         quote! {

@@ -172,7 +172,7 @@ fn start(d: &Derivation, names: &Names) -> TokenStream {
         }
         Method::LeftFactor | Method::Davenport => super::left_factor::work_init(d),
         Method::Newton => quote!(search: newton::Search::from_rest(),),
-        Method::Blocks => super::blocks::work_init(d),
+        Method::Linear | Method::Blocks => super::blocks::work_init(d),
     };
     let state_of = quote! {
         #(#checks)*
