@@ -172,15 +172,23 @@ pub fn invertible<T: Real, const N: usize>(
     after: &Linear<N, T>,
     h: T,
 ) -> Result<(), Contact> {
-    let velocity = before.body_velocity(after);
-    let (v, end) = (velocity.matrix(), after.matrix());
-    let away = v - SMatrix::identity();
+    let end = after.matrix();
     let squares = |a: &SMatrix<T, N, N>| a.iter().fold(T::zero(), |sum, x| sum + *x * *x);
     // |det A| <= s_min |A|^(n-1), hence the ratio of singular values is at least |det A| / |A|^n.
     let (det, size) = (determinant(&end), squares(&end));
     let exponent = i32::try_from(N).unwrap_or(i32::MAX);
     let least = T::from_f64(LEAST_RATIO * LEAST_RATIO) * size.powi(exponent);
     let margin = det * det - least;
+    // |Q'^-1 (Q' - Q)| below one: the velocity has no eigenvalue that is not positive. The cofactors
+    // of Q' together are at most N^(1/2) (|Q'|^2 / (N - 1))^((N - 1)/2).
+    let (moved, others) = (squares(&(end - before.matrix())), (N - 1) as f64);
+    let cofactors = (size * T::from_f64(1.0 / others)).powi(exponent - 1) * T::from_f64(N as f64);
+    let near = det * det * T::from_f64(NEAR) - moved * cofactors;
+    if near.least() > 0.0 && margin.least() > 0.0 {
+        return Ok(());
+    }
+    let v = before.body_velocity(after).matrix();
+    let away = v - SMatrix::identity();
     if squares(&away).greatest() < NEAR && margin.least() > 0.0 {
         return Ok(());
     }

@@ -4,7 +4,7 @@
 use super::{Coadjoint, Coordinate, Group, Part};
 use crate::Real;
 use crate::domain::LEAST_RATIO;
-use crate::linalg::{inverse, singular_ratio};
+use crate::linalg::{inverse, singular_ratio, small_inverse};
 use crate::scalar::of_scalars;
 use core::fmt;
 use nalgebra::SMatrix;
@@ -83,7 +83,8 @@ impl<const N: usize, T: Real> Linear<N, T> {
     #[inline]
     pub fn inverse(&self) -> Self {
         Self {
-            matrix: inverse(&self.matrix).unwrap_or_else(|| SMatrix::repeat(T::from_f64(f64::NAN))),
+            matrix: small_inverse(&self.matrix)
+                .unwrap_or_else(|| SMatrix::repeat(T::from_f64(f64::NAN))),
         }
     }
 }

@@ -2,6 +2,7 @@
 //! linear solves, eigenvalues of a symmetric 3x3 matrix, coefficients of pencils.
 //! Takes and gives nalgebra matrices of fixed size; nothing allocates.
 
+mod cofactors;
 mod eigenvalues;
 mod elimination;
 mod factors;
@@ -14,6 +15,7 @@ mod quaternion;
 mod singular_values;
 mod skew;
 
+pub use cofactors::{small_inverse, small_solve};
 pub use eigenvalues::symmetric_eigenvalues;
 pub use elimination::{
     balance, determinant, inverse, inverse_leading, solve, solve_leading, solve_many,

@@ -3,7 +3,7 @@
 
 use crate::Real;
 use crate::groups::Linear;
-use crate::linalg::solve_many;
+use crate::linalg::small_solve;
 use core::fmt;
 use nalgebra::SMatrix;
 
@@ -42,7 +42,7 @@ pub fn two_sided<T: Real, const N: usize>(
     let singular = |side: usize| SingularFactor {
         factor: names[side],
     };
-    let half = solve_many(left, known).ok_or_else(|| singular(0))?;
-    let whole = solve_many(&right.transpose(), &half.transpose()).ok_or_else(|| singular(1))?;
+    let half = small_solve(left, known).ok_or_else(|| singular(0))?;
+    let whole = small_solve(&right.transpose(), &half.transpose()).ok_or_else(|| singular(1))?;
     Ok(Linear::stepped(SMatrix::identity() + whole.transpose()))
 }

@@ -1,0 +1,98 @@
+//! The inverse of a small matrix by its cofactors where that is as good as elimination: no pivots
+//! are sought, and one division is made. Takes a square matrix; others than well-conditioned ones of
+//! sizes 2 and 3 are eliminated.
+
+use super::elimination::{inverse, solve_many};
+use crate::Real;
+use nalgebra::SMatrix;
+
+/// How far `|A|^N` may exceed `|det A|`: at least 2 and 5.2 for sizes 2 and 3, reached by rotations. A
+/// cofactor is wrong by roundings of `|A|^(N-1)`, so that no more than this many are lost.
+const WELL: f64 = 50.0;
+
+/// The inverse by cofactors; none where the matrix is not well-conditioned in every lane.
+#[inline(always)]
+fn by_cofactors<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> Option<SMatrix<T, N, N>> {
+    let at = |i: usize, j: usize| a.data.0[j][i];
+    let mut adjugate = SMatrix::<T, N, N>::zeros();
+    let det = match N {
+        2 => {
+            adjugate.data.0[0][0] = at(1, 1);
+            adjugate.data.0[1][0] = -at(0, 1);
+            adjugate.data.0[0][1] = -at(1, 0);
+            adjugate.data.0[1][1] = at(0, 0);
+            at(0, 0) * at(1, 1) - at(0, 1) * at(1, 0)
+        }
+        3 => {
+            for i in 0..3 {
+                for j in 0..3 {
+                    let (p, q) = ((i + 1) % 3, (i + 2) % 3);
+                    let (r, s) = ((j + 1) % 3, (j + 2) % 3);
+                    adjugate.data.0[i][j] = at(p, r) * at(q, s) - at(p, s) * at(q, r);
+                }
+            }
+            let first = |j: usize| at(0, j) * adjugate.data.0[0][j];
+            first(0) + first(1) + first(2)
+        }
+        _ => return None,
+    };
+    let size = a.iter().fold(T::zero(), |sum, x| sum + *x * *x);
+    let most = match N {
+        2 => size * size,
+        _ => size * size * size,
+    };
+    // Also refuses NaN.
+    let well = (det * det * T::from_f64(WELL * WELL) - most).least() > 0.0;
+    well.then(|| adjugate * (T::one() / det))
+}
+
+/// The inverse, or `None` for a matrix without a usable pivot.
+#[inline]
+pub fn small_inverse<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> Option<SMatrix<T, N, N>> {
+    match by_cofactors(a) {
+        Some(x) => Some(x),
+        None => inverse(a),
+    }
+}
+
+/// The solution of `A X = B`, or `None` as for [`small_inverse`].
+#[inline]
+pub fn small_solve<T: Real, const N: usize>(
+    a: &SMatrix<T, N, N>,
+    b: &SMatrix<T, N, N>,
+) -> Option<SMatrix<T, N, N>> {
+    match by_cofactors(a) {
+        Some(x) => Some(x * b),
+        None => solve_many(a, b),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{by_cofactors, small_inverse};
+    use nalgebra::{Matrix2, Matrix3, Matrix4, SMatrix};
+
+    fn left<const N: usize>(a: &SMatrix<f64, N, N>) -> f64 {
+        (small_inverse(a).unwrap() * a - SMatrix::identity()).norm()
+    }
+
+    #[test]
+    fn cofactors_serve_well_conditioned_matrices() {
+        let two = Matrix2::new(2.0, 0.3, -0.4, 1.5);
+        let three = Matrix3::new(1.2, 0.3, -0.2, 0.1, 0.9, 0.4, -0.5, 0.2, 1.1);
+        assert!(by_cofactors(&two).is_some() && by_cofactors(&three).is_some());
+        for scale in [1e-60, 1.0, 1e60] {
+            assert!(left(&(two * scale)) < 1e-15 * 8.0);
+            assert!(left(&(three * scale)) < 1e-15 * 16.0);
+        }
+        assert!(left(&Matrix4::from_diagonal_element(3.0)) < 1e-15);
+    }
+
+    #[test]
+    fn others_are_eliminated() {
+        let thin = Matrix3::new(1.0, 1.0, 1.0, 1.0, 1.0 + 1e-6, 1.0, 1.0, 1.0, 1.0 + 2e-6);
+        assert!(by_cofactors(&thin).is_none() && small_inverse(&thin).is_some());
+        assert!(small_inverse(&Matrix3::<f64>::zeros()).is_none());
+        assert!(small_inverse(&Matrix3::repeat(f64::NAN)).is_none());
+    }
+}
