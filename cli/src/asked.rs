@@ -22,7 +22,13 @@ pub(crate) fn model<'a>(gallery: &'a Gallery, name: &str) -> Result<&'a Entry, F
     }
     let path = Path::new(name);
     if path.is_file() || path.extension().is_some_and(|end| end == "clebsch") {
+        let exists = path.is_file();
         let name = shown(name);
+        if !exists {
+            return Err(Failure::Usage(format!(
+                "there is no file `{name}`, and only models that were compiled are run: `clebsch list` shows them"
+            )));
+        }
         return Err(Failure::Usage(format!(
             "`{name}` is a file, and only models that were compiled are run: `clebsch list` shows them\n\
              \x20 its equations:  clebsch derive {name}\n\

@@ -342,12 +342,12 @@ pub mod cayley_klein {
             let W_matrix = before.q.body_velocity(&after.q).matrix();
             let t1 = h.powi(-1);
             let t2 = quaternion_imaginary(&W_matrix);
-            let t3 = quaternion_imaginary(
-                &(W_matrix.tr_mul(&pure_quaternion(&(diagonal_times(&I, &t2))))),
-            );
-            let t4 = quaternion_imaginary(&(W_matrix * W_matrix));
-            let t5 = (t1 * t1).sqrt();
-            let t6 = (c * c).sqrt();
+            let t3 = quaternion_imaginary(&(W_matrix * W_matrix));
+            let t4 = (t1 * t1).sqrt();
+            let t5 = (W_matrix.tr_mul(&W_matrix)).trace().sqrt();
+            let t6 = (diagonal_times(&I, &I)).trace().sqrt();
+            let t7 = t2.dot(&t2).sqrt();
+            let t8 = (c * c).sqrt();
             let _ = h;
             [
                 {
@@ -355,15 +355,19 @@ pub mod cayley_klein {
                     Residual {
                         size: length(
                                 &(momentum
-                                    - (t3 * T::from_f64(2.0) * t1
-                                        + t2 * T::from_f64(2.0) * t1 * c - t4 * t1 * c)),
+                                    - (quaternion_imaginary(
+                                        &(W_matrix
+                                            .tr_mul(&pure_quaternion(&(diagonal_times(&I, &t2))))),
+                                    ) * T::from_f64(2.0) * t1 + t2 * T::from_f64(2.0) * t1 * c
+                                        - t3 * t1 * c)),
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()
-                            + (T::from_f64(2.0) * t5 * t3.dot(&t3).sqrt()
-                                + T::from_f64(2.0) * t5 * t6 * t2.dot(&t2).sqrt()
-                                + t5 * t6 * t4.dot(&t4).sqrt() + T::from_f64(2.0) * t5 * t6
-                                + t5 * t6)
+                            + (T::from_f64(4.0) * t4 * t5 * t6 * t7
+                                + T::from_f64(2.0) * t4 * t8 * t7
+                                + t4 * t8 * t3.dot(&t3).sqrt()
+                                + T::from_f64(4.0) * t4 * t5 * t6
+                                + T::from_f64(2.0) * t4 * t8 + t4 * t8)
                                 .magnitude(),
                     }
                 },

@@ -877,6 +877,9 @@ pub mod kirchhoff_body {
                                     * (t8 * t15 * t9 * t10 + t8 * t10 * t9 * t15)
                                 + T::from_f64(0.5) * t7 * t11 * t9 * t9 * t15
                                 + t7 * t9 * t11 * t9 * t15 + t7 * t9 * t11 * t15)
+                                .magnitude()
+                            + (length(&after.G.translation)
+                                * length(&rows_from::<T, 6, 3, 1>(&after.momentum.0, 3)))
                                 .magnitude(),
                     }
                 },

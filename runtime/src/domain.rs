@@ -7,6 +7,7 @@ use crate::groups::{Group, Linear};
 use crate::linalg::{determinant, singular_ratio};
 use crate::said::Plain;
 use crate::scalar::Real;
+use crate::solvers::largest_step::search_of;
 use core::fmt;
 use nalgebra::SMatrix;
 
@@ -89,12 +90,15 @@ impl Contact {
     #[must_use]
     pub fn with_trials<T: Real>(self, h: T, try_step: impl Fn(T) -> bool) -> Self {
         let mut shorter = h;
-        let found = (1..=20).find(|_| {
-            shorter *= T::from_f64(0.5);
-            try_step(shorter)
+        // A trial that meets the edge looks for no step of its own.
+        let found = search_of(|| {
+            (1..=20).find(|_| {
+                shorter *= T::from_f64(0.5);
+                try_step(shorter)
+            })
         });
         Self {
-            halvings: found.unwrap_or(0),
+            halvings: found.flatten().unwrap_or(0),
             ..self
         }
     }

@@ -72,7 +72,7 @@ pub(crate) fn confirmed_step(
 }
 
 /// Whatever is tried in it looks for no other step. None inside another search.
-fn search_of<R>(trial: impl FnOnce() -> R) -> Option<R> {
+pub(crate) fn search_of<R>(trial: impl FnOnce() -> R) -> Option<R> {
     let _search = Search::begin()?;
     Some(trial())
 }

@@ -4,8 +4,10 @@
 //! unreduced action, and against what such bodies keep together.
 
 use clebsch::integrate::Stepper;
-use clebsch::nalgebra::{Matrix3, Vector3};
-use clebsch::{BodyMomentum, Rotation, SpatialMomentum, StartError, StepCause};
+use clebsch::nalgebra::{Matrix2, Matrix3, Vector3};
+use clebsch::{
+    BodyMomentum, BodyMomentumMatrix, Linear, Rotation, SpatialMomentum, StartError, StepCause,
+};
 use clebsch_oracle::oracle::action::{DiscreteAction, Variation, rotations, stationarity};
 use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::points::Source;
@@ -63,6 +65,34 @@ clebsch::model! {
             + (e/h^3)*tr(Id - W)^2
             - (e/h)*dot(R*(V - Id)*a, S*(Y - Id)*b)
             + h*c*(dot(Q*a, P*b) + dot(P*a, R*b) + dot(S*a, Q*b));
+    }
+}
+
+clebsch::model! {
+    /// Two bodies, one beside the edge of what its potential is defined on.
+    model Brink {
+        param J: Sym<3>;
+        param a, z: Vec<3>;
+        param w, c: Real;
+        group R: SO<3> velocity V;
+        group S: SO<3> velocity Y;
+        constraint next(R) = R*V;
+        constraint next(S) = S*Y;
+        lagrangian = -tr(J*V)/h - tr(J*Y)/h - h*w*log(dot(z, R*a) + c);
+    }
+}
+
+clebsch::model! {
+    /// A plane map that is pushed through det = 0 beside a body, solved by Newton.
+    model Pushed {
+        param J: Sym<3>;
+        param e: Real;
+        group F: GL<2> velocity P;
+        group R: SO<3> velocity V;
+        constraint next(F) = F*P;
+        constraint next(R) = R*V;
+        lagrangian = -tr(J*V)/h + tr((F*(P - Id))*(F*(P - Id))^T)/(2*h)
+            + (e/h^3)*tr((F*(P - Id))*(F*(P - Id))^T)^2;
     }
 }
 
@@ -366,5 +396,79 @@ fn a_block_beyond_its_bound_is_refused_with_a_step_that_works() {
         model
             .start(initial, 1.01 * offered)
             .expect_err("a longer one is not");
+    }
+}
+
+#[test]
+fn the_edge_of_a_domain_is_met_once() {
+    let model = |w: f64, c: f64| {
+        let model = Brink::new(BrinkParameters {
+            J: Matrix3::identity(),
+            a: Vector3::z(),
+            z: Vector3::z(),
+            w,
+            c,
+        });
+        model.expect("admitted")
+    };
+    let still = BodyMomentum(Vector3::new(0.1, 0.2, 0.3));
+    let at = |turn: f64| BrinkInitial {
+        R: Rotation::exp(&Vector3::new(turn, 0.0, 0.0)),
+        body_momentum_R: still,
+        S: Rotation::identity(),
+        body_momentum_S: still,
+    };
+    // Outside from the start: no step helps, and none is looked for beyond twenty halvings.
+    let error = model(1.0, -3.0).start(at(0.0), 0.05).expect_err("outside");
+    assert!(
+        matches!(error, StartError::Refused(StepCause::Contact(_))),
+        "{error}"
+    );
+    // Just inside: what is offered is taken.
+    let edge = (-0.5f64).acos();
+    for gap in [1e-2, 1e-4, 1e-6] {
+        let mut initial = at(edge - gap);
+        initial.body_momentum_R = BodyMomentum(Vector3::x());
+        // So weak that the edge is all there is of it.
+        let model = model(1e-30, 0.5);
+        let error = model.start(initial, 0.2).expect_err("over the edge");
+        let StartError::Refused(StepCause::Contact(contact)) = error else {
+            panic!("{error}");
+        };
+        let works = contact.works().expect("a shorter step");
+        model
+            .start(initial, works)
+            .expect("the step offered is taken");
+    }
+}
+
+#[test]
+fn a_block_that_loses_its_inverse_says_so() {
+    let model = Pushed::new(PushedParameters {
+        J: Matrix3::identity(),
+        e: 1e-3,
+    });
+    let model = model.expect("admitted");
+    let initial = PushedInitial {
+        F: Linear::identity(),
+        body_momentum_F: BodyMomentumMatrix(Matrix2::new(-1.0, 0.0, 0.0, -0.2)),
+        R: Rotation::identity(),
+        body_momentum_R: BodyMomentum(Vector3::new(0.1, 0.2, 0.3)),
+    };
+    for h in [0.03, 0.2, 0.7] {
+        let (mut state, mut work) = model.start(initial, h).expect("far from singular");
+        let error = loop {
+            if let Err(e) = model.step(&mut state, &mut work) {
+                break e;
+            }
+            assert!(
+                state.node() < 200,
+                "the motion meets det = 0 at about time 1"
+            );
+        };
+        assert!(
+            matches!(error.cause, StepCause::Contact(_)),
+            "h = {h}: {error}"
+        );
     }
 }

@@ -295,6 +295,73 @@ fn the_residual_far_from_the_origin() {
     }
 }
 
+clebsch::model! {
+    /// The free body by the imaginary part alone.
+    model ByImaginary {
+        param S: Sym<3>;
+        group q: SU<2> velocity w;
+        constraint next(q) = q*w;
+        lagrangian = (2/h)*dot(im(w), S*im(w));
+    }
+}
+
+clebsch::model! {
+    /// A thrown body, its momentum carried about the origin of space.
+    model Brick {
+        param J: Sym<3>;
+        param m: Real;
+        group G: SE<3> velocity V;
+        constraint next(G) = G*V;
+        lagrangian = -tr(J*rot(V))/h + m*dot(pos(V), pos(V))/(2*h);
+    }
+}
+
+/// A stored quaternion is rounded to one, whatever products its imaginary part stands in.
+#[test]
+fn the_residual_of_a_quaternion_away_from_one() {
+    let model = ByImaginary::new(ByImaginaryParameters { S: tensor() }).unwrap();
+    for h in [1e-2, 1e-4, 1e-8] {
+        let initial = ByImaginaryInitial {
+            q: UnitQuaternion::from_components([0.5, 0.1, -0.7, 0.5]).unwrap(),
+            body_momentum: BodyMomentum(Vector3::new(0.1, 0.2, 0.3)),
+        };
+        let (mut state, mut work) = model.start(initial, h).unwrap();
+        for _ in 0..200 {
+            let before = state;
+            model.step(&mut state, &mut work).unwrap();
+            solved(&model.residual(&before, &state, h));
+        }
+    }
+}
+
+/// The spin of a small body is what is left of a momentum about the origin: it is known to the
+/// rounding of the lever arm.
+#[test]
+fn the_residual_of_a_small_body_at_a_distance() {
+    for small in [1.0, 1e-4, 1e-8, 1e-12] {
+        let model = Brick::new(BrickParameters {
+            J: Matrix3::from_diagonal(&Vector3::new(1.0, 1.2, 0.9)) * small,
+            m: 1.0,
+        })
+        .unwrap();
+        let spin = Vector3::new(0.4, 0.3, -0.5) * small;
+        let h = 0.05;
+        let initial = BrickInitial {
+            G: RigidMotion {
+                rotation: Rotation::identity(),
+                translation: Vector3::new(1.0, -1.0, 0.5),
+            },
+            body_momentum: BodyImpulse(SVector::from([spin.x, spin.y, spin.z, 0.6, 0.2, 0.3])),
+        };
+        let (mut state, mut work) = model.start(initial, h).unwrap();
+        for _ in 0..2000 {
+            let before = state;
+            model.step(&mut state, &mut work).unwrap();
+            solved(&model.residual(&before, &state, h));
+        }
+    }
+}
+
 #[test]
 fn the_pair_moves_as_it_is_stated_from_its_bodies() {
     let h = 0.05;

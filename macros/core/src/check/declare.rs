@@ -139,6 +139,18 @@ pub fn declare(model: &Model, errors: &mut Errors) -> Declared {
             step_name = step.text.clone();
             step_place = Some(step.place);
             errors.extend(unusable(step));
+            if step.text == index.text {
+                errors.push(
+                    Diagnostic::new(
+                        step.place,
+                        format!(
+                            "`{}` counts the nodes already, and cannot be the step",
+                            step.text
+                        ),
+                    )
+                    .help("give the step a name of its own, for example `time k step h;`"),
+                );
+            }
         }
     }
     let step = symbols.add(&step_name, Shape::SCALAR, Structure::General, Role::Step);

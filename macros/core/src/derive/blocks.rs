@@ -116,7 +116,7 @@ pub fn reasons(letters: &Letters, spec: &Spec, blocks: &[Block]) -> String {
     }
     let each = |(reason, list): &(&str, Vec<String>)| match list.len() {
         1 => format!("{}, {reason}", list[0]),
-        _ => format!("{} each by itself, {reason}", list.join(", ")),
+        _ => format!("{}, {reason}", list.join("; ")),
     };
     let clauses: Vec<String> = groups.iter().map(each).collect();
     if let [only] = blocks {

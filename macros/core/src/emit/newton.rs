@@ -277,7 +277,10 @@ impl Together<'_> {
     /// whole motion of the step is known.
     fn contact(&self, step: &Ident, newton: &Ident) -> Option<TokenStream> {
         let d = self.block;
-        if self.number.is_some() || !super::domain::is_guarded(d) {
+        if self.number.is_some() {
+            return self.lost_inverse(step);
+        }
+        if !super::domain::is_guarded(d) {
             return None;
         }
         let moves = d.spec.configurations.iter().enumerate().map(|(i, c)| {
@@ -296,6 +299,32 @@ impl Together<'_> {
                 }
             }
         })
+    }
+}
+
+impl Together<'_> {
+    /// The same of a block: whether a map of its own loses its inverse; how the others move is not
+    /// known.
+    fn lost_inverse(&self, step: &Ident) -> Option<TokenStream> {
+        let d = self.block;
+        let maps = d.spec.configurations.iter().enumerate();
+        let maps = maps.filter(|(_, c)| matches!(family(c), Family::Linear(_)));
+        let tests: Vec<TokenStream> = maps
+            .map(|(i, c)| {
+                let (own, part) = (own(d, c.element), self.part(quote!(solved.element), i));
+                let name = &d.letters.symbols.get(c.element).name;
+                let moved = match self.side(i) {
+                    Side::Body => quote!(state.#own * #part),
+                    Side::Spatial => quote!(#part * state.#own),
+                };
+                quote! {
+                    if let Err(contact) = domain::invertible(#name, &state.#own, &(#moved), #step) {
+                        return Err(self.left_domain(&state, #step, contact));
+                    }
+                }
+            })
+            .collect();
+        (!tests.is_empty()).then(|| quote!(if let Ok(solved) = &failed { #(#tests)* }))
     }
 }
 

@@ -34,13 +34,19 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
             true => {
                 for row in [0, 3] {
                     brought.push(rows(s, &b.incoming, row));
-                    let row = Literal::u8_unsuffixed(row);
-                    carried.push(quote!(rows_from::<T, 6, 3, 1>(&#momentum, #row)));
+                    let number = Literal::u8_unsuffixed(row);
+                    let part = quote!(rows_from::<T, 6, 3, 1>(&#momentum, #number));
+                    // The angular part is carried about the origin of space, with the lever arm.
+                    let arm = (row == 0).then(|| {
+                        let linear = quote!(length(&rows_from::<T, 6, 3, 1>(&#after.#field.0, 3)));
+                        quote!(+ (length(&#after.#own.translation) * #linear).magnitude())
+                    });
+                    carried.push((part, arm));
                 }
             }
             false => {
                 brought.push(b.incoming.clone());
-                carried.push(momentum);
+                carried.push((momentum, None));
             }
         }
     }
@@ -59,12 +65,12 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
     let (values, sizes) = values.split_at(brought.len());
     let count = Literal::usize_unsuffixed(brought.len());
     let parts = values.iter().zip(sizes).zip(&carried);
-    let parts = parts.map(|((value, size), momentum)| {
+    let parts = parts.map(|((value, size), (momentum, arm))| {
         quote! {{
             let momentum = #momentum;
             Residual {
                 size: length(&(momentum - (#value))).magnitude(),
-                scale: length(&momentum).magnitude() + (#size).magnitude(),
+                scale: length(&momentum).magnitude() + (#size).magnitude() #arm,
             }
         }}
     });

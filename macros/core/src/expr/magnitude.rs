@@ -93,7 +93,12 @@ impl Terms<'_> {
             }
             Node::Dot(a, b) | Node::Cross(a, b) => times(of(a), of(b)),
             Node::Neg(a) | Node::Transpose(a) | Node::Part(_, a) | Node::Vee(a) => of(a),
-            Node::Hat(a) | Node::Trace(a) => times(exact(integer(2)), of(a)),
+            Node::Hat(a) | Node::Trace(a) | Node::Map(Map::Pure | Map::Twist, a) => {
+                times(exact(integer(2)), of(a))
+            }
+            // Linear in the entries; where these are of a quaternion, see `stored`.
+            Node::Map(Map::Imaginary | Map::Real, a) if !unit_quaternions(self.symbols, a) => of(a),
+            Node::Map(Map::Diagonal | Map::DiagonalOf, a) => of(a),
             Node::Letter(_)
             | Node::Quotient(..)
             | Node::Power(..)
