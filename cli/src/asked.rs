@@ -22,15 +22,13 @@ pub(crate) fn model<'a>(gallery: &'a Gallery, name: &str) -> Result<&'a Entry, F
     }
     let path = Path::new(name);
     if path.is_file() || path.extension().is_some_and(|end| end == "clebsch") {
-        let exists = path.is_file();
         let name = shown(name);
-        if !exists {
-            return Err(Failure::Usage(format!(
-                "there is no file `{name}`, and only models that were compiled are run: `clebsch list` shows them"
-            )));
-        }
+        let what = match path.is_file() {
+            true => format!("`{name}` is a file"),
+            false => format!("there is no file `{name}`"),
+        };
         return Err(Failure::Usage(format!(
-            "`{name}` is a file, and only models that were compiled are run: `clebsch list` shows them\n\
+            "{what}, and only models that were compiled are run: `clebsch list` shows them\n\
              \x20 its equations:  clebsch derive {name}\n\
              \x20 to run it:      state it in `clebsch::model! {{ ... }}` in a crate of your own, and give it\n\
              \x20                 to `clebsch_cli::run_process_on`: README, \"A command line of your own\""
