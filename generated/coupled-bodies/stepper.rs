@@ -549,12 +549,12 @@ pub mod coupled_bodies {
         }
         #[cold]
         fn attempt(&self, state: &Self::State, h: T) -> Option<Self::State> {
-            let (mut moving, search) = (*state, newton::Search::to_try());
+            let mut moving = *state;
             self.step(
                     &mut moving,
                     &mut CoupledBodiesWorkspace {
                         h,
-                        search,
+                        search: newton::Search::to_try(),
                     },
                 )
                 .ok()?;

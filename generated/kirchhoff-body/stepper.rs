@@ -607,12 +607,12 @@ pub mod kirchhoff_body {
         }
         #[cold]
         fn attempt(&self, state: &Self::State, h: T) -> Option<Self::State> {
-            let (mut moving, search) = (*state, newton::Search::to_try());
+            let mut moving = *state;
             self.step(
                     &mut moving,
                     &mut KirchhoffBodyWorkspace {
                         h,
-                        search,
+                        search: newton::Search::to_try(),
                     },
                 )
                 .ok()?;

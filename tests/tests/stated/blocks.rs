@@ -174,6 +174,23 @@ fn rotation(source: &mut Source) -> Rotation {
     Rotation::from_matrix(&Matrix3::from_fn(|i, j| m.0[i][j])).expect("a rotation")
 }
 
+/// The frames of a ring.
+fn frames(s: &RingState<f64>) -> [Square<f64, 3>; 10] {
+    let all = [
+        s.R0(),
+        s.R1(),
+        s.R2(),
+        s.R3(),
+        s.R4(),
+        s.R5(),
+        s.R6(),
+        s.R7(),
+        s.R8(),
+        s.R9(),
+    ];
+    all.map(|r| square(&r))
+}
+
 /// The largest component of the variation, of the size of its terms.
 fn share(variation: &Variation) -> f64 {
     let largest = variation
@@ -278,21 +295,7 @@ fn each_kind_of_block_solves_the_unreduced_equations() {
             let (start, _) = model.start(initial, h).expect("solvable");
             let mut worst = 0.0f64;
             along(&model, start, h, 6, |past| {
-                let nodes = past.map(|s| {
-                    [
-                        s.R0(),
-                        s.R1(),
-                        s.R2(),
-                        s.R3(),
-                        s.R4(),
-                        s.R5(),
-                        s.R6(),
-                        s.R7(),
-                        s.R8(),
-                        s.R9(),
-                    ]
-                    .map(|r| square(&r))
-                });
+                let nodes = past.map(|s| frames(&s));
                 worst = worst.max(share(&stationarity(&given, &nodes, &basis)));
             });
             assert!(worst < ROUNDING, "ring: {worst:e}");
@@ -319,21 +322,7 @@ fn the_oracle_notices_a_spring_that_is_missing() {
     given.c = 0.5 * (1.0 + 1e-6);
     let mut least = f64::INFINITY;
     along(&model, start, given.h, 6, |past| {
-        let nodes = past.map(|s| {
-            [
-                s.R0(),
-                s.R1(),
-                s.R2(),
-                s.R3(),
-                s.R4(),
-                s.R5(),
-                s.R6(),
-                s.R7(),
-                s.R8(),
-                s.R9(),
-            ]
-            .map(|r| square(&r))
-        });
+        let nodes = past.map(|s| frames(&s));
         least = least.min(share(&stationarity(&given, &nodes, &basis)));
     });
     assert!(least > ROUNDING, "{least:e}");

@@ -101,6 +101,9 @@ fn block(spec: &Spec, letters: &Letters, riccati: &[Riccati], members: Vec<usize
 
 /// The methods of all blocks in one sentence, equal ones together.
 pub fn reasons(letters: &Letters, spec: &Spec, blocks: &[Block]) -> String {
+    if let [only] = blocks {
+        return only.reason.clone();
+    }
     let name = |i: &usize| {
         let velocity = spec.configurations[*i].velocity;
         letters.symbols.get(velocity).name.clone()
@@ -114,14 +117,10 @@ pub fn reasons(letters: &Letters, spec: &Spec, blocks: &[Block]) -> String {
             None => groups.push((&b.reason, vec![names])),
         }
     }
-    let each = |(reason, list): &(&str, Vec<String>)| match list.len() {
-        1 => format!("{}, {reason}", list[0]),
-        _ => format!("{}, {reason}", list.join("; ")),
-    };
-    let clauses: Vec<String> = groups.iter().map(each).collect();
-    if let [only] = blocks {
-        return only.reason.clone();
-    }
+    let each = groups
+        .iter()
+        .map(|(reason, list)| format!("{}, {reason}", list.join("; ")));
+    let clauses: Vec<String> = each.collect();
     format!(
         "every block of velocities by itself: {}",
         clauses.join("; ")

@@ -5,14 +5,14 @@
 
 use super::Letters;
 use super::balance::{Balance, shorter};
-use super::recognise::{mentions, word_mentions};
-use super::variation::at;
-use crate::algebra::{Algebra, Factor, Poly, Rational, Source, Term};
+use super::occurrence::{Occurrence, occurrence};
+use crate::algebra::{Algebra, Factor, Poly, Rational, Term};
 use crate::check::spec::Spec;
-use crate::expr::symbol::Role;
-use crate::expr::{self, Expr, Shift};
+use crate::expr::symbol::{Role, SymbolId};
+use crate::expr::{self, Expr};
 
-/// `μ = left (Ω - Id) right + rest`: what is solved for is small where the step is. All are n x n matrices, made of parameters and of quantities at the node.
+/// `μ = left (Ω - Id) right + rest`: what is solved for is small where the step is. All are n x n
+/// matrices, made of parameters and of quantities at the node.
 #[derive(Clone, Debug)]
 pub struct Explicit {
     /// The factor to the left of the velocity, the step in it.
@@ -68,57 +68,32 @@ struct Linear {
 
 /// The factors around the velocity and what stands without it: all terms have one factor in common,
 /// on one side or the other.
-fn split(
-    algebra: &Algebra,
-    poly: &Poly,
-    velocity: crate::expr::symbol::SymbolId,
-) -> Option<(Poly, Poly, Poly)> {
-    let w = at(velocity, Shift::HERE);
-    let is_velocity =
-        |f: &Factor| matches!(f, Factor::Letter { source: Source::Letter(l), .. } if *l == w);
-    let plain = |f: &Factor| {
-        is_velocity(f)
-            && matches!(
-                f,
-                Factor::Letter {
-                    transposed: false,
-                    inverted: false,
-                    ..
-                }
-            )
-    };
+fn split(algebra: &Algebra, poly: &Poly, velocity: SymbolId) -> Option<(Poly, Poly, Poly)> {
     let mut rest = Poly::zero(poly.shape);
     let mut linear: Vec<Linear> = Vec::new();
     for (term, coefficient) in &poly.terms {
-        if mentions(algebra, &term.monomial, velocity) {
-            return None;
-        }
-        let mut places =
-            (0..term.word.len()).filter(|p| word_mentions(&term.word[*p], &is_velocity));
-        let Some(place) = places.next() else {
-            if !rest.push(term.clone(), *coefficient) {
-                return None;
+        match occurrence(algebra, term, velocity) {
+            Occurrence::Free if rest.push(term.clone(), *coefficient) => {}
+            Occurrence::Once {
+                place,
+                transposed: false,
+            } => {
+                let (mut left, right) = (term.clone(), term.word[place + 1..].to_vec());
+                left.word.truncate(place);
+                linear.push(Linear {
+                    left,
+                    right,
+                    coefficient: *coefficient,
+                });
             }
-            continue;
-        };
-        if places.next().is_some() || !plain(&term.word[place]) {
-            return None;
+            _ => return None,
         }
-        let (mut left, mut right) = (term.clone(), term.word.clone());
-        left.word.truncate(place);
-        right.drain(..=place);
-        linear.push(Linear {
-            left,
-            right: right.to_vec(),
-            coefficient: *coefficient,
-        });
     }
     let first = linear.first()?;
     let (mut left, mut right) = (Poly::zero(poly.shape), Poly::zero(poly.shape));
-    let of_word = |word: &[Factor]| {
-        let mut term = Term::default();
-        term.word.extend(word.iter().cloned());
-        term
+    let of_word = |word: &[Factor]| Term {
+        word: word.to_vec(),
+        ..Term::default()
     };
     let added = if linear.iter().all(|t| t.right == first.right) {
         right.push(of_word(&first.right), Rational::ONE)

@@ -18,6 +18,7 @@ pub mod kinetic;
 pub mod lie;
 pub mod limit;
 pub mod momentum;
+mod occurrence;
 pub mod parts;
 pub mod quaternionic;
 pub mod recognise;

@@ -6,14 +6,15 @@ use super::balance::{Balance, shorter};
 use super::blocks::{self, Block};
 use super::explicit::{self, Explicit};
 use super::kinetic::Kinetic;
+use super::occurrence::{Occurrence, occurrence};
 use super::quaternionic::{self, Quaternionic};
 use super::seen_from_body::seen_from_body;
 use super::transport::Transport;
 use super::variation::at;
 use super::{Derivation, Letters};
-use crate::algebra::{Algebra, Factor, Monomial, Poly, Rational, Source};
+use crate::algebra::{Algebra, Poly, Rational};
 use crate::check::spec::{Configuration, Group, Side, Spec};
-use crate::expr::shape::{Dim, Shape};
+use crate::expr::shape::Dim;
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Node, Shift};
 
@@ -564,82 +565,32 @@ fn with_node(
 /// Splits `Ω X - X^T Ω^T + rest`: returns `X` and the rest, or nothing if the velocity stands
 /// anywhere else.
 fn split(algebra: &Algebra, poly: &Poly, velocity: SymbolId, s: &Symbols) -> Option<(Poly, Poly)> {
-    let w = at(velocity, Shift::HERE);
-    let is_velocity =
-        |f: &Factor| matches!(f, Factor::Letter { source: Source::Letter(l), .. } if *l == w);
     let (mut x, mut rest) = (Poly::zero(poly.shape), Poly::zero(poly.shape));
     let mut mirrored = Poly::zero(poly.shape);
     for (term, coefficient) in &poly.terms {
-        let in_number = mentions(algebra, &term.monomial, velocity);
-        let count = term
-            .word
-            .iter()
-            .filter(|f| word_mentions(f, &is_velocity))
-            .count();
-        if in_number {
-            return None;
-        }
-        if count == 0 {
-            let ok = rest.push(term.clone(), *coefficient);
-            debug_assert!(ok);
-            continue;
-        }
-        let plain = |f: &Factor| {
-            matches!(
-                f,
-                Factor::Letter {
-                    transposed: false,
-                    inverted: false,
-                    ..
-                }
-            ) && is_velocity(f)
+        let last = term.word.len().saturating_sub(1);
+        let mut others = term.clone();
+        let ok = match occurrence(algebra, term, velocity) {
+            Occurrence::Free => rest.push(others, *coefficient),
+            Occurrence::Once {
+                place: 0,
+                transposed: false,
+            } => {
+                others.word.remove(0);
+                x.push(others, *coefficient)
+            }
+            Occurrence::Once {
+                place,
+                transposed: true,
+            } if place == last => {
+                others.word.pop();
+                mirrored.push(others, coefficient.negated())
+            }
+            Occurrence::Once { .. } | Occurrence::Otherwise => return None,
         };
-        let flipped = |f: &Factor| {
-            matches!(
-                f,
-                Factor::Letter {
-                    transposed: true,
-                    inverted: false,
-                    ..
-                }
-            ) && is_velocity(f)
-        };
-        let mut shorter = term.clone();
-        if count == 1 && term.word.first().is_some_and(plain) {
-            shorter.word.remove(0);
-            let ok = x.push(shorter, *coefficient);
-            debug_assert!(ok);
-        } else if count == 1 && term.word.last().is_some_and(flipped) {
-            shorter.word.pop();
-            let ok = mirrored.push(shorter, coefficient.negated());
-            debug_assert!(ok);
-        } else {
-            return None;
-        }
+        debug_assert!(ok);
     }
     let x_t = expr::transpose(s, algebra.raise(&x));
     let agrees = algebra.is_zero(&expr::sub(x_t, algebra.raise(&mirrored)));
     (agrees && !x.is_zero()).then_some((x, rest))
-}
-
-pub(super) fn word_mentions(f: &Factor, wanted: &impl Fn(&Factor) -> bool) -> bool {
-    match f {
-        Factor::Hat(word)
-        | Factor::Vee { word, .. }
-        | Factor::Pure(word)
-        | Factor::Imaginary { word, .. } => word.iter().any(|g| word_mentions(g, wanted)),
-        Factor::Letter { .. }
-        | Factor::Unit { .. }
-        | Factor::Inclusion { .. }
-        | Factor::Axial { .. } => wanted(f),
-    }
-}
-
-pub(super) fn mentions(algebra: &Algebra, monomial: &Monomial, velocity: SymbolId) -> bool {
-    let term = crate::algebra::Term {
-        monomial: monomial.clone(),
-        word: Vec::new(),
-    };
-    let number = algebra.raise(&Poly::term(Shape::SCALAR, Rational::ONE, term));
-    expr::letters(&number).iter().any(|l| l.symbol == velocity)
 }

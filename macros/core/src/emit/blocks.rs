@@ -6,10 +6,10 @@ use super::element::{Family, family};
 use super::expression::{Bindings, program};
 use super::items::{letters_of, parameter_locals, text, with_transports};
 use super::left_factor::default_solver;
-use super::names::{Names, item, own, per_configuration, tagged, variable};
+use super::names::{Names, item, tagged, variable};
 use super::newton::{Together, onwards};
 use super::sizes::Generics;
-use super::step::{at, finish, here, step_signature};
+use super::step::{at, finish, here, node_momentum, step_signature};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::blocks::Block;
@@ -25,7 +25,7 @@ fn numbered(d: &Derivation) -> impl Iterator<Item = (usize, &Block)> {
     d.solve.blocks.iter().enumerate().map(|(i, b)| (i + 1, b))
 }
 
-/// Numbers and seats of the blocks that Newton's method solves.
+/// Numbers of the blocks that Newton's method solves.
 fn by_newton(d: &Derivation) -> impl Iterator<Item = (usize, &Block)> {
     numbered(d).filter(|(_, b)| b.is_newton())
 }
@@ -66,6 +66,23 @@ fn search(n: usize) -> Ident {
     format_ident!("search_{n}")
 }
 
+/// A block of Newton's method; `block` is it as a model of its own.
+fn together<'a>(
+    whole: &'a Derivation,
+    names: &'a Names,
+    n: usize,
+    b: &'a Block,
+    block: &'a Derivation,
+) -> Together<'a> {
+    Together {
+        whole,
+        block,
+        members: &b.members,
+        number: Some(n),
+        names,
+    }
+}
+
 /// Calls `f` with each block of Newton's method as a model of its own.
 fn each_newton<R>(
     d: &Derivation,
@@ -75,16 +92,7 @@ fn each_newton<R>(
     by_newton(d)
         .map(|(n, b)| {
             let block = d.of_block(b);
-            f(
-                n,
-                &Together {
-                    whole: d,
-                    block: &block,
-                    members: &b.members,
-                    number: Some(n),
-                    names,
-                },
-            )
+            f(n, &together(d, names, n, b, &block))
         })
         .collect()
 }
@@ -121,13 +129,21 @@ pub(super) fn work_init(d: &Derivation) -> TokenStream {
     filled(d, |_| quote!(newton::Search::from_rest()))
 }
 
-/// The workspace of a trial step `h` with the model's solver: each search by the constructor named.
+/// The workspace of a trial step `h` of a model that Newton's method or several blocks solve, with the
+/// model's solver: each search by the constructor named.
 pub(super) fn trial(d: &Derivation, constructor: &str) -> TokenStream {
     let work = item(d, "Workspace");
     let constructor = format_ident!("{constructor}");
+    let made = quote!(newton::Search::#constructor());
+    if matches!(d.solve.method, Method::Newton) {
+        return quote!(#work { h, search: #made });
+    }
     let method = default_solver(d).map(|_| quote!(let method = self.method;));
-    let fields = filled(d, |_| quote!(newton::Search::#constructor()));
-    quote!({ #method #work { h, #fields } })
+    let fields = filled(d, |_| made.clone());
+    match method {
+        Some(method) => quote!({ #method #work { h, #fields } }),
+        None => quote!(#work { h, #fields }),
+    }
 }
 
 /// The types of what tangents ask of a node, and `step`.
@@ -180,7 +196,10 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
             let rest = values.next().filter(|_| !form.rest.is_zero());
             let (left, right) = (values.next(), values.next());
             let omega = variable(s, d.spec.configurations[i].velocity);
-            let (at_node, minus) = (at_node(d, i), rest.map(|rest| quote!(- (#rest))));
+            let (at_node, minus) = (
+                node_momentum(d, i, d.spec.configurations[i].side),
+                rest.map(|rest| quote!(- (#rest))),
+            );
             let names = [text(d, &form.left), text(d, &form.right)];
             solves.extend(quote! {
                 let #omega = match two_sided(&(#left), &(#at_node #minus), &(#right), &[#(#names),*]) {
@@ -210,13 +229,7 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
             continue;
         }
         let block = d.of_block(b);
-        let together = Together {
-            whole: d,
-            block: &block,
-            members: &b.members,
-            number: Some(n),
-            names,
-        };
+        let together = together(d, names, n, b, &block);
         let field = search(n);
         // The others are searched for in the same way.
         let fields = filled(d, |m| match m == n {
@@ -287,18 +300,6 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
     (node_types, quote!(#step_function #refused #beside))
 }
 
-/// The momentum of a configuration at the node, in the frame in which its velocity is stated.
-fn at_node(d: &Derivation, i: usize) -> TokenStream {
-    let c = &d.spec.configurations[i];
-    let momentum = per_configuration(d, "momentum", i);
-    let (element, own) = (variable(&d.letters.symbols, c.element), own(d, c.element));
-    match (c.side, family(c) == Family::Rotation) {
-        (Side::Body, true) => quote!(#element.tr_mul(&state.#momentum.0)),
-        (Side::Body, false) => quote!(state.#momentum.to_body(&state.#own).0),
-        (Side::Spatial, _) => quote!(state.#momentum.0),
-    }
-}
-
 /// The solution of a Moser-Veselov equation that is a block by itself.
 fn alone(
     d: &Derivation,
@@ -309,7 +310,7 @@ fn alone(
     step: &Ident,
 ) -> TokenStream {
     let rotations = family(&d.spec.configurations[i]) == Family::Rotation;
-    let at_node = at_node(d, i);
+    let at_node = node_momentum(d, i, d.spec.configurations[i].side);
     let minus = rest.map(|rest| quote!(- (#rest)));
     let scaled = quote!(((#at_node #minus) * #step));
     let prepared = format_ident!("factor_{n}");

@@ -249,7 +249,6 @@ pub(super) fn tested_step(d: &Derivation, names: &Names) -> TokenStream {
     let (node, before) = (names.local("node"), names.local("before"));
     let inside = inside(d, names);
     let method = format!(" One step, in place. Solved thus: {}.", d.how_solved());
-    let searched = matches!(d.solve.method, Method::Newton);
     let (asked, taken) = match d.solve.method {
         Method::Newton => (
             quote!(work.h, work.search.tries(),),
@@ -258,26 +257,20 @@ pub(super) fn tested_step(d: &Derivation, names: &Names) -> TokenStream {
         Method::Blocks => (quote!(work.h,), quote!(h: T,)),
         _ => Default::default(),
     };
-    let in_blocks = matches!(d.solve.method, Method::Blocks).then(|| {
+    let trials = {
         let trial = super::blocks::trial(d, "to_offer");
         quote! {
-            let contact = contact.with_trials(h, |h| {
+            contact.with_trials(h, |h| {
                 let mut moving = *state;
                 self.step(&mut moving, &mut #trial).is_ok()
-            });
+            })
         }
-    });
-    let trials = searched.then(|| {
-        quote! {
-            let contact = match tries {
-                true => contact,
-                false => contact.with_trials(h, |h| {
-                    let (mut moving, search) = (*state, newton::Search::to_offer());
-                    self.step(&mut moving, &mut #work { h, search }).is_ok()
-                }),
-            };
-        }
-    });
+    };
+    let trials = match d.solve.method {
+        Method::Newton => quote!(let contact = if tries { contact } else { #trials };),
+        Method::Blocks => quote!(let contact = #trials;),
+        _ => TokenStream::new(),
+    };
     quote! {
         #[doc = #method]
         ///
@@ -302,7 +295,6 @@ pub(super) fn tested_step(d: &Derivation, names: &Names) -> TokenStream {
         #[inline(never)]
         fn left_domain(&self, state: &#state #used, #taken contact: domain::Contact) -> StepError {
             #trials
-            #in_blocks
             StepCause::from(contact).at_node(state.#node)
         }
 

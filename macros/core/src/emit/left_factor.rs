@@ -5,9 +5,9 @@
 use super::element::{self, Family, family};
 use super::expression::{Bindings, Writer, program, ty as quantity};
 use super::items::{advanced, letters_of, parameter_locals, text, with_transports};
-use super::names::{Names, item, own, per_configuration, tagged, variable};
+use super::names::{Names, item, own, tagged, variable};
 use super::sizes::{Generics, size};
-use super::step::{at, finish, here, step_signature};
+use super::step::{at, finish, here, node_momentum, step_signature};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::blocks::Block;
@@ -230,8 +230,7 @@ fn edge_momentum(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStrea
     let s = &d.letters.symbols;
     let (state, used) = (item(d, "State"), Generics::of(d).used());
     let c = &d.spec.configurations[0];
-    let momentum = per_configuration(d, "momentum", 0);
-    let (element, own) = (variable(s, c.element), own(d, c.element));
+    let own = own(d, c.element);
     let mut bindings = Bindings::new();
     let mut needed = letters_of([&mv.rest]);
     let matrix = c.side == Side::Body && family(c) == Family::Rotation;
@@ -243,11 +242,7 @@ fn edge_momentum(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStrea
     let step = variable(s, d.spec.step);
     let p = schedule::program(s, std::slice::from_ref(&mv.rest), "t");
     let (lets, values) = program(&p, &bindings);
-    let node_momentum = match (c.side, matrix) {
-        (Side::Body, true) => quote!(#element.tr_mul(&state.#momentum.0)),
-        (Side::Body, false) => quote!(state.#momentum.to_body(&state.#own).0),
-        (Side::Spatial, _) => quote!(state.#momentum.0),
-    };
+    let node_momentum = node_momentum(d, 0, c.side);
     let rest = (!mv.rest.is_zero()).then(|| quote!(- (#(#values)*)));
     let value = match (d.solve.turned.is_some(), family(c)) {
         (false, _) => quote!(#node_momentum #rest),

@@ -6,10 +6,10 @@ use super::element::{self, Bundle, Family, family};
 use super::equations::Equations;
 use super::expression::Bindings;
 use super::items::{advanced, letters_of, parameter_locals, with_transports};
-use super::names::{Names, item, own, per_configuration, tagged, variable};
+use super::names::{Names, item, own, tagged, variable};
 use super::principal::Principal;
 use super::sizes::Generics;
-use super::step::{at, finish, here, step_signature};
+use super::step::{at, finish, here, node_momentum, step_signature};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::carry::Carry;
@@ -100,19 +100,6 @@ impl Together<'_> {
         needed
     }
 
-    /// The momentum of a configuration at the node, on the side of [`Together::side`].
-    fn node_momentum(&self, i: usize) -> TokenStream {
-        let d = self.whole;
-        let c = &self.block.spec.configurations[i];
-        let field = per_configuration(d, "momentum", self.members[i]);
-        let (element, own) = (variable(&d.letters.symbols, c.element), own(d, c.element));
-        match (self.side(i), family(c)) {
-            (Side::Body, Family::Rotation) => quote!(#element.tr_mul(&state.#field.0)),
-            (Side::Body, _) => quote!(state.#field.to_body(&state.#own).0),
-            (Side::Spatial, _) => quote!(state.#field.0),
-        }
-    }
-
     /// One velocity of a solution.
     pub fn part(&self, solution: TokenStream, i: usize) -> TokenStream {
         Bundle::of(self.block).part(solution, i)
@@ -152,7 +139,7 @@ impl Together<'_> {
             ["residual_at", "settled", "principal", "refused", "rounding"].map(|f| self.name(f));
         let tangent_at = self.name("tangent_at");
         let node_momenta: Vec<TokenStream> = (0..self.members.len())
-            .map(|i| self.node_momentum(i))
+            .map(|i| node_momentum(self.whole, self.members[i], self.side(i)))
             .collect();
         let solved_for = Equations {
             d,
@@ -300,9 +287,7 @@ impl Together<'_> {
             }
         })
     }
-}
 
-impl Together<'_> {
     /// The same of a block: whether a map of its own loses its inverse; how the others move is not
     /// known.
     fn lost_inverse(&self, step: &Ident) -> Option<TokenStream> {

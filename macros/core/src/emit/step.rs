@@ -253,6 +253,18 @@ pub(super) fn here(
     node_locals(d, names, 0, needed, &element, &reference, bindings)
 }
 
+/// The momentum of configuration `i` at the node where the step starts, on a side.
+pub(super) fn node_momentum(d: &Derivation, i: usize, side: Side) -> TokenStream {
+    let c = &d.spec.configurations[i];
+    let momentum = per_configuration(d, "momentum", i);
+    let (element, own) = (variable(&d.letters.symbols, c.element), own(d, c.element));
+    match (side, family(c)) {
+        (Side::Body, Family::Rotation) => quote!(#element.tr_mul(&state.#momentum.0)),
+        (Side::Body, _) => quote!(state.#momentum.to_body(&state.#own).0),
+        (Side::Spatial, _) => quote!(state.#momentum.0),
+    }
+}
+
 /// The tail of every step: new elements, next node's quantities, momenta, the finite test.
 pub(super) fn finish(
     d: &Derivation,

@@ -177,30 +177,17 @@ pub fn traits(d: &Derivation, names: &Names) -> TokenStream {
             }
         })
     });
-    let attempt = matches!(d.solve.method, Method::Newton).then(|| {
+    let attempt = matches!(d.solve.method, Method::Newton | Method::Blocks).then(|| {
+        let trial = super::blocks::trial(d, "to_try");
         quote! {
             #[cold]
             fn attempt(&self, state: &Self::State, h: T) -> Option<Self::State> {
-                let (mut moving, search) = (*state, newton::Search::to_try());
-                self.step(&mut moving, &mut #work { h, search }).ok()?;
+                let mut moving = *state;
+                self.step(&mut moving, &mut #trial).ok()?;
                 Some(moving)
             }
         }
     });
-    let attempt = match d.solve.method {
-        Method::Blocks => {
-            let trial = super::blocks::trial(d, "to_try");
-            Some(quote! {
-                #[cold]
-                fn attempt(&self, state: &Self::State, h: T) -> Option<Self::State> {
-                    let mut moving = *state;
-                    self.step(&mut moving, &mut #trial).ok()?;
-                    Some(moving)
-                }
-            })
-        }
-        _ => attempt,
-    };
     let reversible = d
         .reversible
         .then(|| quote!(impl #bound Reversible for #name #used {}));
