@@ -1,5 +1,5 @@
 //! From syntax to shaped expressions: names become symbols, every operation checks its shapes,
-//! `Id`, `0` and `E1 E2 E3` take theirs from the context.
+//! `Id`, `0` and `E1 E2 ...` take theirs from the context.
 
 mod components;
 mod domains;
@@ -38,8 +38,8 @@ pub fn terms(e: &Expression) -> Vec<&Expression> {
     }
 }
 
-/// Unit vectors along the first axes.
-const UNITS: [&str; 3] = ["E1", "E2", "E3"];
+/// Unit vectors along the axes, as far as there are steppers.
+const UNITS: [&str; 8] = ["E1", "E2", "E3", "E4", "E5", "E6", "E7", "E8"];
 
 type Elaborated = Result<Expr, Box<Diagnostic>>;
 

@@ -4,6 +4,7 @@
 
 mod declare;
 mod elaborate;
+mod lets;
 mod messages;
 mod shapes;
 pub mod spec;
@@ -44,6 +45,8 @@ fn checked(model: &Model) -> Result<Spec, Errors> {
     });
     let lets: Vec<String> = lets.collect();
     let mut elaborator = Elaborator::new(&names, lets.clone());
+    let circular = lets::circular(model, &mut errors);
+    circular.iter().for_each(|name| elaborator.spoil(name));
     let mut typed: Option<(Expr, crate::diagnostic::Place)> = None;
     let mut scale = None;
     let mut assumptions = Vec::new();
@@ -51,6 +54,7 @@ fn checked(model: &Model) -> Result<Spec, Errors> {
     let mut terms = Vec::new();
     for statement in &model.statements {
         match statement {
+            Statement::Let { name, .. } if circular.iter().any(|c| c.text == name.text) => {}
             Statement::Let { name, value } => match elaborator.any(value) {
                 Ok(e) if e.size() > LARGEST => {
                     errors.push(messages::too_large(value.place, e.size(), LARGEST, true));

@@ -363,3 +363,97 @@ fn what_has_no_value_anywhere_is_refused() {
     let message = refused("param p: Real; assume log(-p^2) > 0;", "p");
     assert!(message.contains("negative or zero"), "{message}");
 }
+
+/// What is refused in n dimensions beside a term that is fine.
+fn of_size(n: &str, term: &str) -> String {
+    let source = format!(
+        "model Body {{ {n} param J: Sym<n>; param v: Vec<n>; group Λ: SO<n> velocity Ω; \
+         constraint next(Λ) = Λ*Ω; lagrangian = -tr(J*Ω)/h - h*{term}; }}"
+    );
+    let source = match n.strip_prefix("size ") {
+        Some(size) => source.replace(n, "").replace("<n>", &format!("<{size}>")),
+        None => source,
+    };
+    match tokens(&source).and_then(parse).and_then(|m| check(&m)) {
+        Ok(_) => "accepted".to_owned(),
+        Err(errors) => errors.to_string(),
+    }
+}
+
+#[test]
+fn unit_vectors_are_those_of_the_size() {
+    for (n, term) in [
+        ("size 2", "dot(Λ*v, E2)"),
+        ("size 4", "dot(Λ*v, E4)"),
+        ("size 5", "tr(Λ*E4*E5^T)"),
+        ("size 8", "dot(E8, Λ*(E1 + E8))"),
+        ("dim n in 4..=6;", "dot(Λ*v, E4)"),
+    ] {
+        assert_eq!(of_size(n, term), "accepted", "{n}: {term}");
+    }
+    for (n, term, said) in [
+        (
+            "size 2",
+            "dot(Λ*v, E3)",
+            "there is no `E3` in 2 dimensions\n  help: the unit vectors are `E1` and `E2` here",
+        ),
+        ("size 2", "dot(Λ*E3, v)", "there is no `E3` in 2 dimensions"),
+        (
+            "size 2",
+            "tr(Λ*E1*E3^T)",
+            "there is no `E3` in 2 dimensions",
+        ),
+        (
+            "size 3",
+            "dot(Λ*v, E4)",
+            "there is no `E4` in 3 dimensions\n  help: the unit vectors are `E1` to `E3` here",
+        ),
+        ("size 3", "dot(Λ*v, E1 + E5)", "there is no `E5`"),
+        (
+            "size 3",
+            "dot(Λ*v, E9)",
+            "the unit vectors with a name are `E1` to `E8`",
+        ),
+        (
+            "dim n in 3..=8;",
+            "dot(Λ*v, E4)",
+            "there is no `E4` for the smallest `n`, which is 3",
+        ),
+    ] {
+        let message = of_size(n, term);
+        assert!(message.contains(said), "{n}: {term}: {message}");
+        assert!(!message.contains("declare it"), "{message}");
+    }
+}
+
+#[test]
+fn definitions_in_a_circle_are_told_as_one() {
+    let cases = [
+        ("let a = 2*a;", "`a` is defined by itself"),
+        (
+            "let a = 2*b; let b = m + a;",
+            "these definitions go in a circle: `a` uses `b`, `b` uses `a`",
+        ),
+        (
+            "let a = tr(J)*b; let b = -(c[1]); let c = a*v; let d = a;",
+            "these definitions go in a circle: `a` uses `b`, `b` uses `c`, `c` uses `a`",
+        ),
+        (
+            // The circle that there is, not the way to it.
+            "let d = a; let a = b^2; let b = sin(a);",
+            "these definitions go in a circle: `a` uses `b`, `b` uses `a`",
+        ),
+    ];
+    for (lets, said) in cases {
+        let message = refused(lets, "a");
+        assert_eq!(message.lines().next(), Some(said), "{lets}: {message}");
+        assert!(!message.contains("move `let"), "{lets}: {message}");
+    }
+    let two = refused("let a = b; let b = a; let c = d; let d = c;", "a + c");
+    assert!(
+        two.contains("`a` uses `b`") && two.contains("`c` uses `d`"),
+        "{two}"
+    );
+    let order = refused("let a = 2*b; let b = m;", "a");
+    assert!(order.contains("move `let b = ...;` up"), "{order}");
+}

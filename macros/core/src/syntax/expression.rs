@@ -289,8 +289,8 @@ fn operand(c: &mut Cursor) -> Parsed {
             c.advance();
             let mut arguments = Vec::new();
             while !c.take_delimiter(')') {
-                if !arguments.is_empty() {
-                    c.punct(',')?;
+                if !arguments.is_empty() && !c.take_punct(',') {
+                    return Err(c.unclosed().unwrap_or_else(|| c.unexpected("`,` or `)`")));
                 }
                 arguments.push(expression(c)?);
             }

@@ -2,6 +2,7 @@
 //! function for each statement. Knows no names and no shapes; those are `check`'s.
 
 pub mod ast;
+mod delimiters;
 mod expression;
 mod statement;
 mod text;
@@ -49,7 +50,11 @@ pub fn tokens(source: &str) -> Result<TokenStream, Errors> {
                 .into(),
         );
     }
-    text::with_plain_backslashes(source).parse().map_err(|e: proc_macro2::LexError| {
+    let text = text::with_plain_backslashes(source);
+    text.parse().map_err(|e: proc_macro2::LexError| {
+        if let Some(unmatched) = delimiters::unmatched(source) {
+            return unmatched.into();
+        }
         Errors::from(
             Diagnostic::new(Place::token(e.span()), format!("this is not a token of the language: {e}"))
                 .help("write Λ^T for a transpose (not Λ'), a*b or a b for a product (not a·b), dot(a, b) for ⟨a, b⟩"),

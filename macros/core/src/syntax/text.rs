@@ -8,10 +8,17 @@ pub(super) const BACKSLASH: char = '\u{e000}';
 /// The text with such backslashes in strings replaced; comments, raw strings and character literals
 /// are left alone.
 pub(super) fn with_plain_backslashes(source: &str) -> String {
+    read(source, |_, _| {})
+}
+
+/// The same, and every character outside of comments and literals is shown to `code`, with its place
+/// in the text that is returned, in bytes.
+pub(super) fn read(source: &str, mut code: impl FnMut(usize, char)) -> String {
     let mut out = String::with_capacity(source.len());
     let mut rest = source.chars().peekable();
     let mut before = ' ';
     while let Some(c) = rest.next() {
+        code(out.len(), c);
         out.push(c);
         match (c, rest.peek().copied()) {
             ('/', Some('/')) => {
@@ -34,6 +41,11 @@ pub(super) fn with_plain_backslashes(source: &str) -> String {
                 }
             }
             ('\'', Some('"')) => out.extend(rest.next()),
+            ('\'', Some('(' | ')' | '[' | ']' | '{' | '}'))
+                if rest.clone().nth(1) == Some('\'') =>
+            {
+                out.extend(rest.next());
+            }
             ('r', Some('"' | '#')) if !before.is_alphanumeric() && before != '_' => {
                 raw(&mut rest, &mut out);
             }

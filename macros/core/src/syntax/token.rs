@@ -3,6 +3,7 @@
 //! that no input exhausts the stack.
 
 use super::ast::Name;
+use super::delimiters::not_closed;
 use crate::diagnostic::{Diagnostic, Errors, Place};
 use proc_macro2::{Delimiter, Spacing, Span, TokenStream, TokenTree};
 
@@ -276,6 +277,8 @@ impl Cursor {
             error = self.unexpected("`;` after this");
             error.place = self.last_place();
         }
+        // The partner of what was not closed in its own statement, where that was told.
+        error.follows = matches!(self.peek(), Some(Token::Close(')' | ']')));
         Err(error.help("every statement ends with `;`"))
     }
 
@@ -298,7 +301,37 @@ impl Cursor {
         if self.take_delimiter(c) {
             return Ok(());
         }
-        Err(self.unexpected(&format!("`{c}`")))
+        Err(self
+            .unclosed()
+            .unwrap_or_else(|| self.unexpected(&format!("`{c}`"))))
+    }
+
+    /// Where a statement ends inside of parentheses, or its other side begins: the innermost opening delimiter, which is not
+    /// closed before.
+    pub fn unclosed(&self) -> Option<Diagnostic> {
+        let equals = self.is_punct('=') && !matches!(self.peek_at(1), Some(Token::Punct('=', _)));
+        if !self.is_punct(';') && !equals && !self.starts_statement() {
+            return None;
+        }
+        let mut closed = 0usize;
+        let opening = self
+            .tokens
+            .iter()
+            .take(self.at)
+            .rev()
+            .find_map(|(t, span)| {
+                match t {
+                    Token::Close(_) => closed += 1,
+                    Token::Open(_) if closed > 0 => closed -= 1,
+                    Token::Open(c) => return Some((*c, *span)),
+                    _ => {}
+                }
+                None
+            });
+        let (c, span) = opening.filter(|(c, _)| *c != '{')?;
+        let found = self.peek().map(Token::text)?;
+        let place = Place::token(span);
+        Some(not_closed(c, place, Some((&found, self.place()))))
     }
 
     /// Reads this word or fails.

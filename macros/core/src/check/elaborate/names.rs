@@ -33,6 +33,29 @@ pub(super) fn otherwise(name: &str) -> Option<&'static str> {
 }
 
 impl Elaborator<'_> {
+    /// The unit vector along an axis, if there is one in every size that is allowed.
+    fn unit(&self, size: Dim, axis: usize, place: Place) -> Elaborated {
+        let symbols = &self.names.symbols;
+        let (least, _) = symbols.sizes(size);
+        if let Some(axis) = u8::try_from(axis).ok().filter(|a| usize::from(*a) < least) {
+            return Ok(expr::unit(size, axis));
+        }
+        let bound = match size {
+            Dim::Fixed(n) => format!("in {n} dimensions"),
+            Dim::Named(_) => format!(
+                "for the smallest `{}`, which is {least}",
+                symbols.dim_text(size)
+            ),
+        };
+        let there = match least {
+            0 | 1 => "`E1` alone".to_owned(),
+            2 => "`E1` and `E2`".to_owned(),
+            n => format!("`E1` to `E{n}`"),
+        };
+        let message = format!("there is no `{}` {bound}", UNITS.get(axis).unwrap_or(&"En"));
+        fail(Diagnostic::new(place, message).help(format!("the unit vectors are {there} here")))
+    }
+
     pub(super) fn name(&self, n: &str, place: Place, expected: Option<Shape>) -> Elaborated {
         if let Some((_, value)) = self.bindings.iter().find(|(b, _)| b == n) {
             return Ok(value.clone());
@@ -58,7 +81,7 @@ impl Elaborator<'_> {
                 Some(s) if s.rows != Dim::Fixed(1) => s.rows,
                 _ => self.default_size(),
             };
-            return Ok(expr::unit(size, axis as u8));
+            return self.unit(size, axis, place);
         }
         let declared: Vec<&String> = self
             .names
@@ -96,6 +119,11 @@ impl Elaborator<'_> {
         } else if n == self.names.time_index {
             d = d.help(format!(
                 "`{n}` is the time index; `next(x)` is `x` at the node after"
+            ));
+        } else if n.strip_prefix('E').is_some_and(|i| i.parse::<u8>().is_ok()) {
+            d = d.help(format!(
+                "the unit vectors with a name are `E1` to `E{}`, as far as the size goes; `v[2]` and `A[1, 2]` are components",
+                UNITS.len()
             ));
         } else {
             d = d.help(format!("declare it, for example `param {n}: Real;`"));

@@ -1,0 +1,15 @@
+//! A parenthesis that is closed only after its statement has ended: the compiler sees pairs.
+
+clebsch::model! {
+    model Top {
+        param J: Sym<3>;
+        param gU: Vec<3>;
+        group Λ: SO<3> velocity Ω;
+        advected Γ: Vec<3>;
+        constraint next(Λ) = Λ*Ω;
+        constraint next(Γ) = Ω^T*Γ;
+        lagrangian = -tr(J*Ω)/h - h*dot(gU, Γ; let a = 2*(1 + h));
+    }
+}
+
+fn main() {}
