@@ -51,7 +51,7 @@ enum Unmatched {
 pub(super) fn unmatched(source: &str) -> Option<Diagnostic> {
     let mut open: Vec<Opening> = Vec::new();
     let mut fault = None;
-    let text = text::read(source, |at, c| match c {
+    let (text, whole) = text::read(source, |at, c| match c {
         _ if fault.is_some() => {}
         '(' | '[' | '{' => open.push(Opening {
             at,
@@ -74,7 +74,9 @@ pub(super) fn unmatched(source: &str) -> Option<Diagnostic> {
         },
         _ => {}
     });
-    match fault.or_else(|| open.pop().map(Unmatched::Opening))? {
+    // A string without an end hides what follows it.
+    let left = open.pop().filter(|_| whole);
+    match fault.or(left.map(Unmatched::Opening))? {
         Unmatched::Opening(o) => {
             let ends = match o.ends {
                 Some((at, c)) => Some((c.to_string(), place(&text, at)?)),
@@ -178,6 +180,19 @@ mod tests {
         ] {
             assert_eq!(fault(source), (line, column, said.to_owned()), "{source}");
         }
+    }
+
+    #[test]
+    fn a_string_without_end_is_told_before_what_it_hides() {
+        for source in [
+            "model M { param a as \"b; }",
+            "model M { /* let a = (b; }",
+            "model M { r#\"}\" }",
+        ] {
+            let (_, _, said) = fault(source);
+            assert!(said.contains("not a token"), "{source}: {said}");
+        }
+        assert_eq!(fault("model M { let a = (b; } \"").1, 19);
     }
 
     #[test]

@@ -8,15 +8,16 @@ pub(super) const BACKSLASH: char = '\u{e000}';
 /// The text with such backslashes in strings replaced; comments, raw strings and character literals
 /// are left alone.
 pub(super) fn with_plain_backslashes(source: &str) -> String {
-    read(source, |_, _| {})
+    read(source, |_, _| {}).0
 }
 
 /// The same, and every character outside of comments and literals is shown to `code`, with its place
-/// in the text that is returned, in bytes.
-pub(super) fn read(source: &str, mut code: impl FnMut(usize, char)) -> String {
+/// in the text that is returned, in bytes. With it whether every comment and string has an end.
+pub(super) fn read(source: &str, mut code: impl FnMut(usize, char)) -> (String, bool) {
     let mut out = String::with_capacity(source.len());
     let mut rest = source.chars().peekable();
     let mut before = ' ';
+    let mut whole = true;
     while let Some(c) = rest.next() {
         code(out.len(), c);
         out.push(c);
@@ -39,6 +40,7 @@ pub(super) fn read(source: &str, mut code: impl FnMut(usize, char)) -> String {
                         break;
                     }
                 }
+                whole &= depth == 0;
             }
             ('\'', Some('"')) => out.extend(rest.next()),
             ('\'', Some('(' | ')' | '[' | ']' | '{' | '}'))
@@ -47,27 +49,27 @@ pub(super) fn read(source: &str, mut code: impl FnMut(usize, char)) -> String {
                 out.extend(rest.next());
             }
             ('r', Some('"' | '#')) if !before.is_alphanumeric() && before != '_' => {
-                raw(&mut rest, &mut out);
+                whole &= raw(&mut rest, &mut out);
             }
-            ('"', _) => string(&mut rest, &mut out),
+            ('"', _) => whole &= string(&mut rest, &mut out),
             _ => {}
         }
         before = c;
     }
-    out
+    (out, whole)
 }
 
 type Rest<'a> = std::iter::Peekable<std::str::Chars<'a>>;
 
-/// After `r`: hashes, and what stands between the quotes.
-fn raw(rest: &mut Rest, out: &mut String) {
+/// After `r`: hashes, and what stands between the quotes; whether there is an end.
+fn raw(rest: &mut Rest, out: &mut String) -> bool {
     let mut hashes = 0;
     while rest.next_if_eq(&'#').is_some() {
         out.push('#');
         hashes += 1;
     }
     if rest.next_if_eq(&'"').is_none() {
-        return;
+        return true;
     }
     out.push('"');
     let mut closing: Option<usize> = None;
@@ -79,18 +81,19 @@ fn raw(rest: &mut Rest, out: &mut String) {
             _ => None,
         };
         if closing == Some(hashes) {
-            return;
+            return true;
         }
     }
+    false
 }
 
-/// After the quote that opens a string.
-fn string(rest: &mut Rest, out: &mut String) {
+/// After the quote that opens a string; whether there is an end.
+fn string(rest: &mut Rest, out: &mut String) -> bool {
     while let Some(d) = rest.next() {
         match (d, rest.peek().copied()) {
             ('"', _) => {
                 out.push(d);
-                return;
+                return true;
             }
             ('\\', Some(e @ ('n' | 'r' | 't' | '\\' | '0' | '\'' | '"' | '\n'))) => {
                 out.extend([d, e]);
@@ -100,6 +103,7 @@ fn string(rest: &mut Rest, out: &mut String) {
             _ => out.push(d),
         }
     }
+    false
 }
 
 #[cfg(test)]
