@@ -1,11 +1,15 @@
 //! Whether a step that looks symmetric is. Takes the reversal as derived; gives the warning that
-//! the action is not self-adjoint, where that is not what the model asks for.
+//! the action is not self-adjoint, on the terms that make it so, where that is not what the model
+//! asks for.
 
+use super::terms::{place, typed};
 use super::{Inputs, Topic, Warning, difference};
 use crate::check::spec::Spec;
 use crate::derive::action::{self, Action};
 use crate::derive::reversal::{self, Reversal};
 use crate::diagnostic::Diagnostic;
+use crate::expr::shape::Shape;
+use crate::expr::{self, Expr};
 use crate::syntax::ast::NodeRule;
 
 /// The warning, if the action is not self-adjoint and no rule of one side explains it.
@@ -36,12 +40,36 @@ pub(super) fn order(x: &Inputs) -> Option<Warning> {
     if difference::is_total(x, &reversal::sum(x.spec, &action)) {
         return None;
     }
-    let left = left.map_or_else(String::new, |e| format!(": their sum is {}", x.text(&e)));
+    let (addends, all) = typed(x);
+    let mut blamed = blamed(x, addends);
+    if blamed.is_empty() {
+        blamed = self::blamed(x, all);
+    }
+    let terms: Vec<String> = blamed.iter().map(|(term, _)| x.text(term)).collect();
+    let left = match terms.is_empty() {
+        true => left,
+        false => shown(x, &blamed),
+    };
+    let left = left.map(|e| x.text(&e));
+    let reverses = |verb, left: Option<String>| {
+        left.map_or_else(String::new, |sum| format!(", which with {verb} {sum}"))
+    };
+    let because = match terms.as_slice() {
+        [] => left.map_or_else(String::new, |sum| format!(": their sum is {sum}")),
+        [one] => {
+            let sum = reverses("its reverse adds up to", left);
+            format!(" because of the term {one}{sum}")
+        }
+        several => {
+            let sum = reverses("their reverses add up to", left);
+            format!(" because of the terms {}{sum}", several.join(" and "))
+        }
+    };
     let d = Diagnostic::new(
-        x.spec.lagrangian_place,
+        place(x, blamed.first().map(|(term, _)| term)),
         format!(
             "the scheme is of first order only: its discrete Lagrangian L is not self-adjoint, \
-             L(q0, q1, h) and -L(q1, q0, -h) are not equal up to a total difference{left}"
+             L(q0, q1, h) and -L(q1, q0, -h) are not equal up to a total difference{because}"
         ),
     )
     .help(
@@ -50,6 +78,67 @@ pub(super) fn order(x: &Inputs) -> Option<Warning> {
          `node outgoing;`",
     );
     Some(Warning::new(Topic::FirstOrder, d))
+}
+
+/// The largest sum that is shown.
+const SHOWN: u32 = 40;
+
+/// What terms and their reverses add up to, in the shorter of two forms, as it comes and in normal form;
+/// nothing where both are too long to be read.
+fn shown(x: &Inputs, terms: &[(Expr, Expr)]) -> Option<Expr> {
+    let sums = terms.iter().map(|(_, sum)| sum.clone());
+    let sum = expr::sum(sums, Shape::SCALAR);
+    let algebra = x.engine();
+    let normal = algebra.raise(&algebra.lower(&sum));
+    let shorter = match !algebra.exhausted() && normal.size() < sum.size() {
+        true => normal,
+        false => sum,
+    };
+    (shorter.size() <= SHOWN).then_some(shorter)
+}
+
+/// Those among the terms, as typed, that are not self-adjoint, each with the sum of it and its reverse.
+/// Two that are so together are none, and where all terms are, none is named.
+fn blamed(x: &Inputs, terms: Vec<Expr>) -> Vec<(Expr, Expr)> {
+    let count = terms.len();
+    let mut found: Vec<(Expr, Expr)> = Vec::new();
+    for term in terms {
+        let Some(sum) = left_over(x, &term) else {
+            continue;
+        };
+        let joint = |other: &Expr| difference::is_total(x, &expr::add(sum.clone(), other.clone()));
+        match found.iter().position(|(_, other)| joint(other)) {
+            Some(partner) => {
+                found.remove(partner);
+            }
+            None => found.push((term, sum)),
+        }
+    }
+    match found.len() == count {
+        true => Vec::new(),
+        false => found,
+    }
+}
+
+/// A term and its reverse, where they do not add up to a total difference.
+fn left_over(x: &Inputs, term: &Expr) -> Option<Expr> {
+    let physical = match &x.spec.scale {
+        Some(scale) => expr::quotient(term.clone(), scale.clone()),
+        None => term.clone(),
+    };
+    let action = action::action(&Spec {
+        lagrangian: physical,
+        node_rule: NodeRule::Symmetric,
+        reduction: None,
+        ..x.spec.clone()
+    });
+    let symmetric = |a: &Action| reversed(x, a).is_some_and(|r| r.is_symmetric());
+    let special = x.for_symmetric_matrices(&action);
+    if symmetric(&action) || special.is_some_and(|a| symmetric(&a)) {
+        return None;
+    }
+    let sum = reversal::sum(x.spec, &action);
+    (!difference::is_total(x, &sum)).then_some(sum)
 }
 
 /// The reversal of an action; nothing where the work ran out.

@@ -30,7 +30,7 @@ fn moves(x: &Inputs, e: &Expr) -> bool {
 
 /// The Lagrangian as typed: the terms of its sum as they stand, where it is one, and all of them with
 /// common factors multiplied in.
-fn typed(x: &Inputs) -> (Vec<Expr>, Vec<Expr>) {
+pub(super) fn typed(x: &Inputs) -> (Vec<Expr>, Vec<Expr>) {
     let whole = &x.spec.typed;
     let addends = match whole.node() {
         Node::Sum(list) => list.clone(),
@@ -250,7 +250,7 @@ pub(super) fn vanishing(x: &Inputs) -> Option<Warning> {
 }
 
 /// Where a term was typed: that of the same term without signs and divisors, else the Lagrangian.
-fn place(x: &Inputs, term: Option<&Expr>) -> Place {
+pub(super) fn place(x: &Inputs, term: Option<&Expr>) -> Place {
     fn core(e: &Expr) -> &Expr {
         match e.node() {
             Node::Neg(a) | Node::Quotient(a, _) => core(a),

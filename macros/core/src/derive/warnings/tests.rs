@@ -173,6 +173,45 @@ fn first_order_that_is_not_asked_for_is_said() {
         let sided = rule("-tr(J*Ω)/h - h*dot(gU, Γ)*dot(gU, next(Γ))^2");
         assert_eq!(sided, [FirstOrder]);
     }
+    // The terms are named, and no others, with what they leave over.
+    let pair = |term: &str| {
+        words(&format!(
+            "param J: Sym<3>; param b, z: Vec<3>; param f: Real; group A: SO<3> velocity u; \
+             group B: SO<3> velocity v; constraint next(A) = A*u; constraint next(B) = B*v; \
+             lagrangian = -tr(J*u)/h - tr(J*v)/h + dot(z, next(A)*b - A*b)*f {term} \
+             - h*f*dot(A*z, B*b);"
+        ))
+    };
+    for (term, said) in [
+        (
+            "+ f*dot(A*vee(u), B*b)",
+            "because of the term f (A_k vee(u_k))·(B_k b), which with its reverse adds up to \
+             f (A_k vee(u_k))·(B_k b) + f (A_k u_k vee(u_kᵀ))·(B_k v_k b)\n",
+        ),
+        (
+            "- (f/h)*dot((A*u - A)*z, (v*B - B)*b)",
+            "because of the term -f ((A_k u_k - A_k) z)·((v_k B_k - B_k) b)/h\n",
+        ),
+        (
+            "+ f*dot(z, A*b)*dot(z, next(B)*b - B*b)",
+            "because of the term f (z·(A_k b)) z·(B_{k+1} b - B_k b), which",
+        ),
+        (
+            "- h^2*f*dot(z, A*b) + f*dot(A*vee(u), B*b)",
+            "because of the terms -h² f z·(A_k b) and f (A_k vee(u_k))·(B_k b)\n",
+        ),
+        // Two that are self-adjoint together.
+        (
+            "+ f*dot(z, A*b)*dot(z, next(B)*b - B*b) - h^2*f*dot(z, B*b) \
+             + f*dot(z, next(A)*b)*dot(z, next(B)*b - B*b)",
+            "because of the term -h² f z·(B_k b), which",
+        ),
+    ] {
+        let found = pair(term);
+        let first = found.lines().find(|l| l.contains("of first order only"));
+        let first = first.map(|l| format!("{l}\n")).unwrap_or_default();
+        assert!(first.contains(said), "{term}: {found}");
+    }
     // A general left factor is symmetric where it is a symmetric matrix.
     let general = "param C: Mat<3>; group Λ: SO<3> velocity Ω; constraint next(Λ) = Λ*Ω; \
                    lagrangian = -tr(C*Ω)/h;";
