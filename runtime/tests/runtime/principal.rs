@@ -12,6 +12,7 @@
 )]
 
 pub mod models;
+mod motion;
 mod oracle;
 pub mod stated;
 

@@ -177,6 +177,7 @@ impl<V: NodeValues, const D: usize> Certificate<V, D> {
     pub fn care(&self) -> Care {
         Care {
             lasting: !self.tries() && self.misses.is_multiple_of(PATIENCE),
+            everywhere: !V::ANY,
             proved: self.purpose != Purpose::Trial,
         }
     }

@@ -17,6 +17,7 @@ pub(super) fn lasting<G, E, const D: usize, const K: usize>(
     equations: &Equations<G, E, D, K>,
     rest: &Stage<G, D>,
     wanted: &[f64; D],
+    everywhere: bool,
 ) -> Option<Traced<G, D>>
 where
     G: Group<f64>,
@@ -32,8 +33,12 @@ where
         let radii = wanted.map(|x| times * x);
         let whole = strain(&radii);
         let half = strain(&radii.map(|r| 0.5 * r));
-        let regular = whole.spread(&radii).is_some();
-        let next = reach(&whole.mean(&half), &radii, G::PARTS.min(D)).filter(|_| regular);
+        // Regular in the whole region: also where the velocity does not come.
+        let away = whole.spread(&radii).map(|_| &whole);
+        let next = away.and_then(|whole| {
+            let back = everywhere.then_some(whole);
+            reach(&whole.mean(&half), back, &radii, G::PARTS.min(D))
+        });
         // Larger as long as the reach grows.
         let worse = next.is_none_or(|n| best.is_some_and(|b| b[0] >= n[0]));
         if worse && best.is_some_and(|reach| fits::<G, D>(wanted, &reach)) {
@@ -48,11 +53,34 @@ where
     })
 }
 
-/// Within which lengths of rest a solution is the principal root: there `(1 - e)^-1 |x|` does not
-/// exceed the radii, since `|x|` does not exceed `(1 + e) |c|`, both with the mean strain.
-fn reach<const D: usize>(strain: &Strain<D>, radii: &[f64; D], parts: usize) -> Option<[f64; D]> {
-    let needed = strain.spread(&strain.pull(radii))?;
-    let pairs = radii.iter().zip(&needed).take(parts);
-    let share = pairs.fold(1.0, |least: f64, (r, y)| least.min(r / y));
+/// Within which lengths of rest a solution `c` is the principal root, given the mean strain `e` along
+/// lines from rest. With `x = B (T(c) - T(0))` the curve to it, seen from rest, is no longer than
+/// `τ (1 - e)^-1 |x|`, and `|x|` does not exceed `(1 + e) |c|`: it stays in the region if that does
+/// not exceed the radii.
+///
+/// Given the strain `back` between any two places as well, it is also no farther from `c` than
+/// `(1 - τ) (1 - back)^-1 |x|`: no farther from rest than the smaller of the first and of `|c|` with
+/// the second, which is largest where both are the same. A region that serves at other nodes keeps
+/// the margin that this would take.
+fn reach<const D: usize>(
+    mean: &Strain<D>,
+    back: Option<&Strain<D>>,
+    radii: &[f64; D],
+    parts: usize,
+) -> Option<[f64; D]> {
+    let pulled = mean.pull(radii);
+    let away = mean.spread(&pulled)?;
+    let back = match back {
+        Some(strain) => strain.spread(&pulled)?.map(Some),
+        None => [None; D],
+    };
+    let triples = radii.iter().zip(away).zip(back).take(parts);
+    let share = triples.fold(1.0, |least: f64, ((r, away), back)| {
+        let farthest = match back {
+            Some(back) => away * (r + back) / (away + back),
+            None => away,
+        };
+        least.min(r / farthest)
+    });
     (share > 0.0).then(|| radii.map(|r| share * r))
 }

@@ -33,6 +33,8 @@ const MOST_PROOFS: usize = 64;
 pub struct Care {
     /// Whether a proof is looked for that serves for later steps too.
     pub lasting: bool,
+    /// Whether that one holds at every node, for the tangent is the same.
+    pub everywhere: bool,
     /// Whether a proof of every stage is looked for; else how the tangent changes on it is taken
     /// from its end. Where that fails the curve is followed closely, without a proof.
     pub proved: bool,
@@ -145,7 +147,7 @@ where
         let mut own = [0.0; D];
         found.extents(&mut own);
         let wanted = core::array::from_fn(|b| own[b].max(lengths[b]).max(0.01 * units[b]));
-        if let Some(proved) = lasting(equations, &stage, &wanted) {
+        if let Some(proved) = lasting(equations, &stage, &wanted, care.everywhere) {
             return Ok(proved);
         }
     }
