@@ -34,6 +34,8 @@ pub enum Kind {
     BodyMomentum,
     /// Momentum in spatial axes: angular; for a rigid motion angular, then linear.
     SpatialMomentum,
+    /// Momentum of a field, of its shape.
+    FieldMomentum,
 }
 
 /// A parameter, an initial value or an observable.

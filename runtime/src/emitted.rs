@@ -7,9 +7,9 @@ pub use crate::card::{
 };
 pub use crate::domain;
 pub use crate::groups::{
-    BodyImpulse, BodyMomentum, BodyMomentumMatrix, Coadjoint, Group, Linear, Orthogonal,
-    RigidMotion, Rotation, SpatialImpulse, SpatialMomentum, SpatialMomentumMatrix, TurnedRotation,
-    UnitQuaternion,
+    Additive, BodyImpulse, BodyMomentum, BodyMomentumMatrix, Coadjoint, FieldMomentum, Group,
+    Linear, Orthogonal, RigidMotion, Rotation, SpatialImpulse, SpatialMomentum,
+    SpatialMomentumMatrix, TurnedRotation, UnitQuaternion,
 };
 pub use crate::integrate::Residual;
 pub use crate::integrate::{
@@ -29,7 +29,9 @@ pub use crate::solvers::left_factor::{
 };
 pub use crate::solvers::moser_veselov::{Edge, Free, MoserVeselovError, Order, Poinsot, forced};
 pub use crate::solvers::newton;
-pub use crate::solvers::two_sided::two_sided;
+pub use crate::solvers::two_sided::{
+    divided, left_sided, right_sided, two_sided, two_sided_increment,
+};
 pub use crate::solvers::unit_quaternions::{QuaternionBody, QuaternionError};
 pub use crate::validate;
 pub use crate::{ParameterError, StartError, StepCause, StepError};
@@ -172,6 +174,14 @@ pub fn matrix_basis<T: Real, const N: usize>(index: usize) -> SMatrix<T, N, N> {
     })
 }
 
+/// The matrix unit with this index, row by row: a basis of the increments of a field.
+#[inline]
+#[must_use]
+pub fn array_basis<T: Real, const R: usize, const C: usize>(index: usize) -> SMatrix<T, R, C> {
+    let one = |at| if at == index { T::one() } else { T::zero() };
+    SMatrix::from_fn(|i, j| one(C * i + j))
+}
+
 /// Writes the components of a vector to the front of `out`; returns what is left of it.
 #[inline]
 pub fn put_vector<'a, T: Real, const N: usize>(
@@ -192,12 +202,18 @@ pub fn put_skew<'a, T: Real, const N: usize>(
 
 /// The same for the entries of a matrix, row by row.
 #[inline]
-pub fn put_matrix<'a, T: Real, const N: usize>(
+pub fn put_matrix<'a, T: Real, const R: usize, const C: usize>(
     out: &'a mut [T],
-    value: &SMatrix<T, N, N>,
+    value: &SMatrix<T, R, C>,
 ) -> &'a mut [T] {
-    let entries = (0..N).flat_map(|i| (0..N).map(move |j| value[(i, j)]));
-    fill(out, N * N, entries)
+    let entries = (0..R).flat_map(|i| (0..C).map(move |j| value[(i, j)]));
+    fill(out, R * C, entries)
+}
+
+/// The same for one number.
+#[inline]
+pub fn put_number<'a, T: Real>(out: &'a mut [T], value: &T) -> &'a mut [T] {
+    fill(out, 1, [*value].into_iter())
 }
 
 #[inline]
@@ -336,6 +352,17 @@ pub fn linear_of<const N: usize>(
     let matrix = matrix_of::<N, N>(field, values)?;
     Linear::from_matrix(&matrix)
         .map_err(|e| OpenError::Start(StartError::Initial(e.in_field(field))))
+}
+
+/// The values of one field of the model at a node.
+///
+/// # Errors
+/// When their number is not that of its entries.
+pub fn additive_of<const R: usize, const C: usize>(
+    field: &'static str,
+    values: Option<&Vec<f64>>,
+) -> Result<Additive<R, C, f64>, OpenError> {
+    Ok(Additive::new(matrix_of::<R, C>(field, values)?))
 }
 
 /// The values of one field as a unit quaternion `(w, x, y, z)`.

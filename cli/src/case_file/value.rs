@@ -15,7 +15,7 @@ const QUATERNION: f64 = 1e-6;
 pub(super) fn expected(field: &Field) -> String {
     let Field { rows, cols, .. } = *field;
     match field.kind {
-        Kind::Scalar => "a number".to_owned(),
+        _ if rows * cols == 1 => "a number".to_owned(),
         Kind::Rotation if rows == 3 => {
             "a 3x3 matrix [[..], [..], [..]] or a unit quaternion [w, x, y, z]".to_owned()
         }
@@ -34,10 +34,10 @@ pub(super) fn expected(field: &Field) -> String {
 /// The numbers of `field`, row-major; a rotation as its matrix.
 pub(super) fn numbers(field: &Field, value: &DeValue<'_>) -> Result<Vec<f64>, String> {
     let Field { rows, cols, .. } = *field;
-    let flat = field.kind == Kind::Scalar || cols == 1;
+    let (flat, one) = (cols == 1, rows * cols == 1);
     match shape(value) {
-        Shape::Number if field.kind == Kind::Scalar => Ok(vec![number(value)?]),
-        Shape::Vector(n) if flat && field.kind != Kind::Scalar && n == rows => row(value),
+        Shape::Number if one => Ok(vec![number(value)?]),
+        Shape::Vector(n) if flat && !one && n == rows => row(value),
         Shape::Vector(4) if field.kind == Kind::Rotation && rows == 3 => quaternion(&row(value)?),
         Shape::Vector(n) if field.kind == Kind::Diagonal && n == rows => {
             Ok(on_diagonal(&row(value)?))

@@ -100,6 +100,7 @@ fn about(field: &Field) -> String {
         }
         Kind::BodyMomentum => "momentum at the first node, body frame".to_owned(),
         Kind::SpatialMomentum => "momentum at the first node, space frame".to_owned(),
+        Kind::FieldMomentum => "momentum at the first node".to_owned(),
     };
     let written = if field.name == field.ascii {
         String::new()
@@ -115,7 +116,7 @@ fn about(field: &Field) -> String {
 }
 
 fn value(field: &Field, numbers: &[f64]) -> String {
-    if field.kind == Kind::Scalar {
+    if field.rows * field.cols == 1 {
         return numbers
             .first()
             .map_or_else(String::new, |x| format!("{x:?}"));

@@ -27,7 +27,12 @@ pub(crate) type Plot = Result<Option<String>, String>;
 /// Momentum components against time, one panel per momentum.
 pub(crate) fn momentum(run: &Finished<'_>, samples: &Samples) -> Plot {
     observables(run, samples, "momentum", |field| {
-        matches!(field.kind, Kind::BodyMomentum | Kind::SpatialMomentum)
+        let kinds = [
+            Kind::BodyMomentum,
+            Kind::SpatialMomentum,
+            Kind::FieldMomentum,
+        ];
+        kinds.contains(&field.kind)
     })
 }
 
@@ -196,6 +201,7 @@ fn letter(field: &Field) -> &str {
     match field.kind {
         Kind::BodyMomentum => "μ",
         Kind::SpatialMomentum => "m",
+        Kind::FieldMomentum => "p",
         _ => field.name,
     }
 }
@@ -206,6 +212,7 @@ fn quantity(field: &Field) -> String {
     match field.kind {
         Kind::BodyMomentum => format!("body momentum {letter}"),
         Kind::SpatialMomentum => format!("spatial momentum {letter}"),
+        Kind::FieldMomentum => format!("momentum {letter}"),
         _ => letter.to_owned(),
     }
 }
@@ -215,6 +222,7 @@ fn caption(field: &Field) -> String {
     match field.kind {
         Kind::BodyMomentum => format!("{name}, body frame"),
         Kind::SpatialMomentum => format!("{name}, space frame"),
+        Kind::FieldMomentum => field.doc.to_owned(),
         _ if field.doc.is_empty() => name,
         _ => format!("{name}: {}", crate::list::first_line(field.doc)),
     }

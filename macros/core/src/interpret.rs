@@ -4,7 +4,7 @@
 use crate::check::spec::{Group, Side};
 use crate::derive::Derivation;
 use crate::derive::transport::Transport;
-use crate::expr::shape::Dim;
+use crate::expr::shape::{Dim, Structure};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr, Function, Letter, Map, Node, Part, Shift};
 use crate::schedule::{Program, program};
@@ -54,6 +54,10 @@ impl Matrix {
     /// The entry in row `i`, column `j`; zero outside.
     pub fn get(&self, i: usize, j: usize) -> f64 {
         self.data.get(i * self.cols + j).copied().unwrap_or(0.0)
+    }
+
+    fn minus(&self, b: &Matrix) -> Matrix {
+        Matrix::from_fn(self.rows, self.cols, |i, j| self.get(i, j) - b.get(i, j))
     }
 
     fn times(&self, b: &Matrix) -> Matrix {
@@ -390,16 +394,11 @@ pub fn run(program: &Program, values: &Assignment) -> Result<Vec<Matrix>, EvalEr
 /// GL(n): all entries, row by row (the variation being the matrix unit). SU(2): the vector, whose
 /// variation is half the imaginary unit. SE(3): three angular, then three linear components.
 fn coordinates(group: Group, m: &Matrix) -> Vec<f64> {
-    match group {
-        Group::SpecialOrthogonal(Dim::Fixed(3))
-        | Group::GeneralLinear(_)
-        | Group::UnitQuaternions
-        | Group::RigidMotions => m.data.clone(),
-        Group::SpecialOrthogonal(_) => {
-            let pairs = (0..m.rows).flat_map(|i| (i + 1..m.rows).map(move |j| (i, j)));
-            pairs.map(|(i, j)| m.get(j, i)).collect()
-        }
+    if group.dual().1 != Structure::Skew {
+        return m.data.clone();
     }
+    let pairs = (0..m.rows).flat_map(|i| (i + 1..m.rows).map(move |j| (i, j)));
+    pairs.map(|(i, j)| m.get(j, i)).collect()
 }
 
 impl Derivation {
@@ -485,14 +484,14 @@ impl Derivation {
                     )
                 };
                 let (g, next) = (at(level)?, at(level + 1)?);
-                let inverse = if c.group.is_orthogonal() {
-                    g.transposed()
-                } else {
-                    g.inverse_and_det().0
+                let inverse = |g: &Matrix| match c.group.is_orthogonal() {
+                    true => g.transposed(),
+                    false => g.inverse_and_det().0,
                 };
                 let w = match c.side {
-                    Side::Body => inverse.times(&next),
-                    Side::Spatial => next.times(&inverse),
+                    _ if c.group.is_additive() => next.minus(&g),
+                    Side::Body => inverse(&g).times(&next),
+                    Side::Spatial => next.times(&inverse(&g)),
                 };
                 all.set(&s.get(c.velocity).name, level, w.rows, w.cols, &w.data);
             }

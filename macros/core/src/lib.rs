@@ -11,6 +11,7 @@ pub mod emit;
 pub mod expr;
 #[cfg(feature = "pretty")]
 pub mod generated;
+pub mod groups;
 pub mod interpret;
 pub mod pipeline;
 #[cfg(feature = "pretty")]

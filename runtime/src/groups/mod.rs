@@ -1,6 +1,7 @@
 //! Matrix Lie groups as the solvers see them, one file a group, and their products.
 //! Takes group elements and algebra coordinates; gives group elements.
 
+mod additive;
 mod coordinate;
 mod linear;
 mod matrix_momentum;
@@ -11,6 +12,7 @@ pub mod so3;
 mod su2;
 mod turned;
 
+pub use additive::{Additive, FieldMomentum};
 pub use coordinate::{Coordinate, Part};
 pub use linear::{Linear, NotInvertible};
 pub use matrix_momentum::{BodyMomentumMatrix, SpatialMomentumMatrix};

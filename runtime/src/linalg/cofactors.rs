@@ -57,10 +57,10 @@ pub fn small_inverse<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> Option<SM
 
 /// The solution of `A X = B`, or `None` as for [`small_inverse`].
 #[inline]
-pub fn small_solve<T: Real, const N: usize>(
+pub fn small_solve<T: Real, const N: usize, const C: usize>(
     a: &SMatrix<T, N, N>,
-    b: &SMatrix<T, N, N>,
-) -> Option<SMatrix<T, N, N>> {
+    b: &SMatrix<T, N, C>,
+) -> Option<SMatrix<T, N, C>> {
     match by_cofactors(a) {
         Some(x) => Some(x * b),
         None => solve_many(a, b),

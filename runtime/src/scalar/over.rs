@@ -106,16 +106,16 @@ impl<A: OfScalars, B: OfScalars<Scalar = A::Scalar>> OfScalars for (A, B) {
 
 /// Implements [`OfScalars`] for a type of the runtime, given its fields.
 macro_rules! of_scalars {
-    ($Type:ident $(<$N:ident>)? { $($field:tt),+ }) => {
-        impl<$(const $N: usize,)? T: $crate::Real> $crate::scalar::OfScalars for $Type<$($N,)? T> {
+    ($Type:ident $(<$($N:ident),+>)? { $($field:tt),+ }) => {
+        impl<$($(const $N: usize,)+)? T: $crate::Real> $crate::scalar::OfScalars for $Type<$($($N,)+)? T> {
             type Scalar = T;
-            type Over<U: $crate::Real> = $Type<$($N,)? U>;
+            type Over<U: $crate::Real> = $Type<$($($N,)+)? U>;
 
             #[inline]
             fn over<U: $crate::Real>(
                 &self,
                 change: &mut impl FnMut(T) -> U,
-            ) -> $Type<$($N,)? U> {
+            ) -> $Type<$($($N,)+)? U> {
                 $Type { $($field: self.$field.over(change)),+ }
             }
         }

@@ -1,8 +1,9 @@
-//! The linear equation `L (Ω - Id) R = M` of a step on GL(n): two small linear systems, one after the other,
-//! never one in all entries. Takes the factors and the known side; gives the velocity.
+//! The linear equation of a step, `L (Ω - Id) R = M` on GL(n) and `L ΔX R = P` of a field: small linear
+//! systems, one after the other, never one in all entries. Takes the factors and the known side; gives
+//! the velocity.
 
 use crate::Real;
-use crate::groups::Linear;
+use crate::groups::{Additive, Linear};
 use crate::linalg::small_solve;
 use core::fmt;
 use nalgebra::SMatrix;
@@ -39,10 +40,69 @@ pub fn two_sided<T: Real, const N: usize>(
     right: &SMatrix<T, N, N>,
     names: &[&'static str; 2],
 ) -> Result<Linear<N, T>, SingularFactor> {
-    let singular = |side: usize| SingularFactor {
-        factor: names[side],
-    };
-    let half = small_solve(left, known).ok_or_else(|| singular(0))?;
-    let whole = small_solve(&right.transpose(), &half.transpose()).ok_or_else(|| singular(1))?;
-    Ok(Linear::stepped(SMatrix::identity() + whole.transpose()))
+    let change = two_sided_increment(left, known, right, names)?;
+    Ok(Linear::stepped(SMatrix::identity() + change.matrix()))
+}
+
+/// The solution of `left ΔX right = known`.
+///
+/// # Errors
+/// [`SingularFactor`] where elimination finds no pivot.
+#[inline]
+pub fn two_sided_increment<T: Real, const R: usize, const C: usize>(
+    left: &SMatrix<T, R, R>,
+    known: &SMatrix<T, R, C>,
+    right: &SMatrix<T, C, C>,
+    names: &[&'static str; 2],
+) -> Result<Additive<R, C, T>, SingularFactor> {
+    let half = left_sided(left, known, names[0])?.matrix();
+    let whole = small_solve(&right.transpose(), &half.transpose());
+    let whole = whole.ok_or(SingularFactor { factor: names[1] })?;
+    Ok(Additive::new(whole.transpose()))
+}
+
+/// The solution of `left ΔX = known`.
+///
+/// # Errors
+/// [`SingularFactor`] where elimination finds no pivot.
+#[inline]
+pub fn left_sided<T: Real, const R: usize, const C: usize>(
+    left: &SMatrix<T, R, R>,
+    known: &SMatrix<T, R, C>,
+    name: &'static str,
+) -> Result<Additive<R, C, T>, SingularFactor> {
+    let solved = small_solve(left, known).ok_or(SingularFactor { factor: name })?;
+    Ok(Additive::new(solved))
+}
+
+/// The solution of `ΔX right = known`.
+///
+/// # Errors
+/// [`SingularFactor`] where elimination finds no pivot.
+#[inline]
+pub fn right_sided<T: Real, const R: usize, const C: usize>(
+    known: &SMatrix<T, R, C>,
+    right: &SMatrix<T, C, C>,
+    name: &'static str,
+) -> Result<Additive<R, C, T>, SingularFactor> {
+    let solved = small_solve(&right.transpose(), &known.transpose());
+    let solved = solved.ok_or(SingularFactor { factor: name })?;
+    Ok(Additive::new(solved.transpose()))
+}
+
+/// The solution of `number ΔX = known`.
+///
+/// # Errors
+/// [`SingularFactor`] where the number is zero or not finite.
+#[inline]
+pub fn divided<T: Real, const R: usize, const C: usize>(
+    known: &SMatrix<T, R, C>,
+    number: T,
+    name: &'static str,
+) -> Result<Additive<R, C, T>, SingularFactor> {
+    let inverse = T::one() / number;
+    match inverse.is_finite() && number.is_finite() {
+        true => Ok(Additive::new(known * inverse)),
+        false => Err(SingularFactor { factor: name }),
+    }
 }

@@ -12,6 +12,7 @@ mod carried_momentum;
 mod carried_references;
 mod dimensions_against_hand;
 mod ellipsoids;
+mod fields;
 mod high_order;
 mod hygiene;
 mod joint_symmetries;

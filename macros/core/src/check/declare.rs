@@ -9,6 +9,7 @@ use crate::expr::Expr;
 use crate::expr::shape::{Shape, Structure};
 use crate::expr::spelling::{seen, seen_typeset, twin};
 use crate::expr::symbol::{Role, SymbolId, Symbols, ascii};
+use crate::groups::Additive;
 use crate::syntax::ast::{Model, Name, Statement};
 use crate::syntax::{FUNCTIONS, HIDEABLE};
 
@@ -172,10 +173,24 @@ pub fn declare(model: &Model, errors: &mut Errors) -> Declared {
     for (statement, docs) in model.statements.iter().zip(&model.remarks) {
         d.statement(statement, docs, errors);
     }
+    d.increments();
     d
 }
 
 impl Declared {
+    /// Names the increments of fields, and states how these go on: `next(X) = X + ΔX`.
+    fn increments(&mut self) {
+        let symbols = &mut self.symbols;
+        let fields = self.configurations.iter_mut();
+        for c in fields.filter(|c| c.group.is_additive()) {
+            let symbol = symbols.get(c.element).clone();
+            let name = symbols.fresh_name(&format!("Δ{}", symbol.name));
+            c.velocity = symbols.add(&name, symbol.shape, Structure::General, Role::Velocity);
+            let [x, change] = [c.element, c.velocity].map(|id| crate::expr::here(symbols, id));
+            c.update = Some((crate::expr::add(x, change), c.place));
+        }
+    }
+
     fn statement(&mut self, statement: &Statement, docs: &[String], errors: &mut Errors) {
         match statement {
             Statement::Dim { name, from, to } => {
@@ -221,7 +236,7 @@ impl Declared {
                 if !self.admit(name, errors) || !self.admit(velocity, errors) {
                     return;
                 }
-                let shape = Shape::square(kind.size());
+                let shape = kind.shape();
                 let structure = kind.structure();
                 let symbols = &mut self.symbols;
                 let element = symbols.add(&name.text, shape, structure, Role::Element);
@@ -238,6 +253,32 @@ impl Declared {
                     update: None,
                     stated: false,
                 });
+            }
+            Statement::Field { names, shape } => {
+                let Some(shape) = shapes::field(&self.symbols, shape, errors) else {
+                    let spoilt = names.iter().map(|n| (n.text.clone(), n.place));
+                    self.places.extend(spoilt);
+                    return;
+                };
+                for name in names {
+                    if !self.admit(name, errors) {
+                        continue;
+                    }
+                    let element =
+                        self.symbols
+                            .add(&name.text, shape, Structure::General, Role::Element);
+                    self.symbols.describe(element, name.latex(), docs);
+                    self.configurations.push(DeclaredGroup {
+                        element,
+                        // Named when every name of the model is known.
+                        velocity: element,
+                        group: Group::Additive(Additive(shape)),
+                        place: name.place,
+                        group_place: name.place,
+                        update: None,
+                        stated: true,
+                    });
+                }
             }
             Statement::Advected { names, shape, .. } => {
                 let Some((shape, structure)) = shapes::advected_shape(&self.symbols, shape, errors)

@@ -106,6 +106,15 @@ pub fn not_a_reconstruction(symbols: &Symbols, g: &DeclaredGroup, place: Place) 
 
 pub fn unused_velocity(spec: &Spec, c: &Configuration) -> Diagnostic {
     let v = &spec.symbols.get(c.velocity).name;
+    if c.group.is_additive() {
+        let x = &spec.symbols.get(c.element).name;
+        let example = c.group.kinetic_example(x);
+        return Diagnostic::new(
+            spec.lagrangian_place,
+            format!("`next({x})` does not appear in the Lagrangian, so the motion of `{x}` is not determined"),
+        )
+        .help(format!("add a kinetic term, for example `{example}`"));
+    }
     Diagnostic::new(
         spec.lagrangian_place,
         format!(

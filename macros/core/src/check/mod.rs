@@ -20,7 +20,7 @@ pub(crate) use declare::is_rust_word;
 
 use declare::Declared;
 use elaborate::Elaborator;
-use spec::{Advected, Assumption, Configuration, Spec, Subject};
+use spec::{Advected, Assumption, Configuration, Side, Spec, Subject};
 
 /// Largest expression tree the derivation takes on.
 const LARGEST: u32 = 1_000;
@@ -143,6 +143,7 @@ fn checked(model: &Model) -> Result<Spec, Errors> {
             | Statement::Time { .. }
             | Statement::Param { .. }
             | Statement::Group { .. }
+            | Statement::Field { .. }
             | Statement::Advected { .. } => {}
         }
     }
@@ -199,7 +200,12 @@ fn finish(
         let Some((update, place)) = g.update.clone() else {
             continue;
         };
-        match shapes::side(&declared.symbols, g, &update) {
+        let side = match g.group.is_additive() {
+            // One frame is as good as another; the momentum is that of space.
+            true => Some(Side::Spatial),
+            false => shapes::side(&declared.symbols, g, &update),
+        };
+        match side {
             Some(side) => configurations.push(Configuration {
                 element: g.element,
                 velocity: g.velocity,
@@ -281,6 +287,7 @@ fn remarks(model: &Model, declared: &Declared) -> Vec<(Subject, Vec<String>)> {
             Statement::Let { .. }
             | Statement::Param { .. }
             | Statement::Group { .. }
+            | Statement::Field { .. }
             | Statement::Advected { .. } => None,
         };
         if let Some(subject) = subject.filter(|_| !docs.is_empty()) {
@@ -311,7 +318,7 @@ fn usage(spec: &Spec) -> Result<(), Errors> {
     if spec.configurations.is_empty() {
         errors.push(
             Diagnostic::new(spec.name_place, "the model has no configuration")
-                .help("state one, for example `group Λ: SO<3> velocity Ω;`"),
+                .help("state one, for example `group Λ: SO<3> velocity Ω;` or `field X: Vec<3>;`"),
         );
     }
     for l in &used {

@@ -6,6 +6,7 @@ use crate::diagnostic::{Diagnostic, Errors, closest};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr};
+use crate::groups::{GeneralLinear, RigidMotions, UnitQuaternions};
 use crate::syntax::ast::{Kindred, Size};
 
 /// Largest matrix of the language.
@@ -95,7 +96,7 @@ pub fn shape(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<(Sha
         "Mat" => one(errors).map(square(Structure::General)),
         "SO" => one(errors).map(square(Structure::Orthogonal)),
         "GL" => one(errors).map(square(Structure::Invertible)),
-        "SU" | "SE" => group(symbols, k, errors).map(|g| (Shape::square(g.size()), g.structure())),
+        "SU" | "SE" => group(symbols, k, errors).map(|g| (g.shape(), g.structure())),
         other => {
             let mut e = Diagnostic::new(k.name.place, format!("`{other}` is not a shape"));
             e = match closest(other, SHAPES.into_iter().chain(GROUPS)) {
@@ -119,6 +120,29 @@ pub fn advected_shape(
     shape(symbols, k, errors)
 }
 
+/// The shape of a field.
+pub fn field(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<Shape> {
+    let (found, structure) = shape(symbols, k, errors)?;
+    if structure == Structure::General {
+        return Some(found);
+    }
+    let own = written(k);
+    let (message, help) = match GROUPS.contains(&k.name.text.as_str()) {
+        true => (
+            format!("the values of a field are added, and sums of elements of `{own}` leave it"),
+            format!("a configuration in a group is stated by `group Λ: {own} velocity Ω;`"),
+        ),
+        false => (
+            format!(
+                "a field varies in every entry by itself, and those of `{own}` are bound to one another"
+            ),
+            "fields are Real, Vec<n>, Mat<n> or Mat<n, m>".to_owned(),
+        ),
+    };
+    errors.push(Diagnostic::new(k.place, message).help(help));
+    None
+}
+
 /// A shape or a group as written.
 fn written(k: &Kindred) -> String {
     let sizes: Vec<String> = k
@@ -138,12 +162,12 @@ fn written(k: &Kindred) -> String {
 /// A group of the table.
 pub fn group(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<Group> {
     match k.name.text.as_str() {
-        "SO" => sizes(symbols, k, 1, errors).map(|d| Group::SpecialOrthogonal(d[0])),
-        "GL" => sizes(symbols, k, 1, errors).map(|d| Group::GeneralLinear(d[0])),
+        "SO" => sizes(symbols, k, 1, errors).map(|d| Group::rotations(d[0])),
+        "GL" => sizes(symbols, k, 1, errors).map(|d| Group::GeneralLinear(GeneralLinear(d[0]))),
         "SU" | "SE" => {
             let (wanted, found) = match k.name.text.as_str() {
-                "SU" => (2, Group::UnitQuaternions),
-                _ => (3, Group::RigidMotions),
+                "SU" => (2, Group::UnitQuaternions(UnitQuaternions)),
+                _ => (3, Group::RigidMotions(RigidMotions)),
             };
             let given = sizes(symbols, k, 1, errors)?;
             if given == [Dim::Fixed(wanted)] {

@@ -2,58 +2,12 @@
 //! passed names, shapes and sides; spans are kept only to report what a derivation refuses.
 
 use crate::diagnostic::Place;
-use crate::expr::shape::{Dim, Shape, Structure};
+use crate::expr::shape::Shape;
 use crate::expr::symbol::{SymbolId, Symbols};
 use crate::expr::{Expr, Letter, Shift};
 use crate::syntax::ast::{Comparison, NodeRule};
 
-/// A matrix group of the engine's table.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Group {
-    /// Rotations, SO(n).
-    SpecialOrthogonal(Dim),
-    /// Invertible matrices, GL(n).
-    GeneralLinear(Dim),
-    /// Unit quaternions, SU(2), as 4 x 4 matrices of left multiplication.
-    UnitQuaternions,
-    /// Rigid motions of space, SE(3), as 4 x 4 homogeneous matrices.
-    RigidMotions,
-}
-
-impl Group {
-    /// The size n of its matrices.
-    pub fn size(self) -> Dim {
-        match self {
-            Group::SpecialOrthogonal(n) | Group::GeneralLinear(n) => n,
-            Group::UnitQuaternions | Group::RigidMotions => Dim::Fixed(4),
-        }
-    }
-
-    /// Whether its Lie algebra is the skew matrices.
-    pub fn is_orthogonal(self) -> bool {
-        matches!(self, Group::SpecialOrthogonal(_))
-    }
-
-    /// What its elements obey.
-    pub fn structure(self) -> Structure {
-        match self {
-            Group::SpecialOrthogonal(_) => Structure::Orthogonal,
-            Group::GeneralLinear(_) => Structure::Invertible,
-            Group::UnitQuaternions => Structure::UnitQuaternion,
-            Group::RigidMotions => Structure::RigidMotion,
-        }
-    }
-
-    /// The number of coordinates of its Lie algebra, where its elements are written by them; the
-    /// Lie algebras of SO(n) and GL(n) are matrices of one structure.
-    pub fn coordinates(self) -> Option<Dim> {
-        match self {
-            Group::SpecialOrthogonal(_) | Group::GeneralLinear(_) => None,
-            Group::UnitQuaternions => Some(Dim::Fixed(3)),
-            Group::RigidMotions => Some(Dim::Fixed(6)),
-        }
-    }
-}
+pub use crate::groups::Group;
 
 /// On which side the velocity stands in the reconstruction.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -114,6 +68,8 @@ pub struct Reduction {
     /// How the invariance was decided: the Lagrangian as stated is the reduced one, with every
     /// advected quantity put in by its definition.
     pub known: crate::algebra::Known,
+    /// Whether groups were stated by `next`, so that parameters were looked for that absorb them.
+    pub carries: bool,
 }
 
 /// A condition on the parameters, checked when they are given.

@@ -35,8 +35,8 @@ impl Axial {
     ) -> Option<Axial> {
         let matrix = expr::here(symbols, c.velocity);
         let parts = match c.group {
-            Group::SpecialOrthogonal(Dim::Fixed(3)) => vec![expr::vee(matrix)],
-            Group::UnitQuaternions => {
+            group if group.is_of_space() => vec![expr::vee(matrix)],
+            Group::UnitQuaternions(_) => {
                 let rotation = expr::rotation(symbols, matrix.clone());
                 vec![expr::imaginary(matrix), expr::vee(rotation)]
             }

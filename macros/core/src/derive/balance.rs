@@ -13,7 +13,7 @@ use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
 
 /// The balance of one configuration. Every part is a covector of the Lie algebra in the form of
-/// [`lie::covector`]: a vector for SO(3) and SU(2), a skew matrix for SO(n), a matrix for GL(n), an angular
+/// [`crate::groups`]: a vector for SO(3) and SU(2), a skew matrix for SO(n), a matrix for GL(n), an angular
 /// and a linear vector on top of each other for SE(3).
 #[derive(Clone, Debug)]
 pub struct Balance {
@@ -75,7 +75,7 @@ fn balance(
     let velocity_next = expr::shift_time(s, &v.incoming.1, Shift::NEXT.time);
     let dual = |pairing: Expr| {
         let y = expr::gradient(s, &pairing, xi);
-        lie::of_gradient(letters, c.group, y)
+        c.group.of_gradient(s, y)
     };
     let edge_out = dual(expr::neg(pairing(letters, &gradient, &v.outgoing.1)));
     let edge_in = dual(pairing(letters, &gradient, &velocity_next));
@@ -166,7 +166,7 @@ fn increment(
         return None;
     }
     let difference = expr::sub(incoming.clone(), outgoing.clone());
-    let reduced = if difference.shape() == Shape::vector(Dim::Fixed(3)) {
+    let reduced = if difference.shape() == Shape::vector(Dim::Fixed(3)) && !c.group.is_additive() {
         // Axial vectors cancel as skew matrices.
         expr::vee(algebra.raise(&algebra.lower(&expr::hat(difference))))
     } else {

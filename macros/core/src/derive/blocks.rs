@@ -4,12 +4,13 @@
 //! Takes the balances and their Riccati forms; gives the blocks and the method of each.
 
 use super::balance::Balance;
+use super::explicit::Explicit;
 use super::recognise::{Method, Riccati, Solve, is_constant, is_of_space};
 use super::seen_from_body::outgoing;
 use super::variation::at;
 use super::{Derivation, Letters};
 use crate::check::spec::Spec;
-use crate::expr::{self, Shift};
+use crate::expr::{self, Expr, Shift};
 
 /// Configurations whose velocities are solved together.
 #[derive(Clone, Debug)]
@@ -26,6 +27,12 @@ impl Block {
     /// Whether its balance is linear in the velocity.
     pub fn is_linear(&self) -> bool {
         matches!(self.method, Method::Linear)
+    }
+
+    /// What a step makes of a linear balance.
+    pub fn linear_work(&self) -> Option<&str> {
+        let why = self.is_linear().then_some(self.reason.as_str())?;
+        Some(why.strip_prefix(LINEAR).unwrap_or(why))
     }
 
     /// Whether it is a Moser-Veselov equation with a left factor known at the node.
@@ -80,10 +87,7 @@ fn block(spec: &Spec, letters: &Letters, riccati: &[Riccati], members: Vec<usize
                 Method::Davenport,
                 "C is known at each node: the largest real eigenvalue of a 4 x 4 matrix".to_owned(),
             ),
-            Riccati::Linear(_) => (
-                Method::Linear,
-                "the balance is linear: two small linear systems".to_owned(),
-            ),
+            Riccati::Linear(form) => (Method::Linear, linear(form)),
             Riccati::None(why) => (Method::Newton, format!("{why}: Newton")),
             _ => (Method::Newton, "Newton on the derived residual".to_owned()),
         },
@@ -97,6 +101,20 @@ fn block(spec: &Spec, letters: &Letters, riccati: &[Riccati], members: Vec<usize
         method,
         reason,
     }
+}
+
+/// What stands before how a linear balance is solved.
+const LINEAR: &str = "the balance is linear: ";
+
+/// How a linear balance is solved.
+fn linear(form: &Explicit) -> String {
+    let number = |e: &Expr| e.shape().is_scalar();
+    let what = match (number(&form.left), number(&form.right)) {
+        (true, true) => "one division",
+        (false, false) => "two small linear systems",
+        _ => "one small linear system",
+    };
+    format!("{LINEAR}{what}")
 }
 
 /// The methods of all blocks in one sentence, equal ones together.

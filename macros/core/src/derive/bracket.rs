@@ -4,9 +4,9 @@
 //! bracket at any point.
 
 use super::Letters;
-use super::lie;
+use super::action::Action;
 use super::variation::{Variation, at};
-use crate::check::spec::{Group, Side, Spec};
+use crate::check::spec::{Side, Spec};
 use crate::derive::Derivation;
 use crate::expr::shape::{Dim, Structure};
 use crate::expr::symbol::{SymbolId, Symbols};
@@ -54,8 +54,12 @@ pub struct Bracket {
     pub advected: Vec<Moved>,
     /// Group elements: with them it is the bracket of the phase space.
     pub elements: Vec<Moved>,
-    /// What is printed: momenta, then advected quantities; zero brackets left out.
+    /// What is printed: momenta, then configurations that stand in the action, then advected
+    /// quantities.
     pub rows: Vec<Row>,
+    /// Whether configurations stand in the action themselves: the bracket is that of their phase space
+    /// then.
+    pub holds_elements: bool,
 }
 
 /// Which space a matrix of the bracket is of.
@@ -88,11 +92,15 @@ fn part(s: &Symbols, x: &Expr, from: u8) -> Expr {
     expr::mul(expr::transpose(s, taken), x.clone())
 }
 
-/// An element of a basis of a Lie algebra: its entries (row, column, value) that are not zero.
-pub type Element = Vec<(usize, usize, i64)>;
+pub use crate::groups::Element;
 
 /// The derived bracket.
-pub fn bracket(spec: &Spec, letters: &Letters, variations: &[Variation]) -> Bracket {
+pub fn bracket(
+    spec: &Spec,
+    letters: &Letters,
+    action: &Action,
+    variations: &[Variation],
+) -> Bracket {
     let s = &letters.symbols;
     let mut rows = Vec::new();
     let mut momenta = Vec::new();
@@ -102,27 +110,8 @@ pub fn bracket(spec: &Spec, letters: &Letters, variations: &[Variation]) -> Brac
             expr::here(s, letters.variation[i]),
             expr::here(s, letters.direction[i]),
         );
-        let along = |e: Expr| lie::pairing(letters, c.group, mu.clone(), e);
-        let value = match c.group {
-            Group::SpecialOrthogonal(Dim::Fixed(3)) => expr::dot(
-                mu.clone(),
-                expr::cross(expr::vee(xi.clone()), expr::vee(eta.clone())),
-            ),
-            Group::SpecialOrthogonal(_) | Group::GeneralLinear(_) => along(expr::sub(
-                expr::mul(xi.clone(), eta.clone()),
-                expr::mul(eta.clone(), xi.clone()),
-            )),
-            Group::UnitQuaternions => along(expr::cross(xi.clone(), eta.clone())),
-            // [(ω, v), (ω', v')] = (ω × ω', ω × v' - ω' × v)
-            Group::RigidMotions => {
-                let (a, b) = (angular(s, &xi), angular(s, &eta));
-                let moved = expr::sub(
-                    expr::cross(a.clone(), linear(s, &eta)),
-                    expr::cross(b.clone(), linear(s, &xi)),
-                );
-                along(expr::stacked(expr::cross(a, b), moved))
-            }
-        };
+        let along = |e: Expr| c.group.pairing(s, mu.clone(), e);
+        let value = c.group.bracket(s, mu.clone(), xi.clone(), eta.clone());
         let value = match c.side {
             Side::Body => expr::neg(value),
             Side::Spatial => value,
@@ -180,14 +169,21 @@ pub fn bracket(spec: &Spec, letters: &Letters, variations: &[Variation]) -> Brac
             })
         })
         .collect();
-    for m in &advected {
+    let stands = |m: &Moved| {
+        let at_ends = [Shift::HERE, Shift::NEXT].map(|shift| at(m.quantity, shift));
+        at_ends.iter().any(|l| expr::contains(&action.total, *l))
+    };
+    let elements: Vec<Moved> = elements;
+    let holds_elements = elements.iter().any(stands);
+    let shown = elements.iter().filter(|m| stands(m)).chain(&advected);
+    for m in shown {
         for motion in &m.motions {
             let c = &spec.configurations[motion.configuration];
             let mu = expr::here(s, letters.node_momentum[motion.configuration]);
             let xi = expr::here(s, letters.variation[motion.configuration]);
             rows.push(Row {
                 first: expr::here(s, m.quantity),
-                second: lie::pairing(letters, c.group, mu, xi),
+                second: c.group.pairing(s, mu, xi),
                 value: motion.change.clone(),
             });
         }
@@ -197,6 +193,7 @@ pub fn bracket(spec: &Spec, letters: &Letters, variations: &[Variation]) -> Brac
         advected,
         elements,
         rows,
+        holds_elements,
     }
 }
 
@@ -208,20 +205,6 @@ pub fn skew_entries(n: usize) -> Coordinates {
     }
     let pairs = (0..n).flat_map(|i| (i + 1..n).map(move |j| (j, i)));
     pairs.collect()
-}
-
-/// A basis of the Lie algebra in the order of the momentum's coordinates.
-pub fn basis(group: Group, n: usize) -> Vec<Element> {
-    match group {
-        Group::SpecialOrthogonal(_) => skew_entries(n)
-            .into_iter()
-            .map(|(i, j)| vec![(i, j, 1), (j, i, -1)])
-            .collect(),
-        Group::GeneralLinear(_) => (0..n * n).map(|k| vec![(k / n, k % n, 1)]).collect(),
-        // Their elements are written by coordinates.
-        Group::UnitQuaternions => (0..3).map(|i| vec![(i, 0, 1)]).collect(),
-        Group::RigidMotions => (0..6).map(|i| vec![(i, 0, 1)]).collect(),
-    }
 }
 
 /// The coordinates of a quantity of `rows x cols`.
@@ -277,7 +260,7 @@ impl Bracket {
         let bases: Vec<_> = spec
             .configurations
             .iter()
-            .map(|c| basis(c.group, numbers.dim(c.group.size())))
+            .map(|c| c.group.basis(&|n| numbers.dim(n)))
             .collect();
         let starts: Vec<usize> = bases
             .iter()
@@ -384,7 +367,7 @@ impl Numbers for Plain<'_> {
 
 impl Derivation {
     /// The matrix of the bracket at a point: momenta first (by configuration, in the basis
-    /// [`basis`]), then the quantities of the space in order of declaration, in [`Coordinates`].
+    /// of [`crate::groups::Record::basis`]), then the quantities of the space in order of declaration, in [`Coordinates`].
     /// Values are needed for momenta (under their names in [`Letters::node_momentum`]) and for
     /// the quantities, at level 0.
     ///

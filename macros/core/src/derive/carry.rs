@@ -6,12 +6,11 @@ use super::Letters;
 use super::action::Action;
 use super::axial::Axial;
 use super::balance::{Balance, shorter};
-use super::lie;
 use super::rounding::Rounding;
 use super::transport::Transport;
 use super::variation::{Variation, at};
 use crate::algebra::Algebra;
-use crate::check::spec::{Configuration, Group, Side, Spec};
+use crate::check::spec::{Configuration, Side, Spec};
 use crate::expr::shape::{Shape, Structure};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Node, Shift};
@@ -72,13 +71,10 @@ pub fn carries(inputs: &Inputs) -> Vec<Carry> {
     let configurations = inputs.spec.configurations.iter();
     let small: Vec<Option<SymbolId>> = configurations
         .map(|c| {
-            let matrices = matches!(
-                c.group,
-                Group::SpecialOrthogonal(_) | Group::GeneralLinear(_)
-            );
+            let matrices = c.group.coordinates().is_none() && !c.group.is_additive();
             matrices.then(|| {
                 let name = symbols.fresh_name("D");
-                let shape = Shape::square(c.group.size());
+                let shape = c.group.shape();
                 symbols.add(&name, shape, Structure::General, Role::Velocity)
             })
         })
@@ -284,7 +280,7 @@ impl Work<'_> {
         let xi = at(self.inputs.letters.variation[i], Shift::HERE);
         let change = expr::directional(self.symbols, e, along);
         let y = expr::gradient(self.symbols, &change, xi);
-        lie::of_gradient(self.inputs.letters, c.group, y)
+        c.group.of_gradient(self.symbols, y)
     }
 
     /// The same covector as it was derived, in its normal form, and in that of velocities less the
@@ -294,7 +290,7 @@ impl Work<'_> {
         let (mut there, mut back) = (Vec::new(), Vec::new());
         for (c, small) in self.inputs.spec.configurations.iter().zip(self.small) {
             if let Some(small) = small {
-                let (velocity, one) = (at(c.velocity, Shift::HERE), expr::identity(c.group.size()));
+                let (velocity, one) = (at(c.velocity, Shift::HERE), c.group.identity());
                 let whole = expr::add(expr::here(s, *small), one.clone());
                 there.push((velocity, whole));
                 let less = expr::sub(expr::here(s, c.velocity), one);

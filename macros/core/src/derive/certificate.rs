@@ -9,11 +9,10 @@ mod tests;
 use super::Letters;
 use super::action::Action;
 use super::balance::{Balance, pairing};
-use super::clebsch::{self, Relation, constraint_terms};
-use super::lie;
+use super::clebsch::{Relation, constraint_terms};
 use super::momentum::Momentum;
 use super::variation::{Variation, at, on_shell, previous_elements};
-use crate::algebra::{Algebra, Known, Rational};
+use crate::algebra::{Algebra, Known};
 use crate::check::spec::Spec;
 use crate::diagnostic::{Diagnostic, Errors};
 use crate::expr::shape::Shape;
@@ -345,13 +344,9 @@ fn named_form(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
     let c = &x.spec.configurations[i];
     let xi = expr::here(s, x.letters.variation[i]);
     let back = |e: &Expr| expr::shift_time(s, e, Shift::PREVIOUS.time);
-    let weight = if c.group.is_orthogonal() {
-        Rational::HALF
-    } else {
-        Rational::ONE
-    };
+    let weight = c.group.weight();
     let matrix = |e: &Expr| expr::scale(weight, pairing(x.letters, e, &xi));
-    let node = |e: Expr| lie::pairing(x.letters, c.group, e, xi.clone());
+    let node = |e: Expr| c.group.pairing(s, e, xi.clone());
     let v = &x.variations[i];
     let l = &x.action.total;
     let before = back(l);
@@ -406,7 +401,7 @@ fn named_form(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
     block(
         "the momentum map of the multiplier",
         matrix(&m.cotangent),
-        expr::scale(clebsch::weight(c.group), paired),
+        expr::scale(weight, paired),
     );
     for (j, (letter, change)) in v.advected.iter().enumerate() {
         let Some(diamond) = m.diamonds.get(j).filter(|e| !e.is_zero()) else {

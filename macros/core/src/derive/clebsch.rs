@@ -8,7 +8,7 @@ use super::action::Action;
 use super::balance::{pairing, shorter};
 use super::variation::at;
 use crate::algebra::{Algebra, Rational};
-use crate::check::spec::{Group, Spec};
+use crate::check::spec::Spec;
 use crate::expr::shape::Shape;
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr, Letter, Shift};
@@ -25,16 +25,6 @@ pub struct Relation {
     pub up_to_group_multiplier: bool,
 }
 
-/// The weight of the pairing of a group element with its multiplier: with ½ the momentum map of
-/// SO(n) is `skew(Λ^T P)`, with 1 that of GL(n) is `Q^T P`.
-pub fn weight(group: Group) -> Rational {
-    if group.is_orthogonal() {
-        Rational::HALF
-    } else {
-        Rational::ONE
-    }
-}
-
 /// The multiplier terms of one edge, one for each constraint, in order of configurations and
 /// advected quantities.
 pub fn constraint_terms(spec: &Spec, letters: &Letters) -> Vec<Expr> {
@@ -46,7 +36,7 @@ pub fn constraint_terms(spec: &Spec, letters: &Letters) -> Vec<Expr> {
         expr::scale(weight, pairing(letters, &p, &gap))
     };
     let groups = spec.configurations.iter().zip(&letters.momentum);
-    let groups = groups.map(|(c, p)| term(*p, c.element, &c.update, weight(c.group)));
+    let groups = groups.map(|(c, p)| term(*p, c.element, &c.update, c.group.weight()));
     let advected = spec.advected.iter().zip(&letters.multiplier);
     let advected = advected.map(|(a, p)| term(*p, a.quantity, &a.update, Rational::ONE));
     groups.chain(advected).collect()
@@ -92,7 +82,7 @@ pub fn relations(
         out.push(Relation {
             variable,
             gradient: expr::collect(s, &expr::gradient(s, &edge, variable)),
-            up_to_group_multiplier: !matches!(c.group, Group::GeneralLinear(_)),
+            up_to_group_multiplier: c.group.has_normal(),
         });
     }
     out

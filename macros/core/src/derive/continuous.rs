@@ -5,17 +5,16 @@
 
 use super::Letters;
 use super::balance::{pairing, shorter};
-use super::lie;
 use super::limit::Limit;
 use super::variation::{Variation, at};
-use crate::algebra::{Algebra, Rational};
+use crate::algebra::Algebra;
 use crate::check::spec::{Configuration, Group, Side, Spec};
-use crate::expr::shape::{Dim, Shape};
+use crate::expr::shape::Shape;
 use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr, Letter, Node, Shift};
 
 /// The equations of motion in continuous time, per configuration. Momenta and forces are covectors
-/// as in [`lie::covector`]: vectors for SO(3), SU(2) and SE(3), skew matrices for SO(n), matrices
+/// as in [`crate::groups`]: vectors for SO(3), SU(2) and SE(3), skew matrices for SO(n), matrices
 /// for GL(n).
 #[derive(Clone, Debug)]
 pub struct Continuous {
@@ -42,13 +41,7 @@ pub struct Continuous {
 /// The velocity `ζ` in place of a letter of variation.
 pub fn velocity(letters: &Letters, group: Group, symbol: SymbolId) -> Expr {
     let zeta = expr::here(&letters.symbols, symbol);
-    match group {
-        Group::SpecialOrthogonal(Dim::Fixed(3)) => expr::hat(zeta),
-        Group::SpecialOrthogonal(_)
-        | Group::GeneralLinear(_)
-        | Group::UnitQuaternions
-        | Group::RigidMotions => zeta,
-    }
+    group.rate(zeta)
 }
 
 /// The equations of motion of a limit.
@@ -112,16 +105,7 @@ pub fn continuous(
     for (i, (c, v)) in spec.configurations.iter().zip(variations).enumerate() {
         let zeta = at(letters.rate[i], Shift::HERE);
         let gradient = expr::gradient(s, &lagrangian, zeta);
-        let momentum = match c.group {
-            // The velocity is a vector here, and so is the gradient.
-            Group::SpecialOrthogonal(Dim::Fixed(3))
-            | Group::UnitQuaternions
-            | Group::RigidMotions => gradient,
-            Group::SpecialOrthogonal(_) | Group::GeneralLinear(_) => {
-                lie::covector(letters, c.group, gradient)
-            }
-        };
-        let momentum = short(momentum);
+        let momentum = short(c.group.of_rate_gradient(s, gradient));
         let forces = forces(letters, c, v, i, &lagrangian);
         let forces = without_axial_vectors(algebra, short(forces));
         let mu = at(letters.node_momentum[i], Shift::HERE);
@@ -168,7 +152,7 @@ fn forces(
     });
     let total = expr::sum(terms.collect::<Vec<_>>(), Shape::SCALAR);
     let xi = at(letters.variation[i], Shift::HERE);
-    lie::of_gradient(letters, c.group, expr::gradient(s, &total, xi))
+    c.group.of_gradient(s, expr::gradient(s, &total, xi))
 }
 
 /// `ad*_ζ μ` with `<ad*_ζ μ, ξ> = <μ, [ζ, ξ]>`, with the sign of the side: velocities vary as
@@ -177,29 +161,8 @@ fn coadjoint(letters: &Letters, c: &Configuration, i: usize) -> Expr {
     let s = &letters.symbols;
     let mu = expr::here(s, letters.node_momentum[i]);
     let zeta = expr::here(s, letters.rate[i]);
-    let body = match c.group {
-        Group::SpecialOrthogonal(Dim::Fixed(3)) | Group::UnitQuaternions => expr::cross(mu, zeta),
-        // (a × ω + l × v, l × ω) of the momentum (a, l) and the velocity (ω, v).
-        Group::RigidMotions => {
-            let part = |e: &Expr, row| expr::part_of_six(s, e, row);
-            let turn = part(&zeta, 0);
-            let angular = expr::add(
-                expr::cross(part(&mu, 0), turn.clone()),
-                expr::cross(part(&mu, 3), part(&zeta, 3)),
-            );
-            expr::stacked(angular, expr::cross(part(&mu, 3), turn))
-        }
-        Group::SpecialOrthogonal(_) | Group::GeneralLinear(_) => {
-            let turned = expr::transpose(s, zeta);
-            expr::sub(expr::mul(turned.clone(), mu.clone()), expr::mul(mu, turned))
-        }
-    };
     match c.side {
-        Side::Body => body,
-        Side::Spatial if c.group == Group::SpecialOrthogonal(Dim::Fixed(3)) => {
-            let mu = expr::here(s, letters.node_momentum[i]);
-            expr::cross(expr::here(s, letters.rate[i]), mu)
-        }
-        Side::Spatial => expr::scale(Rational::MINUS_ONE, body),
+        Side::Body => c.group.coadjoint(s, mu, zeta),
+        Side::Spatial => c.group.coadjoint_in_space(s, mu, zeta),
     }
 }

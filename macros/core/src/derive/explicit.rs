@@ -1,18 +1,21 @@
-//! The explicit form of a balance on GL(n): the momentum of a node is linear in the velocity of the
-//! edge that leaves it, `μ = L (Ω - Id) R + rest` with factors known at the node, though gradients along
-//! the group are quadratic. Two small linear systems then give the velocity.
+//! The explicit form of a balance: the momentum of a node is linear in the velocity of the edge that
+//! leaves it. On GL(n) `μ = L (Ω - Id) R + rest` with factors known at the node, though gradients along
+//! the group are quadratic; of a field `p = L ΔX R + rest`. Small linear systems then give the velocity.
 //! Takes a balance; gives the factors and the rest.
 
 use super::Letters;
 use super::balance::{Balance, shorter};
 use super::occurrence::{Occurrence, occurrence};
-use crate::algebra::{Algebra, Factor, Poly, Rational, Term};
+use super::variation::at;
+use crate::algebra::{Algebra, Atom, Factor, Poly, Rational, Term};
 use crate::check::spec::Spec;
+use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::{Role, SymbolId};
-use crate::expr::{self, Expr};
+use crate::expr::{self, Expr, Letter, Shift};
 
-/// `μ = left (Ω - Id) right + rest`: what is solved for is small where the step is. All are n x n
-/// matrices, made of parameters and of quantities at the node.
+/// `μ = left (Ω - Id) right + rest`, or `p = left ΔX right + rest`: what is solved for is small where
+/// the step is. The factors are square matrices, or numbers that stand for multiples of the identity,
+/// made of parameters and of quantities at the node.
 #[derive(Clone, Debug)]
 pub struct Explicit {
     /// The factor to the left of the velocity, the step in it.
@@ -22,6 +25,9 @@ pub struct Explicit {
     /// The node momentum at rest.
     pub rest: Expr,
 }
+
+/// Most components of a vector whose factor is made column by column.
+const LARGEST: u32 = 8;
 
 /// The form of the balance of configuration `i`, or what stands against it.
 pub fn form(
@@ -36,20 +42,31 @@ pub fn form(
     let refused = || format!("the balance is not linear in {}", s.get(velocity).name);
     let outgoing = expr::substitute(s, &b.outgoing, &spec.end_of_edge());
     let poly = algebra.lower(&outgoing);
-    let (left, right, rest) = split(algebra, &poly, velocity).ok_or_else(refused)?;
-    let (left, right) = (
-        shorter(algebra, algebra.raise(&left)),
-        shorter(algebra, algebra.raise(&right)),
-    );
-    let at_rest = expr::add(expr::mul(left.clone(), right.clone()), algebra.raise(&rest));
+    let group = spec.configurations[i].group;
+    let split = match group.shape().is_scalar() {
+        true => split_number(algebra, &poly, velocity),
+        false => split(algebra, &poly, velocity),
+    };
+    let by_columns = || by_columns(letters, &outgoing, velocity, algebra);
+    let found = match split {
+        Some((left, right, rest)) => {
+            let number = group.is_additive();
+            let [left, right] = [left, right].map(|p| factor(algebra, &p, number));
+            Some((left, right, algebra.raise(&rest)))
+        }
+        None => group.is_additive().then(by_columns).flatten(),
+    };
+    let (left, right, rest) = found.ok_or_else(refused)?;
+    let still = group.identity();
+    let word = expr::product([left.clone(), still.clone(), right.clone()]);
+    let at_rest = expr::add(word, rest);
     let found = Explicit {
         rest: shorter(algebra, at_rest),
         left,
         right,
     };
     let moving = |e: &Expr| expr::contains_role(s, e, Role::Velocity);
-    let n = spec.configurations[i].group.size();
-    let change = expr::sub(expr::here(s, velocity), expr::identity(n));
+    let change = expr::sub(expr::here(s, velocity), still);
     let word = [found.left.clone(), change, found.right.clone()];
     let whole = expr::add(expr::product(word), found.rest.clone());
     let proved = algebra.is_zero(&expr::sub(whole, outgoing));
@@ -57,6 +74,72 @@ pub fn form(
         true => Ok(found),
         false => Err(refused()),
     }
+}
+
+/// A factor; of a field, whose factors may be multiples of the identity, by the multiple.
+fn factor(algebra: &Algebra, p: &Poly, number: bool) -> Expr {
+    if !number || p.shape.is_scalar() || p.terms.keys().any(|t| !t.word.is_empty()) {
+        return shorter(algebra, algebra.raise(p));
+    }
+    let mut multiple = Poly::zero(Shape::SCALAR);
+    let terms = &mut p.terms.iter();
+    match terms.all(|(term, c)| multiple.push(term.clone(), *c)) {
+        true => shorter(algebra, algebra.raise(&multiple)),
+        false => algebra.raise(p),
+    }
+}
+
+/// The parts of a number that is linear in the velocity, a number.
+fn split_number(algebra: &Algebra, poly: &Poly, velocity: SymbolId) -> Option<(Poly, Poly, Poly)> {
+    let own = Atom::Letter(at(velocity, Shift::HERE));
+    let (mut left, mut rest) = (Poly::zero(Shape::SCALAR), Poly::zero(Shape::SCALAR));
+    for (term, coefficient) in &poly.terms {
+        let mut others = term.clone();
+        let place = others
+            .monomial
+            .iter()
+            .position(|(atom, q)| *atom == own && q.is_one());
+        if let Some(place) = place {
+            others.monomial.remove(place);
+        }
+        let free = matches!(occurrence(algebra, &others, velocity), Occurrence::Free);
+        let into = match place {
+            Some(_) => &mut left,
+            None => &mut rest,
+        };
+        if !free || !into.push(others, *coefficient) {
+            return None;
+        }
+    }
+    let one = Poly::term(Shape::SCALAR, Rational::ONE, Term::default());
+    (!left.is_zero()).then_some((left, one, rest))
+}
+
+/// The parts of a vector that is linear in the velocity, a vector, with the factor column by column.
+fn by_columns(
+    letters: &Letters,
+    outgoing: &Expr,
+    velocity: SymbolId,
+    algebra: &Algebra,
+) -> Option<(Expr, Expr, Expr)> {
+    let s = &letters.symbols;
+    let shape = s.get(velocity).shape;
+    let Dim::Fixed(n) = shape.rows else {
+        return None;
+    };
+    if !shape.is_vector() || n > LARGEST {
+        return None;
+    }
+    let own: Letter = at(velocity, Shift::HERE);
+    let columns = (0..n as u8).map(|axis| {
+        let unit = expr::unit(shape.rows, axis);
+        let column = expr::directional(s, outgoing, &[(own, unit.clone())]);
+        expr::mul(shorter(algebra, column), expr::transpose(s, unit))
+    });
+    let left = expr::sum(columns.collect::<Vec<_>>(), Shape::square(shape.rows));
+    let rest = expr::substitute(s, outgoing, &[(own, expr::zero(shape))]);
+    let left = algebra.shortest(&left);
+    Some((left, expr::integer(1), shorter(algebra, rest)))
 }
 
 /// A term `coefficient monomial left Ω right` by its factors.
@@ -90,7 +173,10 @@ fn split(algebra: &Algebra, poly: &Poly, velocity: SymbolId) -> Option<(Poly, Po
         }
     }
     let first = linear.first()?;
-    let (mut left, mut right) = (Poly::zero(poly.shape), Poly::zero(poly.shape));
+    let (mut left, mut right) = (
+        Poly::zero(Shape::square(poly.shape.rows)),
+        Poly::zero(Shape::square(poly.shape.cols)),
+    );
     let of_word = |word: &[Factor]| Term {
         word: word.to_vec(),
         ..Term::default()

@@ -10,7 +10,7 @@ use super::limit::Limit;
 use super::variation::at;
 use crate::algebra::exact::{self, Matrix, Point, negate};
 use crate::algebra::{Algebra, Atom, Poly, Rational, assumed};
-use crate::check::spec::{Group, Spec};
+use crate::check::spec::Spec;
 use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr, Letter, Shift};
@@ -67,9 +67,9 @@ fn expanded(spec: &Spec, letters: &Letters, action: &Action, algebra: &Algebra) 
     for (c, xi) in spec.configurations.iter().zip(&letters.variation) {
         let xi = lie::element(s, c.group, *xi);
         let w = at(c.velocity, Shift::HERE);
-        identity.push((w, expr::identity(c.group.size())));
+        identity.push((w, c.group.identity()));
         first.push((w, xi.clone()));
-        second.push((w, expr::mul(xi.clone(), xi)));
+        second.push((w, c.group.second(xi)));
     }
     let l = expr::substitute(s, &action.total, &spec.end_of_edge());
     let once = expr::directional(s, &l, &first);
@@ -116,11 +116,13 @@ pub fn is_second_moment(spec: &Spec, letters: &Letters, energy: &Expr, symbol: S
     let mut turns = spec.configurations.iter().zip(&letters.variation);
     turns.any(|(c, xi)| {
         let xi = expr::here(s, *xi);
-        let turn = match c.group {
-            Group::SpecialOrthogonal(n) if n == three => xi,
-            Group::UnitQuaternions => expr::hat(xi),
-            Group::RigidMotions => expr::hat(expr::part_of_six(s, &xi, 0)),
-            Group::SpecialOrthogonal(_) | Group::GeneralLinear(_) => return false,
+        // Of a group that turns space: the letters of variation are matrices, or begin with the axis.
+        let element = expr::here(s, c.element);
+        let turn = match (c.group.turn(s, &element), c.group.coordinates()) {
+            (None, _) => return false,
+            (Some(_), None) => xi,
+            (Some(_), Some(n)) if n == three => expr::hat(xi),
+            (Some(_), Some(_)) => expr::hat(expr::part_of_six(s, &xi, 0)),
         };
         let word = expr::product([expr::here(s, symbol), turn.clone(), turn]);
         let half = expr::scale(Rational::HALF, expr::trace(word));
@@ -136,7 +138,7 @@ pub(crate) fn basis(
 ) -> Vec<(Letter, bracket::Element)> {
     let mut out = Vec::new();
     for (c, xi) in spec.configurations.iter().zip(&letters.variation) {
-        let elements = bracket::basis(c.group, size(c.group.size()));
+        let elements = c.group.basis(size);
         out.extend(elements.into_iter().map(|e| (at(*xi, Shift::HERE), e)));
     }
     out

@@ -44,9 +44,9 @@ pub fn limit(
     for (i, c) in spec.configurations.iter().enumerate() {
         let xi = lie::element(s, c.group, letters.variation[i]);
         let w = at(c.velocity, Shift::HERE);
-        identity.push((w, expr::identity(c.group.size())));
+        identity.push((w, c.group.identity()));
         first.push((w, xi.clone()));
-        second.push((w, expr::mul(xi.clone(), xi)));
+        second.push((w, c.group.second(xi)));
     }
     let l = expr::substitute(s, &action.total, &spec.end_of_edge());
     let step = expr::here(s, spec.step);

@@ -32,9 +32,9 @@ pub mod variation;
 pub mod warnings;
 
 use crate::algebra::Algebra;
-use crate::check::spec::{Group, Side, Spec};
+use crate::check::spec::{Side, Spec};
 use crate::diagnostic::{Diagnostic, Errors, Place};
-use crate::expr::shape::{Dim, Shape, Structure};
+use crate::expr::shape::{Shape, Structure};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::schedule::Program;
 use crate::work::{self, Count, Work};
@@ -132,8 +132,8 @@ fn letters(spec: &Spec) -> Letters {
     let (mut variation, mut direction, mut momentum, mut edge, mut node) =
         (Vec::new(), Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (i, c) in spec.configurations.iter().enumerate() {
-        let shape = Shape::square(c.group.size());
-        let (algebra, structure) = lie::variation(c.group);
+        let shape = c.group.shape();
+        let (algebra, structure) = c.group.variation();
         variation.push(numbered("ξ", i, algebra, structure, Role::Variation));
         direction.push(numbered("η", i, algebra, structure, Role::Variation));
         momentum.push(numbered(
@@ -144,13 +144,9 @@ fn letters(spec: &Spec) -> Letters {
             Role::Multiplier,
         ));
         edge.push(numbered("M", i, algebra, structure, Role::Derived));
-        let (covector, structure) = match c.group {
-            Group::UnitQuaternions | Group::RigidMotions => (algebra, structure),
-            Group::SpecialOrthogonal(n @ Dim::Fixed(3)) => (Shape::vector(n), Structure::General),
-            Group::SpecialOrthogonal(_) => (shape, Structure::Skew),
-            Group::GeneralLinear(_) => (shape, Structure::General),
-        };
+        let (covector, structure) = c.group.dual();
         let name = match c.side {
+            _ if c.group.is_additive() => "p",
             Side::Body => "μ",
             Side::Spatial => "m",
         };
@@ -181,13 +177,7 @@ fn letters(spec: &Spec) -> Letters {
     // The velocity and the acceleration of the limit, of the same kind.
     let (mut rate, mut acceleration) = (Vec::new(), Vec::new());
     for (i, c) in spec.configurations.iter().enumerate() {
-        let size = c.group.size();
-        let (shape, structure) = match c.group {
-            Group::SpecialOrthogonal(Dim::Fixed(3)) => (Shape::vector(size), Structure::General),
-            Group::SpecialOrthogonal(_) => (Shape::square(size), Structure::Skew),
-            Group::GeneralLinear(_) => (Shape::square(size), Structure::General),
-            Group::UnitQuaternions | Group::RigidMotions => lie::variation(c.group),
-        };
+        let (shape, structure) = c.group.dual();
         let number = if many {
             (i + 1).to_string()
         } else {
@@ -307,7 +297,7 @@ fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
     if work::cut_short() {
         return Err(too_large(whole, work::excess()).into());
     }
-    let bracket = bracket::bracket(&spec, &letters, &variations);
+    let bracket = bracket::bracket(&spec, &letters, &action, &variations);
     let (invariants, integrability) = invariants::invariants(&invariants::Inputs {
         spec: &spec,
         letters: &letters,

@@ -5,11 +5,9 @@
 
 use super::Letters;
 use super::balance::{Balance, pairing, shorter};
-use super::lie;
 use super::variation::{Variation, at};
 use crate::algebra::Algebra;
-use crate::check::spec::{Configuration, Group, Side, Spec};
-use crate::expr::shape::Dim;
+use crate::check::spec::{Configuration, Side, Spec};
 use crate::expr::{self, Expr, Shift};
 
 /// The momentum map of one configuration.
@@ -58,30 +56,27 @@ fn momentum(
 ) -> Momentum {
     let s = &letters.symbols;
     let w = expr::here(s, c.velocity);
-    let wt = expr::transpose(s, w);
-    let raw = expr::mul(expr::collect(s, &b.gradient), wt.clone());
+    let raw = expr::collect(s, &b.gradient);
+    let raw = c.group.pulled_back(s, Side::Spatial, w.clone(), raw);
     // As a matrix, or by coordinates where the Lie algebra has them.
-    let matrix = |y: Expr| match c.group.coordinates() {
-        Some(_) => lie::covector(letters, c.group, y),
-        None if c.group.is_orthogonal() => expr::sub(y.clone(), expr::transpose(s, y)),
-        None => y,
-    };
+    let matrix = |y: Expr| c.group.as_algebra(s, y);
     let edge = matrix(raw.clone());
-    let back = expr::inverse(s, wt.clone());
+    let carry = |y: Expr| {
+        let wt = expr::transpose(s, w.clone());
+        let back = expr::inverse(s, wt.clone());
+        expr::product([wt, y, back])
+    };
     let carried = match c.group.coordinates() {
-        Some(_) => matrix(expr::product([wt, raw, back])),
-        None => expr::product([wt, edge.clone(), back]),
+        _ if c.group.is_additive() => edge.clone(),
+        Some(_) => matrix(carry(raw)),
+        None => carry(edge.clone()),
     };
     let (start, end) = match c.side {
         Side::Body => (edge.clone(), carried),
         Side::Spatial => (carried, edge.clone()),
     };
-    let element = expr::transpose(s, expr::here(s, c.element));
     let p = expr::letter(s, letters.momentum[i], Shift::HERE);
-    let product = match c.side {
-        Side::Body => expr::mul(element, p),
-        Side::Spatial => expr::mul(p, element),
-    };
+    let product = c.group.pulled_back(s, c.side, expr::here(s, c.element), p);
     let cotangent = if c.group.is_orthogonal() {
         expr::part(expr::Part::Skew, product)
     } else if c.group.coordinates().is_some() {
@@ -100,15 +95,10 @@ fn momentum(
             return shorter(algebra, y);
         }
         // For a vector the map is a vector too, and reads best as one.
-        if multiplier.shape().is_vector() && c.group == Group::SpecialOrthogonal(Dim::Fixed(3)) {
-            return expr::hat(shorter(algebra, lie::covector(letters, c.group, y)));
+        if multiplier.shape().is_vector() && c.group.is_of_space() {
+            return expr::hat(shorter(algebra, c.group.covector(s, y)));
         }
-        let matrix = if c.group.is_orthogonal() {
-            expr::sub(y.clone(), expr::transpose(s, y))
-        } else {
-            y
-        };
-        algebra.raise(&algebra.lower(&matrix))
+        algebra.raise(&algebra.lower(&c.group.as_algebra(s, y)))
     });
     Momentum {
         diamonds: diamonds.collect(),

@@ -88,16 +88,18 @@ impl Parts {
             let name = &letters.symbols.get(c.velocity).name;
             let named = |part: &str| format!("{name}_{part}");
             velocities.push(match c.group {
-                Group::SpecialOrthogonal(n) if n == THREE => Velocity::Rotation(c.velocity),
-                Group::UnitQuaternions => Velocity::Quaternion(
+                group if group.is_of_space() => Velocity::Rotation(c.velocity),
+                Group::UnitQuaternions(_) => Velocity::Quaternion(
                     add(&named("re"), Shape::SCALAR, Structure::General),
                     add(&named("im"), Shape::vector(THREE), Structure::General),
                 ),
-                Group::RigidMotions => Velocity::Motion(
+                Group::RigidMotions(_) => Velocity::Motion(
                     add(&named("rot"), Shape::square(THREE), Structure::Orthogonal),
                     add(&named("pos"), Shape::vector(THREE), Structure::General),
                 ),
-                Group::SpecialOrthogonal(_) | Group::GeneralLinear(_) => return None,
+                Group::SpecialOrthogonal(_) | Group::GeneralLinear(_) | Group::Additive(_) => {
+                    return None;
+                }
             });
         }
         let direction = add("η", Shape::vector(THREE), Structure::General);

@@ -13,7 +13,7 @@ use super::transport::Transport;
 use super::variation::at;
 use super::{Derivation, Letters};
 use crate::algebra::{Algebra, Poly, Rational};
-use crate::check::spec::{Configuration, Group, Side, Spec};
+use crate::check::spec::{Configuration, Side, Spec};
 use crate::expr::shape::Dim;
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Node, Shift};
@@ -27,7 +27,7 @@ pub enum Riccati {
     Coupled(MoserVeselov),
     /// None, but the equation of SU(2) that takes its place.
     Quaternionic(Quaternionic),
-    /// None, but a balance that is linear in the velocity; GL(n).
+    /// None, but a balance that is linear in the velocity; GL(n) and fields.
     Linear(Explicit),
     /// None, with the reason.
     None(String),
@@ -70,7 +70,7 @@ pub enum Method {
     LeftFactor,
     /// By Davenport's eigenvalue problem, which takes any `C` known at the node; SO(3).
     Davenport,
-    /// Explicitly, by two small linear systems: the balance is linear in the velocity; GL(n).
+    /// Explicitly, by small linear systems: the balance is linear in the velocity; GL(n) and fields.
     Linear,
     /// Newton on the group, residual and tangent derived.
     Newton,
@@ -258,7 +258,7 @@ pub fn recognise(
 
 /// Whether a configuration is a rotation of space.
 pub(super) fn is_of_space(c: &Configuration) -> bool {
-    c.group.size() == Dim::Fixed(3) && c.group.is_orthogonal()
+    c.group.is_of_space()
 }
 
 /// The factor of a spatial velocity seen from the body, `Λ^T C Λ`, if it is constant there: then
@@ -323,10 +323,7 @@ pub fn keeps_edge(mv: &MoserVeselov) -> bool {
 /// The rotation by which the body stands in space.
 fn frame(s: &Symbols, c: &Configuration) -> Expr {
     let element = expr::here(s, c.element);
-    match c.group {
-        Group::UnitQuaternions => expr::rotation(s, element),
-        Group::SpecialOrthogonal(_) | Group::GeneralLinear(_) | Group::RigidMotions => element,
-    }
+    c.group.turn(s, &element).unwrap_or(element)
 }
 
 /// What acts at a node on both sides of it, seen from the body; see [`MoserVeselov::torque`].
@@ -475,7 +472,7 @@ fn riccati(
 ) -> Riccati {
     let s = &letters.symbols;
     let c = &spec.configurations[i];
-    if c.group == Group::UnitQuaternions {
+    if c.group.is_quaternionic() {
         return match quaternionic::form(spec, letters, b, i, algebra) {
             Ok((factor, real, rest)) => {
                 let edge = with_node(spec, letters, b, i, factor, rest, transports, algebra);
@@ -484,7 +481,7 @@ fn riccati(
             Err(why) => Riccati::None(why),
         };
     }
-    if matches!(c.group, Group::GeneralLinear(_)) {
+    if c.group.is_linear() || c.group.is_additive() {
         return match explicit::form(spec, letters, b, i, algebra) {
             Ok(form) => Riccati::Linear(form),
             Err(why) => Riccati::None(why),

@@ -41,7 +41,7 @@ pub(crate) fn sum(spec: &Spec, action: &Action) -> Expr {
     )];
     for c in &spec.configurations {
         let w = expr::here(s, c.velocity);
-        swap.push((at(c.velocity, Shift::HERE), expr::inverse(s, w)));
+        swap.push((at(c.velocity, Shift::HERE), c.group.inverse(s, w)));
     }
     let forward = spec.end_of_edge();
     let nodes = spec.configurations.iter().map(|c| c.element);
@@ -83,9 +83,10 @@ pub fn reversal(spec: &Spec, action: &Action, assumed: &[Expr], algebra: &Algebr
     // A sum that is constant has the value that it has at rest in the identity, which identities
     // beyond the normal form may prove: that a rotation keeps its axis, for one.
     let whole = by_configuration(spec, &rest);
-    let still = spec.configurations.iter().flat_map(|c| {
-        [c.velocity, c.element].map(|x| (at(x, Shift::HERE), expr::identity(c.group.size())))
-    });
+    let still = spec
+        .configurations
+        .iter()
+        .flat_map(|c| [c.velocity, c.element].map(|x| (at(x, Shift::HERE), c.group.identity())));
     let at_rest = expr::substitute(s, &whole, &still.collect::<Vec<_>>());
     let at_rest = algebra.raise(&algebra.lower(&at_rest));
     if constant(&at_rest) {

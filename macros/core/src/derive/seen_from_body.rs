@@ -8,7 +8,7 @@ use super::balance::{self, Balance};
 use super::variation::{self, at};
 use super::{action, reduction};
 use crate::algebra::Algebra;
-use crate::check::spec::{Group, Side, Spec};
+use crate::check::spec::{Configuration, Side, Spec};
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Letter, Shift};
 
@@ -31,8 +31,8 @@ pub fn seen_from_body(
     letters: &Letters,
     balances: &[Balance],
 ) -> Option<Vec<Expr>> {
-    let spatial = |side| side == Side::Spatial;
-    if !spec.configurations.iter().any(|c| spatial(c.side)) {
+    let spatial = |c: &Configuration| c.side == Side::Spatial && !c.group.is_additive();
+    if !spec.configurations.iter().any(spatial) {
         return None;
     }
     let turned = reduction::reduce(turned(stated, letters)).ok()?;
@@ -53,9 +53,10 @@ pub fn seen_from_body(
         .map(|e| expr::substitute(&own.symbols, e, &defined))
         .collect();
     // Elements of these groups are no isometries.
-    let needed = spec.configurations.iter().any(|c| {
-        spatial(c.side) && matches!(c.group, Group::RigidMotions | Group::GeneralLinear(_))
-    });
+    let needed = spec
+        .configurations
+        .iter()
+        .any(|c| spatial(c) && (c.group.is_rigid() || c.group.is_linear()));
     let asked = |list: &[Expr]| {
         let mut letters: Vec<Letter> = list.iter().flat_map(expr::letters).collect();
         letters.sort();
@@ -75,7 +76,7 @@ fn turned(spec: &Spec, letters: &Letters) -> Spec {
     let mut turned = spec.clone();
     let mut velocities = Vec::new();
     for c in &mut turned.configurations {
-        if c.side == Side::Body {
+        if c.side == Side::Body || c.group.is_additive() {
             continue;
         }
         let (g, v) = (expr::here(s, c.element), expr::here(s, c.velocity));

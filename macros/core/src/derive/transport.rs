@@ -5,7 +5,7 @@
 use super::Letters;
 use super::variation::at;
 use crate::algebra::Algebra;
-use crate::check::spec::{Advected, Side, Spec};
+use crate::check::spec::{Advected, Spec};
 use crate::diagnostic::{Diagnostic, Errors};
 use crate::expr::{self, Expr, Letter, Shift};
 
@@ -109,7 +109,7 @@ fn carried(spec: &Spec, letters: &Letters, algebra: &Algebra, a: &Advected) -> T
         expr::substitute(s, &a.update, &list)
     };
     let value = by(&|c| expr::here(s, c.element));
-    let reference = by(&|c| expr::inverse(s, expr::here(s, c.element)));
+    let reference = by(&|c| c.group.inverse(s, expr::here(s, c.element)));
     let twice = expr::substitute(
         s,
         &a.update,
@@ -117,10 +117,7 @@ fn carried(spec: &Spec, letters: &Letters, algebra: &Algebra, a: &Advected) -> T
     );
     let once = by(&|c| {
         let (g, w) = (expr::here(s, c.element), expr::here(s, c.velocity));
-        match c.side {
-            Side::Body => expr::mul(g, w),
-            Side::Spatial => expr::mul(w, g),
-        }
+        c.group.advanced(c.side, g, w)
     });
     let back = expr::substitute(
         s,

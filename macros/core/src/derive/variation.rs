@@ -82,18 +82,16 @@ fn of_configuration(c: &Configuration, letters: &Letters, i: usize) -> Variation
     let xi = lie::element(s, c.group, letters.variation[i]);
     let out = expr::here(s, c.velocity);
     let back = expr::letter(s, c.velocity, Shift::PREVIOUS);
-    let (dg, d_out, d_in) = match c.side {
-        Side::Body => (
-            expr::mul(g, xi.clone()),
-            expr::neg(expr::mul(xi.clone(), out)),
-            expr::mul(back, xi),
-        ),
-        Side::Spatial => (
-            expr::mul(xi.clone(), g),
-            expr::neg(expr::mul(out, xi.clone())),
-            expr::mul(xi, back),
-        ),
+    // The velocity that leaves moves on its other side.
+    let other = match c.side {
+        Side::Body => Side::Spatial,
+        Side::Spatial => Side::Body,
     };
+    let d_out = expr::neg(c.group.moved(other, out, xi.clone()));
+    let (dg, d_in) = (
+        c.group.moved(c.side, g, xi.clone()),
+        c.group.moved(c.side, back, xi),
+    );
     Variation {
         element: (at(c.element, Shift::HERE), dg),
         outgoing: (at(c.velocity, Shift::HERE), d_out),
@@ -177,11 +175,8 @@ pub(super) fn previous_elements(spec: &Spec, letters: &Letters) -> Vec<(Letter, 
         .iter()
         .map(|c| {
             let g = expr::here(s, c.element);
-            let w = expr::inverse(s, expr::letter(s, c.velocity, Shift::PREVIOUS));
-            let before = match c.side {
-                Side::Body => expr::mul(g, w),
-                Side::Spatial => expr::mul(w, g),
-            };
+            let w = expr::letter(s, c.velocity, Shift::PREVIOUS);
+            let before = c.group.advanced(c.side, g, c.group.inverse(s, w));
             (at(c.element, Shift::PREVIOUS), before)
         })
         .collect()
@@ -315,9 +310,9 @@ fn wrong_side(
 fn action(group: Group, w: &str, rows: Dim) -> (String, String) {
     let turned = rows == Dim::Fixed(3);
     let inverse = |w: String, mark: &str| (w.clone(), format!("{w}^{mark}"));
-    match group {
-        Group::UnitQuaternions | Group::RigidMotions if turned => inverse(format!("rot({w})"), "T"),
-        Group::SpecialOrthogonal(_) | Group::UnitQuaternions => inverse(w.to_owned(), "T"),
-        Group::GeneralLinear(_) | Group::RigidMotions => inverse(w.to_owned(), "-1"),
+    match group.coordinates() {
+        Some(_) if turned => inverse(format!("rot({w})"), "T"),
+        _ if group.structure().is_orthogonal() => inverse(w.to_owned(), "T"),
+        _ => inverse(w.to_owned(), "-1"),
     }
 }

@@ -137,8 +137,28 @@ fn constraints(sheet: &Sheet, doc: &mut Document) {
     let spec = &sheet.d.spec;
     let section = doc.section("Constraints");
     for (i, c) in spec.configurations.iter().enumerate() {
+        if c.group.is_additive() {
+            let (here, next) = (sheet.here(c.element), sheet.at(c.element, Shift::NEXT));
+            section.paragraph([
+                here.clone().into(),
+                format!(
+                    ", {}, is the configuration at node {}; its velocity is the increment ",
+                    sheet.group(c),
+                    spec.time_index
+                )
+                .into(),
+                Formula::equal(
+                    sheet.here(c.velocity),
+                    Formula::Sum(vec![next.clone(), Formula::neg(here)]),
+                )
+                .into(),
+                " over the edge from this node to the next:".into(),
+            ]);
+            section.equation(Formula::equal(next, sheet.math(&c.update)));
+            continue;
+        }
         // Bodies have a frame of their own, deformable ones a reference shape.
-        let rigid = !matches!(c.group, Group::GeneralLinear(_));
+        let rigid = !c.group.is_linear();
         let (frame, product) = match (rigid, c.side) {
             (true, Side::Body) => ("; its velocity in the body is ", true),
             (true, Side::Spatial) => ("; its velocity in space is ", false),
@@ -309,11 +329,16 @@ fn variations(sheet: &Sheet, doc: &mut Document) {
         }
         let algebra: Inline = match d.spec.configurations.get(i).map(|c| c.group) {
             Some(Group::GeneralLinear(_)) | None => " is an arbitrary matrix.".into(),
+            Some(Group::Additive(record)) => match record.0.is_vector() {
+                true if record.0.is_scalar() => " is an arbitrary number.".into(),
+                true => " is an arbitrary vector.".into(),
+                false => " is an arbitrary matrix.".into(),
+            },
             Some(Group::SpecialOrthogonal(_)) => " is an arbitrary skew matrix.".into(),
-            Some(Group::UnitQuaternions) => {
+            Some(Group::UnitQuaternions(_)) => {
                 " is an arbitrary vector, an angular displacement; quat(v) is the left multiplication by the quaternion v.".into()
             }
-            Some(Group::RigidMotions) => {
+            Some(Group::RigidMotions(_)) => {
                 let both = " is an arbitrary angular and a linear displacement on top of each other; twist of it is the matrix of the Lie algebra, and";
                 Inline::Notation {
                     line: format!("{both} ang and lin take the angular and the linear part of such a vector, x[1:3] the first three entries of a longer one."),

@@ -39,14 +39,22 @@ fn diamonds(sheet: &Sheet, i: usize) -> Vec<Formula> {
             Ok([only]) => only,
             Err(both) => Formula::Sum(both),
         };
-        Formula::diamond(gradient, sheet.here(x))
+        // What moves a field itself is the gradient.
+        let own = |c: &Configuration| c.element == x && c.group.is_additive();
+        match sheet.d.spec.configurations.iter().any(own) {
+            true => gradient,
+            false => Formula::diamond(gradient, sheet.here(x)),
+        }
     });
     each.collect()
 }
 
 /// `Ad*_Ω M`.
 fn carried(sheet: &Sheet, c: &Configuration, i: usize, shift: Shift) -> Formula {
-    Formula::ad_star(sheet.at(c.velocity, shift), sheet.edge_momentum(i, shift))
+    match c.group.is_additive() {
+        true => sheet.edge_momentum(i, shift),
+        false => Formula::ad_star(sheet.at(c.velocity, shift), sheet.edge_momentum(i, shift)),
+    }
 }
 
 /// Momentum maps: of the multipliers, and of the edge at both its ends.
@@ -56,8 +64,9 @@ pub fn momentum_maps(sheet: &Sheet, doc: &mut Document) {
     definitions(sheet, section);
     for (i, (c, m)) in d.spec.configurations.iter().zip(&d.momenta).enumerate() {
         let translation = match c.side {
-            Side::Body => "right",
-            Side::Spatial => "left",
+            _ if c.group.is_additive() => "translation",
+            Side::Body => "right translation",
+            Side::Spatial => "left translation",
         };
         let lifted = if (0..d.spec.advected.len()).any(|j| sheet.moves(i, j)) {
             " and of the action that goes with it, lifted to the multipliers, at a node:"
@@ -65,7 +74,7 @@ pub fn momentum_maps(sheet: &Sheet, doc: &mut Document) {
             ", lifted to its multiplier, at a node:"
         };
         section.paragraph([
-            format!("The momentum map of the {translation} translation of ").into(),
+            format!("The momentum map of the {translation} of ").into(),
             sheet.here(c.element).into(),
             lifted.into(),
         ]);
@@ -103,6 +112,9 @@ fn definitions(sheet: &Sheet, section: &mut Section) {
             pairing(free("M"), free("ξ"), true).into(),
             ", which in three dimensions is the scalar product of their axial vectors.".into(),
         ]);
+    }
+    if d.spec.configurations.iter().all(|c| c.group.is_additive()) {
+        return;
     }
     let star = Formula::ad_star(free("g"), free("M"));
     let turned = Formula::Product(vec![
@@ -202,7 +214,9 @@ fn edge(sheet: &Sheet, section: &mut Section, c: &Configuration, m: &Momentum, i
         sheet.gradient(0, c.velocity),
         Formula::transpose(sheet.here(c.velocity)),
     ]);
-    let by_gradient = if c.group.is_orthogonal() {
+    let by_gradient = if c.group.is_additive() {
+        Some(sheet.gradient(0, c.velocity))
+    } else if c.group.is_orthogonal() {
         Some(Formula::Product(vec![
             Formula::Expr(expr::integer(2)),
             Formula::operator(Operator::Skew, product),
@@ -226,6 +240,9 @@ fn edge(sheet: &Sheet, section: &mut Section, c: &Configuration, m: &Momentum, i
 
 /// The relation of the velocity, multiplied by the velocity on either side.
 fn elimination(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize) {
+    if c.group.is_additive() {
+        return of_field(sheet, section, c, i);
+    }
     let (behind, before) = match c.side {
         Side::Body => ("from the right", "from the left"),
         Side::Spatial => ("from the left", "from the right"),
@@ -289,10 +306,44 @@ fn elimination(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize
     section.labelled(&format!("end {i}"));
 }
 
+/// The same of a field: nothing is multiplied.
+fn of_field(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize) {
+    let relation = |symbol| Inline::reference(&relation_label(symbol));
+    section.paragraph([
+        "Equation ".into(),
+        relation(c.velocity),
+        " is with ".into(),
+        relation(c.element),
+        " the momentum at the start of the edge,".into(),
+    ]);
+    let mut terms = vec![sheet.lifted(i, 0)];
+    terms.extend(diamonds(sheet, i));
+    let momentum = sheet.edge_momentum(i, Shift::HERE);
+    section.equation(Formula::equal(momentum.clone(), Formula::Sum(terms)));
+    section.labelled(&format!("start {i}"));
+    section.text("and by itself that at its end:");
+    section.equation(Formula::equal(momentum, sheet.lifted(i, 1)));
+    section.labelled(&format!("end {i}"));
+}
+
+/// The name of the equations of motion.
+pub fn equations_name(sheet: &Sheet) -> &'static str {
+    match sheet
+        .d
+        .spec
+        .configurations
+        .iter()
+        .all(|c| c.group.is_additive())
+    {
+        true => "Euler-Lagrange",
+        false => "Euler-Poincaré",
+    }
+}
+
 /// The discrete Euler-Poincaré equations and their components.
 pub fn balance(sheet: &Sheet, doc: &mut Document) {
     let d = sheet.d;
-    let section = doc.section("Discrete Euler-Poincaré equations");
+    let section = doc.section(format!("Discrete {} equations", equations_name(sheet)));
     for (i, (c, b)) in d.spec.configurations.iter().zip(&d.balances).enumerate() {
         let mut words: Vec<Inline> = vec!["No multiplier is left in the difference of ".into()];
         words.extend([
@@ -328,13 +379,14 @@ pub fn balance(sheet: &Sheet, doc: &mut Document) {
         }
         let mu = sheet.here(d.letters.node_momentum[i]);
         let frame = match c.side {
-            Side::Body => "in the body",
-            Side::Spatial => "in space",
+            _ if c.group.is_additive() => "",
+            Side::Body => ", in the body",
+            Side::Spatial => ", in space",
         };
         section.paragraph([
             "By components, with ".into(),
             mu.clone().into(),
-            format!(" the momentum at the node, {frame}: the first equation is solved for the velocity, the second carries the momentum to the next node.").into(),
+            format!(" the momentum at the node{frame}: the first equation is solved for the velocity, the second carries the momentum to the next node.").into(),
         ]);
         section.equation(Formula::equal(mu, sheet.derived(&b.outgoing)));
         section.labelled(&format!("outgoing {i}"));

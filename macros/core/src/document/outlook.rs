@@ -105,8 +105,15 @@ pub fn limit(sheet: &Sheet, doc: &mut Document) {
     let velocities = d.spec.configurations.iter().zip(&d.letters.rate);
     let velocities = velocities.map(|(c, zeta)| {
         let zeta = crate::derive::continuous::velocity(&d.letters, c.group, *zeta);
-        let hat = crate::derive::lie::of_letter(c.group, zeta);
+        let hat = c.group.element(zeta);
         let h = sheet.here(d.spec.step);
+        if c.group.is_additive() {
+            let increment = Formula::Product(vec![h, Formula::Expr(hat)]);
+            return vec![Inline::from(Formula::equal(
+                sheet.here(c.velocity),
+                increment,
+            ))];
+        }
         let turn = Formula::operator(
             crate::print::formula::Operator::Exp,
             Formula::Product(vec![h, Formula::Expr(hat)]),
@@ -131,8 +138,13 @@ pub fn limit(sheet: &Sheet, doc: &mut Document) {
     let labels: Vec<String> = (0..d.spec.configurations.len())
         .map(|i| format!("balance {i}"))
         .collect();
-    let mut words: Vec<Inline> =
-        vec!["This is the limit of the discrete Euler-Poincaré equations ".into()];
+    let mut words: Vec<Inline> = vec![
+        format!(
+            "This is the limit of the discrete {} equations ",
+            super::motion::equations_name(sheet)
+        )
+        .into(),
+    ];
     words.extend(references(&labels));
     words.push(" over the step.".into());
     section.paragraph(words);
@@ -164,21 +176,26 @@ fn equations(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize, 
         Formula::Product(vec![Formula::Expr(expr::integer(2)), gradient(zeta_letter)])
     };
     let mu = sheet.here(*mu);
-    section.paragraph([
-        "The momentum and the Euler-Poincaré equation with advected quantities, ".into(),
-        steady(Formula::equal(
-            Formula::pairing(
-                Formula::lie_ad_star(sheet.here(*zeta), mu.clone()),
-                sheet.free("ξ"),
-            ),
-            Formula::pairing(
-                mu.clone(),
-                Formula::Bracket(Box::new(sheet.here(*zeta)), Box::new(sheet.free("ξ"))),
-            ),
-        ))
-        .into(),
-        ":".into(),
-    ]);
+    let field = c.group.is_additive();
+    if field {
+        section.text("The momentum and the Euler-Lagrange equation:");
+    } else {
+        section.paragraph([
+            "The momentum and the Euler-Poincaré equation with advected quantities, ".into(),
+            steady(Formula::equal(
+                Formula::pairing(
+                    Formula::lie_ad_star(sheet.here(*zeta), mu.clone()),
+                    sheet.free("ξ"),
+                ),
+                Formula::pairing(
+                    mu.clone(),
+                    Formula::Bracket(Box::new(sheet.here(*zeta)), Box::new(sheet.free("ξ"))),
+                ),
+            ))
+            .into(),
+            ":".into(),
+        ]);
+    }
     section.equation(steady(Formula::Relation(
         vec![mu.clone(), derivative, sheet.derived(momentum)],
         Relation::Equal,
@@ -188,7 +205,10 @@ fn equations(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize, 
         Side::Body => ad_star,
         Side::Spatial => Formula::neg(ad_star),
     };
-    let mut named = vec![ad_star];
+    let mut named = match field {
+        true => Vec::new(),
+        false => vec![ad_star],
+    };
     for (j, (a, g)) in d.spec.advected.iter().zip(&x.gradients).enumerate() {
         if !g.is_zero() && sheet.moves(i, j) {
             let wrt = Letter {
@@ -203,7 +223,15 @@ fn equations(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize, 
         shift: Shift::HERE,
     };
     if expr::contains(&x.lagrangian, element) {
-        named.push(Formula::diamond(gradient(element), sheet.here(c.element)));
+        named.push(match field {
+            true => gradient(element),
+            false => Formula::diamond(gradient(element), sheet.here(c.element)),
+        });
+    }
+    if named.is_empty() {
+        named.push(Formula::Expr(expr::zero(
+            d.letters.symbols.get(c.element).shape,
+        )));
     }
     let explicit = Formula::Sum(vec![sheet.derived(coadjoint), sheet.derived(force)]);
     section.sourced(

@@ -2,9 +2,8 @@
 //! of the model bears, and the small formulas that recur.
 
 use super::thesis::Thesis;
-use crate::check::spec::{Configuration, Group, Side};
+use crate::check::spec::{Configuration, Side};
 use crate::derive::Derivation;
-use crate::expr::shape::Dim;
 use crate::expr::symbol::{SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::print::document::Inline;
@@ -115,20 +114,14 @@ impl<'a> Sheet<'a> {
         )
     }
 
-    /// `SO(3)`, `GL(n)`, `SU(2)`, `SE(3)`.
+    /// `SO(3)`, `GL(n)`, `SU(2)`, `SE(3)`, `a vector of 3 components`.
     pub fn group(&self, c: &Configuration) -> String {
-        let size = self.symbols().dim_text(c.group.size());
-        match c.group {
-            Group::SpecialOrthogonal(_) => format!("SO({size})"),
-            Group::GeneralLinear(_) => format!("GL({size})"),
-            Group::UnitQuaternions => "SU(2)".to_owned(),
-            Group::RigidMotions => "SE(3)".to_owned(),
-        }
+        c.group.name(&|n| self.symbols().dim_text(n).to_string())
     }
 
     /// Whether elements of the Lie algebra are written as vectors.
     pub fn has_vectors(&self, c: &Configuration) -> bool {
-        c.group.is_orthogonal() && c.group.size() == Dim::Fixed(3)
+        c.group.is_of_space()
     }
 
     /// Whether the variation of a configuration moves an advected quantity.

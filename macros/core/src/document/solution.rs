@@ -14,7 +14,11 @@ use crate::print::formula::{Formula, Relation};
 /// The section.
 pub fn moser_veselov(sheet: &Sheet, doc: &mut Document) {
     let d = sheet.d;
-    let section = doc.section("Moser-Veselov and Riccati form");
+    let fields = d.spec.configurations.iter().all(|c| c.group.is_additive());
+    let section = doc.section(match fields {
+        true => "Solution of a step",
+        false => "Moser-Veselov and Riccati form",
+    });
     let mut explained = false;
     for (i, (c, r)) in d
         .spec
@@ -24,6 +28,16 @@ pub fn moser_veselov(sheet: &Sheet, doc: &mut Document) {
         .enumerate()
     {
         let (mv, coupled) = match r {
+            Riccati::None(_) if c.group.is_additive() => {
+                section.paragraph([
+                    "Equation ".into(),
+                    Inline::reference(&format!("outgoing {i}")),
+                    " is not linear in the increment ".into(),
+                    sheet.here(c.velocity).into(),
+                    ".".into(),
+                ]);
+                continue;
+            }
             Riccati::None(why) => {
                 section.paragraph([
                     "There is no Riccati form for ".into(),
@@ -59,20 +73,29 @@ fn linear(sheet: &Sheet, section: &mut Section, c: &Configuration, form: &Explic
     let d = sheet.d;
     let s = sheet.symbols();
     let mu = expr::here(s, d.letters.node_momentum[i]);
-    section.paragraph([
-        "There is no Riccati form for ".into(),
-        sheet.here(c.velocity).into(),
-        ": the group is not SO(n). Equation ".into(),
-        Inline::reference(&format!("outgoing {i}")),
-        " is linear in it, with factors that are known at the node, and is solved by".into(),
-    ]);
+    match c.group.is_additive() {
+        true => section.paragraph([
+            "Equation ".into(),
+            Inline::reference(&format!("outgoing {i}")),
+            " is linear in the increment ".into(),
+            sheet.here(c.velocity).into(),
+            ", and is solved by".into(),
+        ]),
+        false => section.paragraph([
+            "There is no Riccati form for ".into(),
+            sheet.here(c.velocity).into(),
+            ": the group is not SO(n). Equation ".into(),
+            Inline::reference(&format!("outgoing {i}")),
+            " is linear in it, with factors that are known at the node, and is solved by".into(),
+        ]),
+    };
     let known = expr::sub(mu, form.rest.clone());
     let change = expr::product([
         expr::inverse(s, form.left.clone()),
         known,
         expr::inverse(s, form.right.clone()),
     ]);
-    let solved = expr::add(expr::identity(c.group.size()), change);
+    let solved = expr::add(c.group.identity(), change);
     section.equation(Formula::equal(sheet.here(c.velocity), sheet.math(&solved)));
 }
 
@@ -374,9 +397,9 @@ fn method(sheet: &Sheet, section: &mut Section) {
         " is constant"
     };
     if let [only] = d.solve.blocks.as_slice()
-        && only.is_linear()
+        && let Some(what) = only.linear_work()
     {
-        section.text("The stepper is explicit: it solves two small linear systems a step.");
+        section.text(&format!("The stepper is explicit: {what} a step."));
         return;
     }
     let words = match (d.solve.method.clone(), letter) {

@@ -1,7 +1,7 @@
 //! The model as text of the language, in one canonical layout: what is stored with results, and
 //! what derives the same model again.
 
-use crate::check::spec::{Assumption, Group, Spec, Subject};
+use crate::check::spec::{Assumption, Spec, Subject};
 use crate::derive::Derivation;
 use crate::expr::Expr;
 use crate::expr::shape::Structure;
@@ -56,12 +56,12 @@ pub fn source(d: &Derivation) -> String {
         line(said(Subject::Assumption(i)), assumption(d, a));
     }
     for c in &spec.configurations {
-        let group = match c.group {
-            Group::SpecialOrthogonal(n) => format!("SO<{}>", spec.symbols.dim_text(n)),
-            Group::GeneralLinear(n) => format!("GL<{}>", spec.symbols.dim_text(n)),
-            Group::UnitQuaternions => "SU<2>".to_owned(),
-            Group::RigidMotions => "SE<3>".to_owned(),
-        };
+        let group = c.group.statement(&|n| spec.symbols.dim_text(n).to_string());
+        if c.group.is_additive() {
+            let declared = format!("field {}: {group}{}", name(c.element), named(c.element));
+            line(docs(c.element), declared);
+            continue;
+        }
         line(
             docs(c.element),
             format!(
@@ -86,7 +86,9 @@ pub fn source(d: &Derivation) -> String {
             ),
         );
     }
-    let configurations = spec.configurations.iter().map(|c| (c.element, &c.update));
+    let groups = spec.configurations.iter();
+    let groups = groups.filter(|c| !c.group.is_additive());
+    let configurations = groups.map(|c| (c.element, &c.update));
     let stated = spec.advected.iter().filter(|a| !a.found);
     let advected = stated.map(|a| (a.quantity, &a.update));
     for (quantity, update) in configurations.chain(advected) {

@@ -19,7 +19,7 @@ fn braces(sheet: &Sheet, first: &Expr, second: &Expr) -> Formula {
 /// How a model that was stated unreduced was reduced.
 pub fn reduction(sheet: &Sheet, doc: &mut Document) {
     let d = sheet.d;
-    if d.spec.reduction.is_none() {
+    if !d.spec.reduction.as_ref().is_some_and(|r| r.carries) {
         return;
     }
     let section = doc.section("Reduction");
@@ -40,9 +40,15 @@ pub fn reduction(sheet: &Sheet, doc: &mut Document) {
 /// The bracket, row by row.
 pub fn bracket(sheet: &Sheet, doc: &mut Document) {
     let d = sheet.d;
-    let section = doc.section("Lie-Poisson bracket");
-    section.text("On momenta and advected quantities, for constant elements of the Lie algebra; all other brackets vanish:");
-    for row in &d.bracket.rows {
+    let section = match d.bracket.holds_elements {
+        true => doc.section("Bracket"),
+        false => doc.section("Lie-Poisson bracket"),
+    };
+    section.text(match d.bracket.holds_elements {
+        true => "On the phase space, for constant elements of the Lie algebra; all other brackets vanish:",
+        false => "On momenta and advected quantities, for constant elements of the Lie algebra; all other brackets vanish:",
+    });
+    for row in d.bracket.rows.iter().filter(|row| !row.value.is_zero()) {
         section.equation(Formula::equal(
             braces(sheet, &row.first, &row.second),
             sheet.derived(&row.value),
@@ -51,6 +57,10 @@ pub fn bracket(sheet: &Sheet, doc: &mut Document) {
     let counts = match &d.integrability.casimirs {
         Known::Counted(counts) => counts,
         Known::NotSought(why) => {
+            if d.bracket.holds_elements {
+                section.text("The configuration itself stands in the equations: Casimirs of a reduced space were not looked for.");
+                return;
+            }
             section.text(&format!(
                 "Its Casimirs were neither counted nor looked for: {why}. Those that there are, are constant all the same."
             ));

@@ -92,7 +92,7 @@ impl<'a> Thesis<'a> {
         // The thesis writes neither quaternions nor rigid motions so.
         let c = self
             .configuration(i)
-            .filter(|c| c.group.coordinates().is_none())?;
+            .filter(|c| c.group.coordinates().is_none() && !c.group.is_additive())?;
         cite(match (c.group.is_orthogonal(), c.side) {
             (true, Side::Body) => "(2.62)",
             (true, Side::Spatial) => "(2.106)",
@@ -157,7 +157,8 @@ impl<'a> Thesis<'a> {
             |c: &Configuration| c.velocity == variable.symbol,
         );
         if let Some(c) = spec.configurations.iter().find(|c| is_element(c)) {
-            if self.holds_elements() || c.group.coordinates().is_some() {
+            let other = c.group.coordinates().is_some() || c.group.is_additive();
+            if self.holds_elements() || other {
                 return None;
             }
             return cite(match (self.system, c.group.is_orthogonal(), c.side) {

@@ -1,6 +1,7 @@
 //! The letters of an edge, read off the states at its two ends.
 //! Takes expressions of an edge; gives the parameters, the statements that bind their letters, and the bindings.
 
+use super::element;
 use super::expression::Bindings;
 use super::items::{advanced, letters_of, node_locals, parameter_locals, with_transports};
 use super::names::{Names, own, tagged};
@@ -36,16 +37,18 @@ pub(super) fn edge_between(d: &Derivation, names: &Names, wanted: &[Expr]) -> Ed
     for c in &d.spec.configurations {
         let (own, name) = (own(d, c.element), tagged(d, names, c.velocity, "matrix"));
         let value = match c.side {
-            Side::Body => quote!(#before.#own.body_velocity(&#after.#own).matrix()),
-            Side::Spatial => quote!(#before.#own.spatial_velocity(&#after.#own).matrix()),
+            Side::Body => quote!(#before.#own.body_velocity(&#after.#own)),
+            Side::Spatial => quote!(#before.#own.spatial_velocity(&#after.#own)),
         };
+        let value = element::matrix(c, value);
         locals.extend(quote!(let #name = #value;));
         bindings.bind(at(c.velocity, Shift::HERE), name);
     }
     for (level, source) in [(0i8, &before), (1, &after)] {
         let element = |i: usize| {
-            let e = own(d, d.spec.configurations[i].element);
-            quote!(#source.#e.matrix())
+            let c = &d.spec.configurations[i];
+            let e = own(d, c.element);
+            element::matrix(c, quote!(#source.#e))
         };
         let reference = |id| {
             let r = own(d, id);

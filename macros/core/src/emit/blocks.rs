@@ -2,7 +2,7 @@
 //! for all of them, then each block by its own method, then the way to the next node together.
 //! Takes the derivation; gives the factors that the model keeps, the workspace and `step`.
 
-use super::element::{Family, family};
+use super::element::{self, Family, family};
 use super::expression::{Bindings, program};
 use super::items::{letters_of, parameter_locals, text, with_transports};
 use super::left_factor::default_solver;
@@ -200,9 +200,12 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
                 node_momentum(d, i, d.spec.configurations[i].side),
                 rest.map(|rest| quote!(- (#rest))),
             );
-            let names = [text(d, &form.left), text(d, &form.right)];
+            let known = quote!((#at_node #minus));
+            let factors = left.zip(right);
+            let solved =
+                factors.map(|(left, right)| linear_solution(d, i, form, left, known, right));
             solves.extend(quote! {
-                let #omega = match two_sided(&(#left), &(#at_node #minus), &(#right), &[#(#names),*]) {
+                let #omega = match #solved {
                     Ok(solved) => solved,
                     Err(e) => return Err(StepCause::Singular(e).at_node(state.#node)),
                 };
@@ -264,7 +267,8 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
         if moving.iter().any(|e| expr::contains(e, velocity)) {
             let omega = &found[i];
             let name = tagged(d, names, velocity.symbol, "matrix");
-            solves.extend(quote!(let #name = #omega.matrix();));
+            let matrix = element::matrix(&d.spec.configurations[i], omega.clone());
+            solves.extend(quote!(let #name = #matrix;));
             after.bind(velocity, name);
         }
     }
@@ -298,6 +302,46 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
         }
     });
     (node_types, quote!(#step_function #refused #beside))
+}
+
+/// The solution of a linear balance, with the values of its factors. Those of a field may be numbers.
+fn linear_solution(
+    d: &Derivation,
+    i: usize,
+    form: &Explicit,
+    left: TokenStream,
+    known: TokenStream,
+    right: TokenStream,
+) -> TokenStream {
+    let c = &d.spec.configurations[i];
+    let names = [text(d, &form.left), text(d, &form.right)];
+    let Family::Field(shape) = family(c) else {
+        return quote!(two_sided(&(#left), &#known, &(#right), &[#(#names),*]));
+    };
+    let s = &d.letters.symbols;
+    let dims = [shape.rows, shape.cols].map(|n| super::sizes::size(s, n));
+    let known = element::array(c, known);
+    let [first, second] = &names;
+    // A number in front of everything divides.
+    let is_number = |e: &Expr| e.shape().is_scalar();
+    let one = |e: &Expr| *e == expr::integer(1);
+    match (is_number(&form.left), is_number(&form.right)) {
+        (true, true) => quote!(divided(&#known, #left, #first)),
+        (false, true) if one(&form.right) => quote!(left_sided(&(#left), &#known, #first)),
+        (true, false) if one(&form.left) => quote!(right_sided(&#known, &(#right), #second)),
+        (left_number, right_number) => {
+            let [rows, cols] = &dims;
+            let whole = |number: bool, value: TokenStream, n: &TokenStream| match number {
+                true => quote!(SMatrix::<T, #n, #n>::from_diagonal_element(#value)),
+                false => value,
+            };
+            let (left, right) = (
+                whole(left_number, left, rows),
+                whole(right_number, right, cols),
+            );
+            quote!(two_sided_increment(&(#left), &#known, &(#right), &[#(#names),*]))
+        }
+    }
 }
 
 /// The solution of a Moser-Veselov equation that is a block by itself.

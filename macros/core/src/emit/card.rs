@@ -5,7 +5,7 @@ use super::element::{self, Family, family};
 use super::formula::formula;
 use super::invariants::{Form, scale};
 use super::items::kept;
-use super::names::{Names, item, kebab, own, per_configuration};
+use super::names::{Names, item, kebab, own};
 use super::sizes::{Generics, size};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
@@ -80,6 +80,11 @@ fn element_field(d: &Derivation, i: usize) -> FieldOf {
         Family::Quaternion => ("UnitQuaternion", "attitude (w, x, y, z), body to space"),
         Family::Motion => ("RigidMotion", "position, body to space"),
         Family::Linear(_) => ("Matrix", "configuration, reference to space"),
+        Family::Field(shape) => match (shape.is_scalar(), shape.is_vector()) {
+            (true, _) => ("Scalar", "field"),
+            (false, true) => ("Vector", "field"),
+            (false, false) => ("Matrix", "field"),
+        },
     };
     FieldOf {
         name: d
@@ -91,24 +96,28 @@ fn element_field(d: &Derivation, i: usize) -> FieldOf {
         shape: match family(c) {
             // Four components say the same as the matrix.
             Family::Quaternion => Shape::vector(c.group.size()),
-            _ => Shape::square(c.group.size()),
+            _ => c.group.shape(),
         },
         kind,
         doc: said(d.letters.symbols.get(c.element), doc),
     }
 }
 
-fn momentum_field(d: &Derivation, i: usize, body: bool) -> FieldOf {
-    let (base, kind, frame) = if body {
-        ("body_momentum", "BodyMomentum", "body")
-    } else {
-        ("spatial_momentum", "SpatialMomentum", "space")
+fn momentum_field(d: &Derivation, i: usize, side: Side) -> FieldOf {
+    let c = &d.spec.configurations[i];
+    let (kind, doc) = match side {
+        _ if c.group.is_additive() => {
+            let name = &d.letters.symbols.get(c.element).name;
+            ("FieldMomentum", format!("momentum of {name}"))
+        }
+        Side::Body => ("BodyMomentum", "momentum, body frame".to_owned()),
+        Side::Spatial => ("SpatialMomentum", "momentum, space frame".to_owned()),
     };
     FieldOf {
-        name: per_configuration(d, base, i).to_string(),
+        name: element::momentum_field(d, i, side).to_string(),
         shape: d.letters.symbols.get(d.letters.node_momentum[i]).shape,
         kind,
-        doc: format!("momentum, {frame} frame"),
+        doc,
     }
 }
 
@@ -129,17 +138,24 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
     let mut observed = Vec::new();
     for i in 0..count {
         let c = &d.spec.configurations[i];
-        let body = c.side == Side::Body;
         initial.push(element_field(d, i));
-        initial.push(momentum_field(d, i, body));
+        initial.push(momentum_field(d, i, c.side));
         observables.push(element_field(d, i));
-        observables.push(momentum_field(d, i, true));
-        observables.push(momentum_field(d, i, false));
         let element = own(d, c.element);
         let (b, s) = (
-            per_configuration(d, "body_momentum", i),
-            per_configuration(d, "spatial_momentum", i),
+            element::momentum_field(d, i, Side::Body),
+            element::momentum_field(d, i, Side::Spatial),
         );
+        if c.group.is_additive() {
+            observables.push(momentum_field(d, i, c.side));
+            observed.push(quote! {
+                let out = put(out, rows(state.#element().matrix()));
+                let out = put(out, rows(state.#s().0));
+            });
+            continue;
+        }
+        observables.push(momentum_field(d, i, Side::Body));
+        observables.push(momentum_field(d, i, Side::Spatial));
         let numbers = match family(c) {
             Family::Quaternion => quote!(state.#element().components()),
             _ => quote!(rows(state.#element().matrix())),
@@ -175,7 +191,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
             let method = format_ident!("{}", v.name);
             values.extend(match &v.kind {
                 Kind::SpatialMomentum(i) => {
-                    let m = per_configuration(d, "spatial_momentum", *i);
+                    let m = element::momentum_field(d, *i, Side::Spatial);
                     let element = own(d, d.spec.configurations[*i].element);
                     // The state keeps the spatial momentum; what shows a drift is the momentum that
                     // the solver iterates in the body, seen from space.
@@ -195,6 +211,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                                 Family::Rotation
                                 | Family::Linear(_)
                                 | Family::Quaternion
+                                | Family::Field(_)
                                 | Family::Motion => {
                                     quote!(let out = put(out, rows(state.#m().0));)
                                 }
@@ -453,18 +470,10 @@ fn constructor(d: &Derivation) -> TokenStream {
             Family::Linear(_) => quote!(linear_of),
             Family::Quaternion => quote!(quaternion_of),
             Family::Motion => quote!(motion_of),
+            Family::Field(_) => quote!(additive_of),
         };
         initial.push(quote!(#element: #read(#label, initial.get(#index))?));
-        let body = c.side == Side::Body;
-        let field = per_configuration(
-            d,
-            if body {
-                "body_momentum"
-            } else {
-                "spatial_momentum"
-            },
-            i,
-        );
+        let field = element::momentum_field(d, i, c.side);
         let label = field.to_string();
         let kind = element::momentum_name(d, i, c.side);
         let index = index + 1;

@@ -382,10 +382,7 @@ fn on_edge(d: &Derivation, names: &Names, list: &[Guard]) -> TokenStream {
         .spec
         .configurations
         .iter()
-        .map(|c| {
-            let size = s.get(c.velocity).shape.rows;
-            (at(c.velocity, Shift::HERE), expr::identity(size))
-        })
+        .map(|c| (at(c.velocity, Shift::HERE), c.group.identity()))
         .collect();
     let mut wanted: Vec<Expr> = Vec::new();
     for g in list {

@@ -4,7 +4,8 @@
 use super::sizes::size;
 use crate::check::spec::{Configuration, Group, Side};
 use crate::derive::Derivation;
-use crate::expr::shape::Dim;
+use crate::expr::shape::{Dim, Shape};
+use crate::groups::{Additive, GeneralLinear, SpecialOrthogonal, THREE};
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -21,16 +22,19 @@ pub enum Family {
     Quaternion,
     /// SE(3), by rotations and translations; covectors are vectors of six components.
     Motion,
+    /// Numbers, vectors or matrices that are added; covectors are of the same shape.
+    Field(Shape),
 }
 
 /// The family of a configuration.
 pub fn family(c: &Configuration) -> Family {
     match c.group {
-        Group::SpecialOrthogonal(Dim::Fixed(3)) => Family::Rotation,
-        Group::SpecialOrthogonal(n) => Family::Orthogonal(n),
-        Group::GeneralLinear(n) => Family::Linear(n),
-        Group::UnitQuaternions => Family::Quaternion,
-        Group::RigidMotions => Family::Motion,
+        Group::SpecialOrthogonal(SpecialOrthogonal(THREE)) => Family::Rotation,
+        Group::SpecialOrthogonal(SpecialOrthogonal(n)) => Family::Orthogonal(n),
+        Group::GeneralLinear(GeneralLinear(n)) => Family::Linear(n),
+        Group::UnitQuaternions(_) => Family::Quaternion,
+        Group::RigidMotions(_) => Family::Motion,
+        Group::Additive(Additive(shape)) => Family::Field(shape),
     }
 }
 
@@ -58,6 +62,7 @@ pub fn most_coordinates(d: &Derivation, i: usize) -> u64 {
     match of(d, i) {
         Family::Rotation | Family::Quaternion => 3,
         Family::Motion => 6,
+        Family::Field(shape) => largest(d, shape.rows).saturating_mul(largest(d, shape.cols)),
         Family::Orthogonal(n) => {
             let n = largest(d, n);
             n.saturating_mul(n.saturating_sub(1)) / 2
@@ -83,6 +88,10 @@ pub fn coordinates(d: &Derivation, i: usize) -> TokenStream {
     match of(d, i) {
         Family::Rotation | Family::Quaternion => quote!(3),
         Family::Motion => quote!(6),
+        Family::Field(shape) => {
+            let (rows, cols) = (size(s, shape.rows), size(s, shape.cols));
+            quote!((#rows * #cols))
+        }
         Family::Orthogonal(Dim::Fixed(_)) | Family::Linear(Dim::Fixed(_)) => {
             let n = Literal::usize_unsuffixed(most_coordinates(d, i) as usize);
             quote!(#n)
@@ -128,6 +137,10 @@ pub fn ty_over(d: &Derivation, i: usize, scalar: &TokenStream) -> TokenStream {
         }
         Family::Quaternion => quote!(UnitQuaternion<#scalar>),
         Family::Motion => quote!(RigidMotion<#scalar>),
+        Family::Field(shape) => {
+            let (rows, cols) = (size(s, shape.rows), size(s, shape.cols));
+            quote!(Additive<#rows, #cols, #scalar>)
+        }
     }
 }
 
@@ -146,6 +159,10 @@ pub fn region(d: &Derivation, i: usize, variables: &Literal) -> TokenStream {
         }
         Family::Quaternion => quote!(newton::QuaternionRegion<#variables>),
         Family::Motion => quote!(newton::MotionRegion<#variables>),
+        Family::Field(shape) => {
+            let (rows, cols) = (size(s, shape.rows), size(s, shape.cols));
+            quote!(newton::AdditiveRegion<#rows, #cols, #variables>)
+        }
     }
 }
 
@@ -155,7 +172,9 @@ pub fn variables(d: &Derivation, i: usize) -> u64 {
         Family::Rotation => 9,
         Family::Quaternion => 6,
         Family::Motion => 12,
-        Family::Orthogonal(_) | Family::Linear(_) => 3 * most_coordinates(d, i).div_ceil(3),
+        Family::Orthogonal(_) | Family::Linear(_) | Family::Field(_) => {
+            3 * most_coordinates(d, i).div_ceil(3)
+        }
     }
 }
 
@@ -163,11 +182,60 @@ pub fn variables(d: &Derivation, i: usize) -> u64 {
 pub fn numbers(d: &Derivation, i: usize, element: TokenStream) -> TokenStream {
     match of(d, i) {
         Family::Rotation => quote!(&#element.quaternion()),
-        Family::Orthogonal(_) | Family::Linear(_) | Family::Motion => {
+        Family::Orthogonal(_) | Family::Linear(_) | Family::Motion | Family::Field(_) => {
             quote!(#element.matrix().as_slice())
         }
         Family::Quaternion => quote!(&#element.components()),
     }
+}
+
+/// What expressions take for an element, given the value that the runtime keeps: its matrix, or the
+/// number of a field of numbers.
+pub fn matrix(c: &Configuration, element: TokenStream) -> TokenStream {
+    match family(c) {
+        Family::Field(shape) if shape.is_scalar() => quote!(#element.matrix()[0]),
+        _ => quote!(#element.matrix()),
+    }
+}
+
+/// What expressions take for a momentum, given the array that the runtime keeps.
+pub fn value(c: &Configuration, momentum: TokenStream) -> TokenStream {
+    match family(c) {
+        Family::Field(shape) if shape.is_scalar() => quote!(#momentum[0]),
+        _ => momentum,
+    }
+}
+
+/// The other way round: the array that the runtime keeps for the value of a covector.
+pub fn array(c: &Configuration, value: TokenStream) -> TokenStream {
+    match family(c) {
+        Family::Field(shape) if shape.is_scalar() => quote!(SVector::<T, 1>::new(#value)),
+        _ => value,
+    }
+}
+
+/// The element at the end of an edge whose velocity is found on a side.
+pub fn advanced(
+    c: &Configuration,
+    side: Side,
+    element: TokenStream,
+    velocity: TokenStream,
+) -> TokenStream {
+    match (family(c), side) {
+        (Family::Field(_), _) => quote!(#element + #velocity),
+        (_, Side::Body) => quote!(#element * #velocity),
+        (_, Side::Spatial) => quote!(#velocity * #element),
+    }
+}
+
+/// The name of the momentum of a configuration in the frame of a side; a field has one frame.
+pub fn momentum_field(d: &Derivation, i: usize, side: Side) -> proc_macro2::Ident {
+    let base = match (of(d, i), side) {
+        (Family::Field(_), _) => "momentum",
+        (_, Side::Body) => "body_momentum",
+        (_, Side::Spatial) => "spatial_momentum",
+    };
+    super::names::per_configuration(d, base, i)
 }
 
 /// The type of a covector.
@@ -176,6 +244,7 @@ pub fn covector(d: &Derivation, i: usize) -> TokenStream {
     match of(d, i) {
         Family::Rotation | Family::Quaternion => quote!(SVector<T, 3>),
         Family::Motion => quote!(SVector<T, 6>),
+        Family::Field(shape) => super::expression::ty(s, shape),
         Family::Orthogonal(n) | Family::Linear(n) => {
             let n = size(s, n);
             quote!(SMatrix<T, #n, #n>)
@@ -192,6 +261,7 @@ pub fn momentum_name(d: &Derivation, i: usize, side: Side) -> TokenStream {
     let name = match of(d, i) {
         Family::Rotation | Family::Quaternion => format_ident!("{frame}Momentum"),
         Family::Motion => format_ident!("{frame}Impulse"),
+        Family::Field(_) => format_ident!("FieldMomentum"),
         Family::Orthogonal(_) | Family::Linear(_) => format_ident!("{frame}MomentumMatrix"),
     };
     quote!(#name)
@@ -203,6 +273,10 @@ pub fn momentum(d: &Derivation, i: usize, side: Side) -> TokenStream {
     let name = momentum_name(d, i, side);
     match of(d, i) {
         Family::Rotation | Family::Quaternion | Family::Motion => quote!(#name<T>),
+        Family::Field(shape) => {
+            let (rows, cols) = (size(s, shape.rows), size(s, shape.cols));
+            quote!(#name<#rows, #cols, T>)
+        }
         Family::Orthogonal(n) | Family::Linear(n) => {
             let n = size(s, n);
             quote!(#name<#n, T>)
@@ -225,6 +299,11 @@ pub fn basis(d: &Derivation, i: usize, index: TokenStream) -> TokenStream {
         }
         Family::Quaternion => quote!(unit::<T, 3>(#index)),
         Family::Motion => quote!(unit::<T, 6>(#index)),
+        Family::Field(shape) if shape.is_scalar() => quote!(T::one()),
+        Family::Field(shape) => {
+            let (rows, cols) = (size(s, shape.rows), size(s, shape.cols));
+            quote!(array_basis::<T, #rows, #cols>(#index))
+        }
     }
 }
 
@@ -298,7 +377,8 @@ pub fn stack(d: &Derivation, parts: TokenStream) -> TokenStream {
         let put = match of(d, i) {
             Family::Rotation | Family::Quaternion | Family::Motion => quote!(put_vector),
             Family::Orthogonal(_) => quote!(put_skew),
-            Family::Linear(_) => quote!(put_matrix),
+            Family::Field(shape) if shape.is_scalar() => quote!(put_number),
+            Family::Linear(_) | Family::Field(_) => quote!(put_matrix),
         };
         quote!(let rest = #put(rest, &#part);)
     });

@@ -4,12 +4,10 @@
 use super::element::{self, Bundle, stack};
 use super::expression::{Bindings, Writer, program};
 use super::items::{letters_of, parameter_locals, with_transports};
-use super::names::{Names, item, per_configuration, variable};
+use super::names::{Names, item, variable};
 use super::sizes::Generics;
 use super::step::{at, here};
-use crate::check::spec::Side;
 use crate::derive::Derivation;
-use crate::derive::lie;
 use crate::derive::limit::Limit;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::schedule;
@@ -28,12 +26,8 @@ pub fn energy(d: &Derivation, names: &Names, limit: &Limit) -> TokenStream {
 fn momenta(d: &Derivation) -> Vec<TokenStream> {
     let list = d.spec.configurations.iter().enumerate();
     list.map(|(i, c)| {
-        let base = match c.side {
-            Side::Body => "body_momentum",
-            Side::Spatial => "spatial_momentum",
-        };
-        let method = per_configuration(d, base, i);
-        quote!(state.#method().0)
+        let method = element::momentum_field(d, i, c.side);
+        element::value(c, quote!(state.#method().0))
     })
     .collect()
 }
@@ -51,7 +45,7 @@ fn of_matrices(d: &Derivation, names: &Names, limit: &Limit) -> TokenStream {
         let list = d.spec.configurations.iter().zip(&d.letters.variation);
         list.map(|(c, xi)| {
             let y = expr::gradient(s, e, at(*xi, Shift::HERE));
-            lie::of_gradient(&d.letters, c.group, y)
+            c.group.of_gradient(&d.letters.symbols, y)
         })
         .collect()
     };
@@ -76,6 +70,8 @@ fn of_matrices(d: &Derivation, names: &Names, limit: &Limit) -> TokenStream {
                 let name = variable(s, *xi);
                 let value = if i == j {
                     element::basis(d, i, quote!(axis))
+                } else if s.get(*xi).shape.is_scalar() {
+                    quote!(T::zero())
                 } else {
                     quote!(SMatrix::zeros())
                 };

@@ -7,6 +7,7 @@ use super::expression::{Bindings, program, ty};
 use super::items::letters_of;
 use super::names::{Names, variable};
 use super::step::at;
+use crate::check::spec::Side;
 use crate::derive::parts::{Parts, Velocity};
 use crate::derive::tangent::Direction;
 use crate::derive::{Derivation, lie};
@@ -225,9 +226,10 @@ impl Equations<'_> {
         let covectors = element::covectors(d);
         let velocities: TokenStream = (0..bodies)
             .map(|i| {
-                let w = variable(s, d.spec.configurations[i].velocity);
-                let part = bundle.part(quote!(#trial), i);
-                quote!(let #w = #part.matrix();)
+                let c = &d.spec.configurations[i];
+                let w = variable(s, c.velocity);
+                let matrix = element::matrix(c, bundle.part(quote!(#trial), i));
+                quote!(let #w = #matrix;)
             })
             .collect();
         let bound = d.spec.configurations.iter().map(|c| {
@@ -258,7 +260,8 @@ impl Equations<'_> {
         for j in 0..bodies {
             let c = &d.spec.configurations[j];
             let eta = d.letters.direction[j];
-            let change = expr::mul(expr::here(s, c.velocity), lie::element(s, c.group, eta));
+            let along = lie::element(s, c.group, eta);
+            let change = c.group.moved(Side::Body, expr::here(s, c.velocity), along);
             let along = [(at(c.velocity, Shift::HERE), change)];
             let derivatives: Vec<Expr> = list
                 .iter()

@@ -42,10 +42,10 @@ fn energy(d: &Derivation, limit: &Limit, continuous: &Continuous) -> String {
         // The part of the momentum that stays at rest: the gradient of the linear part.
         let xi = lie::letter(d.letters.variation[i]);
         let still = expr::gradient(s, &limit.linear, xi);
-        let still = lie::of_gradient(&d.letters, c.group, expr::substitute(s, &still, &zeta));
+        let still = c.group.of_gradient(s, expr::substitute(s, &still, &zeta));
         let moving = expr::sub(mu, expr::collect(s, &still));
         let along = velocity(&d.letters, c.group, d.letters.rate[i]);
-        let pairing = lie::pairing(&d.letters, c.group, moving, along);
+        let pairing = c.group.pairing(s, moving, along);
         expr::scale(Rational::HALF, expr::collect(s, &pairing))
     });
     let kinetic = expr::sum(terms, Shape::SCALAR);

@@ -4,7 +4,7 @@ use super::element::{self, Family};
 use super::expression::{Bindings, Writer, dims, program, ty};
 use super::formula::formula;
 use super::items::{letters_of, parameter_locals, with_transports};
-use super::names::{Names, item, per_configuration, variable};
+use super::names::{Names, item, variable};
 use super::sizes::{Generics, size};
 use super::step::{at, here};
 use crate::check::spec::Side;
@@ -30,15 +30,9 @@ fn momenta(d: &Derivation, needed: &[Letter], bindings: &mut Bindings) -> TokenS
             continue;
         }
         let name = variable(&d.letters.symbols, *id);
-        let method = per_configuration(
-            d,
-            match c.side {
-                Side::Body => "body_momentum",
-                Side::Spatial => "spatial_momentum",
-            },
-            i,
-        );
-        out.extend(quote!(let #name = state.#method().0;));
+        let method = element::momentum_field(d, i, c.side);
+        let value = element::value(c, quote!(state.#method().0));
+        out.extend(quote!(let #name = #value;));
         bindings.bind(letter, name);
     }
     out
@@ -62,9 +56,14 @@ pub fn form(d: &Derivation, v: &Invariant) -> Form {
         let family = element::family(&d.spec.configurations[i]);
         matches!(family, Family::Orthogonal(_))
     };
+    let number = |i: usize| {
+        let family = element::family(&d.spec.configurations[i]);
+        matches!(family, Family::Field(shape) if shape.is_scalar())
+    };
     match (&v.kind, &v.value) {
         (Kind::Spectrum, _) => Form::Spectrum,
         (Kind::TotalMomentum(set), _) if set.first().is_some_and(|i| skew(*i)) => Form::Skew,
+        (Kind::TotalMomentum(set), _) if set.first().is_some_and(|i| number(*i)) => Form::Number,
         (Kind::TotalMomentum(_) | Kind::SpatialMomentum(_), _) => Form::Entries,
         (Kind::Value, Some(e)) if !e.shape().is_scalar() => Form::Entries,
         (Kind::Value | Kind::Energy, _) => Form::Number,
@@ -111,14 +110,7 @@ fn lax_parts(d: &Derivation, names: &Names, source: TokenStream) -> [TokenStream
         bindings: &bindings,
     };
     let factor = writer.operand(&lax.factor);
-    let momentum = per_configuration(
-        d,
-        match c.side {
-            Side::Body => "body_momentum",
-            Side::Spatial => "spatial_momentum",
-        },
-        0,
-    );
+    let momentum = element::momentum_field(d, 0, c.side);
     [
         quote!(#parameters #locals),
         quote!(state.#momentum().0),
@@ -161,7 +153,7 @@ fn momentum_rows(d: &Derivation, i: usize) -> TokenStream {
     match element::family(&d.spec.configurations[i]) {
         Family::Rotation | Family::Quaternion => quote!(3usize),
         Family::Motion => quote!(6usize),
-        Family::Orthogonal(_) | Family::Linear(_) => element::coordinates(d, i),
+        Family::Orthogonal(_) | Family::Linear(_) | Family::Field(_) => element::coordinates(d, i),
     }
 }
 
@@ -180,8 +172,8 @@ pub fn invariants(d: &Derivation, names: &Names) -> TokenStream {
             (Kind::Spectrum, _, _) => functions.extend(spectrum(d, names, v)),
             (Kind::TotalMomentum(set), _, _) => {
                 let parts = set.iter().map(|i| {
-                    let momentum = per_configuration(d, "spatial_momentum", *i);
-                    quote!(state.#momentum().0)
+                    let momentum = element::momentum_field(d, *i, Side::Spatial);
+                    element::value(&d.spec.configurations[*i], quote!(state.#momentum().0))
                 });
                 let t = element::covector(d, set.first().copied().unwrap_or(0));
                 functions.extend(quote! {

@@ -8,7 +8,7 @@ use super::names::{Names, item, variable};
 use super::sizes::Generics;
 use super::step::here;
 use crate::derive::Derivation;
-use crate::derive::{kinetic, lie};
+use crate::derive::kinetic;
 use crate::expr::Expr;
 use crate::schedule;
 use proc_macro2::TokenStream;
@@ -28,7 +28,7 @@ pub fn kinetic_warning(d: &Derivation, names: &Names) -> TokenStream {
     let gradients: Vec<Expr> = kinetic::gradients(&d.letters, &form.energy)
         .into_iter()
         .zip(&d.spec.configurations)
-        .map(|(y, c)| lie::of_gradient(&d.letters, c.group, y))
+        .map(|(y, c)| c.group.of_gradient(&d.letters.symbols, y))
         .collect();
     let needed = letters_of(&gradients);
     let all = with_transports(d, &needed, 0);
@@ -45,6 +45,7 @@ pub fn kinetic_warning(d: &Derivation, names: &Names) -> TokenStream {
             let t = super::expression::ty(s, s.get(*xi).shape);
             let value = match i == j {
                 true => element::basis(d, i, quote!(axis)),
+                false if s.get(*xi).shape.is_scalar() => quote!(T::zero()),
                 false => quote!(SMatrix::zeros()),
             };
             quote!(let #name: #t = #value;)

@@ -4,7 +4,6 @@
 use super::items::kept;
 use super::names::{Names, item, own, per_configuration};
 use super::sizes::Generics;
-use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::recognise::Method;
 use proc_macro2::{Ident, TokenStream};
@@ -25,10 +24,7 @@ pub fn over_any_scalar(d: &Derivation, names: &Names) -> TokenStream {
     let (mut initial, mut state) = (Vec::new(), Vec::new());
     for (i, c) in d.spec.configurations.iter().enumerate() {
         let element = own(d, c.element);
-        let given = match c.side {
-            Side::Body => per_configuration(d, "body_momentum", i),
-            Side::Spatial => per_configuration(d, "spatial_momentum", i),
-        };
+        let given = super::element::momentum_field(d, i, c.side);
         initial.extend([element.clone(), given]);
         state.extend([element, per_configuration(d, "momentum", i)]);
     }

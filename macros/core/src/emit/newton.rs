@@ -74,9 +74,10 @@ impl Together<'_> {
 
     /// The side on which a velocity is found.
     pub fn side(&self, i: usize) -> Side {
+        let c = &self.block.spec.configurations[i];
         match self.block.solve.seen_from_body {
-            Some(_) => Side::Body,
-            None => self.block.spec.configurations[i].side,
+            Some(_) if !c.group.is_additive() => Side::Body,
+            _ => c.side,
         }
     }
 
@@ -115,8 +116,9 @@ impl Together<'_> {
             let name = tagged(d, self.names, c.velocity, "matrix");
             after.bind(at(c.velocity, Shift::HERE), name.clone());
             let part = self.part(quote!(#solved), i);
+            let stated = element::matrix(c, part.clone());
             out.extend(match self.side(i) == c.side {
-                true => quote!(let #name = #part.matrix();),
+                true => quote!(let #name = #stated;),
                 false => quote!(let #name = (state.#own * #part * state.#own.inverse()).matrix();),
             });
         }
@@ -272,10 +274,8 @@ impl Together<'_> {
         }
         let moves = d.spec.configurations.iter().enumerate().map(|(i, c)| {
             let (own, part) = (own(d, c.element), self.part(quote!(solved.element), i));
-            match self.side(i) {
-                Side::Body => quote!(moved.#own = state.#own * #part;),
-                Side::Spatial => quote!(moved.#own = #part * state.#own;),
-            }
+            let end = element::advanced(c, self.side(i), quote!(state.#own), part);
+            quote!(moved.#own = #end;)
         });
         Some(quote! {
             if let Ok(solved) = &failed {

@@ -41,8 +41,9 @@ pub fn balance(d: &Derivation, names: &Names) -> TokenStream {
     for (level, source) in [(-1i8, &before), (0, &here), (1, &after)] {
         all.extend(with_transports(d, &needed, level));
         let element = |i: usize| {
-            let e = own(d, d.spec.configurations[i].element);
-            quote!(#source.#e.matrix())
+            let c = &d.spec.configurations[i];
+            let e = own(d, c.element);
+            element::matrix(c, quote!(#source.#e))
         };
         // Quantities without a definition are given at every node.
         let mut given = TokenStream::new();
@@ -91,9 +92,10 @@ pub fn balance(d: &Derivation, names: &Names) -> TokenStream {
                 tagged(d, names, c.velocity, "before")
             };
             let value = match c.side {
-                Side::Body => quote!(#from.#e.body_velocity(&#to.#e).matrix()),
-                Side::Spatial => quote!(#from.#e.spatial_velocity(&#to.#e).matrix()),
+                Side::Body => quote!(#from.#e.body_velocity(&#to.#e)),
+                Side::Spatial => quote!(#from.#e.spatial_velocity(&#to.#e)),
             };
+            let value = element::matrix(c, value);
             velocities.extend(quote!(let #local = #value;));
             bindings.bind(
                 at(

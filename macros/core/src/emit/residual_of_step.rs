@@ -3,11 +3,12 @@
 //! Takes the derivation; gives the function.
 
 use super::between::{Edge, edge_between};
+use super::element;
 use super::expression::program;
 use super::names::{Names, item, own, per_configuration, variable};
 use super::sizes::Generics;
 use super::step::at;
-use crate::check::spec::{Group, Side};
+use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::lie::IMPULSE;
 use crate::derive::parts::rows;
@@ -28,7 +29,7 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
         let (field, own) = (per_configuration(d, "momentum", i), own(d, c.element));
         let momentum = match c.side {
             Side::Body => quote!(#after.#field.to_body(&#after.#own).0),
-            Side::Spatial => quote!(#after.#field.0),
+            Side::Spatial => element::value(c, quote!(#after.#field.0)),
         };
         match b.incoming.shape() == IMPULSE {
             true => {
@@ -46,7 +47,7 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
             }
             false => {
                 brought.push(b.incoming.clone());
-                carried.push((momentum, None));
+                carried.push((element::array(c, momentum), None));
             }
         }
     }
@@ -64,7 +65,14 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
     let (lets, values) = program(&p, &bindings);
     let (values, sizes) = values.split_at(brought.len());
     let count = Literal::usize_unsuffixed(brought.len());
-    let parts = values.iter().zip(sizes).zip(&carried);
+    let values = values
+        .iter()
+        .zip(&brought)
+        .map(|(value, e)| match e.shape().is_scalar() {
+            true => quote!(SVector::<T, 1>::new(#value)),
+            false => value.clone(),
+        });
+    let parts = values.zip(sizes).zip(&carried);
     let parts = parts.map(|((value, size), (momentum, arm))| {
         quote! {{
             let momentum = #momentum;
@@ -99,7 +107,7 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
 fn paths(d: &Derivation) -> Vec<(Letter, Expr)> {
     let s = &d.letters.symbols;
     let list = d.spec.configurations.iter();
-    let rigid = list.filter(|c| c.group == Group::RigidMotions);
+    let rigid = list.filter(|c| c.group.is_rigid());
     let size = |shift, element| {
         let place = expr::column(s, &expr::letter(s, element, shift));
         expr::length(s, &place)

@@ -22,8 +22,8 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
         let element = own(d, c.element);
         let momentum = per_configuration(d, "momentum", i);
         let (spatial, body) = (
-            per_configuration(d, "spatial_momentum", i),
-            per_configuration(d, "body_momentum", i),
+            element::momentum_field(d, i, Side::Spatial),
+            element::momentum_field(d, i, Side::Body),
         );
         let name = &s.get(c.element).name;
         let doc = format!(" `{name}` at node 0: body -> space.");
@@ -32,6 +32,21 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
             element::momentum(d, i, Side::Body),
             element::momentum(d, i, Side::Spatial),
         );
+        if c.group.is_additive() {
+            let [start, here] = ["at node 0", "at this node"].map(|at| format!(" `{name}` {at}."));
+            given.push(quote! {
+                #[doc = #start] pub #element: #kind,
+                #[doc = " Its momentum at node 0."] pub #spatial: #of_space
+            });
+            kept_fields.push(quote!(#element: #kind, #momentum: #of_space));
+            access.push(quote! {
+                #[doc = #here]
+                pub fn #element(&self) -> #kind { self.#element }
+                /// Its momentum at this node.
+                pub fn #spatial(&self) -> #of_space { self.#momentum }
+            });
+            continue;
+        }
         given.push(match c.side {
             Side::Body => quote! {
                 #[doc = #doc] pub #element: #kind,

@@ -71,14 +71,7 @@ fn start(d: &Derivation, names: &Names) -> TokenStream {
     for (i, c) in d.spec.configurations.iter().enumerate() {
         let element = own(d, c.element);
         let momentum = per_configuration(d, "momentum", i);
-        let given = per_configuration(
-            d,
-            match c.side {
-                Side::Body => "body_momentum",
-                Side::Spatial => "spatial_momentum",
-            },
-            i,
-        );
+        let given = element::momentum_field(d, i, c.side);
         let label = given.to_string();
         let name = &s.get(c.element).name;
         let numbers = element::numbers(d, i, quote!(initial.#element));
@@ -125,7 +118,8 @@ fn start(d: &Derivation, names: &Names) -> TokenStream {
                     .filter(|c| needed.contains(&at(c.element, Shift::HERE)))
                     .map(|c| {
                         let (e, local) = (own(d, c.element), variable(s, c.element));
-                        quote!(let #local = initial.#e.matrix();)
+                        let value = element::matrix(c, quote!(initial.#e));
+                        quote!(let #local = #value;)
                     })
                     .collect();
                 let source = tagged(d, names, a.quantity, "start");
@@ -243,8 +237,9 @@ pub(super) fn here(
     bindings: &mut Bindings,
 ) -> TokenStream {
     let element = |i: usize| {
-        let e = own(d, d.spec.configurations[i].element);
-        quote!(state.#e.matrix())
+        let c = &d.spec.configurations[i];
+        let e = own(d, c.element);
+        element::matrix(c, quote!(state.#e))
     };
     let reference = |id| {
         let r = own(d, id);
@@ -261,7 +256,7 @@ pub(super) fn node_momentum(d: &Derivation, i: usize, side: Side) -> TokenStream
     match (side, family(c)) {
         (Side::Body, Family::Rotation) => quote!(#element.tr_mul(&state.#momentum.0)),
         (Side::Body, _) => quote!(state.#momentum.to_body(&state.#own).0),
-        (Side::Spatial, _) => quote!(state.#momentum.0),
+        (Side::Spatial, _) => element::value(c, quote!(state.#momentum.0)),
     }
 }
 
@@ -286,19 +281,19 @@ pub(super) fn finish(
         let moved = tagged(d, names, c.element, "moved");
         let element = own(d, c.element);
         let omega = solved(i);
-        out.extend(match c.side {
-            Side::Body => quote!(let #moved = state.#element * #omega;),
-            // What was solved for is the velocity seen from the body.
-            Side::Spatial if d.solve.finds_body_velocity(i) => {
-                quote!(let #moved = state.#element * #omega;)
-            }
-            Side::Spatial => quote!(let #moved = #omega * state.#element;),
-        });
+        // What was solved for may be the velocity seen from the body.
+        let side = match d.solve.finds_body_velocity(i) {
+            true => Side::Body,
+            false => c.side,
+        };
+        let end = element::advanced(c, side, quote!(state.#element), omega);
+        out.extend(quote!(let #moved = #end;));
         assignments.extend(quote!(state.#element = #moved;));
     }
     let element = |i: usize| {
-        let moved = tagged(d, names, d.spec.configurations[i].element, "moved");
-        quote!(#moved.matrix())
+        let c = &d.spec.configurations[i];
+        let moved = tagged(d, names, c.element, "moved");
+        element::matrix(c, quote!(#moved))
     };
     let reference = |id| {
         let r = own(d, id);
@@ -335,13 +330,19 @@ pub(super) fn finish(
                       value: &Option<TokenStream>| {
             match family(c) {
                 Family::Rotation => quote!(+ #matrix * (#value)),
+                Family::Field(_) => quote!(+ #value),
                 Family::Orthogonal(_) | Family::Linear(_) | Family::Quaternion | Family::Motion => {
                     quote!(+ #element.covector_to_space(&(#value)))
                 }
             }
         };
         let plus = |e: &Expr, value: &Option<TokenStream>| (!e.is_zero()).then(|| quote!(+ #value));
+        let old = element::value(c, quote!(state.#field.0));
         let value = match (c.side, u) {
+            (_, Carry::Through { leave, arrive }) if c.group.is_additive() => {
+                let (left, arrived) = (plus(leave, &values.next()), plus(arrive, &values.next()));
+                quote!(#old #left #arrived)
+            }
             (Side::Body, Carry::Through { leave, arrive }) => {
                 let (a, b) = (values.next(), values.next());
                 let left = (!leave.is_zero()).then(|| turned(quote!(state.#element), &here, &a));
@@ -358,7 +359,7 @@ pub(super) fn finish(
             }
             (Side::Spatial, Carry::Kept(e)) => {
                 let added = plus(e, &values.next());
-                quote!(state.#field.0 #added)
+                quote!(#old #added)
             }
             (Side::Spatial, Carry::Through { leave, arrive }) => {
                 let (left, arrived) = (plus(leave, &values.next()), plus(arrive, &values.next()));
@@ -370,6 +371,7 @@ pub(super) fn finish(
             }
         };
         let kind = element::momentum_name(d, i, Side::Spatial);
+        let value = element::array(c, value);
         out.extend(quote!(let #momentum = #value;));
         assignments.extend(quote!(state.#field = #kind(#momentum);));
         finite.push(quote!(all_finite(&#momentum)));

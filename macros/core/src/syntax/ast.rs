@@ -161,6 +161,13 @@ pub enum Statement {
         /// Its velocity.
         velocity: Name,
     },
+    /// `field X, Y: SHAPE;`
+    Field {
+        /// The configurations, each in the additive group of the shape.
+        names: Vec<Name>,
+        /// Their shape.
+        shape: Kindred,
+    },
     /// `advected Γ, S: SHAPE;`, `advected Γ: SHAPE = EXPR;`
     Advected {
         /// The quantities: one, where there is a definition.

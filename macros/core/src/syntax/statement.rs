@@ -134,6 +134,7 @@ fn statement(c: &mut Cursor) -> Result<Statement, Diagnostic> {
         "param" => param(c)?,
         "assume" => assume(c)?,
         "group" => group(c)?,
+        "field" => field(c)?,
         "advected" => advected(c)?,
         "constraint" => constraint(c, &keyword)?,
         "let" => binding(c)?,
@@ -143,7 +144,7 @@ fn statement(c: &mut Cursor) -> Result<Statement, Diagnostic> {
             c.punct('=')?;
             Statement::Lagrangian(expression(c)?)
         }
-        "label" | "grid" | "field" | "hold" | "given" | "mesh" | "linear" | "integrate" | "end" => {
+        "label" | "grid" | "hold" | "given" | "mesh" | "linear" | "integrate" | "end" => {
             return Err(Diagnostic::new(
                 keyword.place,
                 format!(
@@ -151,7 +152,7 @@ fn statement(c: &mut Cursor) -> Result<Statement, Diagnostic> {
                     keyword.text
                 ),
             )
-            .help("models with `group`, `advected`, `constraint` and `lagrangian` are derived"));
+            .help("models with `group`, `field`, `advected`, `constraint` and `lagrangian` are derived"));
         }
         other => {
             let mut e = Diagnostic::new(
@@ -161,7 +162,7 @@ fn statement(c: &mut Cursor) -> Result<Statement, Diagnostic> {
             if let Some(word) = closest(other, KEYWORDS) {
                 e = e.help(format!("did you mean `{word}`?"));
             } else {
-                e = e.help("statements start with param, group, advected, constraint, let, scale, node, assume or lagrangian");
+                e = e.help("statements start with param, group, field, advected, constraint, let, scale, node, assume or lagrangian");
             }
             return Err(e);
         }
@@ -238,6 +239,32 @@ fn param(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     let shape = kindred(c)?;
     typeset(c, &mut names)?;
     Ok(Statement::Param { names, shape })
+}
+
+fn field(c: &mut Cursor) -> Result<Statement, Diagnostic> {
+    let mut names = names(c)?;
+    c.punct(':')?;
+    let shape = kindred(c)?;
+    typeset(c, &mut names)?;
+    let place = c.place();
+    if ["at", "offset", "on"]
+        .into_iter()
+        .any(|word| c.take_word(word))
+    {
+        return Err(Diagnostic::new(
+            place,
+            "fields on a label line belong to models of rods and fluids, which this version does not derive yet",
+        )
+        .help("a field without `at` is one configuration: `field X: Vec<3>;`"));
+    }
+    if c.take_word("velocity") {
+        return Err(Diagnostic::new(
+            place,
+            "a field has no velocity of its own name: it is the increment, `next(X) - X`",
+        )
+        .help("leave `velocity ...` out, and write the kinetic term with `next`, for example `m*dot(next(X) - X, next(X) - X)/(2*h)`"));
+    }
+    Ok(Statement::Field { names, shape })
 }
 
 fn assume(c: &mut Cursor) -> Result<Statement, Diagnostic> {

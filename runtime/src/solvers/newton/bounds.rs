@@ -3,7 +3,7 @@
 //! Takes centre and lengths; gives what equations ask of a velocity, in variables chosen such that
 //! it is affine in them: a rotation in the sine and the cosine of its angle, no product of them.
 
-use crate::groups::{Group, Linear, Orthogonal, RigidMotion, Rotation, UnitQuaternion};
+use crate::groups::{Additive, Group, Linear, Orthogonal, RigidMotion, Rotation, UnitQuaternion};
 use crate::linalg::{left_multiplication, solve_many};
 use crate::scalar::Enclosure;
 use nalgebra::{SMatrix, SVector};
@@ -290,6 +290,42 @@ impl<const N: usize, const K: usize> Region<K> for LinearRegion<N, K> {
                     put(N * i + j, N * k + j, back[(i, k)]);
                 }
             }
+        }
+    }
+}
+
+/// Increments of a field.
+#[derive(Clone, Copy, Debug)]
+pub struct AdditiveRegion<const R: usize, const C: usize, const K: usize> {
+    array: SMatrix<Enclosure<K>, R, C>,
+}
+
+impl<const R: usize, const C: usize, const K: usize> AdditiveRegion<R, C, K> {
+    /// The increments.
+    #[must_use]
+    pub fn matrix(&self) -> SMatrix<Enclosure<K>, R, C> {
+        self.array
+    }
+}
+
+impl<const R: usize, const C: usize, const K: usize> Region<K> for AdditiveRegion<R, C, K> {
+    type Centre = Additive<R, C, f64>;
+    const VARIABLES: usize = threes(R * C);
+
+    fn around(centre: &Additive<R, C, f64>, radii: &[f64], first: usize) -> Self {
+        let (radius, middle) = (radius(radii, 0), centre.matrix());
+        let entry = |i: usize, j: usize| {
+            Enclosure::exactly(middle[(i, j)]) + Enclosure::variable(radius, first + C * i + j)
+        };
+        Self {
+            array: SMatrix::from_fn(entry),
+        }
+    }
+
+    /// The coordinates are the increments.
+    fn chart_tangent(_: &[f64], _: usize, put: &mut impl FnMut(usize, usize, Enclosure<K>)) {
+        for k in 0..R * C {
+            put(k, k, Enclosure::exactly(1.0));
         }
     }
 }

@@ -92,7 +92,7 @@ fn of_term(x: &Inputs, m: &Motion, term: &Expr) -> Expr {
     let mut from_identity: Vec<(Letter, Expr)> = Vec::new();
     for c in &x.spec.configurations {
         let g = expr::here(s, c.element);
-        let one = expr::identity(c.group.size());
+        let one = c.group.identity();
         from_identity.push((here(c.element), one));
         from_identity.push((next(here(c.element)), g.clone()));
         from_identity.push((here(c.velocity), g));
@@ -106,7 +106,12 @@ fn of_term(x: &Inputs, m: &Motion, term: &Expr) -> Expr {
         .spec
         .configurations
         .iter()
-        .map(|c| (here(c.velocity), expr::inverse(s, expr::here(s, c.element))))
+        .map(|c| {
+            (
+                here(c.velocity),
+                c.group.inverse(s, expr::here(s, c.element)),
+            )
+        })
         .collect();
     for a in &x.spec.advected {
         let q = here(a.quantity);

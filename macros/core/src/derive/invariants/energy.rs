@@ -7,9 +7,9 @@ use super::{Family, Inputs, Invariant, Kind, Lax, here, is_conserved};
 use crate::algebra::Rational;
 use crate::algebra::assumed::eliminate;
 use crate::algebra::exact::{Matrix, Point, add, inverse, mul, negate};
+use crate::derive::Derivation;
 use crate::derive::balance::shorter;
 use crate::derive::kinetic::Kinetic;
-use crate::derive::{Derivation, bracket};
 use crate::expr::{self, Expr, Shift};
 
 /// The energy, if the limit of small steps exists.
@@ -73,7 +73,7 @@ pub(super) fn discrete(x: &Inputs, passages: &[Passage], lax: Option<&Lax>) -> D
         .spec
         .configurations
         .iter()
-        .map(|c| (here(c.velocity), expr::identity(c.group.size())))
+        .map(|c| (here(c.velocity), c.group.identity()))
         .collect();
     let rest = expr::substitute(s, &x.action.edge, &still);
     let at_node = expr::letters(&rest).iter().all(|l| l.shift == Shift::HERE);
@@ -110,11 +110,10 @@ fn value(x: &Inputs, point: &Point) -> Option<u64> {
     let mut bases: Vec<(usize, Matrix)> = Vec::new();
     let mut momentum: Vec<u64> = Vec::new();
     for (i, c) in x.spec.configurations.iter().enumerate() {
-        let n = point.dim(c.group.size());
         let mu = point.letter(here(x.letters.node_momentum[i]))?;
         let shape = s.get(x.letters.variation[i]).shape;
         let (rows, cols) = (point.dim(shape.rows), point.dim(shape.cols));
-        for e in bracket::basis(c.group, n) {
+        for e in c.group.basis(&|n| point.dim(n)) {
             let m = element(&e, rows, cols);
             momentum.push(coordinate(&mu, &m, &e));
             bases.push((i, m));

@@ -3,7 +3,6 @@
 
 use super::words::Piece;
 use super::{Candidate, Inputs, length};
-use crate::check::spec::Group;
 use crate::derive::bracket;
 use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::Symbols;
@@ -42,7 +41,7 @@ pub(super) fn pieces(x: &Inputs) -> Vec<Piece> {
             value: part,
         });
         for (c, id) in x.spec.configurations.iter().zip(&x.letters.node_momentum) {
-            if c.group != Group::RigidMotions {
+            if !c.group.is_rigid() {
                 continue;
             }
             let mu = expr::here(s, *id);

@@ -7,8 +7,7 @@ use super::passage::{Passage, completed, start};
 use super::{Inputs, here};
 use crate::algebra::assumed::{Independent, eliminate, rank};
 use crate::algebra::exact::{Matrix, Point, add, mul, negate, rational};
-use crate::check::spec::Side;
-use crate::expr::Expr;
+use crate::expr::{self, Expr, Letter, Shift};
 
 /// Rows beyond the unknowns: that one more is dependent by chance has a probability of 1e-18.
 const MORE: usize = 2;
@@ -246,6 +245,7 @@ fn coordinates(point: &Point, m: &Motion) -> usize {
             n * (n - 1) / 2
         }
         Sort::Affine(n) | Sort::Entries(n) => point.dim(n) * point.dim(n),
+        Sort::Shifts(shape) => point.dim(shape.rows) * point.dim(shape.cols),
     }
 }
 
@@ -280,7 +280,7 @@ fn work(x: &Inputs, point: &Point) -> usize {
 fn chain<'a>(x: &Inputs<'a>, base: &Point<'a>, count: usize) -> Option<Vec<Sample<'a>>> {
     let mut origin = base.clone();
     for c in &x.spec.configurations {
-        origin.set(here(c.element), Matrix::identity(base.dim(c.group.size())));
+        origin.set(here(c.element), base.value(&c.group.identity())?);
     }
     for a in &x.spec.advected {
         if let Some(d) = &a.definition {
@@ -335,14 +335,19 @@ fn between<'a>(
     let mut p = origin.clone();
     for c in &x.spec.configurations {
         let element = here(c.element);
-        let (a, b) = (from.after.letter(element)?, to.after.letter(element)?);
-        let (back, _) = a.inverted()?;
-        let velocity = match c.side {
-            Side::Body => back.times(&b),
-            Side::Spatial => b.times(&back),
+        let a = from.after.letter(element)?;
+        let next = Letter {
+            shift: Shift::NEXT,
+            ..element
         };
+        let s = &x.letters.symbols;
+        let whole = expr::letter(s, c.element, Shift::NEXT);
+        let velocity = c.group.velocity(s, c.side, expr::here(s, c.element), whole);
+        let mut ends = p.clone();
+        ends.set(element, a.clone());
+        ends.set(next, to.after.letter(element)?);
+        p.set(here(c.velocity), ends.value(&velocity)?);
         p.set(element, a);
-        p.set(here(c.velocity), velocity);
     }
     for a in &x.spec.advected {
         p.set(here(a.quantity), from.after.letter(here(a.quantity))?);

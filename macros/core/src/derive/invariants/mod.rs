@@ -158,7 +158,8 @@ pub fn invariants(x: &Inputs) -> (Vec<Invariant>, Integrability) {
     let small = large.is_none();
     out.extend(energy::energy(x, if small { &passages } else { &[] }));
     let (momenta, body) = noether::momenta(x, &passages);
-    let casimirs = match small {
+    let elements = x.bracket.holds_elements;
+    let casimirs = match small && !elements {
         true => casimirs::casimirs(x, x.assumed, &passages),
         false => casimirs::Casimirs::default(),
     };
@@ -183,6 +184,9 @@ pub fn invariants(x: &Inputs) -> (Vec<Invariant>, Integrability) {
     distinguish(&mut out);
     let known = Integrability {
         casimirs: match large {
+            _ if elements => Known::NotSought(
+                "the configuration itself stands in the equations, and the bracket is that of its phase space".to_owned(),
+            ),
             Some(why) => Known::NotSought(why),
             None if work::cut_short() => Known::NotSought(format!(
                 "the search took more than {} products of numbers",

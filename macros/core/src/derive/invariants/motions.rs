@@ -5,10 +5,11 @@
 
 use super::{Inputs, length};
 use crate::check::spec::{Configuration, Group, Side};
-use crate::derive::{bracket, lie};
+use crate::derive::bracket;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::{SymbolId, Symbols};
 use crate::expr::{self, Expr};
+use crate::groups::{Additive, GeneralLinear, SpecialOrthogonal};
 
 const THREE: Dim = Dim::Fixed(3);
 const FOUR: Dim = Dim::Fixed(4);
@@ -27,8 +28,10 @@ pub(super) enum Sort {
     Planes(Dim),
     /// Linear maps of n dimensions.
     Affine(Dim),
-    /// Shifts of matrices.
+    /// Shifts of square matrices.
     Entries(Dim),
+    /// Shifts of other arrays.
+    Shifts(Shape),
 }
 
 /// From where a motion is seen.
@@ -86,9 +89,9 @@ fn turned(x: &Inputs, i: usize, from: Side) -> Expr {
     let g = expr::here(s, c.element);
     let g = match c.side {
         Side::Body => g,
-        Side::Spatial => expr::inverse(s, g),
+        Side::Spatial => c.group.inverse(s, g),
     };
-    lie::to_space(s, c.group, &g, mu)
+    c.group.to_space(s, &g, mu)
 }
 
 /// Angular and linear momentum of a rigid motion, in space or in the body.
@@ -183,7 +186,7 @@ fn of_configuration(x: &Inputs, i: usize, way: Way, out: &mut Vec<Motion>) {
         Way::Space | Way::Spin | Way::About(_) | Way::Shift => in_space(x, i),
     };
     match (c.group, way) {
-        (Group::RigidMotions, Way::Space | Way::Body) => {
+        (Group::RigidMotions(_), Way::Space | Way::Body) => {
             let [angular, linear] = sizes(x, i, way);
             let both = expr::add(angular.clone(), linear.clone());
             push(Sort::Rigid, m, Some(both), true);
@@ -191,7 +194,7 @@ fn of_configuration(x: &Inputs, i: usize, way: Way, out: &mut Vec<Motion>) {
             push(Sort::Linear, l, Some(linear), false);
             push(Sort::Angular, a, Some(angular), false);
         }
-        (Group::RigidMotions, Way::Spin) => {
+        (Group::RigidMotions(_), Way::Spin) => {
             let (angular, linear) = parts(x, i, Way::Space);
             let mu = expr::here(s, x.letters.node_momentum[i]);
             let g = expr::here(s, c.element);
@@ -203,7 +206,7 @@ fn of_configuration(x: &Inputs, i: usize, way: Way, out: &mut Vec<Motion>) {
             let [angular, _] = sizes(x, i, Way::Space);
             push(Sort::Angular, value, Some(angular), false);
         }
-        (Group::RigidMotions, Way::About(p)) => {
+        (Group::RigidMotions(_), Way::About(p)) => {
             let place = expr::here(s, p);
             let (angular, linear) = parts(x, i, Way::Space);
             let value = expr::sub(angular, expr::cross(place.clone(), linear));
@@ -212,24 +215,20 @@ fn of_configuration(x: &Inputs, i: usize, way: Way, out: &mut Vec<Motion>) {
             let scale = expr::add(own, far);
             push(Sort::Angular, value, Some(scale), true);
         }
-        (Group::SpecialOrthogonal(THREE) | Group::UnitQuaternions, Way::Space | Way::Body) => {
+        (
+            Group::SpecialOrthogonal(SpecialOrthogonal(THREE)) | Group::UnitQuaternions(_),
+            Way::Space | Way::Body,
+        ) => {
             push(Sort::Angular, m, None, false);
         }
-        (Group::SpecialOrthogonal(n), Way::Space | Way::Body) => {
+        (Group::SpecialOrthogonal(SpecialOrthogonal(n)), Way::Space | Way::Body) => {
             push(Sort::Planes(n), m, None, false);
         }
-        (Group::GeneralLinear(n), Way::Space | Way::Body) => {
-            push(Sort::Affine(n), m.clone(), None, false);
-            let scale = Some(length(x, &m));
-            if n == THREE {
-                let turning = lie::covector(x.letters, Group::SpecialOrthogonal(n), m);
-                push(Sort::Angular, turning, scale, true);
-            } else {
-                let turning = expr::sub(m.clone(), expr::transpose(s, m));
-                push(Sort::Planes(n), turning, scale, true);
-            }
+        (Group::GeneralLinear(GeneralLinear(n)), Way::Space | Way::Body) => {
+            let scale = length(x, &m);
+            of_matrix(s, n, m, scale, &mut push);
         }
-        (Group::GeneralLinear(n), Way::Shift) => {
+        (Group::GeneralLinear(GeneralLinear(n)), Way::Shift) => {
             let mu = expr::here(s, x.letters.node_momentum[i]);
             let back = expr::inverse(s, expr::transpose(s, expr::here(s, c.element)));
             let value = match c.side {
@@ -238,7 +237,56 @@ fn of_configuration(x: &Inputs, i: usize, way: Way, out: &mut Vec<Motion>) {
             };
             push(Sort::Entries(n), value, None, false);
         }
+        (Group::Additive(Additive(shape)), Way::Space) => {
+            let place = expr::here(s, c.element);
+            push(shifts(shape), m.clone(), None, false);
+            // Turns and linear maps of space, by which columns are moved.
+            let outer = expr::mul(m.clone(), expr::transpose(s, place.clone()));
+            let lever = expr::mul(length(x, &m), length(x, &place));
+            let n = shape.rows;
+            if shape == Shape::vector(THREE) {
+                push(Sort::Angular, expr::cross(place, m), Some(lever), false);
+            } else if shape.is_vector() && !shape.is_scalar() {
+                let turning = expr::sub(outer.clone(), expr::transpose(s, outer));
+                push(Sort::Planes(n), turning, Some(lever), false);
+            } else if !shape.is_vector() {
+                of_matrix(s, n, outer, lever, &mut push);
+            }
+        }
+        // By which rows are moved.
+        (Group::Additive(Additive(shape)), Way::Body) if !shape.is_vector() => {
+            let place = expr::here(s, c.element);
+            let lever = expr::mul(length(x, &m), length(x, &place));
+            let outer = expr::mul(expr::transpose(s, place), m);
+            of_matrix(s, shape.cols, outer, lever, &mut push);
+        }
+        (Group::Additive(_), Way::Body) => {}
         (_, Way::Spin | Way::About(_) | Way::Shift) => {}
+    }
+}
+
+/// What a shift of an array of a shape is.
+fn shifts(shape: Shape) -> Sort {
+    match shape == Shape::vector(THREE) {
+        true => Sort::Linear,
+        false if !shape.is_vector() && shape.rows == shape.cols => Sort::Entries(shape.rows),
+        false => Sort::Shifts(shape),
+    }
+}
+
+/// The momenta of linear maps of n dimensions and of the turns among them, given that of all maps.
+fn of_matrix(
+    s: &Symbols,
+    n: Dim,
+    whole: Expr,
+    scale: Expr,
+    push: &mut impl FnMut(Sort, Expr, Option<Expr>, bool),
+) {
+    push(Sort::Affine(n), whole.clone(), Some(scale.clone()), false);
+    let turning = Group::rotations(n).covector(s, whole);
+    match n == THREE {
+        true => push(Sort::Angular, turning, Some(scale), true),
+        false => push(Sort::Planes(n), turning, Some(scale), true),
     }
 }
 
@@ -250,6 +298,7 @@ impl Motion {
             Sort::Rigid => (Shape::vector(SIX), Structure::General),
             Sort::Planes(n) => (Shape::square(n), Structure::Skew),
             Sort::Affine(n) | Sort::Entries(n) => (Shape::square(n), Structure::General),
+            Sort::Shifts(shape) => (shape, Structure::General),
         }
     }
 
@@ -257,9 +306,12 @@ impl Motion {
     pub(super) fn covector(&self, s: &Symbols, gradient: Expr) -> Expr {
         match self.sort {
             Sort::Planes(_) => expr::sub(gradient.clone(), expr::transpose(s, gradient)),
-            Sort::Angular | Sort::Linear | Sort::Rigid | Sort::Affine(_) | Sort::Entries(_) => {
-                gradient
-            }
+            Sort::Angular
+            | Sort::Linear
+            | Sort::Rigid
+            | Sort::Affine(_)
+            | Sort::Entries(_)
+            | Sort::Shifts(_) => gradient,
         }
     }
 
@@ -275,7 +327,7 @@ impl Motion {
         };
         let back = || expr::inverse(s, g.clone());
         match c.group {
-            Group::RigidMotions => {
+            Group::RigidMotions(_) => {
                 let (angular, linear) = self.twist(s, g, v);
                 if own || c.side == Side::Spatial && self.way != Way::Body {
                     return expr::stacked(angular, linear);
@@ -292,21 +344,26 @@ impl Motion {
                 let turn = expr::transpose(s, turn);
                 expr::stacked(expr::mul(turn.clone(), angular), expr::mul(turn, moved))
             }
-            Group::SpecialOrthogonal(THREE) | Group::UnitQuaternions => {
-                let turn = match c.group {
-                    Group::UnitQuaternions => expr::rotation(s, g.clone()),
-                    _ => g.clone(),
-                };
+            Group::SpecialOrthogonal(SpecialOrthogonal(THREE)) | Group::UnitQuaternions(_) => {
+                let turn = c.group.turn(s, g).unwrap_or_else(|| g.clone());
                 let moved = match (own, c.side) {
                     (true, _) => v,
                     (false, Side::Body) => expr::mul(expr::transpose(s, turn), v),
                     (false, Side::Spatial) => expr::mul(turn, v),
                 };
-                match c.group {
-                    Group::UnitQuaternions => moved,
-                    _ => expr::hat(moved),
+                match c.group.coordinates() {
+                    Some(_) => moved,
+                    None => expr::hat(moved),
                 }
             }
+            Group::Additive(Additive(shape)) => match (self.sort, self.way) {
+                (Sort::Linear | Sort::Shifts(_) | Sort::Entries(_), _) => v,
+                (Sort::Angular, _) if shape.is_vector() => expr::cross(v, g.clone()),
+                (Sort::Angular, Way::Body) => expr::mul(g.clone(), expr::hat(v)),
+                (Sort::Angular, _) => expr::mul(expr::hat(v), g.clone()),
+                (_, Way::Body) => expr::mul(g.clone(), v),
+                _ => expr::mul(v, g.clone()),
+            },
             Group::SpecialOrthogonal(_) | Group::GeneralLinear(_) => {
                 let v = match (self.sort, c.group) {
                     (Sort::Angular, _) => expr::hat(v),
@@ -339,7 +396,7 @@ impl Motion {
 /// Whether homogeneous vectors have a meaning in the model.
 pub(super) fn has_rigid_motions(x: &Inputs) -> bool {
     let mut list = x.spec.configurations.iter();
-    list.any(|c| c.group == Group::RigidMotions)
+    list.any(|c| c.group.is_rigid())
 }
 
 /// Homogeneous parameters.

@@ -9,7 +9,7 @@ use super::motions::{Motion, Sort, Way, motions};
 use super::passage::Passage;
 use super::readings::{Reading, readings};
 use super::{Family, Inputs, Invariant, Kind, is_conserved, length};
-use crate::check::spec::{Group, Side};
+use crate::check::spec::Side;
 use crate::derive::action::summands;
 use crate::expr::shape::Shape;
 use crate::expr::symbol::SymbolId;
@@ -391,9 +391,10 @@ fn is_whole(x: &Inputs, terms: &[Term]) -> bool {
         let natural = match t.motion.sort {
             Sort::Rigid => true,
             Sort::Planes(_) => group.is_orthogonal(),
-            Sort::Affine(_) | Sort::Entries(_) => true,
-            Sort::Angular => group == Group::UnitQuaternions || group.is_orthogonal(),
-            Sort::Linear => false,
+            Sort::Affine(_) => !group.is_additive(),
+            Sort::Entries(_) | Sort::Shifts(_) => true,
+            Sort::Angular => group.is_quaternionic() || group.is_orthogonal(),
+            Sort::Linear => group.is_additive(),
         };
         natural && t.reading.is_whole()
     })
@@ -433,9 +434,12 @@ fn name(x: &Inputs, terms: &[Term]) -> String {
     let whole = is_whole(x, terms);
     let side = |i: &usize| x.spec.configurations[*i].side;
     let own = set.first().map(side);
+    let field = |i: &usize| x.spec.configurations[*i].group.is_additive();
+    let fields = set.iter().all(field);
     let mut parts: Vec<String> = Vec::new();
     let stem = if all(&|w| matches!(w, Way::Space | Way::About(_))) && (one || added) {
         match (one, whole, own) {
+            (true, ..) if fields => "momentum",
             (true, false, Some(Side::Spatial)) => "momentum",
             (true, ..) => "spatial_momentum",
             (false, ..) => "total_momentum",
@@ -460,11 +464,15 @@ fn name(x: &Inputs, terms: &[Term]) -> String {
             out += &format!("_{}", ascii(x.spec.configurations[*i].element));
         }
     }
-    let rigid =
-        |t: &Term| x.spec.configurations[t.motion.configuration].group == Group::RigidMotions;
+    let rigid = |t: &Term| {
+        x.spec.configurations[t.motion.configuration]
+            .group
+            .is_rigid()
+    };
     let linear_group = |t: &Term| {
-        let group = x.spec.configurations[t.motion.configuration].group;
-        matches!(group, Group::GeneralLinear(_))
+        x.spec.configurations[t.motion.configuration]
+            .group
+            .is_linear()
     };
     let mut push = |part: String| {
         if !part.is_empty() && !parts.contains(&part) {
@@ -473,8 +481,10 @@ fn name(x: &Inputs, terms: &[Term]) -> String {
     };
     for t in terms {
         let mixed = terms.iter().any(|o| rigid(o) || linear_group(o));
+        let shifted = fields || set.iter().any(field);
         match t.motion.sort {
-            Sort::Linear => push("linear".to_owned()),
+            Sort::Linear if !fields => push("linear".to_owned()),
+            Sort::Angular | Sort::Planes(_) if shifted => push("angular".to_owned()),
             Sort::Angular if mixed && t.motion.way != Way::Spin => push("angular".to_owned()),
             Sort::Planes(_) if linear_group(t) => push("planes".to_owned()),
             _ => {}
@@ -497,9 +507,18 @@ fn reason(x: &Inputs, terms: &[Term], strict: bool) -> String {
     let of_space = all(&|w| matches!(w, Way::Space | Way::About(_)));
     let set = configurations(terms);
     let group = set.first().map(|i| x.spec.configurations[*i].group);
-    let under = match (of_space, whole, group) {
-        (true, true, Some(Group::RigidMotions)) => "rigid motions of space",
-        (true, true, Some(Group::GeneralLinear(_))) => "linear maps of space",
+    let entire = terms.iter().all(|t| t.reading.is_whole());
+    let shifts = |t: &Term| {
+        matches!(
+            t.motion.sort,
+            Sort::Linear | Sort::Shifts(_) | Sort::Entries(_)
+        )
+    };
+    let field = |i: &usize| x.spec.configurations[*i].group.is_additive();
+    let under = match (of_space, whole || entire && set.iter().any(field), group) {
+        (true, true, _) if set.iter().any(field) && terms.iter().all(shifts) => "translations",
+        (true, true, Some(group)) if group.is_rigid() => "rigid motions of space",
+        (true, true, Some(group)) if group.is_linear() => "linear maps of space",
         (true, true, _) => "rotations of space",
         (true, false, _) => "what keeps the axis in space",
         _ if all(&|w| w == Way::Body) && whole => "motions of the body's own frame",

@@ -109,6 +109,7 @@ pub(super) fn readings(x: &Inputs, sorts: &[Sort]) -> Vec<Reading> {
     let order = |sort: &Sort| match sort {
         Sort::Rigid => 0,
         Sort::Linear => 1,
+        Sort::Shifts(_) => 1,
         Sort::Planes(_) | Sort::Affine(_) | Sort::Entries(_) | Sort::Angular => 2,
     };
     let mut sorts = sorts.to_vec();
@@ -128,6 +129,8 @@ pub(super) fn readings(x: &Inputs, sorts: &[Sort]) -> Vec<Reading> {
         push(String::new(), What::Whole, one());
         let axes = match sort {
             Sort::Rigid => Vec::new(),
+            Sort::Shifts(shape) if shape.is_vector() && !shape.is_scalar() => axes(x, shape.rows),
+            Sort::Shifts(_) => Vec::new(),
             Sort::Angular | Sort::Linear => axes(x, Dim::Fixed(3)),
             Sort::Planes(n) | Sort::Affine(n) | Sort::Entries(n) => axes(x, n),
         };
@@ -141,6 +144,12 @@ pub(super) fn readings(x: &Inputs, sorts: &[Sort]) -> Vec<Reading> {
                         What::About(point),
                         far,
                     );
+                }
+            }
+            Sort::Shifts(_) => {
+                for a in &axes {
+                    let along = What::Along(a.value.clone());
+                    push(a.name.clone(), along, a.length.clone());
                 }
             }
             Sort::Angular | Sort::Linear => {

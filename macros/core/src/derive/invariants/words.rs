@@ -7,7 +7,7 @@ use super::noether::components;
 use super::passage::Passage;
 use super::{Candidate, Inputs, here, length};
 use crate::algebra::Rational;
-use crate::check::spec::{Group, Side};
+use crate::check::spec::Side;
 use crate::derive::bracket;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::SymbolId;
@@ -235,7 +235,7 @@ fn vectors(x: &Inputs, passages: &[Passage]) -> Vec<Piece> {
             true => format!("momentum_{}", s.get(c.element).ascii),
             false => "momentum".to_owned(),
         };
-        if c.group == Group::RigidMotions {
+        if c.group.is_rigid() {
             for (which, value) in [
                 ("angular", bracket::angular(s, &mu)),
                 ("linear", bracket::linear(s, &mu)),
@@ -290,8 +290,10 @@ fn vectors(x: &Inputs, passages: &[Passage]) -> Vec<Piece> {
 /// an advected element of the group that goes from its frame to that one.
 fn total(x: &Inputs, carriers: &[Carrier], set: &[usize], frame: usize) -> Option<Expr> {
     let s = &x.letters.symbols;
-    let three = Group::SpecialOrthogonal(Dim::Fixed(3));
-    if set.iter().any(|i| x.spec.configurations[*i].group != three) {
+    if set
+        .iter()
+        .any(|i| !x.spec.configurations[*i].group.is_of_space())
+    {
         return None;
     }
     let all_spatial = set
@@ -511,9 +513,10 @@ fn circulations(x: &Inputs) -> Vec<Candidate> {
     let s = &x.letters.symbols;
     let mut out = Vec::new();
     for (i, c) in x.spec.configurations.iter().enumerate() {
-        let Group::GeneralLinear(n) = c.group else {
+        if !c.group.is_linear() {
             continue;
-        };
+        }
+        let n = c.group.size();
         let mu = expr::here(s, x.letters.node_momentum[i]);
         for a in &x.spec.advected {
             let symbol = s.get(a.quantity);

@@ -4,7 +4,7 @@
 
 use super::terms::Reducer;
 use crate::algebra::{Factor, Source, Word};
-use crate::check::spec::{Configuration, Group, Side};
+use crate::check::spec::{Configuration, Side};
 use crate::expr::Letter;
 use crate::expr::shape::{Dim, Shape};
 
@@ -173,7 +173,7 @@ impl<'a> Reducer<'a> {
         else {
             return None;
         };
-        let of_motion = o.configuration.group == Group::RigidMotions;
+        let of_motion = o.configuration.group.is_rigid();
         (of_motion && o.configuration.side == Side::Body)
             .then(|| [&[motion(*at, true, false), inclusion(false)][..], rest].concat())
     }

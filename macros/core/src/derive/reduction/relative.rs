@@ -4,7 +4,7 @@
 
 use super::settle::settled;
 use super::terms::{Carried, Reducer};
-use crate::check::spec::{Configuration, Group, Side};
+use crate::check::spec::{Configuration, Side};
 use crate::derive::variation::at;
 use crate::expr::shape::Structure;
 use crate::expr::symbol::{Role, SymbolId};
@@ -20,7 +20,7 @@ impl<'a> Reducer<'a> {
         let all = self.spec.configurations.iter();
         let present: Vec<&'a Configuration> = all
             .filter(|c| used.contains(&at(c.element, Shift::HERE)))
-            .filter(|c| matches!(c.group, Group::UnitQuaternions | Group::RigidMotions))
+            .filter(|c| c.group.coordinates().is_some())
             .collect();
         let [first, others @ ..] = present.as_slice() else {
             return None;

@@ -9,11 +9,7 @@ use crate::expr::{self, Expr};
 
 impl Reducer<'_> {
     /// The factors of a word, segments that hold elements replaced by quantities.
-    pub(super) fn word(
-        &mut self,
-        word: &[Factor],
-        cyclic: bool,
-    ) -> Result<Vec<Expr>, Box<LeftOver>> {
+    pub(super) fn word(&mut self, word: &[Factor], cyclic: bool) -> Result<Vec<Expr>, LeftOver> {
         let (minus, whole) = self.in_motions(word);
         let turns = if cyclic { whole.len() } else { 1 };
         for turn in 0..turns {
@@ -27,20 +23,10 @@ impl Reducer<'_> {
                 return Ok(pieces);
             }
         }
-        let term = Term {
-            monomial: Vec::new(),
-            word: word.to_vec(),
-        };
-        let (Some(first), Some(last)) = (word.first(), word.last()) else {
-            return Ok(Vec::new());
-        };
-        let shape = Shape {
-            rows: self.algebra.factor_shape(first).rows,
-            cols: self.algebra.factor_shape(last).cols,
-        };
-        let e = self.algebra.raise(&Poly::term(shape, Rational::ONE, term));
-        let e = if cyclic { expr::trace(e) } else { e };
-        Err(Box::new(LeftOver(e)))
+        match word.is_empty() {
+            true => Ok(Vec::new()),
+            false => Err(LeftOver),
+        }
     }
 
     /// Ranges of factors, in order, that together with constants absorb every element.
@@ -86,11 +72,7 @@ impl Reducer<'_> {
         Some(out)
     }
 
-    fn pieces(
-        &mut self,
-        w: &[Factor],
-        segments: &[(usize, usize)],
-    ) -> Result<Vec<Expr>, Box<LeftOver>> {
+    fn pieces(&mut self, w: &[Factor], segments: &[(usize, usize)]) -> Result<Vec<Expr>, LeftOver> {
         let mut out = Vec::new();
         let mut i = 0;
         for (start, end) in segments.iter().copied().chain([(w.len(), w.len())]) {

@@ -6,11 +6,13 @@ use super::element::Open;
 use super::settle::settled;
 use crate::algebra::{Algebra, Atom, Factor, Poly, Rational, Source, Term};
 use crate::check::spec::{Configuration, Spec};
+use crate::derive::action::summands;
 use crate::expr::shape::{Shape, Structure};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Node};
 
 /// A quantity that the reduction found.
+#[derive(Clone)]
 pub(super) struct Carried {
     pub(super) quantity: SymbolId,
     /// Its definition as a word, by which it is found again.
@@ -19,12 +21,13 @@ pub(super) struct Carried {
     pub(super) update: Expr,
 }
 
-/// A word in which an element of the group is left over.
-pub(super) struct LeftOver(pub(super) Expr);
+/// An element of the group is left over.
+pub(super) struct LeftOver;
 
-pub(super) type Reduced = Result<Expr, Box<LeftOver>>;
+pub(super) type Reduced = Result<Expr, LeftOver>;
 
 /// Reduces expressions and collects what is carried along.
+#[derive(Clone)]
 pub(super) struct Reducer<'a> {
     pub(super) spec: &'a Spec,
     pub(super) algebra: &'a Algebra<'a>,
@@ -48,10 +51,24 @@ impl<'a> Reducer<'a> {
 impl<'a> Reducer<'a> {
     /// A number: parts in which the elements cancel first, then what is left.
     pub(super) fn reduced(&mut self, e: &Expr) -> Reduced {
-        let symbols = &self.spec.symbols;
-        let holds = |e: &Expr| expr::contains_role(symbols, e, Role::Element);
+        let holds = |e: &Expr| self.holds_element(e);
         let e = settled(self.algebra, &holds, e);
         self.number(&e)
+    }
+
+    /// The same term by term, each that no parameter absorbs as it is.
+    pub(super) fn as_far_as_possible(&mut self, e: &Expr) -> Expr {
+        if let Ok(whole) = self.clone().reduced(e) {
+            // Once more for what it finds.
+            return self.reduced(e).unwrap_or(whole);
+        }
+        let terms = summands(e)
+            .into_iter()
+            .map(|term| match self.clone().reduced(&term) {
+                Ok(_) => self.reduced(&term).unwrap_or(term),
+                Err(_) => term,
+            });
+        expr::sum(terms.collect::<Vec<_>>(), Shape::SCALAR)
     }
 
     /// A number, its sums and products kept as they were written.
@@ -131,12 +148,15 @@ impl<'a> Reducer<'a> {
     }
 
     fn holds_element(&self, e: &Expr) -> bool {
-        expr::contains_role(&self.symbols, e, Role::Element)
+        let letters = expr::letters(e);
+        letters
+            .iter()
+            .any(|l| self.configuration(l.symbol).is_some())
     }
 
     pub(super) fn configuration(&self, symbol: SymbolId) -> Option<&'a Configuration> {
         let mut list = self.spec.configurations.iter();
-        list.find(|c| c.element == symbol)
+        list.find(|c| c.element == symbol && !c.group.is_additive())
     }
 
     /// Whether a factor is made of constants.

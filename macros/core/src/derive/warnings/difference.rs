@@ -2,7 +2,6 @@
 //! of the action; says whether they are one, decided at exact points.
 
 use super::{Inputs, LARGEST};
-use crate::check::spec::Side;
 use crate::derive::lie;
 use crate::derive::reversal::by_configuration;
 use crate::derive::variation::at;
@@ -30,10 +29,7 @@ fn at_the_end<'a>(x: &'a Inputs, e: &'a Expr) -> impl Iterator<Item = Expr> + 'a
     ends.map(move |(c, eta)| {
         let eta = lie::element(s, c.group, *eta);
         let w = expr::here(s, c.velocity);
-        let change = match c.side {
-            Side::Body => expr::mul(w, eta),
-            Side::Spatial => expr::mul(eta, w),
-        };
+        let change = c.group.moved(c.side, w, eta);
         expr::directional(s, e, &[(at(c.velocity, Shift::HERE), change)])
     })
 }
@@ -58,7 +54,7 @@ pub(super) fn is_total(x: &Inputs, e: &Expr) -> bool {
         return false;
     }
     let still = x.spec.configurations.iter().map(|c| {
-        let identity = expr::identity(c.group.size());
+        let identity = c.group.identity();
         (at(c.velocity, Shift::HERE), identity)
     });
     let still: Vec<(Letter, Expr)> = still.collect();

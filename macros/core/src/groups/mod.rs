@@ -1,0 +1,267 @@
+//! The table of groups: one record a file, with everything that the engine knows of a group.
+//! Takes nothing but sizes; gives shapes of letters, the Lie algebra and its dual, how both are
+//! carried, and the words for them. To add a group, add its file and its line in [`Group`].
+
+mod additive;
+mod general_linear;
+mod rigid_motions;
+mod special_orthogonal;
+mod unit_quaternions;
+
+pub use additive::Additive;
+pub use general_linear::GeneralLinear;
+pub use rigid_motions::RigidMotions;
+pub use special_orthogonal::SpecialOrthogonal;
+pub use unit_quaternions::UnitQuaternions;
+
+use crate::algebra::Rational;
+use crate::check::spec::Side;
+use crate::expr::shape::{Dim, Shape, Structure};
+use crate::expr::symbol::Symbols;
+use crate::expr::{self, Expr};
+use std::ops::Deref;
+
+/// The size of three-dimensional space.
+pub const THREE: Dim = Dim::Fixed(3);
+
+/// The size of an angular and a linear part together.
+pub const SIX: Dim = Dim::Fixed(6);
+
+/// A group of the table, of one size.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Group {
+    /// Rotations, SO(n).
+    SpecialOrthogonal(SpecialOrthogonal),
+    /// Invertible matrices, GL(n).
+    GeneralLinear(GeneralLinear),
+    /// Unit quaternions, SU(2), as 4 x 4 matrices of left multiplication.
+    UnitQuaternions(UnitQuaternions),
+    /// Rigid motions of space, SE(3), as 4 x 4 homogeneous matrices.
+    RigidMotions(RigidMotions),
+    /// Numbers, vectors or matrices that are added: fields.
+    Additive(Additive),
+}
+
+impl Deref for Group {
+    type Target = dyn Record;
+
+    fn deref(&self) -> &(dyn Record + 'static) {
+        match self {
+            Group::SpecialOrthogonal(record) => record,
+            Group::GeneralLinear(record) => record,
+            Group::UnitQuaternions(record) => record,
+            Group::RigidMotions(record) => record,
+            Group::Additive(record) => record,
+        }
+    }
+}
+
+impl Group {
+    /// Rotations of n dimensions.
+    pub fn rotations(n: Dim) -> Group {
+        Group::SpecialOrthogonal(SpecialOrthogonal(n))
+    }
+
+    /// Whether its Lie algebra is the skew matrices.
+    pub fn is_orthogonal(self) -> bool {
+        matches!(self, Group::SpecialOrthogonal(_))
+    }
+
+    /// Whether it is SO(3).
+    pub fn is_of_space(self) -> bool {
+        self == Group::rotations(THREE)
+    }
+
+    /// Whether its elements are added: then nothing is turned, and all frames are one.
+    pub fn is_additive(self) -> bool {
+        matches!(self, Group::Additive(_))
+    }
+
+    /// Whether its elements are rigid motions.
+    pub fn is_rigid(self) -> bool {
+        matches!(self, Group::RigidMotions(_))
+    }
+
+    /// Whether its elements are unit quaternions.
+    pub fn is_quaternionic(self) -> bool {
+        matches!(self, Group::UnitQuaternions(_))
+    }
+
+    /// Whether its elements are all invertible matrices.
+    pub fn is_linear(self) -> bool {
+        matches!(self, Group::GeneralLinear(_))
+    }
+}
+
+/// An element of a basis of a Lie algebra: its entries (row, column, value) that are not zero.
+pub type Element = Vec<(usize, usize, i64)>;
+
+/// The numbers that sizes stand for.
+pub type Sizes<'a> = dyn Fn(Dim) -> usize + 'a;
+
+/// What the engine knows of a group. Letters of variation `ξ` are elements of the Lie algebra as
+/// matrices, or their coordinates; covectors, momenta, are written as [`Record::dual`] says.
+pub trait Record {
+    /// The shape of its elements, and of velocities.
+    fn shape(&self) -> Shape;
+
+    /// What its elements obey.
+    fn structure(&self) -> Structure;
+
+    /// The number of coordinates of its Lie algebra, where the letters of variation are those.
+    fn coordinates(&self) -> Option<Dim> {
+        None
+    }
+
+    /// Shape and structure of the letters of variation.
+    fn variation(&self) -> (Shape, Structure);
+
+    /// Shape and structure of covectors, and of velocities in continuous time.
+    fn dual(&self) -> (Shape, Structure) {
+        self.variation()
+    }
+
+    /// A basis of the Lie algebra in the order of the momentum's coordinates, as letters of
+    /// variation.
+    fn basis(&self, size: &Sizes) -> Vec<Element>;
+
+    /// The element of the Lie algebra, as a matrix, that a letter of variation stands for.
+    fn element(&self, x: Expr) -> Expr {
+        x
+    }
+
+    /// The letter of variation that a velocity in continuous time is.
+    fn rate(&self, zeta: Expr) -> Expr {
+        zeta
+    }
+
+    /// The covector that a matrix `Y` gives on the Lie algebra, `ξ -> <Y, ξ>`: the inverse of the
+    /// inclusion, on the dual.
+    fn covector(&self, s: &Symbols, y: Expr) -> Expr;
+
+    /// The same as an element of the Lie algebra, as the thesis writes its momenta.
+    fn as_algebra(&self, s: &Symbols, y: Expr) -> Expr {
+        self.covector(s, y)
+    }
+
+    /// The covector that the gradient of a number linear in the letter of variation is.
+    fn of_gradient(&self, _: &Symbols, y: Expr) -> Expr {
+        y
+    }
+
+    /// The covector that the gradient in a velocity of continuous time is.
+    fn of_rate_gradient(&self, _: &Symbols, y: Expr) -> Expr {
+        y
+    }
+
+    /// The number that a covector gives on a letter of variation.
+    fn pairing(&self, s: &Symbols, covector: Expr, xi: Expr) -> Expr;
+
+    /// `Ad*` of the inverse of `g`: a body covector as seen from space.
+    fn to_space(&self, s: &Symbols, g: &Expr, covector: Expr) -> Expr;
+
+    /// `<μ, [ξ, η]>`.
+    fn bracket(&self, s: &Symbols, mu: Expr, xi: Expr, eta: Expr) -> Expr;
+
+    /// `ad*_ζ μ`, with `<ad*_ζ μ, ξ> = <μ, [ζ, ξ]>`.
+    fn coadjoint(&self, s: &Symbols, mu: Expr, zeta: Expr) -> Expr;
+
+    /// `-ad*_ζ μ`.
+    fn coadjoint_in_space(&self, s: &Symbols, mu: Expr, zeta: Expr) -> Expr {
+        expr::scale(Rational::MINUS_ONE, self.coadjoint(s, mu, zeta))
+    }
+
+    /// The neutral element.
+    fn identity(&self) -> Expr {
+        expr::identity(self.shape().rows)
+    }
+
+    /// The product of two elements.
+    fn compose(&self, a: Expr, b: Expr) -> Expr {
+        expr::mul(a, b)
+    }
+
+    /// The inverse of an element.
+    fn inverse(&self, s: &Symbols, a: Expr) -> Expr {
+        expr::inverse(s, a)
+    }
+
+    /// The change of an element along a matrix of the Lie algebra: `g ξ` (body) or `ξ g` (spatial).
+    fn moved(&self, side: Side, g: Expr, xi: Expr) -> Expr {
+        match side {
+            Side::Body => expr::mul(g, xi),
+            Side::Spatial => expr::mul(xi, g),
+        }
+    }
+
+    /// Twice the term of second order of `exp(ξ)`.
+    fn second(&self, xi: Expr) -> Expr {
+        expr::mul(xi.clone(), xi)
+    }
+
+    /// A gradient with respect to an element, carried to the identity: `g^T Y` (body) or `Y g^T`.
+    fn pulled_back(&self, s: &Symbols, side: Side, g: Expr, y: Expr) -> Expr {
+        let t = expr::transpose(s, g);
+        match side {
+            Side::Body => expr::mul(t, y),
+            Side::Spatial => expr::mul(y, t),
+        }
+    }
+
+    /// The weight of the pairing of an element with its multiplier: with ½ the momentum map of SO(n)
+    /// is `skew(Λ^T P)` (thesis 2.75), with 1 that of GL(n) is `Q^T P` (3.25).
+    fn weight(&self) -> Rational {
+        Rational::ONE
+    }
+
+    /// Whether the Lie algebra is not all of the matrices in which its elements are written: then a
+    /// relation for a velocity holds up to the multiplier of the group itself.
+    fn has_normal(&self) -> bool {
+        true
+    }
+
+    /// The rotation by which an element turns space, if it does.
+    fn turn(&self, _: &Symbols, _: &Expr) -> Option<Expr> {
+        None
+    }
+
+    /// The group as a model states it, `SO<3>`; sizes as the model names them.
+    fn statement(&self, size: &dyn Fn(Dim) -> String) -> String;
+
+    /// The group as a paper names it, `SO(3)`; of a field what its values are.
+    fn name(&self, size: &dyn Fn(Dim) -> String) -> String;
+
+    /// A kinetic term of a model that is stated by `next`, to show.
+    fn kinetic_example(&self, element: &str) -> String;
+}
+
+impl dyn Record {
+    /// How many rows its elements have.
+    pub fn size(&self) -> Dim {
+        self.shape().rows
+    }
+
+    /// The velocity from one node to the next: `g^-1 g'` (body) or `g' g^-1` (spatial).
+    pub fn velocity(&self, s: &Symbols, side: Side, g: Expr, next: Expr) -> Expr {
+        let back = self.inverse(s, g);
+        match side {
+            Side::Body => self.compose(back, next),
+            Side::Spatial => self.compose(next, back),
+        }
+    }
+
+    /// The element at the end of an edge: `g w` (body) or `w g` (spatial).
+    pub fn advanced(&self, side: Side, g: Expr, w: Expr) -> Expr {
+        match side {
+            Side::Body => self.compose(g, w),
+            Side::Spatial => self.compose(w, g),
+        }
+    }
+}
+
+/// Matrix units of a shape, row by row.
+pub(crate) fn entries(shape: Shape, size: &Sizes) -> Vec<Element> {
+    let (rows, cols) = (size(shape.rows), size(shape.cols));
+    let all = 0..rows * cols;
+    all.map(|k| vec![(k / cols, k % cols, 1)]).collect()
+}
