@@ -224,12 +224,10 @@ pub mod coupled_bodies {
                                 6,
                             >(
                                 &[
-                                    (((R * (Ω2 * d2)).cross(&d1) + k2) * k3
-                                        - axial_of_difference(&(J1 * Ω1.transpose())) * s1)
-                                        - momenta[0],
-                                    (R.tr_mul(&(Ω1 * d1 - d1).cross(&s2)) * k3
-                                        - axial_of_difference(&(J2 * Ω2.transpose())) * s1)
-                                        - momenta[1],
+                                    (axial_of_difference(&(Ω1 * J1)) * s1
+                                        + ((R * (Ω2 * d2)).cross(&d1) + k2) * k3) - momenta[0],
+                                    (axial_of_difference(&(Ω2 * J2)) * s1
+                                        + R.tr_mul(&(Ω1 * d1 - d1).cross(&s2)) * k3) - momenta[1],
                                 ],
                             )
                         })
@@ -237,6 +235,8 @@ pub mod coupled_bodies {
                         iteration
                             .set_tangent(
                                 &{
+                                    let t1 = Ω1 * J1;
+                                    let t2 = Ω2 * J2;
                                     assembled::<
                                         T,
                                         2,
@@ -244,12 +244,12 @@ pub mod coupled_bodies {
                                     >(
                                         &[
                                             [
-                                                (trace_complement(&(Ω1 * J1))) * Ω1 * s1,
+                                                (trace_complement(&t1)) * Ω1 * s1,
                                                 k5 * crossing(&Ω2, &d2) * k3,
                                             ],
                                             [
                                                 k6 * crossing(&Ω1, &d1) * k3,
-                                                (trace_complement(&(Ω2 * J2))) * Ω2 * s1,
+                                                (trace_complement(&t2)) * Ω2 * s1,
                                             ],
                                         ],
                                     )
@@ -392,11 +392,11 @@ pub mod coupled_bodies {
                 6,
             >(
                 &[
-                    ((d1.cross(&t2) + (R * (Ω2 * d2)).cross(&d1)) * eps * t1
-                        - axial_of_difference(&(J1 * Ω1.transpose())) * t1)
+                    (axial_of_difference(&(Ω1 * J1)) * t1
+                        + (d1.cross(&t2) + (R * (Ω2 * d2)).cross(&d1)) * eps * t1)
                         - momenta[0],
-                    (R.tr_mul(&(Ω1 * d1 - d1).cross(&t2)) * eps * t1
-                        - axial_of_difference(&(J2 * Ω2.transpose())) * t1) - momenta[1],
+                    (axial_of_difference(&(Ω2 * J2)) * t1
+                        + R.tr_mul(&(Ω1 * d1 - d1).cross(&t2)) * eps * t1) - momenta[1],
                 ],
             )
         }
@@ -414,6 +414,8 @@ pub mod coupled_bodies {
             let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = *parameters;
             let R = values.0.0;
             let t1 = h.powi(-1);
+            let t2 = Ω1 * J1;
+            let t3 = Ω2 * J2;
             assembled::<
                 T,
                 2,
@@ -421,12 +423,12 @@ pub mod coupled_bodies {
             >(
                 &[
                     [
-                        (trace_complement(&(Ω1 * J1))) * Ω1 * t1,
+                        (trace_complement(&t2)) * Ω1 * t1,
                         crossed(&d1, &(R * crossing(&Ω2, &d2))) * eps * t1,
                     ],
                     [
                         R.tr_mul(&crossed(&(R * d2), &crossing(&Ω1, &d1))) * eps * t1,
-                        (trace_complement(&(Ω2 * J2))) * Ω2 * t1,
+                        (trace_complement(&t3)) * Ω2 * t1,
                     ],
                 ],
             )

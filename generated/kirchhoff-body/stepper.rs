@@ -191,22 +191,21 @@ pub mod kirchhoff_body {
                     if iteration
                         .assess({
                             let t1 = V_rot.tr_mul(&V_pos) + V_pos;
-                            let t2 = D.tr_mul(&vee(&V_rot)) * T::from_f64(0.5);
+                            let t2 = M * t1 * T::from_f64(0.25);
+                            let t3 = D.tr_mul(&vee(&V_rot)) * T::from_f64(0.5);
+                            let t4 = t2 + t3;
                             joined::<
                                 T,
                                 2,
                                 6,
                             >(
                                 &[
-                                    ((V_pos.cross(&(M * t1 * T::from_f64(0.25) + t2))
+                                    ((V_pos.cross(&t4)
                                         + vee(
                                             &(crossing(&V_rot, &(D * t1)) * T::from_f64(0.5)
-                                                - J * V_rot.transpose() * T::from_f64(2.0)),
+                                                + V_rot * J * T::from_f64(2.0)),
                                         )) * s1 + k2) - momenta[0],
-                                    ((V_rot + SMatrix::<T, 3, 3>::identity())
-                                        * (M
-                                            * ((V_rot.transpose() + SMatrix::<T, 3, 3>::identity())
-                                                * V_pos) * T::from_f64(0.25) + t2) * s1 + k3) - momenta[1],
+                                    ((V_rot * t4 + t2 + t3) * s1 + k3) - momenta[1],
                                 ],
                             )
                         })
@@ -214,14 +213,13 @@ pub mod kirchhoff_body {
                         iteration
                             .set_tangent(
                                 &{
-                                    let t1 = crossing(&V_rot, &(D * V_rot.tr_mul(&V_pos)));
-                                    let t2 = crossing(&V_rot, &(D * V_pos));
-                                    let t3 = crossing(&M, &(V_rot.tr_mul(&V_pos)));
-                                    let t4 = trace_complement(&V_rot.transpose());
-                                    let t5 = vee(&V_rot);
-                                    let t6 = t4 * D * T::from_f64(0.25);
-                                    let t7 = D.tr_mul(&t4) * T::from_f64(0.25);
-                                    let t8 = V_rot + SMatrix::<T, 3, 3>::identity();
+                                    let t1 = V_rot.tr_mul(&V_pos);
+                                    let t2 = t1 + V_pos;
+                                    let t3 = crossing(&V_rot, &(D * t2));
+                                    let t4 = V_rot * J;
+                                    let t5 = trace_complement(&V_rot.transpose());
+                                    let t6 = crossing(&M, &t1) + D.tr_mul(&t5);
+                                    let t7 = V_rot + SMatrix::<T, 3, 3>::identity();
                                     assembled::<
                                         T,
                                         2,
@@ -229,29 +227,25 @@ pub mod kirchhoff_body {
                                     >(
                                         &[
                                             [
-                                                ((SMatrix::<T, 3, 3>::identity()
-                                                    * (J * V_rot.transpose()).trace() - V_rot * J
-                                                    + (trace_complement(&t1)) * T::from_f64(0.25)
-                                                    + (trace_complement(&t2)) * T::from_f64(0.25)) * V_rot
-                                                    + crossed(&V_pos, &(t3 + D.tr_mul(&t4))) * T::from_f64(0.25)
-                                                    + t4 * crossing(&D, &(V_rot.tr_mul(&V_pos)))
-                                                        * T::from_f64(0.25)) * s1,
-                                                ((hat(
-                                                    &((-(M * V_rot.tr_mul(&V_pos) * T::from_f64(0.25)))
-                                                        - D.tr_mul(&t5) * T::from_f64(0.5)),
-                                                )
-                                                    + (crossed(&V_pos, &M) - hat(&(M * V_pos)))
-                                                        * T::from_f64(0.25) + t6) * V_rot
-                                                    + crossed(&V_pos, &M) * T::from_f64(0.25) + t6) * s1,
+                                                (((trace_complement(&t3)) * T::from_f64(0.25)
+                                                    + SMatrix::<T, 3, 3>::identity() * t4.trace() - t4) * V_rot
+                                                    + crossed(&V_pos, &t6) * T::from_f64(0.25)
+                                                    + t5 * crossing(&D, &t1) * T::from_f64(0.25)) * s1,
+                                                ((crossed(&V_pos, &M) + t5 * D) * t7 * T::from_f64(0.25)
+                                                    - crossed(
+                                                        &(M * t2 * T::from_f64(0.25)
+                                                            + D.tr_mul(&vee(&V_rot)) * T::from_f64(0.5)),
+                                                        &V_rot,
+                                                    )) * s1,
                                             ],
                                             [
-                                                (V_rot
-                                                    * ((t3 - hat(&(M * V_rot.tr_mul(&V_pos))))
-                                                        * T::from_f64(0.25) - hat(&(M * V_pos)) * T::from_f64(0.25)
-                                                        - hat(&(D.tr_mul(&t5))) * T::from_f64(0.5) + t7)
-                                                    + crossing(&M, &(V_rot.tr_mul(&V_pos))) * T::from_f64(0.25)
-                                                    + t7) * s1,
-                                                t8 * (M * t8) * k4,
+                                                (t7 * t6 * T::from_f64(0.25)
+                                                    - crossing(
+                                                        &V_rot,
+                                                        &(M * t2 * T::from_f64(0.25)
+                                                            + D.tr_mul(&vee(&V_rot)) * T::from_f64(0.5)),
+                                                    )) * s1,
+                                                t7 * (M * t7) * k4,
                                             ],
                                         ],
                                     )
@@ -411,25 +405,24 @@ pub mod kirchhoff_body {
             let (V_rot, V_pos) = (trial[0].rotation.matrix(), trial[0].translation);
             let t1 = h.powi(-1);
             let t2 = V_rot.tr_mul(&V_pos) + V_pos;
-            let t3 = D.tr_mul(&vee(&V_rot)) * T::from_f64(0.5);
+            let t3 = M * t2 * T::from_f64(0.25);
+            let t4 = D.tr_mul(&vee(&V_rot)) * T::from_f64(0.5);
+            let t5 = t3 + t4;
             joined::<
                 T,
                 2,
                 6,
             >(
                 &[
-                    ((V_pos.cross(&(M * t2 * T::from_f64(0.25) + t3))
+                    ((V_pos.cross(&t5)
                         + vee(
                             &(crossing(&V_rot, &(D * t2)) * T::from_f64(0.5)
-                                - J * V_rot.transpose() * T::from_f64(2.0)),
+                                + V_rot * J * T::from_f64(2.0)),
                         )) * t1
                         + (rows_from::<T, 4, 3, 1>(&b, 0))
                             .cross(&(rows_from::<T, 4, 3, 1>(&P, 0))) * T::from_f64(0.5)
                             * h) - momenta[0],
-                    ((SMatrix::<T, 3, 3>::identity() + V_rot)
-                        * (M
-                            * ((V_rot.transpose() + SMatrix::<T, 3, 3>::identity())
-                                * V_pos) * T::from_f64(0.25) + t3) * t1
+                    ((V_rot * t5 + t3 + t4) * t1
                         + rows_from::<T, 4, 3, 1>(&P, 0) * T::from_f64(0.5) * h * b[3])
                         - momenta[1],
                 ],
@@ -448,14 +441,13 @@ pub mod kirchhoff_body {
         ) -> SMatrix<T, 6, 6> {
             let KirchhoffBodyParameters { J, M, D, b, Z, .. } = *parameters;
             let t1 = h.powi(-1);
-            let t2 = crossing(&V_rot, &(D * V_rot.tr_mul(&V_pos)));
-            let t3 = crossing(&V_rot, &(D * V_pos));
-            let t4 = crossing(&M, &(V_rot.tr_mul(&V_pos)));
-            let t5 = trace_complement(&V_rot.transpose());
-            let t6 = vee(&V_rot);
-            let t7 = t5 * D * T::from_f64(0.25);
-            let t8 = D.tr_mul(&t5) * T::from_f64(0.25);
-            let t9 = SMatrix::<T, 3, 3>::identity() + V_rot;
+            let t2 = V_rot.tr_mul(&V_pos);
+            let t3 = t2 + V_pos;
+            let t4 = crossing(&V_rot, &(D * t3));
+            let t5 = V_rot * J;
+            let t6 = trace_complement(&V_rot.transpose());
+            let t7 = crossing(&M, &t2) + D.tr_mul(&t6);
+            let t8 = SMatrix::<T, 3, 3>::identity() + V_rot;
             assembled::<
                 T,
                 2,
@@ -463,28 +455,25 @@ pub mod kirchhoff_body {
             >(
                 &[
                     [
-                        ((SMatrix::<T, 3, 3>::identity()
-                            * (J * V_rot.transpose()).trace() - V_rot * J
-                            + (trace_complement(&t2)) * T::from_f64(0.25)
-                            + (trace_complement(&t3)) * T::from_f64(0.25)) * V_rot
-                            + crossed(&V_pos, &(t4 + D.tr_mul(&t5))) * T::from_f64(0.25)
-                            + t5 * crossing(&D, &(V_rot.tr_mul(&V_pos)))
-                                * T::from_f64(0.25)) * t1,
-                        ((hat(
-                            &((-(M * V_rot.tr_mul(&V_pos) * T::from_f64(0.25)))
-                                - D.tr_mul(&t6) * T::from_f64(0.5)),
-                        ) + (crossed(&V_pos, &M) - hat(&(M * V_pos))) * T::from_f64(0.25)
-                            + t7) * V_rot + crossed(&V_pos, &M) * T::from_f64(0.25) + t7)
-                            * t1,
+                        (((trace_complement(&t4)) * T::from_f64(0.25)
+                            + SMatrix::<T, 3, 3>::identity() * t5.trace() - t5) * V_rot
+                            + crossed(&V_pos, &t7) * T::from_f64(0.25)
+                            + t6 * crossing(&D, &t2) * T::from_f64(0.25)) * t1,
+                        ((crossed(&V_pos, &M) + t6 * D) * t8 * T::from_f64(0.25)
+                            - crossed(
+                                &(M * t3 * T::from_f64(0.25)
+                                    + D.tr_mul(&vee(&V_rot)) * T::from_f64(0.5)),
+                                &V_rot,
+                            )) * t1,
                     ],
                     [
-                        (V_rot
-                            * ((t4 - hat(&(M * V_rot.tr_mul(&V_pos))))
-                                * T::from_f64(0.25) - hat(&(M * V_pos)) * T::from_f64(0.25)
-                                - hat(&(D.tr_mul(&t6))) * T::from_f64(0.5) + t8)
-                            + crossing(&M, &(V_rot.tr_mul(&V_pos))) * T::from_f64(0.25)
-                            + t8) * t1,
-                        t9 * (M * t9) * T::from_f64(0.25) * t1,
+                        (t8 * t7 * T::from_f64(0.25)
+                            - crossing(
+                                &V_rot,
+                                &(M * t3 * T::from_f64(0.25)
+                                    + D.tr_mul(&vee(&V_rot)) * T::from_f64(0.5)),
+                            )) * t1,
+                        t8 * (M * t8) * T::from_f64(0.25) * t1,
                     ],
                 ],
             )

@@ -26,7 +26,7 @@ impl<T, G: Group<T>, const COUNT: usize> Group<T> for [G; COUNT] {
         self.map(|factor| factor.inverse())
     }
 
-    #[inline]
+    #[inline(always)]
     fn retract(&self, xi: &[T]) -> Self {
         let mut moved = *self;
         for (factor, part) in moved.iter_mut().zip(xi.chunks(G::DIMENSION.max(1))) {
@@ -37,7 +37,12 @@ impl<T, G: Group<T>, const COUNT: usize> Group<T> for [G; COUNT] {
 
     #[inline(always)]
     fn combined(weights: &[f64], element: impl Fn(usize) -> Self) -> Self {
-        core::array::from_fn(|k| G::combined(weights, |i| element(i)[k]))
+        // What makes an array from a function is not inlined where the function is long.
+        let mut all = [G::identity(); COUNT];
+        for (k, x) in all.iter_mut().enumerate() {
+            *x = G::combined(weights, |i| element(i)[k]);
+        }
+        all
     }
 
     fn coordinate(index: usize) -> Coordinate {

@@ -85,13 +85,16 @@ impl Equations<'_> {
             letter: parts.direction,
         };
         let mut blocks: Vec<Expr> = Vec::new();
+        let list: Vec<Expr> = list.iter().map(|e| expr::factored(s, e)).collect();
         for e in &list {
             for change in parts.changes() {
                 let derivative = expr::directional(s, e, &change);
                 let derivative = expr::collect(s, &derivative);
-                blocks.push(expr::factored(s, &direction.matrix(&derivative)?));
+                let matrix = expr::factored(s, &direction.matrix(&derivative)?);
+                blocks.push(expr::simpler(s, &matrix));
             }
         }
+        let list: Vec<Expr> = list.iter().map(|e| expr::simpler(s, e)).collect();
         let bundle = Bundle::of(d);
         let mut velocities = TokenStream::new();
         let mut bound = Vec::new();
@@ -158,7 +161,6 @@ impl Equations<'_> {
             }
         };
         let alone = {
-            let list: Vec<Expr> = list.iter().map(|e| expr::factored(s, e)).collect();
             let p = schedule::program(s, &list, "t");
             let (lets, values) = program(&p, self.bindings);
             let residual = residual_of(&values, lets);
@@ -173,10 +175,7 @@ impl Equations<'_> {
         };
         let varies = |l| parts.varies(l);
         let mut at_node = schedule::Known::new(s, &varies, "k");
-        let list: Vec<Expr> = list
-            .iter()
-            .map(|e| at_node.apart(&expr::factored(s, e)))
-            .collect();
+        let list: Vec<Expr> = list.iter().map(|e| at_node.apart(e)).collect();
         let blocks: Vec<Expr> = blocks.iter().map(|e| at_node.apart(e)).collect();
         let (names, values): (Vec<_>, Vec<Expr>) = at_node.values.into_iter().unzip();
         let s = &at_node.symbols;

@@ -15,6 +15,7 @@ mod quaternion;
 pub(crate) mod range;
 mod rigid;
 pub mod shape;
+mod simpler;
 pub(crate) mod spelling;
 mod substitute;
 pub mod symbol;
@@ -38,6 +39,7 @@ pub(crate) use magnitude::{length, magnitude, magnitude_between};
 pub use projection::projected;
 pub use quaternion::{imaginary, pure, real, rotation};
 pub use rigid::{block, column, inclusion, is_motion, part_of_six, stacked, twist};
+pub use simpler::simpler;
 pub use substitute::{contains, contains_role, letters, rebuild, shift_time, substitute};
 pub use terms::{Change, changes};
 
