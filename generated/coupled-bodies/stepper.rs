@@ -725,9 +725,13 @@ pub mod coupled_bodies {
             let Λ1 = before.Λ1.matrix();
             let Λ2 = before.Λ2.matrix();
             let R = Λ1.tr_mul(&Λ2);
-            let t1 = Ω2_matrix - SMatrix::<T, 3, 3>::identity();
-            let t2 = Ω1_matrix - SMatrix::<T, 3, 3>::identity();
-            let t3 = h * h;
+            let t1 = (Ω1_matrix.tr_mul(&Ω1_matrix)).trace().sqrt();
+            let t2 = (h * h).sqrt();
+            let t3 = (eps * eps).sqrt();
+            let t4 = (R.tr_mul(&R)).trace().sqrt();
+            let t5 = (Ω2_matrix.tr_mul(&Ω2_matrix)).trace().sqrt();
+            let t6 = d2.dot(&d2).sqrt();
+            let t7 = d1.dot(&d1).sqrt();
             let _ = h;
             [
                 {
@@ -739,24 +743,17 @@ pub mod coupled_bodies {
                                         &(Ω1_matrix
                                             .tr_mul(
                                                 &((-(J1 / h))
-                                                    - ((R * (t1 * d2)) * d1.transpose() * eps) / h),
+                                                    - ((R
+                                                        * ((Ω2_matrix - SMatrix::<T, 3, 3>::identity()) * d2))
+                                                        * d1.transpose() * eps) / h),
                                             )),
                                     ))),
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()
-                            + (T::from_f64(2.0)
-                                * (Ω1_matrix.tr_mul(&Ω1_matrix)).trace().sqrt()
-                                * (((J1 * J1) / t3).trace().sqrt()
-                                    + ((d1
-                                        * (d1.transpose()
-                                            * d2
-                                                .dot(
-                                                    &((Ω2_matrix.transpose() - SMatrix::<T, 3, 3>::identity())
-                                                        * R.tr_mul(&(R * (t1 * d2)))),
-                                                )) * eps * eps) / t3)
-                                        .trace()
-                                        .sqrt()))
+                            + (T::from_f64(2.0) * t1
+                                * ((J1 * J1).trace().sqrt() / t2
+                                    + (t3 * t4 * (t5 + T::from_f64(1.0)) * t6 * t7) / t2))
                                 .magnitude(),
                     }
                 },
@@ -769,24 +766,18 @@ pub mod coupled_bodies {
                                         &(Ω2_matrix
                                             .tr_mul(
                                                 &((-(J2 / h))
-                                                    - (R.tr_mul(&(t2 * d1)) * d2.transpose() * eps) / h),
+                                                    - (R
+                                                        .tr_mul(
+                                                            &((Ω1_matrix - SMatrix::<T, 3, 3>::identity()) * d1),
+                                                        ) * d2.transpose() * eps) / h),
                                             )),
                                     ))),
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()
-                            + (T::from_f64(2.0)
-                                * (Ω2_matrix.tr_mul(&Ω2_matrix)).trace().sqrt()
-                                * (((J2 * J2) / t3).trace().sqrt()
-                                    + ((d2
-                                        * (d2.transpose()
-                                            * d1
-                                                .dot(
-                                                    &((Ω1_matrix.transpose() - SMatrix::<T, 3, 3>::identity())
-                                                        * (R * R.tr_mul(&(t2 * d1)))),
-                                                )) * eps * eps) / t3)
-                                        .trace()
-                                        .sqrt()))
+                            + (T::from_f64(2.0) * t5
+                                * ((J2 * J2).trace().sqrt() / t2
+                                    + (t3 * t4 * (t1 + T::from_f64(1.0)) * t7 * t6) / t2))
                                 .magnitude(),
                     }
                 },

@@ -22,6 +22,7 @@ mod oracle_bridge;
 mod oracle_groups;
 mod oracle_interpreted;
 mod quoted_figures;
+mod random_mixed;
 mod reduction;
 mod reduction_of_motions;
 mod reference_numbers;

@@ -102,18 +102,23 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
     }
 }
 
-/// For each velocity in SE(3) the distances of its two ends from the origin of space: a stored place
-/// is rounded to them.
+/// For each velocity in SE(3) the distances of its two ends from the origin of space, for each increment
+/// the sizes of the two values of its field: what is stored is rounded to them.
 fn paths(d: &Derivation) -> Vec<(Letter, Expr)> {
     let s = &d.letters.symbols;
     let list = d.spec.configurations.iter();
-    let rigid = list.filter(|c| c.group.is_rigid());
-    let size = |shift, element| {
-        let place = expr::column(s, &expr::letter(s, element, shift));
-        expr::length(s, &place)
-    };
-    let path = |element| expr::add(size(Shift::HERE, element), size(Shift::NEXT, element));
-    rigid
-        .map(|c| (at(c.velocity, Shift::HERE), path(c.element)))
+    let placed = list.filter(|c| c.group.is_rigid() || c.group.is_additive());
+    placed
+        .map(|c| {
+            let size = |shift| {
+                let element = expr::letter(s, c.element, shift);
+                match c.group.is_rigid() {
+                    true => expr::length(s, &expr::column(s, &element)),
+                    false => expr::length(s, &element),
+                }
+            };
+            let path = expr::add(size(Shift::HERE), size(Shift::NEXT));
+            (at(c.velocity, Shift::HERE), path)
+        })
         .collect()
 }

@@ -3,9 +3,10 @@
 //! Takes an expression; gives one without cancellation.
 
 use super::shape::{Shape, Structure};
-use super::symbol::Symbols;
+use super::symbol::{Role, Symbols};
 use super::{
-    Expr, Letter, Map, Node, Rational, add, dot, integer, mul, number, power, sum, trace, transpose,
+    Expr, Letter, Map, Node, Rational, add, dot, integer, mul, number, power, quotient, sum, trace,
+    transpose,
 };
 
 /// How large the terms of an expression are.
@@ -20,8 +21,8 @@ pub(crate) fn magnitude(s: &Symbols, e: &Expr) -> Expr {
 
 /// The same of an expression whose velocities are made from the elements at two nodes, with what it
 /// changes by, to first order and in units of rounding, where these are rounded: the imaginary part of
-/// a quaternion is as uncertain as the quaternion is, a translation as the places between which it
-/// goes. `paths` gives the size of those for each velocity in SE(3).
+/// a quaternion is as uncertain as the quaternion is, a translation or an increment as the places
+/// between which it goes. `paths` gives the size of those for each velocity in SE(3) or of a field.
 pub(crate) fn magnitude_between(s: &Symbols, e: &Expr, paths: &[(Letter, Expr)]) -> Expr {
     let terms = Terms {
         symbols: s,
@@ -99,6 +100,14 @@ impl Terms<'_> {
             // Linear in the entries; where these are of a quaternion, see `stored`.
             Node::Map(Map::Imaginary | Map::Real, a) if !unit_quaternions(self.symbols, a) => of(a),
             Node::Map(Map::Diagonal | Map::DiagonalOf, a) => of(a),
+            Node::Quotient(a, b) if self.is_exact(b) => {
+                let (a, b) = (of(a), length(self.symbols, b));
+                Size {
+                    value: quotient(a.value, b.clone()),
+                    stored: quotient(a.stored, b),
+                }
+            }
+            Node::Power(a, q) if *q == Rational::integer(2) => times(of(a), of(a)),
             Node::Letter(_)
             | Node::Quotient(..)
             | Node::Power(..)
@@ -113,17 +122,28 @@ impl Terms<'_> {
         }
     }
 
+    /// Whether no velocity stands in it, between two nodes.
+    fn is_exact(&self, e: &Expr) -> bool {
+        let moving = |l: &Letter| self.symbols.get(l.symbol).role == Role::Velocity;
+        self.paths.is_some() && !super::letters(e).iter().any(moving)
+    }
+
     /// The size of the two stored elements of which a small part of a velocity is made.
     fn stored(&self, e: &Expr) -> Option<Expr> {
         let paths = self.paths?;
+        let known = |l: &Letter| {
+            let found = paths.iter().find(|(velocity, _)| velocity == l);
+            found.map(|(_, size)| size.clone())
+        };
         match e.node() {
             Node::Map(Map::Imaginary, a) if unit_quaternions(self.symbols, a) => Some(integer(1)),
-            Node::Map(Map::Translation, a) => {
-                let Node::Letter(l) = a.node() else {
-                    return None;
-                };
-                let known = paths.iter().find(|(velocity, _)| velocity == l);
-                known.map(|(_, size)| size.clone())
+            Node::Map(Map::Translation, a) => match a.node() {
+                Node::Letter(l) => known(l),
+                _ => None,
+            },
+            // The increment of a field is the difference of its values.
+            Node::Letter(l) if self.symbols.get(l.symbol).structure == Structure::General => {
+                known(l)
             }
             _ => None,
         }

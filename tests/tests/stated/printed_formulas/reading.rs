@@ -2,8 +2,8 @@
 //! Takes a formula as the card prints it and the values of its letters; gives its value.
 
 use clebsch_core::Derivation;
-use clebsch_core::check::spec::Group;
 use clebsch_core::expr::{self, shape::Dim};
+use clebsch_core::groups::Group;
 use clebsch_core::print::{Format, Style, expression};
 use clebsch_oracle::printed::{Value, value};
 
@@ -48,37 +48,32 @@ pub fn still(d: &Derivation) -> Vec<Value> {
 
 /// Directions of a Lie algebra as its velocity is printed, of matrices with so many rows.
 fn directions(group: Group, rows: usize) -> Vec<Value> {
-    let columns = |n: usize| -> Vec<Value> {
-        let unit = |k: usize| {
-            (0..n)
-                .map(|i| f64::from(u8::from(i == k)))
-                .collect::<Vec<_>>()
-        };
-        (0..n).map(|k| Value::new(n, 1, &unit(k))).collect()
+    let size = |n: Dim| match n {
+        Dim::Fixed(n) => n as usize,
+        Dim::Named(_) => rows,
     };
-    let matrices = |n: usize, pairs: Vec<(usize, usize)>, mirror: f64| -> Vec<Value> {
-        let one = |(i, j): (usize, usize)| {
-            let mut data = vec![0.0; n * n];
-            if mirror != 0.0 {
-                data[i * n + j] = mirror;
-                data[j * n + i] = 1.0;
-            } else {
-                data[i * n + j] = 1.0;
-            }
-            Value::new(n, n, &data)
+    let (shape, _) = group.dual();
+    let (rows, cols) = (size(shape.rows), size(shape.cols));
+    if cols == 1 {
+        let unit = |k| {
+            Value::new(
+                rows,
+                1,
+                &(0..rows)
+                    .map(|i| f64::from(u8::from(i == k)))
+                    .collect::<Vec<_>>(),
+            )
         };
-        pairs.into_iter().map(one).collect()
-    };
-    let all = |n: usize| (0..n * n).map(|k| (k / n, k % n)).collect::<Vec<_>>();
-    match group {
-        Group::SpecialOrthogonal(Dim::Fixed(3)) | Group::UnitQuaternions => columns(3),
-        Group::RigidMotions => columns(6),
-        Group::SpecialOrthogonal(_) => {
-            let upper = all(rows).into_iter().filter(|(i, j)| i < j);
-            matrices(rows, upper.collect(), -1.0)
-        }
-        Group::GeneralLinear(_) => matrices(rows, all(rows), 0.0),
+        return (0..rows).map(unit).collect();
     }
+    let one = |element: Vec<(usize, usize, i64)>| {
+        let mut data = vec![0.0; rows * cols];
+        for (i, j, x) in element {
+            data[i * cols + j] = x as f64;
+        }
+        Value::new(rows, cols, &data)
+    };
+    group.basis(&size).into_iter().map(one).collect()
 }
 
 pub fn combination(basis: &[Value], by: &[f64]) -> Value {

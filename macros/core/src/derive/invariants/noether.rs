@@ -516,7 +516,7 @@ fn reason(x: &Inputs, terms: &[Term], strict: bool) -> String {
     };
     let field = |i: &usize| x.spec.configurations[*i].group.is_additive();
     let under = match (of_space, whole || entire && set.iter().any(field), group) {
-        (true, true, _) if set.iter().any(field) && terms.iter().all(shifts) => "translations",
+        (true, _, _) if set.iter().any(field) && terms.iter().all(shifts) => "translations",
         (true, true, Some(group)) if group.is_rigid() => "rigid motions of space",
         (true, true, Some(group)) if group.is_linear() => "linear maps of space",
         (true, true, _) => "rotations of space",
