@@ -16,6 +16,7 @@ pub(crate) mod passage;
 mod readings;
 #[cfg(test)]
 mod tests;
+mod totals;
 mod words;
 
 use super::Letters;

@@ -9,6 +9,7 @@ use super::motions::{Motion, Sort, Way, motions};
 use super::passage::Passage;
 use super::readings::{Reading, readings};
 use super::{Family, Inputs, Invariant, Kind, is_conserved, length};
+use crate::algebra::exact::Matrix;
 use crate::check::spec::Side;
 use crate::derive::action::summands;
 use crate::expr::shape::Shape;
@@ -160,14 +161,15 @@ impl<'a, 's> Search<'a, 's> {
     }
 
     /// Motions of a sort that may be combined, each by itself; of many configurations those that the
-    /// action couples, each set for itself and its members added.
+    /// action couples, each set for itself and its members added. A turn about a place or about its
+    /// own origin is one of the others of the set too, which have no place.
     fn columns(&self, sort: Sort) -> Vec<Vec<Vec<&'s Motion>>> {
-        let own = self.motions.iter().filter(|m| m.sort == sort);
+        let own = || self.motions.iter().filter(|m| m.sort == sort);
         if self.sets.is_empty() {
-            return vec![own.map(|m| vec![m]).collect()];
+            return vec![own().map(|m| vec![m]).collect()];
         }
         let mut out: Vec<Vec<Vec<&Motion>>> = vec![Vec::new(); self.sets.len()];
-        for m in own {
+        for m in own() {
             let set = self.sets.iter().position(|s| s.contains(&m.configuration));
             let Some(columns) = set.and_then(|i| out.get_mut(i)) else {
                 continue;
@@ -177,7 +179,48 @@ impl<'a, 's> Search<'a, 's> {
                 None => columns.push(vec![m]),
             }
         }
+        for (columns, set) in out.iter_mut().zip(&self.sets) {
+            let whole: Vec<Vec<&Motion>> = columns
+                .iter()
+                .filter(|list| matches!(list[0].way, Way::Spin | Way::About(_)))
+                .filter_map(|list| {
+                    let missing = |m: &&Motion| {
+                        m.way == Way::Space
+                            && set.contains(&m.configuration)
+                            && list.iter().all(|l| l.configuration != m.configuration)
+                    };
+                    let rest: Vec<&Motion> = own().filter(missing).collect();
+                    (!rest.is_empty()).then(|| [list.clone(), rest].concat())
+                })
+                .collect();
+            columns.extend(whole);
+        }
         out
+    }
+
+    /// Takes out what vanishes and what is the same as one before: a moment about a place, read along
+    /// the axis through it.
+    fn distinct(
+        &self,
+        columns: Vec<Vec<&'s Motion>>,
+        reading: &'s Reading,
+    ) -> Vec<Vec<&'s Motion>> {
+        let placed = |c: &Vec<&Motion>| c.iter().any(|m| matches!(m.way, Way::About(_)));
+        if !columns.iter().any(placed) {
+            return columns;
+        }
+        let mut known: Vec<Vec<Matrix>> = Vec::new();
+        let fresh = |c: &Vec<&'s Motion>| {
+            let value = self.value(reading, c);
+            let at = self.passages.iter().map(|p| p.before.value(&value));
+            let Some(at) = at.collect::<Option<Vec<Matrix>>>() else {
+                return true;
+            };
+            let new = at.iter().any(|m| !m.vanishes()) && !known.contains(&at);
+            known.push(at);
+            new
+        };
+        columns.into_iter().filter(fresh).collect()
     }
 
     /// Combinations of one reading of several motions.
@@ -188,6 +231,7 @@ impl<'a, 's> Search<'a, 's> {
             }
             for mut columns in self.columns(reading.sort) {
                 columns.retain(|c| !self.is_covered(c));
+                let columns = self.distinct(columns, reading);
                 let values: Vec<Expr> = columns.iter().map(|c| self.value(reading, c)).collect();
                 for v in samples.combinations(&values) {
                     let terms = columns.iter().zip(&v).filter(|(_, times)| **times != 0);
@@ -339,23 +383,32 @@ fn sum(x: &Inputs, terms: &[Term]) -> Expr {
 
 /// What the readings give of something that each motion has.
 pub(super) fn combined(x: &Inputs, terms: &[Term], of: impl Fn(&Motion) -> Expr) -> Expr {
-    // Readings are linear: of what one reads, the sum is taken first.
-    let mut groups: Vec<(&Reading, Vec<Expr>)> = Vec::new();
+    // Readings are linear: of what one reads, the sum is taken first, terms that motions share once.
+    let mut groups: Vec<(&Reading, Vec<(Expr, i64)>)> = Vec::new();
     for t in terms {
-        let value = expr::scale(crate::algebra::Rational::integer(t.times), of(t.motion));
-        match groups
-            .iter_mut()
-            .find(|(r, _)| core::ptr::eq(*r, t.reading))
-        {
-            Some((_, list)) => list.push(value),
-            None => groups.push((t.reading, vec![value])),
+        let at = groups
+            .iter()
+            .position(|(r, _)| core::ptr::eq(*r, t.reading));
+        let at = at.unwrap_or_else(|| {
+            groups.push((t.reading, Vec::new()));
+            groups.len() - 1
+        });
+        let list = &mut groups[at].1;
+        for part in summands_of(&of(t.motion)) {
+            match list.iter_mut().find(|(known, _)| *known == part) {
+                Some((_, times)) => *times += t.times,
+                None => list.push((part, t.times)),
+            }
         }
     }
     let parts: Vec<Expr> = groups
         .into_iter()
         .map(|(reading, list)| {
-            let shape = list.first().map_or(Shape::SCALAR, Expr::shape);
-            reading.of(x, &expr::sum(list, shape))
+            let shape = list.first().map_or(Shape::SCALAR, |(e, _)| e.shape());
+            let left = list.into_iter().filter(|(_, times)| *times != 0);
+            let scaled =
+                left.map(|(e, times)| expr::scale(crate::algebra::Rational::integer(times), e));
+            reading.of(x, &expr::sum(scaled.collect::<Vec<_>>(), shape))
         })
         .collect();
     let shape = parts.first().map_or(Shape::SCALAR, Expr::shape);

@@ -3,6 +3,7 @@
 
 mod scales;
 mod symmetries;
+mod totals;
 
 use super::{Family, Known};
 use crate::derive::Derivation;

@@ -3,16 +3,13 @@
 //! numbers that may or may not be Casimirs.
 
 use super::homogeneous;
-use super::noether::components;
 use super::passage::Passage;
-use super::{Candidate, Inputs, here, length};
+use super::{Candidate, Inputs, here, length, totals};
 use crate::algebra::Rational;
-use crate::check::spec::Side;
 use crate::derive::bracket;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr, Part};
-use std::collections::BTreeMap;
 
 /// Most candidates that are looked at.
 const MOST: usize = 400;
@@ -255,22 +252,7 @@ fn vectors(x: &Inputs, passages: &[Passage]) -> Vec<Piece> {
             });
         }
     }
-    let carriers = carriers(x, passages);
-    for set in components(x).iter().filter(|set| set.len() > 1) {
-        for frame in set {
-            if let Some(value) = total(x, &carriers, set, *frame) {
-                let size = expr::sum(
-                    set.iter().map(|i| {
-                        let mu = expr::here(s, x.letters.node_momentum[*i]);
-                        length(x, &mu)
-                    }),
-                    Shape::SCALAR,
-                );
-                let name = "total_momentum".to_owned();
-                out.push(Piece { name, value, size });
-            }
-        }
-    }
+    out.extend(totals::totals(x, passages));
     for a in &x.spec.advected {
         let e = expr::here(s, a.quantity);
         if e.shape().is_vector() {
@@ -283,105 +265,6 @@ fn vectors(x: &Inputs, passages: &[Passage]) -> Vec<Piece> {
         }
     }
     out.extend(homogeneous::pieces(x));
-    out
-}
-
-/// The sum of the momenta of coupled bodies, in the frame of one of them: each is carried over by
-/// an advected element of the group that goes from its frame to that one.
-fn total(x: &Inputs, carriers: &[Carrier], set: &[usize], frame: usize) -> Option<Expr> {
-    let s = &x.letters.symbols;
-    if set
-        .iter()
-        .any(|i| !x.spec.configurations[*i].group.is_of_space())
-    {
-        return None;
-    }
-    let all_spatial = set
-        .iter()
-        .all(|i| x.spec.configurations[*i].side == Side::Spatial);
-    let mut reached: Vec<(usize, Vec<Expr>)> = vec![(frame, Vec::new())];
-    let mut k = 0;
-    while let Some((to, by)) = reached.get(k).cloned() {
-        k += 1;
-        for i in set {
-            if reached.iter().any(|(j, _)| j == i) {
-                continue;
-            }
-            if all_spatial {
-                reached.push((*i, Vec::new()));
-            } else if let Some(c) = carriers.iter().find(|c| c.from == *i && c.to == to) {
-                let mut path = by.clone();
-                path.push(c.rotation.clone());
-                reached.push((*i, path));
-            }
-        }
-    }
-    if reached.len() < set.len() {
-        return None;
-    }
-    reached.sort_by_key(|(i, _)| (*i != frame, *i));
-    let terms = reached.into_iter().map(|(i, by)| {
-        let mu = expr::here(s, x.letters.node_momentum[i]);
-        expr::product(by.into_iter().chain([mu]).collect::<Vec<_>>())
-    });
-    Some(expr::sum(
-        terms.collect::<Vec<_>>(),
-        Shape::vector(Dim::Fixed(3)),
-    ))
-}
-
-/// An advected rotation from one body's frame to another's.
-struct Carrier {
-    from: usize,
-    to: usize,
-    rotation: Expr,
-}
-
-/// All of them: only bodies that the constraint of a rotation names can be joined by it.
-fn carriers(x: &Inputs, passages: &[Passage]) -> Vec<Carrier> {
-    let s = &x.letters.symbols;
-    let velocity = |i: usize| x.spec.configurations[i].velocity;
-    let mut of: BTreeMap<SymbolId, usize> = BTreeMap::new();
-    for (i, c) in x.spec.configurations.iter().enumerate() {
-        if c.side == Side::Body {
-            of.insert(c.velocity, i);
-        }
-    }
-    let mut out = Vec::new();
-    for a in &x.spec.advected {
-        let own = expr::here(s, a.quantity);
-        let turns = s.get(a.quantity).structure == Structure::Orthogonal
-            && own.shape() == Shape::square(Dim::Fixed(3));
-        if !turns {
-            continue;
-        }
-        let letters = expr::letters(&a.update);
-        let named: Vec<usize> = letters
-            .iter()
-            .filter_map(|l| of.get(&l.symbol).copied())
-            .collect();
-        for rotation in [own.clone(), expr::transpose(s, own)] {
-            for (from, to) in named
-                .iter()
-                .flat_map(|i| named.iter().map(move |j| (*i, *j)))
-            {
-                let back = expr::transpose(s, expr::here(s, velocity(to)));
-                let turned = expr::here(s, velocity(from));
-                let carried = expr::product([back, rotation.clone(), turned]);
-                let joins = from != to
-                    && passages
-                        .iter()
-                        .all(|p| p.before.value(&carried) == p.after.value(&rotation));
-                if joins {
-                    out.push(Carrier {
-                        from,
-                        to,
-                        rotation: rotation.clone(),
-                    });
-                }
-            }
-        }
-    }
     out
 }
 

@@ -1,0 +1,125 @@
+//! Sums of momenta that advected rotations carry into one frame, whatever else the action couples, on
+//! either side and for either group of turns; and momenta without terms that are zero.
+
+use super::{Family, derive};
+use crate::algebra::{assumed, exact::Point};
+use crate::expr::{self, Expr, Node};
+use crate::print::{Format, Style, expression};
+
+/// Names and values of the invariants of a family.
+fn shown(text: &str, family: Family) -> Vec<String> {
+    let d = derive(text);
+    let own = d.invariants.iter().filter(|v| v.family == family);
+    own.filter_map(|v| {
+        let value = v.value.as_ref()?;
+        let style = Style::new(&d.spec.time_index);
+        let value = expression(value, &d.letters.symbols, &style, Format::Text);
+        Some(format!("{}: {value}", v.name))
+    })
+    .collect()
+}
+
+#[test]
+fn what_rotations_join_turns_together() {
+    let pair = |groups: &str, carried: &str, kinetic: &str| {
+        format!(
+            "model Joined {{ param J: Sym<3>; param a, b: Vec<3>; param e: Real; {groups} \
+             group q: SU<2> velocity w; advected U: Sym<3>; advected g: Vec<3>; \
+             constraint next(q) = q*w; constraint next(U) = rot(w)^T*U*rot(w); {carried} \
+             lagrangian = {kinetic} + (2/h)*dot(im(w), J*im(w)) \
+             - h*e*(dot(a, R*b) + dot(g, a)*dot(a, U*b) + dot(a, g)^2); }}"
+        )
+    };
+    let rotations = "group A: SO<3> velocity u; group B: SO<3> velocity v; advected R: SO<3>;";
+    let quaternion = rotations.replace("A: SO<3>", "A: SU<2>");
+    let two = "-tr(J*u)/h - tr(J*v)/h";
+    for (groups, carried, kinetic, said) in [
+        (
+            rotations,
+            "constraint next(A) = A*u; constraint next(B) = B*v; \
+             constraint next(R) = u^T*R*v; constraint next(g) = u^T*g;",
+            two,
+            "total_momentum_A_B_g: (μ_{1,k} + R_k μ_{2,k})·g_k",
+        ),
+        (
+            rotations,
+            "constraint next(A) = u*A; constraint next(B) = v*B; \
+             constraint next(R) = u*R*v^T; constraint next(g) = u*g;",
+            two,
+            "total_momentum_A_B_g: (m_{1,k} + R_k m_{2,k})·g_k",
+        ),
+        // A turn of the body B is the opposite of one of space.
+        (
+            rotations,
+            "constraint next(A) = u*A; constraint next(B) = B*v; \
+             constraint next(R) = u*R*v; constraint next(g) = u*g;",
+            two,
+            "total_momentum_A_B_g: (m_{1,k} - R_k μ_{2,k})·g_k",
+        ),
+        (
+            &quaternion,
+            "constraint next(A) = A*u; constraint next(B) = B*v; \
+             constraint next(R) = rot(u)^T*R*v; constraint next(g) = rot(u)^T*g;",
+            "(2/h)*dot(im(u), J*im(u)) - tr(J*v)/h",
+            "total_momentum_A_B_g: (μ_{1,k} + R_k μ_{2,k})·g_k",
+        ),
+    ] {
+        let text = pair(groups, carried, kinetic);
+        let found = shown(&text, Family::Casimir);
+        assert!(found.iter().any(|v| v == said), "{text}\n{found:#?}");
+        // What turns with another body is not carried along.
+        let (head, tail) = text.split_once("next(g) = ").unwrap();
+        let (_, rest) = tail.split_once(';').unwrap();
+        let broken = format!("{head}next(g) = rot(w)^T*g;{rest}");
+        let found = shown(&broken, Family::Casimir);
+        assert!(found.iter().all(|v| v != said), "{broken}\n{found:#?}");
+    }
+}
+
+/// Whether a term of a sum, or of one that is read along an axis, is zero whatever the letters are.
+fn has_idle_term(point: &Point, e: &Expr) -> bool {
+    let vanishes = |t: &Expr| point.value(t).is_some_and(|m| m.vanishes());
+    match e.node() {
+        Node::Sum(list) => list.iter().any(|t| vanishes(t) || has_idle_term(point, t)),
+        Node::Dot(a, b) => [(a, b), (b, a)].into_iter().any(|(a, b)| match a.node() {
+            Node::Sum(list) => list
+                .iter()
+                .any(|t| vanishes(&expr::dot(t.clone(), b.clone()))),
+            _ => false,
+        }),
+        _ => false,
+    }
+}
+
+#[test]
+fn about_a_place_the_whole_momentum_is_found_and_no_term_of_it_is_zero() {
+    let text = "model Five { param J: Sym<3>; param a, b, c: Vec<3>; param m, e: Real; \
+        group A: SO<3> velocity u; group B: SO<3> velocity v; group C: SO<3> velocity w; \
+        group q: SU<2> velocity y; group G: SE<3> velocity V; \
+        constraint next(A) = A*u; constraint next(B) = B*v; constraint next(C) = w*C; \
+        constraint next(q) = q*y; constraint next(G) = G*V; \
+        let x = pos(G*V) - pos(G); \
+        lagrangian = -(tr(J*u) + tr(J*v) + tr(J*C^T*w*C) + tr(J*rot(V)))/h \
+        + (2/h)*dot(im(y), J*im(y)) + m*dot(x, x)/(2*h) \
+        - h*e*(dot(A*a, rot(G)*b) + dot(A*c, B*b)*dot(rot(q)*a, C*b) + dot(B*a, rot(q)*c) \
+        + dot(b, pos(G)) + dot(rot(G)*c, pos(G) + b) + dot(pos(G), pos(G))/2); }";
+    // Springs to the point -b.
+    assert_eq!(
+        shown(text, Family::Noether),
+        [
+            "joint_momentum_angular_about_b: A_k μ_{1,k} + B_k μ_{2,k} + m_{3,k} + rot(q_k) μ_{4,k} \
+             + rot(G_k) ang(μ_{5,k}) + pos(G_k) × (rot(G_k) lin(μ_{5,k})) + b × (rot(G_k) lin(μ_{5,k}))"
+        ]
+    );
+    // Without them the vertical is left, and shifts across it.
+    let free = text.replace("+ dot(pos(G), pos(G))/2", "");
+    for text in [text, &free] {
+        let d = derive(text);
+        let point = assumed::point(&d.letters.symbols, 1, &[]).expect("a point");
+        for v in &d.invariants {
+            if let Some(value) = &v.value {
+                assert!(!has_idle_term(&point, value), "{}: {value:?}", v.name);
+            }
+        }
+    }
+}
