@@ -9,7 +9,7 @@ use super::variation::{Variation, at};
 use crate::algebra::{Algebra, Atom, Monomial, Poly, Rational, Term, assumed as points};
 use crate::check::spec::Spec;
 use crate::expr::shape::Shape;
-use crate::expr::symbol::Role;
+use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
 use std::collections::BTreeMap;
 
@@ -30,6 +30,15 @@ pub struct Limit {
 /// Largest first derivative that is differentiated again.
 const LARGEST: u32 = 20_000;
 
+const TOO_LARGE: &str = "the Lagrangian is too large to expand";
+
+/// Highest derivative that is looked at for terms beyond the quadratic ones.
+const HIGHEST: i64 = 8;
+
+/// Why there is no limit, where there is one of another kind: a Lagrangian whose energy is not known as a function of the
+/// momentum.
+pub const NOT_QUADRATIC: &str = "the Lagrangian is not quadratic in the velocity";
+
 /// The limit, or why there is none.
 pub fn limit(
     spec: &Spec,
@@ -41,19 +50,26 @@ pub fn limit(
 ) -> Result<Limit, String> {
     let s = &letters.symbols;
     let (mut identity, mut first, mut second) = (Vec::new(), Vec::new(), Vec::new());
+    // The rate of exp(h ξ) at any h.
+    let mut rates = Vec::new();
     for (i, c) in spec.configurations.iter().enumerate() {
         let xi = lie::element(s, c.group, letters.variation[i]);
         let w = at(c.velocity, Shift::HERE);
         identity.push((w, c.group.identity()));
         first.push((w, xi.clone()));
+        rates.push(match c.group.is_additive() {
+            true => (w, xi.clone()),
+            false => (w, expr::mul(expr::here(s, c.velocity), xi.clone())),
+        });
         second.push((w, c.group.second(xi)));
     }
     let l = expr::substitute(s, &action.total, &spec.end_of_edge());
     let step = expr::here(s, spec.step);
     let d1 = expr::directional(s, &l, &first);
     if d1.size() > LARGEST {
-        return Err("the Lagrangian is too large to expand".to_owned());
+        return Err(TOO_LARGE.to_owned());
     }
+    no_higher_powers(s, &l, [&rates, &identity], &step, algebra)?;
     let d2 = expr::add(
         expr::directional(s, &d1, &first),
         expr::directional(s, &l, &second),
@@ -108,7 +124,7 @@ pub fn limit(
         }
         let degree = degree(letters, &rest, algebra);
         let Some(part) = parts.get_mut(degree) else {
-            return Err("the Lagrangian is not quadratic in the velocity".to_owned());
+            return Err(NOT_QUADRATIC.to_owned());
         };
         let pushed = part.push(
             Term {
@@ -138,6 +154,76 @@ pub fn limit(
         linear,
         kinetic,
     })
+}
+
+/// Refuses an action of which a term over a high power of the step is left in the limit by its third or a higher
+/// derivative along `exp(h ξ)`, as `(b/h^3)*dot(d, d)^2` and `-h*m*c^2*sqrt(1 - dot(d, d)/(c*h)^2)` are.
+fn no_higher_powers(
+    s: &Symbols,
+    action: &Expr,
+    [rates, identity]: [&[(Letter, Expr)]; 2],
+    step: &Expr,
+    algebra: &Algebra,
+) -> Result<(), String> {
+    let expr::Node::Letter(step) = step.node() else {
+        return Ok(());
+    };
+    let h = Atom::Letter(*step);
+    let lowered = algebra.lower(action);
+    let mut lowest = Rational::ZERO;
+    let mut mixed = false;
+    for term in lowered.terms.keys() {
+        let (order, rest) = order_in(&term.monomial, &h);
+        let functions = Term {
+            monomial: rest,
+            word: Vec::new(),
+        };
+        let functions = algebra.raise(&Poly::term(Shape::SCALAR, Rational::ONE, functions));
+        // The series of a function of the velocity and the step has any power of both.
+        mixed |=
+            expr::contains(&functions, *step) && expr::contains_role(s, &functions, Role::Velocity);
+        lowest = lowest.min(order);
+    }
+    if lowest < Rational::integer(1 - HIGHEST) {
+        return Err(TOO_LARGE.to_owned());
+    }
+    if lowest >= Rational::integer(-1) && !mixed {
+        return Ok(());
+    }
+    let mut derivative = action.clone();
+    for n in 1..=HIGHEST {
+        // The n-th term of the series has the factor h^n.
+        let most = Rational::integer(1 - n);
+        let needed = lowest <= most;
+        if !(needed || mixed) {
+            break;
+        }
+        if derivative.size() > LARGEST {
+            // Of functions the first four are wanted, the others where they can be had.
+            return match needed || n <= 4 {
+                true => Err(TOO_LARGE.to_owned()),
+                false => Ok(()),
+            };
+        }
+        derivative = expr::directional(s, &derivative, rates);
+        if n < 3 {
+            continue;
+        }
+        let poly = algebra.lower(&expr::substitute(s, &derivative, identity));
+        let mut left: BTreeMap<Rational, Vec<Expr>> = BTreeMap::new();
+        for (term, coefficient) in &poly.terms {
+            let (order, _) = order_in(&term.monomial, &h);
+            let one = Poly::term(Shape::SCALAR, *coefficient, term.clone());
+            left.entry(order).or_default().push(algebra.raise(&one));
+        }
+        let stays = |(order, terms): (Rational, Vec<Expr>)| {
+            order <= most && !algebra.is_zero(&expr::sum(terms, Shape::SCALAR))
+        };
+        if left.into_iter().any(stays) {
+            return Err(NOT_QUADRATIC.to_owned());
+        }
+    }
+    Ok(())
 }
 
 /// Whether the group leaves a function of advected quantities alone (such as the trace of an
@@ -195,3 +281,6 @@ fn degree(letters: &Letters, monomial: &Monomial, algebra: &Algebra) -> usize {
     }
     usize::MAX
 }
+
+#[cfg(test)]
+mod tests;

@@ -8,6 +8,9 @@ use crate::diagnostic::Diagnostic;
 /// The warning, if there is no limit.
 pub(super) fn limit(x: &Inputs) -> Option<Warning> {
     let why = x.limit.as_ref().err()?;
+    if why == limit::NOT_QUADRATIC {
+        return None;
+    }
     // Of a model for all matrices those that are symmetric may have one.
     if let Some(action) = x.for_symmetric_matrices(x.action) {
         let algebra = x.engine();

@@ -1,0 +1,69 @@
+//! Lagrangians that are not quadratic in the velocity: no quadratic limit is made of them. Takes statements; gives reasons.
+
+use super::NOT_QUADRATIC;
+use crate::derive_source;
+
+/// Why the model of this statement has no limit; nothing if it has one.
+fn reason(statement: &str) -> Option<String> {
+    let source = format!("model M {{ param a, b: Real; {statement} }}");
+    let derived = derive_source(&source).unwrap_or_else(|e| panic!("{statement}: {e}"));
+    derived.limit.err()
+}
+
+const POINT: &str = "param w: Vec<3>; field X: Vec<3>; let d = next(X) - X;";
+const LINEAR: &str = "group Q: GL<2> velocity G; constraint next(Q) = Q*G; let F = G - Id;";
+const BODY: &str = "param J: Sym<3>; group R: SO<3> velocity V; constraint next(R) = R*V;";
+
+#[test]
+fn powers_beyond_the_second_that_stay_are_not_dropped() {
+    for statement in [
+        format!("{POINT} lagrangian = a*dot(d, d)/(2*h) + (b/h^3)*dot(d, d)^2;"),
+        format!("{POINT} lagrangian = a*dot(d, d)/(2*h) + (b/h^2)*dot(w, d)^3;"),
+        format!("{POINT} lagrangian = (a/2 + b*dot(d, d)/h^2)*dot(d, d)/h - h*dot(X, X);"),
+        format!("{LINEAR} lagrangian = a*tr(F*F^T)/(2*h) + (b/h^3)*tr(F*F^T)^2;"),
+        format!("{BODY} lagrangian = -tr(J*V)/h + (b/h^3)*tr(Id - V)^2;"),
+    ] {
+        assert_eq!(
+            reason(&statement).as_deref(),
+            Some(NOT_QUADRATIC),
+            "{statement}"
+        );
+    }
+}
+
+/// The series of a function of the velocity over the step has all powers: the relativistic particle among them.
+#[test]
+fn functions_of_the_velocity_over_the_step_are_not_cut_off_at_its_square() {
+    for statement in [
+        format!("{POINT} lagrangian = -h*a*b^2*sqrt(1 - dot(d, d)/(b^2*h^2)) - h*dot(w, X);"),
+        format!("{POINT} lagrangian = a*dot(d, d)/(2*h) + h*b*cosh(dot(w, d)/h);"),
+        format!("{POINT} lagrangian = a*dot(d, d)/(2*h) + h*b*sin(dot(d, d)^2/h^4);"),
+        format!("{POINT} lagrangian = a*dot(d, d)/(2*h) + h/(b + dot(d, d)^3/h^6);"),
+        format!("{BODY} lagrangian = -tr(J*V)/h + b*h*sin(tr(Id - V)/h^2);"),
+    ] {
+        assert_eq!(
+            reason(&statement).as_deref(),
+            Some(NOT_QUADRATIC),
+            "{statement}"
+        );
+    }
+    for statement in [
+        format!("{POINT} lagrangian = a*dot(d, d)/(2*h) + h*b*cosh(dot(w, d));"),
+        format!("{POINT} lagrangian = a*dot(d, d)/(2*h) + b*exp(h*dot(w, d));"),
+        format!("{BODY} lagrangian = -tr(J*V)/h + b*sin(tr(Id - V)/h);"),
+    ] {
+        assert_eq!(reason(&statement), None, "{statement}");
+    }
+}
+
+#[test]
+fn powers_that_vanish_with_the_step_are() {
+    for statement in [
+        format!("{POINT} lagrangian = a*dot(d, d)/(2*h) + (b/h)*dot(d, d)^2;"),
+        format!("{POINT} lagrangian = a*dot(d, d)/(2*h) + (b/h^2)*dot(d, d)^2;"),
+        format!("{BODY} lagrangian = -tr(J*V)/h + (b/h)*tr(Id - V)^2;"),
+        format!("{BODY} lagrangian = -tr(J*V)/h + (b/h^2)*tr(Id - V)^2;"),
+    ] {
+        assert_eq!(reason(&statement), None, "{statement}");
+    }
+}
