@@ -424,6 +424,11 @@ impl Declared {
     /// The symbol that a constraint carries.
     pub fn slot(&self, name: &Name, errors: &mut Errors) -> Option<SymbolId> {
         let found = self.symbols.find(&name.text);
+        let mut fields = self.configurations.iter().filter(|g| g.group.is_additive());
+        if found.is_some_and(|id| fields.any(|g| g.element == id)) {
+            errors.push(messages::constraint_of_field(&name.text, name.place));
+            return None;
+        }
         match found.map(|id| (id, self.symbols.get(id).role)) {
             Some((id, Role::Element | Role::Advected)) => Some(id),
             Some((_, Role::Velocity)) => {
@@ -517,15 +522,18 @@ impl Declared {
                 g.place,
             ));
         }
-        let velocity = self.configurations.first().map(|g| g.velocity);
+        let turning = self.configurations.iter().find(|g| !g.group.is_additive());
         for a in self.advected.iter().filter(|a| !a.stated) {
-            let v = velocity.unwrap_or(a.quantity);
-            errors.push(messages::missing_constraint(
-                &self.symbols,
-                a.quantity,
-                v,
-                a.place,
-            ));
+            let (s, quantity) = (&self.symbols, a.quantity);
+            errors.push(match (turning, self.configurations.first()) {
+                (None, Some(field)) => {
+                    messages::not_carried_by_field(s, quantity, field.element, a.place)
+                }
+                (turning, _) => {
+                    let v = turning.map_or(quantity, |g| g.velocity);
+                    messages::missing_constraint(s, quantity, v, a.place)
+                }
+            });
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::declare::DeclaredGroup;
 use super::spec::{Configuration, Spec};
 use crate::diagnostic::{Diagnostic, Place};
+use crate::expr::Shift;
 use crate::expr::shape::Shape;
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 
@@ -95,6 +96,40 @@ pub fn missing_constraint(
     ))
 }
 
+/// A quantity without a constraint in a model that has fields only.
+pub fn not_carried_by_field(
+    symbols: &Symbols,
+    quantity: SymbolId,
+    field: SymbolId,
+    place: Place,
+) -> Diagnostic {
+    let (q, x) = (symbols.get(quantity), symbols.get(field));
+    let (name, field) = (&q.name, &x.name);
+    let example = match q.shape == x.shape {
+        true => format!("constraint next({name}) = {name} + (next({field}) - {field});"),
+        false => format!("constraint next({name}) = {name};"),
+    };
+    Diagnostic::new(
+        place,
+        format!("nothing says how `{name}` is carried from one node to the next"),
+    )
+    .help(format!(
+        "add its constraint, for example `{example}`; a function of `{field}` needs none: write it by `{field}` in the Lagrangian"
+    ))
+}
+
+/// A constraint for a field, which has none.
+pub fn constraint_of_field(name: &str, place: Place) -> Diagnostic {
+    Diagnostic::new(
+        place,
+        format!("a field has no constraint: every entry of `{name}` moves freely, by its increment `next({name}) - {name}`"),
+    )
+    .help(format!(
+        "leave the constraint out: the Lagrangian determines the increment, which the kinetic energy holds as `next({name}) - {name}`"
+    ))
+    .help("a configuration that is multiplied by its velocity is stated by `group`")
+}
+
 pub fn not_a_reconstruction(symbols: &Symbols, g: &DeclaredGroup, place: Place) -> Diagnostic {
     let (e, v) = (&symbols.get(g.element).name, &symbols.get(g.velocity).name);
     Diagnostic::new(
@@ -109,11 +144,23 @@ pub fn unused_velocity(spec: &Spec, c: &Configuration) -> Diagnostic {
     if c.group.is_additive() {
         let x = &spec.symbols.get(c.element).name;
         let example = c.group.kinetic_example(x);
-        return Diagnostic::new(
+        let d = Diagnostic::new(
             spec.lagrangian_place,
-            format!("`next({x})` does not appear in the Lagrangian, so the motion of `{x}` is not determined"),
+            format!("`next({x})` does not appear in the Lagrangian: the equation of `{x}` holds none of its increments, and a step cannot be solved for it"),
         )
         .help(format!("add a kinetic term, for example `{example}`"));
+        // A term of first order in the increment of another field.
+        let used = crate::expr::letters(&spec.lagrangian);
+        let stands = |element, shift| used.iter().any(|l| l.symbol == element && l.shift == shift);
+        let mut others = spec.configurations.iter();
+        let other = others.find(|o| o.group.is_additive() && stands(o.element, Shift::NEXT));
+        return match other.filter(|_| stands(c.element, Shift::HERE)) {
+            Some(other) => {
+                let y = &spec.symbols.get(other.element).name;
+                d.help(format!("a product with another increment holds both ends of `{x}` alike: `({x} + next({x}))/2` times `next({y}) - {y}`"))
+            }
+            None => d,
+        };
     }
     Diagnostic::new(
         spec.lagrangian_place,

@@ -5,6 +5,7 @@
 mod declare;
 mod elaborate;
 mod lets;
+mod members;
 mod messages;
 mod shapes;
 pub mod spec;
@@ -17,6 +18,7 @@ use crate::expr::{self, Expr, Letter, Shift};
 use crate::syntax::ast::{Model, NodeRule, Statement};
 use crate::work;
 pub(crate) use declare::is_rust_word;
+pub(crate) use members::name_of_function;
 
 use declare::Declared;
 use elaborate::Elaborator;
@@ -38,6 +40,7 @@ pub fn check(model: &Model) -> Result<Spec, Errors> {
 fn checked(model: &Model) -> Result<Spec, Errors> {
     let mut errors = Errors::new();
     let mut declared = declare::declare(model, &mut errors);
+    members::refuse(&declared, &mut errors);
     let names = declared.clone();
     let lets = model.statements.iter().filter_map(|s| match s {
         Statement::Let { name, .. } => Some(name.text.clone()),

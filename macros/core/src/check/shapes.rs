@@ -86,6 +86,23 @@ pub fn shape(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<(Sha
         "Sym" => one(errors).map(square(Structure::Symmetric)),
         "Skew" => one(errors).map(square(Structure::Skew)),
         "Diag" => one(errors).map(square(Structure::Diagonal)),
+        "Mat" if k.sizes.len() == 2 && is_column(k) => {
+            let own = k.sizes.iter().map(size_text);
+            let own = own.collect::<Vec<_>>().join(", ");
+            let other = k.sizes.iter().find(|s| !is_one(s)).map(size_text);
+            let d = Diagnostic::new(
+                k.place,
+                format!("`Mat<{own}>` is no matrix: each of its sizes is at least 2"),
+            );
+            errors.push(match other {
+                Some(n) if k.sizes.first().is_some_and(is_one) => d.help(format!(
+                    "a row is the transpose of a vector: declare `Vec<{n}>` and write `v^T` for it"
+                )),
+                Some(n) => d.help(format!("a column is a vector: write `Vec<{n}>`")),
+                None => d.help("a single number is `Real`"),
+            });
+            None
+        }
         "Mat" if k.sizes.len() == 2 => sizes(symbols, k, 2, errors).map(|d| {
             let shape = Shape {
                 rows: d[0],
@@ -143,16 +160,25 @@ pub fn field(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<Shap
     None
 }
 
+fn is_one(size: &Size) -> bool {
+    matches!(size, Size::Number(1, _))
+}
+
+/// Whether one of the sizes is 1.
+fn is_column(k: &Kindred) -> bool {
+    k.sizes.iter().any(is_one)
+}
+
+fn size_text(size: &Size) -> String {
+    match size {
+        Size::Number(n, _) => n.to_string(),
+        Size::Name(name) => name.text.clone(),
+    }
+}
+
 /// A shape or a group as written.
 fn written(k: &Kindred) -> String {
-    let sizes: Vec<String> = k
-        .sizes
-        .iter()
-        .map(|s| match s {
-            Size::Number(n, _) => n.to_string(),
-            Size::Name(name) => name.text.clone(),
-        })
-        .collect();
+    let sizes: Vec<String> = k.sizes.iter().map(size_text).collect();
     match sizes.is_empty() {
         true => k.name.text.clone(),
         false => format!("{}<{}>", k.name.text, sizes.join(", ")),

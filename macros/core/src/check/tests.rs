@@ -1,6 +1,8 @@
 //! What could be read in two ways is refused on its tokens, with how to write it; components and
 //! diagonals mean what unit vectors say.
 
+mod fields;
+
 use super::check;
 use super::spec::Spec;
 use crate::algebra::Algebra;

@@ -39,6 +39,9 @@ const HIGHEST: i64 = 8;
 /// momentum.
 pub const NOT_QUADRATIC: &str = "the Lagrangian is not quadratic in the velocity";
 
+/// Why no limit is found where the step does not come out of a function.
+pub(crate) const INSIDE: &str = "the step stands inside a function or root";
+
 /// The limit, or why there is none.
 pub fn limit(
     spec: &Spec,
@@ -110,7 +113,7 @@ pub fn limit(
             .iter()
             .all(|l| matches!(s.get(l.symbol).role, Role::Parameter));
         if expr::contains(&value, at(spec.step, Shift::HERE)) {
-            return Err("the step stands inside a function or root".to_owned());
+            return Err(INSIDE.to_owned());
         }
         if constant || order > Rational::ONE || algebra.is_zero(&value) {
             continue;

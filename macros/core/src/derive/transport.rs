@@ -84,7 +84,10 @@ fn check_definition(
         a.definition_place.unwrap_or(a.place),
         format!("the definition of `{name}` contradicts its constraint: one step later it gives {by_definition}, and the two differ by {}", show(&algebra.raise(&rest))),
     )
-    .help("correct one of the two; for `next(Λ) = Λ * Ω`, `Γ = Λ^T * z` is carried by `next(Γ) = Ω^T * Γ`");
+    .help(match spec.configurations.iter().all(|c| c.group.is_additive()) {
+        true => "correct one of the two; for a field `X`, `Y = X - a` is carried by `next(Y) = Y + (next(X) - X)`",
+        false => "correct one of the two; for `next(Λ) = Λ * Ω`, `Γ = Λ^T * z` is carried by `next(Γ) = Ω^T * Γ`",
+    });
     d = d.also(a.place, format!("the constraint of `{name}` is here"));
     errors.push(d);
 }

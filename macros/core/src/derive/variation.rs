@@ -8,7 +8,7 @@ use crate::algebra::{Algebra, Factor, Poly, Rational, Source};
 use crate::check::spec::{Advected, Configuration, Group, Side, Spec};
 use crate::diagnostic::{Diagnostic, Errors};
 use crate::expr::shape::{Dim, Shape};
-use crate::expr::symbol::SymbolId;
+use crate::expr::symbol::{SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
 
 /// How everything moves when one configuration varies at node k.
@@ -133,7 +133,10 @@ fn of_advected(
                 a.place,
                 format!("the constraint of `{name}` cannot be inverted for `{name}`: it must multiply `{name}` once, between invertible factors"),
             )
-            .help("actions read like `Ω^T * Γ` or `Ω^T * S * Ω`; the velocity and parameters of a group are invertible"),
+            .help(match by_field(spec, a) {
+                Some(x) => format!("the increment of `{x}` has no inverse and cannot be a factor of `{name}`; {}", of_field(s, a, &x)),
+                None => "actions read like `Ω^T * Γ` or `Ω^T * S * Ω`; the velocity and parameters of a group are invertible".to_owned(),
+            }),
         ));
     };
     let solved = expr::neg(expr::product([
@@ -273,7 +276,17 @@ fn wrong_side(
         letters.iter().any(|l| l.symbol == c.velocity)
     };
     let all = &spec.configurations;
-    let acting = all.iter().find(moved).or(all.first());
+    if let Some(x) = by_field(spec, a) {
+        return Diagnostic::new(
+            a.place,
+            format!(
+                "`{name}` is not advected by the group: increments of the field `{x}` add up, and two steps of this constraint are not one by their sum; its variation leaves {rest}"
+            ),
+        )
+        .help(of_field(s, a, &x));
+    }
+    let turning = |c: &&Configuration| !c.group.is_additive();
+    let acting = all.iter().find(moved).or(all.iter().find(turning));
     let text = |of: fn(&Configuration) -> SymbolId| {
         acting.map_or(String::new(), |c| s.get(of(c)).name.clone())
     };
@@ -303,6 +316,39 @@ fn wrong_side(
     .help(format!(
         "with this reconstruction an advected quantity is carried on the other side, for example `constraint {example};`"
     ))
+}
+
+/// The field by whose increment alone a constraint carries its quantity: no velocity of a group stands
+/// there. Where no velocity does, the first field of a model that has nothing else.
+fn by_field(spec: &Spec, a: &Advected) -> Option<String> {
+    let letters = crate::expr::letters(&a.update);
+    let stands = |c: &&Configuration| {
+        let mut own = letters.iter();
+        own.any(|l| l.symbol == c.velocity || l.symbol == c.element)
+    };
+    let all = &spec.configurations;
+    let turning = |c: &&Configuration| !c.group.is_additive();
+    if all.iter().filter(turning).any(|c| stands(&c)) {
+        return None;
+    }
+    let only = || all.first().filter(|_| !all.iter().any(|c| turning(&c)));
+    let field = all.iter().find(stands).or_else(only)?;
+    Some(spec.symbols.get(field.element).name.clone())
+}
+
+/// How a field carries a quantity, as one writes it.
+fn of_field(s: &Symbols, a: &Advected, field: &str) -> String {
+    let q = s.get(a.quantity);
+    let name = &q.name;
+    let same = s.find(field).is_some_and(|x| s.get(x).shape == q.shape);
+    match same {
+        true => format!(
+            "what goes along with a field is carried like `constraint next({name}) = {name} + (next({field}) - {field});`; a function of `{field}` needs no constraint: write it by `{field}` in the Lagrangian"
+        ),
+        false => format!(
+            "a function of `{field}` needs no constraint: write it by `{field}` in the Lagrangian, in the place of `{name}`; what stays is carried by `constraint next({name}) = {name};`"
+        ),
+    }
 }
 
 /// How an element `w` of a group and its inverse act on quantities of so many rows, as one writes

@@ -1,11 +1,11 @@
 //! The model as text of the language, in one canonical layout: what is stored with results, and
 //! what derives the same model again.
 
-use crate::check::spec::{Assumption, Spec, Subject};
+use crate::check::spec::{Assumption, Configuration, Spec, Subject};
 use crate::derive::Derivation;
-use crate::expr::Expr;
 use crate::expr::shape::Structure;
 use crate::expr::symbol::SymbolId;
+use crate::expr::{self, Expr, Letter, Shift};
 use crate::print::statement;
 use crate::syntax::ast::{Comparison, NodeRule};
 
@@ -13,7 +13,11 @@ use crate::syntax::ast::{Comparison, NodeRule};
 pub fn source(d: &Derivation) -> String {
     let spec = &d.spec;
     let st = super::style(d);
-    let show = |e: &Expr| statement(e, &spec.symbols, &st);
+    let increments = increments(spec);
+    let show = |e: &Expr| {
+        let e = expr::substitute(&spec.symbols, e, &increments);
+        statement(&e, &spec.symbols, &st)
+    };
     let name = |id: SymbolId| spec.symbols.get(id).name.clone();
     let mut out = String::new();
     for line in &spec.docs {
@@ -111,6 +115,24 @@ pub fn source(d: &Derivation) -> String {
     );
     out.push('}');
     out
+}
+
+/// Increments of fields as the language has them: `next(X) - X`.
+fn increments(spec: &Spec) -> Vec<(Letter, Expr)> {
+    let s = &spec.symbols;
+    let fields = spec.configurations.iter().filter(|c| c.group.is_additive());
+    let difference = |c: &Configuration| {
+        let end = expr::letter(s, c.element, Shift::NEXT);
+        (at(c.velocity), expr::sub(end, expr::here(s, c.element)))
+    };
+    fields.map(difference).collect()
+}
+
+fn at(symbol: SymbolId) -> Letter {
+    Letter {
+        symbol,
+        shift: Shift::HERE,
+    }
 }
 
 /// An assumption as a statement.

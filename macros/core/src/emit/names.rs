@@ -103,52 +103,8 @@ const TYPES: [&str; 56] = [
     "TurnedRotation",
 ];
 
-/// Methods and constants that every model has.
-const MEMBERS: [&str; 40] = [
-    "kinetic_warning",
-    "ADMITTED",
-    "CARD",
-    "FINGERPRINT",
-    "SOURCE",
-    "advance",
-    "advance_many",
-    "at_node",
-    "at_node_0",
-    "balance",
-    "discrete_energy",
-    "domain_arguments",
-    "edge",
-    "edge_momentum",
-    "energies",
-    "energy",
-    "factor_at",
-    "left_domain",
-    "new",
-    "node",
-    "open",
-    "parameters",
-    "refused",
-    "residual",
-    "sized",
-    "start",
-    "start_of_order",
-    "start_with",
-    "stays_inside",
-    "step",
-    "step_untested",
-    "with_solver",
-    "workspace",
-    "workspace_with",
-    "arrived",
-    "principal",
-    "residual_at",
-    "rounding",
-    "settled",
-    "tangent_at",
-];
-
-/// The model, a configuration or an advected quantity whose name emitted items need for
-/// something else. Parameters and velocities are free: they become fields and locals only.
+/// The model, or a configuration or an advected quantity that bears the name of an invariant; names that
+/// every model's stepper needs are refused where they are declared. Parameters and velocities are free: they become fields and locals only.
 pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
     let spec = &d.spec;
     let model = spec.name.as_str();
@@ -159,16 +115,7 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
                 .help(format!("write for example `model {model}Model`")),
         );
     }
-    let momenta = ["momentum", "body_momentum", "spatial_momentum"];
-    let momenta = (0..spec.configurations.len())
-        .flat_map(|i| momenta.map(|base| per_configuration(d, base, i).to_string()));
-    let invariants = d.invariants.iter().map(|v| v.name.clone());
-    let taken: Vec<String> = MEMBERS
-        .iter()
-        .map(|m| (*m).to_owned())
-        .chain(momenta)
-        .chain(invariants)
-        .collect();
+    let taken: Vec<&String> = d.invariants.iter().map(|v| &v.name).collect();
     let elements = spec
         .configurations
         .iter()
@@ -176,10 +123,8 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
     let advected = spec.advected.iter().map(|a| (a.quantity, a.name_place));
     for (id, place) in elements.chain(advected) {
         let name = &d.letters.symbols.get(id).name;
-        if taken.contains(name) {
-            let message =
-                format!("`{name}` is already a function of the model's stepper or of its state");
-            return Some(Diagnostic::new(place, message).help("choose another name"));
+        if taken.contains(&name) {
+            return Some(crate::check::name_of_function(name, place));
         }
     }
     None

@@ -20,7 +20,10 @@ pub fn balance(d: &Derivation, names: &Names) -> TokenStream {
     let (name, configuration) = (item(d, ""), item(d, "Configuration"));
     let elements = d.spec.configurations.iter().enumerate().map(|(i, c)| {
         let (e, kind) = (own(d, c.element), element::ty(d, i));
-        let doc = format!(" `{e}` at the node: body -> space.");
+        let doc = match c.group.is_additive() {
+            true => format!(" `{e}` at the node."),
+            false => format!(" `{e}` at the node: body -> space."),
+        };
         quote!(#[doc = #doc] pub #e: #kind)
     });
     let others = kept(d).into_iter().map(|id| {

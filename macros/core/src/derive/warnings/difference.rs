@@ -5,13 +5,29 @@ use super::{Inputs, LARGEST};
 use crate::derive::lie;
 use crate::derive::reversal::by_configuration;
 use crate::derive::variation::at;
-use crate::expr::{self, Expr, Letter, Shift};
+use crate::expr::{self, Expr, Function, Letter, Node, Shift};
 
 /// Most nodes that are differentiated, over all pairs of ends.
 const EVALUATED: u64 = 100_000;
 
 /// Whether an expression does not change when a node moves, velocities on its outgoing edge with it.
 pub(super) fn is_kept(x: &Inputs, e: &Expr) -> bool {
+    kept(x, &smoothed(x, e))
+}
+
+/// The same with a smooth function in the place of jumps, `tanh(u)` for `sign(u)` and `u tanh(u)` for
+/// `abs(u)`: what is constant on both sides of a jump has no derivative there, and is not constant. What
+/// holds for the smooth ones by reasons of shape alone holds for these.
+fn smoothed(x: &Inputs, e: &Expr) -> Expr {
+    let e = expr::rebuild(&x.letters.symbols, e, &mut |c| smoothed(x, c));
+    match e.node() {
+        Node::Call(Function::Sign, a) => expr::call(Function::Tanh, a.clone()),
+        Node::Call(Function::Abs, a) => expr::mul(a.clone(), expr::call(Function::Tanh, a.clone())),
+        _ => e,
+    }
+}
+
+fn kept(x: &Inputs, e: &Expr) -> bool {
     x.variations.iter().all(|v| {
         let changes = v.on_outgoing();
         // Of many bodies a term holds one or two.
@@ -42,13 +58,14 @@ pub(super) fn on_edge(x: &Inputs, e: &Expr) -> Expr {
 
 /// Whether `e`, of [`on_edge`], is constant along every motion.
 pub(super) fn is_constant(x: &Inputs, e: &Expr) -> bool {
-    is_kept(x, e) && at_the_end(x, e).all(|d| x.vanishes(&d))
+    let e = &smoothed(x, e);
+    kept(x, e) && at_the_end(x, e).all(|d| x.vanishes(&d))
 }
 
 /// Whether `e` is `F(q1, h) - F(q0, h)`, a constant among them: no derivative of it mixes its two ends,
 /// and it is constant where they meet. `false` for what is too large.
 pub(super) fn is_total(x: &Inputs, e: &Expr) -> bool {
-    let e = on_edge(x, e);
+    let e = smoothed(x, &on_edge(x, e));
     let pairs = (x.spec.configurations.len() as u64).pow(2);
     if pairs * u64::from(e.size()) > EVALUATED {
         return false;
@@ -59,5 +76,5 @@ pub(super) fn is_total(x: &Inputs, e: &Expr) -> bool {
     });
     let still: Vec<(Letter, Expr)> = still.collect();
     let met = expr::substitute(&x.letters.symbols, &e, &still);
-    is_kept(x, &met) && at_the_end(x, &e).all(|d| d.size() <= LARGEST && is_kept(x, &d))
+    kept(x, &met) && at_the_end(x, &e).all(|d| d.size() <= LARGEST && kept(x, &d))
 }

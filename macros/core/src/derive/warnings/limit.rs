@@ -26,6 +26,17 @@ pub(super) fn limit(x: &Inputs) -> Option<Warning> {
             return None;
         }
     }
+    if *why == limit::INSIDE {
+        let d = Diagnostic::new(
+            x.spec.lagrangian_place,
+            format!("no limit of small steps is seen: {why}, and what stands there is not expanded"),
+        )
+        .help(
+            "take the step out, as of `sqrt(c^2*h^2 - x)` by `c*h*sqrt(1 - x/(c*h)^2)`: what is left \
+             inside must be free of `h` for the velocity `(next(X) - X)/h`",
+        );
+        return Some(Warning::new(Topic::NoLimit, d));
+    }
     let d = Diagnostic::new(
         x.spec.lagrangian_place,
         format!("the discrete Lagrangian has no limit of small steps: {why}"),

@@ -7,9 +7,10 @@ use super::{Inputs, Topic, Warning, difference};
 use crate::check::spec::Spec;
 use crate::derive::action::{self, Action};
 use crate::derive::reversal::{self, Reversal};
+use crate::derive::variation::at;
 use crate::diagnostic::Diagnostic;
 use crate::expr::shape::Shape;
-use crate::expr::{self, Expr};
+use crate::expr::{self, Expr, Function, Node, Shift};
 use crate::syntax::ast::NodeRule;
 
 /// The warning, if the action is not self-adjoint and no rule of one side explains it.
@@ -45,6 +46,13 @@ pub(super) fn order(x: &Inputs) -> Option<Warning> {
     if blamed.is_empty() {
         blamed = self::blamed(x, all);
     }
+    let suspects: Vec<&Expr> = match blamed.is_empty() {
+        true => vec![&x.spec.typed],
+        false => blamed.iter().map(|(term, _)| term).collect(),
+    };
+    if suspects.iter().all(|term| is_undecided(x, term)) {
+        return None;
+    }
     let terms: Vec<String> = blamed.iter().map(|(term, _)| x.text(term)).collect();
     let left = match terms.is_empty() {
         true => left,
@@ -74,10 +82,22 @@ pub(super) fn order(x: &Inputs) -> Option<Warning> {
     )
     .help(
         "treat both ends of the step alike, as in `(X + next(X))/2*(next(Y) - Y)`, and use odd \
-         powers of `h` only; first order that is meant is asked for by `node incoming;` or \
-         `node outgoing;`",
+         powers of `h` only; `node incoming;` and `node outgoing;` speak of terms at one node and \
+         change none that holds both ends; a scheme that is meant to be of first order may stand so",
     );
     Some(Warning::new(Topic::FirstOrder, d))
+}
+
+/// Whether the step stands inside a root or an absolute value, as in `sqrt(h^2 - x)`: that is `h` times a
+/// root for positive steps, and its formal reversal is not that of the scheme.
+fn is_undecided(x: &Inputs, e: &Expr) -> bool {
+    let h = at(x.spec.step, Shift::HERE);
+    let inside = match e.node() {
+        Node::Power(a, q) if q.as_integer().is_none() => expr::contains(a, h),
+        Node::Call(Function::Abs, a) => expr::contains(a, h),
+        _ => false,
+    };
+    inside || e.children().into_iter().any(|c| is_undecided(x, c))
 }
 
 /// The largest sum that is shown.

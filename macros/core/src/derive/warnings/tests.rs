@@ -1,5 +1,7 @@
 //! Models that derive but are hardly meant, and their sound neighbours, which are not warned of.
 
+mod fields;
+
 use super::Topic::{self, *};
 use crate::pipeline::derive_source;
 

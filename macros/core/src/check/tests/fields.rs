@@ -1,0 +1,168 @@
+//! What is said of fields: no constraint, increments that add up, names of functions, shapes of one
+//! column.
+
+use crate::pipeline::derive_source;
+
+/// The messages of a model that is refused, each with its help.
+fn refused(body: &str) -> String {
+    let text = format!("model M {{ {body} }}");
+    match derive_source(&text) {
+        Ok(_) => format!("derives: {text}"),
+        Err(errors) => errors.to_string(),
+    }
+}
+
+const MOTION: &str = "let d = next(X) - X; lagrangian = m*dot(d, d)/(2*h) - h*dot(Y, Y);";
+
+fn carried(constraint: &str) -> String {
+    format!(
+        "param m: Real; param a: Vec<3>; field X: Vec<3>; advected Y: Vec<3>; {constraint} {MOTION}"
+    )
+}
+
+#[test]
+fn what_a_field_does_not_carry_is_told_so() {
+    let never = ["ΔX * X", "ΔX * Y", "ΔX^T", "other side", "derives"];
+    let says = |body: &str, said: &[&str]| {
+        let message = refused(body);
+        for s in said {
+            assert!(message.contains(s), "{body}\n{message}");
+        }
+        for s in never {
+            assert!(!message.contains(s), "{body}\n{message}");
+        }
+    };
+    let example = "`constraint next(Y) = Y + (next(X) - X);`";
+    says(
+        &carried("constraint next(Y) = Y + next(X);"),
+        &["add up", example],
+    );
+    says(
+        &carried("constraint next(Y) = Y + dot(next(X) - X, X)*X;"),
+        &["add up", example],
+    );
+    says(
+        &carried("constraint next(Y) = hat(next(X) - X)*Y;"),
+        &["has no inverse", example],
+    );
+    says(&carried(""), &["nothing says", example]);
+    let matrix = |constraint: &str| {
+        carried(constraint)
+            .replace("Y: Vec<3>", "Y: Mat<3>")
+            .replace("dot(Y, Y)", "tr(Y)")
+    };
+    says(&matrix(""), &["`constraint next(Y) = Y;`"]);
+    says(
+        &matrix("constraint next(Y) = hat(next(X))*Y;"),
+        &["has no inverse", "by `X` in the Lagrangian"],
+    );
+    let contrary = carried("constraint next(Y) = Y - (next(X) - X);")
+        .replace("advected Y: Vec<3>", "advected Y: Vec<3> = X - a");
+    says(
+        &contrary,
+        &[
+            "contradicts",
+            "-a + X_k + ΔX_k",
+            "`next(Y) = Y + (next(X) - X)`",
+        ],
+    );
+    // Beside a group that is declared after it, the group carries.
+    let both = "param m: Real; param J: Sym<3>; field X: Vec<3>; group Q: SO<3> velocity W; advected Y: Vec<3>; \
+        constraint next(Q) = Q*W; let d = next(X) - X; lagrangian = -tr(J*W)/h + m*dot(d, d)/(2*h) - h*dot(Y, Y);";
+    says(both, &["`constraint next(Y) = W^T * Y;`"]);
+}
+
+#[test]
+fn a_field_has_no_constraint() {
+    for update in ["X + d", "X", "R*X", "W*X"] {
+        let body = format!(
+            "param m: Real; param R: Mat<3>; group Q: SO<3> velocity W; constraint next(Q) = Q*W; field X: Vec<3>; \
+             let d = next(X) - X; constraint next(X) = {update}; \
+             lagrangian = -tr(R*W)/h + m*dot(d, d)/(2*h) - h*dot(X, X);"
+        );
+        let message = refused(&body);
+        assert!(message.contains("a field has no constraint"), "{message}");
+        assert!(
+            message.contains("by its increment `next(X) - X`"),
+            "{message}"
+        );
+        assert!(message.contains("leave the constraint out"), "{message}");
+        assert_eq!(message.matches("help: ").count(), 2, "{message}");
+    }
+}
+
+#[test]
+fn an_equation_without_increments_is_told_so() {
+    let message = refused("param m: Real; field X, Y: Real; lagrangian = m*X*(next(Y) - Y);");
+    assert!(
+        message.contains("the equation of `X` holds none of its increments"),
+        "{message}"
+    );
+    assert!(message.contains("`m*(next(X) - X)^2/(2*h)`"), "{message}");
+    // What is offered derives.
+    let kinetic = "m*(next(X) - X)^2/(2*h) + m*(next(Y) - Y)^2/(2*h)";
+    let mended = format!(
+        "model M {{ param m: Real; field X, Y: Real; lagrangian = {kinetic} + m*(X + next(X))/2*(next(Y) - Y); }}"
+    );
+    let d = derive_source(&mended).unwrap_or_else(|e| panic!("{e}"));
+    assert!(d.warnings.is_empty(), "{:?}", d.warnings);
+}
+
+#[test]
+fn one_column_is_a_vector() {
+    for (declared, said) in [
+        ("field X: Mat<3, 1>;", "write `Vec<3>`"),
+        ("param X: Mat<4,1>;", "write `Vec<4>`"),
+        ("advected X: Mat<1, 3>;", "declare `Vec<3>` and write `v^T`"),
+        ("field X: Mat<1, 1>;", "a single number is `Real`"),
+        ("dim n in 3..=5; field X: Mat<n, 1>;", "write `Vec<n>`"),
+    ] {
+        let message = refused(&format!("{declared} lagrangian = 0;"));
+        assert!(message.contains(said), "{declared}: {message}");
+        assert!(
+            !message.contains("between 2 and 32"),
+            "{declared}: {message}"
+        );
+    }
+}
+
+#[test]
+fn names_of_functions_are_refused_where_they_are_declared() {
+    for name in [
+        "momentum",
+        "node",
+        "energy",
+        "step",
+        "residual",
+        "parameters",
+        "body_momentum",
+    ] {
+        let field = format!(
+            "param m: Real; field {name}: Vec<3>; let d = next({name}) - {name}; lagrangian = m*dot(d, d)/(2*h);"
+        );
+        let group = format!(
+            "param J: Sym<3>; group {name}: SO<3> velocity W; constraint next({name}) = {name}*W; lagrangian = -tr(J*W)/h;"
+        );
+        let carried = format!(
+            "param J: Sym<3>; group Q: SO<3> velocity W; advected {name}: Vec<3>; constraint next(Q) = Q*W; \
+            constraint next({name}) = W^T*{name}; lagrangian = -tr(J*W)/h - h*dot({name}, J*{name});"
+        );
+        for body in [field, group, carried] {
+            let message = refused(&body);
+            assert!(
+                message.contains(&format!("`{name}` is already a function")),
+                "{message}"
+            );
+            assert!(
+                message.contains(&format!("for example `{name}1`")),
+                "{message}"
+            );
+            // What is offered derives, and a parameter may bear the name.
+            let other = body.replace(name, &format!("{name}1"));
+            assert!(refused(&other).starts_with("derives"), "{other}");
+            let parameter =
+                format!("param {name}: Real; {other}").replace("/h", &format!("*{name}/h"));
+            assert!(refused(&parameter).starts_with("derives"), "{parameter}");
+        }
+    }
+}

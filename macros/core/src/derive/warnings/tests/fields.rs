@@ -1,0 +1,81 @@
+//! Warnings of models of fields: jumps are no constants, roots of the step no missing kinetic energy, and what
+//! is said of first order.
+
+use super::{topics, words};
+use crate::derive::warnings::Topic::*;
+
+const PAIR: &str = "param m, k, c: Real; field X, Y: Real; ";
+const FREE: &str = "m*(next(X) - X)^2/(2*h) + m*(next(Y) - Y)^2/(2*h)";
+
+#[test]
+fn an_absolute_value_is_no_total_difference() {
+    let with = |term: &str| topics(&format!("{PAIR} lagrangian = {FREE} + k*c*{term};"));
+    for term in [
+        "abs(next(X) - X)",
+        "sign(next(X) - X)",
+        "h*sign(X)",
+        "sign(next(X))*(next(Y) - Y)",
+        "abs(next(X) + X)",
+        "sqrt(1 + abs(next(X) - X))",
+    ] {
+        let found = with(term);
+        assert!(!found.contains(&ConstantTerm), "{term}: {found:?}");
+        assert!(found.contains(&NotSmooth), "{term}: {found:?}");
+    }
+    // Of one end each they are.
+    for term in [
+        "(abs(next(X)) - abs(X))",
+        "(sign(next(X)) - sign(X))",
+        "(next(X)*abs(next(X)) - X*abs(X))",
+    ] {
+        let found = with(term);
+        assert!(found.contains(&ConstantTerm), "{term}: {found:?}");
+    }
+}
+
+#[test]
+fn a_root_of_the_step_is_no_missing_kinetic_energy() {
+    let relativistic = |l: &str| {
+        words(&format!(
+            "param m, c: Real; field X: Vec<3>; let d = next(X) - X; lagrangian = {l};"
+        ))
+    };
+    for inside in [
+        "-m*c*sqrt(c*c*h*h - dot(d, d))",
+        "-m*c*c*sqrt(h*h - dot(d, d)/(c*c))",
+    ] {
+        let text = relativistic(inside);
+        assert!(!text.contains("no kinetic energy"), "{text}");
+        assert!(!text.contains("has no limit"), "{text}");
+        assert!(!text.contains("first order"), "{text}");
+    }
+    let text = relativistic("-m*c*sqrt(c*c*h*h - dot(d, d))");
+    assert!(text.contains("no limit of small steps is seen"), "{text}");
+    // What is offered has one.
+    assert_eq!(relativistic("-m*c*c*h*sqrt(1 - dot(d, d)/(c*h)^2)"), "");
+    // Without any it is said still.
+    let text = relativistic("-m*c*sqrt(1 + dot(d, d))");
+    assert!(text.contains("no kinetic energy"), "{text}");
+}
+
+#[test]
+fn the_rule_for_nodes_is_not_offered_for_what_holds_both_ends() {
+    for rule in ["", "node incoming;", "node outgoing;"] {
+        let text = words(&format!(
+            "{PAIR} {rule} lagrangian = {FREE} + k*X*(next(Y) - Y) - h*c*X^3;"
+        ));
+        assert!(
+            text.contains("because of the term k X_k (Y_{k+1} - Y_k)"),
+            "{text}"
+        );
+        assert!(
+            text.contains("speak of terms at one node and change none that holds both ends"),
+            "{text}"
+        );
+        assert!(!text.contains("asked for by"), "{text}");
+        let mended = topics(&format!(
+            "{PAIR} {rule} lagrangian = {FREE} + k*(X + next(X))/2*(next(Y) - Y) - h*c*X^3;"
+        ));
+        assert_eq!(mended, []);
+    }
+}
