@@ -4,6 +4,7 @@
 
 use super::Letters;
 use super::action::Action;
+use super::far;
 use super::lie;
 use super::variation::{Variation, at};
 use crate::algebra::Algebra;
@@ -129,8 +130,19 @@ fn balance(
         let moving = expr::contains_role(s, &added, Role::Velocity);
         (!moving && algebra.is_zero(&rest)).then_some(added)
     };
+    let increment = match increment(s, c, &outgoing, &incoming, algebra) {
+        // Expanded for what cancels, it may have lost what places have in common.
+        Some(added) if far::error(algebra, &added) > 0.0 => {
+            let least = |e: &Expr| far::error(algebra, e);
+            acting()
+                .filter(|a| least(a) < least(&added))
+                .or(Some(added))
+        }
+        Some(added) => Some(added),
+        None => acting(),
+    };
     Balance {
-        increment: increment(s, c, &outgoing, &incoming, algebra).or_else(acting),
+        increment,
         outgoing,
         incoming,
         edge_out,
@@ -211,15 +223,24 @@ fn has_fewer_letters(a: &Expr, b: &Expr) -> bool {
 }
 
 /// The reduced form of the algebra if it is smaller than the expression itself, or free of a letter
-/// that cancels: `V V^T` of a rotation, where no velocity is known.
+/// that cancels: `V V^T` of a rotation, where no velocity is known. Not where places far from the
+/// origin would round more in it.
 pub fn shorter(algebra: &Algebra, e: Expr) -> Expr {
     if e.shape() == lie::IMPULSE && !e.is_zero() {
         // The angular and the linear part, each by itself.
-        let part = |row| algebra.shortest(&expr::part_of_six(algebra.symbols(), &e, row));
+        let part = |row| {
+            let part = expr::part_of_six(algebra.symbols(), &e, row);
+            match far::error(algebra, &e) > 0.0 {
+                true => far::least(algebra, algebra.shortest(&part), &part),
+                false => algebra.shortest(&part),
+            }
+        };
         return expr::stacked(part(0), part(3));
     }
     let reduced = algebra.shortest(&e);
-    if !algebra.exhausted() && (reduced.size() <= e.size() || has_fewer_letters(&reduced, &e)) {
+    let preferred = reduced.size() <= e.size() || has_fewer_letters(&reduced, &e);
+    if !algebra.exhausted() && preferred && far::error(algebra, &reduced) <= far::error(algebra, &e)
+    {
         reduced
     } else {
         e

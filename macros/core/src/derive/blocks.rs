@@ -3,12 +3,13 @@
 //! made of what is known at the node.
 //! Takes the balances and their Riccati forms; gives the blocks and the method of each.
 
-use super::balance::Balance;
+use super::balance::{Balance, shorter};
 use super::explicit::Explicit;
 use super::recognise::{Method, Riccati, Solve, is_constant, is_of_space};
 use super::seen_from_body::outgoing;
 use super::variation::at;
 use super::{Derivation, Letters};
+use crate::algebra::Algebra;
 use crate::check::spec::Spec;
 use crate::expr::{self, Expr, Shift};
 
@@ -23,10 +24,29 @@ pub struct Block {
     pub reason: String,
 }
 
+impl Solve {
+    /// Whether the velocity of a configuration is part of one linear system with others, or with its own
+    /// components, that Newton's method solves.
+    pub fn is_one_linear_system(&self, i: usize) -> bool {
+        match self.blocks.as_slice() {
+            [] => self.reason == LINEAR_TOGETHER,
+            blocks => {
+                let mut own = blocks.iter().filter(|b| b.members.contains(&i));
+                own.any(Block::is_one_linear_system)
+            }
+        }
+    }
+}
+
 impl Block {
     /// Whether its balance is linear in the velocity.
     pub fn is_linear(&self) -> bool {
         matches!(self.method, Method::Linear)
+    }
+
+    /// Whether its balances are linear in the velocities, all taken together.
+    pub fn is_one_linear_system(&self) -> bool {
+        self.reason == LINEAR_TOGETHER
     }
 
     /// What a step makes of a linear balance.
@@ -52,6 +72,7 @@ pub fn blocks(
     letters: &Letters,
     balances: &[Balance],
     riccati: &[Riccati],
+    algebra: &Algebra,
 ) -> Vec<Block> {
     let momenta = outgoing(spec, letters, balances);
     let velocities = spec.configurations.iter();
@@ -72,11 +93,59 @@ pub fn blocks(
     let starts = (0..first.len()).filter(|i| first[*i] == *i);
     let members = starts.map(|i| (0..first.len()).filter(|j| first[*j] == i).collect());
     members
-        .map(|members| block(spec, letters, riccati, members))
+        .map(|members: Vec<usize>| {
+            let linear = || linear_together(spec, letters, balances, &members, algebra);
+            let newton = |otherwise: String| match linear() {
+                true => LINEAR_TOGETHER.to_owned(),
+                false => otherwise,
+            };
+            block(spec, letters, riccati, newton, members.clone())
+        })
         .collect()
 }
 
-fn block(spec: &Spec, letters: &Letters, riccati: &[Riccati], members: Vec<usize>) -> Block {
+/// Why Newton's method solves a linear system.
+const LINEAR_TOGETHER: &str =
+    "one linear system, which the first correction of Newton's method solves";
+
+/// Whether the balances of these configurations are linear in their velocities, all taken together:
+/// on GL(n) and of fields.
+pub(super) fn linear_together(
+    spec: &Spec,
+    letters: &Letters,
+    balances: &[Balance],
+    members: &[usize],
+    algebra: &Algebra,
+) -> bool {
+    let s = &letters.symbols;
+    let group = |i: &usize| spec.configurations[*i].group;
+    if !members
+        .iter()
+        .all(|i| group(i).is_additive() || group(i).is_linear())
+    {
+        return false;
+    }
+    let velocity = |i: &usize| at(spec.configurations[*i].velocity, Shift::HERE);
+    let changes: Vec<_> = members
+        .iter()
+        .map(|i| (velocity(i), expr::here(s, letters.variation[*i])))
+        .collect();
+    members.iter().all(|i| {
+        let momentum = expr::substitute(s, &balances[*i].outgoing, &spec.end_of_edge());
+        let change = shorter(algebra, expr::directional(s, &momentum, &changes));
+        members
+            .iter()
+            .all(|j| !expr::contains(&change, velocity(j)))
+    })
+}
+
+fn block(
+    spec: &Spec,
+    letters: &Letters,
+    riccati: &[Riccati],
+    newton: impl Fn(String) -> String,
+    members: Vec<usize>,
+) -> Block {
     let (method, reason) = match members.as_slice() {
         [i] => match &riccati[*i] {
             Riccati::Exact(mv) if is_constant(letters, mv) => (
@@ -88,12 +157,12 @@ fn block(spec: &Spec, letters: &Letters, riccati: &[Riccati], members: Vec<usize
                 "C is known at each node: the largest real eigenvalue of a 4 x 4 matrix".to_owned(),
             ),
             Riccati::Linear(form) => (Method::Linear, linear(form)),
-            Riccati::None(why) => (Method::Newton, format!("{why}: Newton")),
+            Riccati::None(why) => (Method::Newton, newton(format!("{why}: Newton"))),
             _ => (Method::Newton, "Newton on the derived residual".to_owned()),
         },
         _ => (
             Method::Newton,
-            "solved together: Newton on the derived residuals".to_owned(),
+            newton("solved together: Newton on the derived residuals".to_owned()),
         ),
     };
     Block {
@@ -183,3 +252,6 @@ impl Derivation {
         own
     }
 }
+
+#[cfg(test)]
+mod tests;

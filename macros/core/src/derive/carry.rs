@@ -6,6 +6,7 @@ use super::Letters;
 use super::action::Action;
 use super::axial::Axial;
 use super::balance::{Balance, shorter};
+use super::far;
 use super::rounding::Rounding;
 use super::transport::Transport;
 use super::variation::{Variation, at};
@@ -112,6 +113,7 @@ impl Work<'_> {
             (Side::Body, _) if !self.moving(&through) => return through,
             _ => {}
         }
+        let through = self.rounded_least(i, c, through);
         let kept = Carry::Kept(self.added(i, c));
         if self.algebra.exhausted() {
             // A model at the limit of the engine: the plain difference is as right, if less exact.
@@ -134,6 +136,33 @@ impl Work<'_> {
         match loss(&second) > loss(&first) {
             true => second,
             false => first,
+        }
+    }
+
+    /// What acts at the ends of the edge, in the form that rounds least: what is divided by the step
+    /// may cancel in it.
+    fn rounded_least(&self, i: usize, c: &Configuration, carry: Carry) -> Carry {
+        let Carry::Through { leave, arrive } = carry else {
+            return carry;
+        };
+        let v = &self.inputs.variations[i];
+        let least = |e: Expr, time: i8| {
+            let moving = expr::contains_role(self.symbols, &e, Role::Velocity);
+            if !moving || self.rounding().error(&e) >= 0.0 {
+                return e;
+            }
+            let changes = v.advected.iter().chain([&v.element]).map(|(l, change)| {
+                let change = expr::shift_time(self.symbols, change, time);
+                (at(l.symbol, Shift { time, ..l.shift }), change)
+            });
+            let changes: Vec<(Letter, Expr)> = changes.collect();
+            let derived = self.covector(i, c, &self.inputs.action.total, &changes);
+            let all = [e, derived].into_iter().flat_map(|e| self.forms(&e));
+            self.best(all.collect())
+        };
+        Carry::Through {
+            leave: least(leave, Shift::HERE.time),
+            arrive: least(arrive, Shift::NEXT.time),
         }
     }
 
@@ -306,17 +335,19 @@ impl Work<'_> {
         ]
     }
 
-    /// The one that rounds least, and of those the shortest.
+    /// The one that rounds least at small steps, of those least far from the origin, and of those
+    /// the shortest.
     fn best(&self, forms: Vec<Expr>) -> Expr {
         let rounding = self.rounding();
-        let mut best: Option<(f64, Expr)> = None;
+        let mut best: Option<((f64, f64), Expr)> = None;
         for form in forms {
-            let error = rounding.error(&form).min(0.0);
+            let small = rounding.error(&form).min(0.0);
+            let kept = (small, -far::error(self.algebra, &form));
             let better = best.as_ref().is_none_or(|(least, known)| {
-                error > *least || error == *least && form.size() < known.size()
+                kept > *least || kept == *least && form.size() < known.size()
             });
             if better {
-                best = Some((error, form));
+                best = Some((kept, form));
             }
         }
         best.map_or_else(|| expr::integer(0), |(_, form)| form)

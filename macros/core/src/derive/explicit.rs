@@ -5,6 +5,7 @@
 
 use super::Letters;
 use super::balance::{Balance, shorter};
+use super::far;
 use super::occurrence::{Occurrence, occurrence};
 use super::variation::at;
 use crate::algebra::{Algebra, Atom, Factor, Poly, Rational, Term};
@@ -60,8 +61,13 @@ pub fn form(
     let still = group.identity();
     let word = expr::product([left.clone(), still.clone(), right.clone()]);
     let at_rest = expr::add(word, rest);
+    let at_rest = shorter(algebra, at_rest);
+    // As it was derived, where the expanded one would round more far from the origin.
+    let still_there = [(at(velocity, Shift::HERE), still.clone())];
+    let derived = expr::substitute(s, &outgoing, &still_there);
+    let derived_is_better = far::error(algebra, &derived) < far::error(algebra, &at_rest);
     let found = Explicit {
-        rest: shorter(algebra, at_rest),
+        rest: if derived_is_better { derived } else { at_rest },
         left,
         right,
     };

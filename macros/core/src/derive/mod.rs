@@ -13,6 +13,7 @@ pub mod certificate;
 pub mod clebsch;
 pub mod continuous;
 pub mod explicit;
+mod far;
 pub mod invariants;
 pub mod kinetic;
 pub mod lie;

@@ -159,7 +159,7 @@ pub fn recognise(
         .enumerate()
         .map(|(i, b)| riccati(spec, letters, b, i, transports, algebra))
         .collect();
-    let blocks = blocks::blocks(spec, letters, balances, &riccati);
+    let blocks = blocks::blocks(spec, letters, balances, &riccati, algebra);
     if blocks.len() > 1 || blocks.iter().any(Block::is_linear) {
         let newton = blocks.iter().any(Block::is_newton);
         return Solve {
@@ -186,6 +186,9 @@ pub fn recognise(
     let iterated = "Newton's method on the Lie algebra";
     let solver = if three(0) { kappa } else { iterated };
     let (method, reason) = match riccati.as_slice() {
+        _ if blocks.iter().any(Block::is_one_linear_system) => {
+            (Method::Newton, blocks::reasons(letters, spec, &blocks))
+        }
         [Riccati::Exact(mv)] if three(0) && mv.symmetric && is_free(mv) => (
             Method::FreeMoserVeselov,
             format!(

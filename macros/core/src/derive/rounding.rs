@@ -40,13 +40,20 @@ impl Rounding<'_> {
                 symbol: c.velocity,
                 shift: Shift::HERE,
             };
-            let size = self.symbols.get(c.velocity).shape.rows;
-            (letter, expr::identity(size))
+            (letter, c.group.identity())
         });
         let rest: Vec<(Letter, Expr)> = velocities.collect();
         let forward = expr::substitute(self.symbols, e, &self.spec.end_of_edge());
         self.algebra
             .is_zero(&expr::substitute(self.symbols, &forward, &rest))
+    }
+
+    /// Whether it is the increment of a field, a small number of its own.
+    fn is_increment(&self, l: &Letter) -> bool {
+        let fields = self.spec.configurations.iter();
+        fields
+            .filter(|c| c.group.is_additive())
+            .any(|c| c.velocity == l.symbol)
     }
 
     fn moves(&self, e: &Expr) -> bool {
@@ -76,7 +83,8 @@ impl Rounding<'_> {
             | Node::Unit(..)
             | Node::Inclusion(..) => exact(0.0),
             Node::Letter(l) => {
-                let size = f64::from(u8::from(self.symbols.get(l.symbol).role == Role::Step));
+                let small = self.symbols.get(l.symbol).role == Role::Step || self.is_increment(l);
+                let size = f64::from(u8::from(small));
                 Order { size, error: size }
             }
             Node::Sum(terms) => {

@@ -32,7 +32,13 @@ pub fn moser_veselov(sheet: &Sheet, doc: &mut Document) {
                 section.paragraph([
                     "Equation ".into(),
                     Inline::reference(&format!("outgoing {i}")),
-                    " is not linear in the increment ".into(),
+                    match d.solve.is_one_linear_system(i) {
+                        true => {
+                            " is linear in the increments, but not of one factor on either side of "
+                        }
+                        false => " is not linear in the increment ",
+                    }
+                    .into(),
                     sheet.here(c.velocity).into(),
                     ".".into(),
                 ]);
@@ -421,6 +427,10 @@ fn method(sheet: &Sheet, section: &mut Section) {
                 Method::Davenport => "The stepper solves it as an eigenvalue problem at each node: ",
                 Method::UnitQuaternions => "The stepper solves it so: ",
                 Method::Blocks => "The stepper solves ",
+                Method::Newton if d.solve.is_one_linear_system(0) => "The stepper solves ",
+                Method::Newton if d.spec.configurations.iter().all(|c| c.group.is_additive()) => {
+                    "The stepper iterates with Newton's method: "
+                }
                 Method::FreeMoserVeselov
                 | Method::ForcedMoserVeselov
                 | Method::Linear

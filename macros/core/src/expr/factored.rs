@@ -67,6 +67,7 @@ fn flatten(symbols: &Symbols, e: &Expr, out: &mut Vec<Parts>) {
     if let [only] = term.matrices.as_slice()
         && matches!(only.node(), Node::Sum(_) | Node::Neg(_))
         && *only != *e
+        && !places::is_between(symbols, only)
     {
         let mut inner = Vec::new();
         flatten(symbols, only, &mut inner);
@@ -125,7 +126,11 @@ fn of_terms(symbols: &Symbols, terms: Vec<Parts>, shape: Shape) -> Expr {
     for (factors, list) in same {
         let (times, numbers) = match list.as_slice() {
             [only] => (only.coefficient, only.numbers.clone()),
-            _ => {
+            list if alike_total(list).is_some_and(|c| !c.is_zero()) => {
+                let times = alike_total(list).unwrap_or(Rational::ONE);
+                (times, list[0].numbers.clone())
+            }
+            list => {
                 let all = list.iter().map(|t| scalar(t.coefficient, &t.numbers));
                 let total = sum(all.collect::<Vec<_>>(), Shape::SCALAR);
                 if total.is_zero() {
@@ -145,6 +150,15 @@ fn of_terms(symbols: &Symbols, terms: Vec<Parts>, shape: Shape) -> Expr {
         product([scalar(common, &numbers), of_words(symbols, words, shape)])
     });
     sum(written.collect::<Vec<_>>(), shape)
+}
+
+/// How many times the numbers that all terms have.
+fn alike_total(list: &[Parts]) -> Option<Rational> {
+    let (first, rest) = list.split_first()?;
+    rest.iter().try_fold(first.coefficient, |total, t| {
+        let same = alike(&first.numbers, &t.numbers);
+        same.then(|| total.plus(t.coefficient)).flatten()
+    })
 }
 
 /// Whether both are the same powers, in any order.

@@ -9,6 +9,7 @@ mod factored;
 mod function;
 mod gradient;
 mod magnitude;
+pub(crate) mod places;
 mod presence;
 mod projection;
 mod quaternion;

@@ -2,6 +2,7 @@
 //! change over no step. Takes random steps in exact arithmetic; gives all solutions in small whole
 //! numbers, and for fixed parameters how many there are in any numbers.
 
+use super::draws::Roots;
 use super::motions::{Motion, Sort};
 use super::passage::{Passage, completed, start};
 use super::{Inputs, here};
@@ -82,11 +83,15 @@ impl<'a, 'x> Samples<'a, 'x> {
             }
             // Even ones take the smallest size where it has only a name.
             self.attempt += 2;
-            let made =
-                start(self.x, self.x.assumed, self.attempt).and_then(|p| match self.differences {
+            let made = start(self.x, self.x.assumed, self.attempt).and_then(|mut p| {
+                match self.differences {
                     true => chain(self.x, &p, 1)?.pop(),
-                    false => Some(Sample(vec![(false, completed(self.x, p)?)])),
-                });
+                    false => {
+                        Roots::of(self.x).led(self.x, &mut p, self.attempt)?;
+                        Some(Sample(vec![(false, completed(self.x, p)?)]))
+                    }
+                }
+            });
             self.list.extend(made);
         }
         self.list.get(index)
@@ -275,13 +280,18 @@ fn work(x: &Inputs, point: &Point) -> usize {
 }
 
 /// Steps between random nodes with the parameters of a point, each with the steps that lead from
-/// the identity to its ends: a quantity that changes by `F(end) - F(start)` changes by `F` of its end
-/// over a step that starts at the identity, up to a constant.
+/// one origin to its ends, the identity of groups: a quantity that changes by `F(end) - F(start)`
+/// changes by `F` of its end over a step that starts at the origin, up to a constant.
 fn chain<'a>(x: &Inputs<'a>, base: &Point<'a>, count: usize) -> Option<Vec<Sample<'a>>> {
     let mut origin = base.clone();
     for c in &x.spec.configurations {
-        origin.set(here(c.element), base.value(&c.group.identity())?);
+        // Fields stay where they were drawn: a potential may be singular where they vanish or meet.
+        if !c.group.is_additive() {
+            origin.set(here(c.element), base.value(&c.group.identity())?);
+        }
     }
+    let roots = Roots::of(x);
+    roots.placed(x, &mut origin, 0)?;
     for a in &x.spec.advected {
         if let Some(d) = &a.definition {
             let value = origin.value(d)?;
@@ -295,7 +305,7 @@ fn chain<'a>(x: &Inputs<'a>, base: &Point<'a>, count: usize) -> Option<Vec<Sampl
         if out.len() == count {
             return Some(out);
         }
-        let Some(to) = from_identity(x, &origin, 1000 + attempt) else {
+        let Some(to) = from_origin(x, &roots, &origin, 1000 + attempt) else {
             continue;
         };
         let Some(start) = &from else {
@@ -315,13 +325,19 @@ fn chain<'a>(x: &Inputs<'a>, base: &Point<'a>, count: usize) -> Option<Vec<Sampl
     None
 }
 
-/// The step from the identity to a random node.
-fn from_identity<'a>(x: &Inputs<'a>, origin: &Point<'a>, attempt: u64) -> Option<Passage<'a>> {
+/// The step from the origin to a random node.
+fn from_origin<'a>(
+    x: &Inputs<'a>,
+    roots: &Roots,
+    origin: &Point<'a>,
+    attempt: u64,
+) -> Option<Passage<'a>> {
     let draw = origin.redrawn(attempt);
     let mut p = origin.clone();
     for c in &x.spec.configurations {
         p.set(here(c.velocity), draw.letter(here(c.velocity))?);
     }
+    roots.led(x, &mut p, attempt)?;
     completed(x, p)
 }
 

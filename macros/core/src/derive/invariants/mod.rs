@@ -5,6 +5,7 @@
 
 mod casimirs;
 mod difference;
+mod draws;
 mod energy;
 mod homogeneous;
 mod independence;

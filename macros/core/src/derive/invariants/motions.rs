@@ -153,7 +153,14 @@ pub(super) fn motions(x: &Inputs) -> Vec<Motion> {
     }
     let s = &x.letters.symbols;
     let places = x.spec.parameters.iter().copied();
-    let places = places.filter(|p| s.get(*p).shape == Shape::vector(THREE));
+    let of_field = |shape| {
+        let mut all = x.spec.configurations.iter();
+        all.any(|c| c.group.is_additive() && c.group.shape() == shape)
+    };
+    let places = places.filter(|p| {
+        let shape = s.get(*p).shape;
+        shape == Shape::vector(THREE) || shape.is_vector() && !shape.is_scalar() && of_field(shape)
+    });
     for p in places.take(PLACES) {
         for i in 0..x.spec.configurations.len() {
             of_configuration(x, i, Way::About(p), &mut out);
@@ -260,6 +267,19 @@ fn of_configuration(x: &Inputs, i: usize, way: Way, out: &mut Vec<Motion>) {
             let outer = expr::mul(expr::transpose(s, place), m);
             of_matrix(s, shape.cols, outer, lever, &mut push);
         }
+        (Group::Additive(Additive(shape)), Way::About(p)) if s.get(p).shape == shape => {
+            let (place, about) = (expr::here(s, c.element), expr::here(s, p));
+            let reach = expr::add(length(x, &place), length(x, &about));
+            let lever = Some(expr::mul(length(x, &m), reach));
+            let arm = expr::sub(place, about);
+            if shape == Shape::vector(THREE) {
+                push(Sort::Angular, expr::cross(arm, m), lever, true);
+            } else {
+                let outer = expr::mul(m, expr::transpose(s, arm));
+                let turning = expr::sub(outer.clone(), expr::transpose(s, outer));
+                push(Sort::Planes(shape.rows), turning, lever, true);
+            }
+        }
         (Group::Additive(_), Way::Body) => {}
         (_, Way::Spin | Way::About(_) | Way::Shift) => {}
     }
@@ -358,6 +378,13 @@ impl Motion {
             }
             Group::Additive(Additive(shape)) => match (self.sort, self.way) {
                 (Sort::Linear | Sort::Shifts(_) | Sort::Entries(_), _) => v,
+                (Sort::Angular | Sort::Planes(_), Way::About(p)) => {
+                    let arm = expr::sub(g.clone(), expr::here(s, p));
+                    match self.sort {
+                        Sort::Angular => expr::cross(v, arm),
+                        _ => expr::mul(v, arm),
+                    }
+                }
                 (Sort::Angular, _) if shape.is_vector() => expr::cross(v, g.clone()),
                 (Sort::Angular, Way::Body) => expr::mul(g.clone(), expr::hat(v)),
                 (Sort::Angular, _) => expr::mul(expr::hat(v), g.clone()),

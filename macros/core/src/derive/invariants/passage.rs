@@ -2,6 +2,7 @@
 //! by the outgoing edge and after by the incoming one. A quantity with the same value at both ends
 //! of a few such steps is conserved: anything else differs at one with probability above 1 - 1e-15.
 
+use super::draws::Roots;
 use super::{Inputs, here};
 use crate::algebra::assumed;
 use crate::algebra::exact::{ATTEMPTS, Matrix, Point};
@@ -44,7 +45,9 @@ pub(crate) fn passages<'a>(x: &Inputs<'a>, assumed: &[Expr]) -> Vec<Passage<'a>>
 }
 
 fn passage<'a>(x: &Inputs<'a>, equations: &[Expr], attempt: u64) -> Option<Passage<'a>> {
-    completed(x, start(x, equations, attempt)?)
+    let mut before = start(x, equations, attempt)?;
+    Roots::of(x).led(x, &mut before, attempt)?;
+    completed(x, before)
 }
 
 /// Everything a step starts from: parameters, elements, velocities, what is carried.
@@ -57,6 +60,7 @@ pub(super) fn start<'a>(x: &Inputs<'a>, equations: &[Expr], attempt: u64) -> Opt
             before.set(l, value);
         }
     }
+    Roots::of(x).placed(x, &mut before, attempt)?;
     for a in &x.spec.advected {
         let value = match &a.definition {
             Some(d) => before.value(d)?,

@@ -2,6 +2,7 @@
 //! what is found.
 
 mod scales;
+mod singular;
 mod symmetries;
 mod totals;
 

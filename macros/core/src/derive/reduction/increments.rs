@@ -3,8 +3,12 @@
 
 use crate::algebra::Algebra;
 use crate::check::spec::Spec;
+use crate::derive::action::summands;
 use crate::derive::balance::shorter;
 use crate::derive::variation::at;
+use crate::expr::shape::Shape;
+use crate::expr::symbol::{Role, SymbolId, Symbols};
+
 use crate::expr::{self, Expr, Letter, Node, Shift};
 
 /// Largest sum that is looked at for what cancels in it.
@@ -28,6 +32,47 @@ pub(super) fn by_increments(
     let fields = spec.configurations.iter().filter(|c| c.group.is_additive());
     let increments: Vec<Letter> = fields.map(|c| at(c.velocity, Shift::HERE)).collect();
     tidied(spec, algebra, &increments, &put)
+}
+
+/// The Lagrangian with terms of negative powers of the step taken together where values of fields cancel
+/// between them, `X'·X'/(2 h) - X'·X/h + X·X/(2 h)`: apart, each would act on the momentum with a
+/// force of the order of `1/h`.
+pub(super) fn gathered(spec: &Spec, algebra: &Algebra, ends: &[(Letter, Expr)]) -> Expr {
+    let s = &spec.symbols;
+    let fields = spec.configurations.iter().filter(|c| c.group.is_additive());
+    let fields: Vec<SymbolId> = fields.map(|c| c.element).collect();
+    let values = |e: &Expr| {
+        let letters = expr::letters(e);
+        letters
+            .iter()
+            .filter(|l| fields.contains(&l.symbol))
+            .count()
+    };
+    let terms = summands(&spec.lagrangian).into_iter();
+    let (apart, others): (Vec<Expr>, Vec<Expr>) = terms
+        .partition(|t| is_singular(s, t) && values(&by_increments(spec, algebra, ends, t)) > 0);
+    if apart.len() < 2 || apart.len() > LARGEST as usize {
+        return spec.lagrangian.clone();
+    }
+    let stated = expr::sum(apart, Shape::SCALAR);
+    let together = algebra.shortest(&expr::substitute(s, &stated, ends));
+    match !algebra.exhausted() && values(&together) < values(&stated) {
+        true => expr::sum(others.into_iter().chain([together]), Shape::SCALAR),
+        false => spec.lagrangian.clone(),
+    }
+}
+
+/// Whether it is divided by the step.
+fn is_singular(s: &Symbols, e: &Expr) -> bool {
+    let holds_step = |e: &Expr| expr::contains_role(s, e, Role::Step);
+    match e.node() {
+        Node::Quotient(a, b) => holds_step(b) || is_singular(s, a),
+        Node::Power(a, q) => q.value() < 0.0 && holds_step(a) || is_singular(s, a),
+        Node::Neg(a) => is_singular(s, a),
+        Node::Product(factors) => factors.iter().any(|f| is_singular(s, f)),
+        Node::Sum(terms) => terms.iter().any(|t| is_singular(s, t)),
+        _ => false,
+    }
 }
 
 /// Sums in which values cancel, `X + ΔX - X`.

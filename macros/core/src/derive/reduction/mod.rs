@@ -26,12 +26,15 @@ use terms::Reducer;
 pub fn reduce(mut spec: Spec) -> Result<Spec, Errors> {
     let ends = increments::ends(&spec);
     let symbols = spec.symbols.clone();
+    let algebra = Algebra::new(&symbols);
+    if !ends.is_empty() {
+        spec.lagrangian = increments::gathered(&spec, &algebra, &ends);
+    }
     let (edge, nodal) = action::split(&symbols, &spec.lagrangian);
     let unreduced = is_unreduced(&spec, &edge);
     if !unreduced && ends.is_empty() {
         return Ok(spec);
     }
-    let algebra = Algebra::new(&symbols);
     let edge = increments::by_increments(&spec, &algebra, &ends, &edge);
     if !unreduced {
         spec.lagrangian = expr::add(edge.clone(), nodal.clone());

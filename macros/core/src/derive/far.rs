@@ -1,0 +1,236 @@
+//! What rounding does to an expression far from the origin: `X - Y` of two places keeps the digits of
+//! their distance, the expanded square of it loses all that both have in common.
+//! Takes expressions; gives the power of the distance from the origin that their rounding is of.
+
+use crate::algebra::Algebra;
+use crate::algebra::exact::{ATTEMPTS, Point};
+use crate::expr::places;
+use crate::expr::shape::{Dim, Shape, Structure};
+use crate::expr::symbol::{Role, Symbols};
+use crate::expr::{self, Expr, Letter, Node};
+
+/// Powers of the distance from the origin: that of the value, and that of its rounding in units of
+/// `EPSILON`. What is exact has a rounding of minus infinity.
+#[derive(Clone, Copy)]
+struct Order {
+    size: f64,
+    error: f64,
+}
+
+/// Largest part that is looked at for what cancels in it.
+const LARGEST: u32 = 400;
+
+/// The power of the distance from the origin that the rounding of an expression is of, for places that
+/// are far from it and near to each other: values of fields, the translations of rigid motions, and
+/// constants of the same shape, which may be centres. Zero where no place stands.
+pub(super) fn error(algebra: &Algebra, e: &Expr) -> f64 {
+    let symbols = algebra.symbols();
+    if !expr::letters(e).iter().any(|l| is_place(symbols, l)) {
+        return 0.0;
+    }
+    Far { symbols }.order(e).error.max(0.0)
+}
+
+/// The reduced form of an expression, unless places far from the origin round more in it: then the
+/// form that is reduced with differences of places kept as they are, or the expression itself.
+pub(super) fn least(algebra: &Algebra, reduced: Expr, e: &Expr) -> Expr {
+    let expanded = error(algebra, &reduced);
+    if expanded == 0.0 {
+        return reduced;
+    }
+    let kept = between(algebra, e).unwrap_or_else(|| e.clone());
+    [kept, e.clone()]
+        .into_iter()
+        .find(|form| error(algebra, form) < expanded)
+        .unwrap_or(reduced)
+}
+
+/// The shortest form in which differences of places are letters of their own.
+fn between(algebra: &Algebra, e: &Expr) -> Option<Expr> {
+    let named = places::named(algebra.symbols(), e)?;
+    let inner = Algebra::new(&named.symbols);
+    let reduced = inner.shortest(&named.whole);
+    let whole = expr::substitute(&named.symbols, &reduced, &named.definitions);
+    (!inner.exhausted()).then_some(whole)
+}
+
+/// Whether it is a value of a field or a rigid motion.
+fn is_place(s: &Symbols, l: &Letter) -> bool {
+    let symbol = s.get(l.symbol);
+    let kinds = [Structure::General, Structure::RigidMotion];
+    symbol.role == Role::Element && kinds.contains(&symbol.structure)
+}
+
+struct Far<'a> {
+    symbols: &'a Symbols,
+}
+
+impl Far<'_> {
+    fn order(&self, e: &Expr) -> Order {
+        let exact = |size| Order {
+            size,
+            error: f64::NEG_INFINITY,
+        };
+        match e.node() {
+            Node::Number(_)
+            | Node::Identity(_)
+            | Node::Zero(_)
+            | Node::Unit(..)
+            | Node::Inclusion(..) => exact(0.0),
+            Node::Letter(l) => exact(f64::from(u8::from(self.is_far(l)))),
+            Node::Sum(terms) => {
+                let inside = terms.iter().map(|t| self.order(t)).fold(exact(0.0), sum);
+                // Partial sums of more than two terms are rounded before the last one cancels.
+                let size = self.size(e, inside.size);
+                let rounded = if terms.len() == 2 { size } else { inside.size };
+                Order {
+                    size,
+                    error: inside.error.max(rounded),
+                }
+            }
+            Node::Product(factors) => {
+                let mut all = factors.iter().map(|f| self.order(f));
+                match all.next() {
+                    Some(first) => all.fold(first, product),
+                    None => exact(0.0),
+                }
+            }
+            Node::Dot(a, b) | Node::Cross(a, b) => {
+                let inside = product(self.order(a), self.order(b));
+                Order {
+                    size: self.size(e, inside.size),
+                    ..inside
+                }
+            }
+            Node::Quotient(a, b) => product(self.order(a), power(self.order(b), -1.0)),
+            Node::Power(a, q) => power(self.order(a), q.value()),
+            Node::Neg(a)
+            | Node::Transpose(a)
+            | Node::Hat(a)
+            | Node::Vee(a)
+            | Node::Part(_, a)
+            | Node::Map(_, a) => self.order(a),
+            Node::Trace(a) => {
+                let inside = self.order(a);
+                Order {
+                    size: self.size(e, inside.size),
+                    error: inside.error.max(inside.size),
+                }
+            }
+            Node::Inverse(a) | Node::Det(a) | Node::Adjugate(a) | Node::Call(_, a) => Order {
+                size: 0.0,
+                error: self.order(a).error.max(0.0),
+            },
+        }
+    }
+
+    /// The power of the value, zero where it stays when all places are moved alike.
+    fn size(&self, e: &Expr, largest: f64) -> f64 {
+        let stays = largest > 0.0 && e.size() <= LARGEST && self.stays(e);
+        if stays { 0.0 } else { largest }
+    }
+
+    fn is_far(&self, l: &Letter) -> bool {
+        is_place(self.symbols, l) || self.is_centre(l)
+    }
+
+    /// Whether it is a constant of the shape of places.
+    fn is_centre(&self, l: &Letter) -> bool {
+        let symbol = self.symbols.get(l.symbol);
+        let of_shape = |id| {
+            let other = self.symbols.get(id);
+            match other.structure {
+                Structure::General => other.shape == symbol.shape,
+                _ => symbol.shape == Shape::vector(Dim::Fixed(3)),
+            }
+        };
+        let place = |symbol| Letter {
+            symbol,
+            shift: l.shift,
+        };
+        symbol.role == Role::Parameter
+            && symbol.structure == Structure::General
+            && !symbol.shape.is_scalar()
+            && self
+                .symbols
+                .ids()
+                .any(|id| is_place(self.symbols, &place(id)) && of_shape(id))
+    }
+
+    /// Whether it is the same after all places are moved alike, those of each shape by themselves.
+    fn stays(&self, e: &Expr) -> bool {
+        let letters = expr::letters(e);
+        let far: Vec<Letter> = letters.into_iter().filter(|l| self.is_far(l)).collect();
+        let space = Shape::vector(Dim::Fixed(3));
+        let shape = |l: &Letter| match self.symbols.get(l.symbol).structure {
+            Structure::RigidMotion => space,
+            _ => self.symbols.get(l.symbol).shape,
+        };
+        let mut shapes: Vec<Shape> = far.iter().map(shape).collect();
+        shapes.dedup();
+        shapes.into_iter().all(|moved| {
+            let along = far.iter().filter(|l| shape(l) == moved);
+            let along: Vec<(Letter, Expr)> = along.map(|l| (*l, self.shift(l))).collect();
+            let change = expr::directional(self.symbols, e, &along);
+            change.is_zero() || self.vanishes(&change)
+        })
+    }
+
+    /// Whether it is zero at random points, which cost less than a normal form: no more than the choice
+    /// of a form stands on it.
+    fn vanishes(&self, e: &Expr) -> bool {
+        let values = (0..ATTEMPTS).filter_map(|attempt| Point::new(self.symbols, attempt).value(e));
+        let mut two = values.take(2).peekable();
+        two.peek().is_some() && two.all(|value| value.vanishes())
+    }
+
+    /// A movement of a place, in a direction that no axis has.
+    fn shift(&self, l: &Letter) -> Expr {
+        let symbol = self.symbols.get(l.symbol);
+        let generic = |n: Dim| {
+            let count = match n {
+                Dim::Fixed(n) => n.min(3),
+                Dim::Named(_) => 1,
+            };
+            let along = |k| expr::mul(expr::integer(i64::from(k) + 2), expr::unit(n, k));
+            expr::sum((0..count as u8).map(along), Shape::vector(n))
+        };
+        if symbol.structure == Structure::RigidMotion {
+            let four = symbol.shape.rows;
+            let by = (0..3).map(|k| expr::mul(expr::integer(k + 2), expr::unit(four, k as u8)));
+            let by = expr::sum(by, Shape::vector(four));
+            return expr::mul(by, expr::transpose(self.symbols, expr::unit(four, 3)));
+        }
+        match (symbol.shape.is_scalar(), symbol.shape.is_vector()) {
+            (true, _) => expr::integer(1),
+            (_, true) => generic(symbol.shape.rows),
+            _ => expr::mul(
+                generic(symbol.shape.rows),
+                expr::transpose(self.symbols, generic(symbol.shape.cols)),
+            ),
+        }
+    }
+}
+
+fn sum(a: Order, b: Order) -> Order {
+    Order {
+        size: a.size.max(b.size),
+        error: a.error.max(b.error),
+    }
+}
+
+fn product(a: Order, b: Order) -> Order {
+    let size = a.size + b.size;
+    Order {
+        size,
+        error: (a.error + b.size).max(b.error + a.size).max(size),
+    }
+}
+
+fn power(a: Order, q: f64) -> Order {
+    let size = a.size * q;
+    Order {
+        size,
+        error: (a.error + a.size * (q - 1.0)).max(size),
+    }
+}

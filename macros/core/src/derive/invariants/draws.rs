@@ -1,0 +1,111 @@
+//! Random nodes at which the roots of the action exist: in exact arithmetic half of all numbers have a
+//! square root, so that a draw of many bodies at once would almost never serve. Bodies are drawn one by
+//! one, each until the roots that it completes exist. Takes a model; gives nodes, and velocities that
+//! lead to such.
+
+use super::{Inputs, here};
+use crate::algebra::exact::Point;
+use crate::check::spec::Advected;
+use crate::expr::symbol::Role;
+use crate::expr::{self, Expr, Letter, Node};
+
+/// Most draws of one body: with eight roots one of 256 serves.
+const TRIES: u64 = 2048;
+
+/// Roots at a node, each with the last configuration that it depends on.
+pub(super) struct Roots(Vec<(usize, Expr)>);
+
+impl Roots {
+    /// Those of the action that stand at a node, with advected quantities by their definitions.
+    pub(super) fn of(x: &Inputs) -> Roots {
+        let s = &x.letters.symbols;
+        let mut all = Vec::new();
+        collect(&x.action.total, &mut all);
+        let defined = |a: &Advected| Some((here(a.quantity), a.definition.clone()?));
+        let definitions: Vec<(Letter, Expr)> = x.spec.advected.iter().filter_map(defined).collect();
+        let mut out: Vec<(usize, Expr)> = Vec::new();
+        for root in all {
+            let moving =
+                |l: &Letter| matches!(s.get(l.symbol).role, Role::Element | Role::Advected);
+            let letters = expr::letters(&root);
+            let mut times: Vec<i8> = letters
+                .iter()
+                .filter(|l| moving(l))
+                .map(|l| l.shift.time)
+                .collect();
+            times.dedup();
+            let [time] = times.as_slice() else { continue };
+            if expr::contains_role(s, &root, Role::Velocity) {
+                continue;
+            }
+            let root = expr::substitute(s, &expr::shift_time(s, &root, -time), &definitions);
+            let held = x.spec.configurations.iter().enumerate();
+            let last = held
+                .filter(|(_, c)| expr::contains(&root, here(c.element)))
+                .map(|(i, _)| i)
+                .max();
+            let Some(last) = last else { continue };
+            if !out.iter().any(|(_, known)| *known == root) {
+                out.push((last, root));
+            }
+        }
+        Roots(out)
+    }
+
+    fn exist(&self, at: &Point, last: usize) -> bool {
+        let mut own = self.0.iter().filter(|(i, _)| *i == last);
+        own.all(|(_, root)| at.value(root).is_some())
+    }
+
+    /// Draws the elements of a node again, as far as roots are missing there.
+    pub(super) fn placed(&self, x: &Inputs, node: &mut Point, attempt: u64) -> Option<()> {
+        for (i, c) in x.spec.configurations.iter().enumerate() {
+            let drawn = (0..TRIES).any(|turn| {
+                if turn > 0
+                    && let Some(value) = node.redrawn(mixed(attempt, turn)).letter(here(c.element))
+                {
+                    node.set(here(c.element), value);
+                }
+                self.exist(node, i)
+            });
+            drawn.then_some(())?;
+        }
+        Some(())
+    }
+
+    /// Draws the velocities of a step again, as far as roots are missing where it ends.
+    pub(super) fn led(&self, x: &Inputs, node: &mut Point, attempt: u64) -> Option<()> {
+        if self.0.is_empty() {
+            return Some(());
+        }
+        let mut end = node.clone();
+        for (i, c) in x.spec.configurations.iter().enumerate() {
+            let drawn = (0..TRIES).any(|turn| {
+                if turn > 0
+                    && let Some(value) = node.redrawn(mixed(attempt, turn)).letter(here(c.velocity))
+                {
+                    node.set(here(c.velocity), value);
+                }
+                let Some(moved) = node.value(&c.update) else {
+                    return false;
+                };
+                end.set(here(c.element), moved);
+                self.exist(&end, i)
+            });
+            drawn.then_some(())?;
+        }
+        Some(())
+    }
+}
+
+fn mixed(attempt: u64, turn: u64) -> u64 {
+    (attempt + 1) * TRIES + turn
+}
+
+/// Square roots, the innermost first.
+fn collect(e: &Expr, out: &mut Vec<Expr>) {
+    e.children().into_iter().for_each(|a| collect(a, out));
+    if matches!(e.node(), Node::Power(_, q) if q.denominator() == 2) && !out.contains(e) {
+        out.push(e.clone());
+    }
+}
