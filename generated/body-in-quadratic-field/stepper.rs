@@ -610,10 +610,9 @@ pub mod body_in_quadratic_field {
             let Λ_next = after.Λ.matrix();
             let Γ_reference = before.Γ;
             let Γ_next = Λ_next.tr_mul(&Γ_reference);
-            let t1 = h.powi(-2);
-            t1 * J.trace() - t1 * (J * Ω_matrix).trace()
-                + T::from_f64(0.25) * Γ.dot(&(K * Γ))
+            T::from_f64(0.25) * Γ.dot(&(K * Γ))
                 + T::from_f64(0.25) * Γ_next.dot(&(K * Γ_next))
+                - h.powi(-2) * (J * less_identity(&Ω_matrix)).trace()
         }
     }
     /// One trajectory of the model, its type hidden.

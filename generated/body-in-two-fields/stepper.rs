@@ -617,10 +617,9 @@ pub mod body_in_two_fields {
             let Λ_next = after.Λ.matrix();
             let Γ_next = Λ_next.tr_mul(&z);
             let B_next = Λ_next.tr_mul(&b);
-            let t1 = h.powi(-2);
-            t1 * J.trace() - t1 * (J * Ω_matrix).trace()
-                + T::from_f64(0.5) * gU.dot(&Γ) + T::from_f64(0.5) * gU.dot(&Γ_next)
+            T::from_f64(0.5) * gU.dot(&Γ) + T::from_f64(0.5) * gU.dot(&Γ_next)
                 - T::from_f64(0.5) * p.dot(&B) - T::from_f64(0.5) * p.dot(&B_next)
+                - h.powi(-2) * (J * less_identity(&Ω_matrix)).trace()
         }
     }
     /// One trajectory of the model, its type hidden.

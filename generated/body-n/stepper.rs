@@ -406,8 +406,7 @@ pub mod body_n {
         ) -> T {
             let BodyNParameters { C, .. } = self.parameters;
             let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
-            let t1 = h.powi(-2);
-            t1 * C.trace() - t1 * (C * Ω_matrix.transpose()).trace()
+            -(h.powi(-2) * (C * less_identity(&Ω_matrix.transpose())).trace())
         }
     }
     /// One trajectory of the model, its type hidden.

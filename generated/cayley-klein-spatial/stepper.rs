@@ -505,8 +505,9 @@ pub mod cayley_klein_spatial {
                 * (I_reference * quaternion_rotation(&q).transpose());
             let t1 = quaternion_imaginary(&w_matrix);
             (T::from_f64(2.0) * t1.dot(&((I - SMatrix::<T, 3, 3>::identity() * c) * t1)))
-                / (h * h) - (T::from_f64(4.0) * c * quaternion_real(&w_matrix)) / (h * h)
-                + (T::from_f64(4.0) * c) / (h * h)
+                / (h * h)
+                - (T::from_f64(4.0) * c * quaternion_real(&less_identity(&w_matrix)))
+                    / (h * h)
         }
     }
     /// One trajectory of the model, its type hidden.

@@ -430,8 +430,9 @@ pub mod cayley_klein {
             let W_matrix = before.q.body_velocity(&after.q).matrix();
             let t1 = quaternion_imaginary(&W_matrix);
             (T::from_f64(2.0) * t1.dot(&((I - SMatrix::<T, 3, 3>::identity() * c) * t1)))
-                / (h * h) - (T::from_f64(4.0) * c * quaternion_real(&W_matrix)) / (h * h)
-                + (T::from_f64(4.0) * c) / (h * h)
+                / (h * h)
+                - (T::from_f64(4.0) * c * quaternion_real(&less_identity(&W_matrix)))
+                    / (h * h)
         }
     }
     /// One trajectory of the model, its type hidden.

@@ -878,13 +878,10 @@ pub mod coupled_bodies {
             let Λ1 = before.Λ1.matrix();
             let Λ2 = before.Λ2.matrix();
             let R = Λ1.tr_mul(&Λ2);
-            J1.trace() / (h * h) - (J1 * Ω1_matrix).trace() / (h * h)
-                - (J2 * Ω2_matrix).trace() / (h * h)
-                - (eps
-                    * ((Ω1_matrix - SMatrix::<T, 3, 3>::identity()) * d1)
-                        .dot(
-                            &(R * ((Ω2_matrix - SMatrix::<T, 3, 3>::identity()) * d2)),
-                        )) / (h * h) + J2.trace() / (h * h)
+            let t1 = less_identity(&Ω1_matrix);
+            let t2 = less_identity(&Ω2_matrix);
+            (-((eps * (t1 * d1).dot(&(R * (t2 * d2)))) / (h * h)))
+                - (J1 * t1).trace() / (h * h) - (J2 * t2).trace() / (h * h)
         }
     }
     /// One trajectory of the model, its type hidden.

@@ -494,8 +494,7 @@ pub mod free_body_spatial {
             let Λ = before.Λ.matrix();
             let J_reference = before.J;
             let J = Λ * (J_reference * Λ.transpose());
-            let t1 = h.powi(-2);
-            t1 * J.trace() - t1 * (ω_matrix * J).trace()
+            -(h.powi(-2) * (less_identity(&ω_matrix) * J).trace())
         }
     }
     /// One trajectory of the model, its type hidden.

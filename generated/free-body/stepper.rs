@@ -413,8 +413,7 @@ pub mod free_body {
         ) -> T {
             let FreeBodyParameters { J, .. } = self.parameters;
             let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
-            let t1 = h.powi(-2);
-            t1 * J.trace() - t1 * (J * Ω_matrix).trace()
+            -(h.powi(-2) * (J * less_identity(&Ω_matrix)).trace())
         }
     }
     /// One trajectory of the model, its type hidden.

@@ -688,10 +688,8 @@ pub mod heavy_top_spatial {
             let Λ_next = after.Λ.matrix();
             let χ_reference = before.χ;
             let χ_next = Λ_next * χ_reference;
-            let t1 = h.powi(-2);
-            t1 * J.trace() - t1 * (ω_matrix * J).trace()
-                + T::from_f64(0.5) * w * z.dot(&χ)
-                + T::from_f64(0.5) * w * z.dot(&χ_next)
+            T::from_f64(0.5) * w * z.dot(&χ) + T::from_f64(0.5) * w * z.dot(&χ_next)
+                - h.powi(-2) * (less_identity(&ω_matrix) * J).trace()
         }
     }
     /// One trajectory of the model, its type hidden.

@@ -568,9 +568,8 @@ pub mod heavy_top {
             let Γ = Λ.tr_mul(&z);
             let Λ_next = after.Λ.matrix();
             let Γ_next = Λ_next.tr_mul(&z);
-            let t1 = h.powi(-2);
-            t1 * J.trace() - t1 * (J * Ω_matrix).trace()
-                + T::from_f64(0.5) * gU.dot(&Γ) + T::from_f64(0.5) * gU.dot(&Γ_next)
+            T::from_f64(0.5) * gU.dot(&Γ) + T::from_f64(0.5) * gU.dot(&Γ_next)
+                - h.powi(-2) * (J * less_identity(&Ω_matrix)).trace()
         }
     }
     /// One trajectory of the model, its type hidden.

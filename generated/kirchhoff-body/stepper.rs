@@ -1033,16 +1033,15 @@ pub mod kirchhoff_body {
             let P = G.tr_mul(&Z);
             let G_next = after.G.matrix();
             let P_next = G_next.tr_mul(&Z);
-            let t1 = motion_rotation(&V_matrix);
-            let t2 = motion_translation(&V_matrix);
-            let t3 = t2 + t1.tr_mul(&t2);
+            let t1 = motion_translation(&V_matrix);
+            let t2 = motion_rotation(&V_matrix);
+            let t3 = t1 + t2.tr_mul(&t1);
             (T::from_f64(2.0)
                 * (t3 * T::from_f64(0.5)).dot(&(M * t3 * T::from_f64(0.5))))
                 / ((T::from_f64(2.0) * h) * (T::from_f64(2.0) * h))
-                - (J * t1).trace() / (h * h)
-                + vee(&t1).dot(&(D * t3 * T::from_f64(0.5))) / (h * h)
+                + vee(&t2).dot(&(D * t3 * T::from_f64(0.5))) / (h * h)
                 + T::from_f64(0.5) * b.dot(&P) + T::from_f64(0.5) * b.dot(&P_next)
-                + J.trace() / (h * h)
+                - (J * less_identity(&motion_rotation(&V_matrix))).trace() / (h * h)
         }
     }
     /// One trajectory of the model, its type hidden.

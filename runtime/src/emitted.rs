@@ -18,9 +18,9 @@ pub use crate::integrate::{
 pub use crate::kinetic::KineticWarning;
 pub use crate::linalg::{
     axial_of_difference, columns_from, crossed, crossing, determinant, even_count, hat, inclusion,
-    into_columns, into_rows, motion_rotation, motion_translation, pencil_coefficients,
-    pure_quaternion, quaternion_imaginary, quaternion_real, quaternion_rotation, rows_from,
-    skew_coordinates, solve, trace_complement, twist, vee,
+    into_columns, into_rows, less_identity, motion_rotation, motion_translation,
+    pencil_coefficients, pure_quaternion, quaternion_imaginary, quaternion_real,
+    quaternion_rotation, rows_from, skew_coordinates, solve, trace_complement, twist, vee,
 };
 pub use crate::scalar::{InLanes, OfScalars as _, Real};
 pub use crate::solvers::Method;

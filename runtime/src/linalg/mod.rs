@@ -12,6 +12,7 @@ mod motion;
 mod pencil;
 mod product;
 mod quaternion;
+mod rest;
 mod singular_values;
 mod skew;
 
@@ -30,6 +31,7 @@ pub use quaternion::{
     left_multiplication, pure_quaternion, quaternion_imaginary, quaternion_real,
     quaternion_rotation,
 };
+pub use rest::less_identity;
 pub use singular_values::singular_ratio;
 pub use skew::{
     axial_of_difference, crossed, crossing, hat, skew_coordinates, skew_from, trace_complement, vee,

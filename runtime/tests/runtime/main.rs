@@ -19,5 +19,6 @@ mod principal;
 mod quaternions_and_motions;
 mod scalars;
 mod scalars_through_solvers;
+mod small_steps;
 mod unit_quaternions;
 mod units;

@@ -16,7 +16,7 @@ use crate::diagnostic::{Diagnostic, Errors};
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::syntax::ast::{Model, NodeRule, Statement};
-use crate::work;
+use crate::{schedule, work};
 pub(crate) use declare::is_rust_word;
 pub(crate) use members::name_of_function;
 
@@ -240,13 +240,19 @@ fn finish(
         .collect();
     let remarks = remarks(model, &declared);
     errors.propagate()?;
+    let step = Letter {
+        symbol: declared.step,
+        shift: Shift::HERE,
+    };
+    let mut symbols = declared.symbols;
+    symbols.keep_differences(schedule::divides_twice(&lagrangian, step));
     Ok(Spec {
         name: model.name.text.clone(),
         name_place: model.name.place,
         docs: model.docs.clone(),
         remarks,
         public: model.public,
-        symbols: declared.symbols,
+        symbols,
         time_index: declared.time_index,
         step: declared.step,
         dimensions: declared.dimensions,

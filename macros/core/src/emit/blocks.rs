@@ -171,7 +171,10 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
             needed.push(at(c.element, Shift::HERE));
         }
     }
-    let known: Vec<Expr> = known.iter().map(|e| expr::factored(s, e)).collect();
+    let known: Vec<Expr> = known
+        .iter()
+        .map(|e| expr::factored(s, &schedule::displaced(s, e)))
+        .collect();
     needed.extend(letters_of(&known));
     for list in each_newton(d, names, |_, t| t.needed()) {
         needed.extend(list);

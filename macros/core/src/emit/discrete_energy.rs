@@ -13,7 +13,10 @@ use quote::quote;
 
 /// The function.
 pub fn discrete_energy(d: &Derivation, names: &Names) -> TokenStream {
-    let s = &d.letters.symbols;
+    // It is divided by the step twice, whatever the action is.
+    let mut symbols = d.letters.symbols.clone();
+    symbols.keep_differences(true);
+    let s = &symbols;
     let energy = &d.integrability.discrete_energy;
     let (name, state) = (item(d, ""), item(d, "State"));
     let g = Generics::of(d);

@@ -77,7 +77,7 @@ impl Equations<'_> {
         let list: Option<Vec<Expr>> = parts
             .covectors(list)
             .iter()
-            .map(|e| parts.write(e))
+            .map(|e| parts.write(&schedule::by_imaginary(s, &schedule::displaced(s, e))))
             .collect();
         let list = list?;
         let direction = Direction {
@@ -239,6 +239,8 @@ impl Equations<'_> {
         let node = bundle.value(node);
         let known = quote!(let #mu: #covectors = #node;);
         let momenta: Vec<TokenStream> = (0..bodies).map(|i| bundle.part(quote!(#mu), i)).collect();
+        let list: Vec<Expr> = list.iter().map(|e| schedule::displaced(s, e)).collect();
+        let list = list.as_slice();
         let p = schedule::program(s, list, "t");
         let (lets, values) = program(&p, self.bindings);
         let parts: Vec<TokenStream> = values

@@ -7,7 +7,7 @@ use crate::algebra::Rational;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr, Function, Letter, Map, Node, Part};
-use crate::schedule::{Bracketed, Program, associate};
+use crate::schedule::{self, Bracketed, Program, associate};
 use proc_macro2::{Delimiter, Ident, Literal, TokenStream, TokenTree};
 use quote::{format_ident, quote};
 
@@ -94,7 +94,11 @@ impl Writer<'_> {
     pub fn operand(&self, e: &Expr) -> TokenStream {
         let tokens = self.write(e);
         let atomic = match e.node() {
-            Node::Sum(_) | Node::Neg(_) | Node::Product(_) | Node::Quotient(..) => false,
+            Node::Sum(terms) => {
+                let list: Vec<&Expr> = terms.iter().collect();
+                terms.len() == 2 && matches!(self.difference(&list), Some((false, ..)))
+            }
+            Node::Neg(_) | Node::Product(_) | Node::Quotient(..) => false,
             Node::Power(_, q) => *q != Rational::integer(2),
             Node::Number(_)
             | Node::Letter(_)
@@ -281,6 +285,32 @@ impl Writer<'_> {
             .then(|| self.function("trace_complement", a))
     }
 
+    /// `Ω - Id` or `Id - Ω` among the terms of a sum, for what keeps lengths, and `re(W) - 1`: whether
+    /// it is subtracted, where the two terms are, and the difference.
+    fn difference(&self, terms: &[&Expr]) -> Option<(bool, (usize, usize), TokenStream)> {
+        let plain = |e: &Expr| match e.node() {
+            Node::Neg(a) => (true, a.clone()),
+            _ => (false, e.clone()),
+        };
+        terms.iter().enumerate().find_map(|(i, t)| {
+            let (minus, moving) = plain(t);
+            let rest = schedule::at_rest(self.symbols, &moving)?;
+            let opposite = match minus {
+                true => rest,
+                false => expr::neg(rest),
+            };
+            let j = terms.iter().position(|t| **t == opposite)?;
+            let tokens = match moving.node() {
+                Node::Map(Map::Real, a) => {
+                    let moved = self.function("less_identity", a);
+                    quote!(quaternion_real(&#moved))
+                }
+                _ => self.function("less_identity", &moving),
+            };
+            Some((minus, (i, j), tokens))
+        })
+    }
+
     fn sum(&self, terms: &[Expr]) -> TokenStream {
         if let Some(complement) = self.complement(terms) {
             return complement;
@@ -299,7 +329,21 @@ impl Writer<'_> {
                 .map(|(_, t)| t),
         );
         let mut out = TokenStream::new();
+        // Differences from rest, which keep their digits only together.
+        let mut started = false;
+        while let Some((minus, at, difference)) = self.difference(&order) {
+            out.extend(match (minus, started) {
+                (true, _) => quote!(- #difference),
+                (false, true) => quote!(+ #difference),
+                (false, false) => difference,
+            });
+            started = true;
+            let (a, b) = at;
+            order.remove(a.max(b));
+            order.remove(a.min(b));
+        }
         for (i, t) in order.into_iter().enumerate() {
+            let i = i + usize::from(started);
             match t.node() {
                 Node::Neg(a) if i > 0 => {
                     let a = self.term(a);

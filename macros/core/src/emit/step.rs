@@ -315,7 +315,10 @@ pub(super) fn finish(
     out.extend(node_locals(
         d, names, 1, &needed, &element, &reference, bindings,
     ));
-    let factored: Vec<Expr> = wanted.iter().map(|e| expr::factored(s, e)).collect();
+    let factored: Vec<Expr> = wanted
+        .iter()
+        .map(|e| expr::factored(s, &schedule::displaced(s, e)))
+        .collect();
     let p = schedule::program(s, &factored, "t");
     let (lets, values) = program(&p, bindings);
     out.extend(lets);

@@ -58,6 +58,8 @@ pub struct Symbols {
     /// The index that counts time; empty where none was given.
     time_index: String,
     dims: Vec<NamedSize>,
+    /// Whether differences from rest are computed with all their digits, which takes longer.
+    differences: bool,
 }
 
 /// A dimension that has only a name.
@@ -86,6 +88,16 @@ impl Symbols {
             docs: Vec::new(),
         });
         SymbolId((self.list.len() - 1) as u32)
+    }
+
+    /// Says whether differences from rest, `Id - Ω`, are computed with all their digits.
+    pub fn keep_differences(&mut self, whole: bool) {
+        self.differences = whole;
+    }
+
+    /// Whether differences from rest are computed with all their digits.
+    pub fn differences(&self) -> bool {
+        self.differences
     }
 
     /// Says by which index time is counted: `x_k` then prints as `x` at a node.

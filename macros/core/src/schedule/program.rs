@@ -18,14 +18,14 @@ pub struct Program {
 
 /// Schedules several results together. `prefix` starts the names of temporaries.
 pub fn program(symbols: &Symbols, results: &[Expr], prefix: &str) -> Program {
-    // What is computed has a value where determinants vanish.
+    // What is computed has a value where determinants vanish, and its digits where nothing moves.
     let results: Vec<Expr> = results
         .iter()
-        .map(|r| expr::without_adjugates(symbols, r))
+        .map(|r| super::rest::displaced(symbols, &expr::without_adjugates(symbols, r)))
         .collect();
     let mut uses: HashMap<Expr, usize> = HashMap::new();
     for r in &results {
-        count(r, &mut uses);
+        count(symbols, r, &mut uses);
     }
     let mut build = Build {
         symbols: symbols.clone(),
@@ -43,11 +43,13 @@ pub fn program(symbols: &Symbols, results: &[Expr], prefix: &str) -> Program {
 }
 
 /// Counts how often each sub-expression is met when every one is visited once per parent.
-fn count(e: &Expr, uses: &mut HashMap<Expr, usize>) {
+fn count(symbols: &Symbols, e: &Expr, uses: &mut HashMap<Expr, usize>) {
     let n = uses.entry(e.clone()).or_insert(0);
     *n += 1;
-    if *n == 1 {
-        e.children().into_iter().for_each(|c| count(c, uses));
+    if *n == 1 && !super::rest::is_difference(symbols, e) {
+        e.children()
+            .into_iter()
+            .for_each(|c| count(symbols, c, uses));
     }
 }
 
@@ -93,13 +95,18 @@ impl Build<'_> {
             return known.clone();
         }
         // Children first: they may add temporaries, which the rebuilding must know.
-        for c in e.children() {
-            self.rewrite(c);
-        }
-        let done = &self.done;
-        let inner = expr::rebuild(&self.symbols, e, &mut |c| {
-            done.get(c).cloned().unwrap_or_else(|| c.clone())
-        });
+        let inner = match super::rest::is_difference(&self.symbols, e) {
+            true => e.clone(),
+            false => {
+                for c in e.children() {
+                    self.rewrite(c);
+                }
+                let done = &self.done;
+                expr::rebuild(&self.symbols, e, &mut |c| {
+                    done.get(c).cloned().unwrap_or_else(|| c.clone())
+                })
+            }
+        };
         let shared = self.uses.get(e).is_some_and(|n| *n > 1) && is_work(e);
         let out = if shared {
             let name =

@@ -1,0 +1,259 @@
+//! Differences from rest: `A Ω - A` as `A (Ω - Id)`, `tr(J) - tr(J Ω)` as `-tr(J (Ω - Id))`. For small
+//! steps a velocity is near the identity, and only where both stand together can the difference be
+//! computed with all its digits: `emit` writes it so, where [`Symbols::differences`] asks for it. Takes an
+//! expression; gives an equal one.
+
+use crate::algebra::Rational;
+use crate::expr::shape::{self, Shape};
+use crate::expr::symbol::{Role, Symbols};
+use crate::expr::*;
+
+/// Whether a Lagrangian divides by more than the first power of the step: then differences from rest
+/// stand in it to a power, and what they are rounded to is divided by the step more often than the
+/// rounding of a matrix of second moments times a velocity is. A step inside a function or a root
+/// counts as such.
+pub fn divides_twice(e: &Expr, step: Letter) -> bool {
+    lowest(e, step).is_none_or(|n| n < -1.0)
+}
+
+/// The lowest power of the step that a term has; nothing where it is not seen.
+fn lowest(e: &Expr, step: Letter) -> Option<f64> {
+    if !contains(e, step) {
+        return Some(0.0);
+    }
+    match e.node() {
+        Node::Letter(_) => Some(1.0),
+        Node::Sum(terms) => terms
+            .iter()
+            .try_fold(f64::INFINITY, |least, t| Some(least.min(lowest(t, step)?))),
+        Node::Product(factors) => factors
+            .iter()
+            .try_fold(0.0, |all, f| Some(all + lowest(f, step)?)),
+        Node::Neg(a) | Node::Trace(a) | Node::Transpose(a) | Node::Part(_, a) => lowest(a, step),
+        Node::Dot(a, b) | Node::Cross(a, b) => Some(lowest(a, step)? + lowest(b, step)?),
+        Node::Quotient(a, b) => Some(lowest(a, step)? - exact(b, step)?),
+        Node::Power(a, q) => {
+            let times = q.as_integer()? as f64;
+            match q.is_negative() {
+                true => Some(exact(a, step)? * times),
+                false => Some(lowest(a, step)? * times),
+            }
+        }
+        _ => None,
+    }
+}
+
+/// The power of the step that a factor is proportional to.
+fn exact(e: &Expr, step: Letter) -> Option<f64> {
+    match e.node() {
+        Node::Sum(_) if contains(e, step) => None,
+        _ => lowest(e, step),
+    }
+}
+
+/// The identity, for a letter that keeps lengths as velocities do and a rotation that one covers; 1 for
+/// the real part of a quaternion.
+pub fn at_rest(symbols: &Symbols, e: &Expr) -> Option<Expr> {
+    if !symbols.differences() {
+        return None;
+    }
+    match e.node() {
+        Node::Letter(l) => {
+            let symbol = symbols.get(l.symbol);
+            let moves = matches!(symbol.role, Role::Velocity | Role::Derived);
+            (moves && symbol.structure.is_orthogonal()).then(|| identity(e.shape().rows))
+        }
+        Node::Transpose(a) => at_rest(symbols, a),
+        Node::Map(Map::Rotation, a) => is_velocity(symbols, a).then(|| identity(e.shape().rows)),
+        Node::Map(Map::Real, a) => is_velocity(symbols, a).then(|| integer(1)),
+        _ => None,
+    }
+}
+
+fn is_velocity(symbols: &Symbols, e: &Expr) -> bool {
+    matches!(e.node(), Node::Letter(l) if symbols.get(l.symbol).role == Role::Velocity)
+}
+
+/// Whether this is a difference from rest and nothing else: it stays whole.
+pub fn is_difference(symbols: &Symbols, e: &Expr) -> bool {
+    let Node::Sum(terms) = e.node() else {
+        return false;
+    };
+    let [a, b] = terms.as_slice() else {
+        return false;
+    };
+    let opposite = |moving: &Expr, rest: &Expr| match moving.node() {
+        Node::Neg(x) => at_rest(symbols, x).is_some_and(|r| r == *rest),
+        _ => at_rest(symbols, moving).is_some_and(|r| neg(r) == *rest),
+    };
+    opposite(a, b) || opposite(b, a)
+}
+
+/// The same expression with differences from rest written as such, at every depth.
+pub fn displaced(symbols: &Symbols, e: &Expr) -> Expr {
+    if !symbols.differences() || !moves(symbols, e) {
+        return e.clone();
+    }
+    let e = rebuild(symbols, e, &mut |x| displaced(symbols, x));
+    match e.node() {
+        Node::Sum(terms) => of_sum(symbols, terms, e.shape()),
+        _ => e,
+    }
+}
+
+fn moves(symbols: &Symbols, e: &Expr) -> bool {
+    [Role::Velocity, Role::Derived]
+        .into_iter()
+        .any(|role| contains_role(symbols, e, role))
+}
+
+fn of_sum(symbols: &Symbols, terms: &[Expr], shape: Shape) -> Expr {
+    let mut left: Vec<Expr> = terms.to_vec();
+    let mut found = Vec::new();
+    let mut i = 0;
+    while i < left.len() {
+        let partner = differences(symbols, &left[i])
+            .into_iter()
+            .find_map(|(rest, moved)| {
+                // A bare difference is a sum already.
+                let open = matches!(moved.node(), Node::Sum(_));
+                let opposite = neg(rest);
+                let at = left.iter().position(|t| !open && *t == opposite)?;
+                Some((at, moved))
+            });
+        match partner {
+            Some((at, moved)) if at != i => {
+                found.push(moved);
+                left.remove(at.max(i));
+                left.remove(at.min(i));
+                i = i.saturating_sub(usize::from(at < i));
+            }
+            _ => i += 1,
+        }
+    }
+    sum(left.into_iter().chain(found), shape)
+}
+
+/// With one velocity of the term put to rest: the term so, and with the difference in its place.
+fn differences(symbols: &Symbols, e: &Expr) -> Vec<(Expr, Expr)> {
+    if !moves(symbols, e) {
+        return Vec::new();
+    }
+    if let Some(rest) = at_rest(symbols, e) {
+        return vec![(rest.clone(), sub(e.clone(), rest))];
+    }
+    let each = |a: &Expr, with: &dyn Fn(Expr) -> Expr| -> Vec<(Expr, Expr)> {
+        let list = differences(symbols, a).into_iter();
+        list.map(|(rest, moved)| (with(rest), with(moved)))
+            .collect()
+    };
+    match e.node() {
+        Node::Neg(a) => each(a, &neg),
+        Node::Trace(a) => each(a, &trace),
+        Node::Quotient(a, b) => each(a, &|x| quotient(x, b.clone())),
+        Node::Power(a, q) if *q == Rational::integer(2) => each(a, &|x| mul(x, a.clone())),
+        Node::Dot(a, b) => {
+            let mut all = each(a, &|x| dot(x, b.clone()));
+            all.extend(each(b, &|x| dot(a.clone(), x)));
+            all
+        }
+        Node::Product(factors) => (0..factors.len())
+            .flat_map(|i| {
+                each(&factors[i], &|x| {
+                    let (before, after) = (&factors[..i], &factors[i + 1..]);
+                    product(before.iter().chain([&x]).chain(after).cloned())
+                })
+            })
+            .collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// The same expression with `re(q) - 1` as `-|im(q)|²/(1 + re(q))`, where quaternions are taken apart.
+/// The trace of their matrix is `4 re(q)`.
+pub fn by_imaginary(symbols: &Symbols, e: &Expr) -> Expr {
+    if !symbols.differences() {
+        return e.clone();
+    }
+    let e = rebuild(symbols, e, &mut |x| by_imaginary(symbols, x));
+    let fall = |q: &Expr| {
+        let v = imaginary(q.clone());
+        let above = add(integer(1), real(q.clone()));
+        quotient(dot(v.clone(), v), above)
+    };
+    match e.node() {
+        Node::Trace(a) if is_difference(symbols, a) => {
+            let Node::Sum(terms) = a.node() else {
+                return e;
+            };
+            let fallen = terms.iter().find_map(|t| {
+                let (sign, q) = signed(t);
+                let of_quaternion = is_velocity(symbols, q)
+                    && q.shape() == shape::Shape::square(shape::Dim::Fixed(4));
+                of_quaternion.then(|| scale(Rational::integer(-4 * sign), fall(q)))
+            });
+            fallen.unwrap_or(e)
+        }
+        Node::Sum(terms) => {
+            let found = terms.iter().enumerate().find_map(|(i, t)| {
+                let (sign, term) = signed(t);
+                let q = match term.node() {
+                    Node::Map(Map::Real, q) if is_velocity(symbols, q) => q,
+                    _ => return None,
+                };
+                let at = terms.iter().position(|t| *t == integer(-sign))?;
+                Some((i, at, scale(Rational::integer(-sign), fall(q))))
+            });
+            let Some((i, at, fallen)) = found else {
+                return e;
+            };
+            let others = (0..terms.len()).filter(|k| *k != i && *k != at);
+            let others = others.map(|k| terms[k].clone());
+            sum(others.chain([fallen]), e.shape())
+        }
+        _ => e,
+    }
+}
+
+/// The sign of a term and the rest of it.
+fn signed(e: &Expr) -> (i64, &Expr) {
+    match e.node() {
+        Node::Neg(a) => (-1, a),
+        _ => (1, e),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::pipeline::derive_source;
+
+    /// Whether a step of this Lagrangian keeps the digits of differences.
+    fn kept(lagrangian: &str) -> bool {
+        let text = format!(
+            "model M {{ param J: Sym<3>; param d: Vec<3>; param k: Real; group A: SO<3> velocity u; \
+             constraint next(A) = A*u; lagrangian = {lagrangian}; }}"
+        );
+        let d = derive_source(&text).unwrap_or_else(|e| panic!("{text}\n{e}"));
+        d.letters.symbols.differences()
+    }
+
+    #[test]
+    fn differences_are_kept_where_the_step_divides_twice() {
+        for plain in [
+            "-tr(J*u)/h",
+            "-tr(J*u)/h - h*k*dot(d, A*d)",
+            "-tr(J*u)/h - k*dot((u - Id)*d, (u - Id)*d)/(2*h)",
+            "-h*tr(J*u)/h^2",
+        ] {
+            assert!(!kept(plain), "{plain}");
+        }
+        for quartic in [
+            "-tr(J*u)/h + (k/h^3)*tr(Id - u)^2",
+            "-tr(J*u)/h + h*k*(tr(Id - u)/h^2)^2",
+            "-tr(J*u)/h - k*h*dot((u - Id)*d, (u - Id)*d)^2/h^4",
+            "-tr(J*u)/h - k*h*sqrt(1 + tr(Id - u)/h^2)",
+        ] {
+            assert!(kept(quartic), "{quartic}");
+        }
+    }
+}
