@@ -1,7 +1,8 @@
-//! What is said of fields: no constraint, increments that add up, names of functions, shapes of one
-//! column.
+//! What is said of fields: no constraint, increments that add up, names of functions, shapes of one column;
+//! and constraints that hold increments are read as they are meant.
 
 use crate::pipeline::derive_source;
+use crate::print::{Format, Style, expression};
 
 /// The messages of a model that is refused, each with its help.
 fn refused(body: &str) -> String {
@@ -21,6 +22,44 @@ fn carried(constraint: &str) -> String {
 }
 
 #[test]
+fn increments_in_constraints_are_seen() {
+    let update = |body: &str| {
+        let d = derive_source(&format!("model M {{ {body} }}"))
+            .unwrap_or_else(|e| panic!("{body}\n{e}"));
+        let source = crate::document::source(&d);
+        // What is stored derives the same model.
+        let again = derive_source(&source).unwrap_or_else(|e| panic!("{source}\n{e}"));
+        assert_eq!(crate::document::source(&again), source);
+        let a = &d.spec.advected[0];
+        let style = Style::new(&d.spec.time_index);
+        expression(&a.update, &d.letters.symbols, &style, Format::Text)
+    };
+    for constraint in [
+        "constraint next(Y) = Y + (next(X) - X);",
+        "constraint next(Y) = next(X) - (X - Y);",
+        "let moved = next(X) - X; constraint next(Y) = (Y + 2*moved) - moved;",
+    ] {
+        let found = update(&carried(constraint));
+        assert!(
+            ["Y_k + ΔX_k", "ΔX_k + Y_k"].contains(&found.as_str()),
+            "{constraint}: {found}"
+        );
+    }
+    // A definition that goes along, functions of increments, and the end of a group's element.
+    update(
+        &carried("constraint next(Y) = Y + next(X) - X;")
+            .replace("advected Y: Vec<3>", "advected Y: Vec<3> = X - a"),
+    );
+    update(
+        "param m: Real; field X: Real; advected Y: Real; constraint next(Y) = exp(next(X) - X)*Y; lagrangian = m*(next(X) - X)^2/(2*h) - h*Y;",
+    );
+    let turned = "param m: Real; param J: Sym<3>; group Q: SO<3> velocity W; field X: Vec<3>; advected Y: Vec<3>; \
+        constraint next(Q) = Q*W; constraint next(Y) = next(Q)^T*Q*Y; let d = next(X) - X; \
+        lagrangian = -tr(J*W)/h + m*dot(d, d)/(2*h) - h*dot(Y, Y + X);";
+    assert_eq!(update(turned), "W_kᵀ Y_k");
+}
+
+#[test]
 fn what_a_field_does_not_carry_is_told_so() {
     let never = ["ΔX * X", "ΔX * Y", "ΔX^T", "other side", "derives"];
     let says = |body: &str, said: &[&str]| {
@@ -35,7 +74,7 @@ fn what_a_field_does_not_carry_is_told_so() {
     let example = "`constraint next(Y) = Y + (next(X) - X);`";
     says(
         &carried("constraint next(Y) = Y + next(X);"),
-        &["add up", example],
+        &["add up", "leaves -ξ", example],
     );
     says(
         &carried("constraint next(Y) = Y + dot(next(X) - X, X)*X;"),
@@ -63,6 +102,7 @@ fn what_a_field_does_not_carry_is_told_so() {
         &[
             "contradicts",
             "-a + X_k + ΔX_k",
+            "differ by -2 ΔX_k",
             "`next(Y) = Y + (next(X) - X)`",
         ],
     );

@@ -16,6 +16,7 @@ mod tests;
 use crate::algebra::{Algebra, Known};
 use crate::check::spec::{Advected, Reduction, Spec};
 use crate::derive::action;
+use crate::derive::balance::shorter;
 use crate::derive::variation::at;
 use crate::diagnostic::{Diagnostic, Errors};
 use crate::expr::{self, Expr, Letter, Shift};
@@ -30,6 +31,7 @@ pub fn reduce(mut spec: Spec) -> Result<Spec, Errors> {
     if !ends.is_empty() {
         spec.lagrangian = increments::gathered(&spec, &algebra, &ends);
     }
+    put_velocities_in(&mut spec, &algebra, &ends);
     let (edge, nodal) = action::split(&symbols, &spec.lagrangian);
     let unreduced = is_unreduced(&spec, &edge);
     if !unreduced && ends.is_empty() {
@@ -47,11 +49,7 @@ pub fn reduce(mut spec: Spec) -> Result<Spec, Errors> {
         velocities_remain(&spec)?;
         return Ok(spec);
     }
-    let forward: Vec<(Letter, Expr)> = spec
-        .configurations
-        .iter()
-        .map(|c| (at(c.element, Shift::NEXT), c.update.clone()))
-        .collect();
+    let forward = configurations_at_the_end(&spec);
     let [edge, nodal] = [edge, nodal].map(|e| expr::substitute(&symbols, &e, &forward));
     let mut r = Reducer::new(&spec, &algebra);
     let (mut new_edge, mut new_nodal) = (r.as_far_as_possible(&edge), r.as_far_as_possible(&nodal));
@@ -102,6 +100,35 @@ pub fn reduce(mut spec: Spec) -> Result<Spec, Errors> {
     });
     velocities_remain(&spec)?;
     Ok(spec)
+}
+
+/// Constraints of advected quantities that hold a configuration at the end of the edge, by its velocity:
+/// `Y + next(X) - X` as `Y + ΔX`. Only so can it be seen that what they state is an action.
+fn put_velocities_in(spec: &mut Spec, algebra: &Algebra, ends: &[(Letter, Expr)]) {
+    let symbols = algebra.symbols();
+    let forward = configurations_at_the_end(spec);
+    let written: Vec<Expr> = spec
+        .advected
+        .iter()
+        .map(|a| {
+            if !forward.iter().any(|(l, _)| expr::contains(&a.update, *l)) {
+                return a.update.clone();
+            }
+            let put = increments::by_increments(spec, algebra, ends, &a.update);
+            let put = expr::substitute(symbols, &put, &forward);
+            shorter(algebra, put)
+        })
+        .collect();
+    for (a, update) in spec.advected.iter_mut().zip(written) {
+        a.update = update;
+    }
+}
+
+/// Every configuration at the end of the edge, by its constraint.
+fn configurations_at_the_end(spec: &Spec) -> Vec<(Letter, Expr)> {
+    let list = spec.configurations.iter();
+    list.map(|c| (at(c.element, Shift::NEXT), c.update.clone()))
+        .collect()
 }
 
 /// Whether some term of the edge holds the element at its end, in the place of a velocity.
