@@ -6,6 +6,9 @@
 //! is refused before it computes, and at the end, when only the file system's own operations decide: a
 //! folder is made only if it is not there ([`fs::create_dir`]), and renamed only over an empty one. So
 //! of any number of runs into one folder one takes the name, and each of the others keeps its results.
+//!
+//! A run holds a lock on its hidden folder, which the system takes back however the run ends. The next run
+//! into the same place removes what runs that were killed left behind.
 
 use super::standing::{self, Standing};
 use crate::failure::Failure;
@@ -18,11 +21,16 @@ use std::path::{Path, PathBuf};
 /// Names tried before giving up; each attempt goes on only where a name is taken.
 const ATTEMPTS: u32 = 10_000;
 
+/// What hidden folders of runs are called, between their target's name and numbers.
+const PARTIAL: &str = "partial";
+
 /// The folder in the making. Dropping it uncommitted removes all traces.
 #[derive(Debug)]
 pub struct Staging {
     target: PathBuf,
     hidden: PathBuf,
+    /// The hidden folder, locked; nothing where the file system locks no folders.
+    held: Option<File>,
     /// What `--force` is to replace, as it stood at the start.
     standing: Option<Standing>,
     known: Vec<&'static str>,
@@ -47,6 +55,7 @@ impl Staging {
         let mut staging = Self {
             target: target.to_owned(),
             hidden: PathBuf::new(),
+            held: None,
             standing: standing::at(target, force, known)?,
             known: known.to_vec(),
             created: Vec::new(),
@@ -70,8 +79,62 @@ impl Staging {
                 Err(error) => return Err(error),
             }
         }
-        self.hidden = self.fresh("partial")?;
-        Ok(())
+        self.remove_abandoned();
+        let mut left = ATTEMPTS;
+        loop {
+            let hidden = self.fresh(PARTIAL)?;
+            self.held = File::open(&hidden).and_then(|f| f.lock().map(|()| f)).ok();
+            // Before it was locked, another run may have taken it for an abandoned one.
+            left -= 1;
+            if hidden.exists() || left == 0 {
+                self.hidden = hidden;
+                return Ok(());
+            }
+        }
+    }
+
+    /// Removes hidden folders of runs that were killed: nobody holds them, and they hold nothing but files
+    /// of a run. What cannot be removed is left, and none of it concerns this run.
+    fn remove_abandoned(&self) {
+        let parent = self.target.parent().filter(|p| !p.as_os_str().is_empty());
+        let Ok(siblings) = fs::read_dir(parent.unwrap_or(Path::new("."))) else {
+            return;
+        };
+        let start = self.sibling(".", &format!(".{PARTIAL}-"));
+        let start = start.file_name().map(|n| n.to_string_lossy().into_owned());
+        for entry in siblings.flatten() {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            let numbers = start.as_deref().and_then(|s| name.strip_prefix(s));
+            let numbers = numbers.and_then(|n| n.split_once('-'));
+            let Some((Ok(id), Ok(_))) = numbers.map(|(id, n)| (id.parse(), n.parse::<u32>()))
+            else {
+                continue;
+            };
+            // Names with the number of this process may be of another run of its own, not yet locked.
+            let another: u32 = id;
+            if another != std::process::id() {
+                let _ = self.remove_if_abandoned(&entry.path());
+            }
+        }
+    }
+
+    fn remove_if_abandoned(&self, folder: &Path) -> io::Result<()> {
+        let lock = File::open(folder)?;
+        if lock.try_lock().is_err() {
+            return Ok(());
+        }
+        let files: Vec<_> = fs::read_dir(folder)?.collect::<io::Result<_>>()?;
+        let ours = |file: &fs::DirEntry| {
+            let known = self.known.iter().any(|name| file.file_name() == *name);
+            known && file.file_type().is_ok_and(|kind| kind.is_file())
+        };
+        if !files.iter().all(ours) {
+            return Ok(());
+        }
+        for file in &files {
+            fs::remove_file(file.path())?;
+        }
+        fs::remove_dir(folder)
     }
 
     /// Makes a hidden sibling that was not there. The process id only keeps the search short.

@@ -362,3 +362,64 @@ fn many_runs_at_once_lose_nothing() {
         assert_eq!(hidden.count(), 0);
     }
 }
+
+#[test]
+fn what_a_killed_run_left_behind_is_removed_by_the_next() {
+    let folder = Folder::new("abandoned");
+    let out = folder.path("run");
+    let sibling = |name: &str| folder.path(name);
+    // As a run that was killed leaves it, whose process is no more or has the number of another one.
+    for name in [".run.partial-1-0", ".run.partial-4194000-3"] {
+        fs::create_dir(sibling(name)).expect("made");
+        fs::write(format!("{}/trajectory.csv", sibling(name)), "1,2").expect("written");
+    }
+    // What is none of a run, or of a run into another place, stays.
+    for name in [
+        ".other.partial-1-0",
+        ".run.partial-notes",
+        ".run.partial-1-0-1",
+        ".run.partial-2-0",
+        ".run.replaced-1-0",
+    ] {
+        fs::create_dir(sibling(name)).expect("made");
+    }
+    fs::write(format!("{}/notes.txt", sibling(".run.partial-2-0")), "mine").expect("written");
+    // Neither does a run touch one that goes on, this one at its own.
+    let inner = out.clone();
+    let during = folder.path("");
+    let done = run_while(
+        move || {
+            let hidden = |n: &str| {
+                let all = fs::read_dir(&during).expect("there");
+                let names = all
+                    .flatten()
+                    .map(|e| e.file_name().to_string_lossy().into_owned());
+                let own = format!(".run.partial-{}-", std::process::id());
+                names
+                    .filter(|name| name.starts_with(&own))
+                    .count()
+                    .to_string()
+                    == n
+            };
+            assert!(hidden("1"));
+            let inner = run_while(|| (), &inner, &[]);
+            assert_eq!(inner.code, 0, "{}", inner.err);
+            assert!(hidden("1"), "that of the run around it");
+        },
+        &out,
+        &[],
+    );
+    assert_eq!(done.code, 1, "{}", done.err);
+    assert_eq!(
+        folder.names(),
+        [
+            ".other.partial-1-0",
+            ".run.partial-1-0-1",
+            ".run.partial-2-0",
+            ".run.partial-notes",
+            ".run.replaced-1-0",
+            "run",
+            "run-2"
+        ]
+    );
+}
