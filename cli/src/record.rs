@@ -49,6 +49,18 @@ impl Record {
         let row = 2 + card.observable_count() + card.invariant_count();
         (steps / every.max(1) + 2).saturating_mul(row as u64)
     }
+
+    /// Drops samples at the end, down to the last node that is wanted.
+    pub fn keep(&mut self, wanted: impl Fn(u64) -> bool) {
+        while self.nodes.last().is_some_and(|node| !wanted(*node)) {
+            self.nodes.pop();
+            self.times.pop();
+            for table in [&mut self.observables, &mut self.invariants] {
+                let left = table.numbers.len().saturating_sub(table.width);
+                table.numbers.truncate(left);
+            }
+        }
+    }
 }
 
 /// What is kept of a run for its files.

@@ -25,27 +25,46 @@ pub(crate) struct Course {
 /// The generated stepper's course, and the natural scale of each component of the invariants along it.
 ///
 /// # Errors
-/// Usage or failed, as for a run.
+/// Usage or failed, as for a run; failed when it does not come to its end.
 pub(crate) fn generated(
     card: &Card,
     plan: &Plan,
     progress: bool,
 ) -> Result<(Course, Vec<f64>), Failure> {
+    let (course, scales) = up_to_stop(card, plan, progress)?;
+    match course.stopped {
+        Some((_, why)) => Err(Failure::Failed(why)),
+        None => Ok((course, scales)),
+    }
+}
+
+/// The same as far as it goes.
+///
+/// # Errors
+/// Usage or failed, as for a run that makes no step.
+pub(crate) fn up_to_stop(
+    card: &Card,
+    plan: &Plan,
+    progress: bool,
+) -> Result<(Course, Vec<f64>), Failure> {
     let mut trajectory = plan.open(card)?;
-    let mut recorder = Recorder::new(card, plan.case.steps, true, progress);
-    let done = integrate::run(
-        trajectory.as_mut(),
-        plan.case.steps,
-        plan.every,
-        &mut recorder,
-    );
-    let record = recorder.finish().unwrap_or_default();
-    let done = done.map_err(|error| Failure::Failed(error.to_string()))?;
+    let steps = plan.case.steps;
+    let mut recorder = Recorder::new(card, steps, true, progress);
+    let (summary, stopped) =
+        integrate::run_until_stopped(trajectory.as_mut(), steps, plan.every, &mut recorder);
+    let mut record = recorder.finish().unwrap_or_default();
+    if let Some(error) = &stopped {
+        if summary.steps == 0 {
+            return Err(Failure::Failed(error.to_string()));
+        }
+        // The last node that was reached is sampled too, where others have no sample.
+        record.keep(|node| node.is_multiple_of(plan.every.max(1)));
+    }
     let course = Course {
         record,
-        stopped: None,
+        stopped: stopped.map(|error| (summary.node + 1, error.to_string())),
     };
-    Ok((course, done.drifts.iter().map(|d| d.scale).collect()))
+    Ok((course, summary.drifts.iter().map(|d| d.scale).collect()))
 }
 
 /// Another method's course.

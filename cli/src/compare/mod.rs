@@ -10,7 +10,7 @@ pub(crate) use score::{Curve, Score};
 use crate::Streams;
 use crate::asked;
 use crate::columns::aligned;
-use crate::failure::{DONE, Failure};
+use crate::failure::{DONE, FAILED, Failure};
 use crate::gallery::Gallery;
 use crate::list::first_line;
 use crate::output::Staging;
@@ -42,8 +42,9 @@ pub(crate) struct Comparison {
 /// Runs the command.
 ///
 /// # Errors
-/// Usage for a wrong request; failed when the generated stepper or the file system gives up. A method
-/// that gives up is reported in its line.
+/// Usage for a wrong request; failed when the generated stepper makes no step, or the file system gives up.
+/// A method that gives up later is reported in its line with what it computed, and where it is the
+/// generated stepper, the exit code is that of a run that stopped.
 pub fn compare(
     gallery: &Gallery,
     matches: &ArgMatches,
@@ -62,29 +63,41 @@ pub fn compare(
         .transpose()?;
     let done = against_all(card, &plan, streams.progress)?;
     let mut object = comparison_json(card, &plan, &done);
-    let mut files: &[&str] = &[];
-    if let Some(staging) = staging {
+    let stopped = done.scores.first().and_then(|own| own.stopped.clone());
+    let code = if stopped.is_some() { FAILED } else { DONE };
+    let (mut files, mut place): (&[&str], _) = (&[], None);
+    if let (Some(staging), Some(target)) = (staging, target) {
         write(&staging, card, &plan, &done, &object)?;
-        staging.commit()?;
+        place = Some(match stopped {
+            None => staging.commit().map(|()| shown(target))?,
+            Some(_) => staging.commit_stopped()?,
+        });
         files = &FILES;
     }
     if as_json {
         if let Some(object) = object.as_object_mut() {
             object.insert("files".to_owned(), json!(files));
-            let out = target.map(|path| path.display().to_string());
+            let out = place.as_ref().map(ToString::to_string);
             object.insert("out".to_owned(), json!(out));
-            object.insert("exit_code".to_owned(), json!(DONE));
+            object.insert("exit_code".to_owned(), json!(code));
+            if let Some((_, why)) = &stopped {
+                object.insert("error".to_owned(), json!(why));
+            }
         }
         writeln!(streams.out, "{object}")?;
-        return Ok(DONE);
+    } else {
+        print(streams.out, card, &plan, &done, streams.width)?;
+        if let Some(place) = place {
+            let written = format!("written to {place}: {}", files.join(", "));
+            let written = paragraph(&written, streams.width, 2);
+            write!(streams.out, "\n{written}")?;
+        }
     }
-    print(streams.out, card, &plan, &done, streams.width)?;
-    if let Some(target) = target {
-        let written = format!("written to {}: {}", shown(target), files.join(", "));
-        let written = paragraph(&written, streams.width, 2);
-        write!(streams.out, "\n{written}")?;
+    // The exit code says the same; nothing is lost when this cannot be written.
+    if let Some((_, why)) = &stopped {
+        let _ = writeln!(streams.err, "clebsch: {why}");
     }
-    Ok(DONE)
+    Ok(code)
 }
 
 /// Compares everything there is for the model.
@@ -105,7 +118,7 @@ pub(crate) fn against_all(card: &Card, plan: &Plan, progress: bool) -> Result<Co
         )));
     }
     // One measure for all methods: the natural scales along the generated stepper's course.
-    let (own, scales) = course::generated(card, plan, progress)?;
+    let (own, scales) = course::up_to_stop(card, plan, progress)?;
     let mut others: Vec<(Offer, Course)> = offers
         .into_iter()
         .map(|offer| (offer, course::other(card, plan, &offer)))
@@ -121,7 +134,16 @@ pub(crate) fn against_all(card: &Card, plan: &Plan, progress: bool) -> Result<Co
             (offer.name, offer.doc.to_owned(), clock::other(plan, &offer)),
         ),
         None => {
-            let (course, accuracy) = course::extrapolated(card, plan)?;
+            // Of a motion that ends early, as far as it goes.
+            let mut reached = plan.clone();
+            if let Some((node, _)) = &own.stopped {
+                reached.case.steps = node - 1;
+            }
+            let (course, accuracy) =
+                course::extrapolated(card, &reached).map_err(|failure| match &own.stopped {
+                    None => failure,
+                    Some((_, why)) => Failure::Failed(why.clone()),
+                })?;
             let doc = "the generated stepper with steps h to h/8, extrapolated";
             let why = if others.is_empty() {
                 "no equations of this model were written by hand"
@@ -197,7 +219,7 @@ pub(crate) fn against_all(card: &Card, plan: &Plan, progress: bool) -> Result<Co
 /// The generated stepper otherwise than asked for. A case may be too stiff for the longest steps of a
 /// composition, or beyond a solver's reach: then its line says so.
 fn course_or_why(card: &Card, plan: &Plan) -> Course {
-    match course::generated(card, plan, false) {
+    match course::up_to_stop(card, plan, false) {
         Ok((course, _)) => course,
         Err(why) => Course {
             record: Record::default(),

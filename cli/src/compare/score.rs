@@ -178,6 +178,8 @@ pub(crate) fn table(scores: &[Score], width: Option<usize>) -> String {
         let mut row = vec![score.name.clone(), time];
         let curves = score.errors.iter().chain(&score.drifts);
         row.extend(curves.map(|curve| match (score.role, &score.stopped) {
+            // The generated stepper as far as it went.
+            (None, Some(_)) if !curve.points.is_empty() => number(curve.worst()),
             (_, Some(_)) => "-".to_owned(),
             _ => number(curve.worst()),
         }));

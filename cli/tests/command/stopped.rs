@@ -5,6 +5,7 @@ use super::common::{Done, Folder, clebsch, on};
 use clebsch_cli::gallery::Gallery;
 use serde_json::Value;
 use std::fs;
+use std::path::Path;
 
 /// A torque so stiff that the rotor outruns its step after some steps.
 fn failing(folder: &Folder) -> String {
@@ -243,5 +244,53 @@ fn the_largest_residual_of_a_step_is_shown() {
                 "{model}"
             );
         }
+    }
+}
+
+#[test]
+fn a_comparison_that_stops_leaves_what_it_computed() {
+    let folder = Folder::new("compared");
+    let file = failing(&folder);
+    for every in ["1", "4"] {
+        let out = folder.path(&format!("out-{every}"));
+        let arguments = [
+            "compare",
+            "harmonic-rotor",
+            "--case",
+            &file,
+            "--every",
+            every,
+        ];
+        let done = clebsch(&[&arguments[..], &["--out", &out]].concat());
+        assert_eq!(done.code, 1, "{}", done.err);
+        let node = node_of(&done.err);
+        let said = format!("gave up at node {}: no step from node {node} ", node + 1);
+        let words = done.out.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.contains(&said), "{}", done.out);
+        assert!(words.contains("written to "), "{}", done.out);
+        let object = json(&read(&out, "comparison.json"));
+        let own = &object["methods"][0];
+        assert_eq!(own["name"], "generated");
+        assert_eq!(own["stopped"]["node"], node + 1);
+        // As many samples as were made, at nodes where the others have theirs.
+        let text = read(&out, "comparison.csv");
+        let times: Vec<f64> = text
+            .lines()
+            .filter(|line| line.starts_with("generated,"))
+            .filter_map(|line| line.split(',').nth(1)?.parse().ok())
+            .collect();
+        let step: u64 = every.parse().expect("a number");
+        assert_eq!(times.len() as u64, node / step, "{text}");
+        assert!(Path::new(&format!("{out}/comparison.svg")).exists());
+        // The same as an object.
+        let done = clebsch(&[&arguments[..], &["--json"]].concat());
+        assert_eq!(done.code, 1);
+        let object = json(&done.out);
+        assert_eq!(object["exit_code"], 1);
+        assert!(
+            object["error"]
+                .as_str()
+                .is_some_and(|why| done.err.contains(why))
+        );
     }
 }
