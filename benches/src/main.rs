@@ -8,6 +8,7 @@
 mod blocks;
 mod groups;
 mod loops;
+mod points;
 mod steppers;
 mod systems;
 
@@ -20,6 +21,7 @@ use groups::{
     generated_cayley_klein, generated_cayley_klein_spatial, generated_kirchhoff_body,
     written_cayley_klein, written_kirchhoff_body,
 };
+use points::{generated_charge, generated_kepler, written_charge, written_kepler};
 use steppers::{generated_body, generated_top, written_body, written_top};
 use systems::{
     generated_free_body_spatial, generated_heavy_top_spatial, generated_pair,
@@ -103,6 +105,8 @@ fn main() {
         generated_kirchhoff_body,
         written_kirchhoff_body,
     );
+    table.row("planet about a sun", generated_kepler, written_kepler);
+    table.row("charge in uniform fields", generated_charge, written_charge);
 }
 
 /// What is printed: every case, or those whose names contain a text.

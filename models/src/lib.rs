@@ -7,11 +7,13 @@ pub mod body_n;
 pub mod case;
 pub mod cayley_klein;
 pub mod cayley_klein_spatial;
+pub mod charged_particle;
 pub mod coupled_bodies;
 pub mod free_body;
 pub mod free_body_spatial;
 pub mod heavy_top;
 pub mod heavy_top_spatial;
+pub mod kepler;
 pub mod kirchhoff_body;
 
 pub use case::{Case, Entry};
@@ -24,11 +26,13 @@ pub fn gallery() -> Vec<Entry> {
         body_n::entry(),
         cayley_klein::entry(),
         cayley_klein_spatial::entry(),
+        charged_particle::entry(),
         coupled_bodies::entry(),
         free_body::entry(),
         free_body_spatial::entry(),
         heavy_top::entry(),
         heavy_top_spatial::entry(),
+        kepler::entry(),
         kirchhoff_body::entry(),
     ]
 }

@@ -46,13 +46,14 @@ pub struct Finished<'a> {
 }
 
 /// Every file name a run can write, so that a folder with anything else is never replaced.
-pub const FILES: [&str; 6] = [
+pub const FILES: [&str; 7] = [
     "trajectory.csv",
     "trajectory.npz",
     "run.json",
     "momentum.svg",
     "invariants.svg",
     "advected.svg",
+    "fields.svg",
 ];
 
 /// Writes all files into `staging`; gives their names.
@@ -65,7 +66,7 @@ pub fn write(
     samples: &Samples,
 ) -> Result<Vec<&'static str>, Failure> {
     let record = &samples.record;
-    let [csv, npz, json, momentum, invariants, advected] = FILES;
+    let [csv, npz, json, momentum, invariants, advected, fields] = FILES;
     staging.write(csv, |file| csv::write(file, run.card, record))?;
     staging.write(npz, |file| npz::write(file, &npz::arrays(run.card, record)))?;
     let mut files = vec![csv, npz, json];
@@ -73,6 +74,7 @@ pub fn write(
         (momentum, plots::momentum(run, samples)),
         (invariants, plots::invariants(run, record)),
         (advected, plots::advected(run, samples)),
+        (fields, plots::fields(run, samples)),
     ];
     for (name, plot) in drawn {
         let plot = plot.map_err(|error| Failure::Failed(format!("cannot draw {name}: {error}")))?;

@@ -1,4 +1,4 @@
-//! Plots of a run as SVG: momenta, drift of the invariants, advected vectors.
+//! Plots of a run as SVG: momenta, drift of the invariants, advected vectors, fields.
 //! Takes a finished run and its samples; gives SVG text, or nothing when there is nothing to show.
 
 pub mod axis;
@@ -26,7 +26,7 @@ pub(crate) type Plot = Result<Option<String>, String>;
 
 /// Momentum components against time, one panel per momentum.
 pub(crate) fn momentum(run: &Finished<'_>, samples: &Samples) -> Plot {
-    observables(run, samples, "momentum", |field| {
+    observables(run, samples, "momentum", |field, _| {
         let kinds = [
             Kind::BodyMomentum,
             Kind::SpatialMomentum,
@@ -38,9 +38,14 @@ pub(crate) fn momentum(run: &Finished<'_>, samples: &Samples) -> Plot {
 
 /// Components of the advected vectors against time, one panel per vector.
 pub(crate) fn advected(run: &Finished<'_>, samples: &Samples) -> Plot {
-    observables(run, samples, "advected vectors", |field| {
-        field.kind == Kind::Vector
+    observables(run, samples, "advected vectors", |field, moves| {
+        field.kind == Kind::Vector && !moves
     })
+}
+
+/// Components of the fields against time, one panel per field.
+pub(crate) fn fields(run: &Finished<'_>, samples: &Samples) -> Plot {
+    observables(run, samples, "fields", |_, moves| moves)
 }
 
 /// Drift of every invariant on a logarithmic axis, with the bounds of the case.
@@ -148,21 +153,27 @@ fn figure(run: &Finished<'_>, shown: Window<'_>, what: &str, panels: Vec<Panel>)
     figure.svg().map(Some)
 }
 
-/// A figure with one panel for each observable that `wanted` accepts.
+/// A figure with one panel for each observable that `wanted` accepts, which is also told whether it is a field:
+/// what has a momentum of its own shape behind it.
 fn observables(
     run: &Finished<'_>,
     samples: &Samples,
     what: &str,
-    wanted: impl Fn(&Field) -> bool,
+    wanted: impl Fn(&Field, bool) -> bool,
 ) -> Plot {
     let mut from = 0;
-    let placed = run.card.observables.iter().map(|field| {
+    let all = run.card.observables;
+    let placed = all.iter().enumerate().map(|(index, field)| {
         let columns = from..from + field.count();
         from = columns.end;
-        (field, columns)
+        let behind = all.get(index + 1);
+        let moves = behind.is_some_and(|next| next.kind == Kind::FieldMomentum);
+        (field, moves, columns)
     });
-    let (fields, columns): (Vec<&Field>, Vec<Range<usize>>) =
-        placed.filter(|(field, _)| wanted(field)).unzip();
+    let (fields, columns): (Vec<&Field>, Vec<Range<usize>>) = placed
+        .filter(|(field, moves, _)| wanted(field, *moves))
+        .map(|(field, _, columns)| (field, columns))
+        .unzip();
     if fields.is_empty() {
         return Ok(None);
     }

@@ -1,6 +1,7 @@
 //! What a run leaves behind: complete, repeatable, readable files, or nothing.
 
-use super::common::{Folder, clebsch};
+use super::common::{Folder, clebsch, on};
+use clebsch_cli::gallery::Gallery;
 use std::fs;
 
 const FILES: [&str; 6] = [
@@ -175,5 +176,27 @@ fn plots_are_plain_svg() {
         for word in words {
             assert!(svg.contains(word), "{file}: {word:?} is missing");
         }
+    }
+}
+
+/// What moves by itself is no advected vector, and has a plot of its own.
+#[test]
+fn fields_are_plotted_as_fields() {
+    let folder = Folder::new("fields");
+    let out = folder.path("out");
+    let run = ["run", "kepler", "--steps", "300", "--out", &out];
+    let done = on(&Gallery::shipped(), &run);
+    assert_eq!((done.code, done.err.as_str()), (0, ""));
+    let files = names(&out);
+    assert!(files.contains(&"fields.svg".to_owned()), "{files:?}");
+    assert!(!files.contains(&"advected.svg".to_owned()), "{files:?}");
+    let svg = fs::read_to_string(format!("{out}/fields.svg")).expect("the plot");
+    for word in [
+        "kepler, case circular: fields",
+        "X₁",
+        "X₃",
+        "place of the planet",
+    ] {
+        assert!(svg.contains(word), "{word:?} is missing");
     }
 }

@@ -4,6 +4,7 @@
 
 pub mod any_dimension;
 pub mod coupled;
+pub mod point;
 pub mod rigid;
 pub mod submerged;
 

@@ -4,6 +4,7 @@
 
 mod any_dimension;
 mod coupled;
+mod point;
 mod rigid;
 mod submerged;
 mod unit_quaternion;
@@ -141,7 +142,9 @@ pub fn offers(model: &str) -> Vec<Offer> {
         "heavy-top-spatial" => rigid::top::<rigid::HeavyTopSpatial>(),
         "body-in-two-fields" => rigid::in_field::<rigid::BodyInTwoFields>(),
         "body-in-quadratic-field" => rigid::in_field::<rigid::BodyInQuadraticField>(),
+        "charged-particle" => point::offers::<point::Charge>(),
         "coupled-bodies" => coupled::bodies(),
+        "kepler" => point::offers::<point::Planet>(),
         "cayley-klein" => unit_quaternion::body::<unit_quaternion::InBody>(),
         "cayley-klein-spatial" => unit_quaternion::body::<unit_quaternion::InSpace>(),
         "kirchhoff-body" => submerged::bodies(),

@@ -26,6 +26,9 @@ const WANDER: f64 = 0.25;
 /// is exact is looked at over the steps of the case.
 const UNBOUNDED: [(&str, &str); 1] = [("kirchhoff-body", "sinking")];
 
+/// Steady motions, for which what oscillates with h^2 is constant along the orbit: h^4 is left.
+const STEADY: [(&str, &str); 1] = [("kepler", "circular")];
+
 /// Something wrong with a trajectory, to show that it is noticed.
 #[derive(Clone, Copy, PartialEq)]
 enum Fault {
@@ -61,6 +64,10 @@ fn components(card: &Card, case: &Case, h: f64, steps: u64, fault: Fault) -> Vec
     let extent = largest(&now);
     motion.invariants(&mut start);
     motion.scales(&mut scales);
+    // What is zero term by term, as the momentum across a field that is not there, is taken as it is.
+    for scale in scales.iter_mut().filter(|scale| **scale == 0.0) {
+        *scale = 1.0;
+    }
     let mut found: Vec<Component> = card
         .invariants
         .iter()
@@ -238,9 +245,14 @@ fn energies_oscillate_with_the_square_of_the_step() {
             }
             let ratio = a.drift / b.drift;
             println!("{} {}: {} {ratio:.3}", card.kebab, case.name, a.name);
-            // Terms of order h^4 and the sampling of the maximum are a few percent of it.
+            let order = match STEADY.contains(&(card.kebab, &case.name)) {
+                true => 4,
+                false => 2,
+            };
+            // Terms two orders higher and the sampling of the maximum are a few percent of it.
+            let expected = f64::from(1 << order);
             assert!(
-                (ratio - 4.0).abs() < 0.4,
+                (ratio / expected - 1.0).abs() < 0.1,
                 "{} {}: {} {ratio}",
                 card.kebab,
                 case.name,

@@ -51,6 +51,11 @@ fn the_step_that_a_message_offers_is_taken() {
                     let Err(said) = first_step(&card, case, h, Some(order)) else {
                         continue;
                     };
+                    // Explicit steps are refused where numbers end, and nothing was tried then.
+                    if said.contains("NaN or infinite") {
+                        assert!(h > 1e99, "{at}: {said}");
+                        continue;
+                    }
                     let largest = offered(&said);
                     assert!(0.0 < largest && largest < h, "{at}: {said}");
                     let taken = first_step(&card, case, largest, Some(order));

@@ -118,6 +118,31 @@ pub fn defect_of_rotations(n: usize, jacobian: &[Vec<f64>], before: &[f64], afte
     pulled_back(jacobian, &form(before), &form(after))
 }
 
+/// The same for any group of dimension d, of which `along(mu, a, b)` gives mu . [E_a, E_b]: d changes of the element seen
+/// from the body, then the d components of the momentum along them. Fields commute.
+pub fn defect_on_group(
+    jacobian: &[Vec<f64>],
+    before: &[f64],
+    after: &[f64],
+    along: impl Fn(&[f64], usize, usize) -> f64,
+) -> f64 {
+    let form = |mu: &[f64]| {
+        let d = mu.len();
+        let mut w = vec![vec![0.0; 2 * d]; 2 * d];
+        for a in 0..d {
+            (w[a][a + d], w[a + d][a]) = (-1.0, 1.0);
+            for (b, value) in w[a].iter_mut().enumerate().take(d) {
+                *value = -along(mu, a, b);
+            }
+        }
+        w
+    };
+    match before.len() == after.len() {
+        true => pulled_back(jacobian, &form(before), &form(after)),
+        false => f64::INFINITY,
+    }
+}
+
 /// Largest entry of D^T W' D - W.
 fn pulled_back(jacobian: &[Vec<f64>], old: &[Vec<f64>], new: &[Vec<f64>]) -> f64 {
     let size = old.len();

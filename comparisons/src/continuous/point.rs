@@ -1,0 +1,42 @@
+//! Points in space, a planet about a fixed sun and a charge in uniform fields: Hamilton's equations. Takes parameters;
+//! gives systems of six equations, y = (place, momentum).
+
+use super::Motion;
+use crate::handwritten::attitude::{Vector, add_scaled, cross, dot, scaled};
+use crate::handwritten::charged_particle::Charge;
+
+/// A planet of this mass about a sun of this gravitational parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Planet {
+    /// Mass.
+    pub mass: f64,
+    /// Gravitational parameter of the sun.
+    pub sun: f64,
+}
+
+impl Motion<6> for Planet {
+    #[inline(always)]
+    fn rate(&self, y: &[f64; 6], out: &mut [f64; 6]) {
+        let [a, b, c, d, e, f] = *y;
+        let (x, p): (Vector, Vector) = ([a, b, c], [d, e, f]);
+        let square = dot(&x, &x);
+        let [u, v, w] = scaled(1.0 / self.mass, &p);
+        let [r, s, t] = scaled(-self.mass * self.sun / (square * square.sqrt()), &x);
+        *out = [u, v, w, r, s, t];
+    }
+}
+
+impl Motion<6> for Charge {
+    #[inline(always)]
+    fn rate(&self, y: &[f64; 6], out: &mut [f64; 6]) {
+        let [a, b, c, d, e, f] = *y;
+        let (x, p): (Vector, Vector) = ([a, b, c], [d, e, f]);
+        // p = m v + (q/2) B x X, and half of the force q v x B is that of the potential.
+        let kinetic = add_scaled(&p, -0.5 * self.charge, &cross(&self.magnetic, &x));
+        let velocity = scaled(1.0 / self.mass, &kinetic);
+        let [u, v, w] = velocity;
+        let half = add_scaled(&self.electric, 0.5, &cross(&velocity, &self.magnetic));
+        let [r, s, t] = scaled(self.charge, &half);
+        *out = [u, v, w, r, s, t];
+    }
+}

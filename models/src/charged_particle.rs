@@ -1,0 +1,57 @@
+//! A charge in uniform magnetic and electric fields. The term linear in the velocity makes the step the
+//! centred rotation of Boris (1970); its vector potential is B x X/2.
+
+use crate::case::{Case, Entry};
+
+clebsch::model! {
+    /// Charged particle in uniform magnetic and electric fields.
+    pub model ChargedParticle {
+        /// mass
+        param m: Real;
+        /// charge
+        param q: Real;
+        /// magnetic field
+        param B: Vec<3>;
+        /// electric field
+        param E: Vec<3>;
+        /// place of the particle
+        field X: Vec<3>;
+        let d = next(X) - X;
+        lagrangian = m*dot(d, d)/(2*h) + (q/2)*dot(cross(B, X), d) + h*q*dot(E, X);
+    }
+}
+
+/// A particle of mass and charge one in a field of strength one along the third axis; with E = 0 it turns about
+/// the origin, at distance one.
+fn case(name: &str, doc: &str, electric: [f64; 3]) -> Case {
+    Case {
+        name: name.to_owned(),
+        doc: doc.to_owned(),
+        h: 0.1,
+        steps: 1_000,
+        parameters: vec![vec![1.0], vec![1.0], vec![0.0, 0.0, 1.0], electric.to_vec()],
+        // m V + (q/2) B x X with the velocity (1, 0, 0.1).
+        initial: vec![vec![0.0, 1.0, 0.0], vec![0.5, 0.0, 0.1]],
+        // All that is derived is exact.
+        bounds: Vec::new(),
+    }
+}
+
+/// The model and its cases.
+pub fn entry() -> Entry {
+    Entry {
+        card: ChargedParticle::CARD,
+        cases: vec![
+            case(
+                "drift",
+                "crossed fields, E of a tenth of B: the centre of the helix drifts along E x B",
+                [0.1, 0.0, 0.0],
+            ),
+            case(
+                "gyration",
+                "a helix about the magnetic field, no electric one",
+                [0.0; 3],
+            ),
+        ],
+    }
+}

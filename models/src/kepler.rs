@@ -1,0 +1,58 @@
+//! A planet about a fixed sun (Kepler's problem) in coordinates of space. With a potential at the nodes
+//! the step is Störmer and Verlet's (Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.4).
+
+use crate::case::{Case, Entry, bounds};
+
+clebsch::model! {
+    /// Planet about a fixed sun.
+    pub model Kepler {
+        /// mass of the planet
+        param m: Real;
+        /// gravitational parameter of the sun: its mass times the constant of gravitation
+        param k: Real;
+        /// place of the planet, the sun at the origin
+        field X: Vec<3>;
+        let d = next(X) - X;
+        lagrangian = m*dot(d, d)/(2*h) + h*m*k/sqrt(dot(X, X));
+    }
+}
+
+/// A planet of mass one that starts on the first axis and moves across it, in a plane tilted about that axis
+/// as the 3-4-5 triangle has it.
+fn case(name: &str, doc: &str, h: f64, place: f64, speed: f64, energy: f64) -> Case {
+    Case {
+        name: name.to_owned(),
+        doc: doc.to_owned(),
+        h,
+        steps: 10_000,
+        parameters: vec![vec![1.0], vec![1.0]],
+        initial: vec![vec![place, 0.0, 0.0], vec![0.0, 0.8 * speed, 0.6 * speed]],
+        // The energy oscillates with the amplitude of the case.
+        bounds: bounds(&[("energy", energy)]),
+    }
+}
+
+/// The model and its cases.
+pub fn entry() -> Entry {
+    Entry {
+        card: Kepler::CARD,
+        cases: vec![
+            case(
+                "circular",
+                "circle of radius 1 about a sun of parameter 1, 125 steps a revolution",
+                0.05,
+                1.0,
+                1.0,
+                1e-6,
+            ),
+            case(
+                "eccentric",
+                "ellipse of half-axis 1 and eccentricity 0.6 from its perihelion, 314 steps a revolution",
+                0.02,
+                0.4,
+                2.0,
+                1e-3,
+            ),
+        ],
+    }
+}
