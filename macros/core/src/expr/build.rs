@@ -395,6 +395,9 @@ pub fn inverse(symbols: &Symbols, a: Expr) -> Expr {
     match a.node() {
         _ if is_rotation(symbols, &a) => transpose(symbols, a),
         Node::Transpose(inner) if is_rotation(symbols, inner) => inner.clone(),
+        Node::Transpose(inner) if let Node::Inverse(own) = inner.node() => {
+            transpose(symbols, own.clone())
+        }
         Node::Identity(_) => a,
         Node::Inverse(inner) => inner.clone(),
         Node::Product(factors)

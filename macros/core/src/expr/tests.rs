@@ -3,7 +3,10 @@
 
 use super::shape::{Dim, Shape, Structure};
 use super::symbol::{Role, Symbols};
-use super::{Expr, add, dot, here, identity, integer, mul, neg, quotient, scale, sub, sum};
+use super::{
+    Expr, add, dot, here, identity, integer, inverse, mul, neg, quotient, scale, sub, sum,
+    transpose,
+};
 use crate::algebra::Rational;
 
 const THREE: Dim = Dim::Fixed(3);
@@ -50,4 +53,18 @@ fn only_pairs_vanish_and_the_rest_keeps_its_order() {
     assert!(!sub(scale(Rational::integer(2), a.clone()), a.clone()).is_zero());
     assert!(!sub(mul(a.clone(), b.clone()), mul(b, a)).is_zero());
     assert!(!sub(integer(2), integer(1)).is_zero());
+}
+
+#[test]
+fn the_inverse_of_a_transposed_inverse_is_the_transpose() {
+    let mut s = Symbols::default();
+    let id = s.add(
+        "Q",
+        Shape::square(THREE),
+        Structure::Invertible,
+        Role::Element,
+    );
+    let q = here(&s, id);
+    let seen = transpose(&s, inverse(&s, q.clone()));
+    assert_eq!(inverse(&s, seen), transpose(&s, q));
 }
