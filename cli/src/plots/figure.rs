@@ -163,13 +163,13 @@ impl Panel {
         Ok(())
     }
 
-    /// Room for the longest text of the legend, at 6.6 pixels a letter.
+    /// Room for the longest text of the legend, at 7.3 pixels a letter: as wide as the widest of the usual fonts.
     fn legend_width(&self) -> u32 {
         let notes = self.curves.iter().filter_map(|curve| curve.note.as_ref());
         let texts = self.curves.iter().map(|curve| &curve.label).chain(notes);
         let letters = texts.map(|text| text.chars().count()).max().unwrap_or(0);
-        let letters = u32::try_from(letters).unwrap_or(u32::MAX).min(34);
-        (40 + letters * 66 / 10).max(70)
+        let letters = u32::try_from(letters).unwrap_or(u32::MAX).min(40);
+        (40 + letters * 73 / 10).max(70)
     }
 
     fn legend(&self, area: &Area<'_>) -> Result<(), Box<dyn std::error::Error>> {

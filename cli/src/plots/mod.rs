@@ -192,7 +192,7 @@ fn panel(field: &Field, columns: Range<usize>, shown: Window<'_>) -> Panel {
     let curves: Vec<Curve> = columns
         .enumerate()
         .map(|(component, column)| Curve {
-            label: format!("{letter}{}", subscript(component + 1)),
+            label: format!("{letter}{}", place(field, component)),
             note: None,
             points: reduce::extremes(times, shown.record.observables.column(column)),
             stroke: Stroke::number(component),
@@ -236,6 +236,14 @@ fn caption(field: &Field) -> String {
         Kind::FieldMomentum => field.doc.to_owned(),
         _ if field.doc.is_empty() => name,
         _ => format!("{name}: {}", crate::list::first_line(field.doc)),
+    }
+}
+
+/// The place of a component: `₂`, of a matrix `₂₁`.
+fn place(field: &Field, component: usize) -> String {
+    match field.cols {
+        0 | 1 => subscript(component + 1),
+        cols => subscript(component / cols + 1) + &subscript(component % cols + 1),
     }
 }
 
