@@ -6,6 +6,7 @@
 #![allow(mixed_script_confusables)]
 
 mod blocks;
+mod elastic;
 mod groups;
 mod loops;
 mod points;
@@ -17,6 +18,10 @@ use clebsch_oracle::physics::cases::{
     Start, asymmetric_body, generic_top, lagrange_top, symmetric_body,
 };
 use clebsch_oracle::physics::systems::{generic_pair, reference_pair};
+use elastic::{
+    generated_convective, generated_four, generated_spatial, written_convective, written_four,
+    written_spatial,
+};
 use groups::{
     generated_cayley_klein, generated_cayley_klein_spatial, generated_kirchhoff_body,
     written_cayley_klein, written_kirchhoff_body,
@@ -107,6 +112,17 @@ fn main() {
     );
     table.row("planet about a sun", generated_kepler, written_kepler);
     table.row("charge in uniform fields", generated_charge, written_charge);
+    table.row(
+        "ellipsoid, seen from the body",
+        generated_convective,
+        written_convective,
+    );
+    table.row(
+        "ellipsoid, seen from space",
+        generated_spatial,
+        written_spatial,
+    );
+    table.row("four joined by springs", generated_four, written_four);
 }
 
 /// What is printed: every case, or those whose names contain a text.

@@ -9,12 +9,16 @@ pub mod cayley_klein;
 pub mod cayley_klein_spatial;
 pub mod charged_particle;
 pub mod coupled_bodies;
+pub mod ellipsoid_convective;
+pub mod ellipsoid_spatial;
+mod ellipsoids;
 pub mod free_body;
 pub mod free_body_spatial;
 pub mod heavy_top;
 pub mod heavy_top_spatial;
 pub mod kepler;
 pub mod kirchhoff_body;
+pub mod mixed_four;
 
 pub use case::{Case, Entry};
 
@@ -28,12 +32,15 @@ pub fn gallery() -> Vec<Entry> {
         cayley_klein_spatial::entry(),
         charged_particle::entry(),
         coupled_bodies::entry(),
+        ellipsoid_convective::entry(),
+        ellipsoid_spatial::entry(),
         free_body::entry(),
         free_body_spatial::entry(),
         heavy_top::entry(),
         heavy_top_spatial::entry(),
         kepler::entry(),
         kirchhoff_body::entry(),
+        mixed_four::entry(),
     ]
 }
 

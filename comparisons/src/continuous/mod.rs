@@ -4,6 +4,8 @@
 
 pub mod any_dimension;
 pub mod coupled;
+pub mod ellipsoid;
+pub mod mixed_four;
 pub mod point;
 pub mod rigid;
 pub mod submerged;

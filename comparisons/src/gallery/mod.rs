@@ -4,6 +4,8 @@
 
 mod any_dimension;
 mod coupled;
+mod ellipsoid;
+mod mixed_four;
 mod point;
 mod rigid;
 mod submerged;
@@ -144,9 +146,12 @@ pub fn offers(model: &str) -> Vec<Offer> {
         "body-in-quadratic-field" => rigid::in_field::<rigid::BodyInQuadraticField>(),
         "charged-particle" => point::offers::<point::Charge>(),
         "coupled-bodies" => coupled::bodies(),
+        "ellipsoid-convective" => ellipsoid::convective(),
+        "ellipsoid-spatial" => ellipsoid::spatial(),
         "kepler" => point::offers::<point::Planet>(),
         "cayley-klein" => unit_quaternion::body::<unit_quaternion::InBody>(),
         "cayley-klein-spatial" => unit_quaternion::body::<unit_quaternion::InSpace>(),
+        "mixed-four" => mixed_four::joined(),
         "kirchhoff-body" => submerged::bodies(),
         "body-n" => any_dimension::bodies(),
         _ => Vec::new(),

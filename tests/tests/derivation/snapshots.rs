@@ -29,9 +29,9 @@ const ENGINE_ONLY: [(&str, &str); 4] = [
         }",
     ),
     (
-        "ellipsoid-convective",
-        "/// Affine body, convective representation.
-        model EllipsoidConvective {
+        "affine-body",
+        "/// Affine body of three dimensions, convective representation.
+        model AffineBody {
             param C0, I0: Sym<3>;  param a, b, c, d: Real;
             group Q: GL<3> velocity G;  advected C: Sym<3> = Q^T*C0*Q;
             constraint next(Q) = Q*G;  constraint next(C) = G^T*C*G;

@@ -1,13 +1,17 @@
-//! The derived bracket, Lie-Poisson or of the phase space where configurations stand in the action, against the emitted steps of the whole gallery: every step is a Poisson map,
-//! `D B D^T = B` at the image, with exact derivatives. Takes the data of the cases and random points of the reduced
-//! space; a list below says how each model is started, and must name every model; of a named size, sizes up to five
-//! are taken. A step whose length
-//! depends on the state, brackets of a wrong sign and the bracket at the wrong end of the step fail.
+//! The derived bracket, Lie-Poisson or of the phase space where configurations stand in the action, against the emitted
+//! steps of the whole gallery: every step is a Poisson map, `D B D^T = B` at the image, with exact derivatives. Takes the
+//! data of the cases and random points of that space; a list below says how each model is started, and must name every
+//! model; of a named size, sizes up to five are taken. A step whose length depends on the state, brackets of a wrong sign
+//! and the bracket at the wrong end of the step fail.
+
+mod ellipsoids;
+mod mixed_four;
+mod points;
 
 use clebsch::nalgebra::{DMatrix, Matrix3, SMatrix, SVector, Vector3};
 use clebsch::{
-    Additive, BodyImpulse, BodyMomentum, BodyMomentumMatrix, Dual, FieldMomentum, Group,
-    Orthogonal, RigidMotion, Rotation, SpatialMomentum, UnitQuaternion,
+    BodyImpulse, BodyMomentum, BodyMomentumMatrix, Dual, Group, Orthogonal, RigidMotion, Rotation,
+    SpatialMomentum, UnitQuaternion,
 };
 use clebsch_core::derive::bracket::{Space, coordinates, skew_entries};
 use clebsch_core::expr::shape::Structure;
@@ -337,54 +341,6 @@ fn kirchhoff_body(case: &Case, draws: &mut Draws, warp: f64) -> Step {
     )
 }
 
-/// Starts the model of a point, steps once, and gives both nodes.
-macro_rules! point_stepped {
-    ($model:ident, $parameters:expr, $initial:ident, $case:expr, $draws:expr, $warp:expr) => {{
-        let (momentum, place) = (vector::<6>($draws, 0), vector::<6>($draws, 3));
-        let model = $model::new($parameters).expect("parameters of a case");
-        let initial = $initial {
-            X: Additive::new(place),
-            momentum: FieldMomentum(momentum),
-        };
-        let h = length($case, $warp, momentum[0]);
-        let (mut state, mut workspace) = model.start(initial, h).expect("solvable");
-        let seen = |s: &_| -> Node {
-            let s: &<$model<Dual<6>> as clebsch::integrate::Stepper>::State = s;
-            vec![quantity(&s.momentum().0), quantity(&s.X().matrix())]
-        };
-        let before = seen(&state);
-        model.step(&mut state, &mut workspace).expect("solvable");
-        (before, seen(&state))
-    }};
-}
-
-fn charged_particle(case: &Case, draws: &mut Draws, warp: f64) -> Step {
-    use clebsch_models::charged_particle::*;
-    let parameters = ChargedParticleParameters {
-        m: number(&case.parameters[0]),
-        q: number(&case.parameters[1]),
-        B: column(&case.parameters[2]),
-        E: column(&case.parameters[3]),
-    };
-    point_stepped!(
-        ChargedParticle,
-        parameters,
-        ChargedParticleInitial,
-        case,
-        draws,
-        warp
-    )
-}
-
-fn kepler(case: &Case, draws: &mut Draws, warp: f64) -> Step {
-    use clebsch_models::kepler::*;
-    let parameters = KeplerParameters {
-        m: number(&case.parameters[0]),
-        k: number(&case.parameters[1]),
-    };
-    point_stepped!(Kepler, parameters, KeplerInitial, case, draws, warp)
-}
-
 /// `SEEDS` is the dimension of SO(N).
 fn body_of_size<const N: usize, const SEEDS: usize>(
     case: &Case,
@@ -447,20 +403,23 @@ fn of_size(source: &str, case: &Case) -> String {
 }
 
 /// How each model is started.
-const MODELS: [(&str, Start); 13] = [
+const MODELS: [(&str, Start); 16] = [
     ("body-in-quadratic-field", body_in_quadratic_field),
     ("body-in-two-fields", body_in_two_fields),
     ("body-n", body_n),
     ("cayley-klein", cayley_klein),
     ("cayley-klein-spatial", cayley_klein_spatial),
-    ("charged-particle", charged_particle),
+    ("charged-particle", points::charged_particle),
     ("coupled-bodies", coupled_bodies),
+    ("ellipsoid-convective", ellipsoids::ellipsoid_convective),
+    ("ellipsoid-spatial", ellipsoids::ellipsoid_spatial),
     ("free-body", free_body),
     ("free-body-spatial", free_body_spatial),
     ("heavy-top", heavy_top),
     ("heavy-top-spatial", heavy_top_spatial),
-    ("kepler", kepler),
+    ("kepler", points::kepler),
     ("kirchhoff-body", kirchhoff_body),
+    ("mixed-four", mixed_four::mixed_four),
 ];
 
 /// The space on which the bracket closes.
@@ -496,8 +455,9 @@ fn changes(letters: &[(String, Structure)], node: &Node) -> DMatrix<f64> {
             let change = DMatrix::from_row_slice(q.rows, q.cols, change);
             match structure {
                 // Elements of groups by X^-1 dX.
-                Structure::Orthogonal => {
-                    DMatrix::from_row_slice(q.rows, q.cols, &q.value).transpose() * change
+                Structure::Orthogonal | Structure::UnitQuaternion | Structure::RigidMotion => {
+                    let own = DMatrix::from_row_slice(q.rows, q.cols, &q.value);
+                    own.try_inverse().expect("an element of a group") * change
                 }
                 _ => change,
             }

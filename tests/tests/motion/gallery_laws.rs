@@ -59,7 +59,7 @@ fn components(card: &Card, case: &Case, h: f64, steps: u64, fault: Fault) -> Vec
     let mut motion = open(card, case, h);
     let count = card.invariant_count();
     let (mut start, mut scales, mut here) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
-    let mut now = vec![0.0; card.observable_count()];
+    let (mut now, mut grown) = (vec![0.0; card.observable_count()], vec![0.0; count]);
     motion.observe(&mut now);
     let extent = largest(&now);
     motion.invariants(&mut start);
@@ -89,9 +89,12 @@ fn components(card: &Card, case: &Case, h: f64, steps: u64, fault: Fault) -> Vec
             let mut off = (here[i] - start[i]) / scales[i];
             if component.conserved == Conserved::Exactly && off.abs() > component.drift {
                 // Rounding is that of the terms an invariant is made of, which may grow on the way: a body that
-                // travels has x cross p among them, and a million steps take it ten thousand lengths away.
+                // travels has x cross p among them, and a million steps take it ten thousand lengths away; one that
+                // starts nearly at rest and pulses has momenta a hundred times those of its start.
                 motion.observe(&mut now);
-                off = (here[i] - start[i]) / (scales[i] * (largest(&now) / extent).max(1.0));
+                motion.scales(&mut grown);
+                let grown = worse(grown[i], scales[i] * (largest(&now) / extent).max(1.0));
+                off = (here[i] - start[i]) / grown;
             }
             if let Fault::Growth(share) = fault {
                 off += share * step as f64;

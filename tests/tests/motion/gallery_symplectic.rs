@@ -2,17 +2,21 @@
 //! keeps the canonical two-form to 1e-10. Takes the data of the cases and random phases; a list below says how each
 //! model is started, and must name every model; of a named size, sizes up to five are taken. A step whose length depends on the state fails, which is shown too.
 
+mod ellipsoids;
+mod mixed_four;
+mod points;
+
 use clebsch::nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use clebsch::{
-    Additive, BodyImpulse, BodyMomentum, BodyMomentumMatrix, Dual, FieldMomentum, Group,
-    Orthogonal, Real, RigidMotion, Rotation, SpatialMomentum, UnitQuaternion,
+    BodyImpulse, BodyMomentum, BodyMomentumMatrix, Dual, Group, Orthogonal, Real, RigidMotion,
+    Rotation, SpatialMomentum, UnitQuaternion,
 };
 use clebsch_models::Case;
 use clebsch_oracle::handwritten::attitude::Vector;
 use clebsch_oracle::physics::draws::Draws;
 use clebsch_oracle::physics::measure::worse;
 use clebsch_oracle::physics::symplectic::{
-    defect_of_motion, defect_of_product, defect_of_rotations, defect_on_group,
+    defect_of_motion, defect_of_product, defect_of_rotations,
 };
 
 /// Rounding of a product of three matrices with entries of order one to ten, with a wide margin.
@@ -405,65 +409,6 @@ fn kirchhoff_body(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
     defect_of_motion(&jacobian, &before, &after) / size
 }
 
-/// A place at distance one from the origin and a momentum, with independent changes.
-fn point(draws: &mut Draws) -> (Vector3<One>, Vector3<One>) {
-    let (place, momentum) = (draws.direction(), draws.direction());
-    (
-        Vector3::from_fn(|i, _| Dual::variable(place[i], i)),
-        Vector3::from_fn(|i, _| Dual::variable(momentum[i], 3 + i)),
-    )
-}
-
-/// Starts the model of a point, steps once, and gives the defect.
-macro_rules! point_stepped {
-    ($model:ident, $parameters:expr, $initial:ident, $place:expr, $momentum:expr, $h:expr) => {{
-        let model = $model::new($parameters).expect("parameters of a case");
-        let initial = $initial {
-            X: Additive::new($place),
-            momentum: FieldMomentum($momentum),
-        };
-        let (mut state, mut workspace) = model.start(initial, $h).expect("solvable");
-        model.step(&mut state, &mut workspace).expect("solvable");
-        let moved: Vec<One> = state.X().matrix().iter().copied().collect();
-        let after = state.momentum().0;
-        let jacobian: Vec<Vec<f64>> = moved
-            .iter()
-            .chain(&after)
-            .map(|x| x.dual.to_vec())
-            .collect();
-        let size = $momentum
-            .iter()
-            .chain(&after)
-            .fold(1.0_f64, |m, x| worse(m, x.real.abs()));
-        let [before, after] = [&$momentum, &after].map(|p| values(p));
-        defect_on_group(&jacobian, &before, &after, |_, _, _| 0.0) / size
-    }};
-}
-
-fn charged_particle(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
-    use clebsch_models::charged_particle::*;
-    let (x, p) = point(draws);
-    let parameters = ChargedParticleParameters {
-        m: number(&case.parameters[0]),
-        q: number(&case.parameters[1]),
-        B: column(&case.parameters[2]),
-        E: column(&case.parameters[3]),
-    };
-    let h = Dual::constant(case.h) * (Dual::constant(1.0) + Dual::constant(warp) * p[0]);
-    point_stepped!(ChargedParticle, parameters, ChargedParticleInitial, x, p, h)
-}
-
-fn kepler(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
-    use clebsch_models::kepler::*;
-    let (x, p) = point(draws);
-    let parameters = KeplerParameters {
-        m: number(&case.parameters[0]),
-        k: number(&case.parameters[1]),
-    };
-    let h = Dual::constant(case.h) * (Dual::constant(1.0) + Dual::constant(warp) * p[0]);
-    point_stepped!(Kepler, parameters, KeplerInitial, x, p, h)
-}
-
 /// Entries (j, i), i < j, row by row: the coordinates of a skew matrix.
 fn planes(n: usize) -> Vec<(usize, usize)> {
     (0..n)
@@ -542,20 +487,23 @@ fn body_n(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
 }
 
 /// How each model is started.
-const MODELS: [(&str, Defect); 13] = [
+const MODELS: [(&str, Defect); 16] = [
     ("body-in-quadratic-field", body_in_quadratic_field),
     ("body-in-two-fields", body_in_two_fields),
     ("body-n", body_n),
     ("cayley-klein", cayley_klein),
     ("cayley-klein-spatial", cayley_klein_spatial),
-    ("charged-particle", charged_particle),
+    ("charged-particle", points::charged_particle),
     ("coupled-bodies", coupled_bodies),
+    ("ellipsoid-convective", ellipsoids::ellipsoid_convective),
+    ("ellipsoid-spatial", ellipsoids::ellipsoid_spatial),
     ("free-body", free_body),
     ("free-body-spatial", free_body_spatial),
     ("heavy-top", heavy_top),
     ("heavy-top-spatial", heavy_top_spatial),
-    ("kepler", kepler),
+    ("kepler", points::kepler),
     ("kirchhoff-body", kirchhoff_body),
+    ("mixed-four", mixed_four::mixed_four),
 ];
 
 fn for_every_case(mut look: impl FnMut(&str, &Case, Defect)) {

@@ -1,7 +1,7 @@
 //! Generated steppers on SU(2) and SE(3) against hand-written ones: one step from two thousand random states each, the
 //! generated ones through their cards. Takes nothing but seeds; every datum changed by a millionth is noticed, shown too.
 
-use clebsch::card::{Field, Settings};
+use clebsch::card::{Card, Field, Settings};
 use clebsch_models::find;
 use clebsch_oracle::handwritten::attitude::{Quaternion, Vector, apply};
 use clebsch_oracle::handwritten::cayley_klein::CayleyKlein;
@@ -28,19 +28,23 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
     )
 }
 
-fn stretched(v: Vector, factor: f64) -> Vector {
+pub(super) fn stretched(v: Vector, factor: f64) -> Vector {
     v.map(|x| x * factor)
 }
 
 /// One step of a model of the gallery: these observables after it.
-fn generated(
+pub(super) fn generated(
     model: &str,
     shown: &[&str],
     parameters: &[Vec<f64>],
     initial: &[Vec<f64>],
     h: f64,
 ) -> Option<Vec<f64>> {
-    let card = find(model).expect("a model of the gallery").card;
+    let entry = find(model).expect("a model of the gallery");
+    let sizes = |card: &Card| -> Vec<usize> { card.parameters.iter().map(Field::count).collect() };
+    let given: Vec<usize> = parameters.iter().map(Vec::len).collect();
+    let of_size = entry.cards().into_iter().find(|card| sizes(card) == given);
+    let card = of_size.expect("a size of the model");
     let mut motion = (card.open)(parameters, initial, Settings::step(h)).ok()?;
     motion.step().ok()?;
     let mut all = vec![0.0; card.observable_count()];
@@ -56,7 +60,7 @@ fn generated(
 }
 
 /// A state with its data.
-trait System: Sized {
+pub(super) trait System: Sized {
     /// Kinds of data: 0 is momentum, the others are parameters and quantities that the body carries.
     const KINDS: usize;
     fn draw(source: &mut Source) -> Self;
@@ -223,7 +227,7 @@ struct InFluid {
 }
 
 /// Homogeneous matrix, row by row.
-fn rigid(q: &Quaternion, x: &[f64; 3]) -> Vec<f64> {
+pub(super) fn rigid(q: &Quaternion, x: &[f64; 3]) -> Vec<f64> {
     let r = q.matrix();
     let rows = (0..3).flat_map(|i| [r[i][0], r[i][1], r[i][2], x[i]]);
     rows.chain([0.0, 0.0, 0.0, 1.0]).collect()
@@ -300,7 +304,7 @@ impl System for InFluid {
     }
 }
 
-fn agree<S: System>(name: &str) {
+pub(super) fn agree<S: System>(name: &str) {
     let worst = single_steps::<S>(name, STATES, None);
     assert!(worst < ONE_STEP, "{name}: {worst:e}");
     for kind in 0..S::KINDS {

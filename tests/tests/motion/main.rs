@@ -13,6 +13,7 @@ mod cayley_klein_symmetric;
 mod coupled_solve;
 mod ensembles;
 mod errata;
+mod fields_against_hand;
 mod gallery_bracket;
 mod gallery_laws;
 mod gallery_refusals;

@@ -1,0 +1,1018 @@
+// Written by `clebsch derive --write`. Do not edit.
+
+/// The model [`EllipsoidConvective`](struct@EllipsoidConvective) and what belongs to it.
+#[allow(
+    non_snake_case,
+    uncommon_codepoints,
+    mixed_script_confusables,
+    confusable_idents,
+    clippy::all
+)]
+pub mod ellipsoid_convective {
+    use ::clebsch::emitted::*;
+    /// Parameters of [`EllipsoidConvective`](struct@EllipsoidConvective), as given.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct EllipsoidConvectiveParameters<const N: usize, T = f64> {
+        /// `C0`: metric of space; a n x n matrix, symmetric.
+        pub C0: SMatrix<T, N, N>,
+        /// `I0`: second moments of mass in the reference; a n x n matrix, symmetric.
+        pub I0: SMatrix<T, N, N>,
+        /// `a`: stiffness of lengths, of areas and of volumes; a number.
+        pub a: T,
+        /// `b`: stiffness of lengths, of areas and of volumes; a number.
+        pub b: T,
+        /// `c`: stiffness of lengths, of areas and of volumes; a number.
+        pub c: T,
+        /// `d`: resistance to collapse; without stress at the identity if d = 2 a + 2 (n - 1) b + 2 c; a number.
+        pub d: T,
+    }
+    /// Elastic ellipsoid, convective representation.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct EllipsoidConvective<const N: usize, T = f64> {
+        parameters: EllipsoidConvectiveParameters<N, T>,
+    }
+    impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
+        /// Sizes the model does not admit do not build.
+        const ADMITTED: () = {
+            ::core::assert!(2 <= N && N <= 4, "`n` is from 2 to 4 in this model");
+        };
+        /// The model as it was stated.
+        pub const SOURCE: &'static str = "/// Elastic ellipsoid, convective representation.\npub model EllipsoidConvective {\n    dim n in 2..=4;\n    /// metric of space\n    param C0: Sym<n> as \"C_0\";\n    /// second moments of mass in the reference\n    param I0: Sym<n> as \"I_0\";\n    /// stiffness of lengths, of areas and of volumes\n    param a: Real;\n    /// stiffness of lengths, of areas and of volumes\n    param b: Real;\n    /// stiffness of lengths, of areas and of volumes\n    param c: Real;\n    /// resistance to collapse; without stress at the identity if d = 2 a + 2 (n - 1) b + 2 c\n    param d: Real;\n    /// placement, reference to space\n    group Q: GL<n> velocity G;\n    /// metric of space seen from the body\n    advected C: Sym<n> = Q^T*C0*Q;\n    constraint next(Q) = Q*G;\n    constraint next(C) = G^T*C*G;\n    lagrangian = tr(C*(G - Id)*I0*(G^T - Id))/(2*h) - h*(a*tr(C) + (1/2)*b*(tr(C)^2 - tr(C*C)) + c*det(C) - (1/2)*d*log(det(C)));\n}";
+        /// A number that changes when the model or its derivation does.
+        pub const FINGERPRINT: u64 = 4377754966811443636u64;
+        /// Checks the parameters.
+        ///
+        /// # Errors
+        /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
+        /// assumption, or is no admissible factor of the equation to solve.
+        pub fn new(
+            parameters: EllipsoidConvectiveParameters<N, T>,
+        ) -> Result<Self, ParameterError> {
+            let () = Self::ADMITTED;
+            validate::finite_entries("C0", &parameters.C0)?;
+            validate::symmetric("C0", &parameters.C0)?;
+            validate::finite_entries("I0", &parameters.I0)?;
+            validate::symmetric("I0", &parameters.I0)?;
+            validate::finite("a", &[parameters.a])?;
+            validate::finite("b", &[parameters.b])?;
+            validate::finite("c", &[parameters.c])?;
+            validate::finite("d", &[parameters.d])?;
+            Ok(Self { parameters })
+        }
+        /// The parameters.
+        pub fn parameters(&self) -> &EllipsoidConvectiveParameters<N, T> {
+            &self.parameters
+        }
+    }
+    /// Initial data.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct EllipsoidConvectiveInitial<const N: usize, T = f64> {
+        /// `Q` at node 0: body -> space.
+        pub Q: Linear<N, T>,
+        /// Momentum at node 0, in the body frame.
+        pub body_momentum: BodyMomentumMatrix<N, T>,
+    }
+    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct EllipsoidConvectiveState<const N: usize, T = f64> {
+        Q: Linear<N, T>,
+        momentum: SpatialMomentumMatrix<N, T>,
+        node: u64,
+    }
+    impl<const N: usize, T: Real> EllipsoidConvectiveState<N, T> {
+        /// `Q` at this node: body -> space.
+        pub fn Q(&self) -> Linear<N, T> {
+            self.Q
+        }
+        /// The momentum at this node, in the space frame.
+        pub fn spatial_momentum(&self) -> SpatialMomentumMatrix<N, T> {
+            self.momentum
+        }
+        /// The momentum at this node, in the body frame.
+        pub fn body_momentum(&self) -> BodyMomentumMatrix<N, T> {
+            self.momentum.to_body(&self.Q)
+        }
+        /// The number of the node.
+        pub fn node(&self) -> u64 {
+            self.node
+        }
+    }
+    /// The step and the last velocities, from which the next solves start.
+    #[derive(Clone, Copy, Debug)]
+    pub struct EllipsoidConvectiveWorkspace<const N: usize, T = f64> {
+        h: T,
+    }
+    impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
+        /// Starts a trajectory with step `h` from data at node 0.
+        ///
+        /// # Errors
+        /// Names the value that is not finite, or says why the first step cannot be solved and
+        /// which step could.
+        pub fn start(
+            &self,
+            initial: EllipsoidConvectiveInitial<N, T>,
+            h: T,
+        ) -> Result<
+            (EllipsoidConvectiveState<N, T>, EllipsoidConvectiveWorkspace<N, T>),
+            StartError,
+        > {
+            validate::positive_step(h)?;
+            let state = self.at_node_0(initial)?;
+            Ok((state, self.workspace(&state, h)?))
+        }
+        /// The state at node 0.
+        fn at_node_0(
+            &self,
+            initial: EllipsoidConvectiveInitial<N, T>,
+        ) -> Result<EllipsoidConvectiveState<N, T>, StartError> {
+            validate::finite("Q", initial.Q.matrix().as_slice())?;
+            validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
+            Ok(EllipsoidConvectiveState {
+                Q: initial.Q,
+                momentum: initial.body_momentum.to_space(&initial.Q),
+                node: 0,
+            })
+        }
+        /// A workspace for steps of `h`, of either sign, from any state.
+        ///
+        /// # Errors
+        /// When `h` is zero or not finite, or the first step cannot be solved.
+        pub fn workspace(
+            &self,
+            state: &EllipsoidConvectiveState<N, T>,
+            h: T,
+        ) -> Result<EllipsoidConvectiveWorkspace<N, T>, StartError> {
+            validate::directed_step(h)?;
+            let state = *state;
+            let work = EllipsoidConvectiveWorkspace { h };
+            let (mut trial, mut scratch) = (state, work);
+            self.step(&mut trial, &mut scratch)
+                .map_err(|e| StartError::Refused(e.cause))?;
+            Ok(work)
+        }
+        /// One step, in place. Solved thus: the balance is linear: two small linear systems.
+        ///
+        /// # Errors
+        /// When the step cannot be solved, or leaves what the model is defined on, with numbers and
+        /// a remedy; the state is then unchanged.
+        #[inline]
+        pub fn step(
+            &self,
+            state: &mut EllipsoidConvectiveState<N, T>,
+            work: &mut EllipsoidConvectiveWorkspace<N, T>,
+        ) -> Result<(), StepError> {
+            let before = *state;
+            self.step_untested(state, work)?;
+            match self.stays_inside(&before, state, work.h) {
+                Ok(()) => Ok(()),
+                Err(contact) => {
+                    *state = before;
+                    Err(self.left_domain(state, work.h, contact))
+                }
+            }
+        }
+        /// Says what the step met, and which step could be made.
+        #[cold]
+        #[inline(never)]
+        fn left_domain(
+            &self,
+            state: &EllipsoidConvectiveState<N, T>,
+            h: T,
+            contact: domain::Contact,
+        ) -> StepError {
+            let contact = contact
+                .with_trials(
+                    h,
+                    |h| {
+                        let mut moving = *state;
+                        self.step(&mut moving, &mut EllipsoidConvectiveWorkspace { h })
+                            .is_ok()
+                    },
+                );
+            StepCause::from(contact).at_node(state.node)
+        }
+        /// Whether the step from one state to the next stays where the model is defined.
+        #[inline]
+        fn stays_inside(
+            &self,
+            before: &EllipsoidConvectiveState<N, T>,
+            after: &EllipsoidConvectiveState<N, T>,
+            h: T,
+        ) -> Result<(), domain::Contact> {
+            domain::invertible("Q", &before.Q, &after.Q, h)?;
+            {
+                let (before, after) = (
+                    self.domain_arguments(before, h),
+                    self.domain_arguments(after, h),
+                );
+                domain::Domain::Positive
+                    .at_nodes(
+                        &domain::Call {
+                            function: domain::Function::Log,
+                            argument: "det(C_k)",
+                        },
+                        before[0],
+                        after[0],
+                        h,
+                    )?;
+            }
+            let _ = (before, after, h);
+            Ok(())
+        }
+        /// The arguments of the functions that the model uses, at the node of this state.
+        #[inline]
+        fn domain_arguments(
+            &self,
+            state: &EllipsoidConvectiveState<N, T>,
+            h: T,
+        ) -> [T; 1] {
+            let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
+            let Q = state.Q.matrix();
+            let C = Q.tr_mul(&(C0 * Q));
+            let _ = (state, h);
+            [determinant(&(C))]
+        }
+        /// One step, in place. Solved thus: the balance is linear: two small linear systems.
+        ///
+        /// # Errors
+        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+        #[inline]
+        fn step_untested(
+            &self,
+            state: &mut EllipsoidConvectiveState<N, T>,
+            work: &mut EllipsoidConvectiveWorkspace<N, T>,
+        ) -> Result<(), StepError> {
+            let h = work.h;
+            let EllipsoidConvectiveParameters { C0, I0, a, b, c, d, .. } = self
+                .parameters;
+            let Q = state.Q.matrix();
+            let C = Q.tr_mul(&(C0 * Q));
+            let G = match two_sided(
+                &(C / h),
+                &(state.momentum.to_body(&state.Q).0
+                    - (C * (h * a + h * b * C.trace()) - C * C * h * b
+                        + SMatrix::<T, N, N>::identity()
+                            * (h * c * determinant(&(C)) - T::from_f64(0.5) * h * d))),
+                &(I0),
+                &["C_k/h", "I₀"],
+            ) {
+                Ok(solved) => solved,
+                Err(e) => return Err(StepCause::Singular(e).at_node(state.node)),
+            };
+            let G_matrix = G.matrix();
+            let Q_moved = state.Q * G;
+            let Q_next = Q_moved.matrix();
+            let C_next = Q_next.tr_mul(&(C0 * Q_next));
+            let t1 = -(h * a);
+            let t2 = T::from_f64(0.5) * h * d;
+            let momentum_next = state.momentum.0
+                + state
+                    .Q
+                    .covector_to_space(
+                        &(C
+                            * ((G_matrix - SMatrix::<T, N, N>::identity())
+                                * (I0
+                                    * (G_matrix.transpose() - SMatrix::<T, N, N>::identity())))
+                            / h + C * (t1 - h * b * C.trace()) + C * C * h * b
+                            + SMatrix::<T, N, N>::identity()
+                                * (t2 - h * c * determinant(&(C)))),
+                    )
+                + Q_moved
+                    .covector_to_space(
+                        &(C_next * (t1 - h * b * C_next.trace())
+                            + C_next * C_next * h * b
+                            + SMatrix::<T, N, N>::identity()
+                                * (t2 - h * c * determinant(&(C_next)))),
+                    );
+            if !(all_finite(&momentum_next)) {
+                return Err(
+                    StepCause::NotFinite {
+                        what: "momentum",
+                    }
+                        .at_node(state.node),
+                );
+            }
+            state.Q = Q_moved;
+            state.momentum = SpatialMomentumMatrix(momentum_next);
+            state.node += 1;
+            Ok(())
+        }
+        /// `C` at the node of this state.
+        #[inline]
+        pub fn C(&self, state: &EllipsoidConvectiveState<N, T>) -> SMatrix<T, N, N> {
+            let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
+            let Q = state.Q.matrix();
+            let C = Q.tr_mul(&(C0 * Q));
+            C
+        }
+    }
+    impl<const N: usize, T: Real> Stepper for EllipsoidConvective<N, T> {
+        type Scalar = T;
+        type State = EllipsoidConvectiveState<N, T>;
+        type Workspace = EllipsoidConvectiveWorkspace<N, T>;
+        fn workspace(
+            &self,
+            state: &Self::State,
+            h: T,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h)
+        }
+        #[inline(always)]
+        fn advance(
+            &self,
+            state: &mut Self::State,
+            work: &mut Self::Workspace,
+        ) -> Result<(), StepError> {
+            self.step(state, work)
+        }
+        #[cold]
+        fn attempt(&self, state: &Self::State, h: T) -> Option<Self::State> {
+            let mut moving = *state;
+            self.step(&mut moving, &mut EllipsoidConvectiveWorkspace { h }).ok()?;
+            Some(moving)
+        }
+        fn node(state: &Self::State) -> u64 {
+            state.node
+        }
+        fn at_node(state: Self::State, node: u64) -> Self::State {
+            EllipsoidConvectiveState {
+                node: node,
+                ..state
+            }
+        }
+    }
+    impl<const N: usize, T: Real> Reversible for EllipsoidConvective<N, T> {}
+    impl<const N: usize, T: Real> ::clebsch::OfScalars
+    for EllipsoidConvectiveParameters<N, T> {
+        type Scalar = T;
+        type Over<U: Real> = EllipsoidConvectiveParameters<N, U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> EllipsoidConvectiveParameters<N, U> {
+            EllipsoidConvectiveParameters {
+                C0: self.C0.over(change),
+                I0: self.I0.over(change),
+                a: self.a.over(change),
+                b: self.b.over(change),
+                c: self.c.over(change),
+                d: self.d.over(change),
+            }
+        }
+    }
+    impl<const N: usize, T: Real> ::clebsch::OfScalars
+    for EllipsoidConvectiveInitial<N, T> {
+        type Scalar = T;
+        type Over<U: Real> = EllipsoidConvectiveInitial<N, U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> EllipsoidConvectiveInitial<N, U> {
+            EllipsoidConvectiveInitial {
+                Q: self.Q.over(change),
+                body_momentum: self.body_momentum.over(change),
+            }
+        }
+    }
+    impl<const N: usize, T: Real> ::clebsch::OfScalars
+    for EllipsoidConvectiveState<N, T> {
+        type Scalar = T;
+        type Over<U: Real> = EllipsoidConvectiveState<N, U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> EllipsoidConvectiveState<N, U> {
+            EllipsoidConvectiveState {
+                Q: self.Q.over(change),
+                momentum: self.momentum.over(change),
+                node: self.node,
+            }
+        }
+    }
+    impl<const N: usize, T: Real> ::clebsch::integrate::Model
+    for EllipsoidConvective<N, T> {
+        type Parameters = EllipsoidConvectiveParameters<N, T>;
+        type Initial = EllipsoidConvectiveInitial<N, T>;
+        type Choice = ();
+        type Over<U: Real> = EllipsoidConvective<N, U>;
+        const SIDE_BY_SIDE: bool = false;
+        fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
+            Self::new(parameters)
+        }
+        fn given(&self) -> &Self::Parameters {
+            &self.parameters
+        }
+        fn begin(
+            &self,
+            initial: Self::Initial,
+        ) -> Result<EllipsoidConvectiveState<N, T>, StartError> {
+            self.at_node_0(initial)
+        }
+        fn prepare(
+            &self,
+            state: &EllipsoidConvectiveState<N, T>,
+            h: T,
+            _: Self::Choice,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h)
+        }
+    }
+    /// A configuration at one node, solution or not.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct EllipsoidConvectiveConfiguration<const N: usize, T = f64> {
+        /// `Q` at the node: body -> space.
+        pub Q: Linear<N, T>,
+    }
+    impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
+        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+        /// consecutive configurations: components are derivatives of the action of the two edges
+        /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
+        /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix
+        /// units, row by row. Components beyond the coordinates are zero. Zero on solutions.
+        pub fn balance(
+            &self,
+            h: T,
+            before: &EllipsoidConvectiveConfiguration<N, T>,
+            here: &EllipsoidConvectiveConfiguration<N, T>,
+            after: &EllipsoidConvectiveConfiguration<N, T>,
+        ) -> SVector<T, 16> {
+            let EllipsoidConvectiveParameters { C0, I0, a, b, c, d, .. } = self
+                .parameters;
+            let Q_before = before.Q.matrix();
+            let C_before = Q_before.tr_mul(&(C0 * Q_before));
+            let Q = here.Q.matrix();
+            let C = Q.tr_mul(&(C0 * Q));
+            let G_before = before.Q.body_velocity(&here.Q).matrix();
+            let G = here.Q.body_velocity(&after.Q).matrix();
+            let t1 = h.powi(-1);
+            let t2 = -(C * h * a);
+            let t3 = C * C * h * b;
+            let t4 = -(C * h * b * C.trace());
+            let t5 = -(SMatrix::<T, N, N>::identity() * h * c * determinant(&(C)));
+            let t6 = SMatrix::<T, N, N>::identity() * T::from_f64(0.5) * h * d;
+            let parts: [SMatrix<T, N, N>; 1] = [
+                G_before.tr_mul(&(C_before * (G_before * I0))) * t1
+                    - G_before.tr_mul(&(C_before * I0)) * t1 + t2 + t3 + t4 + t5 + t6
+                    + C * I0 * t1 - C * (G * I0) * t1 + t2 + t3 + t4 + t5 + t6,
+            ];
+            {
+                let mut all = SVector::<T, 16>::zeros();
+                let rest = all.as_mut_slice();
+                let rest = put_matrix(rest, &parts[0]);
+                let _ = rest;
+                all
+            }
+        }
+    }
+    impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
+        /// What the step of size `h` from one state to the next leaves of its equations: the
+        /// momentum that is carried to the second state, less the one that the motion between
+        /// them brings there. One part a configuration, angular and linear ones of a rigid
+        /// motion apart, each with the size of the terms it is made of: those of a velocity are
+        /// the two elements it is made from, as they are stored.
+        pub fn residual(
+            &self,
+            before: &EllipsoidConvectiveState<N, T>,
+            after: &EllipsoidConvectiveState<N, T>,
+            h: T,
+        ) -> [Residual; 1] {
+            let EllipsoidConvectiveParameters { C0, I0, a, b, c, d, .. } = self
+                .parameters;
+            let G_matrix = before.Q.body_velocity(&after.Q).matrix();
+            let Q = before.Q.matrix();
+            let C = Q.tr_mul(&(C0 * Q));
+            let Q_next = after.Q.matrix();
+            let C_next = Q_next.tr_mul(&(C0 * Q_next));
+            let t1 = h.powi(-1);
+            let t2 = determinant(&(C_next));
+            let t3 = (t1 * t1).sqrt();
+            let t4 = (G_matrix.tr_mul(&G_matrix)).trace().sqrt();
+            let t5 = (C * C).trace().sqrt();
+            let t6 = (I0 * I0).trace().sqrt();
+            let t7 = (h * h).sqrt();
+            let t8 = (C_next * C_next).trace().sqrt();
+            let t9 = (b * b).sqrt();
+            let _ = h;
+            [
+                {
+                    let momentum = after.momentum.to_body(&after.Q).0;
+                    Residual {
+                        size: length(
+                                &(momentum
+                                    - (G_matrix.tr_mul(&(C * (G_matrix * I0))) * t1
+                                        - G_matrix.tr_mul(&(C * I0)) * t1 - C_next * h * a
+                                        + C_next * C_next * h * b - C_next * h * b * C_next.trace()
+                                        - SMatrix::<T, N, N>::identity() * h * c * t2
+                                        + SMatrix::<T, N, N>::identity() * T::from_f64(0.5) * h
+                                            * d)),
+                            )
+                            .magnitude(),
+                        scale: length(&momentum).magnitude()
+                            + (t3 * t4 * t5 * t6 + t3 * t4 * t5 * t4 * t6
+                                + t7 * (a * a).sqrt() * t8 + t7 * t9 * t8 * t8
+                                + T::from_f64(2.0) * t7 * t9 * t8 * t8
+                                + t7 * (c * c).sqrt() * (t2 * t2).sqrt()
+                                + T::from_f64(0.5) * t7 * (d * d).sqrt())
+                                .magnitude(),
+                    }
+                },
+            ]
+        }
+    }
+    impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
+        /// The kinetic and the potential energy at this node: those of the limit of small steps,
+        /// at the node's momentum.
+        pub fn energies(&self, state: &EllipsoidConvectiveState<N, T>) -> (T, T) {
+            let EllipsoidConvectiveParameters { C0, I0, a, b, c, d, .. } = self
+                .parameters;
+            let Q = state.Q.matrix();
+            let C = Q.tr_mul(&(C0 * Q));
+            let parts: [SMatrix<T, N, N>; 1] = [state.body_momentum().0];
+            let momentum = {
+                let mut all = SVector::<T, 16>::zeros();
+                let rest = all.as_mut_slice();
+                let rest = put_matrix(rest, &parts[0]);
+                let _ = rest;
+                all
+            };
+            let mut inertia = SMatrix::<T, 16, 16>::zeros();
+            for axis in 0..(N * N) {
+                let ξ: SMatrix<T, N, N> = matrix_basis::<T, N>(axis);
+                let t1 = C * (ξ * I0) * T::from_f64(0.5);
+                let parts: [SMatrix<T, N, N>; 1] = [t1 + t1];
+                inertia
+                    .set_column(
+                        axis,
+                        &{
+                            let mut all = SVector::<T, 16>::zeros();
+                            let rest = all.as_mut_slice();
+                            let rest = put_matrix(rest, &parts[0]);
+                            let _ = rest;
+                            all
+                        },
+                    );
+            }
+            let velocity = solve_leading_or_nan(&inertia, &momentum, 0 + (N * N));
+            (
+                momentum.dot(&velocity) * T::from_f64(0.5),
+                a * C.trace() + T::from_f64(0.5) * b * (C.trace() * C.trace())
+                    - T::from_f64(0.5) * b * (C * C).trace() + c * determinant(&(C))
+                    - T::from_f64(0.5) * d * determinant(&(C)).ln(),
+            )
+        }
+        /// The physical energy at this node.
+        pub fn energy(&self, state: &EllipsoidConvectiveState<N, T>) -> T {
+            let (kinetic, potential) = self.energies(state);
+            kinetic + potential
+        }
+        /// `tr(C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k))`: Casimir: the Kelvin-Noether quantity of what is advected.
+        pub fn circulation_C_2(&self, state: &EllipsoidConvectiveState<N, T>) -> T {
+            let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
+            let Q = state.Q.matrix();
+            let C = Q.tr_mul(&(C0 * Q));
+            let μ = state.body_momentum().0;
+            let t1 = skew_part(&(inverse_or_nan(&(C)) * μ));
+            (C * (t1 * (C * t1))).trace()
+        }
+        /// `tr(C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k))`: Casimir: the Kelvin-Noether quantity of what is advected.
+        pub fn circulation_C_4(&self, state: &EllipsoidConvectiveState<N, T>) -> T {
+            let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
+            let Q = state.Q.matrix();
+            let C = Q.tr_mul(&(C0 * Q));
+            let μ = state.body_momentum().0;
+            let t1 = skew_part(&(inverse_or_nan(&(C)) * μ));
+            (C * (t1 * (C * (t1 * (C * (t1 * (C * t1))))))).trace()
+        }
+        /// `skew(C₀⁻¹ Q_k⁻ᵀ μ_k Q_kᵀ)`: Noether: the action is invariant under what keeps the axis in space.
+        pub fn spatial_momentum_skew_C0_inverse(
+            &self,
+            state: &EllipsoidConvectiveState<N, T>,
+        ) -> SMatrix<T, N, N> {
+            let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
+            let Q = state.Q.matrix();
+            let μ = state.body_momentum().0;
+            skew_part(
+                &(inverse_or_nan(&(C0))
+                    * (inverse_or_nan(&(Q.transpose())) * (μ * Q.transpose()))),
+            )
+        }
+    }
+    impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
+        /// The discrete energy of the edge between two consecutive states, `2 tr(C_k (G_k - Id) I₀ (G_kᵀ - Id))/(2 h)² + ½ a tr(C_k) + ¼ b tr(C_k)² - ¼ b tr(C_k²) + ½ c det(C_k) - ¼ d log(det(C_k)) + ½ a tr(C_{k+1}) + ¼ b tr(C_{k+1})² - ¼ b tr(C_{k+1}²) + ½ c det(C_{k+1}) - ¼ d log(det(C_{k+1}))`: bounded, since the stepper is symplectic.
+        pub fn discrete_energy(
+            &self,
+            h: T,
+            before: &EllipsoidConvectiveState<N, T>,
+            after: &EllipsoidConvectiveState<N, T>,
+        ) -> T {
+            let EllipsoidConvectiveParameters { C0, I0, a, b, c, d, .. } = self
+                .parameters;
+            let G_matrix = before.Q.body_velocity(&after.Q).matrix();
+            let Q = before.Q.matrix();
+            let C = Q.tr_mul(&(C0 * Q));
+            let Q_next = after.Q.matrix();
+            let C_next = Q_next.tr_mul(&(C0 * Q_next));
+            let t1 = C.trace();
+            let t2 = determinant(&(C));
+            let t3 = C_next.trace();
+            let t4 = determinant(&(C_next));
+            (T::from_f64(2.0)
+                * (C
+                    * ((G_matrix - SMatrix::<T, N, N>::identity())
+                        * (I0
+                            * (G_matrix.transpose() - SMatrix::<T, N, N>::identity()))))
+                    .trace()) / ((T::from_f64(2.0) * h) * (T::from_f64(2.0) * h))
+                + T::from_f64(0.5) * a * t1 + T::from_f64(0.25) * b * (t1 * t1)
+                - T::from_f64(0.25) * b * (C * C).trace() + T::from_f64(0.5) * c * t2
+                - T::from_f64(0.25) * d * t2.ln() + T::from_f64(0.5) * a * t3
+                + T::from_f64(0.25) * b * (t3 * t3)
+                - T::from_f64(0.25) * b * (C_next * C_next).trace()
+                + T::from_f64(0.5) * c * t4 - T::from_f64(0.25) * d * t4.ln()
+        }
+    }
+    /// One trajectory of the model, its type hidden.
+    struct EllipsoidConvectiveTrajectory<const N: usize> {
+        model: EllipsoidConvective<N, f64>,
+        state: EllipsoidConvectiveState<N, f64>,
+        steps: Steps<EllipsoidConvective<N, f64>>,
+        h: f64,
+        /// The state before the last step.
+        before: EllipsoidConvectiveState<N, f64>,
+        /// Whether a step is one of the derivation, not composed and without modified moments.
+        plain: bool,
+        kinetic: Option<KineticWarning>,
+    }
+    impl<const N: usize> Trajectory for EllipsoidConvectiveTrajectory<N> {
+        fn node(&self) -> u64 {
+            self.state.node()
+        }
+        fn time(&self) -> f64 {
+            self.h * self.state.node() as f64
+        }
+        fn step(&mut self) -> Result<(), StepError> {
+            let before = self.state;
+            self.steps.step(&self.model, &mut self.state)?;
+            self.before = before;
+            Ok(())
+        }
+        fn card(&self) -> &'static Card {
+            &EllipsoidConvective::<N, f64>::CARD
+        }
+        fn kinetic_warning(&self) -> Option<KineticWarning> {
+            self.kinetic
+        }
+        fn residual(&self) -> Option<f64> {
+            let moved = self.before.node() != self.state.node();
+            (self.plain && moved)
+                .then(|| {
+                    Residual::largest(
+                        &self.model.residual(&self.before, &self.state, self.h),
+                    )
+                })
+        }
+        fn observe(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(out, rows(state.Q().matrix()));
+            let out = put(out, rows(state.body_momentum().0));
+            let out = put(out, rows(state.spatial_momentum().0));
+            let out = put(out, rows(self.model.C(state)));
+            let _ = out;
+        }
+        fn invariants(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(out, [self.model.energy(state)]);
+            let out = put(out, [self.model.circulation_C_2(state)]);
+            let out = put(out, [self.model.circulation_C_4(state)]);
+            let out = put(out, rows(self.model.spatial_momentum_skew_C0_inverse(state)));
+            let _ = out;
+        }
+        fn scales(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(
+                out,
+                ::core::iter::repeat_n(
+                    {
+                        let (kinetic, potential) = self.model.energies(state);
+                        kinetic.abs() + potential.abs()
+                    },
+                    1usize,
+                ),
+            );
+            let out = put(
+                out,
+                ::core::iter::repeat_n(
+                    {
+                        type T = f64;
+                        let EllipsoidConvectiveParameters { C0, .. } = self
+                            .model
+                            .parameters;
+                        let Q = state.Q.matrix();
+                        let C = Q.tr_mul(&(C0 * Q));
+                        let μ = state.body_momentum().0;
+                        let t1 = inverse_or_nan(&(C));
+                        let value: T = ((μ.tr_mul(&μ)).trace().sqrt()
+                            * (C * C).trace().sqrt() * (t1 * t1).trace().sqrt())
+                            * ((μ.tr_mul(&μ)).trace().sqrt() * (C * C).trace().sqrt()
+                                * (t1 * t1).trace().sqrt());
+                        value
+                    },
+                    1usize,
+                ),
+            );
+            let out = put(
+                out,
+                ::core::iter::repeat_n(
+                    {
+                        type T = f64;
+                        let EllipsoidConvectiveParameters { C0, .. } = self
+                            .model
+                            .parameters;
+                        let Q = state.Q.matrix();
+                        let C = Q.tr_mul(&(C0 * Q));
+                        let μ = state.body_momentum().0;
+                        let t1 = inverse_or_nan(&(C));
+                        let value: T = ((μ.tr_mul(&μ)).trace().sqrt()
+                            * (C * C).trace().sqrt() * (t1 * t1).trace().sqrt())
+                            .powi(4);
+                        value
+                    },
+                    1usize,
+                ),
+            );
+            let out = put(
+                out,
+                ::core::iter::repeat_n(
+                    {
+                        type T = f64;
+                        let EllipsoidConvectiveParameters { C0, .. } = self
+                            .model
+                            .parameters;
+                        let Q = state.Q.matrix();
+                        let μ = state.body_momentum().0;
+                        let t1 = inverse_or_nan(&(Q.transpose()));
+                        let t2 = inverse_or_nan(&(C0));
+                        let value: T = (Q
+                            * μ.tr_mul(&t1.tr_mul(&(t1 * (μ * Q.transpose())))))
+                            .trace()
+                            .sqrt() * (t2 * t2).trace().sqrt();
+                        value
+                    },
+                    N * N,
+                ),
+            );
+            let _ = out;
+        }
+    }
+    impl<const N: usize> EllipsoidConvective<N, f64> {
+        /// The model as data.
+        pub const CARD: Card = Card {
+            name: "EllipsoidConvective",
+            kebab: "ellipsoid-convective",
+            doc: "Elastic ellipsoid, convective representation.",
+            source: Self::SOURCE,
+            fingerprint: Self::FINGERPRINT,
+            summary: "action of one step   tr(C_k (G_k - Id) I₀ (G_kᵀ - Id))/(2 h) - ½ h a tr(C_k) - ¼ h b tr(C_k)² + ¼ h b tr(C_k²) - ½ h c det(C_k) + ¼ h d log(det(C_k)) - ½ h a tr(C_{k+1}) - ¼ h b tr(C_{k+1})² + ¼ h b tr(C_{k+1}²) - ½ h c det(C_{k+1}) + ¼ h d log(det(C_{k+1}))\nmomentum of Q        C_k (G_k - Id) I₀ G_kᵀ/h\nRiccati form         none; linear, L = C_k/h, R = I₀\ninvariants           energy, circulation_C_2, circulation_C_4, spatial_momentum_skew_C0_inverse\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
+            solver: "Explicit: the balance is linear: two small linear systems",
+            order: 2u32,
+            orders: &[2, 4, 6, 8],
+            preprocessed: false,
+            reversible: true,
+            parameters: &[
+                Field {
+                    name: "C0",
+                    ascii: "C0",
+                    rows: N,
+                    cols: N,
+                    kind: Kind::Symmetric,
+                    doc: "metric of space",
+                },
+                Field {
+                    name: "I0",
+                    ascii: "I0",
+                    rows: N,
+                    cols: N,
+                    kind: Kind::Symmetric,
+                    doc: "second moments of mass in the reference",
+                },
+                Field {
+                    name: "a",
+                    ascii: "a",
+                    rows: 1,
+                    cols: 1,
+                    kind: Kind::Scalar,
+                    doc: "stiffness of lengths, of areas and of volumes",
+                },
+                Field {
+                    name: "b",
+                    ascii: "b",
+                    rows: 1,
+                    cols: 1,
+                    kind: Kind::Scalar,
+                    doc: "stiffness of lengths, of areas and of volumes",
+                },
+                Field {
+                    name: "c",
+                    ascii: "c",
+                    rows: 1,
+                    cols: 1,
+                    kind: Kind::Scalar,
+                    doc: "stiffness of lengths, of areas and of volumes",
+                },
+                Field {
+                    name: "d",
+                    ascii: "d",
+                    rows: 1,
+                    cols: 1,
+                    kind: Kind::Scalar,
+                    doc: "resistance to collapse; without stress at the identity if d = 2 a + 2 (n - 1) b + 2 c",
+                },
+            ],
+            initial: &[
+                Field {
+                    name: "Q",
+                    ascii: "Q",
+                    rows: N,
+                    cols: N,
+                    kind: Kind::Matrix,
+                    doc: "placement, reference to space",
+                },
+                Field {
+                    name: "body_momentum",
+                    ascii: "body_momentum",
+                    rows: N,
+                    cols: N,
+                    kind: Kind::BodyMomentum,
+                    doc: "momentum, body frame",
+                },
+            ],
+            observables: &[
+                Field {
+                    name: "Q",
+                    ascii: "Q",
+                    rows: N,
+                    cols: N,
+                    kind: Kind::Matrix,
+                    doc: "placement, reference to space",
+                },
+                Field {
+                    name: "body_momentum",
+                    ascii: "body_momentum",
+                    rows: N,
+                    cols: N,
+                    kind: Kind::BodyMomentum,
+                    doc: "momentum, body frame",
+                },
+                Field {
+                    name: "spatial_momentum",
+                    ascii: "spatial_momentum",
+                    rows: N,
+                    cols: N,
+                    kind: Kind::SpatialMomentum,
+                    doc: "momentum, space frame",
+                },
+                Field {
+                    name: "C",
+                    ascii: "C",
+                    rows: N,
+                    cols: N,
+                    kind: Kind::Symmetric,
+                    doc: "metric of space seen from the body",
+                },
+            ],
+            invariants: &[
+                Invariant {
+                    name: "energy",
+                    formula: "½ tr(μ_kᵀ ζ) + a tr(C_k) + ½ b tr(C_k)² - ½ b tr(C_k²) + c det(C_k) - ½ d log(det(C_k)), where μ_k = C_k ζ I₀",
+                    rows: 1usize,
+                    conserved: Conserved::Boundedly,
+                },
+                Invariant {
+                    name: "circulation_C_2",
+                    formula: "tr(C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k))",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "circulation_C_4",
+                    formula: "tr(C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k))",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "spatial_momentum_skew_C0_inverse",
+                    formula: "skew(C₀⁻¹ Q_k⁻ᵀ μ_k Q_kᵀ)",
+                    rows: N * N,
+                    conserved: Conserved::Exactly,
+                },
+            ],
+            discrete_energy: Invariant {
+                name: "discrete_energy",
+                formula: "2 tr(C_k (G_k - Id) I₀ (G_kᵀ - Id))/(2 h)² + ½ a tr(C_k) + ¼ b tr(C_k)² - ¼ b tr(C_k²) + ½ c det(C_k) - ¼ d log(det(C_k)) + ½ a tr(C_{k+1}) + ¼ b tr(C_{k+1})² - ¼ b tr(C_{k+1}²) + ½ c det(C_{k+1}) - ¼ d log(det(C_{k+1}))",
+                rows: 1,
+                conserved: Conserved::Boundedly,
+            },
+            open: Self::open,
+            solvers: &[],
+            dimensions: &[
+                Dimension {
+                    name: "n",
+                    from: 2,
+                    to: 4,
+                    value: N,
+                },
+            ],
+            sized: Self::sized,
+        };
+        /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
+        /// velocities together, at the identity, should be positive definite.
+        #[cold]
+        #[allow(unused_variables)]
+        pub fn kinetic_warning(
+            &self,
+            state: &EllipsoidConvectiveState<N, f64>,
+        ) -> Option<KineticWarning> {
+            type T = f64;
+            let EllipsoidConvectiveParameters { C0, I0, .. } = self.parameters;
+            let Q = state.Q.matrix();
+            let C = Q.tr_mul(&(C0 * Q));
+            let mut inertia = SMatrix::<T, 16, 16>::zeros();
+            for axis in 0..(N * N) {
+                let ξ: SMatrix<T, N, N> = matrix_basis::<T, N>(axis);
+                let t1 = C * (ξ * I0) * T::from_f64(0.5);
+                let parts: [SMatrix<T, N, N>; 1] = [t1 + t1];
+                inertia
+                    .set_column(
+                        axis,
+                        &{
+                            let mut all = SVector::<T, 16>::zeros();
+                            let rest = all.as_mut_slice();
+                            let rest = put_matrix(rest, &parts[0]);
+                            let _ = rest;
+                            all
+                        },
+                    );
+            }
+            KineticWarning::of(&inertia, 0 + (N * N))
+        }
+        /// The card of the model at the given sizes, in the order of their declaration.
+        fn sized(sizes: &[usize]) -> Option<Card> {
+            match sizes {
+                [2] => Some(EllipsoidConvective::<2, f64>::CARD),
+                [3] => Some(EllipsoidConvective::<3, f64>::CARD),
+                [4] => Some(EllipsoidConvective::<4, f64>::CARD),
+                _ => None,
+            }
+        }
+        fn open(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+            settings: Settings,
+        ) -> Result<Box<dyn Trajectory>, OpenError> {
+            for (field, expected, found) in [
+                ("parameters", 6usize, parameters.len()),
+                ("initial values", 2usize, initial.len()),
+            ] {
+                if expected != found {
+                    return Err(OpenError::Count {
+                        field,
+                        expected,
+                        found,
+                    });
+                }
+            }
+            let model = EllipsoidConvective::new(EllipsoidConvectiveParameters {
+                C0: matrix_of("C0", parameters.get(0usize))?,
+                I0: matrix_of("I0", parameters.get(1usize))?,
+                a: number_of("a", parameters.get(2usize))?,
+                b: number_of("b", parameters.get(3usize))?,
+                c: number_of("c", parameters.get(4usize))?,
+                d: number_of("d", parameters.get(5usize))?,
+            })?;
+            let initial = EllipsoidConvectiveInitial {
+                Q: linear_of("Q", initial.get(0usize))?,
+                body_momentum: BodyMomentumMatrix(
+                    matrix_of("body_momentum", initial.get(1usize))?,
+                ),
+            };
+            chosen_solver(settings, Self::CARD.solvers)?;
+            let state = model.at_node_0(initial)?;
+            let kinetic = model.kinetic_warning(&state);
+            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)
+                .map_err(|e| OpenError::from(e).beside(kinetic))?;
+            let plain = matches!(steps, Steps::Plain(_));
+            Ok(
+                Box::new(EllipsoidConvectiveTrajectory::<N> {
+                    model,
+                    state,
+                    steps,
+                    h: settings.h,
+                    before: state,
+                    plain,
+                    kinetic,
+                }),
+            )
+        }
+    }
+}
+#[allow(unused_imports)]
+pub use ellipsoid_convective::*;

@@ -1,0 +1,999 @@
+// Written by `clebsch derive --write`. Do not edit.
+
+/// The model [`EllipsoidSpatial`](struct@EllipsoidSpatial) and what belongs to it.
+#[allow(
+    non_snake_case,
+    uncommon_codepoints,
+    mixed_script_confusables,
+    confusable_idents,
+    clippy::all
+)]
+pub mod ellipsoid_spatial {
+    use ::clebsch::emitted::*;
+    /// Parameters of [`EllipsoidSpatial`](struct@EllipsoidSpatial), as given.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct EllipsoidSpatialParameters<const N: usize, T = f64> {
+        /// `C0`: metric of space; a n x n matrix, symmetric.
+        pub C0: SMatrix<T, N, N>,
+        /// `I0`: second moments of mass in the reference; a n x n matrix, symmetric.
+        pub I0: SMatrix<T, N, N>,
+        /// `a`: stiffness of lengths, of areas and of volumes; a number.
+        pub a: T,
+        /// `b`: stiffness of lengths, of areas and of volumes; a number.
+        pub b: T,
+        /// `c`: stiffness of lengths, of areas and of volumes; a number.
+        pub c: T,
+        /// `d`: resistance to collapse; without stress at the identity if d = 2 a + 2 (n - 1) b + 2 c; a number.
+        pub d: T,
+    }
+    /// Elastic ellipsoid, spatial representation.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct EllipsoidSpatial<const N: usize, T = f64> {
+        parameters: EllipsoidSpatialParameters<N, T>,
+    }
+    impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
+        /// Sizes the model does not admit do not build.
+        const ADMITTED: () = {
+            ::core::assert!(2 <= N && N <= 4, "`n` is from 2 to 4 in this model");
+        };
+        /// The model as it was stated.
+        pub const SOURCE: &'static str = "/// Elastic ellipsoid, spatial representation.\npub model EllipsoidSpatial {\n    dim n in 2..=4;\n    /// metric of space\n    param C0: Sym<n> as \"C_0\";\n    /// second moments of mass in the reference\n    param I0: Sym<n> as \"I_0\";\n    /// stiffness of lengths, of areas and of volumes\n    param a: Real;\n    /// stiffness of lengths, of areas and of volumes\n    param b: Real;\n    /// stiffness of lengths, of areas and of volumes\n    param c: Real;\n    /// resistance to collapse; without stress at the identity if d = 2 a + 2 (n - 1) b + 2 c\n    param d: Real;\n    /// placement, reference to space\n    group Q: GL<n> velocity g;\n    /// second moments in space\n    advected S: Sym<n> = Q*I0*Q^T;\n    constraint next(Q) = g*Q;\n    constraint next(S) = g*S*g^T;\n    lagrangian = tr(C0*(g - Id)*S*(g^T - Id))/(2*h) - h*(a*tr(S) + (1/2)*b*(tr(S)^2 - tr(S*S)) + c*det(S) - (1/2)*d*log(det(S)));\n}";
+        /// A number that changes when the model or its derivation does.
+        pub const FINGERPRINT: u64 = 5872755012565563645u64;
+        /// Checks the parameters.
+        ///
+        /// # Errors
+        /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
+        /// assumption, or is no admissible factor of the equation to solve.
+        pub fn new(
+            parameters: EllipsoidSpatialParameters<N, T>,
+        ) -> Result<Self, ParameterError> {
+            let () = Self::ADMITTED;
+            validate::finite_entries("C0", &parameters.C0)?;
+            validate::symmetric("C0", &parameters.C0)?;
+            validate::finite_entries("I0", &parameters.I0)?;
+            validate::symmetric("I0", &parameters.I0)?;
+            validate::finite("a", &[parameters.a])?;
+            validate::finite("b", &[parameters.b])?;
+            validate::finite("c", &[parameters.c])?;
+            validate::finite("d", &[parameters.d])?;
+            Ok(Self { parameters })
+        }
+        /// The parameters.
+        pub fn parameters(&self) -> &EllipsoidSpatialParameters<N, T> {
+            &self.parameters
+        }
+    }
+    /// Initial data.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct EllipsoidSpatialInitial<const N: usize, T = f64> {
+        /// `Q` at node 0: body -> space.
+        pub Q: Linear<N, T>,
+        /// Momentum at node 0, in the space frame.
+        pub spatial_momentum: SpatialMomentumMatrix<N, T>,
+    }
+    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct EllipsoidSpatialState<const N: usize, T = f64> {
+        Q: Linear<N, T>,
+        momentum: SpatialMomentumMatrix<N, T>,
+        node: u64,
+    }
+    impl<const N: usize, T: Real> EllipsoidSpatialState<N, T> {
+        /// `Q` at this node: body -> space.
+        pub fn Q(&self) -> Linear<N, T> {
+            self.Q
+        }
+        /// The momentum at this node, in the space frame.
+        pub fn spatial_momentum(&self) -> SpatialMomentumMatrix<N, T> {
+            self.momentum
+        }
+        /// The momentum at this node, in the body frame.
+        pub fn body_momentum(&self) -> BodyMomentumMatrix<N, T> {
+            self.momentum.to_body(&self.Q)
+        }
+        /// The number of the node.
+        pub fn node(&self) -> u64 {
+            self.node
+        }
+    }
+    /// The step and the last velocities, from which the next solves start.
+    #[derive(Clone, Copy, Debug)]
+    pub struct EllipsoidSpatialWorkspace<const N: usize, T = f64> {
+        h: T,
+    }
+    impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
+        /// Starts a trajectory with step `h` from data at node 0.
+        ///
+        /// # Errors
+        /// Names the value that is not finite, or says why the first step cannot be solved and
+        /// which step could.
+        pub fn start(
+            &self,
+            initial: EllipsoidSpatialInitial<N, T>,
+            h: T,
+        ) -> Result<
+            (EllipsoidSpatialState<N, T>, EllipsoidSpatialWorkspace<N, T>),
+            StartError,
+        > {
+            validate::positive_step(h)?;
+            let state = self.at_node_0(initial)?;
+            Ok((state, self.workspace(&state, h)?))
+        }
+        /// The state at node 0.
+        fn at_node_0(
+            &self,
+            initial: EllipsoidSpatialInitial<N, T>,
+        ) -> Result<EllipsoidSpatialState<N, T>, StartError> {
+            validate::finite("Q", initial.Q.matrix().as_slice())?;
+            validate::finite("spatial_momentum", initial.spatial_momentum.0.as_slice())?;
+            Ok(EllipsoidSpatialState {
+                Q: initial.Q,
+                momentum: initial.spatial_momentum,
+                node: 0,
+            })
+        }
+        /// A workspace for steps of `h`, of either sign, from any state.
+        ///
+        /// # Errors
+        /// When `h` is zero or not finite, or the first step cannot be solved.
+        pub fn workspace(
+            &self,
+            state: &EllipsoidSpatialState<N, T>,
+            h: T,
+        ) -> Result<EllipsoidSpatialWorkspace<N, T>, StartError> {
+            validate::directed_step(h)?;
+            let state = *state;
+            let work = EllipsoidSpatialWorkspace { h };
+            let (mut trial, mut scratch) = (state, work);
+            self.step(&mut trial, &mut scratch)
+                .map_err(|e| StartError::Refused(e.cause))?;
+            Ok(work)
+        }
+        /// One step, in place. Solved thus: the balance is linear: two small linear systems.
+        ///
+        /// # Errors
+        /// When the step cannot be solved, or leaves what the model is defined on, with numbers and
+        /// a remedy; the state is then unchanged.
+        #[inline]
+        pub fn step(
+            &self,
+            state: &mut EllipsoidSpatialState<N, T>,
+            work: &mut EllipsoidSpatialWorkspace<N, T>,
+        ) -> Result<(), StepError> {
+            let before = *state;
+            self.step_untested(state, work)?;
+            match self.stays_inside(&before, state, work.h) {
+                Ok(()) => Ok(()),
+                Err(contact) => {
+                    *state = before;
+                    Err(self.left_domain(state, work.h, contact))
+                }
+            }
+        }
+        /// Says what the step met, and which step could be made.
+        #[cold]
+        #[inline(never)]
+        fn left_domain(
+            &self,
+            state: &EllipsoidSpatialState<N, T>,
+            h: T,
+            contact: domain::Contact,
+        ) -> StepError {
+            let contact = contact
+                .with_trials(
+                    h,
+                    |h| {
+                        let mut moving = *state;
+                        self.step(&mut moving, &mut EllipsoidSpatialWorkspace { h })
+                            .is_ok()
+                    },
+                );
+            StepCause::from(contact).at_node(state.node)
+        }
+        /// Whether the step from one state to the next stays where the model is defined.
+        #[inline]
+        fn stays_inside(
+            &self,
+            before: &EllipsoidSpatialState<N, T>,
+            after: &EllipsoidSpatialState<N, T>,
+            h: T,
+        ) -> Result<(), domain::Contact> {
+            domain::invertible("Q", &before.Q, &after.Q, h)?;
+            {
+                let (before, after) = (
+                    self.domain_arguments(before, h),
+                    self.domain_arguments(after, h),
+                );
+                domain::Domain::Positive
+                    .at_nodes(
+                        &domain::Call {
+                            function: domain::Function::Log,
+                            argument: "det(S_k)",
+                        },
+                        before[0],
+                        after[0],
+                        h,
+                    )?;
+            }
+            let _ = (before, after, h);
+            Ok(())
+        }
+        /// The arguments of the functions that the model uses, at the node of this state.
+        #[inline]
+        fn domain_arguments(&self, state: &EllipsoidSpatialState<N, T>, h: T) -> [T; 1] {
+            let EllipsoidSpatialParameters { I0, .. } = self.parameters;
+            let Q = state.Q.matrix();
+            let S = Q * (I0 * Q.transpose());
+            let _ = (state, h);
+            [determinant(&(S))]
+        }
+        /// One step, in place. Solved thus: the balance is linear: two small linear systems.
+        ///
+        /// # Errors
+        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+        #[inline]
+        fn step_untested(
+            &self,
+            state: &mut EllipsoidSpatialState<N, T>,
+            work: &mut EllipsoidSpatialWorkspace<N, T>,
+        ) -> Result<(), StepError> {
+            let h = work.h;
+            let EllipsoidSpatialParameters { C0, I0, a, b, c, d, .. } = self.parameters;
+            let Q = state.Q.matrix();
+            let S = Q * (I0 * Q.transpose());
+            let g = match two_sided(
+                &(C0 / h),
+                &(state.momentum.0
+                    - (S * (h * a + h * b * S.trace()) - S * S * h * b
+                        + SMatrix::<T, N, N>::identity()
+                            * (h * c * determinant(&(S)) - T::from_f64(0.5) * h * d))),
+                &(S),
+                &["C₀/h", "S_k"],
+            ) {
+                Ok(solved) => solved,
+                Err(e) => return Err(StepCause::Singular(e).at_node(state.node)),
+            };
+            let g_matrix = g.matrix();
+            let Q_moved = g * state.Q;
+            let Q_next = Q_moved.matrix();
+            let S_next = Q_next * (I0 * Q_next.transpose());
+            let t1 = -(h * a);
+            let momentum_next = state.momentum.0
+                + C0
+                    * ((g_matrix - SMatrix::<T, N, N>::identity())
+                        * (S * (g_matrix.transpose() - SMatrix::<T, N, N>::identity())))
+                    / h + S * (t1 - h * b * S.trace())
+                + S_next * (t1 - h * b * S_next.trace())
+                + (S * S + S_next * S_next) * h * b
+                + SMatrix::<T, N, N>::identity()
+                    * (h * d - h * c * determinant(&(S))
+                        - h * c * determinant(&(S_next)));
+            if !(all_finite(&momentum_next)) {
+                return Err(
+                    StepCause::NotFinite {
+                        what: "momentum",
+                    }
+                        .at_node(state.node),
+                );
+            }
+            state.Q = Q_moved;
+            state.momentum = SpatialMomentumMatrix(momentum_next);
+            state.node += 1;
+            Ok(())
+        }
+        /// `S` at the node of this state.
+        #[inline]
+        pub fn S(&self, state: &EllipsoidSpatialState<N, T>) -> SMatrix<T, N, N> {
+            let EllipsoidSpatialParameters { I0, .. } = self.parameters;
+            let Q = state.Q.matrix();
+            let S = Q * (I0 * Q.transpose());
+            S
+        }
+    }
+    impl<const N: usize, T: Real> Stepper for EllipsoidSpatial<N, T> {
+        type Scalar = T;
+        type State = EllipsoidSpatialState<N, T>;
+        type Workspace = EllipsoidSpatialWorkspace<N, T>;
+        fn workspace(
+            &self,
+            state: &Self::State,
+            h: T,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h)
+        }
+        #[inline(always)]
+        fn advance(
+            &self,
+            state: &mut Self::State,
+            work: &mut Self::Workspace,
+        ) -> Result<(), StepError> {
+            self.step(state, work)
+        }
+        #[cold]
+        fn attempt(&self, state: &Self::State, h: T) -> Option<Self::State> {
+            let mut moving = *state;
+            self.step(&mut moving, &mut EllipsoidSpatialWorkspace { h }).ok()?;
+            Some(moving)
+        }
+        fn node(state: &Self::State) -> u64 {
+            state.node
+        }
+        fn at_node(state: Self::State, node: u64) -> Self::State {
+            EllipsoidSpatialState {
+                node: node,
+                ..state
+            }
+        }
+    }
+    impl<const N: usize, T: Real> Reversible for EllipsoidSpatial<N, T> {}
+    impl<const N: usize, T: Real> ::clebsch::OfScalars
+    for EllipsoidSpatialParameters<N, T> {
+        type Scalar = T;
+        type Over<U: Real> = EllipsoidSpatialParameters<N, U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> EllipsoidSpatialParameters<N, U> {
+            EllipsoidSpatialParameters {
+                C0: self.C0.over(change),
+                I0: self.I0.over(change),
+                a: self.a.over(change),
+                b: self.b.over(change),
+                c: self.c.over(change),
+                d: self.d.over(change),
+            }
+        }
+    }
+    impl<const N: usize, T: Real> ::clebsch::OfScalars
+    for EllipsoidSpatialInitial<N, T> {
+        type Scalar = T;
+        type Over<U: Real> = EllipsoidSpatialInitial<N, U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> EllipsoidSpatialInitial<N, U> {
+            EllipsoidSpatialInitial {
+                Q: self.Q.over(change),
+                spatial_momentum: self.spatial_momentum.over(change),
+            }
+        }
+    }
+    impl<const N: usize, T: Real> ::clebsch::OfScalars for EllipsoidSpatialState<N, T> {
+        type Scalar = T;
+        type Over<U: Real> = EllipsoidSpatialState<N, U>;
+        fn over<U: Real>(
+            &self,
+            change: &mut impl FnMut(T) -> U,
+        ) -> EllipsoidSpatialState<N, U> {
+            EllipsoidSpatialState {
+                Q: self.Q.over(change),
+                momentum: self.momentum.over(change),
+                node: self.node,
+            }
+        }
+    }
+    impl<const N: usize, T: Real> ::clebsch::integrate::Model
+    for EllipsoidSpatial<N, T> {
+        type Parameters = EllipsoidSpatialParameters<N, T>;
+        type Initial = EllipsoidSpatialInitial<N, T>;
+        type Choice = ();
+        type Over<U: Real> = EllipsoidSpatial<N, U>;
+        const SIDE_BY_SIDE: bool = false;
+        fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
+            Self::new(parameters)
+        }
+        fn given(&self) -> &Self::Parameters {
+            &self.parameters
+        }
+        fn begin(
+            &self,
+            initial: Self::Initial,
+        ) -> Result<EllipsoidSpatialState<N, T>, StartError> {
+            self.at_node_0(initial)
+        }
+        fn prepare(
+            &self,
+            state: &EllipsoidSpatialState<N, T>,
+            h: T,
+            _: Self::Choice,
+        ) -> Result<Self::Workspace, StartError> {
+            self.workspace(state, h)
+        }
+    }
+    /// A configuration at one node, solution or not.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct EllipsoidSpatialConfiguration<const N: usize, T = f64> {
+        /// `Q` at the node: body -> space.
+        pub Q: Linear<N, T>,
+    }
+    impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
+        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+        /// consecutive configurations: components are derivatives of the action of the two edges
+        /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
+        /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix
+        /// units, row by row. Components beyond the coordinates are zero. Zero on solutions.
+        pub fn balance(
+            &self,
+            h: T,
+            before: &EllipsoidSpatialConfiguration<N, T>,
+            here: &EllipsoidSpatialConfiguration<N, T>,
+            after: &EllipsoidSpatialConfiguration<N, T>,
+        ) -> SVector<T, 16> {
+            let EllipsoidSpatialParameters { C0, I0, a, b, c, d, .. } = self.parameters;
+            let Q_before = before.Q.matrix();
+            let S_before = Q_before * (I0 * Q_before.transpose());
+            let Q = here.Q.matrix();
+            let S = Q * (I0 * Q.transpose());
+            let g_before = before.Q.spatial_velocity(&here.Q).matrix();
+            let g = here.Q.spatial_velocity(&after.Q).matrix();
+            let t1 = h.powi(-1);
+            let t2 = -(S * h * a);
+            let t3 = S * S * h * b;
+            let t4 = -(S * h * b * S.trace());
+            let t5 = -(SMatrix::<T, N, N>::identity() * h * c * determinant(&(S)));
+            let t6 = SMatrix::<T, N, N>::identity() * T::from_f64(0.5) * h * d;
+            let parts: [SMatrix<T, N, N>; 1] = [
+                C0 * (g_before * (S_before * g_before.transpose())) * t1
+                    - C0 * (S_before * g_before.transpose()) * t1 + t2 + t3 + t4 + t5
+                    + t6 - C0 * (g * S) * t1 + C0 * S * t1 + t2 + t3 + t4 + t5 + t6,
+            ];
+            {
+                let mut all = SVector::<T, 16>::zeros();
+                let rest = all.as_mut_slice();
+                let rest = put_matrix(rest, &parts[0]);
+                let _ = rest;
+                all
+            }
+        }
+    }
+    impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
+        /// What the step of size `h` from one state to the next leaves of its equations: the
+        /// momentum that is carried to the second state, less the one that the motion between
+        /// them brings there. One part a configuration, angular and linear ones of a rigid
+        /// motion apart, each with the size of the terms it is made of: those of a velocity are
+        /// the two elements it is made from, as they are stored.
+        pub fn residual(
+            &self,
+            before: &EllipsoidSpatialState<N, T>,
+            after: &EllipsoidSpatialState<N, T>,
+            h: T,
+        ) -> [Residual; 1] {
+            let EllipsoidSpatialParameters { C0, I0, a, b, c, d, .. } = self.parameters;
+            let g_matrix = before.Q.spatial_velocity(&after.Q).matrix();
+            let Q = before.Q.matrix();
+            let S = Q * (I0 * Q.transpose());
+            let Q_next = after.Q.matrix();
+            let S_next = Q_next * (I0 * Q_next.transpose());
+            let t1 = h.powi(-1);
+            let t2 = determinant(&(S_next));
+            let t3 = (t1 * t1).sqrt();
+            let t4 = (C0 * C0).trace().sqrt();
+            let t5 = (g_matrix.tr_mul(&g_matrix)).trace().sqrt();
+            let t6 = (S * S).trace().sqrt();
+            let t7 = (h * h).sqrt();
+            let t8 = (S_next * S_next).trace().sqrt();
+            let t9 = (b * b).sqrt();
+            let _ = h;
+            [
+                {
+                    let momentum = after.momentum.0;
+                    Residual {
+                        size: length(
+                                &(momentum
+                                    - (C0 * (g_matrix * (S * g_matrix.transpose())) * t1
+                                        - C0 * (S * g_matrix.transpose()) * t1 - S_next * h * a
+                                        + S_next * S_next * h * b - S_next * h * b * S_next.trace()
+                                        - SMatrix::<T, N, N>::identity() * h * c * t2
+                                        + SMatrix::<T, N, N>::identity() * T::from_f64(0.5) * h
+                                            * d)),
+                            )
+                            .magnitude(),
+                        scale: length(&momentum).magnitude()
+                            + (t3 * t4 * t5 * t6 * t5 + t3 * t4 * t6 * t5
+                                + t7 * (a * a).sqrt() * t8 + t7 * t9 * t8 * t8
+                                + T::from_f64(2.0) * t7 * t9 * t8 * t8
+                                + t7 * (c * c).sqrt() * (t2 * t2).sqrt()
+                                + T::from_f64(0.5) * t7 * (d * d).sqrt())
+                                .magnitude(),
+                    }
+                },
+            ]
+        }
+    }
+    impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
+        /// The kinetic and the potential energy at this node: those of the limit of small steps,
+        /// at the node's momentum.
+        pub fn energies(&self, state: &EllipsoidSpatialState<N, T>) -> (T, T) {
+            let EllipsoidSpatialParameters { C0, I0, a, b, c, d, .. } = self.parameters;
+            let Q = state.Q.matrix();
+            let S = Q * (I0 * Q.transpose());
+            let parts: [SMatrix<T, N, N>; 1] = [state.spatial_momentum().0];
+            let momentum = {
+                let mut all = SVector::<T, 16>::zeros();
+                let rest = all.as_mut_slice();
+                let rest = put_matrix(rest, &parts[0]);
+                let _ = rest;
+                all
+            };
+            let mut inertia = SMatrix::<T, 16, 16>::zeros();
+            for axis in 0..(N * N) {
+                let ξ: SMatrix<T, N, N> = matrix_basis::<T, N>(axis);
+                let t1 = C0 * (ξ * S) * T::from_f64(0.5);
+                let parts: [SMatrix<T, N, N>; 1] = [t1 + t1];
+                inertia
+                    .set_column(
+                        axis,
+                        &{
+                            let mut all = SVector::<T, 16>::zeros();
+                            let rest = all.as_mut_slice();
+                            let rest = put_matrix(rest, &parts[0]);
+                            let _ = rest;
+                            all
+                        },
+                    );
+            }
+            let velocity = solve_leading_or_nan(&inertia, &momentum, 0 + (N * N));
+            (
+                momentum.dot(&velocity) * T::from_f64(0.5),
+                a * S.trace() + T::from_f64(0.5) * b * (S.trace() * S.trace())
+                    - T::from_f64(0.5) * b * (S * S).trace() + c * determinant(&(S))
+                    - T::from_f64(0.5) * d * determinant(&(S)).ln(),
+            )
+        }
+        /// The physical energy at this node.
+        pub fn energy(&self, state: &EllipsoidSpatialState<N, T>) -> T {
+            let (kinetic, potential) = self.energies(state);
+            kinetic + potential
+        }
+        /// `tr(skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k)`: Casimir: the Kelvin-Noether quantity of what is advected.
+        pub fn circulation_S_2(&self, state: &EllipsoidSpatialState<N, T>) -> T {
+            let EllipsoidSpatialParameters { I0, .. } = self.parameters;
+            let Q = state.Q.matrix();
+            let S = Q * (I0 * Q.transpose());
+            let m = state.spatial_momentum().0;
+            let t1 = skew_part(&(m * inverse_or_nan(&(S))));
+            (t1 * (S * (t1 * S))).trace()
+        }
+        /// `tr(skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k)`: Casimir: the Kelvin-Noether quantity of what is advected.
+        pub fn circulation_S_4(&self, state: &EllipsoidSpatialState<N, T>) -> T {
+            let EllipsoidSpatialParameters { I0, .. } = self.parameters;
+            let Q = state.Q.matrix();
+            let S = Q * (I0 * Q.transpose());
+            let m = state.spatial_momentum().0;
+            let t1 = skew_part(&(m * inverse_or_nan(&(S))));
+            (t1 * (S * (t1 * (S * (t1 * (S * (t1 * S))))))).trace()
+        }
+        /// `skew(Q_kᵀ m_k Q_k⁻ᵀ I₀⁻¹)`: Noether: the action is invariant under what keeps the axis in the body.
+        pub fn body_momentum_skew_I0_inverse_right(
+            &self,
+            state: &EllipsoidSpatialState<N, T>,
+        ) -> SMatrix<T, N, N> {
+            let EllipsoidSpatialParameters { I0, .. } = self.parameters;
+            let Q = state.Q.matrix();
+            let m = state.spatial_momentum().0;
+            skew_part(
+                &(Q.tr_mul(&(m * inverse_or_nan(&(Q)).tr_mul(&inverse_or_nan(&(I0)))))),
+            )
+        }
+    }
+    impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
+        /// The discrete energy of the edge between two consecutive states, `2 tr(C₀ (g_k - Id) S_k (g_kᵀ - Id))/(2 h)² + ½ a tr(S_k) + ¼ b tr(S_k)² - ¼ b tr(S_k²) + ½ c det(S_k) - ¼ d log(det(S_k)) + ½ a tr(S_{k+1}) + ¼ b tr(S_{k+1})² - ¼ b tr(S_{k+1}²) + ½ c det(S_{k+1}) - ¼ d log(det(S_{k+1}))`: bounded, since the stepper is symplectic.
+        pub fn discrete_energy(
+            &self,
+            h: T,
+            before: &EllipsoidSpatialState<N, T>,
+            after: &EllipsoidSpatialState<N, T>,
+        ) -> T {
+            let EllipsoidSpatialParameters { C0, I0, a, b, c, d, .. } = self.parameters;
+            let g_matrix = before.Q.spatial_velocity(&after.Q).matrix();
+            let Q = before.Q.matrix();
+            let S = Q * (I0 * Q.transpose());
+            let Q_next = after.Q.matrix();
+            let S_next = Q_next * (I0 * Q_next.transpose());
+            let t1 = S.trace();
+            let t2 = determinant(&(S));
+            let t3 = S_next.trace();
+            let t4 = determinant(&(S_next));
+            (T::from_f64(2.0)
+                * (C0
+                    * ((g_matrix - SMatrix::<T, N, N>::identity())
+                        * (S * (g_matrix.transpose() - SMatrix::<T, N, N>::identity()))))
+                    .trace()) / ((T::from_f64(2.0) * h) * (T::from_f64(2.0) * h))
+                + T::from_f64(0.5) * a * t1 + T::from_f64(0.25) * b * (t1 * t1)
+                - T::from_f64(0.25) * b * (S * S).trace() + T::from_f64(0.5) * c * t2
+                - T::from_f64(0.25) * d * t2.ln() + T::from_f64(0.5) * a * t3
+                + T::from_f64(0.25) * b * (t3 * t3)
+                - T::from_f64(0.25) * b * (S_next * S_next).trace()
+                + T::from_f64(0.5) * c * t4 - T::from_f64(0.25) * d * t4.ln()
+        }
+    }
+    /// One trajectory of the model, its type hidden.
+    struct EllipsoidSpatialTrajectory<const N: usize> {
+        model: EllipsoidSpatial<N, f64>,
+        state: EllipsoidSpatialState<N, f64>,
+        steps: Steps<EllipsoidSpatial<N, f64>>,
+        h: f64,
+        /// The state before the last step.
+        before: EllipsoidSpatialState<N, f64>,
+        /// Whether a step is one of the derivation, not composed and without modified moments.
+        plain: bool,
+        kinetic: Option<KineticWarning>,
+    }
+    impl<const N: usize> Trajectory for EllipsoidSpatialTrajectory<N> {
+        fn node(&self) -> u64 {
+            self.state.node()
+        }
+        fn time(&self) -> f64 {
+            self.h * self.state.node() as f64
+        }
+        fn step(&mut self) -> Result<(), StepError> {
+            let before = self.state;
+            self.steps.step(&self.model, &mut self.state)?;
+            self.before = before;
+            Ok(())
+        }
+        fn card(&self) -> &'static Card {
+            &EllipsoidSpatial::<N, f64>::CARD
+        }
+        fn kinetic_warning(&self) -> Option<KineticWarning> {
+            self.kinetic
+        }
+        fn residual(&self) -> Option<f64> {
+            let moved = self.before.node() != self.state.node();
+            (self.plain && moved)
+                .then(|| {
+                    Residual::largest(
+                        &self.model.residual(&self.before, &self.state, self.h),
+                    )
+                })
+        }
+        fn observe(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(out, rows(state.Q().matrix()));
+            let out = put(out, rows(state.body_momentum().0));
+            let out = put(out, rows(state.spatial_momentum().0));
+            let out = put(out, rows(self.model.S(state)));
+            let _ = out;
+        }
+        fn invariants(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(out, [self.model.energy(state)]);
+            let out = put(out, [self.model.circulation_S_2(state)]);
+            let out = put(out, [self.model.circulation_S_4(state)]);
+            let out = put(
+                out,
+                rows(self.model.body_momentum_skew_I0_inverse_right(state)),
+            );
+            let _ = out;
+        }
+        fn scales(&self, out: &mut [f64]) {
+            let state = &self.state;
+            let out = put(
+                out,
+                ::core::iter::repeat_n(
+                    {
+                        let (kinetic, potential) = self.model.energies(state);
+                        kinetic.abs() + potential.abs()
+                    },
+                    1usize,
+                ),
+            );
+            let out = put(
+                out,
+                ::core::iter::repeat_n(
+                    {
+                        type T = f64;
+                        let EllipsoidSpatialParameters { I0, .. } = self
+                            .model
+                            .parameters;
+                        let Q = state.Q.matrix();
+                        let S = Q * (I0 * Q.transpose());
+                        let m = state.spatial_momentum().0;
+                        let t1 = inverse_or_nan(&(S));
+                        let value: T = ((m.tr_mul(&m)).trace().sqrt()
+                            * (S * S).trace().sqrt() * (t1 * t1).trace().sqrt())
+                            * ((m.tr_mul(&m)).trace().sqrt() * (S * S).trace().sqrt()
+                                * (t1 * t1).trace().sqrt());
+                        value
+                    },
+                    1usize,
+                ),
+            );
+            let out = put(
+                out,
+                ::core::iter::repeat_n(
+                    {
+                        type T = f64;
+                        let EllipsoidSpatialParameters { I0, .. } = self
+                            .model
+                            .parameters;
+                        let Q = state.Q.matrix();
+                        let S = Q * (I0 * Q.transpose());
+                        let m = state.spatial_momentum().0;
+                        let t1 = inverse_or_nan(&(S));
+                        let value: T = ((m.tr_mul(&m)).trace().sqrt()
+                            * (S * S).trace().sqrt() * (t1 * t1).trace().sqrt())
+                            .powi(4);
+                        value
+                    },
+                    1usize,
+                ),
+            );
+            let out = put(
+                out,
+                ::core::iter::repeat_n(
+                    {
+                        type T = f64;
+                        let EllipsoidSpatialParameters { I0, .. } = self
+                            .model
+                            .parameters;
+                        let Q = state.Q.matrix();
+                        let m = state.spatial_momentum().0;
+                        let t1 = inverse_or_nan(&(Q));
+                        let t2 = inverse_or_nan(&(I0));
+                        let value: T = (t1
+                            * m.tr_mul(&(Q * Q.tr_mul(&(m * t1.transpose())))))
+                            .trace()
+                            .sqrt() * (t2 * t2).trace().sqrt();
+                        value
+                    },
+                    N * N,
+                ),
+            );
+            let _ = out;
+        }
+    }
+    impl<const N: usize> EllipsoidSpatial<N, f64> {
+        /// The model as data.
+        pub const CARD: Card = Card {
+            name: "EllipsoidSpatial",
+            kebab: "ellipsoid-spatial",
+            doc: "Elastic ellipsoid, spatial representation.",
+            source: Self::SOURCE,
+            fingerprint: Self::FINGERPRINT,
+            summary: "action of one step   tr(C₀ (g_k - Id) S_k (g_kᵀ - Id))/(2 h) - ½ h a tr(S_k) - ¼ h b tr(S_k)² + ¼ h b tr(S_k²) - ½ h c det(S_k) + ¼ h d log(det(S_k)) - ½ h a tr(S_{k+1}) - ¼ h b tr(S_{k+1})² + ¼ h b tr(S_{k+1}²) - ½ h c det(S_{k+1}) + ¼ h d log(det(S_{k+1}))\nmomentum of Q        C₀ (g_k - Id) S_k g_kᵀ/h\nRiccati form         none; linear, L = C₀/h, R = S_k\ninvariants           energy, circulation_S_2, circulation_S_4, body_momentum_skew_I0_inverse_right\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
+            solver: "Explicit: the balance is linear: two small linear systems",
+            order: 2u32,
+            orders: &[2, 4, 6, 8],
+            preprocessed: false,
+            reversible: true,
+            parameters: &[
+                Field {
+                    name: "C0",
+                    ascii: "C0",
+                    rows: N,
+                    cols: N,
+                    kind: Kind::Symmetric,
+                    doc: "metric of space",
+                },
+                Field {
+                    name: "I0",
+                    ascii: "I0",
+                    rows: N,
+                    cols: N,
+                    kind: Kind::Symmetric,
+                    doc: "second moments of mass in the reference",
+                },
+                Field {
+                    name: "a",
+                    ascii: "a",
+                    rows: 1,
+                    cols: 1,
+                    kind: Kind::Scalar,
+                    doc: "stiffness of lengths, of areas and of volumes",
+                },
+                Field {
+                    name: "b",
+                    ascii: "b",
+                    rows: 1,
+                    cols: 1,
+                    kind: Kind::Scalar,
+                    doc: "stiffness of lengths, of areas and of volumes",
+                },
+                Field {
+                    name: "c",
+                    ascii: "c",
+                    rows: 1,
+                    cols: 1,
+                    kind: Kind::Scalar,
+                    doc: "stiffness of lengths, of areas and of volumes",
+                },
+                Field {
+                    name: "d",
+                    ascii: "d",
+                    rows: 1,
+                    cols: 1,
+                    kind: Kind::Scalar,
+                    doc: "resistance to collapse; without stress at the identity if d = 2 a + 2 (n - 1) b + 2 c",
+                },
+            ],
+            initial: &[
+                Field {
+                    name: "Q",
+                    ascii: "Q",
+                    rows: N,
+                    cols: N,
+                    kind: Kind::Matrix,
+                    doc: "placement, reference to space",
+                },
+                Field {
+                    name: "spatial_momentum",
+                    ascii: "spatial_momentum",
+                    rows: N,
+                    cols: N,
+                    kind: Kind::SpatialMomentum,
+                    doc: "momentum, space frame",
+                },
+            ],
+            observables: &[
+                Field {
+                    name: "Q",
+                    ascii: "Q",
+                    rows: N,
+                    cols: N,
+                    kind: Kind::Matrix,
+                    doc: "placement, reference to space",
+                },
+                Field {
+                    name: "body_momentum",
+                    ascii: "body_momentum",
+                    rows: N,
+                    cols: N,
+                    kind: Kind::BodyMomentum,
+                    doc: "momentum, body frame",
+                },
+                Field {
+                    name: "spatial_momentum",
+                    ascii: "spatial_momentum",
+                    rows: N,
+                    cols: N,
+                    kind: Kind::SpatialMomentum,
+                    doc: "momentum, space frame",
+                },
+                Field {
+                    name: "S",
+                    ascii: "S",
+                    rows: N,
+                    cols: N,
+                    kind: Kind::Symmetric,
+                    doc: "second moments in space",
+                },
+            ],
+            invariants: &[
+                Invariant {
+                    name: "energy",
+                    formula: "½ tr(m_kᵀ ζ) + a tr(S_k) + ½ b tr(S_k)² - ½ b tr(S_k²) + c det(S_k) - ½ d log(det(S_k)), where m_k = C₀ ζ S_k",
+                    rows: 1usize,
+                    conserved: Conserved::Boundedly,
+                },
+                Invariant {
+                    name: "circulation_S_2",
+                    formula: "tr(skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k)",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "circulation_S_4",
+                    formula: "tr(skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k)",
+                    rows: 1usize,
+                    conserved: Conserved::Exactly,
+                },
+                Invariant {
+                    name: "body_momentum_skew_I0_inverse_right",
+                    formula: "skew(Q_kᵀ m_k Q_k⁻ᵀ I₀⁻¹)",
+                    rows: N * N,
+                    conserved: Conserved::Exactly,
+                },
+            ],
+            discrete_energy: Invariant {
+                name: "discrete_energy",
+                formula: "2 tr(C₀ (g_k - Id) S_k (g_kᵀ - Id))/(2 h)² + ½ a tr(S_k) + ¼ b tr(S_k)² - ¼ b tr(S_k²) + ½ c det(S_k) - ¼ d log(det(S_k)) + ½ a tr(S_{k+1}) + ¼ b tr(S_{k+1})² - ¼ b tr(S_{k+1}²) + ½ c det(S_{k+1}) - ¼ d log(det(S_{k+1}))",
+                rows: 1,
+                conserved: Conserved::Boundedly,
+            },
+            open: Self::open,
+            solvers: &[],
+            dimensions: &[
+                Dimension {
+                    name: "n",
+                    from: 2,
+                    to: 4,
+                    value: N,
+                },
+            ],
+            sized: Self::sized,
+        };
+        /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
+        /// velocities together, at the identity, should be positive definite.
+        #[cold]
+        #[allow(unused_variables)]
+        pub fn kinetic_warning(
+            &self,
+            state: &EllipsoidSpatialState<N, f64>,
+        ) -> Option<KineticWarning> {
+            type T = f64;
+            let EllipsoidSpatialParameters { C0, I0, .. } = self.parameters;
+            let Q = state.Q.matrix();
+            let S = Q * (I0 * Q.transpose());
+            let mut inertia = SMatrix::<T, 16, 16>::zeros();
+            for axis in 0..(N * N) {
+                let ξ: SMatrix<T, N, N> = matrix_basis::<T, N>(axis);
+                let t1 = C0 * (ξ * S) * T::from_f64(0.5);
+                let parts: [SMatrix<T, N, N>; 1] = [t1 + t1];
+                inertia
+                    .set_column(
+                        axis,
+                        &{
+                            let mut all = SVector::<T, 16>::zeros();
+                            let rest = all.as_mut_slice();
+                            let rest = put_matrix(rest, &parts[0]);
+                            let _ = rest;
+                            all
+                        },
+                    );
+            }
+            KineticWarning::of(&inertia, 0 + (N * N))
+        }
+        /// The card of the model at the given sizes, in the order of their declaration.
+        fn sized(sizes: &[usize]) -> Option<Card> {
+            match sizes {
+                [2] => Some(EllipsoidSpatial::<2, f64>::CARD),
+                [3] => Some(EllipsoidSpatial::<3, f64>::CARD),
+                [4] => Some(EllipsoidSpatial::<4, f64>::CARD),
+                _ => None,
+            }
+        }
+        fn open(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+            settings: Settings,
+        ) -> Result<Box<dyn Trajectory>, OpenError> {
+            for (field, expected, found) in [
+                ("parameters", 6usize, parameters.len()),
+                ("initial values", 2usize, initial.len()),
+            ] {
+                if expected != found {
+                    return Err(OpenError::Count {
+                        field,
+                        expected,
+                        found,
+                    });
+                }
+            }
+            let model = EllipsoidSpatial::new(EllipsoidSpatialParameters {
+                C0: matrix_of("C0", parameters.get(0usize))?,
+                I0: matrix_of("I0", parameters.get(1usize))?,
+                a: number_of("a", parameters.get(2usize))?,
+                b: number_of("b", parameters.get(3usize))?,
+                c: number_of("c", parameters.get(4usize))?,
+                d: number_of("d", parameters.get(5usize))?,
+            })?;
+            let initial = EllipsoidSpatialInitial {
+                Q: linear_of("Q", initial.get(0usize))?,
+                spatial_momentum: SpatialMomentumMatrix(
+                    matrix_of("spatial_momentum", initial.get(1usize))?,
+                ),
+            };
+            chosen_solver(settings, Self::CARD.solvers)?;
+            let state = model.at_node_0(initial)?;
+            let kinetic = model.kinetic_warning(&state);
+            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)
+                .map_err(|e| OpenError::from(e).beside(kinetic))?;
+            let plain = matches!(steps, Steps::Plain(_));
+            Ok(
+                Box::new(EllipsoidSpatialTrajectory::<N> {
+                    model,
+                    state,
+                    steps,
+                    h: settings.h,
+                    before: state,
+                    plain,
+                    kinetic,
+                }),
+            )
+        }
+    }
+}
+#[allow(unused_imports)]
+pub use ellipsoid_spatial::*;

@@ -1,0 +1,41 @@
+//! Elastic ellipsoid (affine body) seen from the body, a material of Mooney and Rivlin (thesis 3.1.2 and 3.2.3, with
+//! (3.27) corrected for potentials and (3.61) for its natural state). Any number of dimensions from two to four.
+
+use crate::case::{Case, Entry};
+use crate::ellipsoids::ellipsoids;
+
+clebsch::model! {
+    /// Elastic ellipsoid, convective representation.
+    pub model EllipsoidConvective {
+        dim n in 2..=4;
+        /// metric of space
+        param C0: Sym<n> as "C_0";
+        /// second moments of mass in the reference
+        param I0: Sym<n> as "I_0";
+        /// stiffness of lengths, of areas and of volumes
+        param a, b, c: Real;
+        /// resistance to collapse; without stress at the identity if d = 2 a + 2 (n - 1) b + 2 c
+        param d: Real;
+        /// placement, reference to space
+        group Q: GL<n> velocity G;
+        /// metric of space seen from the body
+        advected C: Sym<n> = Q^T*C0*Q;
+        constraint next(Q) = Q*G;
+        constraint next(C) = G^T*C*G;
+        let W = a*I1(C) + b*I2(C) + c*det(C) - (d/2)*log(det(C));
+        lagrangian = tr(C*(G - Id)*I0*(G - Id)^T)/(2*h) - h*W;
+    }
+}
+
+/// The model and its cases.
+pub fn entry() -> Entry {
+    // The momentum seen from the body is Q^T C0 V I0.
+    let cases = ellipsoids().into_iter().map(|e| Case {
+        initial: vec![e.placement(), e.body_momentum()],
+        ..e.case()
+    });
+    Entry {
+        card: EllipsoidConvective::<3>::CARD,
+        cases: cases.collect(),
+    }
+}

@@ -1,0 +1,102 @@
+//! Four configurations in four groups, joined by springs: a body about a fixed point, a rigid motion, a second body in unit
+//! quaternions and a point mass, whose kinetic energy is quartic. Springs act at the nodes, so that a step solves for each
+//! by itself, in its own way.
+
+use crate::case::{Case, Entry, diagonal, identity};
+
+clebsch::model! {
+    /// Two bodies, a rigid motion and a point mass joined by springs.
+    pub model MixedFour {
+        /// second moments of the first body about its fixed point
+        param J: Sym<3>;
+        /// second moments of the rigid motion about its own point
+        param A: Sym<3>;
+        /// mass of the rigid motion
+        param M: Real;
+        /// principal moments of inertia of the second body
+        param I: Diag<3>;
+        /// mass of the point
+        param m: Real;
+        /// weight of the quartic term of its kinetic energy
+        param b: Real;
+        /// stiffness of the springs
+        param k: Real;
+        /// where springs are fixed: in the first body, in the rigid motion, in the second body
+        param p, s, e: Vec<3>;
+        /// acceleration of gravity, which acts on the point
+        param g: Vec<3>;
+        /// attitude of the first body
+        group R: SO<3> velocity V;
+        /// attitude and place of the rigid motion
+        group G: SE<3> velocity W;
+        /// attitude of the second body
+        group q: SU<2> velocity Y;
+        /// place of the point
+        field X: Vec<3>;
+        constraint next(R) = R*V;
+        constraint next(G) = G*W;
+        constraint next(q) = q*Y;
+        let d = next(X) - X;
+        let y = pos(next(G)) - pos(G);
+        let apart = pos(G) + rot(G)*s - X;
+        lagrangian = -tr(J*V)/h - tr(A*rot(W))/h + M*dot(y, y)/(2*h) + (2/h)*dot(im(Y), I*im(Y))
+            + m*dot(d, d)/(2*h) + (b/h^3)*dot(d, d)^2 + h*m*dot(g, X)
+            - (h*k/2)*dot(X - R*p, X - R*p) - (h*k/2)*dot(apart, apart)
+            - h*k*dot(rot(q)*e, R*p);
+    }
+}
+
+fn case(name: &str, doc: &str, quartic: f64) -> Case {
+    Case {
+        name: name.to_owned(),
+        doc: doc.to_owned(),
+        h: 0.05,
+        steps: 10_000,
+        parameters: vec![
+            diagonal([1.0, 0.7, 0.4]),
+            diagonal([0.5, 0.8, 0.6]),
+            vec![1.5],
+            diagonal([0.9, 0.8, 0.5]),
+            vec![1.2],
+            vec![quartic],
+            vec![0.9],
+            vec![0.6, -0.2, 0.3],
+            vec![0.2, 0.4, -0.1],
+            vec![-0.3, 0.5, 0.4],
+            vec![0.0, 0.0, -0.5],
+        ],
+        initial: vec![
+            identity(),
+            vec![0.3, -0.2, 0.6],
+            vec![
+                1.0, 0.0, 0.0, 0.5, 0.0, 1.0, 0.0, -0.3, 0.0, 0.0, 1.0, 0.4, 0.0, 0.0, 0.0, 1.0,
+            ],
+            vec![-0.2, 0.4, 0.1, 0.3, 0.2, -0.1],
+            vec![1.0, 0.0, 0.0, 0.0],
+            vec![0.1, 0.5, -0.3],
+            vec![0.8, 0.1, -0.2],
+            vec![0.2, -0.4, 0.5],
+        ],
+        // Momenta are exact.
+        bounds: Vec::new(),
+    }
+}
+
+/// The model and its cases.
+pub fn entry() -> Entry {
+    Entry {
+        card: MixedFour::CARD,
+        cases: vec![
+            case(
+                "quartic",
+                "all four in motion, the quartic part of the point's kinetic energy a tenth of the quadratic one at the start",
+                0.3,
+            ),
+            case(
+                "strongly-quartic",
+                "the same, with nearly half of the quadratic part",
+                3.0,
+            ),
+        ],
+    }
+}
