@@ -2,7 +2,7 @@
 
 use super::{Step, length, number, quantity};
 use clebsch::nalgebra::SMatrix;
-use clebsch::{BodyMomentumMatrix, Dual, Group, Linear, SpatialMomentumMatrix};
+use clebsch::{BodyMomentumMatrix, Dual, Linear, SpatialMomentumMatrix};
 use clebsch_models::Case;
 use clebsch_oracle::physics::draws::Draws;
 

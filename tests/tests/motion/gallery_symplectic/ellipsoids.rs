@@ -2,7 +2,7 @@
 
 use super::number;
 use clebsch::nalgebra::SMatrix;
-use clebsch::{BodyMomentumMatrix, Dual, Group, Linear, Real, SpatialMomentumMatrix};
+use clebsch::{BodyMomentumMatrix, Dual, Linear, SpatialMomentumMatrix};
 use clebsch_models::Case;
 use clebsch_oracle::physics::draws::Draws;
 use clebsch_oracle::physics::symplectic::defect_on_group;

@@ -1,9 +1,9 @@
 //! Four groups together: one step, symplectic on their product. Takes a case and random states; gives the defect.
 
+use super::Turn;
 use clebsch::nalgebra::{Matrix3, SVector, Vector3};
 use clebsch::{
-    Additive, BodyImpulse, BodyMomentum, Dual, FieldMomentum, Real, RigidMotion, Rotation,
-    UnitQuaternion,
+    Additive, BodyImpulse, BodyMomentum, Dual, FieldMomentum, RigidMotion, Rotation, UnitQuaternion,
 };
 use clebsch_models::Case;
 use clebsch_oracle::physics::draws::Draws;
