@@ -119,6 +119,15 @@ impl Matrix {
         let pairs = self.data.iter().zip(&b.data);
         pairs.fold(0, |s, (x, y)| add(s, mul(*x, *y)))
     }
+
+    /// `tr(self^T b)` with the entries of `b` that are not zero, 1 or -1: as many terms as entries, however
+    /// large the matrix is.
+    pub(crate) fn paired(&self, b: &[(usize, usize, i64)]) -> u64 {
+        b.iter().fold(0, |sum, (i, j, x)| {
+            let own = self.data.get(i * self.cols + j).copied().unwrap_or(0);
+            add(sum, if *x < 0 { negate(own) } else { own })
+        })
+    }
 }
 
 /// What a dimension that has only a name stands for.

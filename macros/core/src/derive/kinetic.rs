@@ -38,6 +38,9 @@ const LARGEST: u32 = 20_000;
 /// Most nodes that are evaluated for the rank.
 const EVALUATED: u64 = 100_000;
 
+/// Most velocities whose form is taken for a matrix: its elimination costs the cube of them.
+const VELOCITIES: usize = 256;
+
 /// Points in general position that are tried: the rank is the largest found.
 const POINTS: u64 = 3;
 
@@ -167,7 +170,7 @@ fn rank(spec: &Spec, letters: &Letters, form: &Expr, equations: &[Expr]) -> Opti
             continue;
         };
         let basis = basis(spec, letters, &|n| point.dim(n));
-        if cost * basis.len() as u64 > EVALUATED {
+        if basis.len() > VELOCITIES || cost * basis.len() as u64 > EVALUATED {
             return None;
         }
         let still = |p: &mut Point| {
@@ -195,7 +198,7 @@ fn rank(spec: &Spec, letters: &Letters, form: &Expr, equations: &[Expr]) -> Opti
             let along = basis.iter().map(|(other, f)| {
                 let i = letters.variation.iter().position(|x| *x == other.symbol);
                 let value = i.and_then(|i| values.get(i));
-                value.map_or(0, |v| v.pairing(&element(&point, *other, f)))
+                value.map_or(0, |v| v.paired(f))
             });
             rows.push(along.collect::<Vec<u64>>());
         }
@@ -232,6 +235,24 @@ mod tests {
             .ids()
             .filter(|id| is_second_moment(&d.spec, &d.letters, &form.energy, *id));
         found.map(|id| s.get(id).name.clone()).collect()
+    }
+
+    #[test]
+    fn the_form_of_a_large_field_is_not_made_a_matrix() {
+        let rank = |size: usize, kinetic: &str| {
+            let text = format!(
+                "model M {{ param m: Real; param a: Vec<{size}>; field X: Mat<{size}>; \
+                 let d = next(X) - X; lagrangian = m*{kinetic}/(2*h) - h*tr(X*X*X); }}"
+            );
+            let d = derive_source(&text).unwrap_or_else(|e| panic!("{text}\n{e}"));
+            d.kinetic.and_then(|k| k.rank)
+        };
+        assert_eq!(rank(5, "tr(d^T*d)"), Some((25, 25)));
+        assert_eq!(rank(5, "dot(d*a, d*a)"), Some((5, 25)));
+        assert_eq!(rank(5, "tr((d - d^T)^T*(d - d^T))"), Some((10, 25)));
+        assert_eq!(rank(16, "tr(d^T*d)"), Some((256, 256)));
+        // A thousand velocities: the cube of them is more than a model is worth.
+        assert_eq!(rank(32, "tr(d^T*d)"), None);
     }
 
     #[test]
