@@ -314,12 +314,12 @@ pub mod mixed_four {
                     rows_from::<T, 6, 3, 1>(&momenta_six, 3),
                 ];
                 let s1 = h.powi(-1);
-                let s2 = motion_rotation(&G).transpose();
-                let s3 = motion_translation(&G);
-                let k2 = ((s2 * X).cross(&s) + s.cross(&(s2 * s3))) * T::from_f64(0.5)
-                    * h * k;
+                let s2 = motion_rotation(&G);
+                let s3 = s2.transpose();
+                let s4 = motion_translation(&G);
+                let k2 = s.cross(&(s3 * (s4 - X))) * T::from_f64(0.5) * h * k;
                 let k3 = M * s1;
-                let k4 = (s2 * (s3 - X) + s) * T::from_f64(0.5) * h * k;
+                let k4 = s3 * (s4 - X + s2 * s) * T::from_f64(0.5) * h * k;
                 let mut iteration = work.search_2.begin(state.node, []);
                 loop {
                     let trial = iteration.trial();
@@ -561,11 +561,13 @@ pub mod mixed_four {
             let t1 = relative_R_q * e_;
             let t2 = relative_R_q_next * e_;
             let t3 = motion_rotation(&G);
-            let t4 = motion_translation(&G);
-            let t5 = t3.tr_mul(&(X - t4));
-            let t6 = motion_rotation(&G_next);
-            let t7 = motion_translation(&G_next);
-            let t8 = t6.tr_mul(&(X_next - t7));
+            let t4 = t3.transpose();
+            let t5 = motion_translation(&G);
+            let t6 = t5 - X + t3 * s;
+            let t7 = motion_rotation(&G_next);
+            let t8 = t7.transpose();
+            let t9 = motion_translation(&G_next);
+            let t10 = t9 - X_next + t7 * s;
             let momentum_R_next = state.momentum_R.0
                 + R * (p.cross(&(R.tr_mul(&X) - t1)) * T::from_f64(0.5) * h * k)
                 + R_next
@@ -575,14 +577,14 @@ pub mod mixed_four {
                 + state
                     .G
                     .covector_to_space(
-                        &((into_rows::<T, 6, 3, 1>(&s.cross(&t5), 0)
-                            + into_rows::<T, 6, 3, 1>(&(t5 - s), 3)) * T::from_f64(0.5)
+                        &(((-(into_rows::<T, 6, 3, 1>(&s.cross(&(t4 * t6)), 0)))
+                            - into_rows::<T, 6, 3, 1>(&(t4 * t6), 3)) * T::from_f64(0.5)
                             * h * k),
                     )
                 + G_moved
                     .covector_to_space(
-                        &((into_rows::<T, 6, 3, 1>(&s.cross(&t8), 0)
-                            + into_rows::<T, 6, 3, 1>(&(t8 - s), 3)) * T::from_f64(0.5)
+                        &(((-(into_rows::<T, 6, 3, 1>(&s.cross(&(t8 * t10)), 0)))
+                            - into_rows::<T, 6, 3, 1>(&(t8 * t10), 3)) * T::from_f64(0.5)
                             * h * k),
                     );
             let momentum_q_next = state.momentum_q.0
@@ -597,8 +599,8 @@ pub mod mixed_four {
                             * k),
                     );
             let momentum_X_next = state.momentum_X.0 + g * h * m
-                + ((R + R_next) * p * T::from_f64(0.5) + (t3 + t6) * s * T::from_f64(0.5)
-                    - X - X_next + t4 * T::from_f64(0.5) + t7 * T::from_f64(0.5)) * h
+                + ((R + R_next) * p * T::from_f64(0.5) + (t3 + t7) * s * T::from_f64(0.5)
+                    - X - X_next + t5 * T::from_f64(0.5) + t9 * T::from_f64(0.5)) * h
                     * k;
             if !(all_finite(&momentum_R_next) && all_finite(&momentum_G_next)
                 && all_finite(&momentum_q_next) && all_finite(&momentum_X_next))
@@ -746,8 +748,9 @@ pub mod mixed_four {
             let X = given.1.0;
             let (W_rot, W_pos) = (trial[0].rotation.matrix(), trial[0].translation);
             let t1 = h.powi(-1);
-            let t2 = motion_rotation(&G).transpose();
-            let t3 = motion_translation(&G);
+            let t2 = motion_rotation(&G);
+            let t3 = t2.transpose();
+            let t4 = motion_translation(&G);
             joined::<
                 T,
                 2,
@@ -755,9 +758,9 @@ pub mod mixed_four {
             >(
                 &[
                     (axial_of_difference(&(W_rot * A)) * t1
-                        + ((t2 * X).cross(&s) + s.cross(&(t2 * t3))) * T::from_f64(0.5)
-                            * h * k) - momenta[0],
-                    (W_pos * M * t1 + (t2 * (t3 - X) + s) * T::from_f64(0.5) * h * k)
+                        + s.cross(&(t3 * (t4 - X))) * T::from_f64(0.5) * h * k)
+                        - momenta[0],
+                    (W_pos * M * t1 + t3 * (t4 - X + t2 * s) * T::from_f64(0.5) * h * k)
                         - momenta[1],
                 ],
             )
@@ -1487,47 +1490,35 @@ pub mod mixed_four {
             let t5 = motion_rotation(&W_before);
             let t6 = motion_rotation(&G);
             let t7 = t6.transpose();
-            let t8 = s.cross(&(t7 * X)) * T::from_f64(0.5) * h * k;
-            let t9 = motion_translation(&G);
-            let t10 = s.cross(&(t7 * t9)) * T::from_f64(0.5) * h * k;
-            let t11 = s * T::from_f64(0.5) * h * k;
-            let t12 = t7 * X * T::from_f64(0.5) * h * k;
-            let t13 = t7 * t9 * T::from_f64(0.5) * h * k;
-            let t14 = relative_R_q.tr_mul(&t3) * T::from_f64(0.5) * h * k;
-            let t15 = h.powi(-3);
-            let t16 = g * T::from_f64(0.5) * h * m;
-            let t17 = R * p * T::from_f64(0.5) * h * k;
-            let t18 = -(X * h * k);
-            let t19 = t6 * s * T::from_f64(0.5) * h * k;
-            let t20 = t9 * T::from_f64(0.5) * h * k;
+            let t8 = motion_translation(&G);
+            let t9 = s.cross(&(t7 * (t8 - X))) * T::from_f64(0.5) * h * k;
+            let t10 = t7 * (t8 + t6 * s - X) * T::from_f64(0.5) * h * k;
+            let t11 = relative_R_q.tr_mul(&t3) * T::from_f64(0.5) * h * k;
+            let t12 = h.powi(-3);
+            let t13 = g * T::from_f64(0.5) * h * m;
+            let t14 = R * p * T::from_f64(0.5) * h * k;
+            let t15 = -(X * h * k);
+            let t16 = t6 * s * T::from_f64(0.5) * h * k;
+            let t17 = t8 * T::from_f64(0.5) * h * k;
             let parts: (SVector<T, 3>, SVector<T, 6>, SVector<T, 3>, SVector<T, 3>) = (
                 axial_of_difference(&(J * V_before)) * t1 + t2 + t4
                     + axial_of_difference(&(J * V.transpose())) * t1 + t2 + t4,
-                into_rows::<
-                    T,
-                    6,
-                    3,
-                    1,
-                >(&(axial_of_difference(&(A * t5)) * t1 + t8 - t10), 0)
+                into_rows::<T, 6, 3, 1>(&(axial_of_difference(&(A * t5)) * t1 - t9), 0)
                     + into_rows::<
                         T,
                         6,
                         3,
                         1,
-                    >(
-                        &(t5.tr_mul(&motion_translation(&W_before)) * t1 * M - t11 + t12
-                            - t13),
-                        3,
-                    )
+                    >(&(t5.tr_mul(&motion_translation(&W_before)) * t1 * M - t10), 3)
                     - into_rows::<
                         T,
                         6,
                         3,
                         1,
                     >(
-                        &(t10
+                        &(t9
                             - axial_of_difference(&(A * motion_rotation(&W).transpose()))
-                                * t1 - t8),
+                                * t1),
                         0,
                     )
                     - into_rows::<
@@ -1535,7 +1526,7 @@ pub mod mixed_four {
                         6,
                         3,
                         1,
-                    >(&(motion_translation(&W) * t1 * M + t11 - t12 + t13), 3),
+                    >(&(motion_translation(&W) * t1 * M + t10), 3),
                 quaternion_imaginary(
                     &(Y_before
                         .tr_mul(
@@ -1543,17 +1534,17 @@ pub mod mixed_four {
                                 &(diagonal_times(&I, &quaternion_imaginary(&Y_before))),
                             ),
                         )),
-                ) * T::from_f64(2.0) * t1 + t14
+                ) * T::from_f64(2.0) * t1 + t11
                     - quaternion_imaginary(
                         &(Y
                             * pure_quaternion(
                                 &(diagonal_times(&I, &quaternion_imaginary(&Y))),
                             )),
-                    ) * T::from_f64(2.0) * t1 + t14,
-                ΔX_before * T::from_f64(4.0) * t15 * b * ΔX_before.dot(&ΔX_before)
-                    + ΔX_before * t1 * m + t16 + t17 + t18 + t19 + t20
-                    - ΔX * T::from_f64(4.0) * t15 * b * ΔX.dot(&ΔX) - ΔX * t1 * m
-                    + t16 + t17 + t18 + t19 + t20,
+                    ) * T::from_f64(2.0) * t1 + t11,
+                ΔX_before * T::from_f64(4.0) * t12 * b * ΔX_before.dot(&ΔX_before)
+                    + ΔX_before * t1 * m + t13 + t14 + t15 + t16 + t17
+                    - ΔX * T::from_f64(4.0) * t12 * b * ΔX.dot(&ΔX) - ΔX * t1 * m
+                    + t13 + t14 + t15 + t16 + t17,
             );
             {
                 let mut all = SVector::<T, 15>::zeros();
@@ -1655,14 +1646,13 @@ pub mod mixed_four {
                         size: length(
                                 &(momentum
                                     - (axial_of_difference(&(A * t3)) * t1
-                                        + s.cross(&(t5 * X_next)) * T::from_f64(0.5) * h * k
-                                        - s.cross(&(t5 * t6)) * T::from_f64(0.5) * h * k)),
+                                        - s.cross(&(t5 * (t6 - X_next))) * T::from_f64(0.5) * h
+                                            * k)),
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()
                             + (T::from_f64(2.0) * t12 * (A * A).trace().sqrt() * t20
-                                + T::from_f64(0.5) * t13 * t14 * t21 * t22 * t17
-                                + T::from_f64(0.5) * t13 * t14 * t21 * t22 * t23)
+                                + T::from_f64(0.5) * t13 * t14 * t21 * t22 * (t23 + t17))
                                 .magnitude()
                             + (length(&after.G.translation)
                                 * length(&rows_from::<T, 6, 3, 1>(&after.momentum_G.0, 3)))
@@ -1679,16 +1669,14 @@ pub mod mixed_four {
                     Residual {
                         size: length(
                                 &(momentum
-                                    - (t7 * t8 * t1 * M - s * T::from_f64(0.5) * h * k
-                                        + t5 * X_next * T::from_f64(0.5) * h * k
-                                        - t5 * t6 * T::from_f64(0.5) * h * k)),
+                                    - (t7 * t8 * t1 * M
+                                        - t5 * (t6 + t4 * s - X_next) * T::from_f64(0.5) * h * k)),
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()
                             + (t12 * t24 * t20 * t8.dot(&t8).sqrt()
-                                + T::from_f64(0.5) * t13 * t14 * t21
-                                + T::from_f64(0.5) * t13 * t14 * t22 * t17
-                                + T::from_f64(0.5) * t13 * t14 * t22 * t23
+                                + T::from_f64(0.5) * t13 * t14 * t22
+                                    * (t23 + t22 * t21 + t17)
                                 + t12 * t24 * t20 * (t25.dot(&t25).sqrt() + t23))
                                 .magnitude(),
                     }

@@ -28,14 +28,15 @@ clebsch::model! {
 }
 
 clebsch::model! {
-    /// A mass on a spring that hardens, at a body in space.
+    /// A mass on a spring that hardens, at the arm of a body in space.
     model Tied {
         param m, k: Real;
+        param a: Vec<3>;
         param J: Sym<3>;
         group G: SE<3> velocity V;
         field X: Vec<3>;
         constraint next(G) = G*V;
-        let s = X - pos(G);
+        let s = X - pos(G) - rot(G)*a;
         lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) - tr(J*rot(V))/h
             + m*dot(pos(V), pos(V))/(2*h) - h*k*dot(s, s)^2;
     }
@@ -121,6 +122,7 @@ fn tied(by: f64) -> [Vector3<f64>; 2] {
     let parameters = TiedParameters {
         m: 1.0,
         k: 0.5,
+        a: Vector3::new(0.5, 0.25, -0.5),
         J: Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 3.0)),
     };
     let model = Tied::new(parameters).expect("parameters");

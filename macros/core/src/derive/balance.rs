@@ -230,10 +230,7 @@ pub fn shorter(algebra: &Algebra, e: Expr) -> Expr {
         // The angular and the linear part, each by itself.
         let part = |row| {
             let part = expr::part_of_six(algebra.symbols(), &e, row);
-            match far::error(algebra, &e) > 0.0 {
-                true => far::least(algebra, algebra.shortest(&part), &part),
-                false => algebra.shortest(&part),
-            }
+            far::least(algebra, algebra.shortest(&part), &part)
         };
         return expr::stacked(part(0), part(3));
     }

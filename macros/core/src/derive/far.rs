@@ -7,7 +7,7 @@ use crate::algebra::exact::{ATTEMPTS, Point};
 use crate::expr::places;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::{Role, Symbols};
-use crate::expr::{self, Expr, Letter, Node};
+use crate::expr::{self, Expr, Letter, Map, Node};
 
 /// Powers of the distance from the origin: that of the value, and that of its rounding in units of
 /// `EPSILON`. What is exact has a rounding of minus infinity.
@@ -22,13 +22,15 @@ const LARGEST: u32 = 400;
 
 /// The power of the distance from the origin that the rounding of an expression is of, for places that
 /// are far from it and near to each other: values of fields, the translations of rigid motions, and
-/// constants of the same shape, which may be centres. Zero where no place stands.
+/// constants that are taken from such. Zero where no place stands.
 pub(super) fn error(algebra: &Algebra, e: &Expr) -> f64 {
     let symbols = algebra.symbols();
     if !expr::letters(e).iter().any(|l| is_place(symbols, l)) {
         return 0.0;
     }
-    Far { symbols }.order(e).error.max(0.0)
+    let mut centres = Vec::new();
+    places::centres(symbols, e, &mut centres);
+    Far { symbols, centres }.order(e).error.max(0.0)
 }
 
 /// The reduced form of an expression, unless places far from the origin round more in it: then the
@@ -62,6 +64,8 @@ fn is_place(s: &Symbols, l: &Letter) -> bool {
 }
 
 struct Far<'a> {
+    /// Constants that are subtracted from places.
+    centres: Vec<Letter>,
     symbols: &'a Symbols,
 }
 
@@ -80,9 +84,11 @@ impl Far<'_> {
             Node::Letter(l) => exact(f64::from(u8::from(self.is_far(l)))),
             Node::Sum(terms) => {
                 let inside = terms.iter().map(|t| self.order(t)).fold(exact(0.0), sum);
-                // Partial sums of more than two terms are rounded before the last one cancels.
+                // Partial sums of more than two terms are rounded before the last one cancels; places,
+                // which are emitted first, are not.
                 let size = self.size(e, inside.size);
-                let rounded = if terms.len() == 2 { size } else { inside.size };
+                let paired = terms.len() == 2 || places::is_between(self.symbols, e);
+                let rounded = if paired { size } else { inside.size };
                 Order {
                     size,
                     error: inside.error.max(rounded),
@@ -104,6 +110,7 @@ impl Far<'_> {
             }
             Node::Quotient(a, b) => product(self.order(a), power(self.order(b), -1.0)),
             Node::Power(a, q) => power(self.order(a), q.value()),
+            Node::Map(Map::Rotation, a) if expr::is_motion(self.symbols, a) => exact(0.0),
             Node::Neg(a)
             | Node::Transpose(a)
             | Node::Hat(a)
@@ -131,30 +138,7 @@ impl Far<'_> {
     }
 
     fn is_far(&self, l: &Letter) -> bool {
-        is_place(self.symbols, l) || self.is_centre(l)
-    }
-
-    /// Whether it is a constant of the shape of places.
-    fn is_centre(&self, l: &Letter) -> bool {
-        let symbol = self.symbols.get(l.symbol);
-        let of_shape = |id| {
-            let other = self.symbols.get(id);
-            match other.structure {
-                Structure::General => other.shape == symbol.shape,
-                _ => symbol.shape == Shape::vector(Dim::Fixed(3)),
-            }
-        };
-        let place = |symbol| Letter {
-            symbol,
-            shift: l.shift,
-        };
-        symbol.role == Role::Parameter
-            && symbol.structure == Structure::General
-            && !symbol.shape.is_scalar()
-            && self
-                .symbols
-                .ids()
-                .any(|id| is_place(self.symbols, &place(id)) && of_shape(id))
+        is_place(self.symbols, l) || self.centres.contains(l)
     }
 
     /// Whether it is the same after all places are moved alike, those of each shape by themselves.
@@ -232,5 +216,56 @@ fn power(a: Order, q: f64) -> Order {
     Order {
         size,
         error: (a.error + a.size * (q - 1.0)).max(size),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::error;
+    use crate::algebra::Algebra;
+    use crate::{Derivation, derive_source};
+
+    fn derived(body: &str) -> Derivation {
+        let text = format!("model Far {{ param m, k: Real; param J: Sym<3>; {body} }}");
+        derive_source(&text).unwrap_or_else(|e| panic!("{text}: {e:?}"))
+    }
+
+    /// The largest power of the distance from the origin that any force is rounded to.
+    fn worst(d: &Derivation) -> f64 {
+        let algebra = Algebra::new(&d.letters.symbols);
+        let parts = d
+            .balances
+            .iter()
+            .flat_map(|b| [&b.outgoing, &b.incoming].into_iter().chain(&b.increment));
+        let carried = d.carries.iter().flat_map(|c| c.parts());
+        let all = parts.chain(carried).map(|e| error(&algebra, e));
+        all.fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn forces_are_rounded_to_distances() {
+        let mass = |x: &str| format!("m*dot(next({x}) - {x}, next({x}) - {x})/(2*h)");
+        let (x, y) = (mass("X"), mass("Y"));
+        for body in [
+            format!("field X, Y: Vec<3>; lagrangian = {x} + {y} - h*k*dot(X - Y, X - Y)^2;"),
+            format!(
+                "param c: Vec<2>; field X: Vec<2>; lagrangian = {x} - h*k*dot(X - c, X - c)^3;"
+            ),
+            format!(
+                "param a: Vec<3>; group G: SE<3> velocity V; field X: Vec<3>; \
+                 constraint next(G) = G*V; let s = pos(G) + rot(G)*a - X; \
+                 lagrangian = {x} - tr(J*rot(V))/h + m*dot(pos(V), pos(V))/(2*h) \
+                 - h*k*dot(s, s)^2;"
+            ),
+            "field X, Y: Real; lagrangian = m*(next(X) - X)^2/(2*h) + m*(next(Y) - Y)^2/(2*h) \
+             - h*k*(X - Y)^4;"
+                .to_owned(),
+        ] {
+            let found = worst(&derived(&body));
+            assert!(found == 0.0, "{found} {body}");
+        }
+        // A force about the origin is rounded as its distance.
+        let about = format!("field X: Vec<3>; lagrangian = {x} - h*k*dot(X, X)^2;");
+        assert!(worst(&derived(&about)) >= 3.0);
     }
 }

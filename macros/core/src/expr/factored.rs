@@ -24,7 +24,7 @@ pub fn factored(symbols: &Symbols, e: &Expr) -> Expr {
         Node::Sum(_) | Node::Product(_) | Node::Quotient(..) if !e.shape().is_scalar() => {
             let mut terms = Vec::new();
             flatten(symbols, &e, &mut terms);
-            of_terms(symbols, terms, e.shape())
+            places::first(symbols, of_terms(symbols, terms, e.shape()))
         }
         Node::Vee(a) => axial_of_outer(symbols, a).unwrap_or(e),
         _ => e,

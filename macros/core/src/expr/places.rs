@@ -7,39 +7,91 @@ use super::shape::Structure;
 use super::symbol::{Role, Symbols};
 use super::*;
 
-/// Whether it is such a difference, up to sign.
+/// Whether it is such a difference, up to sign: of places, or of places and constants.
 pub(crate) fn is_between(symbols: &Symbols, e: &Expr) -> bool {
     let terms = match e.node() {
         Node::Sum(terms) => terms,
         Node::Neg(a) => return is_between(symbols, a),
         _ => return false,
     };
-    let place = |e: &Expr| match e.node() {
-        Node::Map(Map::Translation, a) => {
-            matches!(a.node(), Node::Letter(l) if symbols.get(l.symbol).role == Role::Element)
-        }
-        Node::Letter(l) => {
-            let symbol = symbols.get(l.symbol);
-            symbol.role == Role::Element && symbol.structure == Structure::General
-        }
-        _ => false,
+    let bare: Vec<(Rational, Bare)> = terms.iter().filter_map(|t| bare(symbols, t)).collect();
+    let all = bare.iter().map(|(times, _)| *times);
+    let places = bare.iter().filter(|(_, kind)| *kind == Bare::Place);
+    let own = places.clone().map(|(times, _)| *times);
+    // Constants may be forces: they count where places alone do not cancel.
+    places.count() > 0 && (is_zero(own) || is_zero(all))
+}
+
+fn is_zero(mut all: impl Iterator<Item = Rational>) -> bool {
+    let total = all.try_fold(Rational::ZERO, |a, b| a.plus(b));
+    total.is_some_and(Rational::is_zero)
+}
+
+/// What stands by itself in a sum, up to a number.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Bare {
+    Place,
+    Constant,
+}
+
+fn bare(symbols: &Symbols, term: &Expr) -> Option<(Rational, Bare)> {
+    let found = parts(term);
+    let only = match (found.matrices.as_slice(), found.numbers.as_slice()) {
+        ([only], []) => only,
+        // A field of numbers stands among the numbers.
+        ([], [(only, q)]) if q.is_one() => only,
+        _ => return None,
     };
-    let count = |t: &Expr| {
-        let found = parts(t);
-        let (placed, numbers) = match found.matrices.as_slice() {
-            [only] => (place(only), found.numbers.is_empty()),
-            // A field of numbers stands among the numbers.
-            [] => match found.numbers.as_slice() {
-                [(only, q)] => (place(only), q.is_one()),
-                _ => return None,
-            },
+    let role = |l: &Letter| symbols.get(l.symbol).role;
+    let kind = match only.node() {
+        Node::Map(Map::Translation, a) => match a.node() {
+            Node::Letter(l) if role(l) == Role::Element => Bare::Place,
             _ => return None,
-        };
-        (placed && numbers).then_some(found.coefficient)
+        },
+        Node::Letter(l) => {
+            let general = symbols.get(l.symbol).structure == Structure::General;
+            match role(l) {
+                Role::Element if general => Bare::Place,
+                Role::Parameter if general => Bare::Constant,
+                _ => return None,
+            }
+        }
+        _ => return None,
     };
-    let found: Vec<Rational> = terms.iter().filter_map(count).collect();
-    let total = found.iter().try_fold(Rational::ZERO, |a, b| a.plus(*b));
-    !found.is_empty() && total.is_some_and(Rational::is_zero)
+    Some((found.coefficient, kind))
+}
+
+/// Constants that stand in such differences.
+pub(crate) fn centres(symbols: &Symbols, e: &Expr, out: &mut Vec<Letter>) {
+    e.children()
+        .into_iter()
+        .for_each(|a| centres(symbols, a, out));
+    if !is_between(symbols, e) {
+        return;
+    }
+    let Node::Sum(terms) = e.node() else { return };
+    for t in terms {
+        if let Some((_, Bare::Constant)) = bare(symbols, t) {
+            let letters = super::letters(t).into_iter();
+            out.extend(letters.filter(|l| symbols.get(l.symbol).role == Role::Parameter));
+        }
+    }
+}
+
+/// Such a difference with places first, so that they cancel before anything is added.
+pub(crate) fn first(symbols: &Symbols, e: Expr) -> Expr {
+    let Node::Sum(terms) = e.node() else { return e };
+    if terms.len() < 3 || !is_between(symbols, &e) {
+        return e;
+    }
+    let rank = |t: &Expr| match bare(symbols, t) {
+        Some((_, Bare::Place)) => 0,
+        Some((_, Bare::Constant)) => 1,
+        None => 2,
+    };
+    let mut terms = terms.clone();
+    terms.sort_by_key(rank);
+    sum(terms, e.shape())
 }
 
 /// An expression with letters for such differences.
