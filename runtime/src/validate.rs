@@ -320,6 +320,22 @@ pub fn inside<T: Real>(
     })
 }
 
+/// A function of what stands at the node where a trajectory starts, whose argument has this value.
+///
+/// # Errors
+/// Names the argument when it is outside the function's domain: no step helps there.
+pub fn defined<T: Real>(
+    domain: Domain,
+    function: Function,
+    argument: &'static str,
+    value: T,
+) -> Result<(), ParameterError> {
+    inside(domain, function, argument, value).map_err(|error| ParameterError {
+        remedy: "start where the model is defined",
+        ..error
+    })
+}
+
 /// The symmetry test alone: row, column and the two values of the first pair that differs.
 pub(crate) fn mirrored_difference<T: Real, const N: usize>(
     matrix: &SMatrix<T, N, N>,

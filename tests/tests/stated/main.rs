@@ -24,6 +24,7 @@ mod oracle_self;
 mod oracle_typed;
 mod printed_formulas;
 mod rounding_of_fields;
+mod singular_starts;
 mod stated_any_dimension;
 mod stated_models;
 mod unit_quaternions;

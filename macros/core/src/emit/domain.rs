@@ -88,8 +88,14 @@ impl Guard {
     }
 }
 
-/// All guards of a model, in the order in which its Lagrangian names them.
+/// All guards of a model, in the order in which its Lagrangian names them, but those of squares.
 fn guards(d: &Derivation) -> Vec<Guard> {
+    let mut all = with_squares(d);
+    all.retain(|g| !is_square(&g.argument));
+    all
+}
+
+fn with_squares(d: &Derivation) -> Vec<Guard> {
     let mut all = Vec::new();
     let lagrangian = [&d.spec.lagrangian, &d.action.edge, &d.action.nodal];
     let definitions = d.spec.advected.iter().filter_map(|a| a.definition.as_ref());
@@ -135,7 +141,7 @@ fn collect(d: &Derivation, e: &Expr, all: &mut Vec<Guard>) {
 }
 
 /// Whether a number is a sum of squares: it then leaves no domain, and where it is zero the step
-/// finds what is infinite by itself.
+/// finds what is infinite by itself; a start there is refused.
 fn is_square(e: &Expr) -> bool {
     match e.node() {
         Node::Dot(a, b) => a == b,
@@ -151,9 +157,6 @@ fn is_square(e: &Expr) -> bool {
 }
 
 fn guard(d: &Derivation, domain: Domain, function: Named, argument: &Expr, all: &mut Vec<Guard>) {
-    if is_square(argument) {
-        return;
-    }
     // A product is zero where a factor is.
     if let (Domain::NotZero, Node::Product(factors)) = (domain, argument.node())
         && factors.iter().all(|f| f.shape().is_scalar())
@@ -237,6 +240,37 @@ pub(super) fn of_step(d: &Derivation) -> TokenStream {
     quote! {
         { let #step = h; #parameters #tests }
     }
+}
+
+/// The test of the state that a trajectory starts from: there a step finds what is infinite, and no
+/// shorter one helps.
+pub(super) fn of_start(d: &Derivation, names: &Names) -> TokenStream {
+    let s = &d.letters.symbols;
+    let mut list = with_squares(d);
+    // A root of squares is positive where they are.
+    let idle = |g: &Guard| g.domain == Domain::NotNegative && is_square(&g.argument);
+    list.retain(|g| g.place == Place::Node && !idle(g));
+    if list.is_empty() {
+        return TokenStream::new();
+    }
+    let arguments: Vec<Expr> = list.iter().map(|g| g.argument.clone()).collect();
+    let needed = letters_of(&arguments);
+    let mut bindings = Bindings::new();
+    let parameters = parameter_locals(d, quote!(self.parameters), &with_transports(d, &needed, 0));
+    let locals = super::step::here(d, names, &needed, &mut bindings);
+    let p = schedule::program(s, &arguments, "t");
+    let (lets, values) = program(&p, &bindings);
+    let tests = list.iter().zip(values).map(|(g, value)| {
+        let (domain, function) = (g.domain.tokens(), g.function.tokens());
+        let argument = text(d, &g.argument);
+        quote!(validate::defined(#domain, #function, #argument, #value)?;)
+    });
+    quote! {{
+        #parameters
+        #locals
+        #lets
+        #(#tests)*
+    }}
 }
 
 /// `step` as it is called, for a model that must be tested.

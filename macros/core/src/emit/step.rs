@@ -173,7 +173,7 @@ fn start(d: &Derivation, names: &Names) -> TokenStream {
         #references
         Ok(#state { #(#fields,)* #node: 0 })
     };
-    super::stepper::start(d, state_of, work_init)
+    super::stepper::start(d, names, state_of, work_init)
 }
 
 pub(super) fn step_signature(d: &Derivation, body: TokenStream) -> TokenStream {

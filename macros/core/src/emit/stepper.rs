@@ -16,7 +16,12 @@ pub(super) fn preprocessed(d: &Derivation) -> bool {
 
 /// `start` and `workspace`, given the checks of the initial data with the state they lead to, and
 /// the fields of a workspace.
-pub(super) fn start(d: &Derivation, state_of: TokenStream, fields: TokenStream) -> TokenStream {
+pub(super) fn start(
+    d: &Derivation,
+    names: &Names,
+    state_of: TokenStream,
+    fields: TokenStream,
+) -> TokenStream {
     let (initial, state, work) = (item(d, "Initial"), item(d, "State"), item(d, "Workspace"));
     let used = Generics::of(d).used();
     let (state, work) = (quote!(#state #used), quote!(#work #used));
@@ -28,10 +33,12 @@ pub(super) fn start(d: &Derivation, state_of: TokenStream, fields: TokenStream) 
         }
     };
     let admitted = super::domain::of_step(d);
+    let defined = super::domain::of_start(d, names);
     let tried = quote! {
         validate::directed_step(h)?;
         #admitted
         let state = *state;
+        #defined
         let work = #bare { h, #fields };
         // The first step is tried on a copy: what cannot run is refused here.
         let (mut trial, mut scratch) = (state, work);

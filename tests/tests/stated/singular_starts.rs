@@ -1,0 +1,66 @@
+//! Starts where a model is not defined: they are refused with the argument that has no value there, and
+//! no shorter step is offered.
+
+use clebsch::nalgebra::{Vector1, Vector3};
+use clebsch::{Additive, FieldMomentum, StartError};
+
+clebsch::model! {
+    /// Two bodies that attract each other.
+    model Attracted {
+        param m, k: Real;
+        field X, Y: Vec<3>;
+        lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) + m*dot(next(Y) - Y, next(Y) - Y)/(2*h)
+            + h*k/sqrt(dot(X - Y, X - Y));
+    }
+}
+
+clebsch::model! {
+    /// A number in a logarithmic potential.
+    model Logarithmic {
+        param m: Real;
+        field x: Real;
+        lagrangian = m*(next(x) - x)^2/(2*h) + h*log(1 + x);
+    }
+}
+
+fn attracted(apart: f64) -> Result<(), StartError> {
+    let model = Attracted::new(AttractedParameters { m: 1.0, k: 0.5 }).expect("parameters");
+    let place = Vector3::new(0.25, 0.5, 1.0);
+    let initial = AttractedInitial {
+        X: Additive::new(place),
+        momentum_X: FieldMomentum(Vector3::x()),
+        Y: Additive::new(place + Vector3::z() * apart),
+        momentum_Y: FieldMomentum(Vector3::y()),
+    };
+    model.start(initial, 0.01).map(|_| ())
+}
+
+fn logarithmic(x: f64) -> Result<(), StartError> {
+    let model = Logarithmic::new(LogarithmicParameters { m: 1.0 }).expect("parameters");
+    let initial = LogarithmicInitial {
+        x: Additive::new(Vector1::new(x)),
+        momentum: FieldMomentum(Vector1::new(0.1)),
+    };
+    model.start(initial, 0.01).map(|_| ())
+}
+
+#[test]
+fn a_start_where_nothing_is_defined_is_refused_for_that() {
+    let said = |found: Result<(), StartError>| found.expect_err("refused").to_string();
+    let met = said(attracted(0.0));
+    for words in [
+        "(X_k - Y_k)·(X_k - Y_k)",
+        "start where the model is defined",
+    ] {
+        assert!(met.contains(words), "{met}");
+    }
+    assert!(!met.contains("step of"), "{met}");
+    for x in [-1.0, -2.0] {
+        let left = said(logarithmic(x));
+        assert!(
+            left.contains("x_k + 1") && left.contains("of log"),
+            "{left}"
+        );
+    }
+    assert!(attracted(1e-3).is_ok() && logarithmic(-0.5).is_ok());
+}
