@@ -144,6 +144,17 @@ pub mod ellipsoid_convective {
         ) -> Result<EllipsoidConvectiveWorkspace<N, T>, StartError> {
             validate::directed_step(h)?;
             let state = *state;
+            {
+                let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
+                let Q = state.Q.matrix();
+                let C = Q.tr_mul(&(C0 * Q));
+                validate::defined(
+                    domain::Domain::Positive,
+                    domain::Function::Log,
+                    "det(C_k)",
+                    determinant(&(C)),
+                )?;
+            }
             let work = EllipsoidConvectiveWorkspace { h };
             let (mut trial, mut scratch) = (state, work);
             self.step(&mut trial, &mut scratch)

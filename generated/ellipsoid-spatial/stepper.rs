@@ -144,6 +144,17 @@ pub mod ellipsoid_spatial {
         ) -> Result<EllipsoidSpatialWorkspace<N, T>, StartError> {
             validate::directed_step(h)?;
             let state = *state;
+            {
+                let EllipsoidSpatialParameters { I0, .. } = self.parameters;
+                let Q = state.Q.matrix();
+                let S = Q * (I0 * Q.transpose());
+                validate::defined(
+                    domain::Domain::Positive,
+                    domain::Function::Log,
+                    "det(S_k)",
+                    determinant(&(S)),
+                )?;
+            }
             let work = EllipsoidSpatialWorkspace { h };
             let (mut trial, mut scratch) = (state, work);
             self.step(&mut trial, &mut scratch)

@@ -116,6 +116,15 @@ pub mod kepler {
         ) -> Result<KeplerWorkspace<T>, StartError> {
             validate::directed_step(h)?;
             let state = *state;
+            {
+                let X = state.X.matrix();
+                validate::defined(
+                    domain::Domain::NotZero,
+                    domain::Function::Quotient,
+                    "√(X_k·X_k)",
+                    X.dot(&X).sqrt(),
+                )?;
+            }
             let work = KeplerWorkspace { h };
             let (mut trial, mut scratch) = (state, work);
             self.step(&mut trial, &mut scratch)

@@ -58,16 +58,6 @@ const WORTH_KEEPING: f64 = 0.02;
 /// turned with the motion by a few angles of a step.
 const OLDEST_TANGENT: u32 = 8;
 
-/// What one correction with a tangent at the trial has left, it leaves again where as little or little
-/// more is to be corrected, for so many steps.
-const OLDEST_EXPERIENCE: u32 = 16;
-
-/// How much more may be to be corrected: what is left grows by its square.
-const MORE: f64 = 1.4;
-
-/// What one correction may leave for that: with twice as much the equations are solved.
-const LEFT_ROUNDINGS: f64 = 0.5 * CONVERGED_ROUNDINGS;
-
 /// How far the next residual may exceed the one foreseen at the rate of the last correction.
 const FORESIGHT: f64 = 4.0;
 
@@ -115,10 +105,6 @@ pub struct Search<T, G, V, const D: usize> {
     factors: Factors<T, D>,
     /// How many steps ago that was.
     age: u32,
-    /// A residual that one correction was seen to reduce to rounding.
-    mastered: f64,
-    /// How many steps ago that was.
-    since: u32,
     last: Summary,
 }
 
@@ -148,8 +134,6 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Search<T, 
             certificate: Certificate::none(),
             factors: Factors::none(),
             age: OLDEST_TANGENT,
-            mastered: 0.0,
-            since: OLDEST_EXPERIENCE,
             last: Summary {
                 tangents: 0,
                 corrections: 0,
@@ -212,7 +196,6 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Search<T, 
             self.known = 0;
             self.age = OLDEST_TANGENT;
             self.weighed = OLDEST_SCALE;
-            self.since = OLDEST_EXPERIENCE;
         }
         if self.certificate.wants_tangent(&values) {
             self.age = OLDEST_TANGENT;
@@ -283,7 +266,6 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Search<T, 
         self.next = node + 1;
         self.age = self.age.saturating_add(1);
         self.weighed = self.weighed.saturating_add(1);
-        self.since = self.since.saturating_add(1);
         self.certificate.count();
     }
 }
@@ -454,21 +436,16 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_,
     /// Moves the trial by Newton's correction, or ends.
     #[inline(always)]
     pub fn correct(&mut self) -> Progress<G> {
-        let size = self.size;
-        if self.iteration == 1 && size <= LEFT_ROUNDINGS * T::EPSILON && self.search.age == 0 {
-            self.search.mastered = self.previous;
-            self.search.since = 0;
-        }
         if self.polished() {
             return self.solved(self.iteration);
         }
+        let size = self.size;
         // What is left after the next correction, if it does as well as the last.
         let foreseen = FORESIGHT * size * (size / self.previous);
         let unit = T::EPSILON;
         let done = size <= CONVERGED_ROUNDINGS * unit
             || (size <= STAGNATED_ROUNDINGS * unit && size >= 0.5 * self.previous)
-            || (T::ORDER == 0 && self.iteration > 0 && foreseen <= POLISHED_ROUNDINGS * unit)
-            || self.is_mastered();
+            || (T::ORDER == 0 && self.iteration > 0 && foreseen <= POLISHED_ROUNDINGS * unit);
         let Some(correction) = self.search.factors.solve(&self.residual) else {
             return self.failed();
         };
@@ -486,18 +463,6 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_,
             return self.failed();
         }
         Progress::Continue
-    }
-
-    /// Whether the next correction is known to leave nothing but rounding: one with a new tangent did
-    /// a few steps ago, where as much was to be corrected.
-    #[inline(always)]
-    fn is_mastered(&self) -> bool {
-        let search = &*self.search;
-        T::ORDER == 0
-            && self.iteration == 0
-            && search.age == 0
-            && search.since < OLDEST_EXPERIENCE
-            && self.size <= MORE * search.mastered
     }
 
     #[inline(always)]

@@ -123,7 +123,10 @@ fn letters(
         };
         // The momentum of the side of its constraint has a letter.
         let momentum = d.spec.configurations.iter().enumerate().find(|(_, c)| {
-            let base = frame(c.side);
+            let base = match c.group.is_additive() {
+                true => "momentum",
+                false => frame(c.side),
+            };
             let element = &symbols.get(c.element).name;
             match d.spec.configurations.len() {
                 1 => field.name == base,
