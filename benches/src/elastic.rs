@@ -76,8 +76,7 @@ fn written_ellipsoid(of: Of) -> impl FnOnce() {
         energy: ENERGY,
         of,
     };
-    let motion =
-        handwritten::ellipsoid::ElasticEllipsoid::start(&body, &IDENTITY, &VELOCITY, H);
+    let motion = handwritten::ellipsoid::ElasticEllipsoid::start(&body, &IDENTITY, &VELOCITY, H);
     written!(motion.expect("solvable"))
 }
 

@@ -57,6 +57,7 @@ pub fn generated_charge() -> impl FnOnce() {
 
 /// A block of the charge by hand.
 pub fn written_charge() -> impl FnOnce() {
-    let motion = handwritten::charged_particle::ChargedParticle::start(&CHARGE, &PLACE, &MOMENTUM, H);
+    let motion =
+        handwritten::charged_particle::ChargedParticle::start(&CHARGE, &PLACE, &MOMENTUM, H);
     written!(motion.expect("solvable"))
 }
