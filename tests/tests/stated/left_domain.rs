@@ -401,7 +401,7 @@ fn parameters_states_and_velocities_outside_are_refused_at_the_start() {
     };
     let refusal = model.start(initial, 0.05).unwrap_err().to_string();
     assert!(
-        refusal.contains("is -0.5 at this node, outside the domain of log"),
+        refusal.contains("it is -0.5, and the argument of log must be positive"),
         "{refusal}"
     );
     // b·Ωb - 1 begins above zero; the first step turns it below.
