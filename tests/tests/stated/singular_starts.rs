@@ -64,3 +64,29 @@ fn a_start_where_nothing_is_defined_is_refused_for_that() {
     }
     assert!(attracted(1e-3).is_ok() && logarithmic(-0.5).is_ok());
 }
+
+clebsch::model! {
+    /// A number whose potential holds the step itself, which is named.
+    model Stepped {
+        time k step tau;
+        param m: Real;
+        field x: Real;
+        lagrangian = m*(next(x) - x)^2/(2*tau) + tau*log(1 + x + tau);
+    }
+}
+
+#[test]
+fn an_argument_that_holds_the_step_is_refused_by_its_value_at_that_step() {
+    let model = Stepped::new(SteppedParameters { m: 1.0 }).expect("parameters");
+    let start = |tau: f64| {
+        let initial = SteppedInitial {
+            x: Additive::new(Vector1::new(-1.125)),
+            momentum: FieldMomentum(Vector1::new(0.1)),
+        };
+        model.start(initial, tau).map(|_| ())
+    };
+    // -1/16 with a step of 1/16, 1/16 with one of 3/16.
+    let met = start(0.0625).expect_err("refused").to_string();
+    assert!(met.contains("-0.0625"), "{met}");
+    assert!(start(0.1875).is_ok());
+}

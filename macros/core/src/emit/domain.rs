@@ -245,7 +245,6 @@ pub(super) fn of_step(d: &Derivation) -> TokenStream {
 /// The test of the state that a trajectory starts from: there a step finds what is infinite, and no
 /// shorter one helps.
 pub(super) fn of_start(d: &Derivation, names: &Names) -> TokenStream {
-    let s = &d.letters.symbols;
     let mut list = with_squares(d);
     // A root of squares is positive where they are.
     let idle = |g: &Guard| g.domain == Domain::NotNegative && is_square(&g.argument);
@@ -253,24 +252,36 @@ pub(super) fn of_start(d: &Derivation, names: &Names) -> TokenStream {
     if list.is_empty() {
         return TokenStream::new();
     }
-    let arguments: Vec<Expr> = list.iter().map(|g| g.argument.clone()).collect();
-    let needed = letters_of(&arguments);
-    let mut bindings = Bindings::new();
-    let parameters = parameter_locals(d, quote!(self.parameters), &with_transports(d, &needed, 0));
-    let locals = super::step::here(d, names, &needed, &mut bindings);
-    let p = schedule::program(s, &arguments, "t");
-    let (lets, values) = program(&p, &bindings);
+    let (locals, values) = arguments(d, names, &list);
+    let timed = list
+        .iter()
+        .any(|g| expr::contains(&g.argument, at(d.spec.step, Shift::HERE)));
+    let step = timed.then(|| {
+        let step = variable(&d.letters.symbols, d.spec.step);
+        quote!(let #step = h;)
+    });
     let tests = list.iter().zip(values).map(|(g, value)| {
         let (domain, function) = (g.domain.tokens(), g.function.tokens());
         let argument = text(d, &g.argument);
         quote!(validate::defined(#domain, #function, #argument, #value)?;)
     });
     quote! {{
-        #parameters
+        #step
         #locals
-        #lets
         #(#tests)*
     }}
+}
+
+/// What the arguments of functions at the node of `state` are made from, and their values.
+fn arguments(d: &Derivation, names: &Names, list: &[Guard]) -> (TokenStream, Vec<TokenStream>) {
+    let arguments: Vec<Expr> = list.iter().map(|g| g.argument.clone()).collect();
+    let needed = letters_of(&arguments);
+    let mut bindings = Bindings::new();
+    let parameters = parameter_locals(d, quote!(self.parameters), &with_transports(d, &needed, 0));
+    let locals = super::step::here(d, names, &needed, &mut bindings);
+    let p = schedule::program(&d.letters.symbols, &arguments, "t");
+    let (lets, values) = program(&p, &bindings);
+    (quote!(#parameters #locals #lets), values)
 }
 
 /// `step` as it is called, for a model that must be tested.
@@ -384,20 +395,12 @@ fn at_nodes(d: &Derivation, names: &Names, list: &[Guard]) -> (TokenStream, Toke
         let (#before, #after) = (self.domain_arguments(#before, #step), self.domain_arguments(#after, #step));
         #(#tests)*
     }};
-    let arguments: Vec<Expr> = list.iter().map(|g| g.argument.clone()).collect();
-    let needed = letters_of(&arguments);
-    let mut bindings = Bindings::new();
-    let parameters = parameter_locals(d, quote!(self.parameters), &with_transports(d, &needed, 0));
-    let locals = super::step::here(d, names, &needed, &mut bindings);
-    let p = schedule::program(s, &arguments, "t");
-    let (lets, values) = program(&p, &bindings);
+    let (locals, values) = arguments(d, names, list);
     let function = quote! {
         /// The arguments of the functions that the model uses, at the node of this state.
         #[inline]
         fn domain_arguments(&self, state: &#state #used, #step: T) -> [T; #count] {
-            #parameters
             #locals
-            #lets
             let _ = (state, #step);
             [#(#values),*]
         }
