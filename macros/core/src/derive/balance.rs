@@ -132,12 +132,10 @@ fn balance(
     };
     let increment = match increment(s, c, &outgoing, &incoming, algebra) {
         // Expanded for what cancels, it may have lost what places have in common.
-        Some(added) if far::error(algebra, &added) > 0.0 => {
-            let least = |e: &Expr| far::error(algebra, e);
-            acting()
-                .filter(|a| least(a) < least(&added))
-                .or(Some(added))
-        }
+        Some(added) if far::error(algebra, &added) > 0.0 => Some(match acting() {
+            Some(derived) => far::nearer(algebra, added, derived),
+            None => added,
+        }),
         Some(added) => Some(added),
         None => acting(),
     };
@@ -236,10 +234,8 @@ pub fn shorter(algebra: &Algebra, e: Expr) -> Expr {
     }
     let reduced = algebra.shortest(&e);
     let preferred = reduced.size() <= e.size() || has_fewer_letters(&reduced, &e);
-    if !algebra.exhausted() && preferred && far::error(algebra, &reduced) <= far::error(algebra, &e)
-    {
-        reduced
-    } else {
-        e
+    match !algebra.exhausted() && preferred {
+        true => far::nearer(algebra, reduced, e),
+        false => e,
     }
 }

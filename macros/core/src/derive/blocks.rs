@@ -22,31 +22,14 @@ pub struct Block {
     pub method: Method,
     /// Why so, in one clause.
     pub reason: String,
-}
-
-impl Solve {
-    /// Whether the velocity of a configuration is part of one linear system with others, or with its own
-    /// components, that Newton's method solves.
-    pub fn is_one_linear_system(&self, i: usize) -> bool {
-        match self.blocks.as_slice() {
-            [] => self.reason == LINEAR_TOGETHER,
-            blocks => {
-                let mut own = blocks.iter().filter(|b| b.members.contains(&i));
-                own.any(Block::is_one_linear_system)
-            }
-        }
-    }
+    /// Whether its balances are one linear system in the velocities, which Newton's method solves.
+    pub is_one_system: bool,
 }
 
 impl Block {
     /// Whether its balance is linear in the velocity.
     pub fn is_linear(&self) -> bool {
         matches!(self.method, Method::Linear)
-    }
-
-    /// Whether its balances are linear in the velocities, all taken together.
-    pub fn is_one_linear_system(&self) -> bool {
-        self.reason == LINEAR_TOGETHER
     }
 
     /// What a step makes of a linear balance.
@@ -93,24 +76,25 @@ pub fn blocks(
     let starts = (0..first.len()).filter(|i| first[*i] == *i);
     let members = starts.map(|i| (0..first.len()).filter(|j| first[*j] == i).collect());
     members
-        .map(|members: Vec<usize>| {
-            let linear = || linear_together(spec, letters, balances, &members, algebra);
-            let newton = |otherwise: String| match linear() {
-                true => LINEAR_TOGETHER.to_owned(),
-                false => otherwise,
-            };
-            block(spec, letters, riccati, newton, members.clone())
+        .map(|members| {
+            let mut block = block(spec, letters, riccati, members);
+            if block.is_newton()
+                && linear_together(spec, letters, balances, &block.members, algebra)
+            {
+                block.is_one_system = true;
+                block.reason = ONE_SYSTEM.to_owned();
+            }
+            block
         })
         .collect()
 }
 
 /// Why Newton's method solves a linear system.
-const LINEAR_TOGETHER: &str =
-    "one linear system, which the first correction of Newton's method solves";
+const ONE_SYSTEM: &str = "one linear system, which the first correction of Newton's method solves";
 
 /// Whether the balances of these configurations are linear in their velocities, all taken together:
 /// on GL(n) and of fields.
-pub(super) fn linear_together(
+fn linear_together(
     spec: &Spec,
     letters: &Letters,
     balances: &[Balance],
@@ -139,13 +123,7 @@ pub(super) fn linear_together(
     })
 }
 
-fn block(
-    spec: &Spec,
-    letters: &Letters,
-    riccati: &[Riccati],
-    newton: impl Fn(String) -> String,
-    members: Vec<usize>,
-) -> Block {
+fn block(spec: &Spec, letters: &Letters, riccati: &[Riccati], members: Vec<usize>) -> Block {
     let (method, reason) = match members.as_slice() {
         [i] => match &riccati[*i] {
             Riccati::Exact(mv) if is_constant(letters, mv) => (
@@ -157,18 +135,19 @@ fn block(
                 "C is known at each node: the largest real eigenvalue of a 4 x 4 matrix".to_owned(),
             ),
             Riccati::Linear(form) => (Method::Linear, linear(form)),
-            Riccati::None(why) => (Method::Newton, newton(format!("{why}: Newton"))),
+            Riccati::None(why) => (Method::Newton, format!("{why}: Newton")),
             _ => (Method::Newton, "Newton on the derived residual".to_owned()),
         },
         _ => (
             Method::Newton,
-            newton("solved together: Newton on the derived residuals".to_owned()),
+            "solved together: Newton on the derived residuals".to_owned(),
         ),
     };
     Block {
         members,
         method,
         reason,
+        is_one_system: false,
     }
 }
 
@@ -248,6 +227,7 @@ impl Derivation {
             turned: None,
             seen_from_body: seen.map(|list| part(list, members)),
             blocks: Vec::new(),
+            one_system: Vec::new(),
         };
         own
     }

@@ -65,9 +65,8 @@ pub fn form(
     // As it was derived, where the expanded one would round more far from the origin.
     let still_there = [(at(velocity, Shift::HERE), still.clone())];
     let derived = expr::substitute(s, &outgoing, &still_there);
-    let derived_is_better = far::error(algebra, &derived) < far::error(algebra, &at_rest);
     let found = Explicit {
-        rest: if derived_is_better { derived } else { at_rest },
+        rest: far::nearer(algebra, at_rest, derived),
         left,
         right,
     };

@@ -33,6 +33,14 @@ pub(super) fn error(algebra: &Algebra, e: &Expr) -> f64 {
     Far { symbols, centres }.order(e).error.max(0.0)
 }
 
+/// The preferred of two equal expressions, unless the other rounds less far from the origin.
+pub(super) fn nearer(algebra: &Algebra, preferred: Expr, other: Expr) -> Expr {
+    match error(algebra, &other) < error(algebra, &preferred) {
+        true => other,
+        false => preferred,
+    }
+}
+
 /// The reduced form of an expression, unless places far from the origin round more in it: then the
 /// form that is reduced with differences of places kept as they are, or the expression itself.
 pub(super) fn least(algebra: &Algebra, reduced: Expr, e: &Expr) -> Expr {

@@ -95,6 +95,9 @@ pub struct Solve {
     pub seen_from_body: Option<Vec<Expr>>,
     /// What is solved together, where that is not the whole model: none or several.
     pub blocks: Vec<Block>,
+    /// Configurations whose velocities are part of one linear system, with others or with their own
+    /// components, that Newton's method solves.
+    pub one_system: Vec<usize>,
 }
 
 impl Solve {
@@ -160,6 +163,8 @@ pub fn recognise(
         .map(|(i, b)| riccati(spec, letters, b, i, transports, algebra))
         .collect();
     let blocks = blocks::blocks(spec, letters, balances, &riccati, algebra);
+    let systems = blocks.iter().filter(|b| b.is_one_system);
+    let one_system: Vec<usize> = systems.flat_map(|b| b.members.clone()).collect();
     if blocks.len() > 1 || blocks.iter().any(Block::is_linear) {
         let newton = blocks.iter().any(Block::is_newton);
         return Solve {
@@ -171,6 +176,7 @@ pub fn recognise(
                 .then(|| seen_from_body(stated, spec, letters, balances))
                 .flatten(),
             blocks,
+            one_system,
         };
     }
     let three = |i: usize| is_of_space(&spec.configurations[i]);
@@ -186,9 +192,7 @@ pub fn recognise(
     let iterated = "Newton's method on the Lie algebra";
     let solver = if three(0) { kappa } else { iterated };
     let (method, reason) = match riccati.as_slice() {
-        _ if blocks.iter().any(Block::is_one_linear_system) => {
-            (Method::Newton, blocks::reasons(letters, spec, &blocks))
-        }
+        _ if !one_system.is_empty() => (Method::Newton, blocks::reasons(letters, spec, &blocks)),
         [Riccati::Exact(mv)] if three(0) && mv.symmetric && is_free(mv) => (
             Method::FreeMoserVeselov,
             format!(
@@ -256,6 +260,7 @@ pub fn recognise(
         turned,
         seen_from_body,
         blocks: Vec::new(),
+        one_system,
     }
 }
 

@@ -32,7 +32,7 @@ pub fn moser_veselov(sheet: &Sheet, doc: &mut Document) {
                 section.paragraph([
                     "Equation ".into(),
                     Inline::reference(&format!("outgoing {i}")),
-                    match d.solve.is_one_linear_system(i) {
+                    match d.solve.one_system.contains(&i) {
                         true => {
                             " is linear in the increments, but not of one factor on either side of "
                         }
@@ -427,7 +427,7 @@ fn method(sheet: &Sheet, section: &mut Section) {
                 Method::Davenport => "The stepper solves it as an eigenvalue problem at each node: ",
                 Method::UnitQuaternions => "The stepper solves it so: ",
                 Method::Blocks => "The stepper solves ",
-                Method::Newton if d.solve.is_one_linear_system(0) => "The stepper solves ",
+                Method::Newton if d.solve.one_system.contains(&0) => "The stepper solves ",
                 Method::Newton if d.spec.configurations.iter().all(|c| c.group.is_additive()) => {
                     "The stepper iterates with Newton's method: "
                 }

@@ -13,7 +13,7 @@ use crate::expr::{self, Expr, Letter, Node};
 const TRIES: u64 = 2048;
 
 /// Roots at a node, each with the last configuration that it depends on.
-pub(super) struct Roots(Vec<(usize, Expr)>);
+pub(crate) struct Roots(Vec<(usize, Expr)>);
 
 impl Roots {
     /// Those of the action that stand at a node, with advected quantities by their definitions.

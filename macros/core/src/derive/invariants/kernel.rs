@@ -48,6 +48,7 @@ impl Sample<'_> {
 /// Samples, made as they are needed.
 pub(super) struct Samples<'a, 'x> {
     x: &'x Inputs<'a>,
+    roots: &'x Roots,
     list: Vec<Sample<'a>>,
     /// Whether what changes as a total difference counts as unchanged.
     differences: bool,
@@ -56,10 +57,11 @@ pub(super) struct Samples<'a, 'x> {
 
 impl<'a, 'x> Samples<'a, 'x> {
     /// Samples of steps, these first.
-    pub(super) fn of_steps(x: &'x Inputs<'a>, passages: &[Passage<'a>]) -> Self {
+    pub(super) fn of_steps(x: &'x Inputs<'a>, roots: &'x Roots, passages: &[Passage<'a>]) -> Self {
         let list = passages.iter().map(|p| Sample(vec![(false, p.clone())]));
         Samples {
             x,
+            roots,
             list: list.collect(),
             differences: false,
             attempt: 2 * passages.len() as u64,
@@ -67,9 +69,10 @@ impl<'a, 'x> Samples<'a, 'x> {
     }
 
     /// Samples of steps less total differences.
-    pub(super) fn of_differences(x: &'x Inputs<'a>) -> Self {
+    pub(super) fn of_differences(x: &'x Inputs<'a>, roots: &'x Roots) -> Self {
         Samples {
             x,
+            roots,
             list: Vec::new(),
             differences: true,
             attempt: 0,
@@ -83,15 +86,16 @@ impl<'a, 'x> Samples<'a, 'x> {
             }
             // Even ones take the smallest size where it has only a name.
             self.attempt += 2;
-            let made = start(self.x, self.x.assumed, self.attempt).and_then(|mut p| {
-                match self.differences {
-                    true => chain(self.x, &p, 1)?.pop(),
-                    false => {
-                        Roots::of(self.x).led(self.x, &mut p, self.attempt)?;
-                        Some(Sample(vec![(false, completed(self.x, p)?)]))
-                    }
-                }
-            });
+            let made =
+                start(self.x, self.roots, self.x.assumed, self.attempt).and_then(
+                    |mut p| match self.differences {
+                        true => chain(self.x, self.roots, &p, 1)?.pop(),
+                        false => {
+                            self.roots.led(self.x, &mut p, self.attempt)?;
+                            Some(Sample(vec![(false, completed(self.x, p)?)]))
+                        }
+                    },
+                );
             self.list.extend(made);
         }
         self.list.get(index)
@@ -183,14 +187,19 @@ pub(super) struct Kernel<'a> {
 impl<'a> Kernel<'a> {
     /// Solves for the coefficients of all motions at once, total differences left out of account;
     /// nothing where that is too much work.
-    pub(super) fn new(x: &Inputs<'a>, motions: &[Motion], attempt: u64) -> Option<Kernel<'a>> {
+    pub(super) fn new(
+        x: &Inputs<'a>,
+        roots: &Roots,
+        motions: &[Motion],
+        attempt: u64,
+    ) -> Option<Kernel<'a>> {
         let own: Vec<&Motion> = motions.iter().filter(|m| !m.spanned).collect();
-        let base = start(x, x.assumed, attempt)?;
+        let base = start(x, roots, x.assumed, attempt)?;
         let width: usize = own.iter().map(|m| coordinates(&base, m)).sum();
         if width > WIDEST || work(x, &base).saturating_mul(2 * (width + MORE)) > WORK {
             return None;
         }
-        let steps = chain(x, &base, width + MORE)?;
+        let steps = chain(x, roots, &base, width + MORE)?;
         let row = |entries: &dyn Fn(&Expr) -> Option<Matrix>| -> Option<Vec<u64>> {
             let mut out = Vec::new();
             for m in &own {
@@ -282,7 +291,12 @@ fn work(x: &Inputs, point: &Point) -> usize {
 /// Steps between random nodes with the parameters of a point, each with the steps that lead from
 /// one origin to its ends, the identity of groups: a quantity that changes by `F(end) - F(start)`
 /// changes by `F` of its end over a step that starts at the origin, up to a constant.
-fn chain<'a>(x: &Inputs<'a>, base: &Point<'a>, count: usize) -> Option<Vec<Sample<'a>>> {
+fn chain<'a>(
+    x: &Inputs<'a>,
+    roots: &Roots,
+    base: &Point<'a>,
+    count: usize,
+) -> Option<Vec<Sample<'a>>> {
     let mut origin = base.clone();
     for c in &x.spec.configurations {
         // Fields stay where they were drawn: a potential may be singular where they vanish or meet.
@@ -290,7 +304,6 @@ fn chain<'a>(x: &Inputs<'a>, base: &Point<'a>, count: usize) -> Option<Vec<Sampl
             origin.set(here(c.element), base.value(&c.group.identity())?);
         }
     }
-    let roots = Roots::of(x);
     roots.placed(x, &mut origin, 0)?;
     for a in &x.spec.advected {
         if let Some(d) = &a.definition {
@@ -305,7 +318,7 @@ fn chain<'a>(x: &Inputs<'a>, base: &Point<'a>, count: usize) -> Option<Vec<Sampl
         if out.len() == count {
             return Some(out);
         }
-        let Some(to) = from_origin(x, &roots, &origin, 1000 + attempt) else {
+        let Some(to) = from_origin(x, roots, &origin, 1000 + attempt) else {
             continue;
         };
         let Some(start) = &from else {

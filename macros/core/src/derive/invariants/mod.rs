@@ -154,12 +154,13 @@ struct Candidate {
 
 /// The invariants that can be proved.
 pub fn invariants(x: &Inputs) -> (Vec<Invariant>, Integrability) {
-    let passages = passage::passages(x, x.assumed);
+    let roots = draws::Roots::of(x);
+    let passages = passage::passages(x, &roots, x.assumed);
     let mut out = Vec::new();
     let large = too_large(x);
     let small = large.is_none();
     out.extend(energy::energy(x, if small { &passages } else { &[] }));
-    let (momenta, body) = noether::momenta(x, &passages);
+    let (momenta, body) = noether::momenta(x, &roots, &passages);
     let elements = x.bracket.holds_elements;
     let casimirs = match small && !elements {
         true => casimirs::casimirs(x, x.assumed, &passages),

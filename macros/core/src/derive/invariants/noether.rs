@@ -4,6 +4,7 @@
 //! each one is conserved is proved itself.
 
 use super::difference;
+use super::draws::Roots;
 use super::kernel::{Kernel, Samples};
 use super::motions::{Motion, Sort, Way, motions};
 use super::passage::Passage;
@@ -72,12 +73,16 @@ fn touched(x: &Inputs) -> BTreeMap<SymbolId, Vec<usize>> {
 }
 
 /// Momenta as seen from space, then those that bodies have a part in.
-pub(super) fn momenta(x: &Inputs, passages: &[Passage]) -> (Vec<Invariant>, Vec<Invariant>) {
+pub(super) fn momenta(
+    x: &Inputs,
+    roots: &Roots,
+    passages: &[Passage],
+) -> (Vec<Invariant>, Vec<Invariant>) {
     if passages.is_empty() {
         return (Vec::new(), Vec::new());
     }
     let motions = motions(x);
-    let kernels = kernels(x, &motions);
+    let kernels = kernels(x, roots, &motions);
     if !kernels.is_empty() && kernels.iter().all(|k| k.dimension == 0) {
         return (Vec::new(), Vec::new());
     }
@@ -102,9 +107,9 @@ pub(super) fn momenta(x: &Inputs, passages: &[Passage]) -> (Vec<Invariant>, Vec<
         },
         wholes: Vec::new(),
     };
-    search.of_one_reading(&mut Samples::of_steps(x, passages));
+    search.of_one_reading(&mut Samples::of_steps(x, roots, passages));
     if !kernels.is_empty() && !search.is_complete() {
-        let mut samples = Samples::of_differences(x);
+        let mut samples = Samples::of_differences(x, roots);
         search.of_one_reading(&mut samples);
         search.of_several_readings(&mut samples);
         search.prune();
@@ -115,11 +120,11 @@ pub(super) fn momenta(x: &Inputs, passages: &[Passage]) -> (Vec<Invariant>, Vec<
 }
 
 /// The symmetries at fixed parameters; with assumptions at several, whose branches take turns.
-fn kernels<'a>(x: &Inputs<'a>, motions: &[Motion]) -> Vec<Kernel<'a>> {
+fn kernels<'a>(x: &Inputs<'a>, roots: &Roots, motions: &[Motion]) -> Vec<Kernel<'a>> {
     let wanted = if x.assumed.is_empty() { 1 } else { 3 };
     // Even attempts take the smallest size where it has only a name.
     let attempts = (0..20).map(|turn| 2 * turn);
-    let found = attempts.filter_map(|attempt| Kernel::new(x, motions, attempt));
+    let found = attempts.filter_map(|attempt| Kernel::new(x, roots, motions, attempt));
     found.take(wanted).collect()
 }
 

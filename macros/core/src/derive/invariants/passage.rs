@@ -34,24 +34,34 @@ impl Passage<'_> {
 }
 
 /// A few steps, as far as there are points at which everything has a value.
-pub(crate) fn passages<'a>(x: &Inputs<'a>, assumed: &[Expr]) -> Vec<Passage<'a>> {
+pub(crate) fn passages<'a>(x: &Inputs<'a>, roots: &Roots, assumed: &[Expr]) -> Vec<Passage<'a>> {
     let wanted = if assumed.is_empty() {
         STEPS
     } else {
         STEPS_ASSUMED
     };
-    let found = (0..ATTEMPTS).filter_map(|attempt| passage(x, assumed, attempt));
+    let found = (0..ATTEMPTS).filter_map(|attempt| passage(x, roots, assumed, attempt));
     found.take(wanted).collect()
 }
 
-fn passage<'a>(x: &Inputs<'a>, equations: &[Expr], attempt: u64) -> Option<Passage<'a>> {
-    let mut before = start(x, equations, attempt)?;
-    Roots::of(x).led(x, &mut before, attempt)?;
+fn passage<'a>(
+    x: &Inputs<'a>,
+    roots: &Roots,
+    equations: &[Expr],
+    attempt: u64,
+) -> Option<Passage<'a>> {
+    let mut before = start(x, roots, equations, attempt)?;
+    roots.led(x, &mut before, attempt)?;
     completed(x, before)
 }
 
 /// Everything a step starts from: parameters, elements, velocities, what is carried.
-pub(super) fn start<'a>(x: &Inputs<'a>, equations: &[Expr], attempt: u64) -> Option<Point<'a>> {
+pub(super) fn start<'a>(
+    x: &Inputs<'a>,
+    roots: &Roots,
+    equations: &[Expr],
+    attempt: u64,
+) -> Option<Point<'a>> {
     let mut before = assumed::point(&x.letters.symbols, attempt, equations)?;
     // Computed once: elements of orthogonal groups cost an inversion.
     for c in &x.spec.configurations {
@@ -60,7 +70,7 @@ pub(super) fn start<'a>(x: &Inputs<'a>, equations: &[Expr], attempt: u64) -> Opt
             before.set(l, value);
         }
     }
-    Roots::of(x).placed(x, &mut before, attempt)?;
+    roots.placed(x, &mut before, attempt)?;
     for a in &x.spec.advected {
         let value = match &a.definition {
             Some(d) => before.value(d)?,
