@@ -191,7 +191,7 @@ pub mod body_in_quadratic_field {
                 .map_err(|e| StartError::Refused(e.cause))?;
             Ok(work)
         }
-        /// One step, in place. Solved thus: C is constant and symmetric: explicit after one quartic a step.
+        /// One step, in place. Solved thus: C is constant and symmetric: explicit up to the root of one quartic per step.
         ///
         /// # Errors
         /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -578,7 +578,7 @@ pub mod body_in_quadratic_field {
             let (kinetic, potential) = self.energies(state);
             kinetic + potential
         }
-        /// `μ_k·Γ_k`: Casimir: the Kelvin-Noether quantity of what is advected.
+        /// `μ_k·Γ_k`: Casimir: the Kelvin-Noether quantity of the advected quantities.
         pub fn momentum_Gamma(&self, state: &BodyInQuadraticFieldState<T>) -> T {
             let Λ = state.Λ.matrix();
             let Γ_reference = state.Γ;
@@ -586,7 +586,7 @@ pub mod body_in_quadratic_field {
             let μ = state.body_momentum().0;
             μ.dot(&Γ)
         }
-        /// `Γ_k·Γ_k`: Casimir: the group leaves it alone.
+        /// `Γ_k·Γ_k`: Casimir: invariant under the group action.
         pub fn Gamma_squared(&self, state: &BodyInQuadraticFieldState<T>) -> T {
             let Λ = state.Λ.matrix();
             let Γ_reference = state.Γ;
@@ -715,7 +715,7 @@ pub mod body_in_quadratic_field {
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
             summary: "action of one step   -tr(J Ω_k)/h - ¼ h Γ_k·(K Γ_k) - ¼ h Γ_{k+1}·(K Γ_{k+1})\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
-            solver: "Moser-Veselov: C is constant and symmetric: explicit after one quartic a step",
+            solver: "Moser-Veselov: C is constant and symmetric: explicit up to the root of one quartic per step",
             order: 2u32,
             orders: &[2, 4, 6, 8],
             preprocessed: false,

@@ -183,7 +183,7 @@ pub mod body_in_two_fields {
                 .map_err(|e| StartError::Refused(e.cause))?;
             Ok(work)
         }
-        /// One step, in place. Solved thus: C is constant and symmetric: explicit after one quartic a step.
+        /// One step, in place. Solved thus: C is constant and symmetric: explicit up to the root of one quartic per step.
         ///
         /// # Errors
         /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -578,14 +578,14 @@ pub mod body_in_two_fields {
             let (kinetic, potential) = self.energies(state);
             kinetic + potential
         }
-        /// `Γ_k·Γ_k`: Casimir: the group leaves it alone.
+        /// `Γ_k·Γ_k`: Casimir: invariant under the group action.
         pub fn Gamma_squared(&self, state: &BodyInTwoFieldsState<T>) -> T {
             let BodyInTwoFieldsParameters { z, .. } = self.parameters;
             let Λ = state.Λ.matrix();
             let Γ = Λ.tr_mul(&z);
             Γ.dot(&Γ)
         }
-        /// `Γ_k·B_k`: Casimir: the group leaves it alone.
+        /// `Γ_k·B_k`: Casimir: invariant under the group action.
         pub fn Gamma_B(&self, state: &BodyInTwoFieldsState<T>) -> T {
             let BodyInTwoFieldsParameters { z, b, .. } = self.parameters;
             let Λ = state.Λ.matrix();
@@ -593,7 +593,7 @@ pub mod body_in_two_fields {
             let B = Λ.tr_mul(&b);
             Γ.dot(&B)
         }
-        /// `B_k·B_k`: Casimir: the group leaves it alone.
+        /// `B_k·B_k`: Casimir: invariant under the group action.
         pub fn B_squared(&self, state: &BodyInTwoFieldsState<T>) -> T {
             let BodyInTwoFieldsParameters { b, .. } = self.parameters;
             let Λ = state.Λ.matrix();
@@ -736,7 +736,7 @@ pub mod body_in_two_fields {
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
             summary: "action of one step   -tr(J Ω_k)/h - ½ h gU·Γ_k + ½ h p·B_k - ½ h gU·Γ_{k+1} + ½ h p·B_{k+1}\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, Gamma_squared, Gamma_B, B_squared\ntime reversal        symmetric: second order\ncertificate          22 identities proved by normal form",
-            solver: "Moser-Veselov: C is constant and symmetric: explicit after one quartic a step",
+            solver: "Moser-Veselov: C is constant and symmetric: explicit up to the root of one quartic per step",
             order: 2u32,
             orders: &[2, 4, 6, 8],
             preprocessed: false,

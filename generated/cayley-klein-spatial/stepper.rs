@@ -464,7 +464,7 @@ pub mod cayley_klein_spatial {
             let (kinetic, potential) = self.energies(state);
             kinetic + potential
         }
-        /// `tr(I_k)`: Casimir: the group leaves it alone.
+        /// `tr(I_k)`: Casimir: invariant under the group action.
         pub fn trace_I1(&self, state: &CayleyKleinSpatialState<T>) -> T {
             let q = state.q.matrix();
             let I_reference = state.I;
@@ -472,7 +472,7 @@ pub mod cayley_klein_spatial {
                 * (I_reference * quaternion_rotation(&q).transpose());
             I.trace()
         }
-        /// `tr(I_k²)`: Casimir: the group leaves it alone.
+        /// `tr(I_k²)`: Casimir: invariant under the group action.
         pub fn trace_I2(&self, state: &CayleyKleinSpatialState<T>) -> T {
             let q = state.q.matrix();
             let I_reference = state.I;
@@ -480,7 +480,7 @@ pub mod cayley_klein_spatial {
                 * (I_reference * quaternion_rotation(&q).transpose());
             (I * I).trace()
         }
-        /// `tr(I_k³)`: Casimir: the group leaves it alone.
+        /// `tr(I_k³)`: Casimir: invariant under the group action.
         pub fn trace_I3(&self, state: &CayleyKleinSpatialState<T>) -> T {
             let q = state.q.matrix();
             let I_reference = state.I;

@@ -853,7 +853,7 @@ pub mod coupled_bodies {
         pub fn total_momentum(&self, state: &CoupledBodiesState<T>) -> SVector<T, 3> {
             state.spatial_momentum_Λ1().0 + state.spatial_momentum_Λ2().0
         }
-        /// `(μ_{1,k} + R_k μ_{2,k})·(μ_{1,k} + R_k μ_{2,k})`: Casimir: the Kelvin-Noether quantity of what is advected.
+        /// `(μ_{1,k} + R_k μ_{2,k})·(μ_{1,k} + R_k μ_{2,k})`: Casimir: the Kelvin-Noether quantity of the advected quantities.
         pub fn total_momentum_squared(&self, state: &CoupledBodiesState<T>) -> T {
             let Λ1 = state.Λ1.matrix();
             let Λ2 = state.Λ2.matrix();

@@ -576,7 +576,7 @@ pub mod ellipsoid_convective {
             let (kinetic, potential) = self.energies(state);
             kinetic + potential
         }
-        /// `tr(C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k))`: Casimir: the Kelvin-Noether quantity of what is advected.
+        /// `tr(C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k))`: Casimir: the Kelvin-Noether quantity of the advected quantities.
         pub fn circulation_C_2(&self, state: &EllipsoidConvectiveState<N, T>) -> T {
             let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
             let Q = state.Q.matrix();
@@ -585,7 +585,7 @@ pub mod ellipsoid_convective {
             let t1 = skew_part(&(inverse_or_nan(&(C)) * μ));
             (C * (t1 * (C * t1))).trace()
         }
-        /// `tr(C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k))`: Casimir: the Kelvin-Noether quantity of what is advected.
+        /// `tr(C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k))`: Casimir: the Kelvin-Noether quantity of the advected quantities.
         pub fn circulation_C_4(&self, state: &EllipsoidConvectiveState<N, T>) -> T {
             let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
             let Q = state.Q.matrix();
@@ -594,7 +594,7 @@ pub mod ellipsoid_convective {
             let t1 = skew_part(&(inverse_or_nan(&(C)) * μ));
             (C * (t1 * (C * (t1 * (C * (t1 * (C * t1))))))).trace()
         }
-        /// `skew(C₀⁻¹ Q_k⁻ᵀ μ_k Q_kᵀ)`: Noether: the action is invariant under what keeps the axis in space.
+        /// `skew(C₀⁻¹ Q_k⁻ᵀ μ_k Q_kᵀ)`: Noether: the action is invariant under motions of space that fix the axis.
         pub fn spatial_momentum_skew_C0_inverse(
             &self,
             state: &EllipsoidConvectiveState<N, T>,

@@ -557,7 +557,7 @@ pub mod ellipsoid_spatial {
             let (kinetic, potential) = self.energies(state);
             kinetic + potential
         }
-        /// `tr(skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k)`: Casimir: the Kelvin-Noether quantity of what is advected.
+        /// `tr(skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k)`: Casimir: the Kelvin-Noether quantity of the advected quantities.
         pub fn circulation_S_2(&self, state: &EllipsoidSpatialState<N, T>) -> T {
             let EllipsoidSpatialParameters { I0, .. } = self.parameters;
             let Q = state.Q.matrix();
@@ -566,7 +566,7 @@ pub mod ellipsoid_spatial {
             let t1 = skew_part(&(m * inverse_or_nan(&(S))));
             (t1 * (S * (t1 * S))).trace()
         }
-        /// `tr(skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k)`: Casimir: the Kelvin-Noether quantity of what is advected.
+        /// `tr(skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k)`: Casimir: the Kelvin-Noether quantity of the advected quantities.
         pub fn circulation_S_4(&self, state: &EllipsoidSpatialState<N, T>) -> T {
             let EllipsoidSpatialParameters { I0, .. } = self.parameters;
             let Q = state.Q.matrix();
@@ -575,7 +575,7 @@ pub mod ellipsoid_spatial {
             let t1 = skew_part(&(m * inverse_or_nan(&(S))));
             (t1 * (S * (t1 * (S * (t1 * (S * (t1 * S))))))).trace()
         }
-        /// `skew(Q_kᵀ m_k Q_k⁻ᵀ I₀⁻¹)`: Noether: the action is invariant under what keeps the axis in the body.
+        /// `skew(Q_kᵀ m_k Q_k⁻ᵀ I₀⁻¹)`: Noether: the action is invariant under motions of the body's frame that fix the axis.
         pub fn body_momentum_skew_I0_inverse_right(
             &self,
             state: &EllipsoidSpatialState<N, T>,

@@ -452,21 +452,21 @@ pub mod free_body_spatial {
             let (kinetic, potential) = self.energies(state);
             kinetic + potential
         }
-        /// `tr(J_k)`: Casimir: the group leaves it alone.
+        /// `tr(J_k)`: Casimir: invariant under the group action.
         pub fn trace_J1(&self, state: &FreeBodySpatialState<T>) -> T {
             let Λ = state.Λ.matrix();
             let J_reference = state.J;
             let J = Λ * (J_reference * Λ.transpose());
             J.trace()
         }
-        /// `tr(J_k²)`: Casimir: the group leaves it alone.
+        /// `tr(J_k²)`: Casimir: invariant under the group action.
         pub fn trace_J2(&self, state: &FreeBodySpatialState<T>) -> T {
             let Λ = state.Λ.matrix();
             let J_reference = state.J;
             let J = Λ * (J_reference * Λ.transpose());
             (J * J).trace()
         }
-        /// `tr(J_k³)`: Casimir: the group leaves it alone.
+        /// `tr(J_k³)`: Casimir: invariant under the group action.
         pub fn trace_J3(&self, state: &FreeBodySpatialState<T>) -> T {
             let Λ = state.Λ.matrix();
             let J_reference = state.J;

@@ -200,7 +200,7 @@ pub mod heavy_top_spatial {
             let J = state.J;
             Poinsot::new(J).map_err(|e| e.in_field("J_k"))
         }
-        /// One step, in place. Solved thus: C is carried by the motion, constant in the body, and symmetric: explicit after one quartic a step.
+        /// One step, in place. Solved thus: C is carried by the motion, constant in the body, and symmetric: explicit up to the root of one quartic per step.
         ///
         /// # Errors
         /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -617,35 +617,35 @@ pub mod heavy_top_spatial {
             let (kinetic, potential) = self.energies(state);
             kinetic + potential
         }
-        /// `χ_k·χ_k`: Casimir: the group leaves it alone.
+        /// `χ_k·χ_k`: Casimir: invariant under the group action.
         pub fn chi_squared(&self, state: &HeavyTopSpatialState<T>) -> T {
             let Λ = state.Λ.matrix();
             let χ_reference = state.χ;
             let χ = Λ * χ_reference;
             χ.dot(&χ)
         }
-        /// `tr(J_k)`: Casimir: the group leaves it alone.
+        /// `tr(J_k)`: Casimir: invariant under the group action.
         pub fn trace_J1(&self, state: &HeavyTopSpatialState<T>) -> T {
             let Λ = state.Λ.matrix();
             let J_reference = state.J;
             let J = Λ * (J_reference * Λ.transpose());
             J.trace()
         }
-        /// `tr(J_k²)`: Casimir: the group leaves it alone.
+        /// `tr(J_k²)`: Casimir: invariant under the group action.
         pub fn trace_J2(&self, state: &HeavyTopSpatialState<T>) -> T {
             let Λ = state.Λ.matrix();
             let J_reference = state.J;
             let J = Λ * (J_reference * Λ.transpose());
             (J * J).trace()
         }
-        /// `tr(J_k³)`: Casimir: the group leaves it alone.
+        /// `tr(J_k³)`: Casimir: invariant under the group action.
         pub fn trace_J3(&self, state: &HeavyTopSpatialState<T>) -> T {
             let Λ = state.Λ.matrix();
             let J_reference = state.J;
             let J = Λ * (J_reference * Λ.transpose());
             (J * (J * J)).trace()
         }
-        /// `χ_k·(J_k χ_k)`: Casimir: the group leaves it alone.
+        /// `χ_k·(J_k χ_k)`: Casimir: invariant under the group action.
         pub fn chi_J_chi(&self, state: &HeavyTopSpatialState<T>) -> T {
             let Λ = state.Λ.matrix();
             let J_reference = state.J;
@@ -654,7 +654,7 @@ pub mod heavy_top_spatial {
             let χ = Λ * χ_reference;
             χ.dot(&(J * χ))
         }
-        /// `χ_k·(J_k² χ_k)`: Casimir: the group leaves it alone.
+        /// `χ_k·(J_k² χ_k)`: Casimir: invariant under the group action.
         pub fn chi_J2_chi(&self, state: &HeavyTopSpatialState<T>) -> T {
             let Λ = state.Λ.matrix();
             let J_reference = state.J;
@@ -663,7 +663,7 @@ pub mod heavy_top_spatial {
             let χ = Λ * χ_reference;
             χ.dot(&(J * (J * χ)))
         }
-        /// `m_k·z`: Noether: the action is invariant under what keeps the axis in space.
+        /// `m_k·z`: Noether: the action is invariant under rotations about the axis in space.
         pub fn momentum_z(&self, state: &HeavyTopSpatialState<T>) -> T {
             let HeavyTopSpatialParameters { z, .. } = self.parameters;
             let m = state.spatial_momentum().0;
@@ -860,7 +860,7 @@ pub mod heavy_top_spatial {
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
             summary: "action of one step   -tr(ω_k J_k)/h - ½ h w χ_k·z - ½ h w χ_{k+1}·z\nmomentum of Λ        ω_k J_k/h - J_k ω_kᵀ/h\nRiccati form         exact, C = J_k\ninvariants           energy, chi_squared, trace_J1, trace_J2, trace_J3, chi_J_chi, chi_J2_chi, momentum_z\ntime reversal        symmetric: second order\ncertificate          22 identities proved by normal form",
-            solver: "Moser-Veselov: C is carried by the motion, constant in the body, and symmetric: explicit after one quartic a step",
+            solver: "Moser-Veselov: C is carried by the motion, constant in the body, and symmetric: explicit up to the root of one quartic per step",
             order: 2u32,
             orders: &[2, 4, 6, 8],
             preprocessed: false,

@@ -175,7 +175,7 @@ pub mod heavy_top {
                 .map_err(|e| StartError::Refused(e.cause))?;
             Ok(work)
         }
-        /// One step, in place. Solved thus: C is constant and symmetric: explicit after one quartic a step.
+        /// One step, in place. Solved thus: C is constant and symmetric: explicit up to the root of one quartic per step.
         ///
         /// # Errors
         /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -538,7 +538,7 @@ pub mod heavy_top {
             let (kinetic, potential) = self.energies(state);
             kinetic + potential
         }
-        /// `μ_k·Γ_k`: Casimir: the Kelvin-Noether quantity of what is advected.
+        /// `μ_k·Γ_k`: Casimir: the Kelvin-Noether quantity of the advected quantities.
         pub fn momentum_Gamma(&self, state: &HeavyTopState<T>) -> T {
             let HeavyTopParameters { z, .. } = self.parameters;
             let Λ = state.Λ.matrix();
@@ -546,7 +546,7 @@ pub mod heavy_top {
             let μ = state.body_momentum().0;
             μ.dot(&Γ)
         }
-        /// `Γ_k·Γ_k`: Casimir: the group leaves it alone.
+        /// `Γ_k·Γ_k`: Casimir: invariant under the group action.
         pub fn Gamma_squared(&self, state: &HeavyTopState<T>) -> T {
             let HeavyTopParameters { z, .. } = self.parameters;
             let Λ = state.Λ.matrix();
@@ -672,7 +672,7 @@ pub mod heavy_top {
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
             summary: "action of one step   -tr(J Ω_k)/h - ½ h gU·Γ_k - ½ h gU·Γ_{k+1}\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
-            solver: "Moser-Veselov: C is constant and symmetric: explicit after one quartic a step",
+            solver: "Moser-Veselov: C is constant and symmetric: explicit up to the root of one quartic per step",
             order: 2u32,
             orders: &[2, 4, 6, 8],
             preprocessed: false,

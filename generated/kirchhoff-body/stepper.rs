@@ -976,7 +976,7 @@ pub mod kirchhoff_body {
             let (kinetic, potential) = self.energies(state);
             kinetic + potential
         }
-        /// `P_k[1:3]·P_k[1:3]`: Casimir: the group leaves it alone.
+        /// `P_k[1:3]·P_k[1:3]`: Casimir: invariant under the group action.
         pub fn P_part_squared(&self, state: &KirchhoffBodyState<T>) -> T {
             let KirchhoffBodyParameters { Z, .. } = self.parameters;
             let G = state.G.matrix();
@@ -984,7 +984,7 @@ pub mod kirchhoff_body {
             let t1 = rows_from::<T, 4, 3, 1>(&P, 0);
             t1.dot(&t1)
         }
-        /// `(lin(μ_k) × P_k[1:3])·(lin(μ_k) × P_k[1:3])`: Casimir: the Kelvin-Noether quantity of what is advected.
+        /// `(lin(μ_k) × P_k[1:3])·(lin(μ_k) × P_k[1:3])`: Casimir: the Kelvin-Noether quantity of the advected quantities.
         pub fn momentum_linear_across_P_part_squared(
             &self,
             state: &KirchhoffBodyState<T>,
@@ -997,7 +997,7 @@ pub mod kirchhoff_body {
                 .cross(&(rows_from::<T, 4, 3, 1>(&P, 0)));
             t1.dot(&t1)
         }
-        /// `Z[1:3] × (rot(G_k) lin(μ_k))`: Noether: the action is invariant under what keeps the axis in space.
+        /// `Z[1:3] × (rot(G_k) lin(μ_k))`: Noether: the action is invariant under translations along the axis.
         pub fn spatial_momentum_linear_across_Z(
             &self,
             state: &KirchhoffBodyState<T>,
@@ -1008,7 +1008,7 @@ pub mod kirchhoff_body {
             (rows_from::<T, 4, 3, 1>(&Z, 0))
                 .cross(&(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)))
         }
-        /// `(rot(G_k) ang(μ_k) + pos(G_k) × (rot(G_k) lin(μ_k)))·Z[1:3]`: Noether: the action is invariant under what keeps the axis in space.
+        /// `(rot(G_k) ang(μ_k) + pos(G_k) × (rot(G_k) lin(μ_k)))·Z[1:3]`: Noether: the action is invariant under rotations about the axis in space.
         pub fn spatial_momentum_angular_Z(&self, state: &KirchhoffBodyState<T>) -> T {
             let KirchhoffBodyParameters { Z, .. } = self.parameters;
             let G = state.G.matrix();

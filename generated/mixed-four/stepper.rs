@@ -41,6 +41,7 @@ pub mod mixed_four {
     pub struct MixedFour<T = f64> {
         parameters: MixedFourParameters<T>,
         factor_1: LeftFactor<3, T>,
+        factor_3: QuaternionBody<T>,
         method: Method,
     }
     impl<T: Real> MixedFour<T> {
@@ -68,11 +69,13 @@ pub mod mixed_four {
             validate::finite("s", parameters.s.as_slice())?;
             validate::finite("e", parameters.e.as_slice())?;
             validate::finite("g", parameters.g.as_slice())?;
-            let MixedFourParameters { J, .. } = parameters;
+            let MixedFourParameters { J, I, .. } = parameters;
             let factor_1 = LeftFactor::new(J).map_err(|e| e.in_field("J"))?;
+            let factor_3 = QuaternionBody::new("I", I, T::from_f64(0.0))?;
             Ok(Self {
                 parameters,
                 factor_1,
+                factor_3,
                 method: Method::of_size(if 3 == 3 { 3 } else { 4 }),
             })
         }
@@ -175,11 +178,9 @@ pub mod mixed_four {
         h: T,
         method: Method,
         search_2: newton::Search<T, [RigidMotion<T>; 1], MixedFourNode2<T>, 6>,
-        search_3: newton::Search<T, [UnitQuaternion<T>; 1], MixedFourNode3<T>, 3>,
         search_4: newton::Search<T, [Additive<3, 1, T>; 1], MixedFourNode4<T>, 3>,
     }
     type MixedFourNode2<T> = [T; 0];
-    type MixedFourNode3<T> = [T; 0];
     type MixedFourNode4<T> = [T; 0];
     impl<T: Real> MixedFour<T> {
         /// Starts a trajectory with step `h` from data at node 0, with the model's solver.
@@ -269,7 +270,6 @@ pub mod mixed_four {
                 h,
                 method,
                 search_2: newton::Search::from_rest(),
-                search_3: newton::Search::from_rest(),
                 search_4: newton::Search::from_rest(),
             };
             let (mut trial, mut scratch) = (state, work);
@@ -277,7 +277,7 @@ pub mod mixed_four {
                 .map_err(|e| StartError::Refused(e.cause))?;
             Ok(work)
         }
-        /// One step, in place. Solved thus: every block of velocities by itself: V, C is constant: Moser-Veselov; W, the group is not SO(n): Newton; Y, the momentum is not that of a quadratic form and a multiple of the real part of Y: Newton; ΔX, the balance is not linear in ΔX: Newton.
+        /// One step, in place. Solved thus: every block of velocities by itself: V, C is constant: Moser-Veselov; W, the group is not SO(n): Newton; Y, A is constant and symmetric, β constant: one equation for one number; ΔX, the balance is not linear in ΔX: Newton.
         ///
         /// # Errors
         /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
@@ -288,19 +288,20 @@ pub mod mixed_four {
             work: &mut MixedFourWorkspace<T>,
         ) -> Result<(), StepError> {
             let h = work.h;
-            let MixedFourParameters { A, M, I, m, b, k, p, s, e: e_, g, .. } = self
+            let MixedFourParameters { A, M, m, b, k, p, s, e: e_, g, .. } = self
                 .parameters;
             let R = state.R.matrix();
             let G = state.G.matrix();
             let q = state.q.matrix();
             let X = state.X.matrix();
             let relative_R_q = R.tr_mul(&quaternion_rotation(&q));
+            let b1 = relative_R_q * e_;
             let V = match self
                 .factor_1
                 .rotation(
                     &((R.tr_mul(&state.momentum_R.0)
-                        - (p.cross(&(relative_R_q * e_ - R.tr_mul(&X)))
-                            * T::from_f64(0.5) * h * k)) * h),
+                        - (p.cross(&(b1 - R.tr_mul(&X))) * T::from_f64(0.5) * h * k))
+                        * h),
                     work.method,
                 )
             {
@@ -392,73 +393,20 @@ pub mod mixed_four {
             };
             let solved_2 = found_2.element;
             let W_matrix = solved_2[0].matrix();
-            let found_3: newton::Solved<[UnitQuaternion<T>; 1]> = {
-                let momenta: [SVector<T, 3>; 1] = [state.momentum_q.to_body(&state.q).0];
-                let s1 = h.powi(-1);
-                let k1 = T::from_f64(2.0) * s1;
-                let k2 = relative_R_q.tr_mul(&p.cross(&(relative_R_q * e_)))
-                    * T::from_f64(0.5) * h * k;
-                let mut iteration = work.search_3.begin(state.node, []);
-                loop {
-                    let trial = iteration.trial();
-                    if iteration.wants_scale() {
-                        iteration
-                            .set_scale(move |lane| {
-                                self
-                                    .rounding_3(
-                                        h,
-                                        &(newton::Turn(relative_R_q), []),
-                                        &momenta,
-                                        &trial,
-                                        lane,
-                                    )
-                            });
-                    }
-                    let (Y_re, Y_im) = (trial[0].real(), trial[0].imaginary());
-                    if iteration
-                        .assess({
-                            (diagonal_times(&I, &Y_im) * k1 * Y_re
-                                + Y_im.cross(&(diagonal_times(&I, &Y_im))) * k1 - k2)
-                                - momenta[0]
-                        })
-                    {
-                        iteration
-                            .set_tangent(
-                                &{
-                                    let t1 = SMatrix::<T, 3, 3>::identity() * Y_re + hat(&Y_im);
-                                    ((crossed(&Y_im, &I) - hat(&(diagonal_times(&I, &Y_im))))
-                                        * t1 - diagonal_times(&I, &Y_im) * Y_im.transpose()) * s1
-                                        + diagonal_times(&I, &t1) * s1 * Y_re
-                                },
-                            );
-                    }
-                    match iteration.correct() {
-                        newton::Progress::Continue => {}
-                        newton::Progress::Solved(
-                            solved,
-                        ) if iteration.is_principal(&solved.element) => break solved,
-                        ended => {
-                            if let Some(solved) = self
-                                .settled_3(
-                                    h,
-                                    *state,
-                                    (newton::Turn(relative_R_q), []),
-                                    momenta,
-                                    &mut iteration,
-                                    ended,
-                                    work.method,
-                                )?
-                            {
-                                break solved;
-                            }
-                        }
-                    }
-                }
+            let Y = match self
+                .factor_3
+                .velocity(
+                    &((state.momentum_q.to_body(&state.q).0
+                        - (-(relative_R_q.tr_mul(&p.cross(&b1)) * T::from_f64(0.5) * h
+                            * k))) * h),
+                )
+            {
+                Ok(solved) => solved,
+                Err(e) => return Err(self.refused_3(*state, work, e)),
             };
-            let solved_3 = found_3.element;
-            let Y_matrix = solved_3[0].matrix();
             let found_4: newton::Solved<[Additive<3, 1, T>; 1]> = {
                 let momenta: [SVector<T, 3>; 1] = [state.momentum_X.0];
+                let convex = { (m).least() > 0.0 && (b).least() >= 0.0 };
                 let mut iteration = work.search_4.begin(state.node, []);
                 loop {
                     let trial = iteration.trial();
@@ -528,7 +476,9 @@ pub mod mixed_four {
                         newton::Progress::Continue => {}
                         newton::Progress::Solved(
                             solved,
-                        ) if iteration.is_principal(&solved.element) => break solved,
+                        ) if convex || iteration.is_principal(&solved.element) => {
+                            break solved;
+                        }
                         ended => {
                             if let Some(solved) = self
                                 .settled_4(
@@ -551,7 +501,7 @@ pub mod mixed_four {
             let ΔX_matrix = solved_4[0].matrix();
             let R_moved = state.R * V;
             let G_moved = state.G * solved_2[0];
-            let q_moved = state.q * solved_3[0];
+            let q_moved = state.q * Y;
             let X_moved = state.X + solved_4[0];
             let R_next = R_moved.matrix();
             let G_next = G_moved.matrix();
@@ -622,7 +572,6 @@ pub mod mixed_four {
             state.momentum_X = FieldMomentum(momentum_X_next);
             state.node += 1;
             work.search_2.remember(state.node - 1, &found_2);
-            work.search_3.remember(state.node - 1, &found_3);
             work.search_4.remember(state.node - 1, &found_4);
             Ok(())
         }
@@ -648,7 +597,6 @@ pub mod mixed_four {
                                     h,
                                     method,
                                     search_2: newton::Search::to_offer(),
-                                    search_3: newton::Search::to_offer(),
                                     search_4: newton::Search::to_offer(),
                                 },
                             );
@@ -724,7 +672,6 @@ pub mod mixed_four {
                                 h,
                                 method,
                                 search_2: search,
-                                search_3: search.alike(),
                                 search_4: search.alike(),
                             },
                         )
@@ -878,200 +825,35 @@ pub mod mixed_four {
             }
             Ok(verdict.close(certificate, values))
         }
-        /// The solution to be taken where the one found is not known to be principal, or none was
-        /// found. None where the iteration begins again, at the principal root.
-        #[cold]
-        #[inline(never)]
-        fn settled_3(
-            &self,
-            h: T,
-            state: MixedFourState<T>,
-            given: (newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
-            momenta: [SVector<T, 3>; 1],
-            iteration: &mut newton::Newton<
-                '_,
-                T,
-                [UnitQuaternion<T>; 1],
-                MixedFourNode3<T>,
-                3,
-            >,
-            ended: newton::Progress<[UnitQuaternion<T>; 1]>,
-            method: Method,
-        ) -> Result<Option<newton::Solved<[UnitQuaternion<T>; 1]>>, StepError> {
-            let failed = match ended {
-                newton::Progress::Continue => return Ok(None),
-                newton::Progress::Solved(solved) => Ok(solved),
-                newton::Progress::Failed(e) => Err(e),
-            };
-            let asked = failed.as_ref().ok().map(|solved| &solved.element);
-            let values = iteration.values();
-            let traced = self
-                .principal_3(
-                    h,
-                    &given,
-                    &values,
-                    &momenta,
-                    iteration.certificate(),
-                    asked,
-                );
-            let e = match (traced, failed) {
-                (Ok(None), Ok(solved)) => return Ok(Some(solved)),
-                (Ok(Some(root)), _) if iteration.restart(root) => return Ok(None),
-                (Ok(_), Err(e)) => e,
-                (Ok(_), Ok(_)) => iteration.unpolished(),
-                (Err(fold), failed) => iteration.folded(fold, failed.err()),
-            };
-            Err(self.refused_3(state, h, e, method))
-        }
-        /// Says which equation is worst, and which step could be solved.
+        /// Says how far the step is beyond the bound, and which step could be made.
         #[cold]
         #[inline(never)]
         fn refused_3(
             &self,
             state: MixedFourState<T>,
-            h: T,
-            e: newton::NewtonError,
-            method: Method,
+            work: &MixedFourWorkspace<T>,
+            e: QuaternionError,
         ) -> StepError {
-            const CONFIGURATIONS: &[&str] = &["q"];
+            let method = work.method;
             let e = e
-                .explained(
-                    h,
-                    &CONFIGURATIONS,
-                    |h, search| {
-                        self.step(
-                            &mut { state },
-                            &mut MixedFourWorkspace {
-                                h,
-                                method,
-                                search_2: search.alike(),
-                                search_3: search,
-                                search_4: search.alike(),
-                            },
-                        )
+                .with_searched_steps(
+                    work.h.value(),
+                    |h| {
+                        let h = T::from_f64(h);
+                        let made = self
+                            .step(
+                                &mut { state },
+                                &mut MixedFourWorkspace {
+                                    h,
+                                    method,
+                                    search_2: newton::Search::to_offer(),
+                                    search_4: newton::Search::to_offer(),
+                                },
+                            );
+                        made.ok().map(|()| 0.0)
                     },
                 );
             StepCause::from(e).at_node(state.node)
-        }
-        /// The residual of the equations of a step.
-        #[cold]
-        #[inline(never)]
-        #[allow(unused_variables)]
-        fn residual_at_3(
-            parameters: &MixedFourParameters<T>,
-            h: T,
-            given: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
-            momenta: &[SVector<T, 3>; 1],
-            trial: &[UnitQuaternion<T>; 1],
-        ) -> SVector<T, 3> {
-            let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = *parameters;
-            let relative_R_q = given.0.0;
-            let (Y_re, Y_im) = (trial[0].real(), trial[0].imaginary());
-            let t1 = h.powi(-1);
-            (diagonal_times(&I, &Y_im) * T::from_f64(2.0) * Y_re * t1
-                + Y_im.cross(&(diagonal_times(&I, &Y_im))) * T::from_f64(2.0) * t1
-                - relative_R_q.tr_mul(&p.cross(&(relative_R_q * e_))) * T::from_f64(0.5)
-                    * h * k) - momenta[0]
-        }
-        /// Their tangent.
-        #[cold]
-        #[inline(never)]
-        #[allow(unused_variables)]
-        fn tangent_at_3(
-            parameters: &MixedFourParameters<T>,
-            h: T,
-            values: &[T; 0],
-            Y_re: T,
-            Y_im: SVector<T, 3>,
-        ) -> SMatrix<T, 3, 3> {
-            let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = *parameters;
-            let t1 = h.powi(-1);
-            let t2 = SMatrix::<T, 3, 3>::identity() * Y_re + hat(&Y_im);
-            ((crossed(&Y_im, &I) - hat(&(diagonal_times(&I, &Y_im)))) * t2
-                - diagonal_times(&I, &Y_im) * Y_im.transpose()) * t1
-                + diagonal_times(&I, &t2) * Y_re * t1
-        }
-        /// Bounds of the rounding of the residual, in one lane.
-        #[cold]
-        #[inline(never)]
-        fn rounding_3(
-            &self,
-            h: T,
-            given: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
-            momenta: &[SVector<T, 3>; 1],
-            trial: &[UnitQuaternion<T>; 1],
-            lane: usize,
-        ) -> SVector<f64, 3> {
-            let change = &mut |x: T| newton::Enclosure::<0>::exactly(x.lane(lane));
-            let parameters = self.parameters.over(change);
-            let (step, given, momenta) = (
-                h.over(change),
-                given.over(change),
-                momenta.map(|part| part.over(change)),
-            );
-            let change = &mut |x: T| newton::Enclosure::<0>::rounded(x.lane(lane));
-            let trial = [trial[0].over(change)];
-            MixedFour::<
-                newton::Enclosure<0>,
-            >::residual_at_3(&parameters, step, &given, &momenta, &trial)
-                .map(|x| x.rest())
-        }
-        /// Finds the principal root, or shows that the solution is.
-        #[cold]
-        #[inline(never)]
-        fn principal_3(
-            &self,
-            h: T,
-            given: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
-            values: &[T; 0],
-            momenta: &[SVector<T, 3>; 1],
-            certificate: &mut newton::Certificate<[T; 0], 3>,
-            solution: Option<&[UnitQuaternion<T>; 1]>,
-        ) -> Result<Option<newton::Anchor<[UnitQuaternion<T>; 1], 3>>, newton::Fold> {
-            let first = solution.copied().unwrap_or_else(Group::<T>::identity);
-            let mut verdict = newton::Verdict::<[UnitQuaternion<T>; 1], 3>::about(first);
-            for lane in 0..T::LANES {
-                let change = &mut |x: T| newton::Enclosure::<6>::exactly(x.lane(lane));
-                let (bound, bound_step) = (self.parameters.over(change), h.over(change));
-                let change = &mut |x: T| x.lane(lane);
-                let (parameters, step) = (self.parameters.over(change), h.over(change));
-                let (given, near, momenta) = (
-                    given.over(change),
-                    values.over(change),
-                    momenta.map(|part| part.over(change)),
-                );
-                let found = match solution {
-                    Some(found) => Some([found[0].over(change)]),
-                    None => None,
-                };
-                let equations = newton::Equations {
-                    residual: &|trial: &[UnitQuaternion<f64>; 1]| MixedFour::<
-                        f64,
-                    >::residual_at_3(&parameters, step, &given, &momenta, trial),
-                    tangent: &|trial: &[UnitQuaternion<f64>; 1]| {
-                        let (Y_re, Y_im) = (trial[0].real(), trial[0].imaginary());
-                        MixedFour::<
-                            f64,
-                        >::tangent_at_3(&parameters, step, &near, Y_re, Y_im)
-                    },
-                    enclosed: &|spread, trial: &[newton::QuaternionRegion<6>; 1]| {
-                        let (Y_re, Y_im) = (trial[0].real(), trial[0].imaginary());
-                        let values = newton::NodeValues::enclosed(values, lane, spread);
-                        MixedFour::<
-                            newton::Enclosure<6>,
-                        >::tangent_at_3(&bound, bound_step, &values, Y_re, Y_im)
-                    },
-                };
-                let care = certificate.care();
-                let traced = newton::trace(&equations, found.as_ref(), care);
-                if let Some(root) = verdict
-                    .add(traced.map_err(|fold| fold.in_lane(lane))?)
-                {
-                    let all = verdict.root_mut();
-                    all[0] = all[0].over(&mut newton::Numbers::of(&root[0]).put(lane));
-                }
-            }
-            Ok(verdict.close(certificate, values))
         }
         /// The solution to be taken where the one found is not known to be principal, or none was
         /// found. None where the iteration begins again, at the principal root.
@@ -1143,7 +925,6 @@ pub mod mixed_four {
                                 h,
                                 method,
                                 search_2: search.alike(),
-                                search_3: search.alike(),
                                 search_4: search,
                             },
                         )
@@ -1342,7 +1123,6 @@ pub mod mixed_four {
                             h,
                             method,
                             search_2: newton::Search::to_try(),
-                            search_3: newton::Search::to_try(),
                             search_4: newton::Search::to_try(),
                         }
                     },
@@ -1729,7 +1509,7 @@ pub mod mixed_four {
         }
     }
     impl<T: Real> MixedFour<T> {
-        /// `(R_k μ_{1,k} + rot(G_k) ang(μ_{2,k}) + pos(G_k) × (rot(G_k) lin(μ_{2,k})) + rot(q_k) μ_{3,k} + X_k × p_{4,k})·g`: Noether: the action is invariant under what keeps the axis in space.
+        /// `(R_k μ_{1,k} + rot(G_k) ang(μ_{2,k}) + pos(G_k) × (rot(G_k) lin(μ_{2,k})) + rot(q_k) μ_{3,k} + X_k × p_{4,k})·g`: Noether: the action is invariant under rotations about the axis in space.
         pub fn total_momentum_angular_g(&self, state: &MixedFourState<T>) -> T {
             let MixedFourParameters { g, .. } = self.parameters;
             let R = state.R.matrix();
@@ -1894,8 +1674,8 @@ pub mod mixed_four {
             doc: "Two bodies, a rigid motion and a point mass joined by springs.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   -tr(J V_k)/h - tr(A rot(W_k))/h + M pos(W_k)·pos(W_k)/(2 h) + 2 im(Y_k)·(I im(Y_k))/h + m ΔX_k·ΔX_k/(2 h) + b (ΔX_k·ΔX_k)²/h³ + ½ h m g·X_k - ¼ h k (X_k - R_k p)·(X_k - R_k p) - ¼ h k (pos(G_k) + rot(G_k) s - X_k)·(pos(G_k) + rot(G_k) s - X_k) - ½ h k e·(relative_{R,q,k}ᵀ p) + ½ h m g·X_{k+1} - ¼ h k (X_{k+1} - R_{k+1} p)·(X_{k+1} - R_{k+1} p) - ¼ h k (pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1})·(pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1}) - ½ h k e·(relative_{R,q,k+1}ᵀ p)\nmomentum of R        -J V_kᵀ/h + V_k J/h\nmomentum of G        (-2 vee(A rot(W_k)ᵀ)/h, M pos(W_k)/h)\nmomentum of q        2 im(Y_k quat(I im(Y_k)))/h\nmomentum of X        4 b (ΔX_k·ΔX_k) ΔX_k/h³ + m ΔX_k/h\nRiccati form         exact, C = J; none: the group is not SO(n); none: the momentum is not that of a quadratic form and a multiple of the real part of Y; none: the balance is not linear in ΔX\ninvariants           total_momentum_angular_g\ntime reversal        symmetric: second order\ncertificate          51 identities proved by normal form, 10 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
-            solver: "Blocks: every block of velocities by itself: V, C is constant: Moser-Veselov; W, the group is not SO(n): Newton; Y, the momentum is not that of a quadratic form and a multiple of the real part of Y: Newton; ΔX, the balance is not linear in ΔX: Newton",
+            summary: "action of one step   -tr(J V_k)/h - tr(A rot(W_k))/h + M pos(W_k)·pos(W_k)/(2 h) + 2 im(Y_k)·(I im(Y_k))/h + m ΔX_k·ΔX_k/(2 h) + b (ΔX_k·ΔX_k)²/h³ + ½ h m g·X_k - ¼ h k (X_k - R_k p)·(X_k - R_k p) - ¼ h k (pos(G_k) + rot(G_k) s - X_k)·(pos(G_k) + rot(G_k) s - X_k) - ½ h k e·(relative_{R,q,k}ᵀ p) + ½ h m g·X_{k+1} - ¼ h k (X_{k+1} - R_{k+1} p)·(X_{k+1} - R_{k+1} p) - ¼ h k (pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1})·(pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1}) - ½ h k e·(relative_{R,q,k+1}ᵀ p)\nmomentum of R        -J V_kᵀ/h + V_k J/h\nmomentum of G        (-2 vee(A rot(W_k)ᵀ)/h, M pos(W_k)/h)\nmomentum of q        2 im(Y_k quat(I im(Y_k)))/h\nmomentum of X        4 b (ΔX_k·ΔX_k) ΔX_k/h³ + m ΔX_k/h\nRiccati form         exact, C = J; none: the group is not SO(n); none; in unit quaternions, A = I, β = 0; none: the balance is not linear in ΔX\ninvariants           total_momentum_angular_g\ntime reversal        symmetric: second order\ncertificate          51 identities proved by normal form, 10 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
+            solver: "Blocks: every block of velocities by itself: V, C is constant: Moser-Veselov; W, the group is not SO(n): Newton; Y, A is constant and symmetric, β constant: one equation for one number; ΔX, the balance is not linear in ΔX: Newton",
             order: 2u32,
             orders: &[2, 4, 6, 8],
             preprocessed: false,

@@ -534,7 +534,7 @@ fn words_of_rust_are_refused_with_a_reason() {
             let errors = clebsch_core::derive_source(&text)
                 .expect_err(&text)
                 .to_string();
-            let said = format!("`{word}` is a word of Rust");
+            let said = format!("`{word}` is a Rust keyword");
             assert!(errors.contains(&said), "{text}: {errors}");
         }
     }

@@ -83,9 +83,7 @@ fn unusable(name: &Name) -> Option<Diagnostic> {
     } else if let Some(sign) = printed {
         format!("`{text}` prints as `{sign}`, which has a fixed meaning in derivations")
     } else if RUST.contains(&text) {
-        format!(
-            "`{text}` is a word of Rust, in which the model is emitted, and names nothing there"
-        )
+        format!("`{text}` is a Rust keyword and cannot be used as a name")
     } else {
         return None;
     };

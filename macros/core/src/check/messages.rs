@@ -87,11 +87,7 @@ pub fn missing_constraint(
         _ if q.shape.is_vector() => format!("constraint next({name}) = {v}^T * {name};"),
         _ => format!("constraint next({name}) = {v}^T * {name} * {v};"),
     };
-    Diagnostic::new(
-        place,
-        format!("nothing says how `{name}` is carried from one node to the next"),
-    )
-    .help(format!(
+    Diagnostic::new(place, format!("no evolution constraint for `{name}`")).help(format!(
         "add its Clebsch constraint, for example `{example}`"
     ))
 }
@@ -111,7 +107,7 @@ pub fn not_carried_by_field(
     };
     Diagnostic::new(
         place,
-        format!("nothing says how `{name}` is carried from one node to the next"),
+        format!("no evolution constraint for `{name}`"),
     )
     .help(format!(
         "add its constraint, for example `{example}`; a function of `{field}` needs none: write it by `{field}` in the Lagrangian"

@@ -10,7 +10,7 @@ use super::seen_from_body::outgoing;
 use super::variation::at;
 use super::{Derivation, Letters};
 use crate::algebra::Algebra;
-use crate::check::spec::Spec;
+use crate::check::spec::{Side, Spec};
 use crate::expr::{self, Expr, Shift};
 
 /// Configurations whose velocities are solved together.
@@ -134,6 +134,12 @@ fn block(spec: &Spec, letters: &Letters, riccati: &[Riccati], members: Vec<usize
                 Method::Davenport,
                 "C is known at each node: the largest real eigenvalue of a 4 x 4 matrix".to_owned(),
             ),
+            Riccati::Quaternionic(q)
+                if is_constant(letters, &q.edge) && spec.configurations[*i].side == Side::Body =>
+            {
+                let why = "A is constant and symmetric, β constant: one equation for one number";
+                (Method::UnitQuaternions, why.to_owned())
+            }
             Riccati::Linear(form) => (Method::Linear, linear(form)),
             Riccati::None(why) => (Method::Newton, format!("{why}: Newton")),
             _ => (Method::Newton, "Newton on the derived residual".to_owned()),

@@ -39,6 +39,9 @@ const HIGHEST: i64 = 8;
 /// momentum.
 pub const NOT_QUADRATIC: &str = "the Lagrangian is not quadratic in the velocity";
 
+/// Why there is no limit.
+pub const STANDING: &str = "the action of a step does not shrink in proportion to the step";
+
 /// Why no limit is found where the step does not come out of a function.
 pub(crate) const INSIDE: &str = "the step stands inside a function or root";
 
@@ -145,7 +148,7 @@ pub fn limit(
         !assumed.is_empty() && points::vanishes(s, assumed, &all)
     };
     if !standing.into_values().all(cancels) {
-        return Err("the action of a step does not shrink in proportion to the step".to_owned());
+        return Err(STANDING.to_owned());
     }
     let [constant, linear, kinetic] = parts.map(|p| algebra.raise(&p));
     Ok(Limit {

@@ -12,6 +12,7 @@ pub mod carry;
 pub mod certificate;
 pub mod clebsch;
 pub mod continuous;
+pub mod convex;
 pub mod explicit;
 mod far;
 pub mod invariants;

@@ -36,15 +36,12 @@ pub(super) fn form(
 ) -> Result<(Expr, Expr, Expr), String> {
     let refused = "the momentum is not that of a quadratic form and a multiple of the real part";
     let name = &letters.symbols.get(spec.configurations[i].velocity).name;
-    read(spec, letters, b, algebra).ok_or_else(|| format!("{refused} of {name}"))
-}
-
-/// The parts of the only velocity.
-fn single(parts: &Parts) -> Option<Velocity> {
-    match parts.velocities.as_slice() {
-        [only] => Some(*only),
-        _ => None,
-    }
+    // Read as the balance of a model of one.
+    let own = Spec {
+        configurations: vec![spec.configurations[i].clone()],
+        ..spec.clone()
+    };
+    read(&own, letters, b, algebra).ok_or_else(|| format!("{refused} of {name}"))
 }
 
 fn read(
@@ -54,8 +51,7 @@ fn read(
     algebra: &Algebra,
 ) -> Option<(Expr, Expr, Expr)> {
     let parts = Parts::of(spec, letters)?;
-    let Some(Velocity::Quaternion(re, im)) = single(&parts) else {
-        // Velocities of several bodies are found together.
+    let [Velocity::Quaternion(re, im)] = parts.velocities[..] else {
         return None;
     };
     let s = &parts.symbols;
@@ -64,7 +60,12 @@ fn read(
     let inner = algebra.over(s);
     let (w, v) = (expr::here(s, re), expr::here(s, im));
     let [re, im] = [re, im].map(|id| at(id, Shift::HERE));
-    let free = |e: &Expr| !expr::contains(e, re) && !expr::contains(e, im);
+    // Nor may the velocities of others stand in them.
+    let free = |e: &Expr| {
+        !expr::contains(e, re)
+            && !expr::contains(e, im)
+            && !expr::contains_role(s, e, Role::Velocity)
+    };
     let vector = Shape::vector(Dim::Fixed(3));
     let (nothing, zero) = (expr::integer(0), expr::zero(vector));
     let by_number = expr::directional(s, &momentum, &[(re, expr::integer(1))]);
@@ -80,7 +81,7 @@ fn read(
     let rest = expr::substitute(s, &still, &[(im, zero)]);
     let raised = |e: &Expr| shorter(&inner, e.clone());
     let (a, real, rest) = (raised(&a), raised(&real), raised(&rest));
-    if ![&a, &real, &rest].into_iter().all(free) || a.is_zero() {
+    if ![&a, &real, &rest].into_iter().all(free) {
         return None;
     }
     let image = expr::mul(a.clone(), v.clone());

@@ -188,7 +188,7 @@ pub fn recognise(
         }
         _ => None,
     };
-    let kappa = "explicit after one quartic a step";
+    let kappa = "explicit up to the root of one quartic per step";
     let iterated = "Newton's method on the Lie algebra";
     let solver = if three(0) { kappa } else { iterated };
     let (method, reason) = match riccati.as_slice() {

@@ -310,7 +310,7 @@ fn wrong_side(
     Diagnostic::new(
         a.place,
         format!(
-            "`{name}` is not advected by the group: with `{reconstruction}` this constraint is no action on the matching side, and its variation leaves {rest}"
+            "`{name}` is not advected by the group: its constraint is not a group action compatible with `{reconstruction}`; residual of its variation: {rest}"
         ),
     )
     .help(format!(

@@ -54,7 +54,7 @@ fn model(sheet: &Sheet, doc: &mut Document) {
     }
     if let Some((number, factor)) = sheet.thesis.section() {
         section.text(&format!(
-            "By its structure this is the system of section {number} of M. F. Dixon, Geometric integrators for continuum dynamics (2007), the thesis cited below; its Lagrangian and momenta are {factor} times those printed here, and its velocities bear the index of the end of their edge."
+            "By its structure this is the system of section {number} of M. F. Dixon, Geometric integrators for continuum dynamics (2007), the thesis cited below; its Lagrangian and momenta are {factor} times those printed here, and it indexes velocities by the end of the step."
         ));
     }
 }
@@ -198,7 +198,7 @@ fn constraints(sheet: &Sheet, doc: &mut Document) {
     if spec.advected.is_empty() {
         return;
     }
-    section.text("The group carries the quantities at the nodes:");
+    section.text("Advected quantities evolve by");
     for (j, a) in spec.advected.iter().enumerate() {
         let update = Formula::equal(sheet.at(a.quantity, Shift::NEXT), sheet.math(&a.update));
         let equation = match &a.definition {
@@ -221,13 +221,13 @@ pub fn transport_label(j: usize) -> String {
 fn action(sheet: &Sheet, doc: &mut Document) {
     let d = sheet.d;
     let k = &d.spec.time_index;
-    let section = doc.section("Action");
+    let section = doc.section("Discrete Lagrangian");
     if let Some(scale) = &d.spec.scale {
         let typed = Formula::name("ℓ^{typed}");
         section.paragraph([
             "The Lagrangian is typed as ".into(),
             sheet.math(scale).into(),
-            " times the action of one step:".into(),
+            " times the discrete Lagrangian:".into(),
         ]);
         let times = |e: &Expr| Formula::Product(vec![sheet.math(e), Formula::name("ℓ")]);
         let scaled = match scale.node() {
@@ -238,21 +238,21 @@ fn action(sheet: &Sheet, doc: &mut Document) {
             vec![typed, sheet.math(&d.spec.typed), scaled],
             Relation::Equal,
         ));
-        section.text("physical:");
+        section.text("so that the discrete Lagrangian is");
         section.equation(Formula::equal(Formula::name("ℓ"), physical(sheet)));
     }
     if d.action.nodal.is_zero() {
-        section.text("The action of one step, from a node to the next:");
+        section.text("The discrete Lagrangian of the step from a node to the next:");
     } else {
         section.text(match d.spec.node_rule {
             NodeRule::Symmetric => {
-                "Terms at one node are split evenly between the two adjacent edges, which makes the action of a step:"
+                "Nodal terms are split evenly between the two adjacent edges. The discrete Lagrangian:"
             }
             NodeRule::Incoming => {
-                "Terms at one node belong to the edge that ends there, which makes the action of a step:"
+                "Nodal terms belong to the edge that ends at the node. The discrete Lagrangian:"
             }
             NodeRule::Outgoing => {
-                "Terms at one node belong to the edge that starts there, which makes the action of a step:"
+                "Nodal terms belong to the edge that starts at the node. The discrete Lagrangian:"
             }
         });
     }
@@ -269,7 +269,7 @@ fn action(sheet: &Sheet, doc: &mut Document) {
         .iter()
         .any(|c| c.group.is_orthogonal())
     {
-        ", and gradients are taken in this pairing. The Clebsch action adds one multiplier for each constraint, that of a rotation with weight 1/2:"
+        ", and gradients are taken in this pairing. The Clebsch action adds one multiplier for each constraint; that of a rotation enters with a factor 1/2:"
     } else {
         ", and gradients are taken in this pairing. The Clebsch action adds one multiplier for each constraint:"
     };
@@ -312,8 +312,8 @@ pub fn physical(sheet: &Sheet) -> Formula {
 
 fn variations(sheet: &Sheet, doc: &mut Document) {
     let d = sheet.d;
-    let section = doc.section("Variations that keep the constraints");
-    section.text("One element varies freely at its node; the velocities of the two adjacent edges absorb it, and the advected quantities follow.");
+    let section = doc.section("Constrained variations");
+    section.text("Let a configuration vary freely at its node; the constraints then determine the variations of the two adjacent velocities and of the advected quantities.");
     for (i, (v, xi)) in d.variations.iter().zip(&d.letters.variation).enumerate() {
         for (letter, change) in [&v.element, &v.outgoing, &v.incoming] {
             let x = sheet.at(letter.symbol, letter.shift);
@@ -342,7 +342,7 @@ fn variations(sheet: &Sheet, doc: &mut Document) {
                 let both = " is an arbitrary angular and a linear displacement on top of each other; twist of it is the matrix of the Lie algebra, and";
                 Inline::Notation {
                     line: format!("{both} ang and lin take the angular and the linear part of such a vector, x[1:3] the first three entries of a longer one."),
-                    page: format!("{both} {} puts a vector into a longer one, from the row that its second index tells.", sheet.symbols().fresh_name("ι")),
+                    page: format!("{both} {} is the zero-padding inclusion of a vector in a longer one, from the row given by its second index.", sheet.symbols().fresh_name("ι")),
                 }
             }
         };
@@ -358,7 +358,7 @@ pub fn variation_label(i: usize, j: usize) -> String {
 fn relations(sheet: &Sheet, doc: &mut Document) {
     let d = sheet.d;
     let section = doc.section("Clebsch relations");
-    section.text("Stationarity of the sum of the Clebsch actions of all edges, in each variable in turn (in the multipliers it gives the constraints back):");
+    section.text("Stationarity of the sum of the Clebsch actions over all edges yields, besides the constraints, the Clebsch relations:");
     for r in &d.relations {
         let x = sheet.at(r.variable.symbol, r.variable.shift);
         let right = if r.up_to_group_multiplier {

@@ -69,9 +69,9 @@ pub fn momentum_maps(sheet: &Sheet, doc: &mut Document) {
             Side::Spatial => "left translation",
         };
         let lifted = if (0..d.spec.advected.len()).any(|j| sheet.moves(i, j)) {
-            " and of the action that goes with it, lifted to the multipliers, at a node:"
+            " and of the associated action on the advected quantities, cotangent-lifted to the multipliers, at a node:"
         } else {
-            ", lifted to its multiplier, at a node:"
+            ", cotangent-lifted to its multiplier, at a node:"
         };
         section.paragraph([
             format!("The momentum map of the {translation} of ").into(),
@@ -91,7 +91,7 @@ pub fn momentum_maps(sheet: &Sheet, doc: &mut Document) {
             sheet.thesis.lifted(),
         );
         section.labelled(&format!("lifted {i}"));
-        section.paragraph(["The momentum of the edge:".into()]);
+        section.paragraph(["The edge momentum:".into()]);
         edge(sheet, section, c, m, i);
         elimination(sheet, section, c, i);
     }
@@ -248,9 +248,9 @@ fn elimination(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize
         Side::Spatial => ("from the left", "from the right"),
     };
     let half = if c.group.is_orthogonal() {
-        ", twice its skew part taken,"
+        " and take twice the skew part"
     } else if c.group.coordinates().is_some() {
-        ", paired with the Lie algebra,"
+        " and pair with the Lie algebra"
     } else {
         ""
     };
@@ -260,14 +260,14 @@ fn elimination(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize
     let advected = advected.filter(|(j, _)| sheet.moves(i, *j));
     others.extend(advected.clone().map(|(_, a)| relation_label(a.quantity)));
     let mut words: Vec<Inline> = vec![
-        "Equation ".into(),
+        "Multiply ".into(),
         Inline::reference(&relation_label(c.velocity)),
-        " multiplied by ".into(),
+        " by ".into(),
         turned.clone(),
-        format!(" {behind}{half} is with ").into(),
+        format!(" {behind}{half}; with ").into(),
     ];
     words.extend(references(&others));
-    words.push(" the momentum map at the start of the edge,".into());
+    words.push(" this gives the momentum map at the start of the edge:".into());
     section.paragraph(words);
     let (start, end) = match c.side {
         Side::Body => (
@@ -287,15 +287,16 @@ fn elimination(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize
     );
     section.labelled(&format!("start {i}"));
     let mut words: Vec<Inline> = vec![
-        "and multiplied by ".into(),
+        "Multiplying by ".into(),
         turned,
-        format!(" {before} it is with the constraints that at its end:").into(),
+        format!(" {before} instead gives, by the constraints, the momentum map at its end:").into(),
     ];
     if advected.count() == 0 {
         words = vec![
-            "and multiplied by ".into(),
+            "Multiplying by ".into(),
             Formula::transpose(sheet.here(c.velocity)).into(),
-            format!(" {before} it is with the reconstruction that at its end:").into(),
+            format!(" {before} instead gives, by the reconstruction, the momentum map at its end:")
+                .into(),
         ];
     }
     section.paragraph(words);
@@ -310,18 +311,18 @@ fn elimination(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize
 fn of_field(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize) {
     let relation = |symbol| Inline::reference(&relation_label(symbol));
     section.paragraph([
-        "Equation ".into(),
-        relation(c.velocity),
-        " is with ".into(),
+        "By ".into(),
         relation(c.element),
-        " the momentum at the start of the edge,".into(),
+        ", ".into(),
+        relation(c.velocity),
+        " is the momentum at the start of the edge:".into(),
     ]);
     let mut terms = vec![sheet.lifted(i, 0)];
     terms.extend(diamonds(sheet, i));
     let momentum = sheet.edge_momentum(i, Shift::HERE);
     section.equation(Formula::equal(momentum.clone(), Formula::Sum(terms)));
     section.labelled(&format!("start {i}"));
-    section.text("and by itself that at its end:");
+    section.text("and by itself the momentum at its end:");
     section.equation(Formula::equal(momentum, sheet.lifted(i, 1)));
     section.labelled(&format!("end {i}"));
 }
@@ -345,14 +346,13 @@ pub fn balance(sheet: &Sheet, doc: &mut Document) {
     let d = sheet.d;
     let section = doc.section(format!("Discrete {} equations", equations_name(sheet)));
     for (i, (c, b)) in d.spec.configurations.iter().zip(&d.balances).enumerate() {
-        let mut words: Vec<Inline> = vec!["No multiplier is left in the difference of ".into()];
-        words.extend([
-            Inline::reference(&format!("start {i}")),
-            " and of ".into(),
+        section.paragraph([
+            "Subtracting ".into(),
             Inline::reference(&format!("end {i}")),
-            " one step earlier:".into(),
+            ", shifted by one step, from ".into(),
+            Inline::reference(&format!("start {i}")),
+            " eliminates the multipliers:".into(),
         ]);
-        section.paragraph(words);
         let (left, first) = match c.side {
             Side::Body => (
                 sheet.edge_momentum(i, Shift::HERE),
@@ -374,19 +374,25 @@ pub fn balance(sheet: &Sheet, doc: &mut Document) {
         if !with.is_empty() {
             let mut words: Vec<Inline> = vec!["Together with ".into()];
             words.extend(references(&with));
-            words.push(" it determines the motion.".into());
+            words.push(
+                format!(
+                    " it forms the discrete {} equations.",
+                    equations_name(sheet)
+                )
+                .into(),
+            );
             section.paragraph(words);
         }
         let mu = sheet.here(d.letters.node_momentum[i]);
         let frame = match c.side {
             _ if c.group.is_additive() => "",
-            Side::Body => ", in the body",
-            Side::Spatial => ", in space",
+            Side::Body => "body ",
+            Side::Spatial => "spatial ",
         };
         section.paragraph([
-            "By components, with ".into(),
+            format!("In terms of the {frame}momentum ").into(),
             mu.clone().into(),
-            format!(" the momentum at the node{frame}: the first equation is solved for the velocity, the second carries the momentum to the next node.").into(),
+            " at the node, where the first equation is solved for the velocity and the second gives the momentum at the next node:".into(),
         ]);
         section.equation(Formula::equal(mu, sheet.derived(&b.outgoing)));
         section.labelled(&format!("outgoing {i}"));

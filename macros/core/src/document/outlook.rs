@@ -4,6 +4,7 @@
 use super::sheet::{Sheet, references};
 use crate::check::spec::{Configuration, Side};
 use crate::derive::invariants::{Invariant, Kind, Known};
+use crate::derive::limit::STANDING;
 use crate::derive::reversal::Reversal;
 use crate::expr::{self, Letter, Shift};
 use crate::print::document::{Document, Inline, Section};
@@ -15,7 +16,7 @@ pub fn invariants(sheet: &Sheet, doc: &mut Document) {
     let section = doc.section("Invariants");
     let mut items: Vec<Vec<Inline>> = d.invariants.iter().map(|v| invariant(sheet, v)).collect();
     if let Known::NotSought(why) = &d.integrability.casimirs {
-        items.push(vec![format!("Casimirs were not looked for: {why}").into()]);
+        items.push(vec![format!("Casimirs are not sought: {why}").into()]);
     }
     if items.is_empty() {
         section.text("None was found among the candidates.");
@@ -34,8 +35,7 @@ pub fn invariants(sheet: &Sheet, doc: &mut Document) {
 
 /// Whether the step may be composed, and what stands in the way.
 fn reversal(sheet: &Sheet, section: &mut Section) {
-    let symmetric =
-        "The action of one step changes sign when its ends change places and the step changes sign";
+    let symmetric = "The discrete Lagrangian changes sign when the ends of the step are exchanged and h is replaced by -h, that is, it is self-adjoint";
     let first = "the scheme is of first order and must not be composed.";
     match &sheet.d.reversal {
         Reversal::Symmetric => section.text(&format!(
@@ -45,12 +45,12 @@ fn reversal(sheet: &Sheet, section: &mut Section) {
             "{symmetric}, for the parameters that the assumptions admit: the scheme is symmetric under time reversal, of even order, and may be composed."
         )),
         Reversal::Broken(None) => section.text(&format!(
-            "The action of one step is not symmetric under time reversal: {first}"
+            "The discrete Lagrangian is not self-adjoint: {first}"
         )),
         Reversal::Broken(Some(left)) => section.paragraph([
-            "The action of one step is not symmetric under time reversal: with its ends exchanged and the step reversed, the sum of both is ".into(),
+            "The discrete Lagrangian is not self-adjoint: the sum of it and of its adjoint (ends exchanged, step reversed) is ".into(),
             sheet.derived(left).into(),
-            format!(" and no constant, unless the parameters make it one. In general {first}").into(),
+            format!(", not constant in general: {first}").into(),
         ]),
     };
 }
@@ -97,7 +97,11 @@ pub fn limit(sheet: &Sheet, doc: &mut Document) {
     let section = doc.section("Limit of small steps");
     let (Ok(_), Some(x)) = (&d.limit, &d.continuous) else {
         if let Err(why) = &d.limit {
-            section.text(&format!("There is none: {why}."));
+            let none = match why.as_str() {
+                STANDING => "There is none",
+                _ => "Not derived",
+            };
+            section.text(&format!("{none}: {why}."));
         }
         return;
     };
@@ -121,7 +125,7 @@ pub fn limit(sheet: &Sheet, doc: &mut Document) {
         vec![Inline::from(Formula::equal(sheet.here(c.velocity), turn))]
     });
     words.extend(super::sheet::listed(velocities.collect()));
-    words.push(" the action of a step, divided by the step, tends to the Lagrangian".into());
+    words.push(" the discrete Lagrangian divided by the step tends to the Lagrangian".into());
     section.paragraph(words);
     let lagrangian = sheet.symbols().fresh_name("L");
     let l = Formula::name(&lagrangian);

@@ -3,6 +3,8 @@
 
 use super::sheet::{Sheet, listed};
 use crate::check::spec::Configuration;
+use crate::derive::Derivation;
+use crate::derive::convex::convexity;
 use crate::derive::explicit::Explicit;
 use crate::derive::recognise::{Method, MoserVeselov, Riccati};
 use crate::emit;
@@ -203,16 +205,14 @@ fn reason(
         let known = if constant {
             " is constant and "
         } else {
-            " is known at the node and so is "
+            " and "
         };
-        let end = if constant { " known at the node." } else { "." };
-        section.paragraph([
-            "It is exact: ".into(),
-            letter.into(),
-            known.into(),
-            n.into(),
-            end.into(),
-        ]);
+        let end = if constant {
+            " depends on data at the node only: no approximation is involved."
+        } else {
+            " depend on data at the node only: no approximation is involved."
+        };
+        section.paragraph([letter.into(), known.into(), n.into(), end.into()]);
         return;
     }
     let holders = |e: &Expr| -> Vec<Vec<Inline>> {
@@ -318,12 +318,12 @@ fn riccati(sheet: &Sheet, section: &mut Section, c: &Configuration, mv: &MoserVe
     }
     let (u1, u2) = (sheet.free("U_1"), sheet.free("U_2"));
     let wanted = if mv.symmetric {
-        "The velocity that tends to the identity with the step"
+        "The solution that tends to the identity as the step tends to zero"
     } else {
         "The principal solution"
     };
     section.paragraph([
-        format!("{wanted} belongs to the invariant subspace of the eigenvalues with positive real part; of a basis ").into(),
+        format!("{wanted} corresponds to the invariant subspace of the eigenvalues with positive real part: with a basis ").into(),
         column(vec![u1.clone(), u2.clone()]).into(),
         " of it,".into(),
     ]);
@@ -339,14 +339,13 @@ fn riccati(sheet: &Sheet, section: &mut Section, c: &Configuration, mv: &MoserVe
         Formula::equal(w.clone(), solved),
     ]));
     section.paragraph([
-        "The last needs an invertible ".into(),
+        "This requires an invertible ".into(),
         letter.clone().into(),
-        "; where ".into(),
+        "; for singular ".into(),
         letter.into(),
-        " is singular (for a body, when it is flat) the Moser-Veselov equation still determines "
-            .into(),
+        " (a flat body) the Moser-Veselov equation itself is solved for ".into(),
         w.into(),
-        ", and has to be solved as it stands.".into(),
+        ".".into(),
     ]);
 }
 
@@ -410,12 +409,13 @@ fn method(sheet: &Sheet, section: &mut Section) {
     }
     let words = match (d.solve.method.clone(), letter) {
         (Method::FreeMoserVeselov, Some(letter)) => vec![
-            "The stepper solves it explicitly, by the root of one quartic for the whole trajectory: ".into(),
+            "The stepper is explicit up to the root of one quartic for the whole trajectory: "
+                .into(),
             letter.into(),
             format!("{constant}, and nothing but the velocity changes the momentum.").into(),
         ],
         (Method::ForcedMoserVeselov, Some(letter)) => vec![
-            "The stepper solves it explicitly, by the root of one quartic a step: ".into(),
+            "The stepper is explicit up to the root of one quartic per step: ".into(),
             letter.into(),
             format!("{constant}, and symmetric.").into(),
         ],
@@ -424,7 +424,9 @@ fn method(sheet: &Sheet, section: &mut Section) {
                 Method::LeftFactor => {
                     "The stepper solves it for any left factor, by a solver chosen by name: "
                 }
-                Method::Davenport => "The stepper solves it as an eigenvalue problem at each node: ",
+                Method::Davenport => {
+                    "The stepper solves it as an eigenvalue problem at each node: "
+                }
                 Method::UnitQuaternions => "The stepper solves it so: ",
                 Method::Blocks => "The stepper solves ",
                 Method::Newton if d.solve.one_system.contains(&0) => "The stepper solves ",
@@ -434,9 +436,7 @@ fn method(sheet: &Sheet, section: &mut Section) {
                 Method::FreeMoserVeselov
                 | Method::ForcedMoserVeselov
                 | Method::Linear
-                | Method::Newton => {
-                    "The stepper iterates with Newton's method on the group: "
-                }
+                | Method::Newton => "The stepper iterates with Newton's method on the group: ",
             };
             let mut words: Vec<Inline> = vec![how.into()];
             match (why.strip_prefix("C "), letter) {
@@ -449,10 +449,40 @@ fn method(sheet: &Sheet, section: &mut Section) {
         }
     };
     section.paragraph(words);
+    unique(sheet, section);
     if let Some(degenerate) = degenerate {
         section.text(&format!(
             "But {degenerate} whatever the parameters: for small steps the equation does not \
              determine all velocities, and steps may be refused."
         ));
+    }
+}
+
+/// Says which balances have one solution only, and for which parameters.
+fn unique(sheet: &Sheet, section: &mut Section) {
+    let d = sheet.d;
+    let newton = d.solve.blocks.iter().filter(|b| b.is_newton());
+    let blocks: Vec<Derivation> = match (&d.solve.method, d.solve.blocks.as_slice()) {
+        (Method::Newton, []) => vec![d.clone()],
+        _ => newton.map(|b| d.of_block(b)).collect(),
+    };
+    for block in &blocks {
+        let s = &block.letters.symbols;
+        let Some(found) = convexity(&block.spec, s, &block.action) else {
+            continue;
+        };
+        let velocities = block.spec.configurations.iter();
+        let velocities = velocities.map(|c| vec![sheet.here(c.velocity).into()]);
+        let sign = |sign: &str, e: &Expr| -> Vec<Inline> {
+            vec![sheet.math(e).into(), format!(" {sign} 0").into()]
+        };
+        let positive = found.positive.iter().map(|e| sign(">", e));
+        let others = found.not_negative.iter().map(|e| sign("≥", e));
+        let mut words: Vec<Inline> = vec!["The discrete Lagrangian is convex in ".into()];
+        words.extend(listed(velocities.collect()));
+        words.push(" where ".into());
+        words.extend(listed(positive.chain(others).collect()));
+        words.push(": the solution is then unique.".into());
+        section.paragraph(words);
     }
 }

@@ -58,7 +58,7 @@ pub fn bracket(sheet: &Sheet, doc: &mut Document) {
         Known::Counted(counts) => counts,
         Known::NotSought(why) => {
             if d.bracket.holds_elements {
-                section.text("The configuration itself stands in the equations: Casimirs of a reduced space were not looked for.");
+                section.text("The configuration itself occurs in the equations: Casimirs of a reduced space are not sought.");
                 return;
             }
             section.text(&format!(

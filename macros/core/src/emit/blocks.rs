@@ -14,6 +14,7 @@ use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::blocks::Block;
 use crate::derive::explicit::Explicit;
+use crate::derive::quaternionic::Quaternionic;
 use crate::derive::recognise::{Method, MoserVeselov, Riccati};
 use crate::expr::{self, Expr, Shift};
 use crate::schedule;
@@ -52,14 +53,51 @@ fn linear<'a>(d: &'a Derivation, b: &'a Block) -> Option<(usize, &'a Explicit)> 
     }
 }
 
-/// The constant factors that the model keeps: their fields, and which configurations they belong to.
-pub(super) fn factors(d: &Derivation) -> Vec<(Ident, usize, &Expr)> {
-    let constant = numbered(d).filter(|(_, b)| matches!(b.method, Method::LeftFactor));
-    constant
-        .filter_map(|(n, b)| {
-            exact(d, b).map(|(i, mv)| (format_ident!("factor_{n}"), i, &mv.factor))
-        })
-        .collect()
+/// The configuration and the equation of a block in unit quaternions.
+fn quaternionic<'a>(d: &'a Derivation, b: &'a Block) -> Option<(usize, &'a Quaternionic)> {
+    match (&b.method, b.members.as_slice()) {
+        (Method::UnitQuaternions, [i]) => match &d.solve.riccati[*i] {
+            Riccati::Quaternionic(q) => Some((*i, q)),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// A constant factor that the model keeps.
+pub(super) struct Factor<'a> {
+    /// Its field.
+    pub name: Ident,
+    /// The configuration it belongs to.
+    pub configuration: usize,
+    /// The factor.
+    pub value: &'a Expr,
+    /// The number that goes with it on SU(2).
+    pub real: Option<&'a Expr>,
+}
+
+impl Factor<'_> {
+    /// What it is made of.
+    pub fn made_of(&self) -> impl Iterator<Item = &Expr> {
+        [self.value].into_iter().chain(self.real)
+    }
+}
+
+/// The constant factors that the model keeps.
+pub(super) fn factors(d: &Derivation) -> Vec<Factor<'_>> {
+    let kept = numbered(d).filter_map(|(n, b)| {
+        let own = |configuration, value, real| Factor {
+            name: format_ident!("factor_{n}"),
+            configuration,
+            value,
+            real,
+        };
+        match b.method {
+            Method::LeftFactor => exact(d, b).map(|(i, mv)| own(i, &mv.factor, None)),
+            _ => quaternionic(d, b).map(|(i, q)| own(i, &q.edge.factor, Some(&q.real))),
+        }
+    });
+    kept.collect()
 }
 
 fn search(n: usize) -> Ident {
@@ -149,8 +187,6 @@ pub(super) fn trial(d: &Derivation, constructor: &str) -> TokenStream {
 /// The types of what tangents ask of a node, and `step`.
 pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
     let s = &d.letters.symbols;
-    let state = item(d, "State");
-    let used = Generics::of(d).used();
     let node = names.local("node");
     let step = variable(s, d.spec.step);
     let work = item(d, "Workspace");
@@ -160,6 +196,10 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
     for b in &d.solve.blocks {
         if let Some((_, form)) = linear(d, b) {
             known.extend([&form.rest, &form.left, &form.right].map(Expr::clone));
+        }
+        if let Some((i, q)) = quaternionic(d, b) {
+            known.push(q.edge.rest.clone());
+            needed.push(at(d.spec.configurations[i].element, Shift::HERE));
         }
         let Some((i, mv)) = exact(d, b) else { continue };
         known.push(mv.rest.clone());
@@ -234,6 +274,22 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
             found[i] = quote!(#omega);
             continue;
         }
+        if let Some((i, q)) = quaternionic(d, b) {
+            let rest = values.next().filter(|_| !q.edge.rest.is_zero());
+            let minus = rest.map(|rest| quote!(- (#rest)));
+            let omega = variable(s, d.spec.configurations[i].velocity);
+            let at_node = node_momentum(d, i, Side::Body);
+            let (factor, refused) = (format_ident!("factor_{n}"), format_ident!("refused_{n}"));
+            solves.extend(quote! {
+                let #omega = match self.#factor.velocity(&((#at_node #minus) * #step)) {
+                    Ok(solved) => solved,
+                    Err(e) => return Err(self.#refused(*state, work, e)),
+                };
+            });
+            beside.extend(refusal(d, names, &refused, &Refusal::of_quaternions()));
+            found[i] = quote!(#omega);
+            continue;
+        }
         let block = d.of_block(b);
         let together = together(d, names, n, b, &block);
         let field = search(n);
@@ -263,6 +319,7 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
     let moving: Vec<&Expr> = moving.chain(updates).collect();
     for b in &d.solve.blocks {
         let alone = exact(d, b).map(|(i, _)| i);
+        let alone = alone.or(quaternionic(d, b).map(|(i, _)| i));
         let Some(i) = alone.or(linear(d, b).map(|(i, _)| i)) else {
             continue;
         };
@@ -287,24 +344,59 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
             #rest
         },
     );
-    let refused = refuses.then(|| {
-        let trial = filled(d, |_| quote!(newton::Search::to_offer()));
-        quote! {
-            /// Says how far the step is beyond the bound, and which step could be made.
-            #[cold]
-            #[inline(never)]
-            fn refused(&self, state: #state #used, work: &#work #used, e: Unsolved) -> StepError {
-                let method = work.method;
-                let e = e.with_searched_step(work.h.value(), |h| {
-                    let h = T::from_f64(h);
-                    let made = self.step(&mut { state }, &mut #work { h, #trial });
-                    made.ok().map(|()| 0.0)
-                });
-                StepCause::from(e).at_node(state.#node)
-            }
-        }
-    });
+    let refused =
+        refuses.then(|| refusal(d, names, &format_ident!("refused"), &Refusal::of_factors()));
     (node_types, quote!(#step_function #refused #beside))
+}
+
+/// How a solver's refusal is told.
+struct Refusal {
+    /// The type of its error.
+    error: TokenStream,
+    /// The method that adds the step that could be made.
+    search: TokenStream,
+}
+
+impl Refusal {
+    /// Of a Moser-Veselov equation.
+    fn of_factors() -> Self {
+        Self {
+            error: quote!(Unsolved),
+            search: quote!(with_searched_step),
+        }
+    }
+
+    /// Of the equation in unit quaternions.
+    fn of_quaternions() -> Self {
+        Self {
+            error: quote!(QuaternionError),
+            search: quote!(with_searched_steps),
+        }
+    }
+}
+
+/// The function of this name that says how far the step is beyond a bound, and which one could be made.
+fn refusal(d: &Derivation, names: &Names, name: &Ident, told: &Refusal) -> TokenStream {
+    let (state, work) = (item(d, "State"), item(d, "Workspace"));
+    let used = Generics::of(d).used();
+    let node = names.local("node");
+    let Refusal { error, search } = told;
+    let method = default_solver(d).map(|_| quote!(let method = work.method;));
+    let trial = filled(d, |_| quote!(newton::Search::to_offer()));
+    quote! {
+        /// Says how far the step is beyond the bound, and which step could be made.
+        #[cold]
+        #[inline(never)]
+        fn #name(&self, state: #state #used, work: &#work #used, e: #error) -> StepError {
+            #method
+            let e = e.#search(work.h.value(), |h| {
+                let h = T::from_f64(h);
+                let made = self.step(&mut { state }, &mut #work { h, #trial });
+                made.ok().map(|()| 0.0)
+            });
+            StepCause::from(e).at_node(state.#node)
+        }
+    }
 }
 
 /// The solution of a linear balance, with the values of its factors. Those of a field may be numbers.

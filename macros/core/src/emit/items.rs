@@ -47,29 +47,37 @@ fn real(d: &Derivation) -> Option<&Expr> {
 
 /// The type of the prepared factor, and its constructor applied to the factor.
 fn prepared(d: &Derivation, e: &Expr) -> (TokenStream, TokenStream) {
-    let none = Bindings::new();
-    let write = |e: &Expr| {
-        let writer = Writer {
-            symbols: &d.letters.symbols,
-            bindings: &none,
-        };
-        writer.write(e)
-    };
-    let (value, label) = (write(e), text(d, e));
     match (real(d), &d.solve.method) {
-        (Some(real), _) => {
-            let real = write(real);
+        (Some(real), _) => body_of_quaternions(d, e, real),
+        (None, Method::LeftFactor) => super::left_factor::prepared(d, 0, e),
+        (None, _) => {
+            let (value, label) = (written(d, e), text(d, e));
             (
-                quote!(QuaternionBody<T>),
-                quote!(QuaternionBody::new(#label, #value, #real)),
+                quote!(Poinsot<T>),
+                quote!(Poinsot::new(#value).map_err(|e| e.in_field(#label))),
             )
         }
-        (None, Method::LeftFactor) => super::left_factor::prepared(d, 0, e),
-        (None, _) => (
-            quote!(Poinsot<T>),
-            quote!(Poinsot::new(#value).map_err(|e| e.in_field(#label))),
-        ),
     }
+}
+
+/// An expression in parameters.
+fn written(d: &Derivation, e: &Expr) -> TokenStream {
+    let none = Bindings::new();
+    let writer = Writer {
+        symbols: &d.letters.symbols,
+        bindings: &none,
+    };
+    writer.write(e)
+}
+
+/// The type of the body of the equation in unit quaternions, and its constructor applied to `A` and `β`.
+fn body_of_quaternions(d: &Derivation, a: &Expr, real: &Expr) -> (TokenStream, TokenStream) {
+    let label = text(d, if a.is_zero() { real } else { a });
+    let (a, real) = (written(d, a), written(d, real));
+    (
+        quote!(QuaternionBody<T>),
+        quote!(QuaternionBody::new(#label, #a, #real)),
+    )
 }
 
 /// The type of the factor that steps are solved with.
@@ -388,7 +396,8 @@ pub fn model(d: &Derivation, documented: bool) -> TokenStream {
         .flat_map(|a| [&a.left, &a.right])
         .collect();
     let numbers = constant.and_then(|_| real(d));
-    let in_blocks = super::blocks::factors(d).into_iter().map(|(_, _, e)| e);
+    let in_blocks = super::blocks::factors(d);
+    let in_blocks = in_blocks.iter().flat_map(|f| f.made_of());
     let mut needed = letters_of(
         constant
             .into_iter()
@@ -405,9 +414,12 @@ pub fn model(d: &Derivation, documented: bool) -> TokenStream {
         let (kind, made) = prepared(d, e);
         kept.push((format_ident!("factor"), kind, made));
     }
-    for (name, i, e) in super::blocks::factors(d) {
-        let (kind, made) = super::left_factor::prepared(d, i, e);
-        kept.push((name, kind, made));
+    for f in super::blocks::factors(d) {
+        let (kind, made) = match f.real {
+            Some(real) => body_of_quaternions(d, f.value, real),
+            None => super::left_factor::prepared(d, f.configuration, f.value),
+        };
+        kept.push((f.name, kind, made));
     }
     let field: TokenStream = kept
         .iter()

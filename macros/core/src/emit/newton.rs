@@ -4,7 +4,7 @@
 
 use super::element::{self, Bundle, Family, family};
 use super::equations::Equations;
-use super::expression::Bindings;
+use super::expression::{Bindings, program};
 use super::items::{advanced, letters_of, parameter_locals, with_transports};
 use super::names::{Names, item, own, tagged, variable};
 use super::principal::Principal;
@@ -13,8 +13,10 @@ use super::step::{at, finish, here, node_momentum, step_signature};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::carry::Carry;
+use crate::derive::convex::convexity;
 use crate::derive::seen_from_body::outgoing;
 use crate::expr::{Expr, Letter, Shift};
+use crate::schedule;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
@@ -125,6 +127,32 @@ impl Together<'_> {
         out
     }
 
+    /// Whether the root is the only one, since the action is convex in the velocities: the local that
+    /// says so, and the condition with what else shows it behind.
+    fn convex(&self, bindings: &Bindings) -> (TokenStream, TokenStream) {
+        let d = self.block;
+        let s = &d.letters.symbols;
+        let Some(found) = convexity(&d.spec, s, &d.action) else {
+            return Default::default();
+        };
+        let weights: Vec<Expr> = found.all().cloned().collect();
+        let p = schedule::program(s, &weights, "w");
+        let (lets, values) = program(&p, bindings);
+        let positive = found.positive.len();
+        let tests = values
+            .iter()
+            .enumerate()
+            .map(|(i, value)| match i < positive {
+                true => quote!((#value).least() > 0.0),
+                false => quote!((#value).least() >= 0.0),
+            });
+        let convex = self.names.local("convex");
+        let decided = quote! {
+            let #convex = { #lets #(#tests)&&* };
+        };
+        (decided, quote!(#convex ||))
+    }
+
     /// The code. `bindings` know what stands at the node; `search` is the field of the workspace, `tried`
     /// the workspace of a trial step `h` with a given `search`.
     pub fn code(&self, bindings: &Bindings, search: &Ident, tried: &TokenStream) -> Loop {
@@ -181,8 +209,10 @@ impl Together<'_> {
             false => Default::default(),
         };
         let of_work = chosen.map(|_| quote!(, work.method));
+        let (decided, only_root) = self.convex(bindings);
         let solve = quote! {
             #known
+            #decided
             let mut #newton = work.#search.begin(state.#node, #values);
             loop {
                 let #trial = #newton.trial();
@@ -195,7 +225,7 @@ impl Together<'_> {
                 }
                 match #newton.correct() {
                     newton::Progress::Continue => {}
-                    newton::Progress::Solved(#solved) if #newton.is_principal(&#solved.element) => break #solved,
+                    newton::Progress::Solved(#solved) if #only_root #newton.is_principal(&#solved.element) => break #solved,
                     #ended => {
                         if let Some(#solved) = self.#settled(#step, *state, #given, #mu, &mut #newton, #ended #of_work)? {
                             break #solved;

@@ -190,7 +190,7 @@ mod tests {
             "model M { r#\"}\" }",
         ] {
             let (_, _, said) = fault(source);
-            assert!(said.contains("not a token"), "{source}: {said}");
+            assert!(said.contains("unexpected character"), "{source}: {said}");
         }
         assert_eq!(fault("model M { let a = (b; } \"").1, 19);
     }

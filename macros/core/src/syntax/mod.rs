@@ -56,7 +56,7 @@ pub fn tokens(source: &str) -> Result<TokenStream, Errors> {
             return unmatched.into();
         }
         Errors::from(
-            Diagnostic::new(Place::token(e.span()), format!("this is not a token of the language: {e}"))
+            Diagnostic::new(Place::token(e.span()), "unexpected character".to_owned())
                 .help("write Λ^T for a transpose (not Λ'), a*b or a b for a product (not a·b), dot(a, b) for ⟨a, b⟩"),
         )
     })

@@ -65,8 +65,8 @@ impl fmt::Display for Unsolved {
         match self.refusal {
             Refusal::BeyondBound => write!(
                 f,
-                "the body turns too far in one step: the momentum is {} times what the \
-                 Moser-Veselov equation can take ({} is the largest)",
+                "step too large: the momentum exceeds the solvability bound of the Moser-Veselov \
+                 equation by a factor {} ({} is the largest)",
                 Times(self.ratio),
                 self.fastest
             )?,

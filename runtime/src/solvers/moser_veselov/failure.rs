@@ -210,8 +210,8 @@ impl fmt::Display for MoserVeselovError {
         } else {
             write!(
                 f,
-                "the body turns too far in one step: the momentum is {} times what the \
-                 Moser-Veselov equation can take (component {} is the largest)",
+                "step too large: the momentum exceeds the solvability bound of the Moser-Veselov \
+                 equation by a factor {} (component {} is the largest)",
                 Times(self.ratio),
                 self.component + 1
             )?;

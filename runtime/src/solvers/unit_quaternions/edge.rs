@@ -13,6 +13,24 @@ fn turned<T: Real>(attitude: &UnitQuaternion<T>, turn: &Turn<T>) -> TurnedRotati
     attitude.rotation().turned_at(turn.omega, turn.per_square)
 }
 
+impl<T: Real> QuaternionBody<T> {
+    /// The velocity of a step, in the body: the principal solution `w + v` of
+    /// `w A v + v x A v + β v = h N / 2`, a quaternion of unit length. `h_n` is `h N`, the step times the
+    /// momentum at the beginning of the edge, in the body.
+    ///
+    /// # Errors
+    /// [`QuaternionError`] when there is none, in any lane, or the momentum is not finite.
+    #[inline(always)]
+    pub fn velocity(&self, h_n: &Vector3<T>) -> Result<UnitQuaternion<T>, QuaternionError> {
+        let [[x, y, z]] = h_n.data.0;
+        let scale = self.half_over_unit;
+        match turn(self, [x * scale, y * scale, z * scale]) {
+            Some(turn) => Ok(turned(&UnitQuaternion::identity(), &turn).unit_quaternion()),
+            None => Err(QuaternionError::diagnose(self, h_n)),
+        }
+    }
+}
+
 impl<T: Real> Edge<T> {
     /// The attitude where the edge ends, given that where it begins, in unit quaternions: the
     /// principal solution, body side.

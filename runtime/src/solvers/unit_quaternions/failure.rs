@@ -55,6 +55,18 @@ impl QuaternionError {
         worst
     }
 
+    /// The same error with the step that was refused, and the largest that would do of all that are
+    /// solved together with it: `ratio` of a trial step is at most 1 where that can be made.
+    #[cold]
+    #[must_use]
+    pub fn with_searched_steps(self, h: f64, ratio: impl Fn(f64) -> Option<f64>) -> Self {
+        Self {
+            h: Some(h),
+            largest_step: Some(largest_step(h, ratio)),
+            ..self
+        }
+    }
+
     /// The same error with the step that was refused and the largest that would do, lane by lane,
     /// the smallest of them; `edge_momentum` is `N` for a trial step.
     #[cold]
@@ -110,8 +122,8 @@ impl fmt::Display for QuaternionError {
         in_lane(f, self.lane)?;
         write!(
             f,
-            "the body turns too far in one step: the momentum is {} times what the equation in \
-             unit quaternions can take (component {} is the largest)",
+            "step too large: the momentum exceeds the solvability bound of the equation in unit \
+             quaternions by a factor {} (component {} is the largest)",
             Times(self.ratio),
             self.component + 1
         )?;

@@ -84,7 +84,7 @@ fn what_a_field_does_not_carry_is_told_so() {
         &carried("constraint next(Y) = hat(next(X) - X)*Y;"),
         &["has no inverse", example],
     );
-    says(&carried(""), &["nothing says", example]);
+    says(&carried(""), &["no evolution constraint", example]);
     let matrix = |constraint: &str| {
         carried(constraint)
             .replace("Y: Vec<3>", "Y: Mat<3>")

@@ -147,9 +147,9 @@ fn reason(x: &Inputs, value: &Expr) -> &'static str {
         .iter()
         .any(|l| x.spec.advected.iter().any(|a| a.quantity == l.symbol));
     match (momentum, advected) {
-        (true, true) => "Casimir: the Kelvin-Noether quantity of what is advected",
+        (true, true) => "Casimir: the Kelvin-Noether quantity of the advected quantities",
         (true, false) => "Casimir: constant on coadjoint orbits",
-        (false, _) => "Casimir: the group leaves it alone",
+        (false, _) => "Casimir: invariant under the group action",
     }
 }
 

@@ -572,15 +572,21 @@ fn reason(x: &Inputs, terms: &[Term], strict: bool) -> String {
             Sort::Linear | Sort::Shifts(_) | Sort::Entries(_)
         )
     };
+    let turns = |t: &Term| matches!(t.motion.sort, Sort::Angular | Sort::Planes(_));
     let field = |i: &usize| x.spec.configurations[*i].group.is_additive();
     let under = match (of_space, whole || entire && set.iter().any(field), group) {
         (true, _, _) if set.iter().any(field) && terms.iter().all(shifts) => "translations",
         (true, true, Some(group)) if group.is_rigid() => "rigid motions of space",
         (true, true, Some(group)) if group.is_linear() => "linear maps of space",
         (true, true, _) => "rotations of space",
-        (true, false, _) => "what keeps the axis in space",
+        (true, false, _) if terms.iter().all(turns) => "rotations about the axis in space",
+        (true, false, _) if terms.iter().all(shifts) => "translations along the axis",
+        (true, false, _) => "motions of space that fix the axis",
         _ if all(&|w| w == Way::Body) && whole => "motions of the body's own frame",
-        _ if all(&|w| w == Way::Body) => "what keeps the axis in the body",
+        _ if all(&|w| w == Way::Body) && terms.iter().all(turns) => {
+            "rotations about the axis in the body"
+        }
+        _ if all(&|w| w == Way::Body) => "motions of the body's frame that fix the axis",
         _ if all(&|w| w == Way::Spin) => "turns of the body about its own origin",
         _ if all(&|w| w == Way::Shift) => "shifts of the matrix of the configuration",
         _ => "joint motions of space and bodies",

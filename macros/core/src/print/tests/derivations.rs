@@ -185,7 +185,7 @@ fn letters_that_the_model_bears_are_left_to_it() {
     let scaled = format!("{TOP} scale -h; lagrangian = tr(Ω*J) + h^2*dot(gU, Γ);");
     holds(
         &text(&scaled),
-        &["ℓ^{typed} = tr(Ω_k J) + h² gU·Γ_k = -h ℓ", "physical:"],
+        &["ℓ^{typed} = tr(Ω_k J) + h² gU·Γ_k = -h ℓ", "so that the discrete Lagrangian is"],
         &[],
     );
 }
@@ -251,7 +251,7 @@ fn the_solution_is_that_of_the_model() {
             "S² + S A - A S - A² - J² = 0",
             "H = [[A, Id], [A² + J², A]]",
             "positive real part",
-            "where J is singular",
+            "for singular J",
             "the root of one quartic for the whole trajectory",
         ],
         &["No stepper"],
@@ -259,7 +259,7 @@ fn the_solution_is_that_of_the_model() {
     holds(
         &text(COUPLED),
         &["It is coupled: N₁ contains Ω_{2,k}."],
-        &["It is exact"],
+        &["no approximation is involved"],
     );
     holds(
         &text(ELLIPSOID),

@@ -1,0 +1,217 @@
+//! Fields whose discrete Lagrangian is convex in their velocities: the velocity of a step is then the
+//! minimiser of a strictly convex function, so that a root of its balance is the only one.
+//! Takes the terms of the edge and the fields that are solved together; gives the coefficients whose
+//! signs decide, or nothing where the terms are not of this kind.
+
+use super::action::{Action, summands};
+use super::variation::at;
+use crate::algebra::{Algebra, Atom, Poly, Rational};
+use crate::check::spec::Spec;
+use crate::expr::shape::Shape;
+use crate::expr::symbol::{Role, Symbols};
+use crate::expr::{self, Expr, Function, Letter, Node, Shift};
+
+/// What makes the terms strictly convex, all of them times the step: a Lagrangian of a step `-h` is
+/// concave where that of `h` is convex, and its root is as much the only one.
+#[derive(Clone, Debug)]
+pub struct Convexity {
+    /// Must be positive: coefficients of the squares of the velocities, one for each field.
+    pub positive: Vec<Expr>,
+    /// Must not be negative: coefficients of other convex functions.
+    pub not_negative: Vec<Expr>,
+}
+
+impl Convexity {
+    /// All coefficients, those that must be positive first.
+    pub fn all(&self) -> impl Iterator<Item = &Expr> {
+        self.positive.iter().chain(&self.not_negative)
+    }
+}
+
+/// Why the fields have one root only, if they do. All configurations of the model are solved together:
+/// of a block, it is that block as a model of its own.
+pub fn convexity(spec: &Spec, s: &Symbols, action: &Action) -> Option<Convexity> {
+    let configurations = spec.configurations.iter();
+    if !configurations.clone().all(|c| c.group.is_additive()) {
+        return None;
+    }
+    let here = |symbol| at(symbol, Shift::HERE);
+    let velocities: Vec<Letter> = configurations.clone().map(|c| here(c.velocity)).collect();
+    let places: Vec<Letter> = configurations.map(|c| here(c.element)).collect();
+    let algebra = Algebra::new(s);
+    let edge = expr::substitute(s, &action.edge, &spec.end_of_edge());
+    let (algebra, step) = (&algebra, here(spec.step));
+    let terms = Terms {
+        s,
+        algebra,
+        step,
+        velocities,
+    };
+    let mut squares: Vec<Option<Expr>> = vec![None; places.len()];
+    let mut not_negative = Vec::new();
+    for term in summands(&edge).iter().filter(|t| terms.moves(t)) {
+        // What the fields and their velocities stand in together acts on both.
+        if places.iter().any(|x| expr::contains(term, *x)) {
+            return None;
+        }
+        if terms.is_affine(term) {
+            continue;
+        }
+        let (weight, core) = terms.weighted(term)?;
+        let weight = expr::mul(expr::here(s, spec.step), weight);
+        let weight = of_its_sign(algebra, weight, step);
+        match terms.square_of(&core) {
+            Some(i) if squares[i].is_none() => squares[i] = Some(weight),
+            _ => {
+                terms.is_convex(&core).then_some(())?;
+                not_negative.push(weight);
+            }
+        }
+    }
+    let positive: Option<Vec<Expr>> = squares.into_iter().collect();
+    let positive = positive?;
+    let constant = |l: &Letter| s.get(l.symbol).role == Role::Parameter || l.symbol == spec.step;
+    let found = Convexity {
+        positive,
+        not_negative,
+    };
+    let known = found.all().flat_map(expr::letters).all(|l| constant(&l));
+    known.then_some(found)
+}
+
+/// A number of the same sign, without what decides nothing: a positive factor, an even power of the step.
+fn of_its_sign(algebra: &Algebra, weight: Expr, step: Letter) -> Expr {
+    let mut lowered = algebra.lower(&weight);
+    if let [(term, coefficient)] = lowered.terms.iter().collect::<Vec<_>>().as_slice() {
+        let mut bare = (*term).clone();
+        let even = |e: &Rational| e.as_integer().is_some_and(|n| n % 2 == 0);
+        bare.monomial
+            .retain(|(atom, e)| *atom != Atom::Letter(step) || !even(e));
+        let sign = match coefficient.is_negative() {
+            true => Rational::MINUS_ONE,
+            false => Rational::ONE,
+        };
+        lowered = Poly::term(Shape::SCALAR, sign, bare);
+    }
+    algebra.raise(&lowered)
+}
+
+/// The velocities in which terms are looked at.
+struct Terms<'a> {
+    s: &'a Symbols,
+    algebra: &'a Algebra<'a>,
+    step: Letter,
+    velocities: Vec<Letter>,
+}
+
+impl Terms<'_> {
+    fn moves(&self, e: &Expr) -> bool {
+        self.velocities.iter().any(|w| expr::contains(e, *w))
+    }
+
+    /// Whether the expression is of first degree in the velocities, by its form.
+    fn is_affine(&self, e: &Expr) -> bool {
+        if !self.moves(e) {
+            return true;
+        }
+        let one_moves = |factors: &[Expr]| factors.iter().filter(|f| self.moves(f)).count() == 1;
+        match e.node() {
+            Node::Letter(_) => true,
+            Node::Neg(a) | Node::Transpose(a) | Node::Trace(a) | Node::Vee(a) | Node::Hat(a) => {
+                self.is_affine(a)
+            }
+            Node::Part(_, a) => self.is_affine(a),
+            Node::Sum(terms) => terms.iter().all(|t| self.is_affine(t)),
+            Node::Product(factors) => {
+                one_moves(factors) && factors.iter().all(|f| self.is_affine(f))
+            }
+            Node::Quotient(a, b) => self.is_affine(a) && !self.moves(b),
+            Node::Dot(a, b) | Node::Cross(a, b) => {
+                self.moves(a) != self.moves(b) && self.is_affine(a) && self.is_affine(b)
+            }
+            _ => false,
+        }
+    }
+
+    /// A number as a weight free of the velocities times what they stand in.
+    fn weighted(&self, e: &Expr) -> Option<(Expr, Expr)> {
+        Some(match e.node() {
+            Node::Neg(a) => {
+                let (weight, core) = self.weighted(a)?;
+                (expr::neg(weight), core)
+            }
+            Node::Quotient(a, b) if !self.moves(b) => {
+                let (weight, core) = self.weighted(a)?;
+                (expr::quotient(weight, b.clone()), core)
+            }
+            Node::Product(factors) if e.shape().is_scalar() => {
+                let (moving, still): (Vec<Expr>, Vec<Expr>) =
+                    factors.iter().cloned().partition(|f| self.moves(f));
+                let [only] = moving.as_slice() else {
+                    let first = moving.first()?;
+                    let count = i64::try_from(moving.len()).ok()?;
+                    let power = expr::power(first.clone(), Rational::integer(count));
+                    let equal = moving.iter().all(|f| f == first);
+                    return equal.then(|| (expr::product(still), power));
+                };
+                let (weight, core) = self.weighted(only)?;
+                (expr::mul(expr::product(still), weight), core)
+            }
+            _ => (expr::integer(1), e.clone()),
+        })
+    }
+
+    /// The vector whose square a number is, as the sum of the squares of its entries.
+    fn root(&self, e: &Expr) -> Option<Expr> {
+        match e.node() {
+            Node::Dot(a, b) if a == b => Some(a.clone()),
+            Node::Power(a, q) if *q == Rational::integer(2) => Some(a.clone()),
+            Node::Trace(a) => match a.node() {
+                Node::Product(factors) => match factors.as_slice() {
+                    [a, b] if expr::transpose(self.s, a.clone()) == *b => Some(a.clone()),
+                    _ => None,
+                },
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// Of which velocity a number is the square of the length.
+    fn square_of(&self, e: &Expr) -> Option<usize> {
+        let root = self.root(e)?;
+        let letter = match root.node() {
+            Node::Letter(l) => *l,
+            Node::Neg(a) | Node::Transpose(a) => match a.node() {
+                Node::Letter(l) => *l,
+                _ => return None,
+            },
+            _ => return None,
+        };
+        self.velocities.iter().position(|w| *w == letter)
+    }
+
+    /// Whether a number is convex in the velocities and nowhere negative.
+    fn is_convex(&self, e: &Expr) -> bool {
+        if self.root(e).is_some_and(|a| self.is_affine(&a)) {
+            return true;
+        }
+        if let Some((weight, core)) = self.weighted(e).filter(|(_, core)| core != e) {
+            let positive = of_its_sign(self.algebra, weight, self.step);
+            return positive == expr::integer(1) && self.is_convex(&core);
+        }
+        match e.node() {
+            // Increasing and convex where what is raised is not negative.
+            Node::Power(a, q) if *q >= Rational::ONE => {
+                self.is_convex(a)
+                    || (q.as_integer().is_some_and(|n| n % 2 == 0) && self.is_affine(a))
+            }
+            Node::Call(Function::Exp, a) => self.is_affine(a) || self.is_convex(a),
+            Node::Call(Function::Cosh, a) => self.is_affine(a),
+            _ => false,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
