@@ -6,7 +6,7 @@ use super::between::{Edge, edge_between};
 use super::element::{Family, family};
 use super::expression::{Bindings, Writer, program};
 use super::items::{letters_of, parameter_locals, text, with_transports};
-use super::names::{Names, item, own, variable};
+use super::names::{Names, item, own, per_configuration, variable};
 use super::sizes::Generics;
 use super::step::at;
 use crate::algebra::Rational;
@@ -284,6 +284,20 @@ fn arguments(d: &Derivation, names: &Names, list: &[Guard]) -> (TokenStream, Vec
     (quote!(#parameters #locals #lets), values)
 }
 
+/// The test of the momenta in a step. Where the model must be tested they are looked at after its domain: what
+/// left that may be the reason for what is not finite.
+pub(super) fn finite_in_step(d: &Derivation, names: &Names, finite: &[TokenStream]) -> TokenStream {
+    if is_guarded(d) {
+        return TokenStream::new();
+    }
+    let node = names.local("node");
+    quote! {
+        if !(#(#finite)&&*) {
+            return Err(StepCause::NotFinite { what: "momentum" }.at_node(state.#node));
+        }
+    }
+}
+
 /// `step` as it is called, for a model that must be tested.
 pub(super) fn tested_step(d: &Derivation, names: &Names) -> TokenStream {
     if !is_guarded(d) {
@@ -292,6 +306,7 @@ pub(super) fn tested_step(d: &Derivation, names: &Names) -> TokenStream {
     let (state, work) = (item(d, "State"), item(d, "Workspace"));
     let used = Generics::of(d).used();
     let (node, before) = (names.local("node"), names.local("before"));
+    let momenta = (0..d.spec.configurations.len()).map(|i| per_configuration(d, "momentum", i));
     let inside = inside(d, names);
     let method = format!(" One step, in place. Solved thus: {}.", d.how_solved());
     let (asked, taken) = match d.solve.method {
@@ -326,13 +341,15 @@ pub(super) fn tested_step(d: &Derivation, names: &Names) -> TokenStream {
         pub fn step(&self, state: &mut #state #used, work: &mut #work #used) -> Result<(), StepError> {
             let #before = *state;
             self.step_untested(state, work)?;
-            match self.stays_inside(&#before, state, work.h) {
-                Ok(()) => Ok(()),
-                Err(contact) => {
-                    *state = #before;
-                    Err(self.left_domain(state, #asked contact))
-                }
+            if let Err(contact) = self.stays_inside(&#before, state, work.h) {
+                *state = #before;
+                return Err(self.left_domain(state, #asked contact));
             }
+            if !(#(all_finite(&state.#momenta.0))&&*) {
+                *state = #before;
+                return Err(StepCause::NotFinite { what: "momentum" }.at_node(state.#node));
+            }
+            Ok(())
         }
 
         /// Says what the step met, and which step could be made.

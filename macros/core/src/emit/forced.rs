@@ -306,6 +306,8 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
             there,
         ),
     };
+    let finite = [quote!(all_finite(&#momentum_there.0))];
+    let finite = super::domain::finite_in_step(d, names, &finite);
     let step_of = step_signature(
         d,
         quote! {
@@ -317,9 +319,7 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
                 Err(e) => return Err(self.refused(*state, #factor, #step, e)),
             };
             #follows
-            if !all_finite(&#momentum_there.0) {
-                return Err(StepCause::NotFinite { what: "momentum" }.at_node(state.#node));
-            }
+            #finite
             (state.#element, work.here.#element) = (#there, #there);
             (state.#momentum, work.here.#momentum) = (#momentum_there, #momentum_there);
             state.#node += 1;

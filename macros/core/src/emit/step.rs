@@ -384,11 +384,10 @@ pub(super) fn finish(
         assignments.extend(quote!(state.#field = #next;));
     }
     let node = names.local("node");
+    let finite = super::domain::finite_in_step(d, names, &finite);
     quote! {
         #out
-        if !(#(#finite)&&*) {
-            return Err(StepCause::NotFinite { what: "momentum" }.at_node(state.#node));
-        }
+        #finite
         #assignments
         state.#node += 1;
         #remembered

@@ -28,7 +28,7 @@ pub(super) fn energy(x: &Inputs, passages: &[Passage]) -> Option<Invariant> {
         scale: None,
         exact,
         reason: if exact {
-            "a combination of the other invariants: equal at both ends of every step".to_owned()
+            "equal at both ends of every step".to_owned()
         } else {
             "the stepper is symplectic".to_owned()
         },

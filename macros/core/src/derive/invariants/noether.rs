@@ -149,14 +149,19 @@ struct Search<'a, 's> {
     /// Sets of configurations that the action couples, where there are many.
     sets: Vec<Vec<usize>>,
     /// Motions whose whole momentum has been found.
-    wholes: Vec<(usize, Way)>,
+    wholes: Vec<(usize, Way, Sort)>,
 }
 
 impl<'a, 's> Search<'a, 's> {
     /// Whether the whole of it is known to be conserved, so that its parts are: with a count of all
     /// that there are, that says it.
     fn is_covered(&self, column: &[&Motion]) -> bool {
-        let whole = |m: &Motion| self.wholes.contains(&(m.configuration, m.way));
+        let whole = |m: &Motion| {
+            let sorts = [m.sort, Sort::Rigid].into_iter();
+            sorts
+                .map(|sort| (m.configuration, m.way, sort))
+                .any(|known| self.wholes.contains(&known))
+        };
         self.kernels.is_empty() && column.iter().all(|m| whole(m))
     }
 
@@ -367,7 +372,9 @@ impl<'a, 's> Search<'a, 's> {
             reason: reason(x, terms, strict),
         };
         if terms.iter().all(|t| t.reading.is_whole()) && is_whole(x, terms) {
-            let moved = terms.iter().map(|t| (t.motion.configuration, t.motion.way));
+            let moved = terms
+                .iter()
+                .map(|t| (t.motion.configuration, t.motion.way, t.motion.sort));
             self.wholes.extend(moved);
         }
         self.found.push((space, invariant));

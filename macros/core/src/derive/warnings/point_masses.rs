@@ -89,7 +89,10 @@ fn the_way_out_is_one() {
         let d = derived(&body);
         assert!(d.warnings.is_empty(), "{body}\n{:?}", d.warnings);
         let text = text(&d);
-        assert!(text.contains("The stepper is explicit up to the root"), "{text}");
+        assert!(
+            text.contains("The stepper is explicit up to the root"),
+            "{text}"
+        );
         assert!(!text.contains("makes no step"), "{text}");
     }
     // Two masses on different lines are a flat body.

@@ -185,7 +185,10 @@ fn letters_that_the_model_bears_are_left_to_it() {
     let scaled = format!("{TOP} scale -h; lagrangian = tr(Ω*J) + h^2*dot(gU, Γ);");
     holds(
         &text(&scaled),
-        &["ℓ^{typed} = tr(Ω_k J) + h² gU·Γ_k = -h ℓ", "so that the discrete Lagrangian is"],
+        &[
+            "ℓ^{typed} = tr(Ω_k J) + h² gU·Γ_k = -h ℓ",
+            "so that the discrete Lagrangian is",
+        ],
         &[],
     );
 }

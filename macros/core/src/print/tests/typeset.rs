@@ -113,7 +113,7 @@ fn wrong_names_are_refused() {
         ("\"{a\"", "not paired"),
         ("\"a}{\"", "not paired"),
         ("\"a_\"", "missing at its end"),
-        ("\"a\\\"", "token"),
+        ("\"a\\\"", "unexpected character"),
         ("\"a\", \"b\"", "expected `;`"),
         ("3", "between quotes"),
         (r#""\\input{x}""#, "`\\input` is no letter"),
