@@ -77,21 +77,6 @@ pub enum Space {
 /// and rigid motions: the element `X^-1 dX` of the Lie algebra.
 pub type Coordinates = Vec<(usize, usize)>;
 
-/// The angular part of a vector of six components.
-pub(crate) fn angular(s: &Symbols, x: &Expr) -> Expr {
-    part(s, x, 0)
-}
-
-/// Its linear part.
-pub(crate) fn linear(s: &Symbols, x: &Expr) -> Expr {
-    part(s, x, 3)
-}
-
-fn part(s: &Symbols, x: &Expr, from: u8) -> Expr {
-    let taken = expr::inclusion(Dim::Fixed(6), Dim::Fixed(3), from);
-    expr::mul(expr::transpose(s, taken), x.clone())
-}
-
 pub use crate::groups::Element;
 
 /// The derived bracket.

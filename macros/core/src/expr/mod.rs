@@ -41,7 +41,7 @@ pub use projection::projected;
 pub use quaternion::{imaginary, pure, real, rotation};
 pub use rigid::{
     block, column, inclusion, is_motion, last_axis, paired_with_twists, part_of_six, quarter_turn,
-    rows_of, stacked, twist, within,
+    rows_in_parts, rows_of, stacked, taken_rows, twist, within,
 };
 pub use simpler::simpler;
 pub use substitute::{contains, contains_role, letters, rebuild, shift_time, substitute};

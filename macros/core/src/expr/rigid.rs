@@ -7,8 +7,8 @@ use super::quaternion::rotation;
 use super::shape::{Dim, Shape, Structure};
 use super::symbol::Symbols;
 use super::{
-    Expr, Map, Node, Rational, add, dot, hat, identity, mul, neg, product, scale, sub, sum,
-    transpose, unit, vee, zero,
+    Expr, Map, Node, Rational, add, dot, hat, identity, mul, neg, product, quotient, scale, sub,
+    sum, transpose, unit, vee, zero,
 };
 
 const ONE: Dim = Dim::Fixed(1);
@@ -101,6 +101,65 @@ pub fn rows_of(symbols: &Symbols, x: &Expr, at: u8, count: Dim) -> Expr {
     match count {
         ONE => dot(unit(whole, at), x.clone()),
         _ => mul(transpose(symbols, inclusion(whole, count, at)), x.clone()),
+    }
+}
+
+/// The rows of the angular and of the linear part of an expression that is written in them, or is a
+/// vector of six: the first one and how many.
+pub fn rows_in_parts(e: &Expr) -> Option<[(u8, Dim); 2]> {
+    let whole = match e.shape() {
+        s if s == Shape::vector(Dim::Fixed(6)) => return Some([(0, THREE), (3, THREE)]),
+        Shape {
+            rows: Dim::Fixed(n),
+            cols: ONE,
+        } => n,
+        _ => return None,
+    };
+    match e.node() {
+        Node::Sum(terms) => terms.iter().find_map(rows_in_parts),
+        Node::Neg(a) | Node::Quotient(a, _) => rows_in_parts(a),
+        Node::Product(factors) => match factors.iter().find(|f| !f.shape().is_scalar())?.node() {
+            Node::Inclusion(shape, at) if *at > 0 => match shape.cols {
+                Dim::Fixed(n) if u32::from(*at) + n == whole => {
+                    let angles = Dim::Fixed(u32::from(*at));
+                    Some([(0, angles), (*at, shape.cols)])
+                }
+                _ => None,
+            },
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// Some components of an expression that is written in such parts: terms that stand elsewhere are left
+/// out.
+pub fn taken_rows(symbols: &Symbols, e: &Expr, row: u8, count: Dim) -> Expr {
+    let taken = |x: &Expr| taken_rows(symbols, x, row, count);
+    match e.node() {
+        Node::Sum(terms) => sum(
+            terms.iter().map(taken).collect::<Vec<_>>(),
+            Shape::vector(count),
+        ),
+        Node::Neg(a) => neg(taken(a)),
+        Node::Quotient(a, b) => quotient(taken(a), b.clone()),
+        Node::Product(factors) => {
+            let first = factors.iter().position(|f| !f.shape().is_scalar());
+            let included = first.and_then(|i| match factors[i].node() {
+                Node::Inclusion(_, at) | Node::Unit(_, at) => Some((i, *at)),
+                _ => None,
+            });
+            match included {
+                Some((_, at)) if at != row => zero(Shape::vector(count)),
+                Some((i, _)) => {
+                    let mut rest = factors.clone();
+                    rest.remove(i);
+                    product(rest)
+                }
+                None => rows_of(symbols, e, row, count),
+            }
+        }
+        _ => rows_of(symbols, e, row, count),
     }
 }
 

@@ -3,12 +3,14 @@
 //! carried, and the words for them. To add a group, add its file and its line in [`Group`].
 
 mod additive;
+mod euclidean;
 mod general_linear;
 mod rigid_motions;
 mod special_orthogonal;
 mod unit_quaternions;
 
 pub use additive::Additive;
+pub use euclidean::Euclidean;
 pub use general_linear::GeneralLinear;
 pub use rigid_motions::RigidMotions;
 pub use special_orthogonal::SpecialOrthogonal;
@@ -77,11 +79,6 @@ impl Group {
         matches!(self, Group::Additive(_))
     }
 
-    /// Whether its elements are rigid motions.
-    pub fn is_rigid(self) -> bool {
-        matches!(self, Group::RigidMotions(_))
-    }
-
     /// Whether its elements are unit quaternions.
     pub fn is_quaternionic(self) -> bool {
         matches!(self, Group::UnitQuaternions(_))
@@ -91,6 +88,44 @@ impl Group {
     pub fn is_linear(self) -> bool {
         matches!(self, Group::GeneralLinear(_))
     }
+}
+
+/// How the runtime keeps the elements of a group.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Kept {
+    /// Rotations of space, by unit quaternions; covectors are vectors.
+    Rotation,
+    /// Orthogonal matrices; covectors are skew matrices.
+    Orthogonal(Dim),
+    /// Invertible matrices; covectors are matrices.
+    Linear(Dim),
+    /// Unit quaternions; covectors are vectors.
+    Quaternion,
+    /// A type of the group's own; covectors are vectors of coordinates.
+    Coordinates(Names),
+    /// Numbers, vectors or matrices that are added; covectors are of the same shape.
+    Field(Shape),
+}
+
+/// What the runtime calls a group whose Lie algebra has coordinates: its types and functions.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Names {
+    /// The type of elements.
+    pub element: &'static str,
+    /// The type of momenta, after the name of the frame.
+    pub momentum: &'static str,
+    /// The type of all elements near one.
+    pub region: &'static str,
+    /// How many variables that takes, in threes.
+    pub variables: u64,
+    /// How many coordinates the Lie algebra has.
+    pub coordinates: u32,
+    /// What reads an element from a list of numbers.
+    pub reader: &'static str,
+    /// What case files call an element.
+    pub kind: &'static str,
+    /// What an element says.
+    pub words: &'static str,
 }
 
 /// An element of a basis of a Lie algebra: its entries (row, column, value) that are not zero.
@@ -223,6 +258,40 @@ pub trait Record {
     /// The rotation by which an element turns space, if it does.
     fn turn(&self, _: &Symbols, _: &Expr) -> Option<Expr> {
         None
+    }
+
+    /// How the runtime keeps its elements.
+    fn kept(&self) -> Kept;
+
+    /// The same as a group of rigid motions, if it is one.
+    fn rigid(&self) -> Option<&dyn Euclidean> {
+        None
+    }
+
+    /// Where an element is, of those that have a place in space: what is stored of it is rounded to
+    /// its distance from the origin.
+    fn place(&self, s: &Symbols, g: &Expr) -> Option<Expr> {
+        self.rigid().map(|_| expr::column(s, g))
+    }
+
+    /// Whether elements keep lengths and change no place: then a spatial equation costs no more than
+    /// one of the body.
+    fn is_isometric(&self) -> bool {
+        self.structure().is_orthogonal()
+    }
+
+    /// Whether turns are all that its elements do: then an angular momentum is the whole of one.
+    fn only_turns(&self) -> bool {
+        self.structure().is_orthogonal()
+    }
+
+    /// What a letter of variation is, in words: on a line, and typeset, where `inclusion` puts a
+    /// vector into a longer one.
+    fn variation_words(&self, inclusion: &str) -> [String; 2];
+
+    /// What the elements do as symmetries of space.
+    fn motions_words(&self) -> &'static str {
+        "rotations of space"
     }
 
     /// The group as a model states it, `SO<3>`; sizes as the model names them.

@@ -447,11 +447,11 @@ fn is_whole(x: &Inputs, terms: &[Term]) -> bool {
     terms.iter().all(|t| {
         let group = x.spec.configurations[t.motion.configuration].group;
         let natural = match t.motion.sort {
-            Sort::Rigid => true,
+            Sort::Rigid(_) => true,
             Sort::Planes(_) => group.is_orthogonal(),
             Sort::Affine(_) => !group.is_additive(),
-            Sort::Entries(_) | Sort::Shifts(_) => true,
-            Sort::Angular => group.is_quaternionic() || group.is_orthogonal(),
+            Sort::Entries(_) | Sort::Shifts(_) => group.rigid().is_none(),
+            Sort::Angular => group.only_turns(),
             Sort::Linear => group.is_additive(),
         };
         natural && t.reading.is_whole()
@@ -525,7 +525,8 @@ fn name(x: &Inputs, terms: &[Term]) -> String {
     let rigid = |t: &Term| {
         x.spec.configurations[t.motion.configuration]
             .group
-            .is_rigid()
+            .rigid()
+            .is_some()
     };
     let linear_group = |t: &Term| {
         x.spec.configurations[t.motion.configuration]
@@ -575,9 +576,8 @@ fn reason(x: &Inputs, terms: &[Term], strict: bool) -> String {
     let field = |i: &usize| x.spec.configurations[*i].group.is_additive();
     let under = match (of_space, whole || entire && set.iter().any(field), group) {
         (true, _, _) if set.iter().any(field) && terms.iter().all(shifts) => "translations",
-        (true, true, Some(group)) if group.is_rigid() => "rigid motions of space",
-        (true, true, Some(group)) if group.is_linear() => "linear maps of space",
-        (true, true, _) => "rotations of space",
+        (true, true, Some(group)) => group.motions_words(),
+        (true, true, None) => "rotations of space",
         (true, false, _) => "what keeps the axis in space",
         _ if all(&|w| w == Way::Body) && whole => "motions of the body's own frame",
         _ if all(&|w| w == Way::Body) => "what keeps the axis in the body",

@@ -159,7 +159,7 @@ impl<'a> Reducer<'a> {
         else {
             return None;
         };
-        let of_motion = o.configuration.group.is_rigid();
+        let of_motion = o.configuration.group.rigid().is_some();
         (of_motion && o.configuration.side == Side::Body).then(|| {
             let first = inclusion_of_space(o.configuration.group.size(), false);
             [&[motion(*at, true, false), first][..], rest].concat()
