@@ -58,6 +58,102 @@ impl Deref for Group {
     }
 }
 
+/// A line of the table of groups.
+pub struct Line {
+    /// The name of its family.
+    pub family: &'static str,
+    /// The only size it has, if it has one alone.
+    pub size: Option<u32>,
+    /// The group of a size.
+    pub group: fn(Dim) -> Group,
+}
+
+impl Line {
+    const fn any(family: &'static str, group: fn(Dim) -> Group) -> Line {
+        Line {
+            family,
+            size: None,
+            group,
+        }
+    }
+
+    const fn only(family: &'static str, size: u32, group: fn(Dim) -> Group) -> Line {
+        Line {
+            family,
+            size: Some(size),
+            group,
+        }
+    }
+
+    fn holds(&self, n: Dim) -> bool {
+        self.size.is_none_or(|size| n == Dim::Fixed(size))
+    }
+
+    /// The group as it is stated, with `n` for any size.
+    fn stated(&self) -> String {
+        let size = self.size.map_or("n".to_owned(), |n| n.to_string());
+        format!("{}<{size}>", self.family)
+    }
+}
+
+/// The groups that models state by name.
+pub const TABLE: [Line; 4] = [
+    Line::any("SO", Group::rotations),
+    Line::any("GL", |n| Group::GeneralLinear(GeneralLinear(n))),
+    Line::only("SU", 2, |_| Group::UnitQuaternions(UnitQuaternions)),
+    Line::only("SE", 3, |_| Group::RigidMotions(RigidMotions)),
+];
+
+/// The group of a family and a size.
+pub fn named(family: &str, n: Dim) -> Option<Group> {
+    let mut lines = TABLE.iter();
+    let found = lines.find(|line| line.family == family && line.holds(n))?;
+    Some((found.group)(n))
+}
+
+/// The families, each once.
+pub fn families() -> impl Iterator<Item = &'static str> {
+    let first = |i: &usize| TABLE.iter().position(|l| l.family == TABLE[*i].family) == Some(*i);
+    (0..TABLE.len()).filter(first).map(|i| TABLE[i].family)
+}
+
+/// Whether a family has but some sizes.
+pub fn has_few_sizes(family: &str) -> bool {
+    let mut lines = TABLE.iter();
+    lines.any(|line| line.family == family && line.size.is_some())
+}
+
+/// Groups of the table as they are stated, the last one after `last`: `SO<n>, GL<n> and SU<2>`.
+pub fn listed(last: &str, which: impl Fn(&str, Group) -> bool) -> String {
+    let lines = TABLE.iter().filter(|line| {
+        let n = Dim::Fixed(line.size.unwrap_or(3));
+        which(line.family, (line.group)(n))
+    });
+    let mut all: Vec<String> = lines.map(Line::stated).collect();
+    match (all.pop(), all.is_empty()) {
+        (Some(only), true) => only,
+        (Some(end), false) => format!("{} {last} {end}", all.join(", ")),
+        (None, _) => String::new(),
+    }
+}
+
+/// The group whose elements have this structure and shape.
+pub fn of_elements(structure: Structure, shape: Shape) -> Option<Group> {
+    let groups = families_in(shape).chain(TABLE.iter().filter_map(|line| {
+        let n = Dim::Fixed(line.size?);
+        Some((line.group)(n))
+    }));
+    groups
+        .into_iter()
+        .find(|g| g.structure() == structure && g.shape() == shape)
+}
+
+/// The groups of any size, of that of a shape.
+fn families_in(shape: Shape) -> impl Iterator<Item = Group> {
+    let lines = TABLE.iter().filter(|line| line.size.is_none());
+    lines.map(move |line| (line.group)(shape.rows))
+}
+
 impl Group {
     /// Rotations of n dimensions.
     pub fn rotations(n: Dim) -> Group {
