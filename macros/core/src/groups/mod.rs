@@ -5,6 +5,7 @@
 mod additive;
 mod euclidean;
 mod general_linear;
+mod plane_motions;
 mod rigid_motions;
 mod special_orthogonal;
 mod unit_quaternions;
@@ -12,6 +13,7 @@ mod unit_quaternions;
 pub use additive::Additive;
 pub use euclidean::Euclidean;
 pub use general_linear::GeneralLinear;
+pub use plane_motions::PlaneMotions;
 pub use rigid_motions::RigidMotions;
 pub use special_orthogonal::SpecialOrthogonal;
 pub use unit_quaternions::UnitQuaternions;
@@ -38,6 +40,8 @@ pub enum Group {
     GeneralLinear(GeneralLinear),
     /// Unit quaternions, SU(2), as 4 x 4 matrices of left multiplication.
     UnitQuaternions(UnitQuaternions),
+    /// Rigid motions of the plane, SE(2), as 3 x 3 homogeneous matrices.
+    PlaneMotions(PlaneMotions),
     /// Rigid motions of space, SE(3), as 4 x 4 homogeneous matrices.
     RigidMotions(RigidMotions),
     /// Numbers, vectors or matrices that are added: fields.
@@ -52,6 +56,7 @@ impl Deref for Group {
             Group::SpecialOrthogonal(record) => record,
             Group::GeneralLinear(record) => record,
             Group::UnitQuaternions(record) => record,
+            Group::PlaneMotions(record) => record,
             Group::RigidMotions(record) => record,
             Group::Additive(record) => record,
         }
@@ -97,10 +102,11 @@ impl Line {
 }
 
 /// The groups that models state by name.
-pub const TABLE: [Line; 4] = [
+pub const TABLE: [Line; 5] = [
     Line::any("SO", Group::rotations),
     Line::any("GL", |n| Group::GeneralLinear(GeneralLinear(n))),
     Line::only("SU", 2, |_| Group::UnitQuaternions(UnitQuaternions)),
+    Line::only("SE", 2, |_| Group::PlaneMotions(PlaneMotions)),
     Line::only("SE", 3, |_| Group::RigidMotions(RigidMotions)),
 ];
 
