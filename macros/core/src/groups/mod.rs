@@ -8,6 +8,8 @@ mod general_linear;
 mod plane_motions;
 mod rigid_motions;
 mod special_orthogonal;
+#[cfg(test)]
+mod tests;
 mod unit_quaternions;
 
 pub use additive::Additive;
