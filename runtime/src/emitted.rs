@@ -7,9 +7,9 @@ pub use crate::card::{
 };
 pub use crate::domain;
 pub use crate::groups::{
-    Additive, BodyImpulse, BodyMomentum, BodyMomentumMatrix, Coadjoint, FieldMomentum, Group,
-    Linear, Orthogonal, RigidMotion, Rotation, SpatialImpulse, SpatialMomentum,
-    SpatialMomentumMatrix, TurnedRotation, UnitQuaternion,
+    Additive, BodyImpulse, BodyMomentum, BodyMomentumMatrix, BodyPlaneImpulse, Coadjoint,
+    FieldMomentum, Group, Linear, Orthogonal, PlaneMotion, RigidMotion, Rotation, SpatialImpulse,
+    SpatialMomentum, SpatialMomentumMatrix, SpatialPlaneImpulse, TurnedRotation, UnitQuaternion,
 };
 pub use crate::integrate::Residual;
 pub use crate::integrate::{
@@ -388,6 +388,19 @@ pub fn motion_of(
 ) -> Result<RigidMotion<f64>, OpenError> {
     let matrix = matrix_of::<4, 4>(field, values)?;
     RigidMotion::from_matrix(&matrix)
+        .map_err(|e| OpenError::Start(StartError::Initial(e.in_field(field))))
+}
+
+/// The values of one field as a rigid motion of the plane, given by its homogeneous matrix.
+///
+/// # Errors
+/// When they are not nine, or not a rigid motion.
+pub fn plane_motion_of(
+    field: &'static str,
+    values: Option<&Vec<f64>>,
+) -> Result<PlaneMotion<f64>, OpenError> {
+    let matrix = matrix_of::<3, 3>(field, values)?;
+    PlaneMotion::from_matrix(&matrix)
         .map_err(|e| OpenError::Start(StartError::Initial(e.in_field(field))))
 }
 

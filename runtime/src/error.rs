@@ -247,7 +247,7 @@ impl NotARigidMotion {
                     elements: "the homogeneous matrix of a rigid motion",
                     deviation: defect,
                 },
-                remedy: "give a finite matrix whose last row is 0, 0, 0, 1",
+                remedy: "give a finite matrix whose last row is 0, ..., 0, 1",
             },
         }
     }

@@ -3,8 +3,7 @@
 
 use crate::domain::{Domain, Function};
 use crate::linalg::{
-    columns_from, determinant, inverse, left_multiplication, quaternion_imaginary, quaternion_real,
-    rows_from,
+    Homogeneous, determinant, inverse, left_multiplication, quaternion_imaginary, quaternion_real,
 };
 use crate::scalar::largest;
 use crate::{ParameterError, Problem, Real};
@@ -187,13 +186,16 @@ pub fn unit_quaternion<T: Real>(
 ///
 /// # Errors
 /// Carries the deviation of the last row or of `R^T R` from those of the identity.
-pub fn rigid_motion<T: Real>(
+pub fn rigid_motion<T: Real, const N: usize, const B: usize>(
     field: &'static str,
-    matrix: &SMatrix<T, 4, 4>,
-) -> Result<(), ParameterError> {
-    let block = rows_from::<T, 4, 3, 3>(&columns_from::<T, 4, 3, 4>(matrix, 0), 0);
-    orthogonal(field, &block)?;
-    let row = matrix.row(3) - SMatrix::<T, 4, 4>::identity().row(3);
+    matrix: &SMatrix<T, N, N>,
+) -> Result<(), ParameterError>
+where
+    SMatrix<T, N, N>: Homogeneous<Block = SMatrix<T, B, B>>,
+{
+    orthogonal(field, &matrix.block())?;
+    let last = N.saturating_sub(1);
+    let row = matrix.row(last) - SMatrix::<T, N, N>::identity().row(last);
     in_group(
         field,
         row,

@@ -96,7 +96,7 @@ fn about(field: &Field) -> String {
         }
         Kind::UnitQuaternion => "unit quaternion body -> space: [w, x, y, z]".to_owned(),
         Kind::RigidMotion => {
-            "rigid motion body -> space: homogeneous 4x4 matrix, row by row".to_owned()
+            format!("rigid motion body -> space: homogeneous {rows}x{cols} matrix, row by row")
         }
         Kind::BodyMomentum => "momentum at the first node, body frame".to_owned(),
         Kind::SpatialMomentum => "momentum at the first node, space frame".to_owned(),

@@ -338,20 +338,24 @@ fn mapped(symbols: &Symbols, map: Map, argument: &Expr, a: &Matrix) -> Matrix {
         Map::Imaginary => column(imaginary().to_vec()),
         Map::Pure => pure(&a.data),
         Map::Rotation if expr::is_motion(symbols, argument) => {
-            Matrix::from_fn(3, 3, |i, j| a.get(i, j))
+            Matrix::from_fn(a.rows - 1, a.rows - 1, |i, j| a.get(i, j))
         }
-        Map::Translation => Matrix::from_fn(3, 1, |i, _| a.get(i, 3)),
+        Map::Translation => Matrix::from_fn(a.rows - 1, 1, |i, _| a.get(i, a.rows - 1)),
         Map::Diagonal => {
             let n = a.rows;
             Matrix::from_fn(n, n, |i, j| if i == j { a.get(i, 0) } else { 0.0 })
         }
         Map::DiagonalOf => Matrix::from_fn(a.rows, 1, |i, _| a.get(i, i)),
         Map::Twist => {
-            let turn = hat(a);
-            Matrix::from_fn(4, 4, |i, j| match (i, j) {
-                (3, _) => 0.0,
-                (i, 3) => a.get(i + 3, 0),
-                (i, j) => turn.get(i, j),
+            let (turn, linear) = match a.rows {
+                3 => (quarter(a.get(0, 0)), 1),
+                _ => (hat(a), 3),
+            };
+            let last = turn.rows;
+            Matrix::from_fn(last + 1, last + 1, |i, j| match (i == last, j == last) {
+                (true, _) => 0.0,
+                (false, true) => a.get(i + linear, 0),
+                (false, false) => turn.get(i, j),
             })
         }
         Map::Rotation => {
@@ -363,6 +367,15 @@ fn mapped(symbols: &Symbols, map: Map, argument: &Expr, a: &Matrix) -> Matrix {
                 diagonal + 2.0 * v[i] * v[j] + 2.0 * real * turn.get(i, j)
             })
         }
+    }
+}
+
+/// A multiple of the quarter turn of the plane.
+fn quarter(x: f64) -> Matrix {
+    Matrix {
+        rows: 2,
+        cols: 2,
+        data: vec![0.0, -x, x, 0.0],
     }
 }
 
@@ -392,7 +405,7 @@ pub fn run(program: &Program, values: &Assignment) -> Result<Vec<Matrix>, EvalEr
 /// The numbers of a covector in the basis of its Lie algebra. SO(3): the vector. SO(n): for
 /// `i < j`, row by row, the pairing with the element that has -1 at (i, j) and +1 at (j, i).
 /// GL(n): all entries, row by row (the variation being the matrix unit). SU(2): the vector, whose
-/// variation is half the imaginary unit. SE(3): three angular, then three linear components.
+/// variation is half the imaginary unit. Rigid motions: the angular, then the linear components.
 fn coordinates(group: Group, m: &Matrix) -> Vec<f64> {
     if group.dual().1 != Structure::Skew {
         return m.data.clone();

@@ -56,6 +56,15 @@ impl Part {
         Self::Entry(small(index / n), small(index % n))
     }
 
+    /// A component of an angle on top of a vector of the plane.
+    #[must_use]
+    pub fn of_plane_motion(index: usize) -> Self {
+        match index.checked_sub(1) {
+            None => Self::Angular(0),
+            Some(i) => Self::Linear(small(i)),
+        }
+    }
+
     /// The plane of two axes; in three dimensions it goes by the axis it turns about.
     #[must_use]
     pub fn plane(i: usize, j: usize, n: usize) -> Self {

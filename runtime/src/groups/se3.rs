@@ -30,7 +30,7 @@ of_scalars!(RigidMotion {
 pub enum NotARigidMotion {
     /// Its upper left block.
     Rotation(NotARotation),
-    /// Its last row is not `(0, 0, 0, 1)`, or its last column is not finite.
+    /// Its last row is not that of the identity, or its last column is not finite.
     LastRow {
         /// By how much an entry differs at most.
         defect: f64,
@@ -43,7 +43,7 @@ impl fmt::Display for NotARigidMotion {
             Self::Rotation(why) => write!(f, "no rigid motion: upper left block: {why}"),
             Self::LastRow { defect } => write!(
                 f,
-                "no rigid motion: the last row is not (0, 0, 0, 1) or the last column is not finite, \
+                "no rigid motion: the last row is not (0, ..., 0, 1) or the last column is not finite, \
                  off by {defect:.3e}"
             ),
         }

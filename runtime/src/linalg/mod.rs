@@ -24,7 +24,7 @@ pub use elimination::{
 pub use factors::Factors;
 pub use frame::principal_frame;
 pub use inclusion::{columns_from, inclusion, into_columns, into_rows, rows_from};
-pub use motion::{motion_rotation, motion_translation, twist};
+pub use motion::{Coordinates, Homogeneous, motion_rotation, motion_translation, twist};
 pub use pencil::{even_count, even_degrees, pencil_coefficients};
 pub use product::{orthonormalised, product};
 pub use quaternion::{

@@ -13,8 +13,8 @@ mod stage;
 
 pub use crate::scalar::Enclosure;
 pub use bounds::{
-    AdditiveRegion, LinearRegion, MotionRegion, OrthogonalRegion, QuaternionRegion, Region,
-    RotationRegion,
+    AdditiveRegion, LinearRegion, MotionRegion, OrthogonalRegion, PlaneMotionRegion,
+    QuaternionRegion, Region, RotationRegion,
 };
 pub use certificate::{Anchor, Certificate, Numbers, Verdict};
 pub use failure::{NewtonError, NewtonFailure};

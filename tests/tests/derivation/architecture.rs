@@ -68,3 +68,37 @@ fn no_nan_is_passed_over_when_deviations_are_folded() {
         );
     }
 }
+
+/// What names rigid motions of the plane in sources of the engine: its record, its line, its runtime type.
+const NAMES_OF_THE_PLANE: [&str; 5] = [
+    "PlaneMotion",
+    "PlaneImpulse",
+    "plane_motion",
+    "SE(2)",
+    "SE<2>",
+];
+
+#[test]
+fn the_engine_knows_the_motions_of_the_plane_by_their_record_alone() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../macros/core/src");
+    let mut found = Vec::new();
+    sources(&root, &mut found);
+    assert!(found.len() > 150, "{} sources only", found.len());
+    let mut knowing: Vec<String> = Vec::new();
+    for path in found {
+        let text = fs::read_to_string(&path).unwrap();
+        let own = path.strip_prefix(&root).unwrap();
+        let own = own.to_string_lossy().replace('\\', "/");
+        let is_test = own.contains("tests");
+        if !is_test && NAMES_OF_THE_PLANE.iter().any(|name| text.contains(name)) {
+            knowing.push(own);
+        }
+    }
+    knowing.sort();
+    // The record, and the table with its line.
+    assert_eq!(
+        knowing,
+        ["groups/mod.rs", "groups/plane_motions.rs"],
+        "what these ask of the group belongs into a method of `Record`"
+    );
+}

@@ -1,12 +1,14 @@
-//! SU(2) and SE(3) against the variation of unreduced actions, at random points that solve nothing:
-//! the gallery's models, and sums of random terms on both sides. Actions of the wrong side are
+//! SU(2), SE(2) and SE(3) against the variation of unreduced actions, at random points that solve nothing:
+//! the gallery's models, and sums of random terms on both sides. A further group is a further name in
+//! `of_every_group!`, by its `TermSum`. Actions of the wrong side are
 //! refused, and a residual with one term changed is found out.
 
 use super::oracle_bridge::{AGREEMENT, assignment, disagreement};
 use clebsch_core::{Derivation, derive_source};
 use clebsch_oracle::oracle::action::motions::{self, KirchhoffBody, MotionSum, twists};
+use clebsch_oracle::oracle::action::plane::PlaneSum;
 use clebsch_oracle::oracle::action::quaternions::{self, CayleyKlein, QuaternionSum, halves};
-use clebsch_oracle::oracle::action::{DiscreteAction, Side, stationarity};
+use clebsch_oracle::oracle::action::{DiscreteAction, Side, TermSum, stationarity};
 use clebsch_oracle::oracle::points::{Given, Source};
 use clebsch_oracle::oracle::square::Square;
 use clebsch_oracle::physics::measure::worse;
@@ -18,26 +20,26 @@ const POINTS: usize = 1000;
 const LAGRANGIANS: usize = 60;
 const POINTS_EACH: usize = 20;
 
-type Nodes = [[Square<f64, 4>; 1]; 3];
+type Nodes<const N: usize> = [[Square<f64, N>; 1]; 3];
 
 fn derived(text: &str) -> Derivation {
     derive_source(text).unwrap_or_else(|errors| panic!("{text}\nis refused:\n{errors}"))
 }
 
 /// The worst disagreement over some points.
-fn worst<A: DiscreteAction<4, 1>>(
+fn worst<const N: usize, A: DiscreteAction<N, 1>>(
     d: &Derivation,
     source: &mut Source,
     points: usize,
-    basis: &[Square<f64, 4>],
-    node: fn(&mut Source) -> [Square<f64, 4>; 1],
+    basis: &[Square<f64, N>],
+    node: fn(&mut Source) -> [Square<f64, N>; 1],
     system: impl Fn(&mut Source) -> (A, f64),
-    given: impl Fn(&A, &Nodes) -> Vec<Given>,
+    given: impl Fn(&A, &Nodes<N>) -> Vec<Given>,
 ) -> f64 {
     let mut worst: f64 = 0.0;
     for _ in 0..points {
         let (action, h) = system(source);
-        let nodes: Nodes = from_fn(|_| node(source));
+        let nodes: Nodes<N> = from_fn(|_| node(source));
         let oracle = stationarity(&action, &nodes, basis);
         let values = assignment(&given(&action, &nodes), ("h", h));
         let engine = d.residual(&values).expect("all values are given");
@@ -91,100 +93,99 @@ fn kirchhoff_body() {
     assert!(found < AGREEMENT, "{found:e}");
 }
 
-fn quaternion_sum(terms: &[usize], side: Side, defined: bool, seed: u64, points: usize) -> f64 {
-    let text = QuaternionSum::text(side, terms, defined);
+/// The worst disagreement of the sum of some terms.
+fn of_terms<const N: usize, S: TermSum<N>>(
+    terms: &[usize],
+    side: Side,
+    defined: bool,
+    seed: u64,
+    points: usize,
+) -> f64 {
     worst(
-        &derived(&text),
+        &derived(&S::text(side, terms, defined)),
         &mut Source::seeded(seed),
         points,
-        &halves(),
-        quaternions::node,
+        &S::basis(),
+        S::node,
         |s| {
-            let a = QuaternionSum::random(s, side, terms);
-            let h = a.h;
+            let a = S::random(s, side, terms);
+            let h = a.step();
             (a, h)
         },
-        QuaternionSum::given,
+        S::given,
     )
 }
 
-fn motion_sum(terms: &[usize], side: Side, defined: bool, seed: u64, points: usize) -> f64 {
-    let text = MotionSum::text(side, terms, defined);
-    worst(
-        &derived(&text),
-        &mut Source::seeded(seed),
-        points,
-        &twists(),
-        motions::node,
-        |s| {
-            let a = MotionSum::random(s, side, terms);
-            let h = a.h;
-            (a, h)
-        },
-        MotionSum::given,
-    )
+/// Calls a function for the sums of terms of every group.
+macro_rules! of_every_group {
+    ($call:ident) => {
+        $call::<4, QuaternionSum>("SU(2)");
+        $call::<3, PlaneSum>("SE(2)");
+        $call::<4, MotionSum>("SE(3)");
+    };
 }
 
-#[test]
-fn every_term_on_quaternions() {
+fn every_term<const N: usize, S: TermSum<N>>(group: &str) {
     for side in [Side::Body, Side::Space] {
-        for term in 1..quaternions::TERMS.len() {
+        for (term, text) in S::TERMS.iter().enumerate().skip(1) {
             for defined in [true, false] {
-                let found = quaternion_sum(&[0, term], side, defined, 53, 60);
-                let text = quaternions::TERMS[term];
-                assert!(found < AGREEMENT, "{side:?} {text}: {found:e}");
+                let found = of_terms::<N, S>(&[0, term], side, defined, 53, 60);
+                assert!(found < AGREEMENT, "{group}, {side:?} {text}: {found:e}");
             }
         }
     }
 }
 
 #[test]
-fn every_term_on_rigid_motions() {
-    for side in [Side::Body, Side::Space] {
-        for term in 1..motions::TERMS.len() {
-            for defined in [true, false] {
-                let found = motion_sum(&[0, term], side, defined, 54, 60);
-                let text = motions::TERMS[term];
-                assert!(found < AGREEMENT, "{side:?} {text}: {found:e}");
-            }
-        }
-    }
+fn every_term_on_every_group() {
+    of_every_group!(every_term);
 }
 
-#[test]
-fn random_lagrangians_on_both_groups_and_sides() {
+fn random_lagrangians<const N: usize, S: TermSum<N>>(group: &str) {
     let mut source = Source::seeded(55);
     let mut worst: f64 = 0.0;
     for n in 0..LAGRANGIANS {
         let side = if n % 2 == 0 { Side::Body } else { Side::Space };
-        let terms = QuaternionSum::choice(&mut source);
-        let found = quaternion_sum(&terms, side, n % 3 == 0, n as u64, POINTS_EACH);
-        assert!(found < AGREEMENT, "SU(2), {terms:?}, {side:?}: {found:e}");
-        worst = worse(worst, found);
-        let terms = MotionSum::choice(&mut source);
-        let found = motion_sum(&terms, side, n % 3 == 0, n as u64, POINTS_EACH);
-        assert!(found < AGREEMENT, "SE(3), {terms:?}, {side:?}: {found:e}");
+        let terms = S::choice(&mut source);
+        let found = of_terms::<N, S>(&terms, side, n % 3 == 0, n as u64, POINTS_EACH);
+        assert!(found < AGREEMENT, "{group}, {terms:?}, {side:?}: {found:e}");
         worst = worse(worst, found);
     }
-    println!("worst {worst:e}");
+    println!("{group}: worst {worst:e}");
+}
+
+#[test]
+fn random_lagrangians_on_every_group_and_side() {
+    of_every_group!(random_lagrangians);
+}
+
+/// Terms of every kind, the kinetic one, two of the velocity and the node, one of the node alone.
+fn changed_term<const N: usize, S: TermSum<N>>(group: &str) {
+    for side in [Side::Body, Side::Space] {
+        let terms = [0, 3, 8, 14];
+        let d = derived(&S::text(side, &terms, false));
+        let mut source = Source::seeded(56);
+        let action = S::random(&mut source, side, &terms);
+        let nodes: Nodes<N> = from_fn(|_| S::node(&mut source));
+        let oracle = stationarity(&action, &nodes, &S::basis());
+        let values = assignment(&action.given(&nodes), ("h", action.step()));
+        let mutants = d.mutations();
+        assert!(mutants.len() > 8, "{group}: {}", mutants.len());
+        for mutant in &mutants {
+            let engine = mutant.residual(&values).expect("all values are given");
+            let found = disagreement(&oracle, &engine);
+            let told = mutant.describe();
+            assert!(
+                found > 1e3 * AGREEMENT,
+                "{group}, {side:?}, {told}: {found:e}"
+            );
+        }
+    }
 }
 
 #[test]
 fn one_changed_term_is_found_out() {
-    let terms = [0, 3, 8, 14];
-    let d = derived(&QuaternionSum::text(Side::Body, &terms, false));
-    let mut source = Source::seeded(56);
-    let action = QuaternionSum::random(&mut source, Side::Body, &terms);
-    let nodes: Nodes = from_fn(|_| quaternions::node(&mut source));
-    let oracle = stationarity(&action, &nodes, &halves());
-    let values = assignment(&action.given(&nodes), ("h", action.h));
-    let mutants = d.mutations();
-    assert!(mutants.len() > 8);
-    for mutant in &mutants {
-        let engine = mutant.residual(&values).expect("all values are given");
-        let found = disagreement(&oracle, &engine);
-        assert!(found > 1e3 * AGREEMENT, "{}: {found:e}", mutant.describe());
-    }
+    of_every_group!(changed_term);
 }
 
 #[test]
@@ -196,13 +197,15 @@ fn actions_of_the_wrong_side_are_refused() {
             lagrangian = dot(im(W), I*im(W))/h; }}"
         )
     };
-    let motions = |update: &str, shape: &str, carried: &str| {
+    let of_space = |n: u32, update: &str, shape: &str, carried: &str| {
         format!(
-            "model M {{ param M: Sym<3>; group G: SE<3> velocity V; advected a: {shape};
+            "model M {{ param M: Sym<{n}>; group G: SE<{n}> velocity V; advected a: {shape};
             constraint next(G) = {update}; constraint next(a) = {carried};
             lagrangian = dot(pos(V), M*pos(V))/h; }}"
         )
     };
+    let motions = |update: &str, shape: &str, carried: &str| of_space(3, update, shape, carried);
+    let plane = |update: &str, shape: &str, carried: &str| of_space(2, update, shape, carried);
     let right = [
         quaternions("q*W", "rot(W)^T*Γ"),
         quaternions("W*q", "rot(W)*Γ"),
@@ -213,6 +216,14 @@ fn actions_of_the_wrong_side_are_refused() {
         motions("G*V", "Vec<4>", "V^T*a"),
         motions("V*G", "Vec<4>", "V*a"),
         motions("G*V", "Mat<4>", "V^-1*a*V"),
+        plane("G*V", "Vec<2>", "rot(V)^T*a"),
+        // Turns of the plane commute: both ways round are actions.
+        plane("G*V", "Vec<2>", "rot(V)*a"),
+        plane("V*G", "Vec<2>", "rot(V)*a"),
+        plane("G*V", "Vec<3>", "V^-1*a"),
+        plane("G*V", "Vec<3>", "V^T*a"),
+        plane("V*G", "Vec<3>", "V*a"),
+        plane("G*V", "Mat<3>", "V^-1*a*V"),
     ];
     for text in &right {
         assert!(derive_source(text).is_ok(), "{text}");
@@ -225,9 +236,16 @@ fn actions_of_the_wrong_side_are_refused() {
         motions("G*V", "Vec<4>", "(V^-1)^T*a"),
         motions("V*G", "Vec<4>", "V^-1*a"),
         motions("V*G", "Mat<4>", "V^-1*a*V"),
+        plane("G*V", "Vec<3>", "V*a"),
+        plane("G*V", "Vec<3>", "(V^-1)^T*a"),
+        plane("V*G", "Vec<3>", "V^-1*a"),
+        plane("V*G", "Mat<3>", "V^-1*a*V"),
     ];
     for text in &wrong {
-        let refusal = derive_source(text).expect_err("refused").to_string();
+        let refusal = match derive_source(text) {
+            Ok(_) => panic!("{text} is not refused"),
+            Err(errors) => errors.to_string(),
+        };
         assert!(
             refusal.contains("is not advected by the group"),
             "{refusal}"

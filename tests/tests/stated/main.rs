@@ -22,6 +22,7 @@ mod newton_refusals;
 mod oracle_compiled;
 mod oracle_self;
 mod oracle_typed;
+mod plane_motions;
 mod printed_formulas;
 mod rounding_of_fields;
 mod singular_starts;

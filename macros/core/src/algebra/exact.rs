@@ -231,11 +231,12 @@ impl<'a> Point<'a> {
                 cayley(&pure(&v))?
             }
             Structure::RigidMotion => {
-                let r = cayley(&Matrix::from_fn(3, 3, skew))?;
-                Matrix::from_fn(4, 4, |i, j| match (i, j) {
-                    (3, j) => u64::from(j == 3),
-                    (i, 3) => raw(i, 3),
-                    (i, j) => r.at(i, j),
+                let last = rows.saturating_sub(1);
+                let r = cayley(&Matrix::from_fn(last, last, skew))?;
+                Matrix::from_fn(rows, rows, |i, j| match (i == last, j == last) {
+                    (true, corner) => u64::from(corner),
+                    (false, true) => raw(i, j),
+                    (false, false) => r.at(i, j),
                 })
             }
         })
@@ -338,20 +339,24 @@ impl<'a> Point<'a> {
                     }
                     Map::Pure => pure(&a.data),
                     Map::Rotation if expr::is_motion(self.symbols, argument) => {
-                        Matrix::from_fn(3, 3, |i, j| a.at(i, j))
+                        Matrix::from_fn(rows, cols, |i, j| a.at(i, j))
                     }
                     Map::Rotation => rotation(&quaternion(&a).map(|x| mul(QUARTER, x))),
-                    Map::Translation => Matrix::from_fn(3, 1, |i, _| a.at(i, 3)),
+                    Map::Translation => Matrix::from_fn(rows, 1, |i, _| a.at(i, rows)),
                     Map::Diagonal => {
                         Matrix::from_fn(rows, cols, |i, j| if i == j { a.at(i, 0) } else { 0 })
                     }
                     Map::DiagonalOf => Matrix::from_fn(rows, 1, |i, _| a.at(i, i)),
                     Map::Twist => {
-                        let turn = hat(&a);
-                        Matrix::from_fn(4, 4, |i, j| match (i, j) {
-                            (3, _) => 0,
-                            (i, 3) => a.at(i + 3, 0),
-                            (i, j) => turn.at(i, j),
+                        let last = rows.saturating_sub(1);
+                        let (turn, linear) = match last {
+                            2 => (quarter(a.at(0, 0)), 1),
+                            _ => (hat(&a), 3),
+                        };
+                        Matrix::from_fn(rows, rows, |i, j| match (i == last, j == last) {
+                            (true, _) => 0,
+                            (false, true) => a.at(i + linear, 0),
+                            (false, false) => turn.at(i, j),
                         })
                     }
                 }
@@ -476,6 +481,15 @@ fn rotation([w, x, y, z]: &[u64; 4]) -> Matrix {
     let outer = v.times(&v.transposed()).scaled(2);
     let turn = hat(&v).scaled(mul(2, *w));
     Matrix::identity(3).scaled(trace).plus(&outer).plus(&turn)
+}
+
+/// A multiple of the quarter turn of the plane.
+fn quarter(x: u64) -> Matrix {
+    Matrix {
+        rows: 2,
+        cols: 2,
+        data: vec![0, negate(x), x, 0],
+    }
 }
 
 fn hat(v: &Matrix) -> Matrix {

@@ -2,8 +2,8 @@
 //! their shapes and transposes. Words are sequences of factors whose shapes chain.
 
 use super::Algebra;
-use crate::expr::Letter;
 use crate::expr::shape::{Dim, Shape, Structure};
+use crate::expr::{Letter, within};
 
 /// Where a letter of a word comes from.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
@@ -12,9 +12,9 @@ pub enum Source {
     Letter(Letter),
     /// An interned sub-expression.
     Opaque(u32),
-    /// The rotation of a letter of SU(2) or SE(3).
+    /// The rotation of a quaternion or a rigid motion.
     Rotation(Letter),
-    /// The translation of a letter of SE(3).
+    /// The translation of a rigid motion.
     Translation(Letter),
 }
 
@@ -109,9 +109,14 @@ impl Algebra<'_> {
         match source {
             Source::Letter(at) => self.symbols.get(at.symbol).shape,
             Source::Opaque(i) => self.matrices.borrow()[i as usize].meaning.shape(),
-            Source::Rotation(_) => Shape::square(Dim::Fixed(3)),
-            Source::Translation(_) => Shape::vector(Dim::Fixed(3)),
+            Source::Rotation(at) => Shape::square(self.space_of(at)),
+            Source::Translation(at) => Shape::vector(self.space_of(at)),
         }
+    }
+
+    /// The dimension of the space that a quaternion or a rigid motion moves.
+    fn space_of(&self, at: Letter) -> Dim {
+        within(self.symbols.get(at.symbol).shape.rows)
     }
 
     /// Structure of a letter.

@@ -113,7 +113,7 @@ impl Algebra<'_> {
                 Map::Real => self.scaled(&self.trace_poly(&self.lower(a)), Rational::QUARTER),
                 Map::Imaginary => self.linear(&self.lower(a), shape, |w| self.imaginary_word(w)),
                 Map::Pure => self.linear(&self.lower(a), shape, |w| self.pure_word(w)),
-                Map::Twist => self.twist(&self.lower(a)),
+                Map::Twist => self.twist(&self.lower(a), shape.rows),
                 Map::Diagonal => self.diagonal(&self.lower(a), e),
                 Map::DiagonalOf => self.diagonal_of(&self.lower(a)),
                 Map::Translation => match a.node() {

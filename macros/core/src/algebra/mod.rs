@@ -22,6 +22,7 @@ pub use factor::{Factor, Source, Word};
 pub use monomial::{Atom, Monomial};
 pub use poly::{Poly, Term};
 pub use rational::Rational;
+pub(crate) use rigid::{inclusion_of_space, last_unit};
 
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr};
@@ -62,7 +63,7 @@ pub struct Algebra<'a> {
     work: Cell<u64>,
     evaluated: Cell<u64>,
     excess: Cell<Option<Excess>>,
-    /// Whether letters of SE(3) are written by their rotations and translations.
+    /// Whether rigid motions are written by their rotations and translations.
     blocks: Cell<bool>,
 }
 

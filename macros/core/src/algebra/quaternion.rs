@@ -10,7 +10,7 @@ use super::rational::Rational;
 use crate::expr::Letter;
 use crate::expr::shape::{Dim, Shape, Structure};
 
-/// The rotation of a letter of SU(2) or SE(3), or its inverse.
+/// The rotation of a quaternion or a rigid motion, or its inverse.
 pub(super) fn rotation_of(at: Letter, inverted: bool) -> Factor {
     Factor::Letter {
         source: Source::Rotation(at),

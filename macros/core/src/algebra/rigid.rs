@@ -1,39 +1,48 @@
-//! Letters of SE(3) in blocks: `G = P R P^T + P x e^T + e e^T` with the inclusion `P` of space, the
+//! Rigid motions in blocks: `G = P R P^T + P x e^T + e e^T` with the inclusion `P` of space, the
 //! last unit vector `e`, the rotation `R` and the translation `x`. In this form products of rigid
-//! motions reduce by the rules of three dimensions; it decides, and is never shown.
+//! motions reduce by the rules of the space itself; it decides, and is never shown.
 
 use super::Algebra;
 use super::factor::{Factor, Source};
 use super::monomial::Monomial;
-use super::poly::Poly;
+use super::poly::{Poly, Term};
 use super::quaternion::rotation_of;
 use super::rational::Rational;
 use crate::expr::shape::{Dim, Shape, Structure};
-use crate::expr::{Expr, Letter};
+use crate::expr::{Expr, Letter, last_axis, within};
 
-const THREE: Dim = Dim::Fixed(3);
-const FOUR: Dim = Dim::Fixed(4);
+const TWO: Dim = Dim::Fixed(2);
 
-fn inclusion(transposed: bool) -> Factor {
+/// The inclusion of space in homogeneous coordinates of so many rows, or its transpose.
+pub(crate) fn inclusion_of_space(rows: Dim, transposed: bool) -> Factor {
     Factor::Inclusion {
         shape: Shape {
-            rows: FOUR,
-            cols: THREE,
+            rows,
+            cols: within(rows),
         },
         at: 0,
         transposed,
     }
 }
 
-fn last(transposed: bool) -> Factor {
+/// The last unit vector of homogeneous coordinates, or its transpose.
+pub(crate) fn last_unit(rows: Dim, transposed: bool) -> Factor {
     Factor::Unit {
-        dim: FOUR,
-        axis: 3,
+        dim: rows,
+        axis: last_axis(rows),
         transposed,
     }
 }
 
-/// The translation of a letter of SE(3).
+fn axis(dim: Dim, axis: u8, transposed: bool) -> Factor {
+    Factor::Unit {
+        dim,
+        axis,
+        transposed,
+    }
+}
+
+/// The translation of a rigid motion.
 pub(super) fn translation_of(at: Letter) -> Factor {
     Factor::Letter {
         source: Source::Translation(at),
@@ -44,32 +53,62 @@ pub(super) fn translation_of(at: Letter) -> Factor {
 
 impl Algebra<'_> {
     /// `P hat(ω) P^T + P v e^T` of a vector `(ω, v)`.
-    pub(super) fn twist(&self, x: &Poly) -> Poly {
+    pub(super) fn twist(&self, x: &Poly, rows: Dim) -> Poly {
+        let space = within(rows);
+        let first = |transposed| inclusion_of_space(rows, transposed);
+        let last = |transposed| last_unit(rows, transposed);
         let part = |at| Factor::Inclusion {
             shape: Shape {
-                rows: Dim::Fixed(6),
-                cols: THREE,
+                rows: x.shape.rows,
+                cols: space,
             },
             at,
             transposed: true,
         };
-        let mut out = Poly::zero(Shape::square(FOUR));
+        let mut out = Poly::zero(Shape::square(rows));
         for (t, c) in &x.terms {
-            let of = |at| [&[part(at)][..], &t.word].concat();
-            for (t2, c2) in &self.hat_word(&self.cancelled(of(0))).terms {
-                let word = [&[inclusion(false)][..], &t2.word, &[inclusion(true)]].concat();
-                match (
-                    super::monomial::times(&t.monomial, &t2.monomial),
-                    c.times(*c2),
-                ) {
-                    (Some(m), Some(c)) => self.push_reduced(&mut out, c, &m, word),
-                    _ => self.exhaust(),
+            let of = |f: Factor| [&[f][..], &t.word].concat();
+            match space {
+                TWO => {
+                    let angle = self.bracket(&of(axis(x.shape.rows, 0, true)));
+                    for (i, j, sign) in [(1, 0, Rational::ONE), (0, 1, Rational::MINUS_ONE)] {
+                        let word = vec![axis(rows, i, false), axis(rows, j, true)];
+                        let turn = Term {
+                            monomial: t.monomial.clone(),
+                            word,
+                        };
+                        self.push_times(&mut out, &turn, c.times(sign), &angle);
+                    }
+                }
+                _ => {
+                    for (t2, c2) in &self.hat_word(&self.cancelled(of(part(0)))).terms {
+                        let word = [&[first(false)][..], &t2.word, &[first(true)]].concat();
+                        match (
+                            super::monomial::times(&t.monomial, &t2.monomial),
+                            c.times(*c2),
+                        ) {
+                            (Some(m), Some(c)) => self.push_reduced(&mut out, c, &m, word),
+                            _ => self.exhaust(),
+                        }
+                    }
                 }
             }
-            let word = [&[inclusion(false)][..], &of(3), &[last(true)]].concat();
+            let linear = if space == TWO { 1 } else { 3 };
+            let word = [&[first(false)][..], &of(part(linear)), &[last(true)]].concat();
             self.push_reduced(&mut out, *c, &t.monomial, word);
         }
         out
+    }
+
+    /// A term times a number.
+    fn push_times(&self, out: &mut Poly, term: &Term, c: Option<Rational>, number: &Poly) {
+        for (t, factor) in &number.terms {
+            let monomial = super::monomial::times(&term.monomial, &t.monomial);
+            match (monomial, c.and_then(|c| c.times(*factor))) {
+                (Some(m), Some(c)) => self.push_reduced(out, c, &m, term.word.clone()),
+                _ => self.exhaust(),
+            }
+        }
     }
 
     /// Whether the letter is to be written in blocks.
@@ -77,33 +116,32 @@ impl Algebra<'_> {
         self.blocks.get() && self.symbols.get(at.symbol).structure == Structure::RigidMotion
     }
 
-    /// A letter of SE(3), or its inverse `[R^T -R^T x; 0 1]`, in blocks.
+    /// A rigid motion, or its inverse `[R^T -R^T x; 0 1]`, in blocks.
     pub(super) fn rigid_motion(&self, at: Letter, inverted: bool) -> Poly {
+        let shape = self.symbols.get(at.symbol).shape;
+        let first = |transposed| inclusion_of_space(shape.rows, transposed);
+        let last = |transposed| last_unit(shape.rows, transposed);
         let translation = translation_of(at);
         let r = rotation_of(at, inverted);
         let moved = match inverted {
-            true => vec![inclusion(false), r.clone(), translation, last(true)],
-            false => vec![inclusion(false), translation, last(true)],
+            true => vec![first(false), r.clone(), translation, last(true)],
+            false => vec![first(false), translation, last(true)],
         };
         let sign = match inverted {
             true => Rational::MINUS_ONE,
             false => Rational::ONE,
         };
-        let mut out = Poly::zero(Shape::square(FOUR));
+        let mut out = Poly::zero(shape);
         let none = Monomial::new();
-        let turned = vec![inclusion(false), r, inclusion(true)];
+        let turned = vec![first(false), r, first(true)];
         self.push_reduced(&mut out, Rational::ONE, &none, turned);
         self.push_reduced(&mut out, sign, &none, moved);
-        self.push_reduced(
-            &mut out,
-            Rational::ONE,
-            &none,
-            vec![last(false), last(true)],
-        );
+        let corner = vec![last(false), last(true)];
+        self.push_reduced(&mut out, Rational::ONE, &none, corner);
         out
     }
 
-    /// The normal form with letters of SE(3) in blocks, if there are any.
+    /// The normal form with rigid motions in blocks, if there are any.
     pub fn lower_in_blocks(&self, e: &Expr) -> Option<Poly> {
         let rigid = |l: &Letter| self.symbols.get(l.symbol).structure == Structure::RigidMotion;
         if !crate::expr::letters(e).iter().any(rigid) {
@@ -178,16 +216,16 @@ impl Algebra<'_> {
             // The last row of a rigid motion is that of the identity.
             (
                 Factor::Unit {
-                    axis: 3,
+                    dim,
+                    axis,
                     transposed: true,
-                    ..
                 },
                 Factor::Letter {
                     source,
                     transposed: false,
                     ..
                 },
-            ) if self.structure(*source) == Structure::RigidMotion => Some(Some(vec![a.clone()])),
+            ) if self.is_last_row(*source, *dim, *axis) => Some(Some(vec![a.clone()])),
             (
                 Factor::Letter {
                     source,
@@ -195,13 +233,18 @@ impl Algebra<'_> {
                     ..
                 },
                 Factor::Unit {
-                    axis: 3,
+                    dim,
+                    axis,
                     transposed: false,
-                    ..
                 },
-            ) if self.structure(*source) == Structure::RigidMotion => Some(Some(vec![b.clone()])),
+            ) if self.is_last_row(*source, *dim, *axis) => Some(Some(vec![b.clone()])),
             _ => None,
         }
+    }
+
+    /// Whether an axis belongs to the last row of a rigid motion.
+    fn is_last_row(&self, source: Source, dim: Dim, axis: u8) -> bool {
+        self.structure(source) == Structure::RigidMotion && axis == last_axis(dim)
     }
 }
 

@@ -195,8 +195,10 @@ impl<'a> Elaborator<'a> {
             Kind::Call(name, args) => {
                 let first = || args.first().and_then(|a| self.hint(a));
                 match name.text.as_str() {
-                    "im" | "pos" | "vee" | "cross" => Some(Shape::vector(Dim::Fixed(3))),
-                    "hat" | "rot" => Some(Shape::square(Dim::Fixed(3))),
+                    "im" | "vee" | "cross" => Some(Shape::vector(Dim::Fixed(3))),
+                    "hat" => Some(Shape::square(Dim::Fixed(3))),
+                    "pos" => first().map(|s| Shape::vector(expr::within(s.rows))),
+                    "rot" => first().map(|s| Shape::square(expr::within(s.rows))),
                     "quat" => Some(Shape::square(Dim::Fixed(4))),
                     "diag" => first().map(|s| Shape::square(s.rows)),
                     "inv" | "sym" | "skew" | "next" | "prev" => first(),

@@ -6,14 +6,13 @@ use crate::diagnostic::{Diagnostic, Errors, closest};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr};
-use crate::groups::{GeneralLinear, RigidMotions, UnitQuaternions};
+use crate::groups;
 use crate::syntax::ast::{Kindred, Size};
 
 /// Largest matrix of the language.
 const LARGEST: u64 = 32;
 
 const SHAPES: [&str; 6] = ["Real", "Vec", "Sym", "Skew", "Diag", "Mat"];
-const GROUPS: [&str; 4] = ["SO", "GL", "SU", "SE"];
 
 fn size(symbols: &Symbols, s: &Size, errors: &mut Errors) -> Option<Dim> {
     match s {
@@ -111,12 +110,10 @@ pub fn shape(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<(Sha
             (shape, Structure::General)
         }),
         "Mat" => one(errors).map(square(Structure::General)),
-        "SO" => one(errors).map(square(Structure::Orthogonal)),
-        "GL" => one(errors).map(square(Structure::Invertible)),
-        "SU" | "SE" => group(symbols, k, errors).map(|g| (g.shape(), g.structure())),
+        name if is_group(name) => group(symbols, k, errors).map(|g| (g.shape(), g.structure())),
         other => {
             let mut e = Diagnostic::new(k.name.place, format!("`{other}` is not a shape"));
-            e = match closest(other, SHAPES.into_iter().chain(GROUPS)) {
+            e = match closest(other, SHAPES.into_iter().chain(groups::families())) {
                 Some(near) => e.help(format!("did you mean `{near}`?")),
                 None => {
                     e.help("shapes are Real, Vec<n>, Sym<n>, Skew<n>, Diag<n>, Mat<n>, Mat<n, m>")
@@ -144,7 +141,7 @@ pub fn field(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<Shap
         return Some(found);
     }
     let own = written(k);
-    let (message, help) = match GROUPS.contains(&k.name.text.as_str()) {
+    let (message, help) = match is_group(&k.name.text) {
         true => (
             format!("the values of a field are added, and sums of elements of `{own}` leave it"),
             format!("a configuration in a group is stated by `group Λ: {own} velocity Ω;`"),
@@ -185,42 +182,41 @@ fn written(k: &Kindred) -> String {
     }
 }
 
+fn is_group(name: &str) -> bool {
+    groups::families().any(|family| family == name)
+}
+
 /// A group of the table.
 pub fn group(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<Group> {
-    match k.name.text.as_str() {
-        "SO" => sizes(symbols, k, 1, errors).map(|d| Group::rotations(d[0])),
-        "GL" => sizes(symbols, k, 1, errors).map(|d| Group::GeneralLinear(GeneralLinear(d[0]))),
-        "SU" | "SE" => {
-            let (wanted, found) = match k.name.text.as_str() {
-                "SU" => (2, Group::UnitQuaternions(UnitQuaternions)),
-                _ => (3, Group::RigidMotions(RigidMotions)),
-            };
-            let given = sizes(symbols, k, 1, errors)?;
-            if given == [Dim::Fixed(wanted)] {
-                return Some(found);
-            }
-            let name = &k.name.text;
-            errors.push(
-                Diagnostic::new(
-                    k.place,
-                    format!("`{}` is not in this version's table of groups", written(k)),
-                )
-                .help(format!(
-                    "of this family there is `{name}<{wanted}>`; the groups are SO<n>, GL<n>, SU<2> and SE<3>"
-                )),
-            );
-            None
-        }
-        other => {
-            let mut e = Diagnostic::new(k.name.place, format!("`{other}` is not a group"));
-            e = match closest(other, GROUPS) {
-                Some(near) => e.help(format!("did you mean `{near}<3>`?")),
-                None => e.help("the groups are SO<n>, GL<n>, SU<2> and SE<3>"),
-            };
-            errors.push(e);
-            None
-        }
+    let name = k.name.text.as_str();
+    let all = || groups::listed("and", |_, _| true);
+    if !is_group(name) {
+        let e = Diagnostic::new(k.name.place, format!("`{name}` is not a group"));
+        errors.push(match closest(name, groups::families()) {
+            Some(near) => e.help(format!("did you mean `{near}<3>`?")),
+            None => e.help(format!("the groups are {}", all())),
+        });
+        return None;
     }
+    // Of a family of few sizes no other one is a size at all.
+    let given = match k.sizes.as_slice() {
+        [Size::Number(n, _)] if groups::has_few_sizes(name) => {
+            u32::try_from(*n).ok().map(Dim::Fixed)
+        }
+        _ => Some(*sizes(symbols, k, 1, errors)?.first()?),
+    };
+    let found = given.and_then(|n| groups::named(name, n));
+    if found.is_none() {
+        let own = groups::listed("and", |family, _| family == name);
+        let are = if own.contains(' ') { "are" } else { "is" };
+        let own = own.replace(" and ", "` and `").replace(", ", "`, `");
+        let message = format!("`{}` is not in this version's table of groups", written(k));
+        errors.push(Diagnostic::new(k.place, message).help(format!(
+            "of this family there {are} `{own}`; the groups are {}",
+            all()
+        )));
+    }
+    found
 }
 
 /// Body or spatial, read off the reconstruction.

@@ -2,6 +2,7 @@
 //! diagonals mean what unit vectors say.
 
 mod fields;
+mod motions;
 
 use super::check;
 use super::spec::Spec;

@@ -5,7 +5,6 @@
 use super::Letters;
 use super::action::Action;
 use super::far;
-use super::lie;
 use super::variation::{Variation, at};
 use crate::algebra::Algebra;
 use crate::check::spec::{Configuration, Side, Spec};
@@ -176,7 +175,8 @@ fn increment(
         return None;
     }
     let difference = expr::sub(incoming.clone(), outgoing.clone());
-    let reduced = if difference.shape() == Shape::vector(Dim::Fixed(3)) && !c.group.is_additive() {
+    let axial = difference.shape() == Shape::vector(Dim::Fixed(3));
+    let reduced = if axial && c.group.only_turns() {
         // Axial vectors cancel as skew matrices.
         expr::vee(algebra.raise(&algebra.lower(&expr::hat(difference))))
     } else {
@@ -224,13 +224,13 @@ fn has_fewer_letters(a: &Expr, b: &Expr) -> bool {
 /// that cancels: `V V^T` of a rotation, where no velocity is known. Not where places far from the
 /// origin would round more in it.
 pub fn shorter(algebra: &Algebra, e: Expr) -> Expr {
-    if e.shape() == lie::IMPULSE && !e.is_zero() {
+    if let (Some(rows), false) = (expr::rows_in_parts(&e), e.is_zero()) {
         // The angular and the linear part, each by itself.
-        let part = |row| {
-            let part = expr::part_of_six(algebra.symbols(), &e, row);
+        let [angular, linear] = rows.map(|(at, count)| {
+            let part = expr::rows_of(algebra.symbols(), &e, at, count);
             far::least(algebra, algebra.shortest(&part), &part)
-        };
-        return expr::stacked(part(0), part(3));
+        });
+        return expr::stacked(angular, linear);
     }
     let reduced = algebra.shortest(&e);
     let preferred = reduced.size() <= e.size() || has_fewer_letters(&reduced, &e);

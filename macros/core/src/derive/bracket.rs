@@ -73,24 +73,9 @@ pub enum Space {
 
 /// The independent coordinates of one quantity, as entries (row, column). Vectors, numbers and
 /// general matrices: all entries, row by row. Symmetric: on and above the diagonal. Skew: see
-/// [`skew_entries`]. Elements of SO(n): the skew matrix `X^T dX`; of SU(2)
-/// and SE(3): the element `X^-1 dX` of the Lie algebra.
+/// [`skew_entries`]. Elements of SO(n): the skew matrix `X^T dX`; quaternions
+/// and rigid motions: the element `X^-1 dX` of the Lie algebra.
 pub type Coordinates = Vec<(usize, usize)>;
-
-/// The angular part of a vector of six components.
-pub(crate) fn angular(s: &Symbols, x: &Expr) -> Expr {
-    part(s, x, 0)
-}
-
-/// Its linear part.
-pub(crate) fn linear(s: &Symbols, x: &Expr) -> Expr {
-    part(s, x, 3)
-}
-
-fn part(s: &Symbols, x: &Expr, from: u8) -> Expr {
-    let taken = expr::inclusion(Dim::Fixed(6), Dim::Fixed(3), from);
-    expr::mul(expr::transpose(s, taken), x.clone())
-}
 
 pub use crate::groups::Element;
 
@@ -217,7 +202,11 @@ pub fn coordinates(structure: Structure, rows: usize, cols: usize) -> Coordinate
         Structure::Skew | Structure::Orthogonal => skew_entries(rows),
         // X^-1 dX is the left multiplication by a vector, which its first column shows.
         Structure::UnitQuaternion => vec![(1, 0), (2, 0), (3, 0)],
-        Structure::RigidMotion => [skew_entries(3), vec![(0, 3), (1, 3), (2, 3)]].concat(),
+        Structure::RigidMotion => {
+            let last = rows.saturating_sub(1);
+            let column = (0..last).map(|i| (i, last)).collect();
+            [skew_entries(last), column].concat()
+        }
     }
 }
 

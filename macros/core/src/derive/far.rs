@@ -153,10 +153,12 @@ impl Far<'_> {
     fn stays(&self, e: &Expr) -> bool {
         let letters = expr::letters(e);
         let far: Vec<Letter> = letters.into_iter().filter(|l| self.is_far(l)).collect();
-        let space = Shape::vector(Dim::Fixed(3));
-        let shape = |l: &Letter| match self.symbols.get(l.symbol).structure {
-            Structure::RigidMotion => space,
-            _ => self.symbols.get(l.symbol).shape,
+        let shape = |l: &Letter| {
+            let symbol = self.symbols.get(l.symbol);
+            match symbol.structure {
+                Structure::RigidMotion => Shape::vector(expr::within(symbol.shape.rows)),
+                _ => symbol.shape,
+            }
         };
         let mut shapes: Vec<Shape> = far.iter().map(shape).collect();
         shapes.dedup();
@@ -188,10 +190,11 @@ impl Far<'_> {
             expr::sum((0..count as u8).map(along), Shape::vector(n))
         };
         if symbol.structure == Structure::RigidMotion {
-            let four = symbol.shape.rows;
-            let by = (0..3).map(|k| expr::mul(expr::integer(k + 2), expr::unit(four, k as u8)));
-            let by = expr::sum(by, Shape::vector(four));
-            return expr::mul(by, expr::transpose(self.symbols, expr::unit(four, 3)));
+            let whole = symbol.shape.rows;
+            let last = expr::last_axis(whole);
+            let along = |k| expr::mul(expr::integer(i64::from(k) + 2), expr::unit(whole, k));
+            let by = expr::sum((0..last).map(along), Shape::vector(whole));
+            return expr::mul(by, expr::transpose(self.symbols, expr::unit(whole, last)));
         }
         match (symbol.shape.is_scalar(), symbol.shape.is_vector()) {
             (true, _) => expr::integer(1),

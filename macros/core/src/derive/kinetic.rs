@@ -130,7 +130,10 @@ pub fn is_second_moment(spec: &Spec, letters: &Letters, energy: &Expr, symbol: S
             (None, _) => return false,
             (Some(_), None) => xi,
             (Some(_), Some(n)) if n == three => expr::hat(xi),
-            (Some(_), Some(_)) => expr::hat(expr::part_of_six(s, &xi, 0)),
+            (Some(_), Some(_)) => match c.group.rigid() {
+                Some(rigid) => expr::hat(rigid.angular(s, &xi)),
+                None => return false,
+            },
         };
         let word = expr::product([expr::here(s, symbol), turn.clone(), turn]);
         let half = expr::scale(Rational::HALF, expr::trace(word));

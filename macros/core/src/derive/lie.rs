@@ -3,13 +3,9 @@
 //! [`crate::groups`].
 
 use crate::check::spec::{Configuration, Side};
-use crate::expr::shape::Shape;
 use crate::expr::symbol::{SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
-use crate::groups::{Group, SIX};
-
-/// Shape of the covectors of SE(3): three angular and three linear components.
-pub const IMPULSE: Shape = Shape::vector(SIX);
+use crate::groups::Group;
 
 /// The element of the Lie algebra that a letter of variation stands for.
 pub fn element(symbols: &Symbols, group: Group, letter: SymbolId) -> Expr {

@@ -43,38 +43,6 @@ fn at(symbol: SymbolId) -> Letter {
     }
 }
 
-/// Three components of a sum of vectors of six.
-pub fn rows(symbols: &Symbols, e: &Expr, row: u8) -> Expr {
-    match e.node() {
-        Node::Sum(terms) => expr::sum(
-            terms
-                .iter()
-                .map(|t| rows(symbols, t, row))
-                .collect::<Vec<_>>(),
-            Shape::vector(THREE),
-        ),
-        Node::Neg(a) => expr::neg(rows(symbols, a, row)),
-        Node::Quotient(a, b) => expr::quotient(rows(symbols, a, row), b.clone()),
-        Node::Product(factors) => {
-            let first = factors.iter().position(|f| !f.shape().is_scalar());
-            let included = first.and_then(|i| match factors[i].node() {
-                Node::Inclusion(_, at) => Some((i, *at)),
-                _ => None,
-            });
-            match included {
-                Some((_, at)) if at != row => expr::zero(Shape::vector(THREE)),
-                Some((i, _)) => {
-                    let mut rest = factors.clone();
-                    rest.remove(i);
-                    expr::product(rest)
-                }
-                None => expr::part_of_six(symbols, e, row),
-            }
-        }
-        _ => expr::part_of_six(symbols, e, row),
-    }
-}
-
 impl Parts {
     /// Those of a model; `None` where a group is not one of space.
     pub fn of(spec: &Spec, letters: &Letters) -> Option<Parts> {
@@ -97,9 +65,7 @@ impl Parts {
                     add(&named("rot"), Shape::square(THREE), Structure::Orthogonal),
                     add(&named("pos"), Shape::vector(THREE), Structure::General),
                 ),
-                Group::SpecialOrthogonal(_) | Group::GeneralLinear(_) | Group::Additive(_) => {
-                    return None;
-                }
+                _ => return None,
             });
         }
         let direction = add("η", Shape::vector(THREE), Structure::General);
@@ -118,7 +84,9 @@ impl Parts {
         for (e, v) in list.iter().zip(&self.velocities) {
             match v {
                 Velocity::Rotation(_) | Velocity::Quaternion(..) => all.push(e.clone()),
-                Velocity::Motion(..) => all.extend([0, 3].map(|row| rows(&self.symbols, e, row))),
+                Velocity::Motion(..) => {
+                    all.extend([0, 3].map(|row| expr::taken_rows(&self.symbols, e, row, THREE)));
+                }
             }
         }
         all

@@ -52,11 +52,10 @@ pub fn seen_from_body(
         .iter()
         .map(|e| expr::substitute(&own.symbols, e, &defined))
         .collect();
-    // Elements of these groups are no isometries.
     let needed = spec
         .configurations
         .iter()
-        .any(|c| spatial(c) && (c.group.is_rigid() || c.group.is_linear()));
+        .any(|c| spatial(c) && !c.group.is_isometric());
     let asked = |list: &[Expr]| {
         let mut letters: Vec<Letter> = list.iter().flat_map(expr::letters).collect();
         letters.sort();

@@ -3,7 +3,7 @@
 
 use super::sheet::{Sheet, references};
 use super::{motion, outlook, solution, source, structure};
-use crate::check::spec::{Group, Side, Subject};
+use crate::check::spec::{Side, Subject};
 use crate::derive::Derivation;
 use crate::derive::clebsch::constraint_terms;
 use crate::derive::warnings::Warning;
@@ -327,24 +327,14 @@ fn variations(sheet: &Sheet, doc: &mut Document) {
             section.equation(Formula::equal(Formula::variation(x), sheet.derived(change)));
             section.labelled(&variation_label(i, j));
         }
-        let algebra: Inline = match d.spec.configurations.get(i).map(|c| c.group) {
-            Some(Group::GeneralLinear(_)) | None => " is an arbitrary matrix.".into(),
-            Some(Group::Additive(record)) => match record.0.is_vector() {
-                true if record.0.is_scalar() => " is an arbitrary number.".into(),
-                true => " is an arbitrary vector.".into(),
-                false => " is an arbitrary matrix.".into(),
-            },
-            Some(Group::SpecialOrthogonal(_)) => " is an arbitrary skew matrix.".into(),
-            Some(Group::UnitQuaternions(_)) => {
-                " is an arbitrary vector, an angular displacement; quat(v) is the left multiplication by the quaternion v.".into()
-            }
-            Some(Group::RigidMotions(_)) => {
-                let both = " is an arbitrary angular and a linear displacement on top of each other; twist of it is the matrix of the Lie algebra, and";
-                Inline::Notation {
-                    line: format!("{both} ang and lin take the angular and the linear part of such a vector, x[1:3] the first three entries of a longer one."),
-                    page: format!("{both} {} is the zero-padding inclusion of a vector in a longer one, from the row given by its second index.", sheet.symbols().fresh_name("ι")),
-                }
-            }
+        let words = d.spec.configurations.get(i).map(|c| {
+            let inclusion = sheet.symbols().fresh_name("ι");
+            c.group.variation_words(&inclusion)
+        });
+        let algebra = match words {
+            Some([line, page]) if line == page => line.into(),
+            Some([line, page]) => Inline::Notation { line, page },
+            None => "".into(),
         };
         section.paragraph(["Here ".into(), sheet.here(*xi).into(), algebra]);
     }

@@ -6,6 +6,7 @@ use crate::derive::Derivation;
 use crate::expr::shape::Structure;
 use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr, Letter, Shift};
+use crate::groups;
 use crate::print::statement;
 use crate::syntax::ast::{Comparison, NodeRule};
 
@@ -165,11 +166,15 @@ fn shape(spec: &Spec, id: SymbolId) -> String {
         Structure::Symmetric => format!("Sym<{rows}>"),
         Structure::Skew => format!("Skew<{rows}>"),
         Structure::Diagonal => format!("Diag<{rows}>"),
-        Structure::Orthogonal => format!("SO<{rows}>"),
-        Structure::Invertible => format!("GL<{rows}>"),
-        Structure::UnitQuaternion => "SU<2>".to_owned(),
-        Structure::RigidMotion => "SE<3>".to_owned(),
         Structure::General if symbol.shape.is_square() => format!("Mat<{rows}>"),
         Structure::General => format!("Mat<{rows}, {cols}>"),
+        Structure::Orthogonal
+        | Structure::Invertible
+        | Structure::UnitQuaternion
+        | Structure::RigidMotion => {
+            let group = groups::of_elements(symbol.structure, symbol.shape);
+            let size = |n| spec.symbols.dim_text(n);
+            group.map_or(format!("Mat<{rows}>"), |g| g.statement(&size))
+        }
     }
 }

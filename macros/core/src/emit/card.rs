@@ -78,7 +78,7 @@ fn element_field(d: &Derivation, i: usize) -> FieldOf {
     let (kind, doc) = match family(c) {
         Family::Rotation | Family::Orthogonal(_) => ("Rotation", "attitude, body to space"),
         Family::Quaternion => ("UnitQuaternion", "attitude (w, x, y, z), body to space"),
-        Family::Motion => ("RigidMotion", "position, body to space"),
+        Family::Coordinates(names) => (names.kind, names.words),
         Family::Linear(_) => ("Matrix", "configuration, reference to space"),
         Family::Field(shape) => match (shape.is_scalar(), shape.is_vector()) {
             (true, _) => ("Scalar", "field"),
@@ -212,7 +212,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                                 | Family::Linear(_)
                                 | Family::Quaternion
                                 | Family::Field(_)
-                                | Family::Motion => {
+                                | Family::Coordinates(_) => {
                                     quote!(let out = put(out, rows(state.#m().0));)
                                 }
                                 Family::Orthogonal(_) => {
@@ -469,7 +469,10 @@ fn constructor(d: &Derivation) -> TokenStream {
             Family::Orthogonal(_) => quote!(orthogonal_of),
             Family::Linear(_) => quote!(linear_of),
             Family::Quaternion => quote!(quaternion_of),
-            Family::Motion => quote!(motion_of),
+            Family::Coordinates(names) => {
+                let reader = format_ident!("{}", names.reader);
+                quote!(#reader)
+            }
             Family::Field(_) => quote!(additive_of),
         };
         initial.push(quote!(#element: #read(#label, initial.get(#index))?));

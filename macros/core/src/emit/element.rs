@@ -2,40 +2,18 @@
 //! coordinates of covectors, bases of the Lie algebra. One match per question.
 
 use super::sizes::size;
-use crate::check::spec::{Configuration, Group, Side};
+use crate::check::spec::{Configuration, Side};
 use crate::derive::Derivation;
-use crate::expr::shape::{Dim, Shape};
-use crate::groups::{Additive, GeneralLinear, SpecialOrthogonal, THREE};
+use crate::expr::shape::Dim;
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 /// How the runtime keeps the elements of a group.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Family {
-    /// SO(3), by unit quaternions; covectors are vectors.
-    Rotation,
-    /// SO(n), by orthogonal matrices; covectors are skew matrices.
-    Orthogonal(Dim),
-    /// GL(n), by matrices; covectors are matrices.
-    Linear(Dim),
-    /// SU(2), by unit quaternions; covectors are vectors.
-    Quaternion,
-    /// SE(3), by rotations and translations; covectors are vectors of six components.
-    Motion,
-    /// Numbers, vectors or matrices that are added; covectors are of the same shape.
-    Field(Shape),
-}
+pub use crate::groups::Kept as Family;
 
 /// The family of a configuration.
 pub fn family(c: &Configuration) -> Family {
-    match c.group {
-        Group::SpecialOrthogonal(SpecialOrthogonal(THREE)) => Family::Rotation,
-        Group::SpecialOrthogonal(SpecialOrthogonal(n)) => Family::Orthogonal(n),
-        Group::GeneralLinear(GeneralLinear(n)) => Family::Linear(n),
-        Group::UnitQuaternions(_) => Family::Quaternion,
-        Group::RigidMotions(_) => Family::Motion,
-        Group::Additive(Additive(shape)) => Family::Field(shape),
-    }
+    c.group.kept()
 }
 
 /// The configuration with this index. Only indices of the model are asked for.
@@ -61,7 +39,7 @@ pub fn largest(d: &Derivation, n: Dim) -> u64 {
 pub fn most_coordinates(d: &Derivation, i: usize) -> u64 {
     match of(d, i) {
         Family::Rotation | Family::Quaternion => 3,
-        Family::Motion => 6,
+        Family::Coordinates(names) => u64::from(names.coordinates),
         Family::Field(shape) => largest(d, shape.rows).saturating_mul(largest(d, shape.cols)),
         Family::Orthogonal(n) => {
             let n = largest(d, n);
@@ -87,7 +65,10 @@ pub fn coordinates(d: &Derivation, i: usize) -> TokenStream {
     let s = &d.letters.symbols;
     match of(d, i) {
         Family::Rotation | Family::Quaternion => quote!(3),
-        Family::Motion => quote!(6),
+        Family::Coordinates(names) => {
+            let n = Literal::u32_unsuffixed(names.coordinates);
+            quote!(#n)
+        }
         Family::Field(shape) => {
             let (rows, cols) = (size(s, shape.rows), size(s, shape.cols));
             quote!((#rows * #cols))
@@ -136,7 +117,10 @@ pub fn ty_over(d: &Derivation, i: usize, scalar: &TokenStream) -> TokenStream {
             quote!(Linear<#n, #scalar>)
         }
         Family::Quaternion => quote!(UnitQuaternion<#scalar>),
-        Family::Motion => quote!(RigidMotion<#scalar>),
+        Family::Coordinates(names) => {
+            let name = format_ident!("{}", names.element);
+            quote!(#name<#scalar>)
+        }
         Family::Field(shape) => {
             let (rows, cols) = (size(s, shape.rows), size(s, shape.cols));
             quote!(Additive<#rows, #cols, #scalar>)
@@ -158,7 +142,10 @@ pub fn region(d: &Derivation, i: usize, variables: &Literal) -> TokenStream {
             quote!(newton::LinearRegion<#n, #variables>)
         }
         Family::Quaternion => quote!(newton::QuaternionRegion<#variables>),
-        Family::Motion => quote!(newton::MotionRegion<#variables>),
+        Family::Coordinates(names) => {
+            let name = format_ident!("{}", names.region);
+            quote!(newton::#name<#variables>)
+        }
         Family::Field(shape) => {
             let (rows, cols) = (size(s, shape.rows), size(s, shape.cols));
             quote!(newton::AdditiveRegion<#rows, #cols, #variables>)
@@ -171,7 +158,7 @@ pub fn variables(d: &Derivation, i: usize) -> u64 {
     match of(d, i) {
         Family::Rotation => 9,
         Family::Quaternion => 6,
-        Family::Motion => 12,
+        Family::Coordinates(names) => names.variables,
         Family::Orthogonal(_) | Family::Linear(_) | Family::Field(_) => {
             3 * most_coordinates(d, i).div_ceil(3)
         }
@@ -182,7 +169,7 @@ pub fn variables(d: &Derivation, i: usize) -> u64 {
 pub fn numbers(d: &Derivation, i: usize, element: TokenStream) -> TokenStream {
     match of(d, i) {
         Family::Rotation => quote!(&#element.quaternion()),
-        Family::Orthogonal(_) | Family::Linear(_) | Family::Motion | Family::Field(_) => {
+        Family::Orthogonal(_) | Family::Linear(_) | Family::Coordinates(_) | Family::Field(_) => {
             quote!(#element.matrix().as_slice())
         }
         Family::Quaternion => quote!(&#element.components()),
@@ -243,7 +230,10 @@ pub fn covector(d: &Derivation, i: usize) -> TokenStream {
     let s = &d.letters.symbols;
     match of(d, i) {
         Family::Rotation | Family::Quaternion => quote!(SVector<T, 3>),
-        Family::Motion => quote!(SVector<T, 6>),
+        Family::Coordinates(names) => {
+            let n = Literal::u32_unsuffixed(names.coordinates);
+            quote!(SVector<T, #n>)
+        }
         Family::Field(shape) => super::expression::ty(s, shape),
         Family::Orthogonal(n) | Family::Linear(n) => {
             let n = size(s, n);
@@ -260,7 +250,7 @@ pub fn momentum_name(d: &Derivation, i: usize, side: Side) -> TokenStream {
     };
     let name = match of(d, i) {
         Family::Rotation | Family::Quaternion => format_ident!("{frame}Momentum"),
-        Family::Motion => format_ident!("{frame}Impulse"),
+        Family::Coordinates(names) => format_ident!("{frame}{}", names.momentum),
         Family::Field(_) => format_ident!("FieldMomentum"),
         Family::Orthogonal(_) | Family::Linear(_) => format_ident!("{frame}MomentumMatrix"),
     };
@@ -272,7 +262,7 @@ pub fn momentum(d: &Derivation, i: usize, side: Side) -> TokenStream {
     let s = &d.letters.symbols;
     let name = momentum_name(d, i, side);
     match of(d, i) {
-        Family::Rotation | Family::Quaternion | Family::Motion => quote!(#name<T>),
+        Family::Rotation | Family::Quaternion | Family::Coordinates(_) => quote!(#name<T>),
         Family::Field(shape) => {
             let (rows, cols) = (size(s, shape.rows), size(s, shape.cols));
             quote!(#name<#rows, #cols, T>)
@@ -298,7 +288,10 @@ pub fn basis(d: &Derivation, i: usize, index: TokenStream) -> TokenStream {
             quote!(matrix_basis::<T, #n>(#index))
         }
         Family::Quaternion => quote!(unit::<T, 3>(#index)),
-        Family::Motion => quote!(unit::<T, 6>(#index)),
+        Family::Coordinates(names) => {
+            let n = Literal::u32_unsuffixed(names.coordinates);
+            quote!(unit::<T, #n>(#index))
+        }
         Family::Field(shape) if shape.is_scalar() => quote!(T::one()),
         Family::Field(shape) => {
             let (rows, cols) = (size(s, shape.rows), size(s, shape.cols));
@@ -375,7 +368,7 @@ pub fn stack(d: &Derivation, parts: TokenStream) -> TokenStream {
     let puts = (0..count).map(|i| {
         let part = bundle.part(parts.clone(), i);
         let put = match of(d, i) {
-            Family::Rotation | Family::Quaternion | Family::Motion => quote!(put_vector),
+            Family::Rotation | Family::Quaternion | Family::Coordinates(_) => quote!(put_vector),
             Family::Orthogonal(_) => quote!(put_skew),
             Family::Field(shape) if shape.is_scalar() => quote!(put_number),
             Family::Linear(_) | Family::Field(_) => quote!(put_matrix),

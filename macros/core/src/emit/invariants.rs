@@ -152,7 +152,10 @@ pub fn spectrum_scales(d: &Derivation, names: &Names) -> TokenStream {
 fn momentum_rows(d: &Derivation, i: usize) -> TokenStream {
     match element::family(&d.spec.configurations[i]) {
         Family::Rotation | Family::Quaternion => quote!(3usize),
-        Family::Motion => quote!(6usize),
+        Family::Coordinates(names) => {
+            let n = proc_macro2::Literal::usize_suffixed(names.coordinates as usize);
+            quote!(#n)
+        }
         Family::Orthogonal(_) | Family::Linear(_) | Family::Field(_) => element::coordinates(d, i),
     }
 }

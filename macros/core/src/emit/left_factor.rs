@@ -119,7 +119,10 @@ pub(super) fn offered(d: &Derivation) -> TokenStream {
             let n = size(&d.letters.symbols, n);
             quote!(if #n == 3 { &Method::NAMES } else { &Method::ANY_SIZE })
         }
-        (true, Family::Linear(_) | Family::Quaternion | Family::Motion | Family::Field(_)) => {
+        (
+            true,
+            Family::Linear(_) | Family::Quaternion | Family::Coordinates(_) | Family::Field(_),
+        ) => {
             quote!(&[])
         }
     }

@@ -6,12 +6,10 @@ use super::between::{Edge, edge_between};
 use super::element;
 use super::expression::program;
 use super::names::{Names, item, own, per_configuration, variable};
-use super::sizes::Generics;
+use super::sizes::{Generics, size};
 use super::step::at;
 use crate::check::spec::Side;
 use crate::derive::Derivation;
-use crate::derive::lie::IMPULSE;
-use crate::derive::parts::rows;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::schedule;
 use proc_macro2::{Literal, TokenStream};
@@ -31,21 +29,26 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
             Side::Body => quote!(#after.#field.to_body(&#after.#own).0),
             Side::Spatial => element::value(c, quote!(#after.#field.0)),
         };
-        match b.incoming.shape() == IMPULSE {
-            true => {
-                for row in [0, 3] {
-                    brought.push(rows(s, &b.incoming, row));
-                    let number = Literal::u8_unsuffixed(row);
-                    let part = quote!(rows_from::<T, 6, 3, 1>(&#momentum, #number));
+        match c.group.rigid() {
+            Some(rigid) => {
+                let whole = size(s, c.group.variation().0.rows);
+                let [_, (first, count)] = rigid.rows();
+                let taken = |of: TokenStream, at: u8, count| {
+                    let (at, count) = (Literal::u8_unsuffixed(at), size(s, count));
+                    quote!(rows_from::<T, #whole, #count, 1>(&#of, #at))
+                };
+                for (at, rows) in rigid.rows() {
+                    brought.push(expr::taken_rows(s, &b.incoming, at, rows));
                     // The angular part is carried about the origin of space, with the lever arm.
-                    let arm = (row == 0).then(|| {
-                        let linear = quote!(length(&rows_from::<T, 6, 3, 1>(&#after.#field.0, 3)));
+                    let arm = (at == 0).then(|| {
+                        let linear = taken(quote!(#after.#field.0), first, count);
+                        let linear = quote!(length(&#linear));
                         quote!(+ (length(&#after.#own.translation) * #linear).magnitude())
                     });
-                    carried.push((part, arm));
+                    carried.push((taken(momentum.clone(), at, rows), arm));
                 }
             }
-            false => {
+            None => {
                 brought.push(b.incoming.clone());
                 carried.push((element::array(c, momentum), None));
             }
@@ -102,23 +105,18 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
     }
 }
 
-/// For each velocity in SE(3) the distances of its two ends from the origin of space, for each increment
-/// the sizes of the two values of its field: what is stored is rounded to them.
+/// For each velocity of what has a place the distances of its two ends from the origin of space, for
+/// each increment the sizes of the two values of its field: what is stored is rounded to them.
 fn paths(d: &Derivation) -> Vec<(Letter, Expr)> {
     let s = &d.letters.symbols;
     let list = d.spec.configurations.iter();
-    let placed = list.filter(|c| c.group.is_rigid() || c.group.is_additive());
-    placed
-        .map(|c| {
-            let size = |shift| {
-                let element = expr::letter(s, c.element, shift);
-                match c.group.is_rigid() {
-                    true => expr::length(s, &expr::column(s, &element)),
-                    false => expr::length(s, &element),
-                }
-            };
-            let path = expr::add(size(Shift::HERE), size(Shift::NEXT));
-            (at(c.velocity, Shift::HERE), path)
-        })
-        .collect()
+    list.filter_map(|c| {
+        let size = |shift| {
+            let element = expr::letter(s, c.element, shift);
+            Some(expr::length(s, &c.group.place(s, &element)?))
+        };
+        let path = expr::add(size(Shift::HERE)?, size(Shift::NEXT)?);
+        Some((at(c.velocity, Shift::HERE), path))
+    })
+    .collect()
 }

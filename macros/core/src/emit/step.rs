@@ -328,17 +328,19 @@ pub(super) fn finish(
         let momentum = names.local(&format!("{field}_next"));
         let (here, next) = (variable(s, c.element), tagged(d, names, c.element, "next"));
         let (element, moved) = (own(d, c.element), tagged(d, names, c.element, "moved"));
-        let turned = |element: TokenStream,
-                      matrix: &proc_macro2::Ident,
-                      value: &Option<TokenStream>| {
-            match family(c) {
-                Family::Rotation => quote!(+ #matrix * (#value)),
-                Family::Field(_) => quote!(+ #value),
-                Family::Orthogonal(_) | Family::Linear(_) | Family::Quaternion | Family::Motion => {
-                    quote!(+ #element.covector_to_space(&(#value)))
+        let turned =
+            |element: TokenStream, matrix: &proc_macro2::Ident, value: &Option<TokenStream>| {
+                match family(c) {
+                    Family::Rotation => quote!(+ #matrix * (#value)),
+                    Family::Field(_) => quote!(+ #value),
+                    Family::Orthogonal(_)
+                    | Family::Linear(_)
+                    | Family::Quaternion
+                    | Family::Coordinates(_) => {
+                        quote!(+ #element.covector_to_space(&(#value)))
+                    }
                 }
-            }
-        };
+            };
         let plus = |e: &Expr, value: &Option<TokenStream>| (!e.is_zero()).then(|| quote!(+ #value));
         let old = element::value(c, quote!(state.#field.0));
         let value = match (c.side, u) {

@@ -113,14 +113,7 @@ fn pull_back(symbols: &Symbols, e: &Expr, seed: Expr, wrt: Letter, out: &mut Vec
             Map::Translation => go(a, rigid::in_column(symbols, seed)),
             Map::Diagonal => go(a, diagonal_of(seed)),
             Map::DiagonalOf => go(a, diagonal(seed)),
-            // <S, twist(x)> = 2 vee(block(S)) . ω + column(S) . v
-            Map::Twist => {
-                let turn = vee(block(symbols, &seed));
-                go(
-                    a,
-                    stacked(scale(Rational::integer(2), turn), column(symbols, &seed)),
-                );
-            }
+            Map::Twist => go(a, rigid::paired_with_twists(symbols, &seed)),
             // <S, R hat(2 im(W^T D))> = <W pure(vee(R^T S)), D>
             Map::Rotation => go(a, mul(a.clone(), pure(vee(mul(t(e), seed))))),
         },

@@ -39,7 +39,10 @@ pub use gradient::gradient;
 pub(crate) use magnitude::{length, magnitude, magnitude_between};
 pub use projection::projected;
 pub use quaternion::{imaginary, pure, real, rotation};
-pub use rigid::{block, column, inclusion, is_motion, part_of_six, stacked, twist};
+pub use rigid::{
+    block, column, inclusion, is_motion, last_axis, paired_with_twists, part_of_six, quarter_turn,
+    rows_in_parts, rows_of, stacked, taken_rows, twist, within,
+};
 pub use simpler::simpler;
 pub use substitute::{contains, contains_role, letters, rebuild, shift_time, substitute};
 pub use terms::{Change, changes};
@@ -101,11 +104,11 @@ pub enum Map {
     Imaginary,
     /// The left multiplication by a vector, read as a quaternion without real part.
     Pure,
-    /// The rotation of a letter: that which one of SU(2) covers, the block of one of SE(3).
+    /// The rotation of a letter: that which a quaternion covers, the block of a rigid motion.
     Rotation,
-    /// The translation of a letter of SE(3).
+    /// The translation of a rigid motion, of a letter.
     Translation,
-    /// The element `[hat(ω) v; 0 0]` of the Lie algebra of SE(3) of a vector `(ω, v)`.
+    /// The element `[hat(ω) v; 0 0]` of the Lie algebra of rigid motions of a vector `(ω, v)`.
     Twist,
     /// The matrix with a vector on its diagonal and zeros elsewhere.
     Diagonal,

@@ -3,6 +3,7 @@
 //! `(1, i, j, k)`, so that products are products and the conjugate is the transpose.
 
 use super::build::make;
+use super::rigid::within;
 use super::shape::{Dim, Shape};
 use super::symbol::Symbols;
 use super::{Expr, Map, Node, Rational, identity, integer, neg, product, scale, transpose, zero};
@@ -42,16 +43,18 @@ pub fn pure(v: Expr) -> Expr {
     }
 }
 
-/// The rotation of a product of elements of SU(2), or of SE(3): the product of theirs.
+/// The rotation of a product of quaternions, or of rigid motions: the product of theirs.
 pub fn rotation(symbols: &Symbols, a: Expr) -> Expr {
     let of = |x: &Expr| rotation(symbols, x.clone());
+    // Quaternions and homogeneous matrices both have a row more than the space that they turn.
+    let space = within(a.shape().rows);
     match a.node() {
-        Node::Identity(_) => identity(THREE),
+        Node::Identity(_) => identity(space),
         // q and -q cover one rotation.
         Node::Neg(x) => of(x),
         Node::Product(factors) => product(factors.iter().map(of).collect::<Vec<_>>()),
         Node::Transpose(x) | Node::Inverse(x) => transpose(symbols, of(x)),
-        _ => make(Node::Map(Map::Rotation, a), Shape::square(THREE)),
+        _ => make(Node::Map(Map::Rotation, a), Shape::square(space)),
     }
 }
 

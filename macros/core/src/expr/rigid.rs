@@ -1,16 +1,50 @@
-//! Rigid motions as 4 x 4 homogeneous matrices `[R x; 0 1]`: their blocks, the elements of their Lie
-//! algebra, and vectors inside longer ones. Blocks of products are written by those of the factors,
-//! so that what is shown and emitted is of three dimensions.
+//! Rigid motions as homogeneous matrices `[R x; 0 1]` of one row more than the space has dimensions:
+//! their blocks, the elements of their Lie algebra, and vectors inside longer ones. Blocks of products
+//! are written by those of the factors, so that what is shown and emitted is of the space itself.
 
 use super::build::make;
 use super::quaternion::rotation;
 use super::shape::{Dim, Shape, Structure};
 use super::symbol::Symbols;
-use super::{Expr, Map, Node, add, hat, identity, mul, neg, product, sum, transpose, unit, zero};
+use super::{
+    Expr, Map, Node, Rational, add, dot, hat, identity, mul, neg, product, quotient, scale, sub,
+    sum, transpose, unit, vee, zero,
+};
 
+const ONE: Dim = Dim::Fixed(1);
+const TWO: Dim = Dim::Fixed(2);
 const THREE: Dim = Dim::Fixed(3);
-const FOUR: Dim = Dim::Fixed(4);
-const SIX: Dim = Dim::Fixed(6);
+
+/// One dimension less: that of the space whose homogeneous coordinates have this many.
+pub fn within(homogeneous: Dim) -> Dim {
+    match homogeneous {
+        Dim::Fixed(n) => Dim::Fixed(n.saturating_sub(1)),
+        named @ Dim::Named(_) => named,
+    }
+}
+
+/// The last of so many axes.
+pub fn last_axis(n: Dim) -> u8 {
+    match n {
+        Dim::Fixed(n) => u8::try_from(n.saturating_sub(1)).unwrap_or(u8::MAX),
+        Dim::Named(_) => u8::MAX,
+    }
+}
+
+/// The dimension of the space that twists with so many coordinates move: `n (n + 1)/2` of them.
+fn moved_by(coordinates: Dim) -> Dim {
+    match coordinates {
+        THREE => TWO,
+        _ => THREE,
+    }
+}
+
+/// The quarter turn of the plane, `(x, y) -> (-y, x)`, as the matrix that it is.
+pub fn quarter_turn(symbols: &Symbols) -> Expr {
+    let (x, y) = (unit(TWO, 0), unit(TWO, 1));
+    let dyad = |a: &Expr, b: &Expr| mul(a.clone(), transpose(symbols, b.clone()));
+    sub(dyad(&y, &x), dyad(&x, &y))
+}
 
 /// The matrix that puts a vector of length `cols` into one of length `rows`, from row `at` on; the
 /// other entries are zero.
@@ -19,7 +53,7 @@ pub fn inclusion(rows: Dim, cols: Dim, at: u8) -> Expr {
     make(Node::Inclusion(shape, at), shape)
 }
 
-/// Whether this is a letter of SE(3).
+/// Whether this is a letter of a group of rigid motions.
 pub fn is_motion(symbols: &Symbols, e: &Expr) -> bool {
     match e.node() {
         Node::Letter(at) => symbols.get(at.symbol).structure == Structure::RigidMotion,
@@ -27,9 +61,13 @@ pub fn is_motion(symbols: &Symbols, e: &Expr) -> bool {
     }
 }
 
-/// The element `[hat(ω) v; 0 0]` of the Lie algebra of SE(3) with coordinates `(ω, v)`.
+/// The element `[hat(ω) v; 0 0]` of the Lie algebra with coordinates `(ω, v)`; in the plane, where
+/// `ω` is a number, `ω` times the quarter turn stands for `hat(ω)`.
 pub fn twist(x: Expr) -> Expr {
-    let shape = Shape::square(FOUR);
+    let shape = Shape::square(match moved_by(x.shape().rows) {
+        TWO => THREE,
+        _ => Dim::Fixed(4),
+    });
     match x.node() {
         Node::Zero(_) => zero(shape),
         Node::Neg(y) => neg(twist(y.clone())),
@@ -37,15 +75,97 @@ pub fn twist(x: Expr) -> Expr {
     }
 }
 
-/// An angular and a linear vector on top of each other.
+/// An angular and a linear part on top of each other.
 pub fn stacked(angular: Expr, linear: Expr) -> Expr {
-    let at = |row| inclusion(SIX, THREE, row);
-    add(mul(at(0), angular), mul(at(3), linear))
+    let rows = |e: &Expr| match e.shape().rows {
+        Dim::Fixed(n) => n,
+        Dim::Named(_) => 0,
+    };
+    let (above, below) = (rows(&angular), rows(&linear));
+    let whole = Dim::Fixed(above + below);
+    let at = u8::try_from(above).unwrap_or(u8::MAX);
+    add(put(whole, 0, angular), put(whole, at, linear))
+}
+
+/// A vector or number in a longer vector, from this row on.
+fn put(whole: Dim, at: u8, part: Expr) -> Expr {
+    match part.shape().is_scalar() {
+        true => mul(part, unit(whole, at)),
+        false => mul(inclusion(whole, part.shape().rows, at), part),
+    }
+}
+
+/// So many components of a longer vector, from this row on; one of them is a number.
+pub fn rows_of(symbols: &Symbols, x: &Expr, at: u8, count: Dim) -> Expr {
+    let whole = x.shape().rows;
+    match count {
+        ONE => dot(unit(whole, at), x.clone()),
+        _ => mul(transpose(symbols, inclusion(whole, count, at)), x.clone()),
+    }
+}
+
+/// The rows of the angular and of the linear part of an expression that is written in them, or is a
+/// vector of six: the first one and how many.
+pub fn rows_in_parts(e: &Expr) -> Option<[(u8, Dim); 2]> {
+    let whole = match e.shape() {
+        s if s == Shape::vector(Dim::Fixed(6)) => return Some([(0, THREE), (3, THREE)]),
+        Shape {
+            rows: Dim::Fixed(n),
+            cols: ONE,
+        } => n,
+        _ => return None,
+    };
+    match e.node() {
+        Node::Sum(terms) => terms.iter().find_map(rows_in_parts),
+        Node::Neg(a) | Node::Quotient(a, _) => rows_in_parts(a),
+        Node::Product(factors) => match factors.iter().find(|f| !f.shape().is_scalar())?.node() {
+            Node::Inclusion(shape, at) if *at > 0 => match shape.cols {
+                Dim::Fixed(n) if u32::from(*at) + n == whole => {
+                    let angles = Dim::Fixed(u32::from(*at));
+                    Some([(0, angles), (*at, shape.cols)])
+                }
+                _ => None,
+            },
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// Some components of an expression that is written in such parts: terms that stand elsewhere are left
+/// out.
+pub fn taken_rows(symbols: &Symbols, e: &Expr, row: u8, count: Dim) -> Expr {
+    let taken = |x: &Expr| taken_rows(symbols, x, row, count);
+    match e.node() {
+        Node::Sum(terms) => sum(
+            terms.iter().map(taken).collect::<Vec<_>>(),
+            Shape::vector(count),
+        ),
+        Node::Neg(a) => neg(taken(a)),
+        Node::Quotient(a, b) => quotient(taken(a), b.clone()),
+        Node::Product(factors) => {
+            let first = factors.iter().position(|f| !f.shape().is_scalar());
+            let included = first.and_then(|i| match factors[i].node() {
+                Node::Inclusion(_, at) | Node::Unit(_, at) => Some((i, *at)),
+                _ => None,
+            });
+            match included {
+                Some((_, at)) if at != row => zero(Shape::vector(count)),
+                Some((i, _)) => {
+                    let mut rest = factors.clone();
+                    rest.remove(i);
+                    product(rest)
+                }
+                None => rows_of(symbols, e, row, count),
+            }
+        }
+        _ => rows_of(symbols, e, row, count),
+    }
 }
 
 /// Three components of a vector of six, from this row on.
 pub fn part_of_six(symbols: &Symbols, x: &Expr, row: u8) -> Expr {
-    mul(transpose(symbols, inclusion(SIX, THREE, row)), x.clone())
+    rows_of(symbols, x, row, THREE)
 }
 
 /// Blocks of a matrix whose last row is a multiple of `(0, 0, 0, 1)`.
@@ -60,11 +180,12 @@ struct Blocks {
 
 /// The blocks of a matrix that is known to have such a last row.
 fn blocks(symbols: &Symbols, e: &Expr) -> Option<Blocks> {
-    let translation = |x: &Expr| make(Node::Map(Map::Translation, x.clone()), Shape::vector(THREE));
+    let space = within(e.shape().rows);
+    let translation = |x: &Expr| make(Node::Map(Map::Translation, x.clone()), Shape::vector(space));
     Some(match e.node() {
         Node::Identity(_) => Blocks {
-            turn: identity(THREE),
-            shift: zero(Shape::vector(THREE)),
+            turn: identity(space),
+            shift: zero(Shape::vector(space)),
             corner: true,
         },
         Node::Letter(_) if is_motion(symbols, e) => Blocks {
@@ -80,6 +201,11 @@ fn blocks(symbols: &Symbols, e: &Expr) -> Option<Blocks> {
                 corner: true,
             }
         }
+        Node::Map(Map::Twist, x) if space == TWO => Blocks {
+            turn: mul(rows_of(symbols, x, 0, ONE), quarter_turn(symbols)),
+            shift: rows_of(symbols, x, 1, TWO),
+            corner: false,
+        },
         Node::Map(Map::Twist, x) => Blocks {
             turn: hat(part_of_six(symbols, x, 0)),
             shift: part_of_six(symbols, x, 3),
@@ -107,12 +233,14 @@ fn blocks(symbols: &Symbols, e: &Expr) -> Option<Blocks> {
     })
 }
 
-/// The upper left 3 x 3 block of a 4 x 4 matrix: the rotation of a rigid motion.
+/// All of a matrix but its last row and column: the rotation of a rigid motion.
 pub fn block(symbols: &Symbols, a: &Expr) -> Expr {
     if let Some(all) = blocks(symbols, a) {
         return all.turn;
     }
-    let shape = Shape::square(THREE);
+    let whole = a.shape().rows;
+    let space = within(whole);
+    let shape = Shape::square(space);
     match a.node() {
         Node::Zero(_) => zero(shape),
         Node::Neg(x) => neg(block(symbols, x)),
@@ -121,18 +249,20 @@ pub fn block(symbols: &Symbols, a: &Expr) -> Expr {
             shape,
         ),
         _ => {
-            let first = inclusion(FOUR, THREE, 0);
+            let first = inclusion(whole, space, 0);
             product([transpose(symbols, first.clone()), a.clone(), first])
         }
     }
 }
 
-/// The first three entries of the last column of a 4 x 4 matrix: the translation of a rigid motion.
+/// The last column of a matrix without its last entry: the translation of a rigid motion.
 pub fn column(symbols: &Symbols, a: &Expr) -> Expr {
     if let Some(all) = blocks(symbols, a) {
         return all.shift;
     }
-    let shape = Shape::vector(THREE);
+    let whole = a.shape().rows;
+    let space = within(whole);
+    let shape = Shape::vector(space);
     match a.node() {
         Node::Zero(_) => zero(shape),
         Node::Neg(x) => neg(column(symbols, x)),
@@ -141,20 +271,46 @@ pub fn column(symbols: &Symbols, a: &Expr) -> Expr {
             shape,
         ),
         _ => {
-            let first = inclusion(FOUR, THREE, 0);
-            product([transpose(symbols, first), a.clone(), unit(FOUR, 3)])
+            let first = inclusion(whole, space, 0);
+            let last = unit(whole, last_axis(whole));
+            product([transpose(symbols, first), a.clone(), last])
         }
     }
 }
 
-/// The 4 x 4 matrix with a 3 x 3 block upper left and zeros elsewhere: the adjoint of [`block`].
+/// One dimension more: that of homogeneous coordinates.
+fn homogeneous(space: Dim) -> Dim {
+    match space {
+        Dim::Fixed(n) => Dim::Fixed(n + 1),
+        named @ Dim::Named(_) => named,
+    }
+}
+
+/// The homogeneous matrix with a block upper left and zeros elsewhere: the adjoint of [`block`].
 pub(super) fn in_block(symbols: &Symbols, a: Expr) -> Expr {
-    let first = inclusion(FOUR, THREE, 0);
+    let space = a.shape().rows;
+    let first = inclusion(homogeneous(space), space, 0);
     product([first.clone(), a, transpose(symbols, first)])
 }
 
-/// The 4 x 4 matrix with a vector upper right and zeros elsewhere: the adjoint of [`column`].
+/// The homogeneous matrix with a vector upper right and zeros elsewhere: the adjoint of [`column`].
 pub(super) fn in_column(symbols: &Symbols, v: Expr) -> Expr {
-    let last = transpose(symbols, unit(FOUR, 3));
-    product([inclusion(FOUR, THREE, 0), v, last])
+    let space = v.shape().rows;
+    let whole = homogeneous(space);
+    let last = transpose(symbols, unit(whole, last_axis(whole)));
+    product([inclusion(whole, space, 0), v, last])
+}
+
+/// The coordinates `(ω, v)` that a matrix `S` pairs with the elements of the Lie algebra:
+/// `<S, twist(x)>` is the scalar product with `x`.
+pub fn paired_with_twists(symbols: &Symbols, s: &Expr) -> Expr {
+    let turn = block(symbols, s);
+    let angular = match turn.shape().rows {
+        TWO => {
+            let entry = |i: u8, j: u8| dot(unit(TWO, i), mul(turn.clone(), unit(TWO, j)));
+            sub(entry(1, 0), entry(0, 1))
+        }
+        _ => scale(Rational::integer(2), vee(turn)),
+    };
+    stacked(angular, column(symbols, s))
 }

@@ -79,7 +79,7 @@ pub enum Structure {
     Invertible,
     /// Left multiplication by a unit quaternion, 4 x 4: an element of SU(2). Orthogonal.
     UnitQuaternion,
-    /// A homogeneous matrix `[R x; 0 1]`, 4 x 4: an element of SE(3).
+    /// A homogeneous matrix `[R x; 0 1]` of a rigid motion.
     RigidMotion,
 }
 

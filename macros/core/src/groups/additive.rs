@@ -2,7 +2,7 @@
 //! `next(X) - X`, variations are free in the shape, and every frame is the same, so that momenta are
 //! carried by nothing.
 
-use super::{Element, Record, Sizes, entries};
+use super::{Element, Kept, Record, Sizes, entries};
 use crate::check::spec::Side;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
@@ -79,6 +79,27 @@ impl Record for Additive {
 
     fn has_normal(&self) -> bool {
         false
+    }
+
+    fn kept(&self) -> Kept {
+        Kept::Field(self.0)
+    }
+
+    fn variation_words(&self, _: &str) -> [String; 2] {
+        let words = match (self.0.is_scalar(), self.0.is_vector()) {
+            (true, _) => " is an arbitrary number.",
+            (false, true) => " is an arbitrary vector.",
+            (false, false) => " is an arbitrary matrix.",
+        };
+        [words.to_owned(), words.to_owned()]
+    }
+
+    fn place(&self, _: &Symbols, g: &Expr) -> Option<Expr> {
+        Some(g.clone())
+    }
+
+    fn is_isometric(&self) -> bool {
+        true
     }
 
     fn statement(&self, size: &dyn Fn(Dim) -> String) -> String {

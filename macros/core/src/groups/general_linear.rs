@@ -1,7 +1,7 @@
 //! Invertible matrices, GL(n). The Lie algebra is all matrices, and covectors are matrices, paired
 //! as `tr(M^T X)`.
 
-use super::{Element, Record, Sizes, entries};
+use super::{Element, Kept, Record, Sizes, entries};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr};
@@ -52,6 +52,19 @@ impl Record for GeneralLinear {
 
     fn has_normal(&self) -> bool {
         false
+    }
+
+    fn kept(&self) -> Kept {
+        Kept::Linear(self.0)
+    }
+
+    fn variation_words(&self, _: &str) -> [String; 2] {
+        let words = " is an arbitrary matrix.";
+        [words.to_owned(), words.to_owned()]
+    }
+
+    fn motions_words(&self) -> &'static str {
+        "linear maps of space"
     }
 
     fn statement(&self, size: &dyn Fn(Dim) -> String) -> String {

@@ -3,13 +3,19 @@
 //! carried, and the words for them. To add a group, add its file and its line in [`Group`].
 
 mod additive;
+mod euclidean;
 mod general_linear;
+mod plane_motions;
 mod rigid_motions;
 mod special_orthogonal;
+#[cfg(test)]
+mod tests;
 mod unit_quaternions;
 
 pub use additive::Additive;
+pub use euclidean::Euclidean;
 pub use general_linear::GeneralLinear;
+pub use plane_motions::PlaneMotions;
 pub use rigid_motions::RigidMotions;
 pub use special_orthogonal::SpecialOrthogonal;
 pub use unit_quaternions::UnitQuaternions;
@@ -36,6 +42,8 @@ pub enum Group {
     GeneralLinear(GeneralLinear),
     /// Unit quaternions, SU(2), as 4 x 4 matrices of left multiplication.
     UnitQuaternions(UnitQuaternions),
+    /// Rigid motions of the plane, SE(2), as 3 x 3 homogeneous matrices.
+    PlaneMotions(PlaneMotions),
     /// Rigid motions of space, SE(3), as 4 x 4 homogeneous matrices.
     RigidMotions(RigidMotions),
     /// Numbers, vectors or matrices that are added: fields.
@@ -50,10 +58,108 @@ impl Deref for Group {
             Group::SpecialOrthogonal(record) => record,
             Group::GeneralLinear(record) => record,
             Group::UnitQuaternions(record) => record,
+            Group::PlaneMotions(record) => record,
             Group::RigidMotions(record) => record,
             Group::Additive(record) => record,
         }
     }
+}
+
+/// A line of the table of groups.
+pub struct Line {
+    /// The name of its family.
+    pub family: &'static str,
+    /// The only size it has, if it has one alone.
+    pub size: Option<u32>,
+    /// The group of a size.
+    pub group: fn(Dim) -> Group,
+}
+
+impl Line {
+    const fn any(family: &'static str, group: fn(Dim) -> Group) -> Line {
+        Line {
+            family,
+            size: None,
+            group,
+        }
+    }
+
+    const fn only(family: &'static str, size: u32, group: fn(Dim) -> Group) -> Line {
+        Line {
+            family,
+            size: Some(size),
+            group,
+        }
+    }
+
+    fn holds(&self, n: Dim) -> bool {
+        self.size.is_none_or(|size| n == Dim::Fixed(size))
+    }
+
+    /// The group as it is stated, with `n` for any size.
+    fn stated(&self) -> String {
+        let size = self.size.map_or("n".to_owned(), |n| n.to_string());
+        format!("{}<{size}>", self.family)
+    }
+}
+
+/// The groups that models state by name.
+pub const TABLE: [Line; 5] = [
+    Line::any("SO", Group::rotations),
+    Line::any("GL", |n| Group::GeneralLinear(GeneralLinear(n))),
+    Line::only("SU", 2, |_| Group::UnitQuaternions(UnitQuaternions)),
+    Line::only("SE", 2, |_| Group::PlaneMotions(PlaneMotions)),
+    Line::only("SE", 3, |_| Group::RigidMotions(RigidMotions)),
+];
+
+/// The group of a family and a size.
+pub fn named(family: &str, n: Dim) -> Option<Group> {
+    let mut lines = TABLE.iter();
+    let found = lines.find(|line| line.family == family && line.holds(n))?;
+    Some((found.group)(n))
+}
+
+/// The families, each once.
+pub fn families() -> impl Iterator<Item = &'static str> {
+    let first = |i: &usize| TABLE.iter().position(|l| l.family == TABLE[*i].family) == Some(*i);
+    (0..TABLE.len()).filter(first).map(|i| TABLE[i].family)
+}
+
+/// Whether a family has but some sizes.
+pub fn has_few_sizes(family: &str) -> bool {
+    let mut lines = TABLE.iter();
+    lines.any(|line| line.family == family && line.size.is_some())
+}
+
+/// Groups of the table as they are stated, the last one after `last`: `SO<n>, GL<n> and SU<2>`.
+pub fn listed(last: &str, which: impl Fn(&str, Group) -> bool) -> String {
+    let lines = TABLE.iter().filter(|line| {
+        let n = Dim::Fixed(line.size.unwrap_or(3));
+        which(line.family, (line.group)(n))
+    });
+    let mut all: Vec<String> = lines.map(Line::stated).collect();
+    match (all.pop(), all.is_empty()) {
+        (Some(only), true) => only,
+        (Some(end), false) => format!("{} {last} {end}", all.join(", ")),
+        (None, _) => String::new(),
+    }
+}
+
+/// The group whose elements have this structure and shape.
+pub fn of_elements(structure: Structure, shape: Shape) -> Option<Group> {
+    let groups = families_in(shape).chain(TABLE.iter().filter_map(|line| {
+        let n = Dim::Fixed(line.size?);
+        Some((line.group)(n))
+    }));
+    groups
+        .into_iter()
+        .find(|g| g.structure() == structure && g.shape() == shape)
+}
+
+/// The groups of any size, of that of a shape.
+fn families_in(shape: Shape) -> impl Iterator<Item = Group> {
+    let lines = TABLE.iter().filter(|line| line.size.is_none());
+    lines.map(move |line| (line.group)(shape.rows))
 }
 
 impl Group {
@@ -77,11 +183,6 @@ impl Group {
         matches!(self, Group::Additive(_))
     }
 
-    /// Whether its elements are rigid motions.
-    pub fn is_rigid(self) -> bool {
-        matches!(self, Group::RigidMotions(_))
-    }
-
     /// Whether its elements are unit quaternions.
     pub fn is_quaternionic(self) -> bool {
         matches!(self, Group::UnitQuaternions(_))
@@ -91,6 +192,44 @@ impl Group {
     pub fn is_linear(self) -> bool {
         matches!(self, Group::GeneralLinear(_))
     }
+}
+
+/// How the runtime keeps the elements of a group.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Kept {
+    /// Rotations of space, by unit quaternions; covectors are vectors.
+    Rotation,
+    /// Orthogonal matrices; covectors are skew matrices.
+    Orthogonal(Dim),
+    /// Invertible matrices; covectors are matrices.
+    Linear(Dim),
+    /// Unit quaternions; covectors are vectors.
+    Quaternion,
+    /// A type of the group's own; covectors are vectors of coordinates.
+    Coordinates(Names),
+    /// Numbers, vectors or matrices that are added; covectors are of the same shape.
+    Field(Shape),
+}
+
+/// What the runtime calls a group whose Lie algebra has coordinates: its types and functions.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Names {
+    /// The type of elements.
+    pub element: &'static str,
+    /// The type of momenta, after the name of the frame.
+    pub momentum: &'static str,
+    /// The type of all elements near one.
+    pub region: &'static str,
+    /// How many variables that takes, in threes.
+    pub variables: u64,
+    /// How many coordinates the Lie algebra has.
+    pub coordinates: u32,
+    /// What reads an element from a list of numbers.
+    pub reader: &'static str,
+    /// What case files call an element.
+    pub kind: &'static str,
+    /// What an element says.
+    pub words: &'static str,
 }
 
 /// An element of a basis of a Lie algebra: its entries (row, column, value) that are not zero.
@@ -223,6 +362,40 @@ pub trait Record {
     /// The rotation by which an element turns space, if it does.
     fn turn(&self, _: &Symbols, _: &Expr) -> Option<Expr> {
         None
+    }
+
+    /// How the runtime keeps its elements.
+    fn kept(&self) -> Kept;
+
+    /// The same as a group of rigid motions, if it is one.
+    fn rigid(&self) -> Option<&dyn Euclidean> {
+        None
+    }
+
+    /// Where an element is, of those that have a place in space: what is stored of it is rounded to
+    /// its distance from the origin.
+    fn place(&self, s: &Symbols, g: &Expr) -> Option<Expr> {
+        self.rigid().map(|_| expr::column(s, g))
+    }
+
+    /// Whether elements keep lengths and change no place: then a spatial equation costs no more than
+    /// one of the body.
+    fn is_isometric(&self) -> bool {
+        self.structure().is_orthogonal()
+    }
+
+    /// Whether turns are all that its elements do: then an angular momentum is the whole of one.
+    fn only_turns(&self) -> bool {
+        self.structure().is_orthogonal()
+    }
+
+    /// What a letter of variation is, in words: on a line, and typeset, where `inclusion` puts a
+    /// vector into a longer one.
+    fn variation_words(&self, inclusion: &str) -> [String; 2];
+
+    /// What the elements do as symmetries of space.
+    fn motions_words(&self) -> &'static str {
+        "rotations of space"
     }
 
     /// The group as a model states it, `SO<3>`; sizes as the model names them.

@@ -1,9 +1,7 @@
 //! Rigid motions of space, SE(3), as 4 x 4 homogeneous matrices. Letters of variation and covectors
 //! are vectors of six components, an angular part on top of a linear one.
 
-use super::{Element, Record, SIX, Sizes, THREE};
-use crate::algebra::Rational;
-use crate::derive::bracket::{angular, linear};
+use super::{Element, Euclidean, Kept, Names, Record, SIX, Sizes, THREE};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr};
@@ -38,8 +36,7 @@ impl Record for RigidMotions {
     }
 
     fn covector(&self, s: &Symbols, y: Expr) -> Expr {
-        let turn = expr::scale(Rational::integer(2), expr::vee(expr::block(s, &y)));
-        expr::stacked(turn, expr::column(s, &y))
+        expr::paired_with_twists(s, &y)
     }
 
     fn pairing(&self, _: &Symbols, covector: Expr, xi: Expr) -> Expr {
@@ -58,10 +55,11 @@ impl Record for RigidMotions {
 
     /// `[(ω, v), (ω', v')] = (ω × ω', ω × v' - ω' × v)`.
     fn bracket(&self, s: &Symbols, mu: Expr, xi: Expr, eta: Expr) -> Expr {
-        let (a, b) = (angular(s, &xi), angular(s, &eta));
+        let part = |e: &Expr, row| expr::part_of_six(s, e, row);
+        let (a, b) = (part(&xi, 0), part(&eta, 0));
         let moved = expr::sub(
-            expr::cross(a.clone(), linear(s, &eta)),
-            expr::cross(b.clone(), linear(s, &xi)),
+            expr::cross(a.clone(), part(&eta, 3)),
+            expr::cross(b.clone(), part(&xi, 3)),
         );
         self.pairing(s, mu, expr::stacked(expr::cross(a, b), moved))
     }
@@ -81,6 +79,39 @@ impl Record for RigidMotions {
         Some(expr::block(s, g))
     }
 
+    fn kept(&self) -> Kept {
+        Kept::Coordinates(Names {
+            element: "RigidMotion",
+            momentum: "Impulse",
+            region: "MotionRegion",
+            variables: 12,
+            coordinates: 6,
+            reader: "motion_of",
+            kind: "RigidMotion",
+            words: "position, body to space",
+        })
+    }
+
+    fn rigid(&self) -> Option<&dyn Euclidean> {
+        Some(self)
+    }
+
+    fn variation_words(&self, inclusion: &str) -> [String; 2] {
+        let both = " is an arbitrary angular and a linear displacement on top of each other; twist of it is the matrix of the Lie algebra, and";
+        [
+            format!(
+                "{both} ang and lin take the angular and the linear part of such a vector, x[1:3] the first three entries of a longer one."
+            ),
+            format!(
+                "{both} {inclusion} is the zero-padding inclusion of a vector in a longer one, from the row given by its second index."
+            ),
+        ]
+    }
+
+    fn motions_words(&self) -> &'static str {
+        "rigid motions of space"
+    }
+
     fn statement(&self, _: &dyn Fn(Dim) -> String) -> String {
         "SE<3>".to_owned()
     }
@@ -91,5 +122,35 @@ impl Record for RigidMotions {
 
     fn kinetic_example(&self, element: &str) -> String {
         format!("-tr(J*rot({element})^T*rot(next({element})))/h")
+    }
+}
+
+impl Euclidean for RigidMotions {
+    fn space(&self) -> Dim {
+        THREE
+    }
+
+    fn angles(&self) -> Dim {
+        THREE
+    }
+
+    fn swept(&self, _: &Symbols, turning: Expr, place: Expr) -> Expr {
+        expr::cross(turning, place)
+    }
+
+    fn moment(&self, _: &Symbols, place: Expr, linear: Expr) -> Expr {
+        expr::cross(place, linear)
+    }
+
+    fn turned(&self, turn: Expr, angular: Expr) -> Expr {
+        expr::mul(turn, angular)
+    }
+
+    fn as_turn(&self, _: &Symbols, angular: Expr) -> Expr {
+        angular
+    }
+
+    fn of_turn(&self, turn: Expr) -> Expr {
+        turn
     }
 }

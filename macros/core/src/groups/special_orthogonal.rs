@@ -1,7 +1,7 @@
 //! Rotations, SO(n). The Lie algebra is the skew matrices; in three dimensions covectors and
 //! velocities in continuous time are vectors, axial ones, else skew matrices.
 
-use super::{Element, Record, Sizes, THREE};
+use super::{Element, Kept, Record, Sizes, THREE};
 use crate::algebra::Rational;
 use crate::derive::bracket::skew_entries;
 use crate::expr::shape::{Dim, Shape, Structure};
@@ -119,6 +119,18 @@ impl Record for SpecialOrthogonal {
 
     fn turn(&self, _: &Symbols, g: &Expr) -> Option<Expr> {
         self.is_of_space().then(|| g.clone())
+    }
+
+    fn kept(&self) -> Kept {
+        match self.is_of_space() {
+            true => Kept::Rotation,
+            false => Kept::Orthogonal(self.0),
+        }
+    }
+
+    fn variation_words(&self, _: &str) -> [String; 2] {
+        let words = " is an arbitrary skew matrix.";
+        [words.to_owned(), words.to_owned()]
     }
 
     fn statement(&self, size: &dyn Fn(Dim) -> String) -> String {

@@ -2,7 +2,7 @@
 //! covectors are vectors: the element of the Lie algebra is half the vector, so that it turns space
 //! with the angular velocity of its coordinates.
 
-use super::{Element, Record, Sizes, THREE};
+use super::{Element, Kept, Record, Sizes, THREE};
 use crate::algebra::Rational;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
@@ -59,6 +59,15 @@ impl Record for UnitQuaternions {
 
     fn turn(&self, s: &Symbols, g: &Expr) -> Option<Expr> {
         Some(expr::rotation(s, g.clone()))
+    }
+
+    fn kept(&self) -> Kept {
+        Kept::Quaternion
+    }
+
+    fn variation_words(&self, _: &str) -> [String; 2] {
+        let words = " is an arbitrary vector, an angular displacement; quat(v) is the left multiplication by the quaternion v.";
+        [words.to_owned(), words.to_owned()]
     }
 
     fn statement(&self, _: &dyn Fn(Dim) -> String) -> String {

@@ -3,7 +3,9 @@
 //! Takes centre and lengths; gives what equations ask of a velocity, in variables chosen such that
 //! it is affine in them: a rotation in the sine and the cosine of its angle, no product of them.
 
-use crate::groups::{Additive, Group, Linear, Orthogonal, RigidMotion, Rotation, UnitQuaternion};
+use crate::groups::{
+    Additive, Group, Linear, Orthogonal, PlaneMotion, RigidMotion, Rotation, UnitQuaternion,
+};
 use crate::linalg::{left_multiplication, solve_many};
 use crate::scalar::Enclosure;
 use nalgebra::{SMatrix, SVector};
@@ -240,6 +242,74 @@ impl<const K: usize> Region<K> for MotionRegion<K> {
         for i in 0..3 {
             for j in 0..3 {
                 put(3 + i, 3 + j, turn[(j, i)]);
+            }
+        }
+    }
+}
+
+/// Rigid motions of the plane.
+#[derive(Clone, Copy, Debug)]
+pub struct PlaneMotionRegion<const K: usize> {
+    rotation: SMatrix<Enclosure<K>, 2, 2>,
+    /// The translations.
+    pub translation: SVector<Enclosure<K>, 2>,
+}
+
+impl<const K: usize> PlaneMotionRegion<K> {
+    /// The homogeneous matrices.
+    #[must_use]
+    pub fn matrix(&self) -> SMatrix<Enclosure<K>, 3, 3> {
+        SMatrix::from_fn(|i, j| match (i, j) {
+            (2, _) => Enclosure::exactly(f64::from(u8::from(j == 2))),
+            (_, 2) => self.translation[i],
+            _ => self.rotation[(i, j)],
+        })
+    }
+
+    /// Sine and cosine of the angle, each by a variable of its own.
+    fn angle(radii: &[f64], first: usize) -> [Enclosure<K>; 2] {
+        let (sine, rest) = angle(radius(radii, 0));
+        let middle = Enclosure::exactly(1.0 - 0.5 * rest);
+        [
+            Enclosure::variable(sine, first),
+            middle + Enclosure::variable(0.5 * rest, first + 3),
+        ]
+    }
+
+    fn turn(radii: &[f64], first: usize) -> SMatrix<Enclosure<K>, 2, 2> {
+        let [sine, cosine] = Self::angle(radii, first);
+        SMatrix::<_, 2, 2>::new(cosine, -sine, sine, cosine)
+    }
+}
+
+impl<const K: usize> Region<K> for PlaneMotionRegion<K> {
+    type Centre = PlaneMotion<f64>;
+    const VARIABLES: usize = 9;
+
+    fn around(centre: &PlaneMotion<f64>, radii: &[f64], first: usize) -> Self {
+        let turn = centre.rotation.matrix();
+        let shift = SVector::<Enclosure<K>, 2>::from_fn(|i, _| {
+            Enclosure::variable(radius(radii, 1), first + 6 + i)
+        });
+        Self {
+            rotation: times(&turn, &Self::turn(radii, first)),
+            translation: centre.translation.map(Enclosure::exactly) + times(&turn, &shift),
+        }
+    }
+
+    /// Half of `1 + cos a` for the angle, whose coordinate is twice the tangent of half of it, and the
+    /// inverse rotation for the translation.
+    fn chart_tangent(
+        radii: &[f64],
+        first: usize,
+        put: &mut impl FnMut(usize, usize, Enclosure<K>),
+    ) {
+        let [_, cosine] = Self::angle(radii, first);
+        put(0, 0, (Enclosure::exactly(1.0) + cosine).times(0.5));
+        let turn = Self::turn(radii, first);
+        for i in 0..2 {
+            for j in 0..2 {
+                put(1 + i, 1 + j, turn[(j, i)]);
             }
         }
     }

@@ -8,6 +8,7 @@ use crate::diagnostic::{Diagnostic, Place, closest};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Function, Node, Part, Shift};
+use crate::groups::{self, Group};
 use crate::syntax::ast::{Expression, Name};
 use crate::syntax::{AVAILABLE, FUNCTIONS, HIDEABLE};
 
@@ -66,33 +67,48 @@ impl Elaborator<'_> {
         Some(d.help(format!("functions: {AVAILABLE}")))
     }
 
-    /// Parts of elements of SU(2) and SE(3).
+    /// Parts of quaternions and rigid motions.
     fn of_group(&self, f: &str, a: Expr, place: Place) -> Elaborated {
         let symbols = &self.names.symbols;
-        if a.shape() != Shape::square(Dim::Fixed(4)) {
-            let what = shape_text(symbols, a.shape());
-            let d = Diagnostic::new(
-                place,
-                format!("`{f}` needs a 4 x 4 matrix, and this is {what}"),
-            );
-            return fail(d.help("elements of SU<2> and of SE<3> are 4 x 4 matrices"));
-        }
+        let of = |structure| move |_: &str, g: Group| g.structure() == structure;
+        let (quaternions, motions) = (of(Structure::UnitQuaternion), of(Structure::RigidMotion));
+        let shaped = |which: &dyn Fn(&str, Group) -> bool| {
+            let all = groups::TABLE.iter();
+            all.filter_map(|line| Some((line.group)(Dim::Fixed(line.size?))))
+                .any(|g| which("", g) && g.shape() == a.shape())
+        };
         let quaternion = is_element(symbols, &a, Structure::UnitQuaternion);
         let motion = is_element(symbols, &a, Structure::RigidMotion);
         match f {
-            "re" => return Ok(expr::real(a)),
-            "im" => return Ok(expr::imaginary(a)),
-            "rot" if quaternion => return Ok(expr::rotation(symbols, a)),
-            "rot" if motion => return Ok(expr::block(symbols, &a)),
-            "pos" if motion => return Ok(expr::column(symbols, &a)),
+            "re" if shaped(&quaternions) => return Ok(expr::real(a)),
+            "im" if shaped(&quaternions) => return Ok(expr::imaginary(a)),
+            "rot" if shaped(&quaternions) && quaternion => return Ok(expr::rotation(symbols, a)),
+            "rot" if shaped(&motions) && motion => return Ok(expr::block(symbols, &a)),
+            "pos" if shaped(&motions) && motion => return Ok(expr::column(symbols, &a)),
             _ => {}
         }
-        let (what, example) = match f {
-            "rot" => ("SU<2> or SE<3>", "rot(g)"),
-            _ => ("SE<3>", "pos(G)"),
+        let what = shape_text(symbols, a.shape());
+        let (groups, example) = match f {
+            "re" | "im" => {
+                let d = Diagnostic::new(
+                    place,
+                    format!("`{f}` needs a 4 x 4 matrix, and this is {what}"),
+                );
+                let own = groups::listed("and", quaternions);
+                return fail(d.help(format!("elements of {own} are 4 x 4 matrices")));
+            }
+            "rot" => (
+                groups::listed("or", |n, g| quaternions(n, g) || motions(n, g)),
+                "rot(g)",
+            ),
+            _ => (groups::listed("or", motions), "pos(G)"),
         };
-        let message =
-            format!("`{f}` needs an element of {what}: products and inverses of such letters");
+        let message = match a.shape().is_square() {
+            true => {
+                format!("`{f}` needs an element of {groups}: products and inverses of such letters")
+            }
+            false => format!("`{f}` needs an element of {groups}, and this is {what}"),
+        };
         fail(Diagnostic::new(place, message).help(format!("write for example `{example}`")))
     }
 
@@ -236,7 +252,8 @@ impl Elaborator<'_> {
                 Ok(shifted)
             }
             "re" | "im" | "rot" | "pos" => {
-                let a = argument(Some(Shape::square(Dim::Fixed(4))))?;
+                let four = Shape::square(Dim::Fixed(4));
+                let a = argument(Some(self.hint(first).unwrap_or(four)))?;
                 self.of_group(f, a, first.place)
             }
             _ => fail(

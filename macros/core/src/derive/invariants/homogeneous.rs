@@ -1,36 +1,39 @@
-//! Homogeneous vectors of four components, planes and points that rigid motions carry: what can be
-//! read from them. Takes the advected vectors of a model; gives parts of candidates for invariants.
+//! Homogeneous vectors, planes and points that rigid motions carry: what can be read from them. Takes
+//! the advected vectors of a model; gives parts of candidates for invariants.
 
+use super::motions::space_of;
 use super::words::Piece;
 use super::{Candidate, Inputs, length};
-use crate::derive::bracket;
-use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::Symbols;
-use crate::expr::{self, Expr};
+use crate::expr::{self, Expr, last_axis, within};
+use crate::groups::Euclidean;
 
-/// The first three components of a homogeneous vector: the normal of a plane, the place of a point
+/// All but the last component of a homogeneous vector: the normal of a plane, the place of a point
 /// times its weight.
 pub(super) fn spatial_part(s: &Symbols, v: &Expr) -> Expr {
-    let taken = expr::inclusion(Dim::Fixed(4), Dim::Fixed(3), 0);
-    expr::mul(expr::transpose(s, taken), v.clone())
+    expr::rows_of(s, v, 0, within(v.shape().rows))
+}
+
+/// The last component.
+fn weight(v: &Expr) -> Expr {
+    let whole = v.shape().rows;
+    expr::dot(expr::unit(whole, last_axis(whole)), v.clone())
 }
 
 /// The moment of a momentum `(a, l)` about a homogeneous point `(x, w)`, times its weight.
-pub(super) fn moment(s: &Symbols, momentum: &Expr, point: &Expr) -> Expr {
-    let weight = expr::dot(expr::unit(Dim::Fixed(4), 3), point.clone());
-    let lever = expr::cross(spatial_part(s, point), bracket::linear(s, momentum));
-    expr::sub(expr::mul(bracket::angular(s, momentum), weight), lever)
+pub(super) fn moment(s: &Symbols, rigid: &dyn Euclidean, momentum: &Expr, point: &Expr) -> Expr {
+    let lever = rigid.moment(s, spatial_part(s, point), rigid.linear(s, momentum));
+    expr::sub(expr::mul(rigid.angular(s, momentum), weight(point)), lever)
 }
 
 /// What is read from homogeneous vectors that rigid motions carry: the normal of a plane or the
 /// place of a point, and the moment of a momentum about the point, `w a - x × l` for the weight `w`.
 pub(super) fn pieces(x: &Inputs) -> Vec<Piece> {
     let s = &x.letters.symbols;
-    let four = Dim::Fixed(4);
     let mut out = Vec::new();
     for a in &x.spec.advected {
         let e = expr::here(s, a.quantity);
-        if e.shape() != Shape::vector(four) {
+        if space_of(x, e.shape()).is_none() {
             continue;
         }
         let name = &s.get(a.quantity).ascii;
@@ -41,11 +44,12 @@ pub(super) fn pieces(x: &Inputs) -> Vec<Piece> {
             value: part,
         });
         for (c, id) in x.spec.configurations.iter().zip(&x.letters.node_momentum) {
-            if !c.group.is_rigid() {
-                continue;
-            }
+            let rigid = match c.group.rigid() {
+                Some(rigid) if rigid.space() == within(e.shape().rows) => rigid,
+                _ => continue,
+            };
             let mu = expr::here(s, *id);
-            let moment = moment(s, &mu, &e);
+            let moment = moment(s, rigid, &mu, &e);
             out.push(Piece {
                 name: format!("moment_about_{name}"),
                 size: expr::mul(length(x, &mu), length(x, &e)),
@@ -59,13 +63,12 @@ pub(super) fn pieces(x: &Inputs) -> Vec<Piece> {
 /// Weights of homogeneous points.
 pub(super) fn weights(x: &Inputs) -> Vec<Candidate> {
     let s = &x.letters.symbols;
-    let four = Dim::Fixed(4);
     let list = x.spec.advected.iter().map(|a| a.quantity);
     let list = list.map(|id| (s.get(id).ascii.clone(), expr::here(s, id)));
-    let list = list.filter(|(_, e)| e.shape() == Shape::vector(four));
+    let list = list.filter(|(_, e)| space_of(x, e.shape()).is_some());
     list.map(|(name, e)| Candidate {
         name: format!("{name}_weight"),
-        value: expr::dot(expr::unit(four, 3), e.clone()),
+        value: weight(&e),
         scale: length(x, &e),
     })
     .collect()

@@ -131,7 +131,13 @@ pub(super) fn tangents(point: &Point, l: Letter, structure: Structure) -> Option
     };
     let minus = Some(crate::algebra::exact::negate(1));
     // A translation has no mirror image, a turn has.
-    let turn = |i: usize, j: usize| unit(i, j, (j < 3).then(|| crate::algebra::exact::negate(1)));
+    let turn = |i: usize, j: usize| {
+        unit(
+            i,
+            j,
+            (j + 1 < cols).then(|| crate::algebra::exact::negate(1)),
+        )
+    };
     let list = entries.into_iter().map(|(i, j)| match structure {
         Structure::UnitQuaternion => {
             let axis = [1, 2, 3].map(|k| u64::from(k == i));

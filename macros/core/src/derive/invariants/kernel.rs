@@ -253,7 +253,7 @@ impl<'a> Kernel<'a> {
 fn coordinates(point: &Point, m: &Motion) -> usize {
     match m.sort {
         Sort::Angular | Sort::Linear => 3,
-        Sort::Rigid => 6,
+        Sort::Rigid(n) => point.dim(n),
         Sort::Planes(n) => {
             let n = point.dim(n);
             n * (n - 1) / 2

@@ -5,15 +5,12 @@
 
 use super::{Inputs, length};
 use crate::check::spec::{Configuration, Group, Side};
-use crate::derive::bracket;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::{SymbolId, Symbols};
 use crate::expr::{self, Expr};
-use crate::groups::{Additive, GeneralLinear, SpecialOrthogonal};
+use crate::groups::{Additive, Euclidean, GeneralLinear, SpecialOrthogonal};
 
 const THREE: Dim = Dim::Fixed(3);
-const FOUR: Dim = Dim::Fixed(4);
-const SIX: Dim = Dim::Fixed(6);
 
 /// What a motion is read in: momenta of one sort may be added.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -22,8 +19,8 @@ pub(super) enum Sort {
     Angular,
     /// Shifts of three dimensions.
     Linear,
-    /// Both of them.
-    Rigid,
+    /// Both of them, in so many coordinates.
+    Rigid(Dim),
     /// Turns of n dimensions, by their planes.
     Planes(Dim),
     /// Linear maps of n dimensions.
@@ -95,26 +92,24 @@ fn turned(x: &Inputs, i: usize, from: Side) -> Expr {
 }
 
 /// Angular and linear momentum of a rigid motion, in space or in the body.
-fn parts(x: &Inputs, i: usize, way: Way) -> (Expr, Expr) {
+fn parts(x: &Inputs, i: usize, rigid: &dyn Euclidean, way: Way) -> (Expr, Expr) {
     let s = &x.letters.symbols;
     let c = &x.spec.configurations[i];
     let mu = expr::here(s, x.letters.node_momentum[i]);
-    let (a, l) = (bracket::angular(s, &mu), bracket::linear(s, &mu));
+    let (a, l) = (rigid.angular(s, &mu), rigid.linear(s, &mu));
     let g = expr::here(s, c.element);
     let (turn, place) = (expr::block(s, &g), expr::column(s, &g));
     match (way == Way::Body, c.side) {
         (true, Side::Body) | (false, Side::Spatial) => (a, l),
         (true, Side::Spatial) => {
             let back = expr::transpose(s, turn);
-            let own = expr::sub(a, expr::cross(place, l.clone()));
-            (expr::mul(back.clone(), own), expr::mul(back, l))
+            let own = expr::sub(a, rigid.moment(s, place, l.clone()));
+            (rigid.turned(back.clone(), own), expr::mul(back, l))
         }
         (false, Side::Body) => {
             let l = expr::mul(turn.clone(), l);
-            (
-                expr::add(expr::mul(turn, a), expr::cross(place, l.clone())),
-                l,
-            )
+            let moment = rigid.moment(s, place, l.clone());
+            (expr::add(rigid.turned(turn, a), moment), l)
         }
     }
 }
@@ -122,12 +117,12 @@ fn parts(x: &Inputs, i: usize, way: Way) -> (Expr, Expr) {
 /// Sizes of the terms of the angular and of the linear momentum of a rigid motion. About the origin of
 /// space the angular one is that about the body's own origin and that of the linear momentum, which
 /// both grow when the body travels, while their sum stays.
-fn sizes(x: &Inputs, i: usize, way: Way) -> [Expr; 2] {
+fn sizes(x: &Inputs, i: usize, rigid: &dyn Euclidean, way: Way) -> [Expr; 2] {
     let s = &x.letters.symbols;
     let c = &x.spec.configurations[i];
     let mu = expr::here(s, x.letters.node_momentum[i]);
-    let own = length(x, &bracket::angular(s, &mu));
-    let linear = length(x, &bracket::linear(s, &mu));
+    let own = length(x, &rigid.angular(s, &mu));
+    let linear = length(x, &rigid.linear(s, &mu));
     if way == Way::Body && c.side == Side::Body {
         return [own, linear];
     }
@@ -136,10 +131,23 @@ fn sizes(x: &Inputs, i: usize, way: Way) -> [Expr; 2] {
     [expr::add(own, lever), linear]
 }
 
-/// A vector whose three components are one.
-fn ones() -> Expr {
-    let units = (0..3).map(|axis| expr::unit(THREE, axis));
-    expr::sum(units.collect::<Vec<_>>(), Shape::vector(THREE))
+/// A vector whose components are one; a number is one.
+fn ones(shape: Shape) -> Expr {
+    let units = match shape.rows {
+        _ if shape.is_scalar() => return expr::integer(1),
+        Dim::Fixed(n) => (0..n).filter_map(|axis| u8::try_from(axis).ok()),
+        Dim::Named(_) => return expr::zero(shape),
+    };
+    let units = units.map(|axis| expr::unit(shape.rows, axis));
+    expr::sum(units.collect::<Vec<_>>(), shape)
+}
+
+/// What momenta of turns of a space are read in.
+fn turns(space: Dim) -> Sort {
+    match space == THREE {
+        true => Sort::Angular,
+        false => Sort::Planes(space),
+    }
 }
 
 /// All motions of all configurations; those as seen from space first.
@@ -153,13 +161,16 @@ pub(super) fn motions(x: &Inputs) -> Vec<Motion> {
     }
     let s = &x.letters.symbols;
     let places = x.spec.parameters.iter().copied();
-    let of_field = |shape| {
+    let of_places = |shape| {
         let mut all = x.spec.configurations.iter();
-        all.any(|c| c.group.is_additive() && c.group.shape() == shape)
+        all.any(|c| match c.group.rigid() {
+            Some(rigid) => rigid.linear_shape() == shape,
+            None => c.group.is_additive() && c.group.shape() == shape,
+        })
     };
     let places = places.filter(|p| {
         let shape = s.get(*p).shape;
-        shape == Shape::vector(THREE) || shape.is_vector() && !shape.is_scalar() && of_field(shape)
+        shape == Shape::vector(THREE) || shape.is_vector() && !shape.is_scalar() && of_places(shape)
     });
     for p in places.take(PLACES) {
         for i in 0..x.spec.configurations.len() {
@@ -174,9 +185,11 @@ fn of_configuration(x: &Inputs, i: usize, way: Way, out: &mut Vec<Motion>) {
     let c = &x.spec.configurations[i];
     let mut push = |sort: Sort, value: Expr, scale: Option<Expr>, spanned: bool| {
         let scale = scale.unwrap_or_else(|| length(x, &value));
-        let scales = (sort == Sort::Rigid).then(|| {
-            let [angular, linear] = sizes(x, i, way).map(|size| expr::mul(ones(), size));
-            expr::stacked(angular, linear)
+        let whole = c.group.rigid().filter(|_| matches!(sort, Sort::Rigid(_)));
+        let scales = whole.map(|rigid| {
+            let [angular, linear] = sizes(x, i, rigid, way);
+            let angular = expr::mul(ones(rigid.angular_shape()), angular);
+            expr::stacked(angular, expr::mul(ones(rigid.linear_shape()), linear))
         });
         out.push(Motion {
             configuration: i,
@@ -192,36 +205,10 @@ fn of_configuration(x: &Inputs, i: usize, way: Way, out: &mut Vec<Motion>) {
         Way::Body => in_body(x, i),
         Way::Space | Way::Spin | Way::About(_) | Way::Shift => in_space(x, i),
     };
+    if let Some(rigid) = c.group.rigid() {
+        return of_rigid(x, i, rigid, way, m, &mut push);
+    }
     match (c.group, way) {
-        (Group::RigidMotions(_), Way::Space | Way::Body) => {
-            let [angular, linear] = sizes(x, i, way);
-            let both = expr::add(angular.clone(), linear.clone());
-            push(Sort::Rigid, m, Some(both), true);
-            let (a, l) = parts(x, i, way);
-            push(Sort::Linear, l, Some(linear), false);
-            push(Sort::Angular, a, Some(angular), false);
-        }
-        (Group::RigidMotions(_), Way::Spin) => {
-            let (angular, linear) = parts(x, i, Way::Space);
-            let mu = expr::here(s, x.letters.node_momentum[i]);
-            let g = expr::here(s, c.element);
-            let value = match c.side {
-                Side::Body => expr::mul(expr::block(s, &g), bracket::angular(s, &mu)),
-                Side::Spatial => expr::sub(angular, expr::cross(expr::column(s, &g), linear)),
-            };
-            // The state keeps the moment about the origin of space, of which this is a part.
-            let [angular, _] = sizes(x, i, Way::Space);
-            push(Sort::Angular, value, Some(angular), false);
-        }
-        (Group::RigidMotions(_), Way::About(p)) => {
-            let place = expr::here(s, p);
-            let (angular, linear) = parts(x, i, Way::Space);
-            let value = expr::sub(angular, expr::cross(place.clone(), linear));
-            let [own, weight] = sizes(x, i, Way::Space);
-            let far = expr::mul(length(x, &place), weight);
-            let scale = expr::add(own, far);
-            push(Sort::Angular, value, Some(scale), true);
-        }
         (
             Group::SpecialOrthogonal(SpecialOrthogonal(THREE)) | Group::UnitQuaternions(_),
             Way::Space | Way::Body,
@@ -280,8 +267,53 @@ fn of_configuration(x: &Inputs, i: usize, way: Way, out: &mut Vec<Motion>) {
                 push(Sort::Planes(shape.rows), turning, lever, true);
             }
         }
-        (Group::Additive(_), Way::Body) => {}
-        (_, Way::Spin | Way::About(_) | Way::Shift) => {}
+        _ => {}
+    }
+}
+
+/// The motions of a rigid motion, whose momentum as seen from this way is `m`.
+fn of_rigid(
+    x: &Inputs,
+    i: usize,
+    rigid: &dyn Euclidean,
+    way: Way,
+    m: Expr,
+    push: &mut impl FnMut(Sort, Expr, Option<Expr>, bool),
+) {
+    let s = &x.letters.symbols;
+    let c = &x.spec.configurations[i];
+    let turns = turns(rigid.space());
+    match way {
+        Way::Space | Way::Body => {
+            let [angular, linear] = sizes(x, i, rigid, way);
+            let both = expr::add(angular.clone(), linear.clone());
+            push(Sort::Rigid(m.shape().rows), m, Some(both), true);
+            let (a, l) = parts(x, i, rigid, way);
+            push(shifts(rigid.linear_shape()), l, Some(linear), false);
+            push(turns, rigid.as_turn(s, a), Some(angular), false);
+        }
+        Way::Spin => {
+            let (angular, linear) = parts(x, i, rigid, Way::Space);
+            let mu = expr::here(s, x.letters.node_momentum[i]);
+            let g = expr::here(s, c.element);
+            let value = match c.side {
+                Side::Body => rigid.turned(expr::block(s, &g), rigid.angular(s, &mu)),
+                Side::Spatial => expr::sub(angular, rigid.moment(s, expr::column(s, &g), linear)),
+            };
+            // The state keeps the moment about the origin of space, of which this is a part.
+            let [angular, _] = sizes(x, i, rigid, Way::Space);
+            push(turns, rigid.as_turn(s, value), Some(angular), false);
+        }
+        Way::About(p) if s.get(p).shape == rigid.linear_shape() => {
+            let place = expr::here(s, p);
+            let (angular, linear) = parts(x, i, rigid, Way::Space);
+            let value = expr::sub(angular, rigid.moment(s, place.clone(), linear));
+            let [own, weight] = sizes(x, i, rigid, Way::Space);
+            let far = expr::mul(length(x, &place), weight);
+            let scale = expr::add(own, far);
+            push(turns, rigid.as_turn(s, value), Some(scale), true);
+        }
+        Way::About(_) | Way::Shift => {}
     }
 }
 
@@ -315,7 +347,7 @@ impl Motion {
     pub(super) fn direction(&self) -> (Shape, Structure) {
         match self.sort {
             Sort::Angular | Sort::Linear => (Shape::vector(THREE), Structure::General),
-            Sort::Rigid => (Shape::vector(SIX), Structure::General),
+            Sort::Rigid(n) => (Shape::vector(n), Structure::General),
             Sort::Planes(n) => (Shape::square(n), Structure::Skew),
             Sort::Affine(n) | Sort::Entries(n) => (Shape::square(n), Structure::General),
             Sort::Shifts(shape) => (shape, Structure::General),
@@ -328,7 +360,7 @@ impl Motion {
             Sort::Planes(_) => expr::sub(gradient.clone(), expr::transpose(s, gradient)),
             Sort::Angular
             | Sort::Linear
-            | Sort::Rigid
+            | Sort::Rigid(_)
             | Sort::Affine(_)
             | Sort::Entries(_)
             | Sort::Shifts(_) => gradient,
@@ -346,24 +378,24 @@ impl Motion {
             (Way::Spin | Way::About(_) | Way::Shift, _) => false,
         };
         let back = || expr::inverse(s, g.clone());
-        match c.group {
-            Group::RigidMotions(_) => {
-                let (angular, linear) = self.twist(s, g, v);
-                if own || c.side == Side::Spatial && self.way != Way::Body {
-                    return expr::stacked(angular, linear);
-                }
-                let turn = expr::block(s, g);
-                let place = expr::column(s, g);
-                if c.side == Side::Spatial {
-                    let angular = expr::mul(turn.clone(), angular);
-                    let moved =
-                        expr::add(expr::mul(turn, linear), expr::cross(place, angular.clone()));
-                    return expr::stacked(angular, moved);
-                }
-                let moved = expr::add(linear, expr::cross(angular.clone(), place));
-                let turn = expr::transpose(s, turn);
-                expr::stacked(expr::mul(turn.clone(), angular), expr::mul(turn, moved))
+        if let Some(rigid) = c.group.rigid() {
+            let (angular, linear) = self.twist(s, rigid, g, v);
+            if own || c.side == Side::Spatial && self.way != Way::Body {
+                return expr::stacked(angular, linear);
             }
+            let turn = expr::block(s, g);
+            let place = expr::column(s, g);
+            if c.side == Side::Spatial {
+                let angular = rigid.turned(turn.clone(), angular);
+                let back = expr::neg(rigid.swept(s, angular.clone(), place));
+                let moved = expr::add(expr::mul(turn, linear), back);
+                return expr::stacked(angular, moved);
+            }
+            let moved = expr::add(linear, rigid.swept(s, angular.clone(), place));
+            let turn = expr::transpose(s, turn);
+            return expr::stacked(rigid.turned(turn.clone(), angular), expr::mul(turn, moved));
+        }
+        match c.group {
             Group::SpecialOrthogonal(SpecialOrthogonal(THREE)) | Group::UnitQuaternions(_) => {
                 let turn = c.group.turn(s, g).unwrap_or_else(|| g.clone());
                 let moved = match (own, c.side) {
@@ -391,7 +423,7 @@ impl Motion {
                 (_, Way::Body) => expr::mul(g.clone(), v),
                 _ => expr::mul(v, g.clone()),
             },
-            Group::SpecialOrthogonal(_) | Group::GeneralLinear(_) => {
+            _ => {
                 let v = match (self.sort, c.group) {
                     (Sort::Angular, _) => expr::hat(v),
                     _ => v,
@@ -408,28 +440,49 @@ impl Motion {
     }
 
     /// Angular and linear velocity of a rigid motion, in space or in the body.
-    fn twist(&self, s: &Symbols, g: &Expr, v: Expr) -> (Expr, Expr) {
-        let none = || expr::zero(Shape::vector(THREE));
+    fn twist(&self, s: &Symbols, rigid: &dyn Euclidean, g: &Expr, v: Expr) -> (Expr, Expr) {
+        let turning = |place: Option<Expr>| {
+            let angular = rigid.of_turn(v.clone());
+            let linear = match place {
+                // Its velocity at the origin is opposite to that which a turn about the origin gives
+                // the place.
+                Some(place) => expr::neg(rigid.swept(s, angular.clone(), place)),
+                None => expr::zero(rigid.linear_shape()),
+            };
+            (angular, linear)
+        };
         match (self.sort, self.way) {
-            (Sort::Linear, _) => (none(), v),
-            (Sort::Rigid, _) => (bracket::angular(s, &v), bracket::linear(s, &v)),
-            (_, Way::Spin) => (v.clone(), expr::cross(expr::column(s, g), v)),
-            (_, Way::About(p)) => (v.clone(), expr::cross(expr::here(s, p), v)),
-            _ => (v, none()),
+            (Sort::Linear | Sort::Shifts(_), _) => (expr::zero(rigid.angular_shape()), v),
+            (Sort::Rigid(_), _) => (rigid.angular(s, &v), rigid.linear(s, &v)),
+            (_, Way::Spin) => turning(Some(expr::column(s, g))),
+            (_, Way::About(p)) => turning(Some(expr::here(s, p))),
+            _ => turning(None),
         }
     }
 }
 
-/// Whether homogeneous vectors have a meaning in the model.
-pub(super) fn has_rigid_motions(x: &Inputs) -> bool {
+/// The dimension of the space in whose homogeneous coordinates an expression of this shape is, if the
+/// model has rigid motions of it.
+pub(super) fn space_of(x: &Inputs, shape: Shape) -> Option<Dim> {
     let mut list = x.spec.configurations.iter();
-    list.any(|c| c.group.is_rigid())
+    let whole = list.find(|c| c.group.rigid().is_some() && Shape::vector(c.group.size()) == shape);
+    whole.map(|c| expr::within(c.group.size()))
 }
 
-/// Homogeneous parameters.
-pub(super) fn homogeneous(x: &Inputs) -> Vec<SymbolId> {
+/// The group of rigid motions whose covectors are of this shape.
+pub(super) fn rigid_of<'a>(x: &'a Inputs, covector: Shape) -> Option<&'a dyn Euclidean> {
+    let mut list = x.spec.configurations.iter();
+    list.find_map(|c| {
+        c.group
+            .rigid()
+            .filter(|_| c.group.variation().0 == covector)
+    })
+}
+
+/// Homogeneous parameters of a space.
+pub(super) fn homogeneous(x: &Inputs, space: Option<Dim>) -> Vec<SymbolId> {
     let s = &x.letters.symbols;
     let list = x.spec.parameters.iter().copied();
-    list.filter(|p| has_rigid_motions(x) && s.get(*p).shape == Shape::vector(FOUR))
+    list.filter(|p| space.is_some() && space_of(x, s.get(*p).shape) == space)
         .collect()
 }

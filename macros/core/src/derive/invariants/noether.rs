@@ -157,10 +157,10 @@ impl<'a, 's> Search<'a, 's> {
     /// that there are, that says it.
     fn is_covered(&self, column: &[&Motion]) -> bool {
         let whole = |m: &Motion| {
-            let sorts = [m.sort, Sort::Rigid].into_iter();
-            sorts
-                .map(|sort| (m.configuration, m.way, sort))
-                .any(|known| self.wholes.contains(&known))
+            self.wholes.iter().any(|(i, way, sort)| {
+                let same = *sort == m.sort || matches!(sort, Sort::Rigid(_));
+                (*i, *way) == (m.configuration, m.way) && same
+            })
         };
         self.kernels.is_empty() && column.iter().all(|m| whole(m))
     }
@@ -454,11 +454,11 @@ fn is_whole(x: &Inputs, terms: &[Term]) -> bool {
     terms.iter().all(|t| {
         let group = x.spec.configurations[t.motion.configuration].group;
         let natural = match t.motion.sort {
-            Sort::Rigid => true,
+            Sort::Rigid(_) => true,
             Sort::Planes(_) => group.is_orthogonal(),
             Sort::Affine(_) => !group.is_additive(),
-            Sort::Entries(_) | Sort::Shifts(_) => true,
-            Sort::Angular => group.is_quaternionic() || group.is_orthogonal(),
+            Sort::Entries(_) | Sort::Shifts(_) => group.rigid().is_none(),
+            Sort::Angular => group.only_turns(),
             Sort::Linear => group.is_additive(),
         };
         natural && t.reading.is_whole()
@@ -532,7 +532,8 @@ fn name(x: &Inputs, terms: &[Term]) -> String {
     let rigid = |t: &Term| {
         x.spec.configurations[t.motion.configuration]
             .group
-            .is_rigid()
+            .rigid()
+            .is_some()
     };
     let linear_group = |t: &Term| {
         x.spec.configurations[t.motion.configuration]
@@ -583,9 +584,8 @@ fn reason(x: &Inputs, terms: &[Term], strict: bool) -> String {
     let field = |i: &usize| x.spec.configurations[*i].group.is_additive();
     let under = match (of_space, whole || entire && set.iter().any(field), group) {
         (true, _, _) if set.iter().any(field) && terms.iter().all(shifts) => "translations",
-        (true, true, Some(group)) if group.is_rigid() => "rigid motions of space",
-        (true, true, Some(group)) if group.is_linear() => "linear maps of space",
-        (true, true, _) => "rotations of space",
+        (true, true, Some(group)) => group.motions_words(),
+        (true, true, None) => "rotations of space",
         (true, false, _) if terms.iter().all(turns) => "rotations about the axis in space",
         (true, false, _) if terms.iter().all(shifts) => "translations along the axis",
         (true, false, _) => "motions of space that fix the axis",

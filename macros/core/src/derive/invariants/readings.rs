@@ -51,7 +51,10 @@ impl Reading {
             What::Whole => m,
             What::Along(a) => expr::dot(m, a.clone()),
             What::Across(a) => expr::cross(a.clone(), m),
-            What::About(p) => homogeneous::moment(s, &m, p),
+            What::About(p) => match motions::rigid_of(x, m.shape()) {
+                Some(rigid) => homogeneous::moment(s, rigid, &m, p),
+                None => m,
+            },
             What::Keeping(a) => {
                 let outer = expr::mul(a.clone(), expr::transpose(s, a.clone()));
                 let shape = m.shape();
@@ -107,7 +110,7 @@ struct Axis {
 pub(super) fn readings(x: &Inputs, sorts: &[Sort]) -> Vec<Reading> {
     let mut out = Vec::new();
     let order = |sort: &Sort| match sort {
-        Sort::Rigid => 0,
+        Sort::Rigid(_) => 0,
         Sort::Linear => 1,
         Sort::Shifts(_) => 1,
         Sort::Planes(_) | Sort::Affine(_) | Sort::Entries(_) | Sort::Angular => 2,
@@ -128,15 +131,16 @@ pub(super) fn readings(x: &Inputs, sorts: &[Sort]) -> Vec<Reading> {
         let told = |a: &Axis| !matches!(a.value.node(), expr::Node::Unit(..));
         push(String::new(), What::Whole, one());
         let axes = match sort {
-            Sort::Rigid => Vec::new(),
+            Sort::Rigid(_) => Vec::new(),
             Sort::Shifts(shape) if shape.is_vector() && !shape.is_scalar() => axes(x, shape.rows),
             Sort::Shifts(_) => Vec::new(),
             Sort::Angular | Sort::Linear => axes(x, Dim::Fixed(3)),
             Sort::Planes(n) | Sort::Affine(n) | Sort::Entries(n) => axes(x, n),
         };
         match sort {
-            Sort::Rigid => {
-                for p in motions::homogeneous(x).into_iter().take(AXES) {
+            Sort::Rigid(n) => {
+                let space = motions::rigid_of(x, Shape::vector(n)).map(|rigid| rigid.space());
+                for p in motions::homogeneous(x, space).into_iter().take(AXES) {
                     let point = expr::here(&x.letters.symbols, p);
                     let far = length(x, &point);
                     push(
@@ -236,10 +240,8 @@ fn axes(x: &Inputs, n: Dim) -> Vec<Axis> {
     for p in vectors.take(AXES) {
         push(p, expr::here(s, p));
     }
-    if n == Dim::Fixed(3) {
-        for p in motions::homogeneous(x).into_iter().take(AXES) {
-            push(p, homogeneous::spatial_part(s, &expr::here(s, p)));
-        }
+    for p in motions::homogeneous(x, Some(n)).into_iter().take(AXES) {
+        push(p, homogeneous::spatial_part(s, &expr::here(s, p)));
     }
     out
 }

@@ -6,7 +6,6 @@ use super::homogeneous;
 use super::passage::Passage;
 use super::{Candidate, Inputs, here, length, totals};
 use crate::algebra::Rational;
-use crate::derive::bracket;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr, Part};
@@ -232,10 +231,10 @@ fn vectors(x: &Inputs, passages: &[Passage]) -> Vec<Piece> {
             true => format!("momentum_{}", s.get(c.element).ascii),
             false => "momentum".to_owned(),
         };
-        if c.group.is_rigid() {
+        if let Some(rigid) = c.group.rigid() {
             for (which, value) in [
-                ("angular", bracket::angular(s, &mu)),
-                ("linear", bracket::linear(s, &mu)),
+                ("angular", rigid.angular(s, &mu)),
+                ("linear", rigid.linear(s, &mu)),
             ] {
                 out.push(Piece {
                     name: format!("{name}_{which}"),

@@ -1,12 +1,11 @@
-//! Elements of the groups as factors of words: as themselves, as the rotation of an element of SU(2)
-//! or SE(3), and as the translation of one of SE(3), which is written by the whole motion. Takes
+//! Elements of the groups as factors of words: as themselves, as the rotation of a quaternion or a rigid
+//! motion, and as the translation of a rigid motion, which is written by the whole motion. Takes
 //! factors; gives which element stands there, in which mode, and the side that must be absorbed.
 
 use super::terms::Reducer;
-use crate::algebra::{Factor, Source, Word};
+use crate::algebra::{Factor, Source, Word, inclusion_of_space, last_unit};
 use crate::check::spec::{Configuration, Side};
 use crate::expr::Letter;
-use crate::expr::shape::{Dim, Shape};
 
 /// An element at its place in a word.
 #[derive(Clone, Copy)]
@@ -46,27 +45,6 @@ impl Occurrence<'_> {
             (Side::Body, true) | (Side::Spatial, false) => Open::Left,
             (Side::Body, false) | (Side::Spatial, true) => Open::Right,
         }
-    }
-}
-
-/// The inclusion of space in homogeneous coordinates, 4 x 3, or its transpose.
-fn inclusion(transposed: bool) -> Factor {
-    Factor::Inclusion {
-        shape: Shape {
-            rows: Dim::Fixed(4),
-            cols: Dim::Fixed(3),
-        },
-        at: 0,
-        transposed,
-    }
-}
-
-/// The last unit vector of homogeneous coordinates.
-fn last(transposed: bool) -> Factor {
-    Factor::Unit {
-        dim: Dim::Fixed(4),
-        axis: 3,
-        transposed,
     }
 }
 
@@ -136,9 +114,14 @@ impl<'a> Reducer<'a> {
                 }
             }
             let middle = motion(at, transposed, back);
+            let rows = self.symbols.get(at.symbol).shape.rows;
+            let (first, last) = (
+                inclusion_of_space(rows, !transposed),
+                last_unit(rows, transposed),
+            );
             out.extend(match transposed {
-                false => [inclusion(true), middle, last(false)],
-                true => [last(true), middle, inclusion(false)],
+                false => [first, middle, last],
+                true => [last, middle, first],
             });
         }
         (minus, out)
@@ -157,8 +140,11 @@ impl<'a> Reducer<'a> {
 
     /// Whether a word is a plane seen from a body, `G^T ι z`, of which `R^T z` is a part.
     pub(super) fn is_plane(&self, word: &[Factor]) -> bool {
-        matches!(word, [first, second, _, ..] if *second == inclusion(false)
-            && self.occurrence(first).is_some_and(|o| o.transposed && !o.inverted && !o.rotation))
+        matches!(word, [first, second, _, ..] if self.occurrence(first).is_some_and(|o| {
+            let rows = o.configuration.group.size();
+            let plane = o.transposed && !o.inverted && !o.rotation;
+            plane && *second == inclusion_of_space(rows, false)
+        }))
     }
 
     /// For `R^T z`: the plane `G^T ι z` of which it is a part.
@@ -173,9 +159,11 @@ impl<'a> Reducer<'a> {
         else {
             return None;
         };
-        let of_motion = o.configuration.group.is_rigid();
-        (of_motion && o.configuration.side == Side::Body)
-            .then(|| [&[motion(*at, true, false), inclusion(false)][..], rest].concat())
+        let of_motion = o.configuration.group.rigid().is_some();
+        (of_motion && o.configuration.side == Side::Body).then(|| {
+            let first = inclusion_of_space(o.configuration.group.size(), false);
+            [&[motion(*at, true, false), first][..], rest].concat()
+        })
     }
 
     /// Whether a factor takes up an index: constants do, inclusions only hand it on.

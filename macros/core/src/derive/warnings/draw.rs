@@ -84,14 +84,15 @@ pub(super) fn natural(symbols: &Symbols, id: SymbolId, scale: f64, draw: &mut Dr
             vec![w, -x, -y, -z, x, w, -z, y, y, z, w, -x, z, -y, x, w]
         }
         Structure::RigidMotion => {
-            let r = rotation(3, draw);
-            let x = free(draw, 3);
-            let entry = |i: usize, j: usize| match (i, j) {
-                (3, j) => f64::from(u8::from(j == 3)),
-                (i, 3) => x[i],
-                (i, j) => r[i * 3 + j],
+            let last = n.saturating_sub(1);
+            let r = rotation(last, draw);
+            let x = free(draw, last);
+            let entry = |i: usize, j: usize| match (i == last, j == last) {
+                (true, corner) => f64::from(u8::from(corner)),
+                (false, true) => x[i],
+                (false, false) => r[i * last + j],
             };
-            (0..16).map(|k| entry(k / 4, k % 4)).collect()
+            (0..n * n).map(|k| entry(k / n, k % n)).collect()
         }
     }
 }

@@ -5,7 +5,7 @@
 use super::super::dual::Number;
 use super::super::points::{Given, Source};
 use super::super::square::{Square, constant_column, cross, dot, vee};
-use super::{DiscreteAction, NodeRule, Side};
+use super::{DiscreteAction, NodeRule, Side, TermSum};
 use std::array::from_fn;
 
 /// A rotation and a translation.
@@ -136,9 +136,23 @@ pub struct MotionSum {
     plane: [f64; 4],
 }
 
-impl MotionSum {
-    /// Random parameters for given terms.
-    pub fn random(source: &mut Source, side: Side, terms: &[usize]) -> Self {
+impl TermSum<4> for MotionSum {
+    const TERMS: &'static [&'static str] = &TERMS;
+    const TAKEN: usize = 20;
+
+    fn basis() -> Vec<Square<f64, 4>> {
+        twists()
+    }
+
+    fn node(source: &mut Source) -> [Square<f64, 4>; 1] {
+        node(source)
+    }
+
+    fn step(&self) -> f64 {
+        self.h
+    }
+
+    fn random(source: &mut Source, side: Side, terms: &[usize]) -> Self {
         let terms = terms.iter();
         Self {
             h: source.between(0.1, 1.0),
@@ -154,20 +168,7 @@ impl MotionSum {
         }
     }
 
-    /// A random choice of terms, a kinetic one among them.
-    pub fn choice(source: &mut Source) -> Vec<usize> {
-        let mut terms = vec![0];
-        for term in 1..TERMS.len() {
-            if source.chance(20) {
-                terms.push(term);
-            }
-        }
-        terms
-    }
-
-    /// The model. The carried quantities have definitions or not.
-    #[must_use]
-    pub fn text(side: Side, terms: &[usize], defined: bool) -> String {
+    fn text(side: Side, terms: &[usize], defined: bool) -> String {
         let (update, vector, point, plane) = match side {
             Side::Body => ("G*V", "rot(V)^T*Γ", "V^-1*p", "V^T*P"),
             Side::Space => ("V*G", "rot(V)*Γ", "V*p", "(V^-1)^T*P"),
@@ -197,9 +198,7 @@ impl MotionSum {
         )
     }
 
-    /// Values of all names at three nodes.
-    #[must_use]
-    pub fn given(&self, nodes: &[[Square<f64, 4>; 1]; 3]) -> Vec<Given> {
+    fn given(&self, nodes: &[[Square<f64, 4>; 1]; 3]) -> Vec<Given> {
         let mut given = Given::at_nodes("G", nodes.map(|[g]| g));
         let carried = nodes.map(|[g]| self.carried(&Motion::of(&g)));
         given.extend(Given::columns_at_nodes("Γ", carried.map(|c| c.0)));
@@ -217,7 +216,9 @@ impl MotionSum {
         }
         given
     }
+}
 
+impl MotionSum {
     /// The advected vector, point and plane at a node.
     fn carried<T: Number>(&self, g: &Motion<T>) -> ([T; 3], [T; 4], [T; 4]) {
         let (z, p, n) = (

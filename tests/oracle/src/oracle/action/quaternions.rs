@@ -5,7 +5,7 @@
 use super::super::dual::Number;
 use super::super::points::{Given, Source};
 use super::super::square::{Square, constant_column, dot};
-use super::{DiscreteAction, NodeRule, Side};
+use super::{DiscreteAction, NodeRule, Side, TermSum};
 use std::array::from_fn;
 
 /// Hamilton's product of `(w, x, y, z)`.
@@ -119,9 +119,23 @@ pub struct QuaternionSum {
     vertical: [f64; 3],
 }
 
-impl QuaternionSum {
-    /// Random parameters for given terms.
-    pub fn random(source: &mut Source, side: Side, terms: &[usize]) -> Self {
+impl TermSum<4> for QuaternionSum {
+    const TERMS: &'static [&'static str] = &TERMS;
+    const TAKEN: usize = 25;
+
+    fn basis() -> Vec<Square<f64, 4>> {
+        halves()
+    }
+
+    fn node(source: &mut Source) -> [Square<f64, 4>; 1] {
+        node(source)
+    }
+
+    fn step(&self) -> f64 {
+        self.h
+    }
+
+    fn random(source: &mut Source, side: Side, terms: &[usize]) -> Self {
         let terms = terms.iter();
         Self {
             h: source.between(0.1, 1.0),
@@ -135,20 +149,7 @@ impl QuaternionSum {
         }
     }
 
-    /// A random choice of terms, a kinetic one among them.
-    pub fn choice(source: &mut Source) -> Vec<usize> {
-        let mut terms = vec![0];
-        for term in 1..TERMS.len() {
-            if source.chance(25) {
-                terms.push(term);
-            }
-        }
-        terms
-    }
-
-    /// The model. The carried quantities have definitions or not.
-    #[must_use]
-    pub fn text(side: Side, terms: &[usize], defined: bool) -> String {
+    fn text(side: Side, terms: &[usize], defined: bool) -> String {
         let (update, vector, tensor) = match side {
             Side::Body => ("q*W", "rot(W)^T*Γ", "rot(W)^T*B*rot(W)"),
             Side::Space => ("W*q", "rot(W)*Γ", "rot(W)*B*rot(W)^T"),
@@ -176,9 +177,7 @@ impl QuaternionSum {
         )
     }
 
-    /// Values of all names at three nodes.
-    #[must_use]
-    pub fn given(&self, nodes: &[[Square<f64, 4>; 1]; 3]) -> Vec<Given> {
+    fn given(&self, nodes: &[[Square<f64, 4>; 1]; 3]) -> Vec<Given> {
         let mut given = Given::at_nodes("q", nodes.map(|[q]| q));
         let carried = nodes.map(|[q]| self.carried(&of_matrix(&q)));
         given.extend(Given::columns_at_nodes("Γ", carried.map(|(v, _)| v)));
@@ -193,7 +192,9 @@ impl QuaternionSum {
         }
         given
     }
+}
 
+impl QuaternionSum {
     /// The advected vector and tensor at a node.
     fn carried<T: Number>(&self, q: &[T; 4]) -> ([T; 3], Square<T, 3>) {
         let r = match self.side {
