@@ -218,7 +218,7 @@ pub mod body_in_quadratic_field {
                 Err(e) => return Err(self.refused(*state, &self.factor, h, e)),
             };
             let arrival = self.arrived(state, edge, h, Λ_moved);
-            if !all_finite(&arrival.momentum.0) {
+            if !(all_finite(&arrival.momentum.0)) {
                 return Err(
                     StepCause::NotFinite {
                         what: "momentum",

@@ -174,13 +174,20 @@ pub mod ellipsoid_convective {
         ) -> Result<(), StepError> {
             let before = *state;
             self.step_untested(state, work)?;
-            match self.stays_inside(&before, state, work.h) {
-                Ok(()) => Ok(()),
-                Err(contact) => {
-                    *state = before;
-                    Err(self.left_domain(state, work.h, contact))
-                }
+            if let Err(contact) = self.stays_inside(&before, state, work.h) {
+                *state = before;
+                return Err(self.left_domain(state, work.h, contact));
             }
+            if !(all_finite(&state.momentum.0)) {
+                *state = before;
+                return Err(
+                    StepCause::NotFinite {
+                        what: "momentum",
+                    }
+                        .at_node(state.node),
+                );
+            }
+            Ok(())
         }
         /// Says what the step met, and which step could be made.
         #[cold]
@@ -295,14 +302,6 @@ pub mod ellipsoid_convective {
                             + SMatrix::<T, N, N>::identity()
                                 * (t2 - h * c * determinant(&(C_next)))),
                     );
-            if !(all_finite(&momentum_next)) {
-                return Err(
-                    StepCause::NotFinite {
-                        what: "momentum",
-                    }
-                        .at_node(state.node),
-                );
-            }
             state.Q = Q_moved;
             state.momentum = SpatialMomentumMatrix(momentum_next);
             state.node += 1;

@@ -240,7 +240,7 @@ pub mod heavy_top_spatial {
                 Err(e) => return Err(self.refused(*state, &work.factor, h, e)),
             };
             let arrival = self.arrived(state, edge, h, Λ_moved);
-            if !all_finite(&arrival.momentum.0) {
+            if !(all_finite(&arrival.momentum.0)) {
                 return Err(
                     StepCause::NotFinite {
                         what: "momentum",

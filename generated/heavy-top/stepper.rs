@@ -200,7 +200,7 @@ pub mod heavy_top {
                 Err(e) => return Err(self.refused(*state, &self.factor, h, e)),
             };
             let arrival = self.arrived(state, edge, h, Λ_moved);
-            if !all_finite(&arrival.momentum.0) {
+            if !(all_finite(&arrival.momentum.0)) {
                 return Err(
                     StepCause::NotFinite {
                         what: "momentum",

@@ -3,7 +3,7 @@
 
 mod segment;
 
-use crate::groups::{Group, Linear};
+use crate::groups::{Additive, Group, Linear};
 use crate::linalg::{determinant, singular_ratio};
 use crate::said::Plain;
 use crate::scalar::Real;
@@ -197,6 +197,22 @@ pub fn invertible<T: Real, const N: usize>(
         return Ok(());
     }
     closely(configuration, &v, &end, h)
+}
+
+/// The same of a field whose values are square matrices, where a model takes its inverse or the logarithm
+/// of its determinant.
+///
+/// # Errors
+/// [`Contact`] of the first lane that does not.
+#[inline]
+pub fn field_invertible<T: Real, const N: usize>(
+    field: &'static str,
+    before: &Additive<N, N, T>,
+    after: &Additive<N, N, T>,
+    h: T,
+) -> Result<(), Contact> {
+    let linear = |a: &Additive<N, N, T>| Linear::stepped(a.matrix());
+    invertible(field, &linear(before), &linear(after), h)
 }
 
 /// The same lane by lane, by the eigenvalues of the velocity and the singular values of the end.

@@ -3,10 +3,10 @@
 //! named can be made.
 
 use clebsch::domain::Function;
-use clebsch::nalgebra::{Matrix3, Vector3};
+use clebsch::nalgebra::{Matrix2, Matrix3, Vector1, Vector2, Vector3};
 use clebsch::{
-    BodyMomentum, BodyMomentumMatrix, Contact, Linear, Met, Rotation, SpatialMomentumMatrix,
-    StartError, StepCause, StepError,
+    Additive, BodyMomentum, BodyMomentumMatrix, Contact, FieldMomentum, Linear, Met, Rotation,
+    SpatialMomentumMatrix, StartError, StepCause, StepError,
 };
 
 clebsch::model! {
@@ -97,6 +97,18 @@ clebsch::model! {
         group Λ: SO<3> velocity Ω;
         constraint next(Λ) = Λ*Ω;
         lagrangian = -tr(J*Ω)/h + w/(h*(dot(b, Ω*b) - 1));
+    }
+}
+
+clebsch::model! {
+    /// A matrix that is inverted, and a number in a root.
+    model Inverted {
+        param m, k, b: Real;
+        field A: Mat<2>;
+        field u: Real;
+        let d = next(A) - A;
+        let v = next(u) - u;
+        lagrangian = m*tr(d*d^T)/(2*h) + m*v^2/(2*h) - h*k*tr(inv(A))/2 + h*b*sqrt(u);
     }
 }
 
@@ -418,4 +430,55 @@ fn parameters_states_and_velocities_outside_are_refused_at_the_start() {
     assert!(model.start(initial, 0.05).is_ok());
     let refusal = model.start(initial, 1.0).unwrap_err().to_string();
     assert!(refusal.contains("domain of a quotient"), "{refusal}");
+}
+
+fn inverted(momentum: Matrix2<f64>, of_u: f64) -> (Inverted, InvertedInitial) {
+    let parameters = InvertedParameters {
+        m: 1.0,
+        k: 1e-3,
+        b: 0.3,
+    };
+    let initial = InvertedInitial {
+        A: Additive::new(Matrix2::identity()),
+        momentum_A: FieldMomentum(momentum),
+        u: Additive::new(Vector1::new(0.1)),
+        momentum_u: FieldMomentum(Vector1::new(of_u)),
+    };
+    (Inverted::new(parameters).unwrap(), initial)
+}
+
+/// What is met, at the first step or at a later one, and when.
+fn met(momentum: Matrix2<f64>, of_u: f64, h: f64) -> (Contact, f64) {
+    let (model, initial) = inverted(momentum, of_u);
+    let (mut state, mut work) = match model.start(initial, h) {
+        Ok(started) => started,
+        Err(StartError::Refused(StepCause::Contact(contact))) => {
+            return (contact, contact.share.expect("known") * h);
+        }
+        Err(error) => panic!("{error}"),
+    };
+    let error = refused(&mut state, 1000, |s| model.step(s, &mut work));
+    (contact(&error), error.contact_time().expect("known"))
+}
+
+#[test]
+fn a_matrix_field_that_is_inverted_meets_a_determinant_of_zero_twice_in_one_step() {
+    // Both entries change their sign in one step: the determinant is positive at either end.
+    let momentum = -Matrix2::from_diagonal(&Vector2::new(80.0, 81.0));
+    let (contact, time) = met(momentum, 0.0, 0.05);
+    assert_eq!(contact.met, Met::Singular { configuration: "A" });
+    assert!((time - 1.0 / 81.0).abs() < 1e-4, "{time}");
+    let (model, initial) = inverted(Matrix2::zeros(), 0.0);
+    assert!(model.start(initial, 0.05).is_ok());
+}
+
+#[test]
+fn a_root_that_is_left_is_told_before_the_force_that_has_no_value_there() {
+    for h in [0.05, 1e-4] {
+        let (contact, time) = met(Matrix2::zeros(), -4.0, h);
+        let of_root =
+            matches!(contact.met, Met::Outside { call, .. } if call.function == Function::Sqrt);
+        assert!(of_root, "{contact:?}");
+        assert!((time - 0.025).abs() < 1e-3, "{time}");
+    }
 }

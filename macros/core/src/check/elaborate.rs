@@ -227,7 +227,10 @@ impl<'a> Elaborator<'a> {
                             b.place,
                             format!("only numbers divide, and this is {what}"),
                         )
-                        .help("multiply by the inverse: `inv(A) * b` or `A^-1 * b`"),
+                        .help(match bottom.shape().is_vector() {
+                            true => "divide by a number made of it, such as its length `sqrt(dot(x, x))`",
+                            false => "multiply by the inverse: `inv(A) * b` or `A^-1 * b`",
+                        }),
                     );
                 }
                 if self.vanishes(&bottom) {

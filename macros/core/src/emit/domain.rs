@@ -370,10 +370,24 @@ fn inside(d: &Derivation, names: &Names) -> TokenStream {
     let (state, used) = (item(d, "State"), Generics::of(d).used());
     let (before, after) = (names.local("before"), names.local("after"));
     let step = variable(s, d.spec.step);
+    let all = guards(d);
     let linear = d.spec.configurations.iter().filter_map(|c| {
         let (name, own) = (&s.get(c.element).name, own(d, c.element));
-        matches!(family(c), Family::Linear(_))
-            .then(|| quote!(domain::invertible(#name, &#before.#own, &#after.#own, #step)?;))
+        // A matrix whose determinant must not vanish at a node must not between two of them.
+        let shape = s.get(c.element).shape;
+        let inverted = shape.is_square() && !shape.is_scalar() && {
+            let det = expr::det(expr::here(s, c.element));
+            all.iter().any(|g| g.argument == det)
+        };
+        match family(c) {
+            Family::Linear(_) => {
+                Some(quote!(domain::invertible(#name, &#before.#own, &#after.#own, #step)?;))
+            }
+            Family::Field(_) if inverted => {
+                Some(quote!(domain::field_invertible(#name, &#before.#own, &#after.#own, #step)?;))
+            }
+            _ => None,
+        }
     });
     let linear = quote!(#(#linear)*);
     let (nodal, edge) = (of(d, Place::Node), of(d, Place::Edge));

@@ -37,13 +37,14 @@ pub(super) fn limit(x: &Inputs) -> Option<Warning> {
         );
         return Some(Warning::new(Topic::NoLimit, d));
     }
+    let [kinetic, potential] = x.examples();
     let d = Diagnostic::new(
         x.spec.lagrangian_place,
         format!("the discrete Lagrangian has no limit of small steps: {why}"),
     )
-    .help(
+    .help(format!(
         "the Lagrangian states (kinetic - potential energy) times the step: kinetic terms are \
-         divided by `h`, potentials multiplied by `h`, as in `-tr(J*Ω)/h - h*dot(gU, Γ)`",
-    );
+         divided by `h`, potentials multiplied by `h`, as in `{kinetic} - {potential}`"
+    ));
     Some(Warning::new(Topic::NoLimit, d))
 }

@@ -12,9 +12,13 @@ use crate::expr::{self, Expr, Shift};
 use crate::interpret::{Assignment, evaluate};
 
 /// What is said of signs, wherever a sign is wrong.
-pub const CONVENTION: &str = "the Lagrangian states kinetic minus potential energy: of a body with \
+const CONVENTION: &str = "the Lagrangian states kinetic minus potential energy: of a body with \
      second moments J write `-tr(J*Ω)/h`, which is +½ ω·Iω times the step with I = tr(J) Id - J; \
      if what is typed is another multiple of the action, say which by `scale`";
+
+/// The same of fields.
+const OF_FIELDS: &str = "the Lagrangian states kinetic minus potential energy, times the step; if what is \
+     typed is another multiple of the action, say which by `scale`";
 
 /// The warning that the kinetic energy does not depend on every velocity.
 pub(super) fn degenerate(x: &Inputs) -> Option<Warning> {
@@ -36,14 +40,24 @@ pub(super) fn degenerate(x: &Inputs) -> Option<Warning> {
              is no energy{refused}"
         ),
     };
+    let [kinetic, _] = x.examples();
+    let fields = x.spec.configurations.iter().all(|c| c.group.is_additive());
     let help = match rank {
-        0 => "did you forget `/h`? Kinetic terms are divided by the step, as in `-tr(J*Ω)/h`",
+        0 => format!(
+            "did you forget `/h`, or the factor `h` before the square of a velocity that is divided by \
+             the step? Kinetic terms are divided by it once, as in `{kinetic}`"
+        ),
+        _ if fields => {
+            "give every velocity a kinetic energy; did you forget `/h` in one of the terms?"
+                .to_owned()
+        }
         _ => {
             "give every velocity a kinetic energy; did you forget `/h` in one of the terms? A body \
              needs I = tr(J) Id - J > 0: second moments of rank one, as m a a^T of a single point \
              mass, leave the spin about their line without inertia. Give the mass an extent: with \
              `param S: Sym<3>`, its second moments about its own centre, write `m*a*a^T + S` for \
              `m*a*a^T`, so that J has rank two or three; a hundredth of m |a|^2 will do"
+                .to_owned()
         }
     };
     let d = Diagnostic::new(x.spec.lagrangian_place, message).help(help);
@@ -100,7 +114,12 @@ pub(super) fn sign(x: &Inputs) -> Option<Warning> {
             x.text(&kinetic.energy)
         ),
     )
-    .help(CONVENTION);
+    .help(
+        match x.spec.configurations.iter().all(|c| c.group.is_additive()) {
+            true => OF_FIELDS,
+            false => CONVENTION,
+        },
+    );
     Some(Warning::new(Topic::SignOfKineticEnergy, d))
 }
 

@@ -15,10 +15,23 @@ use crate::expr::{self, Expr, Letter, Node, Shift};
 /// Most nodes of the action, times parameters and pairs of ends, that are differentiated.
 const EVALUATED: u64 = 50_000;
 
-const HELP: &str = "the group leaves such terms unchanged, as it does the length of a carried vector: \
-                    let the potential depend on the configuration, or leave it out";
+/// What to do about a term that is constant along every motion.
+fn constant(x: &Inputs) -> &'static str {
+    let fields = x.spec.configurations.iter();
+    match fields.fold(true, |all, c| all && c.group.is_additive()) {
+        true => "let it depend on the configuration, or leave it out",
+        false => {
+            "the group leaves such terms unchanged, as it does the length of a carried vector: \
+             let the potential depend on the configuration, or leave it out"
+        }
+    }
+}
 
-const IDLE: &str = "multiply it by a quantity that moves, as in `h*dot(gU, Γ)`, or leave it out";
+/// What to do about a term without a quantity that moves.
+fn moved(x: &Inputs) -> String {
+    let [_, potential] = x.examples();
+    format!("multiply it by a quantity that moves, as in `{potential}`, or leave it out")
+}
 
 /// Whether an expression holds anything but parameters and the step.
 fn moves(x: &Inputs, e: &Expr) -> bool {
@@ -61,7 +74,7 @@ pub(super) fn without_effect(x: &Inputs) -> Vec<Warning> {
                 x.text(nodal)
             ),
         };
-        return vec![warn(place(x, term), message, HELP)];
+        return vec![warn(place(x, term), message, constant(x))];
     }
     let mut out = Vec::new();
     let mut told: Vec<Letter> = Vec::new();
@@ -75,7 +88,7 @@ pub(super) fn without_effect(x: &Inputs) -> Vec<Warning> {
         };
         told.extend(expr::letters(term));
         let message = format!("the term {} {why}", x.text(term));
-        out.push(warn(place(x, Some(term)), message, HELP));
+        out.push(warn(place(x, Some(term)), message, constant(x)));
     }
     for (last, first) in pairs(x, &addends) {
         let message = format!(
@@ -84,7 +97,7 @@ pub(super) fn without_effect(x: &Inputs) -> Vec<Warning> {
             x.text(first)
         );
         told.extend(expr::letters(last));
-        out.push(warn(place(x, Some(last)), message, IDLE));
+        out.push(warn(place(x, Some(last)), message, &moved(x)));
     }
     for term in all.iter().filter(|t| moves(x, t) && !addends.contains(t)) {
         if is_constant(x, &on_edge(x, term)) {
@@ -92,7 +105,7 @@ pub(super) fn without_effect(x: &Inputs) -> Vec<Warning> {
                 "the term {} is constant along every motion: it has no effect",
                 x.text(term)
             );
-            out.push(warn(place(x, Some(term)), message, HELP));
+            out.push(warn(place(x, Some(term)), message, constant(x)));
         }
     }
     // A potential without a configuration, and no other potential.
@@ -103,7 +116,7 @@ pub(super) fn without_effect(x: &Inputs) -> Vec<Warning> {
             "the potential is constant: {} holds no configuration and exerts no force",
             x.text(term)
         );
-        out.push(warn(place(x, Some(term)), message, IDLE));
+        out.push(warn(place(x, Some(term)), message, &moved(x)));
     }
     for p in idle(x) {
         if told.iter().any(|l| l.symbol == p) {
@@ -124,7 +137,7 @@ pub(super) fn without_effect(x: &Inputs) -> Vec<Warning> {
             s.get(p).name,
             terms.join(" and ")
         );
-        out.push(warn(place(x, Some(first)), message, IDLE));
+        out.push(warn(place(x, Some(first)), message, &moved(x)));
     }
     out
 }
@@ -234,6 +247,7 @@ pub(super) fn vanishing(x: &Inputs) -> Option<Warning> {
     let no_potential = !x.action.nodal.is_zero() && !left.iter().any(|t| split(s, t).0.is_zero());
     let term = gone.iter().find(|t| no_potential || own(t).is_some())?;
     let n = power(x, term)?;
+    let [_, potential] = x.examples();
     let d = Diagnostic::new(
         place(x, Some(term)),
         format!(
@@ -242,10 +256,10 @@ pub(super) fn vanishing(x: &Inputs) -> Option<Warning> {
             x.text(term)
         ),
     )
-    .help(
+    .help(format!(
         "the Lagrangian states (kinetic - potential energy) times the step: multiply a potential by \
-         `h` once, as in `-h*dot(gU, Γ)`",
-    );
+         `h` once, as in `-{potential}`"
+    ));
     Some(Warning::new(Topic::NoLimit, d))
 }
 
