@@ -11,7 +11,7 @@ pub const DONE: u8 = 0;
 pub const FAILED: u8 = 1;
 /// The request cannot be understood: arguments, names, case files, values.
 pub const USAGE: u8 = 2;
-/// The run ended, its results are written, and an invariant left its bound.
+/// The run ended, its results are written, and an invariant left its bound or a residual is not a number.
 pub const BOUND_LEFT: u8 = 3;
 
 /// A command that did not come to its end.

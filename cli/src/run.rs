@@ -108,7 +108,8 @@ pub fn run(
         .filter(|outcome| outcome.verdict == Verdict::Left)
         .map(|outcome| outcome.invariant.name)
         .collect();
-    let code = match (&run.stopped, left.is_empty()) {
+    let lost = run.residual.filter(|residual| residual.relative.is_nan());
+    let code = match (&run.stopped, left.is_empty() && lost.is_none()) {
         (Some(_), _) => FAILED,
         (None, true) => DONE,
         (None, false) => BOUND_LEFT,
@@ -143,6 +144,14 @@ pub fn run(
     if !left.is_empty() {
         let message = format!("bound exceeded: {}", left.join(", "));
         let _ = writeln!(streams.err, "clebsch: {message}");
+    }
+    if let Some(residual) = lost {
+        let _ = writeln!(
+            streams.err,
+            "clebsch: the residual is not a number, at node {}: terms of the equations are beyond the \
+             range of double precision; take another step or other units",
+            residual.node
+        );
     }
     if let Some(stopped) = &run.stopped {
         let _ = writeln!(streams.err, "clebsch: {}", stopped.why);

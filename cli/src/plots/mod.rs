@@ -202,8 +202,9 @@ fn panel(field: &Field, columns: Range<usize>, shown: Window<'_>) -> Panel {
         caption: caption(field),
         y_label: quantity(field),
         y: Axis::around(&curves),
+        // As high as its legend, if that is long: the entries of a large matrix.
+        height: 230.max(45 + 17 * u32::try_from(curves.len()).unwrap_or(0)),
         curves,
-        height: 230,
     }
 }
 

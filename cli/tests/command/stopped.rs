@@ -215,6 +215,16 @@ fn a_refused_first_step_says_what_is_wrong_with_the_kinetic_energy() {
     assert!(refused >= 2, "{refused} first steps were refused");
 }
 
+/// With a step of 1e-200 terms of the equations are beyond the range of numbers: nothing is known of such steps.
+#[test]
+fn a_residual_that_is_not_a_number_is_no_success() {
+    let gallery = Gallery::shipped();
+    let run = ["run", "kepler", "--h", "1e-200", "--steps", "3"];
+    let done = on(&gallery, &run);
+    assert_eq!(done.code, 3, "{}", done.err);
+    assert!(done.err.contains("not a number, at node 1"), "{}", done.err);
+}
+
 /// How well the equations of each step are solved stands below the table and in the manifest.
 #[test]
 fn the_largest_residual_of_a_step_is_shown() {

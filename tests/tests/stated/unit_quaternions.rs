@@ -17,7 +17,7 @@ use clebsch_models::cayley_klein_spatial::{
     CayleyKleinSpatial, CayleyKleinSpatialInitial, CayleyKleinSpatialParameters,
 };
 use clebsch_oracle::oracle::action::quaternions::{self, QuaternionSum, halves, left};
-use clebsch_oracle::oracle::action::{DiscreteAction, Side, stationarity};
+use clebsch_oracle::oracle::action::{DiscreteAction, Side, TermSum, stationarity};
 use clebsch_oracle::oracle::points::Source;
 use clebsch_oracle::oracle::square::Square;
 use clebsch_oracle::physics::measure::worse;
