@@ -249,10 +249,10 @@ pub fn recognise(
             "several velocities are solved together: Newton on the derived residuals".to_owned(),
         ),
     };
-    let by_newton = matches!(method, Method::Newton);
-    let seen_from_body = by_newton
-        .then(|| seen_from_body(stated, spec, letters, balances))
-        .flatten();
+    let seen_from_body = match method {
+        Method::Newton => seen_from_body(stated, spec, letters, balances),
+        _ => None,
+    };
     Solve {
         riccati,
         method,
@@ -516,10 +516,9 @@ fn riccati(
     let factor = shorter(algebra, expr::transpose(s, transposed));
     let rest = algebra.raise(&rest);
     // The node's own part, where that is all of it: it reads as the user would write it.
-    let own = if n == Dim::Fixed(3) {
-        expr::hat(b.node_out.clone())
-    } else {
-        b.node_out.clone()
+    let own = match n {
+        Dim::Fixed(3) => expr::hat(b.node_out.clone()),
+        _ => b.node_out.clone(),
     };
     let rest = if algebra.equal(&own, &rest) {
         b.node_out.clone()

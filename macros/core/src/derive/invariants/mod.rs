@@ -17,6 +17,7 @@ pub(crate) mod passage;
 mod readings;
 #[cfg(test)]
 mod tests;
+mod told;
 mod totals;
 mod words;
 

@@ -9,9 +9,9 @@ use super::kernel::{Kernel, Samples};
 use super::motions::{Motion, Sort, Way, motions};
 use super::passage::Passage;
 use super::readings::{Reading, readings};
+use super::told::{name, reason};
 use super::{Family, Inputs, Invariant, Kind, is_conserved, length};
 use crate::algebra::exact::Matrix;
-use crate::check::spec::Side;
 use crate::derive::action::summands;
 use crate::expr::shape::Shape;
 use crate::expr::symbol::SymbolId;
@@ -450,7 +450,7 @@ fn scale(terms: &[Term]) -> Expr {
 }
 
 /// Whether the terms are whole momenta of their groups.
-fn is_whole(x: &Inputs, terms: &[Term]) -> bool {
+pub(super) fn is_whole(x: &Inputs, terms: &[Term]) -> bool {
     terms.iter().all(|t| {
         let group = x.spec.configurations[t.motion.configuration].group;
         let natural = match t.motion.sort {
@@ -465,7 +465,7 @@ fn is_whole(x: &Inputs, terms: &[Term]) -> bool {
     })
 }
 
-fn configurations(terms: &[Term]) -> Vec<usize> {
+pub(super) fn configurations(terms: &[Term]) -> Vec<usize> {
     let mut out: Vec<usize> = terms.iter().map(|t| t.motion.configuration).collect();
     out.sort_unstable();
     out.dedup();
@@ -485,121 +485,5 @@ fn kind(x: &Inputs, terms: &[Term]) -> Kind {
     match (set.as_slice(), x.spec.configurations.as_slice()) {
         ([only], [_]) => Kind::SpatialMomentum(*only),
         _ => Kind::TotalMomentum(set),
-    }
-}
-
-/// A name: whose momentum it is, of which bodies, and what is read of it.
-fn name(x: &Inputs, terms: &[Term]) -> String {
-    let s = &x.letters.symbols;
-    let ascii = |id| s.get(id).ascii.clone();
-    let set = configurations(terms);
-    let all = |f: &dyn Fn(Way) -> bool| terms.iter().all(|t| f(t.motion.way));
-    let added = terms.iter().all(|t| t.times == 1);
-    let one = terms.len() == 1;
-    let whole = is_whole(x, terms);
-    let side = |i: &usize| x.spec.configurations[*i].side;
-    let own = set.first().map(side);
-    let field = |i: &usize| x.spec.configurations[*i].group.is_additive();
-    let fields = set.iter().all(field);
-    let mut parts: Vec<String> = Vec::new();
-    let stem = if all(&|w| matches!(w, Way::Space | Way::About(_))) && (one || added) {
-        match (one, whole, own) {
-            (true, ..) if fields => "momentum",
-            (true, false, Some(Side::Spatial)) => "momentum",
-            (true, ..) => "spatial_momentum",
-            (false, ..) => "total_momentum",
-        }
-    } else if all(&|w| w == Way::Body) && (one || added) {
-        match (one, whole, own) {
-            (true, true, _) => "body_momentum_whole",
-            (true, false, Some(Side::Body)) => "momentum",
-            (true, false, _) => "body_momentum",
-            (false, ..) => "total_body_momentum",
-        }
-    } else if all(&|w| w == Way::Spin) && (one || added) {
-        if one { "spin" } else { "total_spin" }
-    } else if all(&|w| w == Way::Shift) && (one || added) {
-        "coordinate_momentum"
-    } else {
-        "joint_momentum"
-    };
-    let mut out = stem.to_owned();
-    if set.len() < x.spec.configurations.len() {
-        for i in &set {
-            out += &format!("_{}", ascii(x.spec.configurations[*i].element));
-        }
-    }
-    let rigid = |t: &Term| {
-        x.spec.configurations[t.motion.configuration]
-            .group
-            .rigid()
-            .is_some()
-    };
-    let linear_group = |t: &Term| {
-        x.spec.configurations[t.motion.configuration]
-            .group
-            .is_linear()
-    };
-    let mut push = |part: String| {
-        if !part.is_empty() && !parts.contains(&part) {
-            parts.push(part);
-        }
-    };
-    for t in terms {
-        let mixed = terms.iter().any(|o| rigid(o) || linear_group(o));
-        let shifted = fields || set.iter().any(field);
-        match t.motion.sort {
-            Sort::Linear if !fields => push("linear".to_owned()),
-            Sort::Angular | Sort::Planes(_) if shifted => push("angular".to_owned()),
-            Sort::Angular if mixed && t.motion.way != Way::Spin => push("angular".to_owned()),
-            Sort::Planes(_) if linear_group(t) => push("planes".to_owned()),
-            _ => {}
-        }
-        if let Way::About(p) = t.motion.way {
-            push(format!("about_{}", ascii(p)));
-        }
-        push(t.reading.name.clone());
-    }
-    for part in parts {
-        out += &format!("_{part}");
-    }
-    out
-}
-
-/// Why it is conserved.
-fn reason(x: &Inputs, terms: &[Term], strict: bool) -> String {
-    let all = |f: &dyn Fn(Way) -> bool| terms.iter().all(|t| f(t.motion.way));
-    let whole = is_whole(x, terms);
-    let of_space = all(&|w| matches!(w, Way::Space | Way::About(_)));
-    let set = configurations(terms);
-    let group = set.first().map(|i| x.spec.configurations[*i].group);
-    let entire = terms.iter().all(|t| t.reading.is_whole());
-    let shifts = |t: &Term| {
-        matches!(
-            t.motion.sort,
-            Sort::Linear | Sort::Shifts(_) | Sort::Entries(_)
-        )
-    };
-    let turns = |t: &Term| matches!(t.motion.sort, Sort::Angular | Sort::Planes(_));
-    let field = |i: &usize| x.spec.configurations[*i].group.is_additive();
-    let under = match (of_space, whole || entire && set.iter().any(field), group) {
-        (true, _, _) if set.iter().any(field) && terms.iter().all(shifts) => "translations",
-        (true, true, Some(group)) => group.motions_words(),
-        (true, true, None) => "rotations of space",
-        (true, false, _) if terms.iter().all(turns) => "rotations about the axis in space",
-        (true, false, _) if terms.iter().all(shifts) => "translations along the axis",
-        (true, false, _) => "motions of space that fix the axis",
-        _ if all(&|w| w == Way::Body) && whole => "motions of the body's own frame",
-        _ if all(&|w| w == Way::Body) && terms.iter().all(turns) => {
-            "rotations about the axis in the body"
-        }
-        _ if all(&|w| w == Way::Body) => "motions of the body's frame that fix the axis",
-        _ if all(&|w| w == Way::Spin) => "turns of the body about its own origin",
-        _ if all(&|w| w == Way::Shift) => "shifts of the matrix of the configuration",
-        _ => "joint motions of space and bodies",
-    };
-    match strict {
-        true => format!("Noether: the action is invariant under {under}"),
-        false => format!("Noether: the action changes by a total difference under {under}"),
     }
 }
