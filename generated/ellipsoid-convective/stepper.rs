@@ -174,20 +174,23 @@ pub mod ellipsoid_convective {
         ) -> Result<(), StepError> {
             let before = *state;
             self.step_untested(state, work)?;
-            if let Err(contact) = self.stays_inside(&before, state, work.h) {
-                *state = before;
-                return Err(self.left_domain(state, work.h, contact));
+            let finite = all_finite(&state.momentum.0);
+            match self.stays_inside(&before, state, work.h) {
+                Ok(()) if finite => Ok(()),
+                Err(contact) if finite || contact.is_finite() => {
+                    *state = before;
+                    Err(self.left_domain(state, work.h, contact))
+                }
+                _ => {
+                    *state = before;
+                    Err(
+                        StepCause::NotFinite {
+                            what: "momentum",
+                        }
+                            .at_node(state.node),
+                    )
+                }
             }
-            if !(all_finite(&state.momentum.0)) {
-                *state = before;
-                return Err(
-                    StepCause::NotFinite {
-                        what: "momentum",
-                    }
-                        .at_node(state.node),
-                );
-            }
-            Ok(())
         }
         /// Says what the step met, and which step could be made.
         #[cold]

@@ -997,7 +997,7 @@ pub mod kirchhoff_body {
                 .cross(&(rows_from::<T, 4, 3, 1>(&P, 0)));
             t1.dot(&t1)
         }
-        /// `Z[1:3] × (rot(G_k) lin(μ_k))`: Noether: the action is invariant under translations along the axis.
+        /// `Z[1:3] × (rot(G_k) lin(μ_k))`: Noether: the action is invariant under translations.
         pub fn spatial_momentum_linear_across_Z(
             &self,
             state: &KirchhoffBodyState<T>,

@@ -63,6 +63,17 @@ pub struct Contact {
 }
 
 impl Contact {
+    /// Whether what was met is known by finite numbers: a step beyond the range of numbers meets anything.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        let share = self.share.is_none_or(f64::is_finite);
+        match self.met {
+            Met::Singular { .. } => share && self.share.is_some(),
+            Met::NearlySingular { ratio, .. } => share && ratio.is_finite(),
+            Met::Outside { before, after, .. } => share && before.is_finite() && after.is_finite(),
+        }
+    }
+
     fn new<T: Real>(met: Met, share: Option<f64>, h: T, lane: usize) -> Self {
         Self {
             met,

@@ -314,7 +314,7 @@ fn the_bound_of_a_ball_is_met_and_the_axis_named() {
         assert_eq!(e.h, Some(3.0 * bound));
         let said = e.to_string();
         for words in [
-            "3.000000 times",
+            "by a factor 3.000000",
             &format!("component {}", axis + 1),
             "reduce the step size from",
         ] {

@@ -105,7 +105,7 @@ pub(super) fn reason(x: &Inputs, terms: &[Term], strict: bool) -> String {
         (true, true, Some(group)) => group.motions_words(),
         (true, true, None) => "rotations of space",
         (true, false, _) if terms.iter().all(turns) => "rotations about the axis in space",
-        (true, false, _) if terms.iter().all(shifts) => "translations along the axis",
+        (true, false, _) if terms.iter().all(shifts) => "translations",
         (true, false, _) => "motions of space that fix the axis",
         _ if all(&|w| w == Way::Body) && whole => "motions of the body's own frame",
         _ if all(&|w| w == Way::Body) && terms.iter().all(turns) => {
