@@ -63,14 +63,13 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// Whether what was met is known by finite numbers: a step beyond the range of numbers meets anything.
+    /// Whether an argument left its domain between finite values: what is not finite after such a step has
+    /// that reason. A step beyond the range of numbers meets anything.
     #[must_use]
     pub fn is_finite(&self) -> bool {
-        let share = self.share.is_none_or(f64::is_finite);
         match self.met {
-            Met::Singular { .. } => share && self.share.is_some(),
-            Met::NearlySingular { ratio, .. } => share && ratio.is_finite(),
-            Met::Outside { before, after, .. } => share && before.is_finite() && after.is_finite(),
+            Met::Singular { .. } | Met::NearlySingular { .. } => false,
+            Met::Outside { before, after, .. } => before.is_finite() && after.is_finite(),
         }
     }
 
