@@ -163,6 +163,11 @@ pub struct Spec {
 }
 
 impl Spec {
+    /// Whether all configurations are fields: nothing is turned then.
+    pub fn has_only_fields(&self) -> bool {
+        self.configurations.iter().all(|c| c.group.is_additive())
+    }
+
     /// Shape of a symbol.
     pub fn shape(&self, id: SymbolId) -> Shape {
         self.symbols.get(id).shape

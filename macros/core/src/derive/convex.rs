@@ -31,10 +31,10 @@ impl Convexity {
 /// Why the fields have one root only, if they do. All configurations of the model are solved together:
 /// of a block, it is that block as a model of its own.
 pub fn convexity(spec: &Spec, s: &Symbols, action: &Action) -> Option<Convexity> {
-    let configurations = spec.configurations.iter();
-    if !configurations.clone().all(|c| c.group.is_additive()) {
+    if !spec.has_only_fields() {
         return None;
     }
+    let configurations = spec.configurations.iter();
     let here = |symbol| at(symbol, Shift::HERE);
     let velocities: Vec<Letter> = configurations.clone().map(|c| here(c.velocity)).collect();
     let places: Vec<Letter> = configurations.map(|c| here(c.element)).collect();

@@ -84,7 +84,7 @@ fn check_definition(
         a.definition_place.unwrap_or(a.place),
         format!("the definition of `{name}` contradicts its constraint: one step later it gives {by_definition}, and the two differ by {}", show(&algebra.raise(&rest))),
     )
-    .help(match spec.configurations.iter().all(|c| c.group.is_additive()) {
+    .help(match spec.has_only_fields() {
         true => "correct one of the two; for a field `X`, `Y = X - a` is carried by `next(Y) = Y + (next(X) - X)`",
         false => "correct one of the two; for `next(Λ) = Λ * Ω`, `Γ = Λ^T * z` is carried by `next(Γ) = Ω^T * Γ`",
     });

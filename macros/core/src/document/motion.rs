@@ -113,7 +113,7 @@ fn definitions(sheet: &Sheet, section: &mut Section) {
             ", which in three dimensions is the scalar product of their axial vectors.".into(),
         ]);
     }
-    if d.spec.configurations.iter().all(|c| c.group.is_additive()) {
+    if d.spec.has_only_fields() {
         return;
     }
     let star = Formula::ad_star(free("g"), free("M"));
@@ -329,13 +329,7 @@ fn of_field(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize) {
 
 /// The name of the equations of motion.
 pub fn equations_name(sheet: &Sheet) -> &'static str {
-    match sheet
-        .d
-        .spec
-        .configurations
-        .iter()
-        .all(|c| c.group.is_additive())
-    {
+    match sheet.d.spec.has_only_fields() {
         true => "Euler-Lagrange",
         false => "Euler-Poincaré",
     }

@@ -2,8 +2,7 @@
 //! to, the Hamiltonian matrix and the invariant subspace that solve that, and what the stepper does.
 
 use super::sheet::{Sheet, listed};
-use crate::check::spec::Configuration;
-use crate::derive::Derivation;
+use crate::check::spec::{Configuration, Spec};
 use crate::derive::convex::convexity;
 use crate::derive::explicit::Explicit;
 use crate::derive::recognise::{Method, MoserVeselov, Riccati};
@@ -16,7 +15,7 @@ use crate::print::formula::{Formula, Relation};
 /// The section.
 pub fn moser_veselov(sheet: &Sheet, doc: &mut Document) {
     let d = sheet.d;
-    let fields = d.spec.configurations.iter().all(|c| c.group.is_additive());
+    let fields = d.spec.has_only_fields();
     let section = doc.section(match fields {
         true => "Solution of a step",
         false => "Moser-Veselov and Riccati form",
@@ -430,7 +429,7 @@ fn method(sheet: &Sheet, section: &mut Section) {
                 Method::UnitQuaternions => "The stepper solves it so: ",
                 Method::Blocks => "The stepper solves ",
                 Method::Newton if d.solve.one_system.contains(&0) => "The stepper solves ",
-                Method::Newton if d.spec.configurations.iter().all(|c| c.group.is_additive()) => {
+                Method::Newton if d.spec.has_only_fields() => {
                     "The stepper iterates with Newton's method: "
                 }
                 Method::FreeMoserVeselov
@@ -461,17 +460,11 @@ fn method(sheet: &Sheet, section: &mut Section) {
 /// Says which balances have one solution only, and for which parameters.
 fn unique(sheet: &Sheet, section: &mut Section) {
     let d = sheet.d;
-    let newton = d.solve.blocks.iter().filter(|b| b.is_newton());
-    let blocks: Vec<Derivation> = match (&d.solve.method, d.solve.blocks.as_slice()) {
-        (Method::Newton, []) => vec![d.clone()],
-        _ => newton.map(|b| d.of_block(b)).collect(),
-    };
-    for block in &blocks {
-        let s = &block.letters.symbols;
-        let Some(found) = convexity(&block.spec, s, &block.action) else {
-            continue;
+    let one = |spec: &Spec, section: &mut Section| {
+        let Some(found) = convexity(spec, sheet.symbols(), &d.action) else {
+            return;
         };
-        let velocities = block.spec.configurations.iter();
+        let velocities = spec.configurations.iter();
         let velocities = velocities.map(|c| vec![sheet.here(c.velocity).into()]);
         let sign = |sign: &str, e: &Expr| -> Vec<Inline> {
             vec![sheet.math(e).into(), format!(" {sign} 0").into()]
@@ -484,5 +477,11 @@ fn unique(sheet: &Sheet, section: &mut Section) {
         words.extend(listed(positive.chain(others).collect()));
         words.push(": the solution is then unique.".into());
         section.paragraph(words);
+    };
+    if matches!(d.solve.method, Method::Newton) {
+        one(&d.spec, section);
+    }
+    for b in d.solve.blocks.iter().filter(|b| b.is_newton()) {
+        one(&d.of_block(b).spec, section);
     }
 }

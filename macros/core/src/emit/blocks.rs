@@ -286,7 +286,12 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
                     Err(e) => return Err(self.#refused(*state, work, e)),
                 };
             });
-            beside.extend(refusal(d, names, &refused, &Refusal::of_quaternions()));
+            beside.extend(refusal(
+                d,
+                names,
+                &refused,
+                [quote!(QuaternionError), quote!(with_searched_steps)],
+            ));
             found[i] = quote!(#omega);
             continue;
         }
@@ -344,43 +349,28 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
             #rest
         },
     );
-    let refused =
-        refuses.then(|| refusal(d, names, &format_ident!("refused"), &Refusal::of_factors()));
+    let refused = refuses.then(|| {
+        refusal(
+            d,
+            names,
+            &format_ident!("refused"),
+            [quote!(Unsolved), quote!(with_searched_step)],
+        )
+    });
     (node_types, quote!(#step_function #refused #beside))
 }
 
-/// How a solver's refusal is told.
-struct Refusal {
-    /// The type of its error.
-    error: TokenStream,
-    /// The method that adds the step that could be made.
-    search: TokenStream,
-}
-
-impl Refusal {
-    /// Of a Moser-Veselov equation.
-    fn of_factors() -> Self {
-        Self {
-            error: quote!(Unsolved),
-            search: quote!(with_searched_step),
-        }
-    }
-
-    /// Of the equation in unit quaternions.
-    fn of_quaternions() -> Self {
-        Self {
-            error: quote!(QuaternionError),
-            search: quote!(with_searched_steps),
-        }
-    }
-}
-
 /// The function of this name that says how far the step is beyond a bound, and which one could be made.
-fn refusal(d: &Derivation, names: &Names, name: &Ident, told: &Refusal) -> TokenStream {
+/// `error` is the type of the solver's error, `search` its method that adds that step.
+fn refusal(
+    d: &Derivation,
+    names: &Names,
+    name: &Ident,
+    [error, search]: [TokenStream; 2],
+) -> TokenStream {
     let (state, work) = (item(d, "State"), item(d, "Workspace"));
     let used = Generics::of(d).used();
     let node = names.local("node");
-    let Refusal { error, search } = told;
     let method = default_solver(d).map(|_| quote!(let method = work.method;));
     let trial = filled(d, |_| quote!(newton::Search::to_offer()));
     quote! {

@@ -114,18 +114,17 @@ const LARGEST: u32 = 20_000;
 impl Inputs<'_> {
     /// A kinetic term and a potential as this model would state them, to show in advice.
     fn examples(&self) -> [String; 2] {
-        let s = &self.letters.symbols;
-        let fields = self.spec.configurations.iter();
-        let mut fields = fields.map(|c| (c.group, s.get(c.element)));
-        match fields.next().filter(|(group, _)| group.is_additive()) {
-            Some((group, x)) if fields.all(|(group, _)| group.is_additive()) => {
+        let first = self.spec.configurations.first();
+        match first.filter(|_| self.spec.has_only_fields()) {
+            Some(c) => {
+                let x = self.letters.symbols.get(c.element);
                 let name = &x.name;
                 let square = match (x.shape.is_scalar(), x.shape.is_vector()) {
                     (true, _) => format!("{name}^2"),
                     (false, true) => format!("dot({name}, {name})"),
                     (false, false) => format!("tr({name}^T*{name})"),
                 };
-                [group.kinetic_example(name), format!("h*k*{square}/2")]
+                [c.group.kinetic_example(name), format!("h*k*{square}/2")]
             }
             _ => ["-tr(J*Ω)/h".to_owned(), "h*dot(gU, Γ)".to_owned()],
         }

@@ -41,7 +41,7 @@ pub(super) fn degenerate(x: &Inputs) -> Option<Warning> {
         ),
     };
     let [kinetic, _] = x.examples();
-    let fields = x.spec.configurations.iter().all(|c| c.group.is_additive());
+    let fields = x.spec.has_only_fields();
     let help = match rank {
         0 => format!(
             "did you forget `/h`, or the factor `h` before the square of a velocity that is divided by \
@@ -114,12 +114,10 @@ pub(super) fn sign(x: &Inputs) -> Option<Warning> {
             x.text(&kinetic.energy)
         ),
     )
-    .help(
-        match x.spec.configurations.iter().all(|c| c.group.is_additive()) {
-            true => OF_FIELDS,
-            false => CONVENTION,
-        },
-    );
+    .help(match x.spec.has_only_fields() {
+        true => OF_FIELDS,
+        false => CONVENTION,
+    });
     Some(Warning::new(Topic::SignOfKineticEnergy, d))
 }
 

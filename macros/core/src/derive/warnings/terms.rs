@@ -17,8 +17,7 @@ const EVALUATED: u64 = 50_000;
 
 /// What to do about a term that is constant along every motion.
 fn constant(x: &Inputs) -> &'static str {
-    let mut configurations = x.spec.configurations.iter();
-    match configurations.all(|c| c.group.is_additive()) {
+    match x.spec.has_only_fields() {
         true => "let it depend on the configuration, or leave it out",
         false => {
             "the group leaves such terms unchanged, as it does the length of a carried vector: \

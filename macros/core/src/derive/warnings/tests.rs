@@ -57,7 +57,10 @@ fn a_forgotten_step_is_said() {
         "{forgotten:?}"
     );
     let text = words(&format!("{TOP} lagrangian = -tr(J*Ω) - h*dot(gU, Γ);"));
-    assert!(text.contains("did you forget `/h`"), "{text}");
+    assert!(
+        text.contains("did you forget `/h`, or the factor `h`"),
+        "{text}"
+    );
     // Without any kinetic energy, and with one that vanishes too fast.
     assert!(top("-h*dot(gU, Γ) + h*tr(J*Ω)").contains(&DegenerateKineticEnergy));
     // The step in the wrong power.
