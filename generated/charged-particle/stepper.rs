@@ -59,11 +59,13 @@ pub mod charged_particle {
         /// Its momentum at node 0.
         pub momentum: FieldMomentum<3, 1, T>,
     }
-    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate. Places and their momenta are kept in two numbers, the rest below the rounding of the other.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct ChargedParticleState<T = f64> {
         X: Additive<3, 1, T>,
         momentum: FieldMomentum<3, 1, T>,
+        place_rest: SMatrix<T, 3, 1>,
+        momentum_rest: SMatrix<T, 3, 1>,
         node: u64,
     }
     impl<T: Real> ChargedParticleState<T> {
@@ -110,6 +112,8 @@ pub mod charged_particle {
             Ok(ChargedParticleState {
                 X: initial.X,
                 momentum: initial.momentum,
+                place_rest: SMatrix::zeros(),
+                momentum_rest: SMatrix::zeros(),
                 node: 0,
             })
         }
@@ -155,9 +159,12 @@ pub mod charged_particle {
                 Err(e) => return Err(StepCause::Singular(e).at_node(state.node)),
             };
             let ΔX_matrix = ΔX.matrix();
-            let X_moved = state.X + ΔX;
-            let momentum_next = state.momentum.0 + E * h * q
-                - B.cross(&ΔX_matrix) * T::from_f64(0.5) * q;
+            let (X_moved, X_rest) = state.X.moved(&(ΔX), &state.place_rest);
+            let (momentum_next, momentum_rest) = added(
+                &state.momentum.0,
+                &state.momentum_rest,
+                &(E * h * q - B.cross(&ΔX_matrix) * T::from_f64(0.5) * q),
+            );
             if !(all_finite(&momentum_next)) {
                 return Err(
                     StepCause::NotFinite {
@@ -167,7 +174,9 @@ pub mod charged_particle {
                 );
             }
             state.X = X_moved;
+            state.place_rest = X_rest;
             state.momentum = FieldMomentum(momentum_next);
+            state.momentum_rest = momentum_rest;
             state.node += 1;
             Ok(())
         }
@@ -246,6 +255,8 @@ pub mod charged_particle {
             ChargedParticleState {
                 X: self.X.over(change),
                 momentum: self.momentum.over(change),
+                place_rest: self.place_rest.over(change),
+                momentum_rest: self.momentum_rest.over(change),
                 node: self.node,
             }
         }
@@ -321,8 +332,8 @@ pub mod charged_particle {
         /// What the step of size `h` from one state to the next leaves of its equations: the
         /// momentum that is carried to the second state, less the one that the motion between
         /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of: those of a velocity are
-        /// the two elements it is made from, as they are stored.
+        /// motion apart, each with the size of the terms it is made of: those of a spatial
+        /// velocity are the two elements it is made from, as they are stored.
         pub fn residual(
             &self,
             before: &ChargedParticleState<T>,
@@ -330,14 +341,13 @@ pub mod charged_particle {
             h: T,
         ) -> [Residual; 1] {
             let ChargedParticleParameters { m, q, B, E, .. } = self.parameters;
-            let ΔX_matrix = before.X.spatial_velocity(&after.X).matrix();
+            let ΔX_matrix = before
+                .X
+                .velocity_between(&before.place_rest, &after.X, &after.place_rest)
+                .matrix();
             let X = before.X.matrix();
-            let X_next = after.X.matrix();
             let t1 = h.powi(-1);
-            let t2 = (t1 * t1).sqrt();
-            let t3 = (m * m).sqrt();
-            let t4 = (q * q).sqrt();
-            let t5 = X.dot(&X).sqrt();
+            let t2 = (q * q).sqrt();
             let _ = h;
             [
                 {
@@ -350,10 +360,11 @@ pub mod charged_particle {
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()
-                            + (t2 * t3 * ΔX_matrix.dot(&ΔX_matrix).sqrt()
-                                + T::from_f64(0.5) * (h * h).sqrt() * t4 * E.dot(&E).sqrt()
-                                + T::from_f64(0.5) * t4 * B.dot(&B).sqrt() * t5
-                                + t2 * t3 * (t5 + X_next.dot(&X_next).sqrt()))
+                            + ((t1 * t1).sqrt() * (m * m).sqrt()
+                                * ΔX_matrix.dot(&ΔX_matrix).sqrt()
+                                + T::from_f64(0.5) * (h * h).sqrt() * t2 * E.dot(&E).sqrt()
+                                + T::from_f64(0.5) * t2 * B.dot(&B).sqrt()
+                                    * X.dot(&X).sqrt())
                                 .magnitude(),
                     }
                 },
@@ -421,7 +432,10 @@ pub mod charged_particle {
             after: &ChargedParticleState<T>,
         ) -> T {
             let ChargedParticleParameters { m, q, E, .. } = self.parameters;
-            let ΔX_matrix = before.X.spatial_velocity(&after.X).matrix();
+            let ΔX_matrix = before
+                .X
+                .velocity_between(&before.place_rest, &after.X, &after.place_rest)
+                .matrix();
             let X = before.X.matrix();
             let X_next = after.X.matrix();
             T::from_f64(0.5) * h.powi(-2) * m * ΔX_matrix.dot(&ΔX_matrix)

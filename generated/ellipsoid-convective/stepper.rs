@@ -481,8 +481,8 @@ pub mod ellipsoid_convective {
         /// What the step of size `h` from one state to the next leaves of its equations: the
         /// momentum that is carried to the second state, less the one that the motion between
         /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of: those of a velocity are
-        /// the two elements it is made from, as they are stored.
+        /// motion apart, each with the size of the terms it is made of: those of a spatial
+        /// velocity are the two elements it is made from, as they are stored.
         pub fn residual(
             &self,
             before: &EllipsoidConvectiveState<N, T>,

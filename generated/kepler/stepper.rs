@@ -51,11 +51,13 @@ pub mod kepler {
         /// Its momentum at node 0.
         pub momentum: FieldMomentum<3, 1, T>,
     }
-    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate. Places and their momenta are kept in two numbers, the rest below the rounding of the other.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct KeplerState<T = f64> {
         X: Additive<3, 1, T>,
         momentum: FieldMomentum<3, 1, T>,
+        place_rest: SMatrix<T, 3, 1>,
+        momentum_rest: SMatrix<T, 3, 1>,
         node: u64,
     }
     impl<T: Real> KeplerState<T> {
@@ -102,6 +104,8 @@ pub mod kepler {
             Ok(KeplerState {
                 X: initial.X,
                 momentum: initial.momentum,
+                place_rest: SMatrix::zeros(),
+                momentum_rest: SMatrix::zeros(),
                 node: 0,
             })
         }
@@ -154,13 +158,16 @@ pub mod kepler {
                 Ok(solved) => solved,
                 Err(e) => return Err(StepCause::Singular(e).at_node(state.node)),
             };
-            let X_moved = state.X + ΔX;
+            let (X_moved, X_rest) = state.X.moved(&(ΔX), &state.place_rest);
             let X_next = X_moved.matrix();
             let t1 = X.dot(&X);
             let t2 = X_next.dot(&X_next);
-            let momentum_next = state.momentum.0
-                + (-(X * T::from_f64(0.5) * h * m * k * t1.powr(-1, 2) / t1))
-                - X_next * T::from_f64(0.5) * h * m * k * t2.powr(-1, 2) / t2;
+            let (momentum_next, momentum_rest) = added(
+                &state.momentum.0,
+                &state.momentum_rest,
+                &((-(X * T::from_f64(0.5) * h * m * k * t1.powr(-1, 2) / t1))
+                    - X_next * T::from_f64(0.5) * h * m * k * t2.powr(-1, 2) / t2),
+            );
             if !(all_finite(&momentum_next)) {
                 return Err(
                     StepCause::NotFinite {
@@ -170,7 +177,9 @@ pub mod kepler {
                 );
             }
             state.X = X_moved;
+            state.place_rest = X_rest;
             state.momentum = FieldMomentum(momentum_next);
+            state.momentum_rest = momentum_rest;
             state.node += 1;
             Ok(())
         }
@@ -235,6 +244,8 @@ pub mod kepler {
             KeplerState {
                 X: self.X.over(change),
                 momentum: self.momentum.over(change),
+                place_rest: self.place_rest.over(change),
+                momentum_rest: self.momentum_rest.over(change),
                 node: self.node,
             }
         }
@@ -305,8 +316,8 @@ pub mod kepler {
         /// What the step of size `h` from one state to the next leaves of its equations: the
         /// momentum that is carried to the second state, less the one that the motion between
         /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of: those of a velocity are
-        /// the two elements it is made from, as they are stored.
+        /// motion apart, each with the size of the terms it is made of: those of a spatial
+        /// velocity are the two elements it is made from, as they are stored.
         pub fn residual(
             &self,
             before: &KeplerState<T>,
@@ -314,16 +325,16 @@ pub mod kepler {
             h: T,
         ) -> [Residual; 1] {
             let KeplerParameters { m, k, .. } = self.parameters;
-            let ΔX_matrix = before.X.spatial_velocity(&after.X).matrix();
-            let X = before.X.matrix();
+            let ΔX_matrix = before
+                .X
+                .velocity_between(&before.place_rest, &after.X, &after.place_rest)
+                .matrix();
             let X_next = after.X.matrix();
             let t1 = h.powi(-1);
             let t2 = X_next.dot(&X_next);
             let t3 = t2.powi(-1);
             let t4 = t2.powr(-1, 2);
-            let t5 = (t1 * t1).sqrt();
-            let t6 = (m * m).sqrt();
-            let t7 = t2.sqrt();
+            let t5 = (m * m).sqrt();
             let _ = h;
             [
                 {
@@ -336,10 +347,9 @@ pub mod kepler {
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()
-                            + (t5 * t6 * ΔX_matrix.dot(&ΔX_matrix).sqrt()
-                                + T::from_f64(0.5) * (h * h).sqrt() * t6 * (k * k).sqrt()
-                                    * (t3 * t3).sqrt() * (t4 * t4).sqrt() * t7
-                                + t5 * t6 * (X.dot(&X).sqrt() + t7))
+                            + ((t1 * t1).sqrt() * t5 * ΔX_matrix.dot(&ΔX_matrix).sqrt()
+                                + T::from_f64(0.5) * (h * h).sqrt() * t5 * (k * k).sqrt()
+                                    * (t3 * t3).sqrt() * (t4 * t4).sqrt() * t2.sqrt())
                                 .magnitude(),
                     }
                 },
@@ -404,7 +414,10 @@ pub mod kepler {
             after: &KeplerState<T>,
         ) -> T {
             let KeplerParameters { m, k, .. } = self.parameters;
-            let ΔX_matrix = before.X.spatial_velocity(&after.X).matrix();
+            let ΔX_matrix = before
+                .X
+                .velocity_between(&before.place_rest, &after.X, &after.place_rest)
+                .matrix();
             let X = before.X.matrix();
             let X_next = after.X.matrix();
             T::from_f64(0.5) * h.powi(-2) * m * ΔX_matrix.dot(&ΔX_matrix)

@@ -64,11 +64,13 @@ pub mod kirchhoff_body {
         /// Momentum at node 0, in the body frame.
         pub body_momentum: BodyImpulse<T>,
     }
-    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame (of a rigid motion about the body's own origin), advected quantities by their value carried back to the identity, so that roundoff does not accumulate. Places and their momenta are kept in two numbers, the rest below the rounding of the other.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct KirchhoffBodyState<T = f64> {
         G: RigidMotion<T>,
-        momentum: SpatialImpulse<T>,
+        momentum: CarriedImpulse<T>,
+        place_rest: SMatrix<T, 3, 1>,
+        momentum_rest: SVector<T, 6>,
         node: u64,
     }
     impl<T: Real> KirchhoffBodyState<T> {
@@ -78,7 +80,7 @@ pub mod kirchhoff_body {
         }
         /// The momentum at this node, in the space frame.
         pub fn spatial_momentum(&self) -> SpatialImpulse<T> {
-            self.momentum
+            self.momentum.to_space(&self.G)
         }
         /// The momentum at this node, in the body frame.
         pub fn body_momentum(&self) -> BodyImpulse<T> {
@@ -126,7 +128,9 @@ pub mod kirchhoff_body {
             validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
             Ok(KirchhoffBodyState {
                 G: initial.G,
-                momentum: initial.body_momentum.to_space(&initial.G),
+                momentum: initial.body_momentum.carried(&initial.G),
+                place_rest: SMatrix::zeros(),
+                momentum_rest: SMatrix::zeros(),
                 node: 0,
             })
         }
@@ -276,42 +280,57 @@ pub mod kirchhoff_body {
             };
             let solved = found.element;
             let V_matrix = solved[0].matrix();
-            let G_moved = state.G * solved[0];
+            let G_velocity = solved[0];
+            let (G_moved, G_rest) = state.G.moved(&G_velocity, &state.place_rest);
             let G_next = G_moved.matrix();
             let P_next = G_next.tr_mul(&Z);
             let t1 = rows_from::<T, 4, 3, 1>(&b, 0);
             let t2 = b[3];
-            let momentum_next = state.momentum.0
-                + state
-                    .G
-                    .covector_to_space(
-                        &((-(into_rows::<
-                            T,
-                            6,
-                            3,
-                            1,
-                        >(&t1.cross(&(rows_from::<T, 4, 3, 1>(&P, 0))), 0)
-                            * T::from_f64(0.5) * h))
-                            - into_rows::<T, 6, 3, 1>(&rows_from::<T, 4, 3, 1>(&P, 0), 3)
-                                * T::from_f64(0.5) * h * t2),
-                    )
-                + G_moved
-                    .covector_to_space(
-                        &((-(into_rows::<
-                            T,
-                            6,
-                            3,
-                            1,
-                        >(&t1.cross(&(rows_from::<T, 4, 3, 1>(&P_next, 0))), 0)
-                            * T::from_f64(0.5) * h))
-                            - into_rows::<
+            let (momentum_next, momentum_rest) = added(
+                &state.momentum.0,
+                &state.momentum_rest,
+                &({
+                    let leaving = state
+                        .G
+                        .covector_turned(
+                            &((-(into_rows::<
                                 T,
                                 6,
                                 3,
                                 1,
-                            >(&rows_from::<T, 4, 3, 1>(&P_next, 0), 3) * T::from_f64(0.5)
-                                * h * t2),
-                    );
+                            >(&t1.cross(&(rows_from::<T, 4, 3, 1>(&P, 0))), 0)
+                                * T::from_f64(0.5) * h))
+                                - into_rows::<
+                                    T,
+                                    6,
+                                    3,
+                                    1,
+                                >(&rows_from::<T, 4, 3, 1>(&P, 0), 3) * T::from_f64(0.5) * h
+                                    * t2),
+                        );
+                    leaving
+                        + state
+                            .G
+                            .gained_along(&G_velocity, &(state.momentum.0 + leaving))
+                        + G_moved
+                            .covector_turned(
+                                &((-(into_rows::<
+                                    T,
+                                    6,
+                                    3,
+                                    1,
+                                >(&t1.cross(&(rows_from::<T, 4, 3, 1>(&P_next, 0))), 0)
+                                    * T::from_f64(0.5) * h))
+                                    - into_rows::<
+                                        T,
+                                        6,
+                                        3,
+                                        1,
+                                    >(&rows_from::<T, 4, 3, 1>(&P_next, 0), 3)
+                                        * T::from_f64(0.5) * h * t2),
+                            )
+                }),
+            );
             if !(all_finite(&momentum_next)) {
                 return Err(
                     StepCause::NotFinite {
@@ -321,7 +340,9 @@ pub mod kirchhoff_body {
                 );
             }
             state.G = G_moved;
-            state.momentum = SpatialImpulse(momentum_next);
+            state.place_rest = G_rest;
+            state.momentum = CarriedImpulse(momentum_next);
+            state.momentum_rest = momentum_rest;
             state.node += 1;
             work.search.remember(state.node - 1, &found);
             Ok(())
@@ -657,6 +678,8 @@ pub mod kirchhoff_body {
             KirchhoffBodyState {
                 G: self.G.over(change),
                 momentum: self.momentum.over(change),
+                place_rest: self.place_rest.over(change),
+                momentum_rest: self.momentum_rest.over(change),
                 node: self.node,
             }
         }
@@ -800,8 +823,8 @@ pub mod kirchhoff_body {
         /// What the step of size `h` from one state to the next leaves of its equations: the
         /// momentum that is carried to the second state, less the one that the motion between
         /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of: those of a velocity are
-        /// the two elements it is made from, as they are stored.
+        /// motion apart, each with the size of the terms it is made of: those of a spatial
+        /// velocity are the two elements it is made from, as they are stored.
         pub fn residual(
             &self,
             before: &KirchhoffBodyState<T>,
@@ -809,8 +832,10 @@ pub mod kirchhoff_body {
             h: T,
         ) -> [Residual; 2] {
             let KirchhoffBodyParameters { J, M, D, b, Z, .. } = self.parameters;
-            let V_matrix = before.G.body_velocity(&after.G).matrix();
-            let G = before.G.matrix();
+            let V_matrix = before
+                .G
+                .velocity_between(&before.place_rest, &after.G, &after.place_rest)
+                .matrix();
             let G_next = after.G.matrix();
             let P_next = G_next.tr_mul(&Z);
             let t1 = h.powi(-1);
@@ -826,9 +851,6 @@ pub mod kirchhoff_body {
             let t11 = (D.tr_mul(&D)).trace().sqrt();
             let t12 = T::from_f64(0.5) * (h * h).sqrt() * b.dot(&b).sqrt()
                 * P_next.dot(&P_next).sqrt();
-            let t13 = motion_translation(&G);
-            let t14 = motion_translation(&G_next);
-            let t15 = t13.dot(&t13).sqrt() + t14.dot(&t14).sqrt();
             let _ = h;
             [
                 {
@@ -859,16 +881,7 @@ pub mod kirchhoff_body {
                                 + T::from_f64(0.25) * t7 * t8 * t10 * t9 * t10
                                 + T::from_f64(0.5) * t7 * t11 * t9 * t9 * t10
                                 + T::from_f64(2.0) * t7 * (J * J).trace().sqrt() * t9
-                                + t7 * t9 * t11 * t9 * t10 + t7 * t9 * t11 * t10 + t12
-                                + T::from_f64(0.25) * t7
-                                    * (t8 * t9 * t15 * t9 * t10 + t8 * t9 * t10 * t9 * t15)
-                                + T::from_f64(0.25) * t7
-                                    * (t8 * t15 * t9 * t10 + t8 * t10 * t9 * t15)
-                                + T::from_f64(0.5) * t7 * t11 * t9 * t9 * t15
-                                + t7 * t9 * t11 * t9 * t15 + t7 * t9 * t11 * t15)
-                                .magnitude()
-                            + (length(&after.G.translation)
-                                * length(&rows_from::<T, 6, 3, 1>(&after.momentum.0, 3)))
+                                + t7 * t9 * t11 * t9 * t10 + t7 * t9 * t11 * t10 + t12)
                                 .magnitude(),
                     }
                 },
@@ -898,11 +911,7 @@ pub mod kirchhoff_body {
                                 + T::from_f64(0.5) * t7 * t11 * t9
                                 + T::from_f64(0.25) * t7 * t9 * t8 * t9 * t10
                                 + T::from_f64(0.25) * t7 * t9 * t8 * t10
-                                + T::from_f64(0.5) * t7 * t9 * t11 * t9 + t12
-                                + T::from_f64(0.25) * t7 * t8 * t9 * t15
-                                + T::from_f64(0.25) * t7 * t8 * t15
-                                + T::from_f64(0.25) * t7 * t9 * t8 * t9 * t15
-                                + T::from_f64(0.25) * t7 * t9 * t8 * t15)
+                                + T::from_f64(0.5) * t7 * t9 * t11 * t9 + t12)
                                 .magnitude(),
                     }
                 },
@@ -1028,7 +1037,10 @@ pub mod kirchhoff_body {
             after: &KirchhoffBodyState<T>,
         ) -> T {
             let KirchhoffBodyParameters { J, M, D, b, Z, .. } = self.parameters;
-            let V_matrix = before.G.body_velocity(&after.G).matrix();
+            let V_matrix = before
+                .G
+                .velocity_between(&before.place_rest, &after.G, &after.place_rest)
+                .matrix();
             let G = before.G.matrix();
             let P = G.tr_mul(&Z);
             let G_next = after.G.matrix();

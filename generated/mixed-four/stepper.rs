@@ -109,17 +109,21 @@ pub mod mixed_four {
         /// Its momentum at node 0.
         pub momentum_X: FieldMomentum<3, 1, T>,
     }
-    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame (of a rigid motion about the body's own origin), advected quantities by their value carried back to the identity, so that roundoff does not accumulate. Places and their momenta are kept in two numbers, the rest below the rounding of the other.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct MixedFourState<T = f64> {
         R: Rotation<T>,
         momentum_R: SpatialMomentum<T>,
         G: RigidMotion<T>,
-        momentum_G: SpatialImpulse<T>,
+        momentum_G: CarriedImpulse<T>,
+        place_rest_G: SMatrix<T, 3, 1>,
+        momentum_rest_G: SVector<T, 6>,
         q: UnitQuaternion<T>,
         momentum_q: SpatialMomentum<T>,
         X: Additive<3, 1, T>,
         momentum_X: FieldMomentum<3, 1, T>,
+        place_rest_X: SMatrix<T, 3, 1>,
+        momentum_rest_X: SMatrix<T, 3, 1>,
         node: u64,
     }
     impl<T: Real> MixedFourState<T> {
@@ -141,7 +145,7 @@ pub mod mixed_four {
         }
         /// The momentum at this node, in the space frame.
         pub fn spatial_momentum_G(&self) -> SpatialImpulse<T> {
-            self.momentum_G
+            self.momentum_G.to_space(&self.G)
         }
         /// The momentum at this node, in the body frame.
         pub fn body_momentum_G(&self) -> BodyImpulse<T> {
@@ -226,11 +230,15 @@ pub mod mixed_four {
                 R: initial.R,
                 momentum_R: initial.body_momentum_R.to_space(&initial.R),
                 G: initial.G,
-                momentum_G: initial.body_momentum_G.to_space(&initial.G),
+                momentum_G: initial.body_momentum_G.carried(&initial.G),
+                place_rest_G: SMatrix::zeros(),
+                momentum_rest_G: SMatrix::zeros(),
                 q: initial.q,
                 momentum_q: initial.body_momentum_q.to_space(&initial.q),
                 X: initial.X,
                 momentum_X: initial.momentum_X,
+                place_rest_X: SMatrix::zeros(),
+                momentum_rest_X: SMatrix::zeros(),
                 node: 0,
             })
         }
@@ -500,9 +508,10 @@ pub mod mixed_four {
             let solved_4 = found_4.element;
             let ΔX_matrix = solved_4[0].matrix();
             let R_moved = state.R * V;
-            let G_moved = state.G * solved_2[0];
+            let G_velocity = solved_2[0];
+            let (G_moved, G_rest) = state.G.moved(&G_velocity, &state.place_rest_G);
             let q_moved = state.q * Y;
-            let X_moved = state.X + solved_4[0];
+            let (X_moved, X_rest) = state.X.moved(&(solved_4[0]), &state.place_rest_X);
             let R_next = R_moved.matrix();
             let G_next = G_moved.matrix();
             let q_next = q_moved.matrix();
@@ -523,20 +532,29 @@ pub mod mixed_four {
                 + R_next
                     * (p.cross(&(R_next.tr_mul(&X_next) - t2)) * T::from_f64(0.5) * h
                         * k);
-            let momentum_G_next = state.momentum_G.0
-                + state
-                    .G
-                    .covector_to_space(
-                        &(((-(into_rows::<T, 6, 3, 1>(&s.cross(&(t4 * t6)), 0)))
-                            - into_rows::<T, 6, 3, 1>(&(t4 * t6), 3)) * T::from_f64(0.5)
-                            * h * k),
-                    )
-                + G_moved
-                    .covector_to_space(
-                        &(((-(into_rows::<T, 6, 3, 1>(&s.cross(&(t8 * t10)), 0)))
-                            - into_rows::<T, 6, 3, 1>(&(t8 * t10), 3)) * T::from_f64(0.5)
-                            * h * k),
-                    );
+            let (momentum_G_next, momentum_G_rest) = added(
+                &state.momentum_G.0,
+                &state.momentum_rest_G,
+                &({
+                    let leaving = state
+                        .G
+                        .covector_turned(
+                            &(((-(into_rows::<T, 6, 3, 1>(&s.cross(&(t4 * t6)), 0)))
+                                - into_rows::<T, 6, 3, 1>(&(t4 * t6), 3)) * T::from_f64(0.5)
+                                * h * k),
+                        );
+                    leaving
+                        + state
+                            .G
+                            .gained_along(&G_velocity, &(state.momentum_G.0 + leaving))
+                        + G_moved
+                            .covector_turned(
+                                &(((-(into_rows::<T, 6, 3, 1>(&s.cross(&(t8 * t10)), 0)))
+                                    - into_rows::<T, 6, 3, 1>(&(t8 * t10), 3))
+                                    * T::from_f64(0.5) * h * k),
+                            )
+                }),
+            );
             let momentum_q_next = state.momentum_q.0
                 + state
                     .q
@@ -548,10 +566,14 @@ pub mod mixed_four {
                         &(relative_R_q_next.tr_mul(&p.cross(&t2)) * T::from_f64(0.5) * h
                             * k),
                     );
-            let momentum_X_next = state.momentum_X.0 + g * h * m
-                + ((R + R_next) * p * T::from_f64(0.5) + (t3 + t7) * s * T::from_f64(0.5)
-                    - X - X_next + t5 * T::from_f64(0.5) + t9 * T::from_f64(0.5)) * h
-                    * k;
+            let (momentum_X_next, momentum_X_rest) = added(
+                &state.momentum_X.0,
+                &state.momentum_rest_X,
+                &(g * h * m
+                    + ((R + R_next) * p * T::from_f64(0.5)
+                        + (t3 + t7) * s * T::from_f64(0.5) - X - X_next
+                        + t5 * T::from_f64(0.5) + t9 * T::from_f64(0.5)) * h * k),
+            );
             if !(all_finite(&momentum_R_next) && all_finite(&momentum_G_next)
                 && all_finite(&momentum_q_next) && all_finite(&momentum_X_next))
             {
@@ -564,12 +586,16 @@ pub mod mixed_four {
             }
             state.R = R_moved;
             state.G = G_moved;
+            state.place_rest_G = G_rest;
             state.q = q_moved;
             state.X = X_moved;
+            state.place_rest_X = X_rest;
             state.momentum_R = SpatialMomentum(momentum_R_next);
-            state.momentum_G = SpatialImpulse(momentum_G_next);
+            state.momentum_G = CarriedImpulse(momentum_G_next);
+            state.momentum_rest_G = momentum_G_rest;
             state.momentum_q = SpatialMomentum(momentum_q_next);
             state.momentum_X = FieldMomentum(momentum_X_next);
+            state.momentum_rest_X = momentum_X_rest;
             state.node += 1;
             work.search_2.remember(state.node - 1, &found_2);
             work.search_4.remember(state.node - 1, &found_4);
@@ -1188,10 +1214,14 @@ pub mod mixed_four {
                 momentum_R: self.momentum_R.over(change),
                 G: self.G.over(change),
                 momentum_G: self.momentum_G.over(change),
+                place_rest_G: self.place_rest_G.over(change),
+                momentum_rest_G: self.momentum_rest_G.over(change),
                 q: self.q.over(change),
                 momentum_q: self.momentum_q.over(change),
                 X: self.X.over(change),
                 momentum_X: self.momentum_X.over(change),
+                place_rest_X: self.place_rest_X.over(change),
+                momentum_rest_X: self.momentum_rest_X.over(change),
                 node: self.node,
             }
         }
@@ -1342,8 +1372,8 @@ pub mod mixed_four {
         /// What the step of size `h` from one state to the next leaves of its equations: the
         /// momentum that is carried to the second state, less the one that the motion between
         /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of: those of a velocity are
-        /// the two elements it is made from, as they are stored.
+        /// motion apart, each with the size of the terms it is made of: those of a spatial
+        /// velocity are the two elements it is made from, as they are stored.
         pub fn residual(
             &self,
             before: &MixedFourState<T>,
@@ -1353,11 +1383,15 @@ pub mod mixed_four {
             let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = self
                 .parameters;
             let V_matrix = before.R.body_velocity(&after.R).matrix();
-            let W_matrix = before.G.body_velocity(&after.G).matrix();
+            let W_matrix = before
+                .G
+                .velocity_between(&before.place_rest_G, &after.G, &after.place_rest_G)
+                .matrix();
             let Y_matrix = before.q.body_velocity(&after.q).matrix();
-            let ΔX_matrix = before.X.spatial_velocity(&after.X).matrix();
-            let G = before.G.matrix();
-            let X = before.X.matrix();
+            let ΔX_matrix = before
+                .X
+                .velocity_between(&before.place_rest_X, &after.X, &after.place_rest_X)
+                .matrix();
             let R_next = after.R.matrix();
             let G_next = after.G.matrix();
             let q_next = after.q.matrix();
@@ -1386,15 +1420,10 @@ pub mod mixed_four {
             let t21 = s.dot(&s).sqrt();
             let t22 = (t5 * t4).trace().sqrt();
             let t23 = t6.dot(&t6).sqrt();
-            let t24 = (M * M).sqrt();
-            let t25 = motion_translation(&G);
-            let t26 = (Y_matrix.tr_mul(&Y_matrix)).trace().sqrt();
-            let t27 = (diagonal_times(&I, &I)).trace().sqrt();
-            let t28 = (t10 * t10).sqrt();
-            let t29 = (b * b).sqrt();
-            let t30 = t11.sqrt();
-            let t31 = (m * m).sqrt();
-            let t32 = X.dot(&X).sqrt() + t17;
+            let t24 = (Y_matrix.tr_mul(&Y_matrix)).trace().sqrt();
+            let t25 = (diagonal_times(&I, &I)).trace().sqrt();
+            let t26 = t11.sqrt();
+            let t27 = (m * m).sqrt();
             let _ = h;
             [
                 {
@@ -1433,9 +1462,6 @@ pub mod mixed_four {
                         scale: length(&momentum).magnitude()
                             + (T::from_f64(2.0) * t12 * (A * A).trace().sqrt() * t20
                                 + T::from_f64(0.5) * t13 * t14 * t21 * t22 * (t23 + t17))
-                                .magnitude()
-                            + (length(&after.G.translation)
-                                * length(&rows_from::<T, 6, 3, 1>(&after.momentum_G.0, 3)))
                                 .magnitude(),
                     }
                 },
@@ -1454,10 +1480,9 @@ pub mod mixed_four {
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()
-                            + (t12 * t24 * t20 * t8.dot(&t8).sqrt()
+                            + (t12 * (M * M).sqrt() * t20 * t8.dot(&t8).sqrt()
                                 + T::from_f64(0.5) * t13 * t14 * t22
-                                    * (t23 + t22 * t21 + t17)
-                                + t12 * t24 * t20 * (t25.dot(&t25).sqrt() + t23))
+                                    * (t23 + t22 * t21 + t17))
                                 .magnitude(),
                     }
                 },
@@ -1474,9 +1499,9 @@ pub mod mixed_four {
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()
-                            + (T::from_f64(4.0) * t12 * t26 * t27 * t9.dot(&t9).sqrt()
+                            + (T::from_f64(4.0) * t12 * t24 * t25 * t9.dot(&t9).sqrt()
                                 + T::from_f64(0.5) * t13 * t14 * t18 * t15 * t18 * t19
-                                + T::from_f64(4.0) * t12 * t26 * t27)
+                                + T::from_f64(4.0) * t12 * t24 * t25)
                                 .magnitude(),
                     }
                 },
@@ -1493,15 +1518,12 @@ pub mod mixed_four {
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()
-                            + (T::from_f64(4.0) * t28 * t29 * t30 * t30 * t30
-                                + t12 * t31 * t30
-                                + T::from_f64(0.5) * t13 * t31 * g.dot(&g).sqrt()
+                            + (T::from_f64(4.0) * (t10 * t10).sqrt() * (b * b).sqrt()
+                                * t26 * t26 * t26 + t12 * t27 * t26
+                                + T::from_f64(0.5) * t13 * t27 * g.dot(&g).sqrt()
                                 + T::from_f64(0.5) * t13 * t14 * t16 * t15 + t13 * t14 * t17
                                 + T::from_f64(0.5) * t13 * t14 * t22 * t21
-                                + T::from_f64(0.5) * t13 * t14 * t23
-                                + T::from_f64(4.0) * t28 * t29 * (t32 * t30 + t30 * t32)
-                                    * t30 + T::from_f64(4.0) * t28 * t29 * t30 * t30 * t32
-                                + t12 * t31 * t32)
+                                + T::from_f64(0.5) * t13 * t14 * t23)
                                 .magnitude(),
                     }
                 },
@@ -1538,9 +1560,15 @@ pub mod mixed_four {
             let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = self
                 .parameters;
             let V_matrix = before.R.body_velocity(&after.R).matrix();
-            let W_matrix = before.G.body_velocity(&after.G).matrix();
+            let W_matrix = before
+                .G
+                .velocity_between(&before.place_rest_G, &after.G, &after.place_rest_G)
+                .matrix();
             let Y_matrix = before.q.body_velocity(&after.q).matrix();
-            let ΔX_matrix = before.X.spatial_velocity(&after.X).matrix();
+            let ΔX_matrix = before
+                .X
+                .velocity_between(&before.place_rest_X, &after.X, &after.place_rest_X)
+                .matrix();
             let R = before.R.matrix();
             let G = before.G.matrix();
             let q = before.q.matrix();

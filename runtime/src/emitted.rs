@@ -7,9 +7,10 @@ pub use crate::card::{
 };
 pub use crate::domain;
 pub use crate::groups::{
-    Additive, BodyImpulse, BodyMomentum, BodyMomentumMatrix, BodyPlaneImpulse, Coadjoint,
-    FieldMomentum, Group, Linear, Orthogonal, PlaneMotion, RigidMotion, Rotation, SpatialImpulse,
-    SpatialMomentum, SpatialMomentumMatrix, SpatialPlaneImpulse, TurnedRotation, UnitQuaternion,
+    AboutBody, Additive, BodyImpulse, BodyMomentum, BodyMomentumMatrix, BodyPlaneImpulse,
+    CarriedImpulse, CarriedPlaneImpulse, Coadjoint, FieldMomentum, Group, Linear, Orthogonal,
+    Placed, PlaneMotion, RigidMotion, Rotation, SpatialImpulse, SpatialMomentum,
+    SpatialMomentumMatrix, SpatialPlaneImpulse, TurnedRotation, UnitQuaternion, added,
 };
 pub use crate::integrate::Residual;
 pub use crate::integrate::{

@@ -27,10 +27,11 @@ pub mod validate;
 pub use domain::{Contact, Met};
 pub use error::{ParameterError, Problem, StartError, StepCause, StepError};
 pub use groups::{
-    Additive, BodyImpulse, BodyMomentum, BodyMomentumMatrix, BodyPlaneImpulse, Coadjoint,
-    FieldMomentum, Group, Linear, NotARigidMotion, NotARotation, NotInvertible, Orthogonal,
-    PlaneMotion, RigidMotion, Rotation, SpatialImpulse, SpatialMomentum, SpatialMomentumMatrix,
-    SpatialPlaneImpulse, TurnedRotation, UnitQuaternion,
+    AboutBody, Additive, BodyImpulse, BodyMomentum, BodyMomentumMatrix, BodyPlaneImpulse,
+    CarriedImpulse, CarriedPlaneImpulse, Coadjoint, FieldMomentum, Group, Linear, NotARigidMotion,
+    NotARotation, NotInvertible, Orthogonal, Placed, PlaneMotion, RigidMotion, Rotation,
+    SpatialImpulse, SpatialMomentum, SpatialMomentumMatrix, SpatialPlaneImpulse, TurnedRotation,
+    UnitQuaternion,
 };
 pub use scalar::{DoubleDouble, Dual, Lanes, OfScalars, Real};
 pub use solvers::moser_veselov::{MoserVeselovError, Order, Poinsot, PoinsotError};

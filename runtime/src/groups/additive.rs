@@ -1,7 +1,8 @@
 //! Numbers, vectors and matrices under addition: the values of a field at a node, and its increments.
 //! Takes arrays; gives group elements whose product is the sum, and the momenta that belong to them.
 
-use super::{Coadjoint, Coordinate, Group, Part};
+use super::placed::{added, between};
+use super::{Coadjoint, Coordinate, Group, Part, Placed};
 use crate::Real;
 use crate::scalar::of_scalars;
 use nalgebra::SMatrix;
@@ -147,5 +148,25 @@ impl<const R: usize, const C: usize, T: Real> Coadjoint<T> for Additive<R, C, T>
     #[inline]
     fn covector_to_body(&self, spatial: &SMatrix<T, R, C>) -> SMatrix<T, R, C> {
         *spatial
+    }
+}
+
+impl<const R: usize, const C: usize, T: Real> Placed<T> for Additive<R, C, T> {
+    type Way = SMatrix<T, R, C>;
+
+    #[inline(always)]
+    fn way(&self, velocity: &Self) -> SMatrix<T, R, C> {
+        velocity.array
+    }
+
+    #[inline(always)]
+    fn moved(&self, velocity: &Self, rest: &Self::Way) -> (Self, Self::Way) {
+        let (array, rest) = added(&self.array, rest, &velocity.array);
+        (Self { array }, rest)
+    }
+
+    #[inline]
+    fn velocity_between(&self, rest: &Self::Way, next: &Self, next_rest: &Self::Way) -> Self {
+        Self::new(between((&self.array, rest), (&next.array, next_rest)))
     }
 }

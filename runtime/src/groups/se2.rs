@@ -1,8 +1,9 @@
 //! Rigid motions of the plane, the group SE(2), and the momenta they carry.
 //! Takes rotations and translations or homogeneous matrices; gives motions body -> plane.
 
+use super::placed::{added, between};
 use super::se3::NotARigidMotion;
-use super::{Coadjoint, Coordinate, Group, Orthogonal, Part};
+use super::{AboutBody, Coadjoint, Coordinate, Group, Orthogonal, Part, Placed};
 use crate::Real;
 use crate::scalar::{largest, of_scalars};
 use core::ops::Mul;
@@ -205,10 +206,67 @@ impl<T: Real> Coadjoint<T> for PlaneMotion<T> {
     }
 }
 
+impl<T: Real> Placed<T> for PlaneMotion<T> {
+    type Way = Vector2<T>;
+
+    #[inline(always)]
+    fn way(&self, velocity: &Self) -> Vector2<T> {
+        self.rotation.matrix() * velocity.translation
+    }
+
+    #[inline(always)]
+    fn moved(&self, velocity: &Self, rest: &Vector2<T>) -> (Self, Vector2<T>) {
+        let (translation, rest) = added(&self.translation, rest, &self.way(velocity));
+        let rotation = self.rotation * velocity.rotation;
+        (
+            Self {
+                rotation,
+                translation,
+            },
+            rest,
+        )
+    }
+
+    #[inline]
+    fn velocity_between(&self, rest: &Vector2<T>, next: &Self, next_rest: &Vector2<T>) -> Self {
+        let way = between((&self.translation, rest), (&next.translation, next_rest));
+        Self {
+            rotation: self.rotation.body_velocity(&next.rotation),
+            translation: self.rotation.matrix().tr_mul(&way),
+        }
+    }
+}
+
+impl<T: Real> AboutBody<T> for PlaneMotion<T> {
+    #[inline]
+    fn covector_turned(&self, body: &SVector<T, 3>) -> SVector<T, 3> {
+        let linear = self.rotation.matrix() * Vector2::new(body.y, body.z);
+        SVector::<T, 3>::new(body.x, linear.x, linear.y)
+    }
+
+    #[inline]
+    fn covector_turned_back(&self, turned: &SVector<T, 3>) -> SVector<T, 3> {
+        let linear = Vector2::new(turned.y, turned.z);
+        let seen = self.rotation.matrix().tr_mul(&linear);
+        SVector::<T, 3>::new(turned.x, seen.x, seen.y)
+    }
+
+    #[inline]
+    fn gained_along(&self, velocity: &Self, turned: &SVector<T, 3>) -> SVector<T, 3> {
+        let moment = quarter(&self.way(velocity)).dot(&Vector2::new(turned.y, turned.z));
+        SVector::<T, 3>::new(-moment, T::zero(), T::zero())
+    }
+}
+
 /// Angular and linear momentum in body axes, about the body's origin, at a node: one angular and then
 /// two linear components.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyPlaneImpulse<T = f64>(pub SVector<T, 3>);
+
+/// Angular and linear momentum in the axes of the plane, about the body's own origin, at a node: what
+/// a state keeps, since it does not depend on where the body is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CarriedPlaneImpulse<T = f64>(pub SVector<T, 3>);
 
 /// Angular and linear momentum in the axes of the plane, about its origin, at a node; a free motion
 /// keeps both.
@@ -216,9 +274,32 @@ pub struct BodyPlaneImpulse<T = f64>(pub SVector<T, 3>);
 pub struct SpatialPlaneImpulse<T = f64>(pub SVector<T, 3>);
 
 of_scalars!(BodyPlaneImpulse { 0 });
+of_scalars!(CarriedPlaneImpulse { 0 });
 of_scalars!(SpatialPlaneImpulse { 0 });
 
+impl<T: Real> CarriedPlaneImpulse<T> {
+    /// The same impulse about the origin of the plane.
+    #[inline]
+    pub fn to_space(&self, motion: &PlaneMotion<T>) -> SpatialPlaneImpulse<T> {
+        let linear = Vector2::new(self.0.y, self.0.z);
+        let moment = quarter(&motion.translation).dot(&linear);
+        SpatialPlaneImpulse(SVector::<T, 3>::new(self.0.x + moment, linear.x, linear.y))
+    }
+
+    /// The same impulse in body axes.
+    #[inline]
+    pub fn to_body(&self, motion: &PlaneMotion<T>) -> BodyPlaneImpulse<T> {
+        BodyPlaneImpulse(motion.covector_turned_back(&self.0))
+    }
+}
+
 impl<T: Real> BodyPlaneImpulse<T> {
+    /// The same impulse in the axes of the plane, about the body's origin.
+    #[inline]
+    pub fn carried(&self, motion: &PlaneMotion<T>) -> CarriedPlaneImpulse<T> {
+        CarriedPlaneImpulse(motion.covector_turned(&self.0))
+    }
+
     /// The same impulse in the axes of the plane.
     #[inline]
     pub fn to_space(&self, motion: &PlaneMotion<T>) -> SpatialPlaneImpulse<T> {

@@ -1,7 +1,8 @@
 //! Rigid motions of space, the group SE(3), and the momenta they carry.
 //! Takes rotations and translations or homogeneous matrices; gives motions body -> space.
 
-use super::{Coadjoint, Coordinate, Group, NotARotation, Part, Rotation};
+use super::placed::{added, between};
+use super::{AboutBody, Coadjoint, Coordinate, Group, NotARotation, Part, Placed, Rotation};
 use crate::Real;
 use crate::scalar::{largest, of_scalars};
 use core::fmt;
@@ -244,10 +245,78 @@ impl<T: Real> Coadjoint<T> for RigidMotion<T> {
     }
 }
 
+impl<T: Real> Placed<T> for RigidMotion<T> {
+    type Way = Vector3<T>;
+
+    #[inline(always)]
+    fn way(&self, velocity: &Self) -> Vector3<T> {
+        self.rotation.rotate(&velocity.translation)
+    }
+
+    #[inline(always)]
+    fn moved(&self, velocity: &Self, rest: &Vector3<T>) -> (Self, Vector3<T>) {
+        let (translation, rest) = added(&self.translation, rest, &self.way(velocity));
+        let rotation = self.rotation * velocity.rotation;
+        (
+            Self {
+                rotation,
+                translation,
+            },
+            rest,
+        )
+    }
+
+    #[inline]
+    fn velocity_between(&self, rest: &Vector3<T>, next: &Self, next_rest: &Vector3<T>) -> Self {
+        let way = between((&self.translation, rest), (&next.translation, next_rest));
+        Self {
+            rotation: self.rotation.body_velocity(&next.rotation),
+            translation: self.rotation.inverse_rotate(&way),
+        }
+    }
+}
+
+/// The angular and the linear part.
+#[inline(always)]
+fn parts<T: Real>(covector: &SVector<T, 6>) -> (Vector3<T>, Vector3<T>) {
+    let [[a, b, c, d, e, f]] = covector.data.0;
+    (Vector3::new(a, b, c), Vector3::new(d, e, f))
+}
+
+impl<T: Real> AboutBody<T> for RigidMotion<T> {
+    #[inline]
+    fn covector_turned(&self, body: &SVector<T, 6>) -> SVector<T, 6> {
+        let (angular, linear) = parts(body);
+        stacked(
+            self.rotation.rotate(&angular),
+            self.rotation.rotate(&linear),
+        )
+    }
+
+    #[inline]
+    fn covector_turned_back(&self, turned: &SVector<T, 6>) -> SVector<T, 6> {
+        let (angular, linear) = parts(turned);
+        let back = |x| self.rotation.inverse_rotate(x);
+        stacked(back(&angular), back(&linear))
+    }
+
+    #[inline]
+    fn gained_along(&self, velocity: &Self, turned: &SVector<T, 6>) -> SVector<T, 6> {
+        let (_, linear) = parts(turned);
+        let moment = linear.cross(&self.way(velocity));
+        stacked(moment, Vector3::repeat(T::zero()))
+    }
+}
+
 /// Angular and linear momentum in body axes, about the body's origin, at a node: the impulse of
 /// Kirchhoff and Lamb, three angular and then three linear components.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyImpulse<T = f64>(pub SVector<T, 6>);
+
+/// Angular and linear momentum in space axes, about the body's own origin, at a node: what a state
+/// keeps, since it does not depend on where the body is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CarriedImpulse<T = f64>(pub SVector<T, 6>);
 
 /// Angular and linear momentum in space axes, about the origin of space, at a node; a free motion
 /// keeps both.
@@ -255,9 +324,32 @@ pub struct BodyImpulse<T = f64>(pub SVector<T, 6>);
 pub struct SpatialImpulse<T = f64>(pub SVector<T, 6>);
 
 of_scalars!(BodyImpulse { 0 });
+of_scalars!(CarriedImpulse { 0 });
 of_scalars!(SpatialImpulse { 0 });
 
+impl<T: Real> CarriedImpulse<T> {
+    /// The same impulse about the origin of space.
+    #[inline]
+    pub fn to_space(&self, motion: &RigidMotion<T>) -> SpatialImpulse<T> {
+        let (angular, linear) = parts(&self.0);
+        let moment = motion.translation.cross(&linear);
+        SpatialImpulse(stacked(angular + moment, linear))
+    }
+
+    /// The same impulse in body axes.
+    #[inline]
+    pub fn to_body(&self, motion: &RigidMotion<T>) -> BodyImpulse<T> {
+        BodyImpulse(motion.covector_turned_back(&self.0))
+    }
+}
+
 impl<T: Real> BodyImpulse<T> {
+    /// The same impulse in space axes, about the body's origin.
+    #[inline]
+    pub fn carried(&self, motion: &RigidMotion<T>) -> CarriedImpulse<T> {
+        CarriedImpulse(motion.covector_turned(&self.0))
+    }
+
     /// The same impulse in space axes.
     #[inline]
     pub fn to_space(&self, motion: &RigidMotion<T>) -> SpatialImpulse<T> {

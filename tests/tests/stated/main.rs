@@ -28,4 +28,5 @@ mod rounding_of_fields;
 mod singular_starts;
 mod stated_any_dimension;
 mod stated_models;
+mod two_numbers;
 mod unit_quaternions;

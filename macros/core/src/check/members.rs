@@ -49,8 +49,16 @@ const MEMBERS: [&str; 40] = [
     "tangent_at",
 ];
 
-/// Momenta at a node; of several configurations each with the name of its element.
-const MOMENTA: [&str; 3] = ["momentum", "body_momentum", "spatial_momentum"];
+/// Momenta at a node, and what rounding has left of a place and of a
+/// momentum; of several configurations each with the
+/// name of its element.
+const MOMENTA: [&str; 5] = [
+    "momentum",
+    "body_momentum",
+    "spatial_momentum",
+    "place_rest",
+    "momentum_rest",
+];
 
 /// The refusal of a name that a function of the stepper or of its state bears.
 pub(crate) fn name_of_function(name: &str, place: Place) -> Diagnostic {

@@ -34,11 +34,14 @@ pub(super) fn edge_between(d: &Derivation, names: &Names, wanted: &[Expr]) -> Ed
     let parameters = parameter_locals(d, quote!(self.parameters), &all);
     let mut bindings = Bindings::new();
     let mut locals = TokenStream::new();
-    for c in &d.spec.configurations {
+    for (i, c) in d.spec.configurations.iter().enumerate() {
         let (own, name) = (own(d, c.element), tagged(d, names, c.velocity, "matrix"));
-        let value = match c.side {
-            Side::Body => quote!(#before.#own.body_velocity(&#after.#own)),
-            Side::Spatial => quote!(#before.#own.spatial_velocity(&#after.#own)),
+        let value = match (element::rests(d, i), c.side) {
+            (Some([rest, _]), _) => quote! {
+                #before.#own.velocity_between(&#before.#rest, &#after.#own, &#after.#rest)
+            },
+            (None, Side::Body) => quote!(#before.#own.body_velocity(&#after.#own)),
+            (None, Side::Spatial) => quote!(#before.#own.spatial_velocity(&#after.#own)),
         };
         let value = element::matrix(c, value);
         locals.extend(quote!(let #name = #value;));

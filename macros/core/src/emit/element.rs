@@ -225,6 +225,49 @@ pub fn momentum_field(d: &Derivation, i: usize, side: Side) -> proc_macro2::Iden
     super::names::per_configuration(d, base, i)
 }
 
+/// The array that the runtime keeps for a covector.
+pub fn kept_array(d: &Derivation, i: usize) -> TokenStream {
+    let s = &d.letters.symbols;
+    match of(d, i) {
+        Family::Field(shape) => {
+            let (rows, cols) = (size(s, shape.rows), size(s, shape.cols));
+            quote!(SMatrix<T, #rows, #cols>)
+        }
+        _ => covector(d, i),
+    }
+}
+
+/// Whether the state keeps the momentum about the body's own origin, in the axes of space: that of a
+/// rigid motion whose equations are those of the body.
+pub fn about_body(c: &Configuration) -> bool {
+    c.side == Side::Body && c.group.rigid().is_some()
+}
+
+/// Whether the state keeps the place of the element in two numbers. A spatial velocity turns the
+/// place about the origin of space, and its momentum is about that: nothing would be gained there.
+pub fn is_placed(c: &Configuration) -> bool {
+    about_body(c) || c.group.is_additive()
+}
+
+/// The fields of the state with the rests of a place and of a momentum that are kept in two numbers.
+pub fn rests(d: &Derivation, i: usize) -> Option<[proc_macro2::Ident; 2]> {
+    let kept = is_placed(&d.spec.configurations[i]);
+    let names = ["place_rest", "momentum_rest"];
+    kept.then(|| names.map(|base| super::names::per_configuration(d, base, i)))
+}
+
+/// The type of the rest of a place.
+pub fn rest_ty(d: &Derivation, i: usize) -> TokenStream {
+    let s = &d.letters.symbols;
+    let c = &d.spec.configurations[i];
+    let (rows, cols) = match (family(c), c.group.rigid()) {
+        (_, Some(rigid)) => (size(s, rigid.space()), quote!(1)),
+        (Family::Field(shape), None) => (size(s, shape.rows), size(s, shape.cols)),
+        (_, None) => (quote!(0), quote!(0)),
+    };
+    quote!(SMatrix<T, #rows, #cols>)
+}
+
 /// The type of a covector.
 pub fn covector(d: &Derivation, i: usize) -> TokenStream {
     let s = &d.letters.symbols;
@@ -255,6 +298,29 @@ pub fn momentum_name(d: &Derivation, i: usize, side: Side) -> TokenStream {
         Family::Orthogonal(_) | Family::Linear(_) => format_ident!("{frame}MomentumMatrix"),
     };
     quote!(#name)
+}
+
+/// The name of the type of the momentum that the state keeps.
+pub fn kept_name(d: &Derivation, i: usize) -> TokenStream {
+    let c = &d.spec.configurations[i];
+    match (about_body(c), family(c)) {
+        (true, Family::Coordinates(names)) => {
+            let name = format_ident!("Carried{}", names.momentum);
+            quote!(#name)
+        }
+        _ => momentum_name(d, i, Side::Spatial),
+    }
+}
+
+/// That type.
+pub fn kept(d: &Derivation, i: usize) -> TokenStream {
+    match about_body(&d.spec.configurations[i]) {
+        true => {
+            let name = kept_name(d, i);
+            quote!(#name<T>)
+        }
+        false => momentum(d, i, Side::Spatial),
+    }
 }
 
 /// The type of a momentum in the frame of a side.

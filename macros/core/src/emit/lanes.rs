@@ -27,6 +27,7 @@ pub fn over_any_scalar(d: &Derivation, names: &Names) -> TokenStream {
         let given = super::element::momentum_field(d, i, c.side);
         initial.extend([element.clone(), given]);
         state.extend([element, per_configuration(d, "momentum", i)]);
+        state.extend(super::element::rests(d, i).into_iter().flatten());
     }
     for id in kept(d) {
         initial.push(own(d, id));

@@ -5,6 +5,7 @@
 mod between;
 mod blocks;
 mod card;
+mod carried;
 mod discrete_energy;
 mod domain;
 mod element;

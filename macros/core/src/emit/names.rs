@@ -44,26 +44,36 @@ pub fn own(d: &Derivation, id: SymbolId) -> Ident {
 }
 
 /// Types, traits and variants that emitted code calls by a plain name: no model can bear one.
-const TYPES: [&str; 56] = [
-    "KineticWarning",
+pub(super) const TYPES: [&str; 67] = [
+    "AboutBody",
+    "Additive",
     "BodyImpulse",
     "BodyMomentum",
     "BodyMomentumMatrix",
+    "BodyPlaneImpulse",
     "Box",
     "Card",
+    "CarriedImpulse",
+    "CarriedPlaneImpulse",
+    "Coadjoint",
     "Conserved",
     "Dimension",
+    "Edge",
     "Err",
     "Field",
+    "FieldMomentum",
     "Free",
     "Group",
+    "InLanes",
     "Invariant",
     "Kind",
+    "KineticWarning",
     "LeftFactor",
     "LeftFactorError",
     "Linear",
     "Method",
     "MoserVeselovError",
+    "Moving",
     "None",
     "Ok",
     "OpenError",
@@ -71,22 +81,26 @@ const TYPES: [&str; 56] = [
     "Order",
     "Orthogonal",
     "ParameterError",
+    "Placed",
+    "PlaneMotion",
     "Poinsot",
     "QuaternionBody",
     "QuaternionError",
     "Real",
+    "Residual",
     "Result",
     "Reversible",
-    "Residual",
     "RigidMotion",
     "Rotation",
     "SMatrix",
     "SVector",
     "Settings",
+    "SideBySide",
     "Some",
     "SpatialImpulse",
     "SpatialMomentum",
     "SpatialMomentumMatrix",
+    "SpatialPlaneImpulse",
     "StartError",
     "StepCause",
     "StepError",
@@ -94,13 +108,10 @@ const TYPES: [&str; 56] = [
     "Steps",
     "T",
     "Trajectory",
+    "TurnedRotation",
     "UnitQuaternion",
     "Unsolved",
     "Vec",
-    "Edge",
-    "Moving",
-    "SideBySide",
-    "TurnedRotation",
 ];
 
 /// The model, or a configuration or an advected quantity that bears the name of an invariant; names that
@@ -130,28 +141,9 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
     None
 }
 
-/// What emitted functions call by a plain name, and what they name themselves: a local of the
-/// model under such a name would hide it. The test of hygiene states a model with all of them.
-const INSIDE: [&str; 144] = [
-    "KineticWarning",
-    "BodyImpulse",
-    "BodyMomentum",
-    "BodyMomentumMatrix",
-    "Err",
-    "Linear",
-    "None",
-    "Ok",
-    "Orthogonal",
-    "Poinsot",
-    "QuaternionBody",
-    "Residual",
-    "RigidMotion",
-    "Rotation",
-    "Some",
-    "SpatialImpulse",
-    "SpatialMomentum",
-    "SpatialMomentumMatrix",
-    "UnitQuaternion",
+/// What emitted functions call by a plain name besides [`TYPES`], and what they name themselves: a
+/// local of the model under such a name would hide it. The test of hygiene states a model with all of them.
+const INSIDE: [&str; 121] = [
     "all",
     "all_finite",
     "assembled",
@@ -248,10 +240,6 @@ const INSIDE: [&str; 144] = [
     "value",
     "velocity",
     "work",
-    "Edge",
-    "Moving",
-    "SideBySide",
-    "TurnedRotation",
     "advance_side_by_side",
     "anchor",
     "asked",
@@ -279,7 +267,8 @@ const INSIDE: [&str; 144] = [
     "verdict",
 ];
 
-/// The symbol's name as a local variable: its own, unless the emitted code needs that one itself.
+/// The symbol's name as a local variable: its own, unless the emitted code needs that one itself; the
+/// scalar `T` is a type and stands in nobody's way.
 pub fn variable(symbols: &Symbols, id: SymbolId) -> Ident {
     let own = &symbols.get(id).name;
     let mut name = own.clone();
@@ -287,6 +276,7 @@ pub fn variable(symbols: &Symbols, id: SymbolId) -> Ident {
     let sizes = super::sizes::constants(symbols);
     while !is_step
         && (INSIDE.contains(&name.as_str())
+            || name != "T" && TYPES.contains(&name.as_str())
             || sizes.iter().any(|n| *n == name)
             || name != *own && symbols.find(&name).is_some())
     {

@@ -39,8 +39,8 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
                 };
                 for (at, rows) in rigid.rows() {
                     brought.push(expr::taken_rows(s, &b.incoming, at, rows));
-                    // The angular part is carried about the origin of space, with the lever arm.
-                    let arm = (at == 0).then(|| {
+                    // In space the angular part is carried about its origin, with the lever arm.
+                    let arm = (at == 0 && !element::about_body(c)).then(|| {
                         let linear = taken(quote!(#after.#field.0), first, count);
                         let linear = quote!(length(&#linear));
                         quote!(+ (length(&#after.#own.translation) * #linear).magnitude())
@@ -92,8 +92,8 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
             /// What the step of size `h` from one state to the next leaves of its equations: the
             /// momentum that is carried to the second state, less the one that the motion between
             /// them brings there. One part a configuration, angular and linear ones of a rigid
-            /// motion apart, each with the size of the terms it is made of: those of a velocity are
-            /// the two elements it is made from, as they are stored.
+            /// motion apart, each with the size of the terms it is made of: those of a spatial
+            /// velocity are the two elements it is made from, as they are stored.
             pub fn residual(&self, #before: &#state #used, #after: &#state #used, #step: T) -> [Residual; #count] {
                 #parameters
                 #locals
@@ -105,18 +105,19 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
     }
 }
 
-/// For each velocity of what has a place the distances of its two ends from the origin of space, for
-/// each increment the sizes of the two values of its field: what is stored is rounded to them.
+/// For each velocity of what has a place in one number the distances of its two ends from the origin
+/// of space: what is stored is rounded to them.
 fn paths(d: &Derivation) -> Vec<(Letter, Expr)> {
     let s = &d.letters.symbols;
     let list = d.spec.configurations.iter();
-    list.filter_map(|c| {
-        let size = |shift| {
-            let element = expr::letter(s, c.element, shift);
-            Some(expr::length(s, &c.group.place(s, &element)?))
-        };
-        let path = expr::add(size(Shift::HERE)?, size(Shift::NEXT)?);
-        Some((at(c.velocity, Shift::HERE), path))
-    })
-    .collect()
+    list.filter(|c| !element::is_placed(c))
+        .filter_map(|c| {
+            let size = |shift| {
+                let element = expr::letter(s, c.element, shift);
+                Some(expr::length(s, &c.group.place(s, &element)?))
+            };
+            let path = expr::add(size(Shift::HERE)?, size(Shift::NEXT)?);
+            Some((at(c.velocity, Shift::HERE), path))
+        })
+        .collect()
 }

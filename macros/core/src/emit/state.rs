@@ -32,13 +32,18 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
             element::momentum(d, i, Side::Body),
             element::momentum(d, i, Side::Spatial),
         );
+        let rests = element::rests(d, i).map(|[place, of_momentum]| {
+            let (t, covector) = (element::rest_ty(d, i), element::kept_array(d, i));
+            quote!(, #place: #t, #of_momentum: #covector)
+        });
+        let kept = element::kept(d, i);
         if c.group.is_additive() {
             let [start, here] = ["at node 0", "at this node"].map(|at| format!(" `{name}` {at}."));
             given.push(quote! {
                 #[doc = #start] pub #element: #kind,
                 #[doc = " Its momentum at node 0."] pub #spatial: #of_space
             });
-            kept_fields.push(quote!(#element: #kind, #momentum: #of_space));
+            kept_fields.push(quote!(#element: #kind, #momentum: #kept #rests));
             access.push(quote! {
                 #[doc = #here]
                 pub fn #element(&self) -> #kind { self.#element }
@@ -57,13 +62,17 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
                 #[doc = " Momentum at node 0, in the space frame."] pub #spatial: #of_space
             },
         });
-        kept_fields.push(quote!(#element: #kind, #momentum: #of_space));
+        kept_fields.push(quote!(#element: #kind, #momentum: #kept #rests));
+        let seen = match element::about_body(c) {
+            true => quote!(self.#momentum.to_space(&self.#element)),
+            false => quote!(self.#momentum),
+        };
         let doc = format!(" `{name}` at this node: body -> space.");
         access.push(quote! {
             #[doc = #doc]
             pub fn #element(&self) -> #kind { self.#element }
             /// The momentum at this node, in the space frame.
-            pub fn #spatial(&self) -> #of_space { self.#momentum }
+            pub fn #spatial(&self) -> #of_space { #seen }
             /// The momentum at this node, in the body frame.
             pub fn #body(&self) -> #of_body { self.#momentum.to_body(&self.#element) }
         });
@@ -137,7 +146,20 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
             }
         }
     });
-    let state_doc = " What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.";
+    let list = &d.spec.configurations;
+    let place = match list.iter().any(element::is_placed) {
+        true => {
+            " Places and their momenta are kept in two numbers, the rest below the rounding of the other."
+        }
+        false => "",
+    };
+    let about = match list.iter().any(element::about_body) {
+        true => " (of a rigid motion about the body's own origin)",
+        false => "",
+    };
+    let state_doc = format!(
+        " What moves, at one node: comparable, to be saved. The momentum is kept in the space frame{about}, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.{place}"
+    );
     let summary = matches!(d.solve.method, Method::Newton).then(|| {
         quote! {
             impl #bound #work #used {

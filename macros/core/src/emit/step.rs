@@ -1,6 +1,7 @@
 //! `start` and `step`: the momentum of the edge from that of the node, the solve, the new element,
 //! the momentum of the next node.
 
+use super::carried::carried;
 use super::element::{self, Family, family};
 use super::expression::{Bindings, Writer, program};
 use super::items::{self, kept, letters_of, node_locals, parameter_locals, with_transports};
@@ -82,12 +83,15 @@ fn start(d: &Derivation, names: &Names) -> TokenStream {
             validate::finite(#label, initial.#given.0.as_slice())?;
             #skew
         });
-        fields.push(match c.side {
-            Side::Body => {
-                quote!(#element: initial.#element, #momentum: initial.#given.to_space(&initial.#element))
-            }
-            Side::Spatial => quote!(#element: initial.#element, #momentum: initial.#given),
-        });
+        let rests = element::rests(d, i).into_iter().flatten();
+        let value = match c.side {
+            _ if element::about_body(c) => quote!(initial.#given.carried(&initial.#element)),
+            Side::Body => quote!(initial.#given.to_space(&initial.#element)),
+            Side::Spatial => quote!(initial.#given),
+        };
+        fields.push(
+            quote!(#element: initial.#element, #momentum: #value #(, #rests: SMatrix::zeros())*),
+        );
     }
     // References: the inverse element acts on the value given at node 0.
     let mut references = TokenStream::new();
@@ -256,6 +260,9 @@ pub(super) fn node_momentum(d: &Derivation, i: usize, side: Side) -> TokenStream
     match (side, family(c)) {
         (Side::Body, Family::Rotation) => quote!(#element.tr_mul(&state.#momentum.0)),
         (Side::Body, _) => quote!(state.#momentum.to_body(&state.#own).0),
+        (Side::Spatial, _) if element::about_body(c) => {
+            quote!(state.#momentum.to_space(&state.#own).0)
+        }
         (Side::Spatial, _) => element::value(c, quote!(state.#momentum.0)),
     }
 }
@@ -286,9 +293,24 @@ pub(super) fn finish(
             true => Side::Body,
             false => c.side,
         };
+        assignments.extend(quote!(state.#element = #moved;));
+        if let Some([rest, _]) = element::rests(d, i) {
+            let left = tagged(d, names, c.element, "rest");
+            // The momentum of a rigid motion asks for its velocity once more.
+            let velocity = tagged(d, names, c.element, "velocity");
+            let (named, velocity) = match c.group.rigid() {
+                Some(_) => (quote!(let #velocity = #omega;), quote!(#velocity)),
+                None => (TokenStream::new(), quote!((#omega))),
+            };
+            out.extend(quote! {
+                #named
+                let (#moved, #left) = state.#element.moved(&#velocity, &state.#rest);
+            });
+            assignments.extend(quote!(state.#rest = #left;));
+            continue;
+        }
         let end = element::advanced(c, side, quote!(state.#element), omega);
         out.extend(quote!(let #moved = #end;));
-        assignments.extend(quote!(state.#element = #moved;));
     }
     let element = |i: usize| {
         let c = &d.spec.configurations[i];
@@ -323,63 +345,12 @@ pub(super) fn finish(
     let (lets, values) = program(&p, bindings);
     out.extend(lets);
     let mut values = values.into_iter();
-    for (i, (c, u)) in d.spec.configurations.iter().zip(&d.carries).enumerate() {
-        let field = per_configuration(d, "momentum", i);
-        let momentum = names.local(&format!("{field}_next"));
-        let (here, next) = (variable(s, c.element), tagged(d, names, c.element, "next"));
-        let (element, moved) = (own(d, c.element), tagged(d, names, c.element, "moved"));
-        let turned =
-            |element: TokenStream, matrix: &proc_macro2::Ident, value: &Option<TokenStream>| {
-                match family(c) {
-                    Family::Rotation => quote!(+ #matrix * (#value)),
-                    Family::Field(_) => quote!(+ #value),
-                    Family::Orthogonal(_)
-                    | Family::Linear(_)
-                    | Family::Quaternion
-                    | Family::Coordinates(_) => {
-                        quote!(+ #element.covector_to_space(&(#value)))
-                    }
-                }
-            };
-        let plus = |e: &Expr, value: &Option<TokenStream>| (!e.is_zero()).then(|| quote!(+ #value));
-        let old = element::value(c, quote!(state.#field.0));
-        let value = match (c.side, u) {
-            (_, Carry::Through { leave, arrive }) if c.group.is_additive() => {
-                let (left, arrived) = (plus(leave, &values.next()), plus(arrive, &values.next()));
-                quote!(#old #left #arrived)
-            }
-            (Side::Body, Carry::Through { leave, arrive }) => {
-                let (a, b) = (values.next(), values.next());
-                let left = (!leave.is_zero()).then(|| turned(quote!(state.#element), &here, &a));
-                let arrived = (!arrive.is_zero()).then(|| turned(quote!(#moved), &next, &b));
-                quote!(state.#field.0 #left #arrived)
-            }
-            (Side::Body, Carry::Kept(e)) => {
-                let added = plus(e, &values.next());
-                quote! {
-                    #moved.covector_to_space(
-                        &(state.#element.covector_to_body(&state.#field.0) #added)
-                    )
-                }
-            }
-            (Side::Spatial, Carry::Kept(e)) => {
-                let added = plus(e, &values.next());
-                quote!(#old #added)
-            }
-            (Side::Spatial, Carry::Through { leave, arrive }) => {
-                let (left, arrived) = (plus(leave, &values.next()), plus(arrive, &values.next()));
-                quote! {
-                    #moved.covector_to_space(
-                        &state.#element.covector_to_body(&(state.#field.0 #left))
-                    ) #arrived
-                }
-            }
-        };
-        let kind = element::momentum_name(d, i, Side::Spatial);
-        let value = element::array(c, value);
-        out.extend(quote!(let #momentum = #value;));
-        assignments.extend(quote!(state.#field = #kind(#momentum);));
-        finite.push(quote!(all_finite(&#momentum)));
+    for i in 0..d.spec.configurations.len() {
+        let carried = carried(d, names, i, &mut values);
+        let value = carried.value;
+        out.extend(carried.found);
+        assignments.extend(carried.stored);
+        finite.push(quote!(all_finite(&#value)));
     }
     for q in &advanced {
         let (field, next) = (own(d, *q), tagged(d, names, *q, "next"));

@@ -284,3 +284,23 @@ fn a_sum_of_vectors_keeps_its_parentheses_before_a_number() {
     let e = expr::product([t, expr::add(u, v)]);
     assert_eq!(writer.write(&e).to_string(), "(u + v) * t");
 }
+
+#[test]
+fn no_model_bears_a_name_that_emitted_code_imports() {
+    let imports = include_str!("../../../../runtime/src/emitted.rs");
+    let lines = imports.split(';').filter(|s| s.contains("pub use"));
+    let words = lines.flat_map(|line| line.split(|c: char| !c.is_alphanumeric() && c != '_'));
+    let named = |w: &&str| w.starts_with(char::is_uppercase);
+    // Imported for their functions only.
+    let unnamed = ["OfScalars", "One", "Zero"];
+    let mut seen = 0;
+    for word in words.filter(named).filter(|w| !unnamed.contains(w)) {
+        let known = super::names::TYPES.contains(&word);
+        assert!(
+            known,
+            "a model called `{word}` would hide what emitted code imports"
+        );
+        seen += 1;
+    }
+    assert!(seen > 40, "{seen}");
+}

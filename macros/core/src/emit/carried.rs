@@ -1,0 +1,181 @@
+//! The momentum of the next node: what acts on the edge is added to the one of this node.
+//! Takes how each momentum is carried, and the values of what acts; gives the statements.
+
+use super::element::{self, Family, family};
+use super::names::{Names, own, per_configuration, tagged, variable};
+use crate::check::spec::{Configuration, Side};
+use crate::derive::Derivation;
+use crate::derive::carry::Carry;
+use crate::expr::Expr;
+use proc_macro2::{Ident, TokenStream};
+use quote::quote;
+
+/// The statements of one momentum: those that find it, and those that store it.
+pub(super) struct Carried {
+    pub(super) found: TokenStream,
+    pub(super) stored: TokenStream,
+    /// The local with its components.
+    pub(super) value: Ident,
+}
+
+/// The names of one configuration in a step.
+struct Body<'a> {
+    c: &'a Configuration,
+    /// Its field in the state, and the element at the end of the edge.
+    element: Ident,
+    moved: Ident,
+    /// The matrices of both, of a rotation.
+    here: Ident,
+    next: Ident,
+    /// What was solved for, of a rigid motion.
+    velocity: Ident,
+    /// The field of its momentum.
+    field: Ident,
+}
+
+/// The momentum of configuration `i`; `values` gives those of the parts of its carry, in their order.
+pub(super) fn carried(
+    d: &Derivation,
+    names: &Names,
+    i: usize,
+    values: &mut impl Iterator<Item = TokenStream>,
+) -> Carried {
+    let c = &d.spec.configurations[i];
+    let body = Body {
+        c,
+        element: own(d, c.element),
+        moved: tagged(d, names, c.element, "moved"),
+        here: variable(&d.letters.symbols, c.element),
+        next: tagged(d, names, c.element, "next"),
+        velocity: tagged(d, names, c.element, "velocity"),
+        field: per_configuration(d, "momentum", i),
+    };
+    let value = names.local(&format!("{}_next", body.field));
+    let kind = element::kept_name(d, i);
+    let (u, field) = (&d.carries[i], &body.field);
+    let parts: Vec<Option<TokenStream>> = u
+        .parts()
+        .into_iter()
+        .map(|e: &Expr| {
+            let value = values.next();
+            value.filter(|_| !e.is_zero())
+        })
+        .collect();
+    let acts = match element::rests(d, i) {
+        Some([_, rest]) => body.acting(u, &parts).map(|acts| (rest, acts)),
+        None => None,
+    };
+    match acts {
+        Some((rest, acts)) => {
+            let left = names.local(&format!("{field}_rest"));
+            Carried {
+                found: quote! {
+                    let (#value, #left) = added(&state.#field.0, &state.#rest, &(#acts));
+                },
+                stored: quote!(state.#field = #kind(#value); state.#rest = #left;),
+                value,
+            }
+        }
+        None => {
+            let whole = body.whole(u, &parts);
+            Carried {
+                found: quote!(let #value = #whole;),
+                stored: quote!(state.#field = #kind(#value);),
+                value,
+            }
+        }
+    }
+}
+
+impl Body<'_> {
+    /// What is added to a momentum that is kept in two numbers. None where it is not a sum.
+    fn acting(&self, u: &Carry, parts: &[Option<TokenStream>]) -> Option<TokenStream> {
+        let Body {
+            element,
+            moved,
+            field,
+            velocity,
+            ..
+        } = self;
+        let present: Vec<&TokenStream> = parts.iter().flatten().collect();
+        if self.c.group.is_additive() {
+            let acts = quote!(#(#present)+*);
+            return (!present.is_empty()).then(|| element::array(self.c, acts));
+        }
+        let (Carry::Through { .. }, [leave, arrive]) = (u, parts) else {
+            return None;
+        };
+        let leaving = leave.is_some().then(|| quote!(leaving+));
+        let left = leave.is_some().then(|| quote!(+ leaving));
+        let leave = leave
+            .as_ref()
+            .map(|e| quote!(let leaving = state.#element.covector_turned(&(#e));));
+        let arrive = arrive
+            .as_ref()
+            .map(|e| quote!(+ #moved.covector_turned(&(#e))));
+        Some(quote!({
+            #leave
+            #leaving state.#element.gained_along(&#velocity, &(state.#field.0 #left)) #arrive
+        }))
+    }
+
+    /// The momentum of the next node as a whole.
+    fn whole(&self, u: &Carry, parts: &[Option<TokenStream>]) -> TokenStream {
+        let Body {
+            element,
+            moved,
+            field,
+            c,
+            ..
+        } = self;
+        let plus = |e: &Option<TokenStream>| e.as_ref().map(|e| quote!(+ #e));
+        let part = |k: usize| parts.get(k).cloned().flatten();
+        let old = element::value(c, quote!(state.#field.0));
+        let value = match (c.side, u) {
+            _ if c.group.is_additive() => {
+                let (a, b) = (plus(&part(0)), plus(&part(1)));
+                quote!(#old #a #b)
+            }
+            (Side::Body, Carry::Through { .. }) => {
+                let left = part(0).map(|e| self.turned(&quote!(state.#element), &self.here, &e));
+                let arrived = part(1).map(|e| self.turned(&quote!(#moved), &self.next, &e));
+                quote!(state.#field.0 #left #arrived)
+            }
+            (Side::Body, Carry::Kept(_)) => {
+                let added = plus(&part(0));
+                let (there, back) = match element::about_body(c) {
+                    true => (quote!(covector_turned), quote!(covector_turned_back)),
+                    false => (quote!(covector_to_space), quote!(covector_to_body)),
+                };
+                quote!(#moved.#there(&(state.#element.#back(&state.#field.0) #added)))
+            }
+            (Side::Spatial, Carry::Kept(_)) => {
+                let added = plus(&part(0));
+                quote!(#old #added)
+            }
+            (Side::Spatial, Carry::Through { .. }) => {
+                let (left, arrived) = (plus(&part(0)), plus(&part(1)));
+                quote! {
+                    #moved.covector_to_space(
+                        &state.#element.covector_to_body(&(state.#field.0 #left))
+                    ) #arrived
+                }
+            }
+        };
+        element::array(c, value)
+    }
+
+    /// A covector of the body, added in the frame of space.
+    fn turned(&self, element: &TokenStream, matrix: &Ident, value: &TokenStream) -> TokenStream {
+        match family(self.c) {
+            Family::Rotation => quote!(+ #matrix * (#value)),
+            Family::Field(_) => quote!(+ #value),
+            Family::Orthogonal(_)
+            | Family::Linear(_)
+            | Family::Quaternion
+            | Family::Coordinates(_) => {
+                quote!(+ #element.covector_to_space(&(#value)))
+            }
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! Elements that have a place which steps add to: fields and rigid motions. Places and momenta are
+//! kept in two numbers, so that steps of any size add up without loss.
+//! Takes an element, its velocity in the body frame and what rounding has left; gives the same after the edge.
+
+use super::{Coadjoint, Group};
+use crate::Real;
+use nalgebra::SMatrix;
+
+/// A group whose elements have a place: the value of a field, the translation of a rigid motion.
+///
+/// The place of an element is its stored one plus a rest, which is below the rounding of the stored
+/// one. Without it the places of a motion in small steps gather their rounding in one direction, and
+/// with them everything conserved that is a moment about a fixed point.
+pub trait Placed<T>: Group<T> {
+    /// The way from one place to another, in the axes of space.
+    type Way: Copy;
+
+    /// The way along the edge of this velocity (body frame).
+    fn way(&self, velocity: &Self) -> Self::Way;
+
+    /// The element at the end of the edge, `self . velocity`, and the rest of its place, given the
+    /// rest of the place of this one.
+    fn moved(&self, velocity: &Self, rest: &Self::Way) -> (Self, Self::Way);
+
+    /// The velocity (body frame) from this element to the `next` one, given the rests of the places of
+    /// both.
+    fn velocity_between(&self, rest: &Self::Way, next: &Self, next_rest: &Self::Way) -> Self;
+}
+
+/// Momenta of rigid motions about the body's own origin, in the axes of space: `(R a, R l)` of the
+/// body's `(a, l)`. The place does not enter, so that spin is as exact far from the origin of space
+/// as near it.
+pub trait AboutBody<T>: Placed<T> + Coadjoint<T> {
+    /// A covector of the body frame in the axes of space.
+    fn covector_turned(&self, body: &Self::Covector) -> Self::Covector;
+
+    /// A covector in the axes of space, about the body's origin, in the body frame.
+    fn covector_turned_back(&self, turned: &Self::Covector) -> Self::Covector;
+
+    /// What a covector in the axes of space about the body's origin gains when the origin goes along
+    /// the edge of this velocity: `(-way × l, 0)`.
+    fn gained_along(&self, velocity: &Self, turned: &Self::Covector) -> Self::Covector;
+}
+
+/// `value + rest + added` as a value and its rest: the sum in two numbers (Knuth).
+#[inline(always)]
+#[must_use]
+pub fn added<T: Real, const R: usize, const C: usize>(
+    value: &SMatrix<T, R, C>,
+    rest: &SMatrix<T, R, C>,
+    added: &SMatrix<T, R, C>,
+) -> (SMatrix<T, R, C>, SMatrix<T, R, C>) {
+    let added = added + rest;
+    let sum = value + added;
+    let taken = sum - value;
+    let lost = (value - (sum - taken)) + (added - taken);
+    (sum, lost)
+}
+
+/// `(next + next_rest) - (place + rest)`.
+#[inline(always)]
+pub(super) fn between<T: Real, const R: usize, const C: usize>(
+    (place, rest): (&SMatrix<T, R, C>, &SMatrix<T, R, C>),
+    (next, next_rest): (&SMatrix<T, R, C>, &SMatrix<T, R, C>),
+) -> SMatrix<T, R, C> {
+    (next - place) + (next_rest - rest)
+}
