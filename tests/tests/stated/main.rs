@@ -10,6 +10,7 @@ mod blocks;
 mod body_n;
 mod carried_momentum;
 mod carried_references;
+mod coordinates;
 mod dimensions_against_hand;
 mod ellipsoids;
 mod fields;

@@ -66,7 +66,7 @@ fn of_term(x: &Inputs, m: &Motion, term: &Expr) -> Expr {
     let g = expr::here(s, c.element);
     let at_end = expr::shift_time(s, &g, Shift::NEXT.time);
     let along = |g: &Expr, e: &Expr| {
-        let moved = m.variation(s, c, g, &v);
+        let moved = m.variation(x, s, g, &v);
         expr::substitute(s, e, &[(xi, moved)])
     };
     let variation = &x.variations[m.configuration];

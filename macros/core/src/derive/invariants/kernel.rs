@@ -253,6 +253,7 @@ impl<'a> Kernel<'a> {
 fn coordinates(point: &Point, m: &Motion) -> usize {
     match m.sort {
         Sort::Angular | Sort::Linear => 3,
+        Sort::Mixed => 1,
         Sort::Rigid(n) => point.dim(n),
         Sort::Planes(n) => {
             let n = point.dim(n);

@@ -11,6 +11,7 @@ mod homogeneous;
 mod independence;
 mod isospectral;
 mod kernel;
+mod mixed;
 mod motions;
 mod noether;
 pub(crate) mod passage;

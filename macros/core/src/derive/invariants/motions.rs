@@ -3,8 +3,9 @@
 //! Takes the configurations; gives momenta in the letters of a node, and the variation that a motion
 //! is.
 
+use super::mixed::{self, Component};
 use super::{Inputs, length};
-use crate::check::spec::{Configuration, Group, Side};
+use crate::check::spec::{Group, Side};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::{SymbolId, Symbols};
 use crate::expr::{self, Expr};
@@ -29,6 +30,8 @@ pub(super) enum Sort {
     Entries(Dim),
     /// Shifts of other arrays.
     Shifts(Shape),
+    /// One component of a field moved in proportion to another, of any field.
+    Mixed,
 }
 
 /// From where a motion is seen.
@@ -44,6 +47,9 @@ pub(super) enum Way {
     About(SymbolId),
     /// `δQ` is a constant matrix.
     Shift,
+    /// `δX_entry = by`, components of fields: those that such motions add up to are linear maps of all
+    /// fields together.
+    Mixing { entry: u8, by: Component },
 }
 
 /// A motion of one configuration.
@@ -159,6 +165,7 @@ pub(super) fn motions(x: &Inputs) -> Vec<Motion> {
             of_configuration(x, i, way, &mut out);
         }
     }
+    out.extend(mixed::motions(x));
     let s = &x.letters.symbols;
     let places = x.spec.parameters.iter().copied();
     let of_places = |shape| {
@@ -203,7 +210,7 @@ fn of_configuration(x: &Inputs, i: usize, way: Way, out: &mut Vec<Motion>) {
     };
     let m = match way {
         Way::Body => in_body(x, i),
-        Way::Space | Way::Spin | Way::About(_) | Way::Shift => in_space(x, i),
+        Way::Space | Way::Spin | Way::About(_) | Way::Shift | Way::Mixing { .. } => in_space(x, i),
     };
     if let Some(rigid) = c.group.rigid() {
         return of_rigid(x, i, rigid, way, m, &mut push);
@@ -243,12 +250,14 @@ fn of_configuration(x: &Inputs, i: usize, way: Way, out: &mut Vec<Motion>) {
             } else if shape.is_vector() && !shape.is_scalar() {
                 let turning = expr::sub(outer.clone(), expr::transpose(s, outer));
                 push(Sort::Planes(n), turning, Some(lever), false);
-            } else if !shape.is_vector() {
+            } else if !shape.is_vector() && !shape.is_scalar() {
                 of_matrix(s, n, outer, lever, &mut push);
             }
         }
         // By which rows are moved.
-        (Group::Additive(Additive(shape)), Way::Body) if !shape.is_vector() => {
+        (Group::Additive(Additive(shape)), Way::Body)
+            if !shape.is_vector() && !shape.is_scalar() =>
+        {
             let place = expr::here(s, c.element);
             let lever = expr::mul(length(x, &m), length(x, &place));
             let outer = expr::mul(expr::transpose(s, place), m);
@@ -313,7 +322,7 @@ fn of_rigid(
             let scale = expr::add(own, far);
             push(turns, rigid.as_turn(s, value), Some(scale), true);
         }
-        Way::About(_) | Way::Shift => {}
+        Way::About(_) | Way::Shift | Way::Mixing { .. } => {}
     }
 }
 
@@ -351,6 +360,7 @@ impl Motion {
             Sort::Planes(n) => (Shape::square(n), Structure::Skew),
             Sort::Affine(n) | Sort::Entries(n) => (Shape::square(n), Structure::General),
             Sort::Shifts(shape) => (shape, Structure::General),
+            Sort::Mixed => (Shape::SCALAR, Structure::General),
         }
     }
 
@@ -363,19 +373,21 @@ impl Motion {
             | Sort::Rigid(_)
             | Sort::Affine(_)
             | Sort::Entries(_)
-            | Sort::Shifts(_) => gradient,
+            | Sort::Shifts(_)
+            | Sort::Mixed => gradient,
         }
     }
 
     /// The letter of variation `ξ` of the motion along `v`, `Λ^-1 δΛ` on the body side and
     /// `δΛ Λ^-1` on the spatial side, by the element `g`.
-    pub(super) fn variation(&self, s: &Symbols, c: &Configuration, g: &Expr, v: &Expr) -> Expr {
+    pub(super) fn variation(&self, x: &Inputs, s: &Symbols, g: &Expr, v: &Expr) -> Expr {
+        let c = &x.spec.configurations[self.configuration];
         let v = v.clone();
         // In the frame of the motion, and whether that is the frame of ξ.
         let own = match (self.way, c.side) {
             (Way::Body, Side::Body) | (Way::Space, Side::Spatial) => true,
             (Way::Body, Side::Spatial) | (Way::Space, Side::Body) => false,
-            (Way::Spin | Way::About(_) | Way::Shift, _) => false,
+            (Way::Spin | Way::About(_) | Way::Shift | Way::Mixing { .. }, _) => false,
         };
         let back = || expr::inverse(s, g.clone());
         if let Some(rigid) = c.group.rigid() {
@@ -409,6 +421,16 @@ impl Motion {
                 }
             }
             Group::Additive(Additive(shape)) => match (self.sort, self.way) {
+                (_, Way::Mixing { entry, by }) => {
+                    // At the node of the element.
+                    let time = expr::letters(g).first().map_or(0, |l| l.shift.time);
+                    let field = expr::shift_time(s, &by.field(x), time);
+                    let moved = expr::mul(v, by.of(&field));
+                    match shape.is_scalar() {
+                        true => moved,
+                        false => expr::mul(moved, expr::unit(shape.rows, entry)),
+                    }
+                }
                 (Sort::Linear | Sort::Shifts(_) | Sort::Entries(_), _) => v,
                 (Sort::Angular | Sort::Planes(_), Way::About(p)) => {
                     let arm = expr::sub(g.clone(), expr::here(s, p));

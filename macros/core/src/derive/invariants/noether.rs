@@ -460,6 +460,7 @@ pub(super) fn is_whole(x: &Inputs, terms: &[Term]) -> bool {
             Sort::Entries(_) | Sort::Shifts(_) => group.rigid().is_none(),
             Sort::Angular => group.only_turns(),
             Sort::Linear => group.is_additive(),
+            Sort::Mixed => false,
         };
         natural && t.reading.is_whole()
     })

@@ -85,7 +85,7 @@ impl Reading {
 
     /// Whether it gives one number.
     pub(super) fn is_number(&self) -> bool {
-        matches!(self.what, What::Along(_) | What::Plane(..))
+        matches!(self.what, What::Along(_) | What::Plane(..)) || self.sort == Sort::Mixed
     }
 }
 
@@ -113,6 +113,7 @@ pub(super) fn readings(x: &Inputs, sorts: &[Sort]) -> Vec<Reading> {
         Sort::Rigid(_) => 0,
         Sort::Linear => 1,
         Sort::Shifts(_) => 1,
+        Sort::Mixed => 3,
         Sort::Planes(_) | Sort::Affine(_) | Sort::Entries(_) | Sort::Angular => 2,
     };
     let mut sorts = sorts.to_vec();
@@ -131,13 +132,14 @@ pub(super) fn readings(x: &Inputs, sorts: &[Sort]) -> Vec<Reading> {
         let told = |a: &Axis| !matches!(a.value.node(), expr::Node::Unit(..));
         push(String::new(), What::Whole, one());
         let axes = match sort {
-            Sort::Rigid(_) => Vec::new(),
+            Sort::Rigid(_) | Sort::Mixed => Vec::new(),
             Sort::Shifts(shape) if shape.is_vector() && !shape.is_scalar() => axes(x, shape.rows),
             Sort::Shifts(_) => Vec::new(),
             Sort::Angular | Sort::Linear => axes(x, Dim::Fixed(3)),
             Sort::Planes(n) | Sort::Affine(n) | Sort::Entries(n) => axes(x, n),
         };
         match sort {
+            Sort::Mixed => {}
             Sort::Rigid(n) => {
                 let space = motions::rigid_of(x, Shape::vector(n)).map(|rigid| rigid.space());
                 for p in motions::homogeneous(x, space).into_iter().take(AXES) {

@@ -2,13 +2,59 @@
 //! combination of motions; gives the words.
 
 use super::Inputs;
+use super::mixed::Component;
 use super::motions::{Sort, Way};
 use super::noether::{Term, configurations, is_whole};
 use crate::check::spec::Side;
 
+/// How a linear map of components of fields moves each of them in proportion to others.
+fn map(terms: &[Term]) -> Vec<(Component, Component, i64)> {
+    let entries = terms.iter().filter_map(|t| match t.motion.way {
+        Way::Mixing { entry, by } => {
+            let to = Component {
+                configuration: t.motion.configuration,
+                entry,
+            };
+            Some((to, by, t.times))
+        }
+        _ => None,
+    });
+    entries.collect()
+}
+
+/// Whether a linear map of components is a turn: skew in them.
+fn is_turn(map: &[(Component, Component, i64)]) -> bool {
+    let opposite = |(to, by, n): &(Component, Component, i64)| map.contains(&(*by, *to, -n));
+    map.iter().all(opposite)
+}
+
+/// The name of the momentum of a linear map of components: those that it moves.
+fn name_of_map(x: &Inputs, map: &[(Component, Component, i64)]) -> String {
+    let mut moved: Vec<Component> = map.iter().flat_map(|(to, by, _)| [*to, *by]).collect();
+    moved.sort_by_key(|c| (c.configuration, c.entry));
+    moved.dedup();
+    let labels = moved.iter().map(|c| {
+        let field = &x.spec.configurations[c.configuration];
+        let name = &x.letters.symbols.get(field.element).ascii;
+        match field.group.shape().is_scalar() {
+            true => format!("_{name}"),
+            false => format!("_{name}{}", c.entry + 1),
+        }
+    });
+    let stem = match is_turn(map) {
+        true => "momentum_angular",
+        false => "joint_momentum",
+    };
+    stem.to_owned() + &labels.collect::<String>()
+}
+
 /// A name: whose momentum it is, of which bodies, and what is read of it.
 pub(super) fn name(x: &Inputs, terms: &[Term]) -> String {
     let s = &x.letters.symbols;
+    let map = map(terms);
+    if map.len() == terms.len() {
+        return name_of_map(x, &map);
+    }
     let ascii = |id| s.get(id).ascii.clone();
     let set = configurations(terms);
     let all = |f: &dyn Fn(Way) -> bool| terms.iter().all(|t| f(t.motion.way));
@@ -86,6 +132,7 @@ pub(super) fn name(x: &Inputs, terms: &[Term]) -> String {
 
 /// Why it is conserved.
 pub(super) fn reason(x: &Inputs, terms: &[Term], strict: bool) -> String {
+    let map = map(terms);
     let all = |f: &dyn Fn(Way) -> bool| terms.iter().all(|t| f(t.motion.way));
     let whole = is_whole(x, terms);
     let of_space = all(&|w| matches!(w, Way::Space | Way::About(_)));
@@ -100,7 +147,10 @@ pub(super) fn reason(x: &Inputs, terms: &[Term], strict: bool) -> String {
     };
     let turns = |t: &Term| matches!(t.motion.sort, Sort::Angular | Sort::Planes(_));
     let field = |i: &usize| x.spec.configurations[*i].group.is_additive();
+    let mixes = !map.is_empty() && map.len() == terms.len();
     let under = match (of_space, whole || entire && set.iter().any(field), group) {
+        _ if mixes && is_turn(&map) => "rotations that mix the fields",
+        _ if mixes => "a linear map of the fields",
         (true, _, _) if set.iter().any(field) && terms.iter().all(shifts) => "translations",
         (true, true, Some(group)) => group.motions_words(),
         (true, true, None) => "rotations of space",

@@ -1,0 +1,93 @@
+//! Motions that mix the components of fields: each in proportion to each, of which turns of space stated
+//! by its coordinates, turns about any axis and other linear maps are combinations.
+//! Takes the fields; gives such motions and their momenta.
+
+use super::motions::{Motion, Sort, Way, in_space};
+use super::{Inputs, length};
+use crate::expr::shape::{Dim, Shape};
+use crate::expr::{self, Expr};
+
+/// Most components of fields, all together, that are moved in proportion to each other.
+const MIXED: usize = 6;
+
+/// A component of a field, counted from 0; of a number the only one.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) struct Component {
+    pub(super) configuration: usize,
+    pub(super) entry: u8,
+}
+
+/// Every component of a field in proportion to every one, where there are few of them.
+pub(super) fn motions(x: &Inputs) -> Vec<Motion> {
+    let components = components(x);
+    if components.len() < 2 || components.len() > MIXED {
+        return Vec::new();
+    }
+    let number = |c: &Component| {
+        x.spec.configurations[c.configuration]
+            .group
+            .shape()
+            .is_scalar()
+    };
+    // Turns then come out as a paper writes them, x p_y - y p_x.
+    let pairs = components
+        .iter()
+        .flat_map(|by| components.iter().map(move |to| (by, to)));
+    let of_pair = |(by, to): (&Component, &Component)| {
+        let place = by.of(&by.field(x));
+        let momentum = to.of(&in_space(x, to.configuration));
+        Motion {
+            configuration: to.configuration,
+            way: Way::Mixing {
+                entry: to.entry,
+                by: *by,
+            },
+            sort: Sort::Mixed,
+            scale: expr::mul(length(x, &place), length(x, &momentum)),
+            value: expr::mul(place, momentum),
+            scales: None,
+            spanned: false,
+        }
+    };
+    // Vectors turn together in their angular momenta; what mixes them otherwise mostly tells of the
+    // centre of mass, which moves along the total momentum.
+    let told = |(by, to): &(&Component, &Component)| {
+        by.configuration == to.configuration || number(by) || number(to)
+    };
+    pairs.filter(told).map(of_pair).collect()
+}
+
+/// The components of all fields that are numbers or vectors.
+fn components(x: &Inputs) -> Vec<Component> {
+    let list = x.spec.configurations.iter().enumerate();
+    let single = |shape: Shape| shape.is_vector() || shape.is_scalar();
+    let fields = list.filter(|(_, c)| c.group.is_additive() && single(c.group.shape()));
+    let all = fields.flat_map(|(configuration, c)| {
+        let count = match c.group.shape().rows {
+            Dim::Fixed(n) => u8::try_from(n).unwrap_or(0),
+            Dim::Named(_) => 0,
+        };
+        (0..count).map(move |entry| Component {
+            configuration,
+            entry,
+        })
+    });
+    all.collect()
+}
+
+impl Component {
+    /// Its field at the node.
+    pub(super) fn field(self, x: &Inputs) -> Expr {
+        let c = &x.spec.configurations[self.configuration];
+        expr::here(&x.letters.symbols, c.element)
+    }
+
+    /// Its value, given that of the field.
+    pub(super) fn of(self, field: &Expr) -> Expr {
+        let shape = field.shape();
+        match shape.is_scalar() {
+            true => field.clone(),
+            false => expr::dot(field.clone(), expr::unit(shape.rows, self.entry)),
+        }
+    }
+}

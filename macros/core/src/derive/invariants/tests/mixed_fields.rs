@@ -1,0 +1,87 @@
+//! Symmetries that mix the components of fields: turns of space stated by its coordinates, turns about
+//! a skew axis, hyperbolic turns, each with a statement that breaks it.
+
+use super::{Family, derive};
+use crate::print::{Format, Style};
+
+/// Names and formulas of the Noether momenta.
+fn momenta(text: &str) -> Vec<(String, String)> {
+    let d = derive(text);
+    let own = d.invariants.iter().filter(|v| v.family == Family::Noether);
+    let shown = own.map(|v| {
+        let value = v.value.as_ref().expect("a formula");
+        (
+            v.name.clone(),
+            crate::print::expression(value, &d.letters.symbols, &Style::new("k"), Format::Text),
+        )
+    });
+    shown.collect()
+}
+
+fn names(text: &str) -> Vec<String> {
+    momenta(text).into_iter().map(|(name, _)| name).collect()
+}
+
+/// A particle in a potential of its three coordinates.
+fn coordinates(potential: &str) -> String {
+    format!(
+        "model Particle {{
+            param m, k: Real; field x, y, z: Real;
+            lagrangian = m*((next(x) - x)^2 + (next(y) - y)^2 + (next(z) - z)^2)/(2*h) - h*k*{potential};
+        }}"
+    )
+}
+
+#[test]
+fn an_angular_momentum_is_found_in_coordinates() {
+    let turns = ["xy", "xz", "yz"].map(|pair| {
+        let (a, b) = pair.split_at(1);
+        format!("momentum_angular_{a}_{b}")
+    });
+    assert_eq!(names(&coordinates("1/sqrt(x^2 + y^2 + z^2)")), turns);
+    assert_eq!(names(&coordinates("(x^2 + y^2)^2*z^2")), turns[..1]);
+    assert_eq!(names(&coordinates("(x^2 + 2*y^2)^2*z^2")), [""; 0]);
+    let first = &momenta(&coordinates("(x^2 + y^2)^2*z^2"))[0].1;
+    assert_eq!(first, "x_k p_{2,k} - y_k p_{1,k}");
+}
+
+#[test]
+fn vectors_and_numbers_turn_together() {
+    let text = |square: &str| {
+        format!(
+            "model Particle {{
+                param m, k: Real; field X: Vec<2>; field z: Real; let V = next(X) - X;
+                lagrangian = m*(dot(V, V) + (next(z) - z)^2)/(2*h) - h*k*({square})^2;
+            }}"
+        )
+    };
+    let all = names(&text("dot(X, X) + z^2"));
+    assert_eq!(all.len(), 3, "{all:?}");
+    assert_eq!(names(&text("dot(X, X) + 3*z^2")), ["momentum_X_angular"]);
+}
+
+#[test]
+fn a_turn_about_a_skew_axis_is_found() {
+    let text = |last: &str| {
+        format!(
+            "model Particle {{
+                param m, k: Real; field X: Vec<3>; let V = next(X) - X; let s = X[1] + X[2] + {last};
+                lagrangian = m*dot(V, V)/(2*h) - h*k*dot(X, X)^2 - h*s^4;
+            }}"
+        )
+    };
+    assert_eq!(names(&text("X[3]")), ["momentum_angular_X1_X2_X3"]);
+    assert_eq!(names(&text("2*X[3]")), ["momentum_angular_X1_X2_X3"]);
+    assert_eq!(names(&text("X[3]^2")), [""; 0]);
+}
+
+#[test]
+fn linear_maps_that_are_no_turns_are_found_and_total_differences() {
+    let text = "model Particle { param m, k: Real; field x, y: Real;
+        lagrangian = m*(next(x) - x)*(next(y) - y)/h - h*k*(x*y)^2; }";
+    assert_eq!(names(text), ["joint_momentum_x_y"]);
+    let field = "model Particle { param m, k, f: Real; field x, y: Real;
+        lagrangian = m*((next(x) - x)^2 + (next(y) - y)^2)/(2*h) + f*x*(next(y) - y) + f*(next(x) - x)*(next(y) - y)/2
+            - h*k*(x^2 + y^2)^2; }";
+    assert_eq!(names(field), ["momentum_angular_x_y"]);
+}
