@@ -44,17 +44,13 @@ pub fn own(d: &Derivation, id: SymbolId) -> Ident {
 }
 
 /// Types, traits and variants that emitted code calls by a plain name: no model can bear one.
-pub(super) const TYPES: [&str; 67] = [
+const TYPES: [&str; 59] = [
     "AboutBody",
     "Additive",
-    "BodyImpulse",
     "BodyMomentum",
     "BodyMomentumMatrix",
-    "BodyPlaneImpulse",
     "Box",
     "Card",
-    "CarriedImpulse",
-    "CarriedPlaneImpulse",
     "Coadjoint",
     "Conserved",
     "Dimension",
@@ -82,7 +78,6 @@ pub(super) const TYPES: [&str; 67] = [
     "Orthogonal",
     "ParameterError",
     "Placed",
-    "PlaneMotion",
     "Poinsot",
     "QuaternionBody",
     "QuaternionError",
@@ -90,17 +85,14 @@ pub(super) const TYPES: [&str; 67] = [
     "Residual",
     "Result",
     "Reversible",
-    "RigidMotion",
     "Rotation",
     "SMatrix",
     "SVector",
     "Settings",
     "SideBySide",
     "Some",
-    "SpatialImpulse",
     "SpatialMomentum",
     "SpatialMomentumMatrix",
-    "SpatialPlaneImpulse",
     "StartError",
     "StepCause",
     "StepError",
@@ -114,12 +106,31 @@ pub(super) const TYPES: [&str; 67] = [
     "Vec",
 ];
 
+/// Whether emitted code calls a type or a trait by this name: one of [`TYPES`], or of a group's own.
+pub(super) fn is_a_type(name: &str) -> bool {
+    if !name.starts_with(|c: char| c.is_ascii_uppercase()) {
+        return false;
+    }
+    let of_groups = crate::groups::TABLE.iter().any(|line| {
+        let size = crate::expr::shape::Dim::Fixed(line.size.unwrap_or(3));
+        match (line.group)(size).kept() {
+            crate::groups::Kept::Coordinates(own) => {
+                let frames = ["Body", "Spatial", "Carried"];
+                let momenta = frames.map(|frame| format!("{frame}{}", own.momentum));
+                own.element == name || momenta.iter().any(|m| m == name)
+            }
+            _ => false,
+        }
+    });
+    of_groups || TYPES.contains(&name)
+}
+
 /// The model, or a configuration or an advected quantity that bears the name of an invariant; names that
 /// every model's stepper needs are refused where they are declared. Parameters and velocities are free: they become fields and locals only.
 pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
     let spec = &d.spec;
     let model = spec.name.as_str();
-    if TYPES.contains(&model) {
+    if is_a_type(model) {
         let message = format!("`{model}` is a name that emitted steppers use for something else");
         return Some(
             Diagnostic::new(spec.name_place, message)
@@ -276,7 +287,7 @@ pub fn variable(symbols: &Symbols, id: SymbolId) -> Ident {
     let sizes = super::sizes::constants(symbols);
     while !is_step
         && (INSIDE.contains(&name.as_str())
-            || name != "T" && TYPES.contains(&name.as_str())
+            || name != "T" && is_a_type(&name)
             || sizes.iter().any(|n| *n == name)
             || name != *own && symbols.find(&name).is_some())
     {
