@@ -30,7 +30,7 @@ use std::cell::{Cell, RefCell};
 
 /// Work allowed for one model, in products of terms. A model of the gallery needs a few
 /// thousand; the bound keeps any input of 10 kB below two seconds.
-const WORK_LIMIT: u64 = 150_000;
+const WORK_LIMIT: u64 = 450_000;
 
 /// Nodes evaluated at exact points for one model; beyond it only normal forms decide.
 const EVALUATION_LIMIT: u64 = 300_000;
