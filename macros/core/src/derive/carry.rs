@@ -29,6 +29,10 @@ pub enum Carry {
         leave: Expr,
         /// What acts at its end.
         arrive: Expr,
+        /// Of a rigid motion seen from its body: whether its linear momentum is along its way, as that
+        /// of a body about its centre of mass is. The moment of the way is then nothing, which would
+        /// come out as the rounding of two long vectors.
+        straight: bool,
     },
 }
 
@@ -37,7 +41,7 @@ impl Carry {
     pub fn parts(&self) -> Vec<&Expr> {
         match self {
             Carry::Kept(added) => vec![added],
-            Carry::Through { leave, arrive } => vec![leave, arrive],
+            Carry::Through { leave, arrive, .. } => vec![leave, arrive],
         }
     }
 
@@ -106,6 +110,7 @@ impl Work<'_> {
         let through = Carry::Through {
             leave: expr::neg(b.node_out.clone()),
             arrive: b.node_in.clone(),
+            straight: self.is_straight(c, b),
         };
         // What is free of velocities is a force, and of the step's own size.
         match (c.side, &b.increment) {
@@ -142,7 +147,12 @@ impl Work<'_> {
     /// What acts at the ends of the edge, in the form that rounds least: what is divided by the step
     /// may cancel in it.
     fn rounded_least(&self, i: usize, c: &Configuration, carry: Carry) -> Carry {
-        let Carry::Through { leave, arrive } = carry else {
+        let Carry::Through {
+            leave,
+            arrive,
+            straight,
+        } = carry
+        else {
             return carry;
         };
         let v = &self.inputs.variations[i];
@@ -163,7 +173,19 @@ impl Work<'_> {
         Carry::Through {
             leave: least(leave, Shift::HERE.time),
             arrive: least(arrive, Shift::NEXT.time),
+            straight,
         }
+    }
+
+    /// Whether the linear momentum that a velocity brings is along the way, in body axes.
+    fn is_straight(&self, c: &Configuration, b: &Balance) -> bool {
+        let s = self.symbols;
+        let Some(rigid) = c.group.rigid().filter(|_| c.side == Side::Body) else {
+            return false;
+        };
+        let way = expr::column(s, &expr::here(s, c.velocity));
+        let moment = rigid.moment(s, way, rigid.linear(s, &b.edge_out));
+        self.algebra.is_zero(&moment)
     }
 
     fn rounding(&self) -> Rounding<'_> {

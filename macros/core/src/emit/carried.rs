@@ -102,21 +102,27 @@ impl Body<'_> {
             let acts = quote!(#(#present)+*);
             return (!present.is_empty()).then(|| element::array(self.c, acts));
         }
-        let (Carry::Through { .. }, [leave, arrive]) = (u, parts) else {
+        let (Carry::Through { straight, .. }, [leave, arrive]) = (u, parts) else {
             return None;
         };
-        let leaving = leave.is_some().then(|| quote!(leaving+));
-        let left = leave.is_some().then(|| quote!(+ leaving));
-        let leave = leave
+        let left = leave.is_some().then(|| quote!(leaving));
+        let gained = (!straight).then(|| {
+            let left = left.clone().map(|left| quote!(+ #left));
+            quote!(state.#element.gained_along(&#velocity, &(state.#field.0 #left)))
+        });
+        let arrived = arrive
+            .as_ref()
+            .map(|e| quote!(#moved.covector_turned(&(#e))));
+        let all: Vec<TokenStream> = [left, gained, arrived].into_iter().flatten().collect();
+        let leaving = leave
             .as_ref()
             .map(|e| quote!(let leaving = state.#element.covector_turned(&(#e));));
-        let arrive = arrive
-            .as_ref()
-            .map(|e| quote!(+ #moved.covector_turned(&(#e))));
-        Some(quote!({
-            #leave
-            #leaving state.#element.gained_along(&#velocity, &(state.#field.0 #left)) #arrive
-        }))
+        let acts = quote!(#(#all)+*);
+        let acts = match leaving {
+            Some(leaving) => quote!({ #leaving #acts }),
+            None => acts,
+        };
+        (!all.is_empty()).then_some(acts)
     }
 
     /// The momentum of the next node as a whole.

@@ -4,6 +4,7 @@
 use super::sizes::size;
 use crate::check::spec::{Configuration, Side};
 use crate::derive::Derivation;
+use crate::derive::carry::Carry;
 use crate::expr::shape::Dim;
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -241,6 +242,11 @@ pub fn kept_array(d: &Derivation, i: usize) -> TokenStream {
 /// rigid motion whose equations are those of the body.
 pub fn about_body(c: &Configuration) -> bool {
     c.side == Side::Body && c.group.rigid().is_some()
+}
+
+/// Whether the linear momentum of a rigid motion is along its way, so that it has no moment on it.
+pub fn is_straight(d: &Derivation, i: usize) -> bool {
+    matches!(d.carries[i], Carry::Through { straight: true, .. })
 }
 
 /// Whether the state keeps the place of the element in two numbers. A spatial velocity turns the

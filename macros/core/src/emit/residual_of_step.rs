@@ -40,10 +40,20 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
                 for (at, rows) in rigid.rows() {
                     brought.push(expr::taken_rows(s, &b.incoming, at, rows));
                     // In space the angular part is carried about its origin, with the lever arm.
-                    let arm = (at == 0 && !element::about_body(c)).then(|| {
+                    // In the body it gains the moment of its way.
+                    let lever = match element::rests(d, i) {
+                        None => Some(quote!(length(&#after.#own.translation))),
+                        Some(_) if element::is_straight(d, i) => None,
+                        Some([rest, _]) => {
+                            let velocity = quote! {
+                                #before.#own.velocity_between(&#before.#rest, &#after.#own, &#after.#rest)
+                            };
+                            Some(quote!(length(&#before.#own.way(&#velocity))))
+                        }
+                    };
+                    let arm = lever.filter(|_| at == 0).map(|lever| {
                         let linear = taken(quote!(#after.#field.0), first, count);
-                        let linear = quote!(length(&#linear));
-                        quote!(+ (length(&#after.#own.translation) * #linear).magnitude())
+                        quote!(+ (#lever * length(&#linear)).magnitude())
                     });
                     carried.push((taken(momentum.clone(), at, rows), arm));
                 }

@@ -298,9 +298,10 @@ pub(super) fn finish(
             let left = tagged(d, names, c.element, "rest");
             // The momentum of a rigid motion asks for its velocity once more.
             let velocity = tagged(d, names, c.element, "velocity");
-            let (named, velocity) = match c.group.rigid() {
-                Some(_) => (quote!(let #velocity = #omega;), quote!(#velocity)),
-                None => (TokenStream::new(), quote!((#omega))),
+            let asked = c.group.rigid().is_some() && !element::is_straight(d, i);
+            let (named, velocity) = match asked {
+                true => (quote!(let #velocity = #omega;), quote!(#velocity)),
+                false => (TokenStream::new(), quote!((#omega))),
             };
             out.extend(quote! {
                 #named
@@ -323,7 +324,7 @@ pub(super) fn finish(
     };
     // Rotated torques need the matrices of both nodes.
     for (c, u) in d.spec.configurations.iter().zip(&d.carries) {
-        if let (Side::Body, Carry::Through { leave, arrive }, Family::Rotation) =
+        if let (Side::Body, Carry::Through { leave, arrive, .. }, Family::Rotation) =
             (c.side, u, family(c))
         {
             if !leave.is_zero() {
