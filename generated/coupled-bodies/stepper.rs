@@ -233,7 +233,7 @@ pub mod coupled_bodies {
                         })
                     {
                         iteration
-                            .set_tangent(
+                            .set_tangent_times(
                                 &{
                                     let t1 = Ω1 * J1;
                                     let t2 = Ω2 * J2;
@@ -243,20 +243,15 @@ pub mod coupled_bodies {
                                         6,
                                     >(
                                         &[
-                                            [
-                                                (trace_complement(&t1)) * Ω1 * s1,
-                                                k5 * crossing(&Ω2, &d2) * k3,
-                                            ],
-                                            [
-                                                k6 * crossing(&Ω1, &d1) * k3,
-                                                (trace_complement(&t2)) * Ω2 * s1,
-                                            ],
+                                            [trace_complement(&t1), crossing(&k5, &(Ω2 * d2)) * eps],
+                                            [crossing(&k6, &(Ω1 * d1)) * eps, trace_complement(&t2)],
                                         ],
                                     )
                                 },
+                                h,
                             );
                     }
-                    match iteration.correct() {
+                    match iteration.correct_from_left() {
                         newton::Progress::Continue => {}
                         newton::Progress::Solved(
                             solved,

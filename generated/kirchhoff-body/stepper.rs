@@ -174,11 +174,10 @@ pub mod kirchhoff_body {
                     rows_from::<T, 6, 3, 1>(&momenta_six, 0),
                     rows_from::<T, 6, 3, 1>(&momenta_six, 3),
                 ];
-                let s1 = h.powi(-1);
+                let k1 = h.powi(-1);
                 let k2 = (rows_from::<T, 4, 3, 1>(&b, 0))
                     .cross(&(rows_from::<T, 4, 3, 1>(&P, 0))) * T::from_f64(0.5) * h;
                 let k3 = rows_from::<T, 4, 3, 1>(&P, 0) * T::from_f64(0.5) * h * b[3];
-                let k4 = T::from_f64(0.25) * s1;
                 let mut iteration = work.search.begin(state.node, []);
                 loop {
                     let trial = iteration.trial();
@@ -208,21 +207,22 @@ pub mod kirchhoff_body {
                                         + vee(
                                             &(crossing(&V_rot, &(D * t1)) * T::from_f64(0.5)
                                                 + V_rot * J * T::from_f64(2.0)),
-                                        )) * s1 + k2) - momenta[0],
-                                    ((V_rot * t4 + t2 + t3) * s1 + k3) - momenta[1],
+                                        )) * k1 + k2) - momenta[0],
+                                    ((V_rot * t4 + t2 + t3) * k1 + k3) - momenta[1],
                                 ],
                             )
                         })
                     {
                         iteration
-                            .set_tangent(
+                            .set_tangent_times(
                                 &{
-                                    let t1 = V_rot.tr_mul(&V_pos);
-                                    let t2 = t1 + V_pos;
-                                    let t3 = crossing(&V_rot, &(D * t2));
-                                    let t4 = V_rot * J;
-                                    let t5 = trace_complement(&V_rot.transpose());
-                                    let t6 = crossing(&M, &t1) + D.tr_mul(&t5);
+                                    let t1 = V_rot.tr_mul(&V_pos) + V_pos;
+                                    let t2 = M * t1 * T::from_f64(0.25)
+                                        + D.tr_mul(&vee(&V_rot)) * T::from_f64(0.5);
+                                    let t3 = SMatrix::<T, 3, 3>::identity() * V_rot.trace();
+                                    let t4 = t3 - V_rot.transpose();
+                                    let t5 = D.tr_mul(&(t3 - V_rot)) - crossing(&M, &V_pos);
+                                    let t6 = V_rot.transpose() + SMatrix::<T, 3, 3>::identity();
                                     let t7 = V_rot + SMatrix::<T, 3, 3>::identity();
                                     assembled::<
                                         T,
@@ -231,32 +231,26 @@ pub mod kirchhoff_body {
                                     >(
                                         &[
                                             [
-                                                (((trace_complement(&t3)) * T::from_f64(0.25)
-                                                    + SMatrix::<T, 3, 3>::identity() * t4.trace() - t4) * V_rot
-                                                    + crossed(&V_pos, &t6) * T::from_f64(0.25)
-                                                    + t5 * crossing(&D, &t1) * T::from_f64(0.25)) * s1,
-                                                ((crossed(&V_pos, &M) + t5 * D) * t7 * T::from_f64(0.25)
-                                                    - crossed(
-                                                        &(M * t2 * T::from_f64(0.25)
-                                                            + D.tr_mul(&vee(&V_rot)) * T::from_f64(0.5)),
-                                                        &V_rot,
-                                                    )) * s1,
+                                                crossing(&(hat(&t2) - t4 * D * T::from_f64(0.25)), &V_pos)
+                                                    + V_rot * ((-(hat(&(D * t1)) * T::from_f64(0.25))) - J)
+                                                    + crossed(&V_pos, &t5) * T::from_f64(0.25)
+                                                    + SMatrix::<T, 3, 3>::identity()
+                                                        * (T::from_f64(0.25) * (crossing(&V_rot, &(D * t1))).trace()
+                                                            + (V_rot * J).trace()),
+                                                (crossed(&V_pos, &M) + t4 * D) * t6 * T::from_f64(0.25)
+                                                    - hat(&t2),
                                             ],
                                             [
-                                                (t7 * t6 * T::from_f64(0.25)
-                                                    - crossing(
-                                                        &V_rot,
-                                                        &(M * t2 * T::from_f64(0.25)
-                                                            + D.tr_mul(&vee(&V_rot)) * T::from_f64(0.5)),
-                                                    )) * s1,
-                                                t7 * (M * t7) * k4,
+                                                t7 * t5 * T::from_f64(0.25) - hat(&(V_rot * t2)),
+                                                t7 * (M * t6) * T::from_f64(0.25),
                                             ],
                                         ],
                                     )
                                 },
+                                h,
                             );
                     }
-                    match iteration.correct() {
+                    match iteration.correct_from_left() {
                         newton::Progress::Continue => {}
                         newton::Progress::Solved(
                             solved,

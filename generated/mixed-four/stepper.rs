@@ -329,6 +329,7 @@ pub mod mixed_four {
                 let k2 = s.cross(&(s3 * (s4 - X))) * T::from_f64(0.5) * h * k;
                 let k3 = M * s1;
                 let k4 = s3 * (s4 - X + s2 * s) * T::from_f64(0.5) * h * k;
+                let k5 = SMatrix::<T, 3, 3>::identity() * M;
                 let mut iteration = work.search_2.begin(state.node, []);
                 loop {
                     let trial = iteration.trial();
@@ -357,7 +358,7 @@ pub mod mixed_four {
                         })
                     {
                         iteration
-                            .set_tangent(
+                            .set_tangent_times(
                                 &{
                                     let t1 = W_rot * A;
                                     assembled::<
@@ -366,17 +367,15 @@ pub mod mixed_four {
                                         6,
                                     >(
                                         &[
-                                            [
-                                                (trace_complement(&t1)) * W_rot * s1,
-                                                SMatrix::<T, 3, 3>::zeros(),
-                                            ],
-                                            [SMatrix::<T, 3, 3>::zeros(), W_rot * k3],
+                                            [trace_complement(&t1), SMatrix::<T, 3, 3>::zeros()],
+                                            [-(hat(&W_pos) * M), k5],
                                         ],
                                     )
                                 },
+                                h,
                             );
                     }
-                    match iteration.correct() {
+                    match iteration.correct_from_left() {
                         newton::Progress::Continue => {}
                         newton::Progress::Solved(
                             solved,

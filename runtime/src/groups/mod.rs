@@ -81,6 +81,13 @@ pub trait Group<T>: Copy {
     /// coordinates `xi`. Coordinates that are missing count as zero, surplus ones are ignored.
     fn retract(&self, xi: &[T]) -> Self;
 
+    /// The element perturbed on the left (space side) by the coordinates `xi`:
+    /// `(1 + hat(xi) + O(xi^2)) . g`. Missing and surplus ones as in [`Group::retract`].
+    #[inline]
+    fn retract_from_left(&self, xi: &[T]) -> Self {
+        Self::identity().retract(xi).compose(self)
+    }
+
     /// An element near the combination of `element(0)`, `element(1)`, ... with weights that add up to
     /// one, entry by entry: where velocities vary smoothly along a trajectory, their extrapolation.
     /// A group that has no such thing at little cost gives the first element.

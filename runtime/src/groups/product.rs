@@ -36,6 +36,15 @@ impl<T, G: Group<T>, const COUNT: usize> Group<T> for [G; COUNT] {
     }
 
     #[inline(always)]
+    fn retract_from_left(&self, xi: &[T]) -> Self {
+        let mut moved = *self;
+        for (factor, part) in moved.iter_mut().zip(xi.chunks(G::DIMENSION.max(1))) {
+            *factor = factor.retract_from_left(part);
+        }
+        moved
+    }
+
+    #[inline(always)]
     fn combined(weights: &[f64], element: impl Fn(usize) -> Self) -> Self {
         // What makes an array from a function is not inlined where the function is long.
         let mut all = [G::identity(); COUNT];
@@ -114,6 +123,17 @@ macro_rules! product_of {
                     part
                 };
                 ($(self.$index.retract(part($group::DIMENSION)),)+)
+            }
+
+            #[inline]
+            fn retract_from_left(&self, xi: &[T]) -> Self {
+                let mut rest = xi;
+                let mut part = |count: usize| {
+                    let (part, others) = rest.split_at(count.min(rest.len()));
+                    rest = others;
+                    part
+                };
+                ($(self.$index.retract_from_left(part($group::DIMENSION)),)+)
             }
 
             #[inline(always)]

@@ -171,6 +171,18 @@ impl<T: Real> Group<T> for RigidMotion<T> {
             }
     }
 
+    /// `(cay(ω) R, x + ω × x + v)`: to first order the same, and no rotation is made for it.
+    #[inline]
+    fn retract_from_left(&self, xi: &[T]) -> Self {
+        let at = |i: usize| xi.get(i).copied().unwrap_or_else(T::zero);
+        let (angular, linear) = ([at(0), at(1), at(2)], Vector3::new(at(3), at(4), at(5)));
+        let x = &self.translation;
+        Self {
+            rotation: self.rotation.retract_from_left(&angular),
+            translation: x + (Vector3::from(angular).cross(x) + linear),
+        }
+    }
+
     #[inline(always)]
     fn combined(weights: &[f64], element: impl Fn(usize) -> Self) -> Self {
         let mut translation = Vector3::repeat(T::zero());

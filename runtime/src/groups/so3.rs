@@ -346,6 +346,26 @@ impl<T: Real> Mul for Rotation<T> {
     }
 }
 
+/// What `product` makes of a unit quaternion and `1 + xi/2`, made unit.
+#[inline(always)]
+fn turned_by<T: Real>(xi: &[T], product: impl Fn([T; 4]) -> [T; 4]) -> Rotation<T> {
+    let half = T::from_f64(0.5);
+    let at = |i: usize| xi.get(i).map_or_else(T::zero, |x| *x * half);
+    let [x, y, z] = [at(0), at(1), at(2)];
+    let turned = product([T::one(), x, y, z]);
+    // (1 + e)^(-1/2) is 1 - e/2 up to 3 e^2/8: for small corrections, root and quotient are
+    // not waited for. The element itself is unit.
+    let excess = x * x + y * y + z * z;
+    let largest = excess.greatest();
+    if T::ORDER == 0 && largest * largest < T::EPSILON {
+        let scale = T::one() - excess * half;
+        return Rotation {
+            q: times(turned, scale),
+        };
+    }
+    Rotation::normalised(turned)
+}
+
 impl<T: Real> Group<T> for Rotation<T> {
     const DIMENSION: usize = 3;
 
@@ -355,21 +375,13 @@ impl<T: Real> Group<T> for Rotation<T> {
     /// the exponential to second order and needs no trigonometry.
     #[inline]
     fn retract(&self, xi: &[T]) -> Self {
-        let half = T::from_f64(0.5);
-        let at = |i: usize| xi.get(i).map_or_else(T::zero, |x| *x * half);
-        let [x, y, z] = [at(0), at(1), at(2)];
-        let turned = hamilton(self.q, [T::one(), x, y, z]);
-        // (1 + e)^(-1/2) is 1 - e/2 up to 3 e^2/8: for small corrections, root and quotient are
-        // not waited for. The element itself is unit.
-        let excess = x * x + y * y + z * z;
-        let largest = excess.greatest();
-        if T::ORDER == 0 && largest * largest < T::EPSILON {
-            let scale = T::one() - excess * half;
-            return Self {
-                q: times(turned, scale),
-            };
-        }
-        Self::normalised(turned)
+        turned_by(xi, |cayley| hamilton(self.q, cayley))
+    }
+
+    /// `cay(hat(xi)) . self`.
+    #[inline]
+    fn retract_from_left(&self, xi: &[T]) -> Self {
+        turned_by(xi, |cayley| hamilton(cayley, self.q))
     }
 
     /// The combination of the quaternions, made unit.
@@ -382,6 +394,14 @@ impl<T: Real> Group<T> for Rotation<T> {
             for (sum, x) in q.iter_mut().zip(element(i).q) {
                 *sum += x * weight;
             }
+        }
+        // (1 + e)^(-1/2) to second order, as in `turned_by`.
+        let half = T::from_f64(0.5);
+        let excess = norm_squared(q) - T::one();
+        let largest = largest_real_part(excess);
+        if T::ORDER == 0 && largest * largest * largest < T::EPSILON {
+            let scale = T::one() - half * excess + T::from_f64(0.375) * (excess * excess);
+            return Self { q: times(q, scale) };
         }
         Self::normalised(q)
     }

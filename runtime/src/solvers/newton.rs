@@ -101,8 +101,9 @@ pub struct Search<T, G, V, const D: usize> {
     weighed: u32,
     /// Which solutions are principal roots.
     certificate: Certificate<V, D>,
-    /// The tangent factored last.
+    /// The tangent factored last, times `unit`.
     factors: Factors<T, D>,
+    unit: T,
     /// How many steps ago that was.
     age: u32,
     last: Summary,
@@ -133,6 +134,7 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Search<T, 
             weighed: OLDEST_SCALE,
             certificate: Certificate::none(),
             factors: Factors::none(),
+            unit: T::one(),
             age: OLDEST_TANGENT,
             last: Summary {
                 tangents: 0,
@@ -282,7 +284,7 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Search<T, 
 /// ```
 ///
 /// The tangent is the derivative of the residual with respect to the coordinates of
-/// [`Group::retract`] at 0. It is factored once and kept while the corrections shrink fast. Each
+/// [`Group::retract`] at 0, or of [`Group::retract_from_left`]. It is factored once and kept while the corrections shrink fast. Each
 /// equation is judged by the size of its own terms, its scale. A solution is accepted when every
 /// residual is below `16 EPSILON scale` and one more correction is made, or is sure to fall below a
 /// quarter of that with the next one, or has stopped falling below `64 EPSILON scale`. The size of the
@@ -425,7 +427,14 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_,
     /// Takes the tangent at the trial.
     #[inline(always)]
     pub fn set_tangent(&mut self, tangent: &SMatrix<T, D, D>) {
+        self.set_tangent_times(tangent, T::one());
+    }
+
+    /// Takes the tangent at the trial times `unit`, the same number at every step.
+    #[inline(always)]
+    pub fn set_tangent_times(&mut self, tangent: &SMatrix<T, D, D>, unit: T) {
         let search = &mut *self.search;
+        search.unit = unit;
         search.factors.set(tangent, G::DIMENSION);
         let (factors, trial) = (&search.factors, &self.trial);
         search.certificate.note(factors, trial, &self.values);
@@ -436,6 +445,18 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_,
     /// Moves the trial by Newton's correction, or ends.
     #[inline(always)]
     pub fn correct(&mut self) -> Progress<G> {
+        self.correct_by(|trial, step| trial.retract(step))
+    }
+
+    /// The same where the tangent is the derivative along the coordinates of
+    /// [`Group::retract_from_left`].
+    #[inline(always)]
+    pub fn correct_from_left(&mut self) -> Progress<G> {
+        self.correct_by(|trial, step| trial.retract_from_left(step))
+    }
+
+    #[inline(always)]
+    fn correct_by(&mut self, moved: impl Fn(&G, &[T]) -> G) -> Progress<G> {
         if self.polished() {
             return self.solved(self.iteration);
         }
@@ -446,11 +467,12 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_,
         let done = size <= CONVERGED_ROUNDINGS * unit
             || (size <= STAGNATED_ROUNDINGS * unit && size >= 0.5 * self.previous)
             || (T::ORDER == 0 && self.iteration > 0 && foreseen <= POLISHED_ROUNDINGS * unit);
-        let Some(correction) = self.search.factors.solve(&self.residual) else {
+        let right = self.residual * self.search.unit;
+        let Some(correction) = self.search.factors.solve(&right) else {
             return self.failed();
         };
         let step = -correction;
-        self.trial = self.trial.retract(step.as_slice());
+        self.trial = moved(&self.trial, step.as_slice());
         if done {
             return self.solved(self.iteration + 1);
         }

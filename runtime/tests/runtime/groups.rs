@@ -27,6 +27,11 @@ fn conforms<G: Group<f64> + PartialEq>(mut pick: impl FnMut() -> G, apart: impl 
         let xi: Vec<f64> = (0..G::DIMENSION).map(|i| 0.1 + 0.05 * i as f64).collect();
         let moved = a.compose(&one.retract(&xi));
         assert!(apart(&a.retract(&xi), &moved) < ROUNDING);
+        // The other acts on the left, to first order as the group does.
+        assert!(apart(&a.retract_from_left(&[]), &a) < ROUNDING);
+        let little: Vec<f64> = xi.iter().map(|x| 1e-6 * x).collect();
+        let moved_from_left = one.retract(&little).compose(&a);
+        assert!(apart(&a.retract_from_left(&little), &moved_from_left) < 1e-10);
         assert!(a.compose(&b).distance_from_group() < ROUNDING);
         assert!(moved.distance_from_group() < ROUNDING);
     }

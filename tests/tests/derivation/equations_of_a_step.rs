@@ -2,6 +2,7 @@
 //! against the momenta as derived and their directional derivatives. Takes models of every group
 //! of space; a tangent with one block turned fails.
 
+use clebsch_core::check::spec::Side;
 use clebsch_core::derive::parts::{Parts, Velocity};
 use clebsch_core::derive::tangent::Direction;
 use clebsch_core::expr::shape::{Dim, Structure};
@@ -197,7 +198,10 @@ fn worst(source: &str, flaw: fn(Expr) -> Expr) -> [f64; 2] {
         .map(|e| known.apart(&expr::factored(&parts.symbols, e)))
         .collect();
     for e in &written {
-        for change in parts.changes() {
+        for change in [Side::Body, Side::Spatial]
+            .map(|side| parts.changes(side))
+            .concat()
+        {
             let derivative = expr::directional(&parts.symbols, e, &change);
             let collected = expr::collect(&parts.symbols, &derivative);
             let matrix = direction.matrix(&collected);

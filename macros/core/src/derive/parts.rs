@@ -4,7 +4,7 @@
 
 use super::Letters;
 use crate::algebra::Rational;
-use crate::check::spec::{Group, Spec};
+use crate::check::spec::{Group, Side, Spec};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Map, Node, Part, Shift};
@@ -92,35 +92,43 @@ impl Parts {
         all
     }
 
-    /// How the parts move when the velocity is moved from the right along the direction: one list a
-    /// block of three coordinates, in the order of the coordinates of the group.
-    pub fn changes(&self) -> Vec<Vec<(Letter, Expr)>> {
+    /// How the parts move when the velocity is moved along the direction, from the right (the side
+    /// of the body) or from the left: one list a block of three coordinates, in the order of the
+    /// coordinates of the group.
+    pub fn changes(&self, side: Side) -> Vec<Vec<(Letter, Expr)>> {
         let letter = |id: SymbolId| expr::here(&self.symbols, id);
         let along = letter(self.direction);
         let half = |e: Expr| expr::scale(Rational::HALF, e);
+        let turned = |w: SymbolId| match side {
+            Side::Body => expr::mul(letter(w), expr::hat(along.clone())),
+            Side::Spatial => expr::mul(expr::hat(along.clone()), letter(w)),
+        };
         let mut all = Vec::new();
         for v in &self.velocities {
             match *v {
-                Velocity::Rotation(w) => {
-                    all.push(vec![(
-                        at(w),
-                        expr::mul(letter(w), expr::hat(along.clone())),
-                    )]);
-                }
+                Velocity::Rotation(w) => all.push(vec![(at(w), turned(w))]),
                 Velocity::Quaternion(re, im) => {
-                    let turned = expr::add(
-                        expr::mul(letter(re), along.clone()),
-                        expr::cross(letter(im), along.clone()),
-                    );
+                    let across = match side {
+                        Side::Body => expr::cross(letter(im), along.clone()),
+                        Side::Spatial => expr::cross(along.clone(), letter(im)),
+                    };
+                    let turned = expr::add(expr::mul(letter(re), along.clone()), across);
                     let real = expr::neg(half(expr::dot(letter(im), along.clone())));
                     all.push(vec![(at(re), real), (at(im), half(turned))]);
                 }
-                Velocity::Motion(rot, pos) => {
-                    let turn = expr::mul(letter(rot), expr::hat(along.clone()));
-                    let shift = expr::mul(letter(rot), along.clone());
-                    all.push(vec![(at(rot), turn)]);
-                    all.push(vec![(at(pos), shift)]);
-                }
+                Velocity::Motion(rot, pos) => match side {
+                    Side::Body => {
+                        let shift = expr::mul(letter(rot), along.clone());
+                        all.push(vec![(at(rot), turned(rot))]);
+                        all.push(vec![(at(pos), shift)]);
+                    }
+                    // The translation is turned along.
+                    Side::Spatial => {
+                        let carried = expr::mul(expr::hat(along.clone()), letter(pos));
+                        all.push(vec![(at(rot), turned(rot)), (at(pos), carried)]);
+                        all.push(vec![(at(pos), along.clone())]);
+                    }
+                },
             }
         }
         all

@@ -162,7 +162,7 @@ impl Direction<'_> {
     }
 
     /// That of `A hat(u) B`: `(tr(C) - C^T) B^T u` with `C = A B` where `B` is a rotation, and
-    /// `(tr(C) - C) A u` where `A` is one.
+    /// `(tr(C) - C) A u` where `A` is one. Where both are, nothing is turned that need not be.
     fn axial_between(&self, a: &[Expr], linear: &Expr, b: &[Expr]) -> Option<Expr> {
         let Node::Hat(u) = linear.node() else {
             let Node::Sum(terms) = linear.node() else {
@@ -187,9 +187,10 @@ impl Direction<'_> {
             _ => expr::product(word.to_vec()),
         };
         let spur = expr::mul(expr::trace(c.clone()), expr::identity(THREE));
-        let (core, turned) = if b.iter().all(|f| self.is_rotation(f)) {
+        let [before, after] = [a, b].map(|word| word.iter().all(|f| self.is_rotation(f)));
+        let (core, turned) = if after && !(before && a.len() < b.len()) {
             (expr::sub(spur, self.transpose(c)), self.transpose(turn(b)))
-        } else if a.iter().all(|f| self.is_rotation(f)) {
+        } else if before {
             (expr::sub(spur, c), turn(a))
         } else {
             return None;

@@ -41,7 +41,11 @@ pub(super) struct Written {
     pub residual: TokenStream,
     /// The tangent, as the body of a block.
     pub tangent: TokenStream,
-    /// The same two without anything computed before.
+    /// The side from which the velocity is moved in it.
+    pub side: Side,
+    /// Whether it stands times the step.
+    pub times_step: bool,
+    /// The same two, moved from the right and not times the step, without anything computed before.
     pub alone: Alone,
     /// The type of the momenta of the node together, over `T`.
     pub momenta: TokenStream,
@@ -84,16 +88,34 @@ impl Equations<'_> {
             symbols: s,
             letter: parts.direction,
         };
-        let mut blocks: Vec<Expr> = Vec::new();
         let list: Vec<Expr> = list.iter().map(|e| expr::factored(s, e)).collect();
-        for e in &list {
-            for change in parts.changes() {
-                let derivative = expr::directional(s, e, &change);
-                let derivative = expr::collect(s, &derivative);
-                let matrix = expr::factored(s, &direction.matrix(&derivative)?);
-                blocks.push(expr::simpler(s, &matrix));
+        let one = expr::integer(1);
+        let blocks_from = |side: Side, unit: &Expr| {
+            let mut blocks: Vec<Expr> = Vec::new();
+            for e in &list {
+                for change in parts.changes(side) {
+                    let derivative = expr::directional(s, e, &change);
+                    let derivative = expr::mul(unit.clone(), derivative);
+                    let derivative = expr::collect(s, &derivative);
+                    let matrix = expr::factored(s, &direction.matrix(&derivative)?);
+                    blocks.push(expr::simpler(s, &matrix));
+                }
             }
-        }
+            Some(blocks)
+        };
+        let blocks = blocks_from(Side::Body, &one)?;
+        let step = expr::here(s, d.spec.step);
+        // The same tangent otherwise, of which the loop takes the one that is least work.
+        let others = [
+            (Side::Body, true),
+            (Side::Spatial, false),
+            (Side::Spatial, true),
+        ]
+        .into_iter()
+        .filter_map(|(side, times_step)| {
+            let unit = if times_step { &step } else { &one };
+            Some((side, times_step, blocks_from(side, unit)?))
+        });
         let list: Vec<Expr> = list.iter().map(|e| expr::simpler(s, e)).collect();
         let bundle = Bundle::of(d);
         let mut velocities = TokenStream::new();
@@ -175,6 +197,24 @@ impl Equations<'_> {
         };
         let varies = |l| parts.varies(l);
         let mut at_node = schedule::Known::new(s, &varies, "k");
+        let (side, times_step, blocks) = {
+            // What is known before the loop costs little.
+            let cost = |blocks: &[Expr]| {
+                let mut known = schedule::Known::new(s, &varies, "k");
+                let all = list.iter().chain(blocks).map(|e| known.apart(e));
+                let all: Vec<Expr> = all.collect();
+                schedule::work(&schedule::program(&known.symbols, &all, "t"))
+            };
+            let mut least = cost(&blocks);
+            let mut chosen = (Side::Body, false, blocks);
+            for other in others {
+                let own = cost(&other.2);
+                if own < least {
+                    (chosen, least) = (other, own);
+                }
+            }
+            chosen
+        };
         let list: Vec<Expr> = list.iter().map(|e| at_node.apart(e)).collect();
         let blocks: Vec<Expr> = blocks.iter().map(|e| at_node.apart(e)).collect();
         let (names, values): (Vec<_>, Vec<Expr>) = at_node.values.into_iter().unzip();
@@ -208,6 +248,8 @@ impl Equations<'_> {
                 velocities: bound,
                 residual,
                 tangent,
+                side,
+                times_step,
                 alone,
                 momenta: quote!([SVector<T, 3>; #count]),
                 momenta_over: quote!(#mu.map(|part| part.over(change))),
@@ -311,6 +353,8 @@ impl Equations<'_> {
                 velocities: bound,
                 residual,
                 tangent,
+                side: Side::Body,
+                times_step: false,
                 alone,
                 momenta: covectors,
                 momenta_over: bundle.value(&over),

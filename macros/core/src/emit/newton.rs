@@ -210,6 +210,14 @@ impl Together<'_> {
         };
         let of_work = chosen.map(|_| quote!(, work.method));
         let (decided, only_root) = self.convex(bindings);
+        let correct = match equations.side {
+            Side::Body => quote!(correct),
+            Side::Spatial => quote!(correct_from_left),
+        };
+        let set_tangent = match equations.times_step {
+            true => quote!(#newton.set_tangent_times(&{ #tangent_body }, #step);),
+            false => quote!(#newton.set_tangent(&{ #tangent_body });),
+        };
         let solve = quote! {
             #known
             #decided
@@ -221,9 +229,9 @@ impl Together<'_> {
                 }
                 #at_trial
                 if #newton.assess({ #residual_body }) {
-                    #newton.set_tangent(&{ #tangent_body });
+                    #set_tangent
                 }
-                match #newton.correct() {
+                match #newton.#correct() {
                     newton::Progress::Continue => {}
                     newton::Progress::Solved(#solved) if #only_root #newton.is_principal(&#solved.element) => break #solved,
                     #ended => {

@@ -5,8 +5,10 @@ mod chain;
 mod known;
 mod program;
 mod rest;
+mod work;
 
 pub use chain::{Bracketed, associate};
 pub use known::Known;
 pub use program::{Program, program};
 pub use rest::{at_rest, by_imaginary, displaced, divides_twice, is_difference};
+pub use work::work;
