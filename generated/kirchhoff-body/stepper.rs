@@ -876,6 +876,20 @@ pub mod kirchhoff_body {
                                 + T::from_f64(0.5) * t7 * t11 * t9 * t9 * t10
                                 + T::from_f64(2.0) * t7 * (J * J).trace().sqrt() * t9
                                 + t7 * t9 * t11 * t9 * t10 + t7 * t9 * t11 * t10 + t12)
+                                .magnitude()
+                            + (length(
+                                &before
+                                    .G
+                                    .way(
+                                        &before
+                                            .G
+                                            .velocity_between(
+                                                &before.place_rest,
+                                                &after.G,
+                                                &after.place_rest,
+                                            ),
+                                    ),
+                            ) * length(&rows_from::<T, 6, 3, 1>(&after.momentum.0, 3)))
                                 .magnitude(),
                     }
                 },

@@ -507,8 +507,7 @@ pub mod mixed_four {
             let solved_4 = found_4.element;
             let ΔX_matrix = solved_4[0].matrix();
             let R_moved = state.R * V;
-            let G_velocity = solved_2[0];
-            let (G_moved, G_rest) = state.G.moved(&G_velocity, &state.place_rest_G);
+            let (G_moved, G_rest) = state.G.moved(&(solved_2[0]), &state.place_rest_G);
             let q_moved = state.q * Y;
             let (X_moved, X_rest) = state.X.moved(&(solved_4[0]), &state.place_rest_X);
             let R_next = R_moved.matrix();
@@ -543,9 +542,6 @@ pub mod mixed_four {
                                 * h * k),
                         );
                     leaving
-                        + state
-                            .G
-                            .gained_along(&G_velocity, &(state.momentum_G.0 + leaving))
                         + G_moved
                             .covector_turned(
                                 &(((-(into_rows::<T, 6, 3, 1>(&s.cross(&(t8 * t10)), 0)))
