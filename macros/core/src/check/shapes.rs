@@ -113,9 +113,11 @@ pub fn shape(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<(Sha
         name if is_group(name) => group(symbols, k, errors).map(|g| (g.shape(), g.structure())),
         other => {
             let mut e = Diagnostic::new(k.name.place, format!("`{other}` is not a shape"));
-            e = match closest(other, SHAPES.into_iter().chain(groups::families())) {
-                Some(near) => e.help(format!("did you mean `{near}`?")),
-                None => {
+            let near = closest(other, SHAPES.into_iter().chain(groups::families()));
+            e = match (sized(other), near) {
+                (Some(written), _) => e.help(format!("write `{written}`")),
+                (None, Some(near)) => e.help(format!("did you mean `{near}`?")),
+                (None, None) => {
                     e.help("shapes are Real, Vec<n>, Sym<n>, Skew<n>, Diag<n>, Mat<n>, Mat<n, m>")
                 }
             };
@@ -123,6 +125,15 @@ pub fn shape(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<(Sha
             None
         }
     }
+}
+
+/// The shape that a name with its size glued to it means: `Vec3`, `SO3`.
+fn sized(name: &str) -> Option<String> {
+    let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    let size = name.strip_prefix(stem).filter(|n| !n.is_empty())?;
+    let mut known = SHAPES.into_iter().chain(groups::families());
+    let known = stem != "Real" && known.any(|shape| shape == stem);
+    known.then(|| format!("{stem}<{size}>"))
 }
 
 /// The shape and structure of an advected quantity.

@@ -460,3 +460,22 @@ fn definitions_in_a_circle_are_told_as_one() {
     let order = refused("let a = 2*b; let b = m;", "a");
     assert!(order.contains("move `let b = ...;` up"), "{order}");
 }
+
+#[test]
+fn what_papers_write_otherwise_is_told_as_the_language_writes_it() {
+    for (declared, term, said) in [
+        ("param u: Vec3;", "m", "write `Vec<3>`"),
+        ("param u: Sym3;", "m", "write `Sym<3>`"),
+        ("param u: SO3;", "m", "write `SO<3>`"),
+        ("", "|v|", "the length of a vector is `sqrt(dot(X, X))`"),
+        ("", "m/|v|", "the length of a vector is `sqrt(dot(X, X))`"),
+        ("", "dot(dΓ, v)", "`(next(Γ) - Γ)/h`"),
+        ("", "dot(dΓ/dt, v)", "`(next(Γ) - Γ)/h`"),
+        ("", "dot(Γ_dot, v)", "`(next(Γ) - Γ)/h`"),
+    ] {
+        let found = refused(declared, term);
+        assert!(found.contains(said), "{declared} {term}: {found}");
+    }
+    // What does not move has no rate.
+    assert!(!refused("", "dm").contains("next"), "{}", refused("", "dm"));
+}

@@ -299,6 +299,9 @@ fn operand(c: &mut Cursor) -> Parsed {
                 place: start.to(c.last_place()),
             })
         }
+        _ if c.is_punct('|') => Err(c.unexpected("a quantity, a number or `(`").help(
+            "the length of a vector is `sqrt(dot(X, X))`, the magnitude of a number `abs(x)`",
+        )),
         _ => Err(c.unexpected("a quantity, a number or `(`")),
     }
 }

@@ -7,6 +7,7 @@ use crate::diagnostic::{Diagnostic, Place, closest};
 use crate::expr;
 use crate::expr::shape::{Dim, Shape};
 use crate::expr::spelling::skeleton;
+use crate::expr::symbol::{Role, Symbols};
 use crate::syntax::FUNCTIONS;
 
 /// What the functions of the language are called elsewhere.
@@ -30,6 +31,20 @@ const OTHERWISE: [(&str, &str); 13] = [
 pub(super) fn otherwise(name: &str) -> Option<&'static str> {
     let found = OTHERWISE.iter().find(|(other, _)| *other == name);
     found.map(|(_, written)| *written)
+}
+
+/// The quantity whose rate a name is: `dX`, `X_dot`, `Xdot`.
+fn rate_of<'n>(name: &'n str, symbols: &Symbols) -> Option<&'n str> {
+    let moves = |stem: &str| {
+        let role = symbols.find(stem).map(|id| symbols.get(id).role);
+        matches!(role, Some(Role::Element | Role::Advected))
+    };
+    let stems = [
+        name.strip_prefix('d'),
+        name.strip_suffix("_dot"),
+        name.strip_suffix("dot"),
+    ];
+    stems.into_iter().flatten().find(|stem| moves(stem))
 }
 
 impl Elaborator<'_> {
@@ -106,6 +121,10 @@ impl Elaborator<'_> {
         } else if self.unbound.contains(&(n.to_owned(), false)) {
             d = Diagnostic::new(place, format!("`{n}` is used before its `let`"))
                 .help(format!("move `let {n} = ...;` up, before its first use"));
+        } else if let Some(moving) = rate_of(n, &self.names.symbols) {
+            d = d.help(format!(
+                "a Lagrangian of one step has differences for rates: `(next({moving}) - {moving})/h`"
+            ));
         } else if FUNCTIONS.contains(&n) {
             d = Diagnostic::new(place, format!("`{n}` is a function of the language"))
                 .help(format!("write `{n}(...)`"));
