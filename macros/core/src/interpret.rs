@@ -1,6 +1,8 @@
 //! Evaluation of programs on plain numbers: the residual that is emitted, run without a compiler,
 //! for oracles and mutation tests. Matrices are row-major `f64`.
 
+mod functionals;
+
 use crate::check::spec::{Group, Side};
 use crate::derive::Derivation;
 use crate::derive::transport::Transport;
@@ -8,6 +10,8 @@ use crate::expr::shape::{Dim, Structure};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr, Function, Letter, Map, Node, Part, Shift};
 use crate::schedule::{Program, program};
+
+pub use functionals::Asked;
 
 /// A matrix with its rows and columns.
 #[derive(Clone, PartialEq, Debug)]
@@ -123,6 +127,8 @@ pub enum EvalError {
     Shape(String),
     /// A dimension has only a name.
     NamedDimension,
+    /// No function was given for this functional, or none for the derivative asked for.
+    Functional(String),
 }
 
 impl core::fmt::Display for EvalError {
@@ -131,6 +137,7 @@ impl core::fmt::Display for EvalError {
             EvalError::Missing(name) => write!(f, "no value given for {name}"),
             EvalError::Shape(name) => write!(f, "the value of {name} has the wrong shape"),
             EvalError::NamedDimension => write!(f, "a dimension is not a number"),
+            EvalError::Functional(name) => write!(f, "no function given for {name}"),
         }
     }
 }
@@ -142,6 +149,7 @@ impl std::error::Error for EvalError {}
 pub struct Assignment {
     values: Vec<(String, i8, Matrix)>,
     sizes: Vec<usize>,
+    functionals: functionals::Table,
 }
 
 impl Assignment {
@@ -305,6 +313,10 @@ pub fn evaluate(symbols: &Symbols, e: &Expr, values: &Assignment) -> Result<Matr
             })
         }
         Node::Map(map, a) => mapped(symbols, *map, a, &go(a)?),
+        Node::Given(a) => functionals::called(symbols, e, a, None, values)?,
+        Node::PullBack(a, which, seed) => {
+            functionals::called(symbols, e, a, Some((*which, seed)), values)?
+        }
     })
 }
 

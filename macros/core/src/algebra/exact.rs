@@ -362,6 +362,7 @@ impl<'a> Point<'a> {
                 }
             }
             Node::Call(function, a) => Matrix::number(self.called(*function, number(a)?)?),
+            Node::Given(_) | Node::PullBack(..) => self.functional(e)?,
         })
     }
 

@@ -109,6 +109,8 @@ impl Algebra<'_> {
             Node::Vee(a) => self.linear(&self.lower(a), shape, |w| self.vee_word(w)),
             Node::Part(part, a) => self.part(*part, &self.lower(a), a),
             Node::Call(function, a) => self.call(*function, self.lower(a), a),
+            Node::Given(a) => self.functional(e, a, None),
+            Node::PullBack(a, which, seed) => self.functional(e, a, Some((*which, seed))),
             Node::Map(map, a) => match map {
                 Map::Real => self.scaled(&self.trace_poly(&self.lower(a)), Rational::QUARTER),
                 Map::Imaginary => self.linear(&self.lower(a), shape, |w| self.imaginary_word(w)),
@@ -317,7 +319,8 @@ impl Algebra<'_> {
             | Atom::Bracket(_)
             | Atom::Det(_)
             | Atom::OpaqueDet(_)
-            | Atom::Base(_) => false,
+            | Atom::Base(_)
+            | Atom::Given(_) => false,
         }
     }
 

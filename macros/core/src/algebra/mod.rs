@@ -6,6 +6,7 @@ pub(crate) mod assumed;
 mod bracket;
 pub(crate) mod exact;
 mod factor;
+mod functional;
 mod lower;
 mod monomial;
 mod poly;
@@ -27,6 +28,7 @@ pub(crate) use rigid::{inclusion_of_space, last_unit};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr};
 use std::cell::{Cell, RefCell};
+use std::collections::HashMap;
 
 /// Work allowed for one model, in products of terms. A model of the gallery needs a few
 /// thousand; the bound keeps any input of 10 kB below two seconds.
@@ -60,6 +62,10 @@ pub struct Algebra<'a> {
     symbols: &'a Symbols,
     matrices: RefCell<Vec<Opaque>>,
     numbers: RefCell<Vec<Opaque>>,
+    /// What the opaque values of functionals are values of.
+    opened: RefCell<Vec<functional::Opened>>,
+    /// Their normal forms, in blocks or not. Looked up, never iterated.
+    given: RefCell<HashMap<(Expr, bool), Poly>>,
     work: Cell<u64>,
     evaluated: Cell<u64>,
     excess: Cell<Option<Excess>>,
@@ -92,6 +98,8 @@ enum Sense {
     Value,
     /// The diagonal of a matrix, or the matrix with that diagonal.
     Diagonal,
+    /// None of it: the value of a functional, by its number.
+    Given(u32),
 }
 
 impl<'a> Algebra<'a> {
@@ -101,6 +109,8 @@ impl<'a> Algebra<'a> {
             symbols,
             matrices: RefCell::default(),
             numbers: RefCell::default(),
+            opened: RefCell::default(),
+            given: RefCell::default(),
             work: Cell::new(0),
             evaluated: Cell::new(0),
             excess: Cell::new(None),

@@ -24,6 +24,8 @@ pub enum Atom {
     Base(u32),
     /// A function of an interned number.
     Call(Function, u32),
+    /// A value of a functional, or an entry of its derivative.
+    Given(u32),
 }
 
 /// A product of powers of atoms, sorted by atom, no zero exponents.

@@ -205,7 +205,7 @@ impl Algebra<'_> {
             }
             Atom::Det(source) => expr::det(self.raise_source(*source)),
             Atom::OpaqueDet(i) => expr::det(self.matrices.borrow()[*i as usize].meaning.clone()),
-            Atom::Base(i) => number(*i),
+            Atom::Base(i) | Atom::Given(i) => number(*i),
             Atom::Call(function, i) => expr::call(*function, number(*i)),
         }
     }

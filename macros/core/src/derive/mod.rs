@@ -15,6 +15,8 @@ pub mod continuous;
 pub mod convex;
 pub mod explicit;
 mod far;
+#[cfg(test)]
+mod functionals;
 pub mod invariants;
 pub mod kinetic;
 pub mod lie;

@@ -30,7 +30,15 @@ pub(super) fn occurrence(algebra: &Algebra, term: &Term, velocity: SymbolId) -> 
     let w = at(velocity, Shift::HERE);
     let is_velocity =
         |f: &Factor| matches!(f, Factor::Letter { source: Source::Letter(l), .. } if *l == w);
-    let mut places = (0..term.word.len()).filter(|p| in_word(&term.word[*p], &is_velocity));
+    // In what a letter stands for too: an inverse, a value of a functional.
+    let holds = |f: &Factor| match f {
+        Factor::Letter {
+            source: Source::Opaque(i),
+            ..
+        } => expr::contains(&algebra.opaque_matrix(*i), w),
+        _ => is_velocity(f),
+    };
+    let mut places = (0..term.word.len()).filter(|p| in_word(&term.word[*p], &holds));
     let place = match (places.next(), places.next()) {
         (None, _) => return Occurrence::Free,
         (Some(place), None) => place,

@@ -119,6 +119,14 @@ impl Rounding<'_> {
                 size: 0.0,
                 error: self.order(a).error.min(0.0),
             },
+            // Nothing is known of it but that what it is made from is rounded.
+            Node::Given(_) | Node::PullBack(..) => Order {
+                size: 0.0,
+                error: {
+                    let inside = e.children().into_iter().map(|x| self.order(x).error);
+                    inside.fold(0.0, f64::min)
+                },
+            },
         }
     }
 }

@@ -117,7 +117,9 @@ impl Writer<'_> {
             | Node::Vee(_)
             | Node::Part(..)
             | Node::Call(..)
-            | Node::Map(..) => true,
+            | Node::Map(..)
+            | Node::Given(_)
+            | Node::PullBack(..) => true,
         };
         if atomic { tokens } else { quote!((#tokens)) }
     }
@@ -230,6 +232,8 @@ impl Writer<'_> {
                 },
                 a,
             ),
+            Node::Given(a) => self.functional(a, None),
+            Node::PullBack(a, which, seed) => self.functional(a, Some((*which, seed))),
         }
     }
 
@@ -240,7 +244,7 @@ impl Writer<'_> {
         }
     }
 
-    fn by_reference(&self, e: &Expr) -> TokenStream {
+    pub(super) fn by_reference(&self, e: &Expr) -> TokenStream {
         let tokens = self.operand(e);
         quote!(&#tokens)
     }

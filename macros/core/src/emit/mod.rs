@@ -14,6 +14,7 @@ mod equations;
 mod expression;
 mod forced;
 mod formula;
+mod functional;
 mod invariants;
 mod items;
 mod kinetic;

@@ -282,14 +282,20 @@ const INSIDE: [&str; 121] = [
 /// scalar `T` is a type and stands in nobody's way.
 pub fn variable(symbols: &Symbols, id: SymbolId) -> Ident {
     let own = &symbols.get(id).name;
-    let mut name = own.clone();
-    let is_step = symbols.get(id).role == Role::Step && own == "h";
+    match symbols.get(id).role == Role::Step && own == "h" {
+        true => format_ident!("{own}"),
+        false => local_name(symbols, own),
+    }
+}
+
+/// A declared name as a local variable.
+pub(super) fn local_name(symbols: &Symbols, own: &str) -> Ident {
+    let mut name = own.to_owned();
     let sizes = super::sizes::constants(symbols);
-    while !is_step
-        && (INSIDE.contains(&name.as_str())
-            || name != "T" && is_a_type(&name)
-            || sizes.iter().any(|n| *n == name)
-            || name != *own && symbols.find(&name).is_some())
+    while INSIDE.contains(&name.as_str())
+        || name != "T" && is_a_type(&name)
+        || sizes.iter().any(|n| *n == name)
+        || name != *own && symbols.find(&name).is_some()
     {
         name.push('_');
     }

@@ -3,6 +3,7 @@
 //! Shapes must already fit: `check` has verified the user's, the derivation builds its own.
 
 use super::function::Parity;
+use super::functional;
 use super::presence::Marks;
 use super::shape::{Dim, Shape, Structure};
 use super::symbol::{SymbolId, Symbols};
@@ -362,6 +363,11 @@ pub fn transpose(symbols: &Symbols, a: Expr) -> Expr {
             let inner = transpose(symbols, inner.clone());
             make(Node::Adjugate(inner), shape)
         }
+        Node::Given(_) | Node::PullBack(..)
+            if let Some(known) = functional::transposed(symbols, &a) =>
+        {
+            known
+        }
         Node::Number(_)
         | Node::Unit(..)
         | Node::Inclusion(..)
@@ -373,7 +379,9 @@ pub fn transpose(symbols: &Symbols, a: Expr) -> Expr {
         | Node::Cross(..)
         | Node::Vee(_)
         | Node::Call(..)
-        | Node::Map(..) => make(Node::Transpose(a), shape.transposed()),
+        | Node::Map(..)
+        | Node::Given(_)
+        | Node::PullBack(..) => make(Node::Transpose(a), shape.transposed()),
     }
 }
 

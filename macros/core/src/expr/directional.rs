@@ -149,6 +149,10 @@ impl Walk<'_> {
                     mul(e.clone(), hat(quaternion::angular(symbols, a, da)))
                 }
             },
+            Node::Given(a) => functional::changed(symbols, a, None, &mut d),
+            Node::PullBack(a, which, seed) => {
+                functional::changed(symbols, a, Some((*which, seed)), &mut d)
+            }
         }
     }
 }

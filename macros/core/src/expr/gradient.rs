@@ -117,6 +117,15 @@ fn pull_back(symbols: &Symbols, e: &Expr, seed: Expr, wrt: Letter, out: &mut Vec
             // <S, R hat(2 im(W^T D))> = <W pure(vee(R^T S)), D>
             Map::Rotation => go(a, mul(a.clone(), pure(vee(mul(t(e), seed))))),
         },
+        Node::Given(a) => {
+            let parts = functional::gradients(symbols, a, None, &seed, &|x| contains(x, wrt));
+            parts.into_iter().for_each(|(x, s)| go(x, s));
+        }
+        Node::PullBack(a, which, own) => {
+            let back = Some((*which, own));
+            let parts = functional::gradients(symbols, a, back, &seed, &|x| contains(x, wrt));
+            parts.into_iter().for_each(|(x, s)| go(x, s));
+        }
     }
 }
 
@@ -124,15 +133,4 @@ fn without(factors: &[Expr], i: usize) -> Vec<Expr> {
     let mut rest = factors.to_vec();
     rest.remove(i);
     rest
-}
-
-/// `<a, b> = tr(a^T b)`, written as a product or scalar product where it is one.
-fn pairing(symbols: &Symbols, a: Expr, b: Expr) -> Expr {
-    if a.shape().is_scalar() {
-        mul(a, b)
-    } else if a.shape().is_vector() {
-        dot(a, b)
-    } else {
-        trace(mul(transpose(symbols, a), b))
-    }
 }

@@ -115,7 +115,9 @@ impl Terms<'_> {
             | Node::Det(_)
             | Node::Adjugate(_)
             | Node::Map(..)
-            | Node::Call(..) => Size {
+            | Node::Call(..)
+            | Node::Given(_)
+            | Node::PullBack(..) => Size {
                 value: length(self.symbols, e),
                 stored: self.stored(e).unwrap_or_else(|| integer(0)),
             },

@@ -7,6 +7,7 @@ mod diagonal;
 mod directional;
 mod factored;
 mod function;
+pub(crate) mod functional;
 mod gradient;
 mod magnitude;
 pub(crate) mod places;
@@ -35,6 +36,8 @@ pub use diagonal::{diagonal, diagonal_of};
 pub use directional::directional;
 pub use factored::{axial_of_outer, factored};
 pub use function::{Function, Parity};
+pub use functional::{Applied, Functional, FunctionalId, Kind, Reach, derived, given, pull_back};
+pub(crate) use functional::{kind, pairing};
 pub use gradient::gradient;
 pub(crate) use magnitude::{length, magnitude, magnitude_between};
 pub use projection::projected;
@@ -166,6 +169,10 @@ pub enum Node {
     Call(Function, Expr),
     /// A map of quaternions, rigid motions or diagonals.
     Map(Map, Expr),
+    /// The value of a functional, differentiated along some of its arguments.
+    Given(Applied),
+    /// Its transposed derivative with respect to one argument, applied to a seed.
+    PullBack(Applied, u8, Expr),
 }
 
 /// A shaped expression; cloning shares it.
@@ -244,6 +251,11 @@ impl Node {
             Node::Quotient(a, b) | Node::Dot(a, b) | Node::Cross(a, b) => {
                 visit(a);
                 visit(b);
+            }
+            Node::Given(a) => a.each_child(visit),
+            Node::PullBack(a, _, seed) => {
+                a.each_child(visit);
+                visit(seed);
             }
         }
     }

@@ -141,5 +141,7 @@ pub fn rebuild(symbols: &Symbols, e: &Expr, go: &mut dyn FnMut(&Expr) -> Expr) -
             Map::Diagonal => diagonal(go(a)),
             Map::DiagonalOf => diagonal_of(go(a)),
         },
+        Node::Given(a) => functional::rebuilt(symbols, a, None, go),
+        Node::PullBack(a, which, seed) => functional::rebuilt(symbols, a, Some((*which, seed)), go),
     }
 }

@@ -1,6 +1,7 @@
 //! Symbols of a model and their table: name, shape, structure and role of every letter
 //! that can appear in an expression, in order of declaration.
 
+use super::functional::{Functional, FunctionalId};
 use super::shape::{Dim, Shape, Structure};
 use super::spelling::{seen, seen_typeset};
 use std::collections::BTreeSet;
@@ -58,6 +59,7 @@ pub struct Symbols {
     /// The index that counts time; empty where none was given.
     time_index: String,
     dims: Vec<NamedSize>,
+    functionals: Vec<Functional>,
     /// Whether differences from rest are computed with all their digits, which takes longer.
     differences: bool,
 }
@@ -114,6 +116,21 @@ impl Symbols {
             symbol.typeset = typeset;
             symbol.docs = docs.to_vec();
         }
+    }
+
+    /// Adds a functional and returns its index.
+    pub fn add_functional(&mut self, functional: Functional) -> FunctionalId {
+        self.seen.insert(seen(&functional.name, &self.time_index));
+        let typeset = functional.typeset.iter();
+        let printed = typeset.map(|t| seen_typeset(t, &self.time_index));
+        self.seen.extend(printed);
+        self.functionals.push(functional);
+        FunctionalId((self.functionals.len() - 1) as u32)
+    }
+
+    /// The functional with this index. Indices are only made by [`Symbols::add_functional`].
+    pub fn functional(&self, id: FunctionalId) -> &Functional {
+        &self.functionals[id.0 as usize]
     }
 
     /// Declares a named dimension, from this size to that.

@@ -77,6 +77,8 @@ fn is_linear(e: &Expr, child: usize) -> bool {
             _,
         ) => true,
         Node::Quotient(..) => child == 0,
+        // Derivatives are linear in their directions and their seed.
+        Node::Given(a) | Node::PullBack(a, ..) => child >= a.arguments.len(),
         Node::Number(_)
         | Node::Letter(_)
         | Node::Identity(_)

@@ -6,7 +6,7 @@ use super::Style;
 use crate::algebra::Rational;
 use crate::expr::shape::Dim;
 use crate::expr::symbol::Symbols;
-use crate::expr::{Expr, Map, Node, Part};
+use crate::expr::{Applied, Expr, Map, Node, Part};
 
 /// An expression as model text, e.g. `-(tr(J*Ω)/h) - h*dot(gU, Γ)`. Time offsets are written
 /// `next(...)` and `prev(...)`, label offsets with the name of the label from `style`. `Id`, `0`
@@ -125,7 +125,24 @@ impl Writer<'_> {
                 },
                 &[a],
             )),
+            Node::Given(a) => operand(self.functional(a)),
+            // Derived expressions hold it, statements do not.
+            Node::PullBack(a, which, seed) => {
+                let (f, seed) = (self.functional(a), self.write(seed).text);
+                operand(format!("pull_back({f}, {}, {seed})", u32::from(*which) + 1))
+            }
         }
+    }
+
+    /// `f(x, y)`, and derivatives around it, which no statement holds.
+    fn functional(&self, a: &Applied) -> String {
+        let arguments: Vec<&Expr> = a.arguments.iter().collect();
+        let name = &self.symbols.functional(a.functional).name;
+        let value = self.call(name, &arguments);
+        a.along.iter().fold(value, |inside, (which, x)| {
+            let along = self.write(x).text;
+            format!("along({inside}, {}, {along})", u32::from(*which) + 1)
+        })
     }
 
     fn call(&self, name: &str, arguments: &[&Expr]) -> String {

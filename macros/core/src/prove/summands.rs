@@ -33,7 +33,9 @@ fn expanded(e: &Expr) -> usize {
         | Node::Inverse(_)
         | Node::Det(_)
         | Node::Adjugate(_)
-        | Node::Call(..) => 1,
+        | Node::Call(..)
+        | Node::Given(_)
+        | Node::PullBack(..) => 1,
     }
 }
 

@@ -129,7 +129,11 @@ impl Builder {
             Node::Call(Function::Exp, a) => self.unary(a, Term::Exp),
             Node::Call(Function::Log, a) => self.unary(a, Term::Log),
             // The rules know nothing of these: what holds them stays unproved here.
-            Node::Call(..) | Node::Inclusion(..) | Node::Map(..) => None,
+            Node::Call(..)
+            | Node::Inclusion(..)
+            | Node::Map(..)
+            | Node::Given(_)
+            | Node::PullBack(..) => None,
         }
     }
 

@@ -77,8 +77,16 @@ fn is_work(e: &Expr) -> bool {
         | Node::Vee(_)
         | Node::Part(..)
         | Node::Call(..)
-        | Node::Map(..) => true,
+        | Node::Map(..)
+        | Node::Given(_)
+        | Node::PullBack(..) => true,
     }
+}
+
+/// Whether it is a stage of its own: a functional is computed once for its arguments, and its name is
+/// what the rest is written in.
+fn is_stage(e: &Expr) -> bool {
+    matches!(e.node(), Node::Given(_) | Node::PullBack(..))
 }
 
 struct Build<'a> {
@@ -108,7 +116,7 @@ impl Build<'_> {
             }
         };
         let shared = self.uses.get(e).is_some_and(|n| *n > 1) && is_work(e);
-        let out = if shared {
+        let out = if shared || is_stage(e) {
             let name =
                 self.symbols
                     .fresh_name(&format!("{}{}", self.prefix, self.temporaries.len() + 1));

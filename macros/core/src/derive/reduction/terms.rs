@@ -92,6 +92,7 @@ impl<'a> Reducer<'a> {
             }
             Node::Power(a, q) => expr::power(self.number(a)?, *q),
             Node::Call(f, a) => expr::call(*f, self.number(a)?),
+            Node::Given(_) | Node::PullBack(..) => self.functional(e)?,
             node => {
                 if let Some(e) = self.relative(e) {
                     return Ok(e);
@@ -209,7 +210,7 @@ impl<'a> Reducer<'a> {
                 self.determinant(*l)
             }
             Atom::OpaqueDet(i) => expr::det(self.opaque_matrix(*i)?),
-            Atom::Base(i) => self.opaque_number(*i)?,
+            Atom::Base(i) | Atom::Given(i) => self.opaque_number(*i)?,
             Atom::Call(function, i) => expr::call(*function, self.opaque_number(*i)?),
             Atom::Letter(_) | Atom::Dimension(_) | Atom::Det(_) => {
                 let term = Term {
@@ -222,6 +223,27 @@ impl<'a> Reducer<'a> {
         })
     }
 
+    /// A value of a functional: what it is made from is reduced, nothing comes out of it.
+    fn functional(&mut self, e: &Expr) -> Reduced {
+        let mut refused = None;
+        let symbols = self.symbols.clone();
+        let reduced = expr::rebuild(&symbols, e, &mut |x| {
+            let inside = match x.shape().is_scalar() {
+                true => self.number(x),
+                false if self.holds_element(x) => self.poly(&self.algebra.lower(x)),
+                false => return x.clone(),
+            };
+            inside.unwrap_or_else(|e| {
+                refused.get_or_insert(e);
+                x.clone()
+            })
+        });
+        match refused {
+            Some(e) => Err(e),
+            None => Ok(reduced),
+        }
+    }
+
     fn opaque_number(&mut self, i: u32) -> Reduced {
         let meaning = self.algebra.opaque_number(i);
         self.number(&meaning)
@@ -232,7 +254,10 @@ impl<'a> Reducer<'a> {
         if !self.holds_element(&meaning) {
             return Ok(meaning);
         }
-        self.poly(&self.algebra.lower(&meaning))
+        match meaning.node() {
+            Node::Given(_) | Node::PullBack(..) => self.functional(&meaning),
+            _ => self.poly(&self.algebra.lower(&meaning)),
+        }
     }
 
     /// `det Q` of an element of GL(n), carried by `det G`.

@@ -89,12 +89,14 @@ pub(super) fn order(x: &Inputs) -> Option<Warning> {
 }
 
 /// Whether the step stands inside a root or an absolute value, as in `sqrt(h^2 - x)`: that is `h` times a
-/// root for positive steps, and its formal reversal is not that of the scheme.
+/// root for positive steps, and its formal reversal is not that of the scheme. Of a functional no parity
+/// is known.
 fn is_undecided(x: &Inputs, e: &Expr) -> bool {
     let h = at(x.spec.step, Shift::HERE);
     let inside = match e.node() {
         Node::Power(a, q) if q.as_integer().is_none() => expr::contains(a, h),
         Node::Call(Function::Abs, a) => expr::contains(a, h),
+        Node::Given(_) | Node::PullBack(..) => expr::contains(e, h),
         _ => false,
     };
     inside || e.children().into_iter().any(|c| is_undecided(x, c))

@@ -147,6 +147,8 @@ impl Composer<'_> {
                 };
                 self.call(word, self.expression(a))
             }
+            Node::Given(a) => self.functional(a, None),
+            Node::PullBack(a, which, seed) => self.functional(a, Some((*which, seed))),
         }
     }
 

@@ -3,6 +3,7 @@
 
 mod expression;
 mod formula;
+mod functional;
 pub(super) mod parts;
 
 use super::Style;

@@ -3,6 +3,7 @@
 mod alike;
 mod derivations;
 mod documents;
+mod functionals;
 mod mathml;
 mod sample;
 mod spelling;

@@ -4,7 +4,9 @@
 use crate::algebra::Rational;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
-use crate::expr::{self, Expr, Function, Letter, Node, Part, Shift};
+use crate::expr::{
+    self, Applied, Expr, Function, Functional, FunctionalId, Kind, Letter, Node, Part, Reach, Shift,
+};
 use crate::print::formula::{Formula, Operator, Relation};
 
 pub const THREE: Dim = Dim::Fixed(3);
@@ -44,6 +46,14 @@ impl Sample {
         let four = Shape::square(Dim::Fixed(4));
         s.add("q", four, Structure::UnitQuaternion, Role::Element);
         s.add("G", four, Structure::RigidMotion, Role::Element);
+        let kind = Kind::of(vector);
+        s.add_functional(Functional {
+            name: "R".to_owned(),
+            arguments: vec![kind],
+            value: kind,
+            reach: Reach::Point,
+            typeset: None,
+        });
         Sample { symbols: s }
     }
 
@@ -189,6 +199,17 @@ impl Sample {
             expr::column(&self.symbols, &v("G")),
             self.t(expr::column(&self.symbols, &inverse(v("G")))),
             expr::twist(expr::mul(expr::inclusion(Dim::Fixed(6), THREE, 3), v("z"))),
+            expr::given(&self.symbols, FunctionalId(0), vec![v("Γ")]),
+            expr::pull_back(
+                &self.symbols,
+                Applied {
+                    functional: FunctionalId(0),
+                    arguments: vec![v("Γ")],
+                    along: Vec::new(),
+                },
+                0,
+                v("z"),
+            ),
         ]
     }
 
@@ -299,17 +320,19 @@ fn kind(node: &Node) -> usize {
         Node::Adjugate(_) => 20,
         Node::Inclusion(..) => 21,
         Node::Map(..) => 22,
+        Node::Given(_) => 23,
+        Node::PullBack(..) => 24,
     }
 }
 
 #[test]
 fn the_sample_holds_every_kind_of_node() {
-    fn walk(e: &Expr, seen: &mut [bool; 23]) {
+    fn walk(e: &Expr, seen: &mut [bool; 25]) {
         seen[kind(e.node())] = true;
         e.children().into_iter().for_each(|c| walk(c, seen));
     }
-    let mut seen = [false; 23];
+    let mut seen = [false; 25];
     let sample = Sample::new();
     sample.expressions().iter().for_each(|e| walk(e, &mut seen));
-    assert_eq!(seen, [true; 23]);
+    assert_eq!(seen, [true; 25]);
 }

@@ -106,6 +106,8 @@ fn brackets_are_minimal_in_text() {
         "pos(G_k)",
         "-pos(G_k)ᵀ rot(G_k)",
         "twist((0, z))",
+        "R(Γ_k)",
+        "(DR(Γ_k))ᵀ[z]",
     ];
     let printed: Vec<String> = s.expressions().iter().map(|e| text(&s, e)).collect();
     assert_eq!(printed, wanted);
