@@ -495,67 +495,6 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_,
             residual: self.size,
         })
     }
-
-    /// Another attempt, or what was wrong with the last.
-    #[cold]
-    #[inline(never)]
-    fn failed(&mut self) -> Progress<G> {
-        // Without a past, every attempt would be the first.
-        if self.attempt < LAST_ATTEMPT && self.search.known > 0 {
-            self.attempt += 1;
-            self.begin_at(self.search.start(self.attempt));
-            return Progress::Continue;
-        }
-        let (failure, iterations) = if !self.size.is_finite() {
-            (NewtonFailure::NotFinite, self.iteration.saturating_sub(1))
-        } else if self.iteration == MOST_ITERATIONS {
-            (NewtonFailure::NotConverged, MOST_ITERATIONS)
-        } else {
-            (NewtonFailure::SingularTangent, self.iteration)
-        };
-        let looked_at = G::DIMENSION.min(D);
-        let residual = self.residual.as_slice().get(..looked_at).unwrap_or(&[]);
-        Progress::Failed(NewtonError {
-            tried: self.search.tries(),
-            ..NewtonError::of::<T, G>(
-                failure,
-                iterations,
-                residual,
-                self.search.weights.as_slice(),
-            )
-        })
-    }
-
-    /// The principal root was found, but is no root to rounding.
-    #[cold]
-    #[inline(never)]
-    pub fn unpolished(&self) -> NewtonError {
-        let looked_at = G::DIMENSION.min(D);
-        let residual = self.residual.as_slice().get(..looked_at).unwrap_or(&[]);
-        NewtonError {
-            tried: self.search.tries(),
-            ..NewtonError::of::<T, G>(
-                NewtonFailure::NotConverged,
-                self.iteration,
-                residual,
-                self.search.weights.as_slice(),
-            )
-        }
-    }
-
-    /// There is no principal root; `failure` says why another way failed before.
-    #[cold]
-    #[inline(never)]
-    pub fn folded(&self, fold: Fold, failure: Option<NewtonError>) -> NewtonError {
-        match failure {
-            // Nothing was followed.
-            Some(e) if fold.share == 0.0 => e,
-            _ => NewtonError {
-                tried: self.search.tries(),
-                ..NewtonError::at_fold::<T, G>(fold)
-            },
-        }
-    }
 }
 
 /// Solves `residual(g) = 0` from the guess `g`, with `tangent(g)` and the size `scale` of the

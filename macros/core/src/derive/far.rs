@@ -141,7 +141,7 @@ impl Far<'_> {
                 size: 0.0,
                 error: {
                     let inside = e.children().into_iter().map(|x| self.order(x).error);
-                    inside.fold(0.0, f64::max)
+                    inside.fold(0.0, |worst: f64, error| worst.max(error))
                 },
             },
         }

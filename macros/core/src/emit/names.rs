@@ -116,8 +116,8 @@ pub(super) fn is_a_type(name: &str) -> bool {
         match (line.group)(size).kept() {
             crate::groups::Kept::Coordinates(own) => {
                 let frames = ["Body", "Spatial", "Carried"];
-                let momenta = frames.map(|frame| format!("{frame}{}", own.momentum));
-                own.element == name || momenta.iter().any(|m| m == name)
+                let mut momenta = frames.iter().filter_map(|frame| name.strip_prefix(frame));
+                own.element == name || momenta.any(|rest| rest == own.momentum)
             }
             _ => false,
         }
