@@ -35,6 +35,17 @@ pub struct DeclaredAdvected {
     stated: bool,
 }
 
+/// A name that no other may equal, in print or in files.
+#[derive(Clone)]
+struct Taken {
+    name: String,
+    place: Place,
+    /// As a reader sees it.
+    seen: String,
+    /// As files spell it.
+    ascii: String,
+}
+
 /// Everything declared.
 #[derive(Clone)]
 pub struct Declared {
@@ -46,7 +57,7 @@ pub struct Declared {
     pub parameter_places: Vec<Place>,
     pub configurations: Vec<DeclaredGroup>,
     pub advected: Vec<DeclaredAdvected>,
-    places: Vec<(String, Place)>,
+    taken: Vec<Taken>,
     /// What is typeset, as a reader sees it: the name that says so, and where.
     typeset: Vec<(String, Name)>,
 }
@@ -75,9 +86,8 @@ pub fn is_rust_word(name: &str) -> bool {
 fn unusable(name: &Name) -> Option<Diagnostic> {
     let text = name.text.as_str();
     let function = FUNCTIONS.contains(&text) && !HIDEABLE.contains(&text);
-    let printed = PRINTED
-        .into_iter()
-        .find(|sign| seen(sign, "") == seen(text, ""));
+    let shown = seen(text, "");
+    let printed = PRINTED.into_iter().find(|sign| seen(sign, "") == shown);
     let message = if RESERVED.contains(&text) || function {
         format!("`{text}` has a fixed meaning in the language")
     } else if let Some(sign) = printed {
@@ -162,11 +172,11 @@ pub fn declare(model: &Model, errors: &mut Errors) -> Declared {
         parameter_places: Vec::new(),
         configurations: Vec::new(),
         advected: Vec::new(),
-        places: Vec::new(),
+        taken: Vec::new(),
         typeset: Vec::new(),
     };
     if let Some(place) = step_place {
-        d.places.push((step_name, place));
+        d.take(&step_name, place);
     }
     for (statement, docs) in model.statements.iter().zip(&model.remarks) {
         d.statement(statement, docs, errors);
@@ -204,9 +214,7 @@ impl Declared {
             Statement::Param { names, shape } => {
                 let Some((shape, structure)) = shapes::shape(&self.symbols, shape, errors) else {
                     // Later uses of the names must not be reported as unknown as well.
-                    names
-                        .iter()
-                        .for_each(|n| self.places.push((n.text.clone(), n.place)));
+                    names.iter().for_each(|n| self.take(&n.text, n.place));
                     return;
                 };
                 for name in names {
@@ -227,7 +235,7 @@ impl Declared {
             } => {
                 let Some(kind) = shapes::group(&self.symbols, group, errors) else {
                     for n in [name, velocity] {
-                        self.places.push((n.text.clone(), n.place));
+                        self.take(&n.text, n.place);
                     }
                     return;
                 };
@@ -254,8 +262,7 @@ impl Declared {
             }
             Statement::Field { names, shape } => {
                 let Some(shape) = shapes::field(&self.symbols, shape, errors) else {
-                    let spoilt = names.iter().map(|n| (n.text.clone(), n.place));
-                    self.places.extend(spoilt);
+                    names.iter().for_each(|n| self.take(&n.text, n.place));
                     return;
                 };
                 for name in names {
@@ -281,8 +288,7 @@ impl Declared {
             Statement::Advected { names, shape, .. } => {
                 let Some((shape, structure)) = shapes::advected_shape(&self.symbols, shape, errors)
                 else {
-                    let spoilt = names.iter().map(|n| (n.text.clone(), n.place));
-                    self.places.extend(spoilt);
+                    names.iter().for_each(|n| self.take(&n.text, n.place));
                     return;
                 };
                 for name in names {
@@ -318,32 +324,32 @@ impl Declared {
         if let Some(d) = unusable(name) {
             errors.push(d);
             // Later uses of the name must not be reported as well.
-            self.places.push((name.text.clone(), name.place));
+            self.take(text, name.place);
             return false;
         }
-        if let Some((_, first)) = self.places.iter().find(|(n, _)| n == text) {
+        if let Some(first) = self.taken.iter().find(|t| t.name == text) {
             errors.push(
                 Diagnostic::new(name.place, format!("`{text}` is declared twice"))
-                    .also(*first, format!("`{text}` is declared here first")),
+                    .also(first.place, format!("`{text}` is declared here first")),
             );
             return false;
         }
-        if let Some((other, first)) = self.places.iter().find(|(n, _)| ascii(n) == ascii(text)) {
+        let spelt = ascii(text);
+        if let Some(first) = self.taken.iter().find(|t| t.ascii == spelt) {
+            let other = &first.name;
             errors.push(
                 Diagnostic::new(
                     name.place,
-                    format!(
-                        "in files `{text}` and `{other}` are one name, `{}`",
-                        ascii(text)
-                    ),
+                    format!("in files `{text}` and `{other}` are one name, `{spelt}`"),
                 )
                 .help("choose names that differ when Greek letters are spelt out")
-                .also(*first, format!("`{other}` is declared here")),
+                .also(first.place, format!("`{other}` is declared here")),
             );
             return false;
         }
-        let seen = |text: &str| seen(text, &self.time_index);
-        if let Some((other, first)) = self.places.iter().find(|(n, _)| seen(n) == seen(text)) {
+        let shown = seen(text, &self.time_index);
+        if let Some(first) = self.taken.iter().find(|t| t.seen == shown) {
+            let other = &first.name;
             let d = Diagnostic::new(
                 name.place,
                 format!("`{text}` and `{other}` print alike, as one name"),
@@ -352,11 +358,11 @@ impl Declared {
                 Some(characters) => d.help(characters),
                 None => d.help(format!("choose names that differ in print: Greek words become letters, digits and what follows `_` become subscripts, and `_{}` is the index of what moves", self.time_index)),
             }
-            .also(*first, format!("`{other}` is declared here")));
+            .also(first.place, format!("`{other}` is declared here")));
             return false;
         }
         let step = &self.symbols.get(self.step).name;
-        if seen(step) == seen(text) {
+        if seen(step, &self.time_index) == shown {
             let message = match step == text {
                 true => format!("`{text}` is the time step"),
                 false => format!("`{text}` prints as the time step `{step}` does"),
@@ -370,8 +376,19 @@ impl Declared {
         errors.extend(self.typeset_as_another(name));
         let latex = self.in_latex(name);
         self.typeset.push((latex, name.clone()));
-        self.places.push((name.text.clone(), name.place));
+        self.take(text, name.place);
         true
+    }
+
+    /// Keeps the name from being declared again. How it prints is found once: compared with every
+    /// later name, it would be most of the work of a long list of parameters.
+    fn take(&mut self, name: &str, place: Place) {
+        self.taken.push(Taken {
+            name: name.to_owned(),
+            place,
+            seen: seen(name, &self.time_index),
+            ascii: ascii(name),
+        });
     }
 
     /// A name in formulas of LaTeX, as a reader sees it.
@@ -416,7 +433,7 @@ impl Declared {
 
     /// Whether the name was declared, successfully or not.
     pub fn was_declared(&self, text: &str) -> bool {
-        self.places.iter().any(|(n, _)| n == text)
+        self.taken.iter().any(|t| t.name == text)
     }
 
     /// The symbol that a constraint carries.
