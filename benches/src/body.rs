@@ -62,7 +62,7 @@ impl Generated {
         let model = FreeBody::new(parameters)
             .expect("a body")
             .with_solver(method);
-        let (state, workspace) = model.start_of_order(initial, start.h, order)?;
+        let (state, workspace) = model.start_with(initial, start.h, order)?;
         Ok(Self {
             model,
             state,

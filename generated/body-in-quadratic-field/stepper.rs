@@ -105,11 +105,11 @@ pub mod body_in_quadratic_field {
         here: BodyInQuadraticFieldState<T>,
     }
     impl<T: Real> BodyInQuadraticField<T> {
-        /// Starts a trajectory with step `h` from data at node 0, with the model's solver.
+        /// Starts a trajectory with step `h` from data at node 0.
         ///
         /// # Errors
-        /// Names the value that is not finite, or says why the first step cannot be solved and
-        /// which step could.
+        /// Names the value that is not admissible, or says why the first step cannot be solved and
+        /// which could.
         pub fn start(
             &self,
             initial: BodyInQuadraticFieldInitial<T>,
@@ -118,78 +118,30 @@ pub mod body_in_quadratic_field {
             (BodyInQuadraticFieldState<T>, BodyInQuadraticFieldWorkspace<T>),
             StartError,
         > {
-            self.start_with(initial, h, self.method)
+            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
         }
         /// As `start`, with the solver named.
         ///
         /// # Errors
-        /// As `start`; also when the solver does not serve this size or scalar.
+        /// As `start`; also for what this size or scalar does not have.
         pub fn start_with(
             &self,
             initial: BodyInQuadraticFieldInitial<T>,
             h: T,
-            method: Method,
+            choice: impl Into<Option<Method>>,
         ) -> Result<
             (BodyInQuadraticFieldState<T>, BodyInQuadraticFieldWorkspace<T>),
             StartError,
         > {
-            validate::positive_step(h)?;
-            let state = self.at_node_0(initial)?;
-            Ok((state, self.workspace_with(&state, h, method)?))
+            ::clebsch::integrate::Model::start_with(self, initial, h, choice.into())
         }
-        /// The state at node 0.
-        fn at_node_0(
-            &self,
-            initial: BodyInQuadraticFieldInitial<T>,
-        ) -> Result<BodyInQuadraticFieldState<T>, StartError> {
-            validate::finite("Λ", &initial.Λ.quaternion())?;
-            validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
-            validate::finite("Γ", initial.Γ.as_slice())?;
-            let Γ = {
-                let Λ = initial.Λ.matrix();
-                let Γ_start = initial.Γ;
-                Λ * Γ_start
-            };
-            Ok(BodyInQuadraticFieldState {
-                Λ: initial.Λ,
-                momentum: initial.body_momentum.to_space(&initial.Λ),
-                Γ,
-                node: 0,
-            })
-        }
-        /// A workspace for steps of `h`, of either sign, from any state.
-        ///
-        /// # Errors
-        /// When `h` is zero or not finite, or the first step cannot be solved.
+        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
         pub fn workspace(
             &self,
             state: &BodyInQuadraticFieldState<T>,
             h: T,
         ) -> Result<BodyInQuadraticFieldWorkspace<T>, StartError> {
-            self.workspace_with(state, h, self.method)
-        }
-        /// The same with the solver named.
-        ///
-        /// # Errors
-        /// When `h` is zero or not finite, or the first step cannot be solved.
-        pub fn workspace_with(
-            &self,
-            state: &BodyInQuadraticFieldState<T>,
-            h: T,
-            method: Method,
-        ) -> Result<BodyInQuadraticFieldWorkspace<T>, StartError> {
-            validate::directed_step(h)?;
-            let state = *state;
-            let work = BodyInQuadraticFieldWorkspace {
-                h,
-                method,
-                edge: self.edge(&state, h),
-                here: state,
-            };
-            let (mut trial, mut scratch) = (state, work);
-            self.step(&mut trial, &mut scratch)
-                .map_err(|e| StartError::Refused(e.cause))?;
-            Ok(work)
+            self.prepare(state, h, Default::default())
         }
         /// One step, in place. Solved thus: C is constant and symmetric: explicit up to the root of one quartic per step.
         ///
@@ -297,7 +249,7 @@ pub mod body_in_quadratic_field {
             state: &Self::State,
             h: T,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h)
+            self.prepare(state, h, Default::default())
         }
         #[inline(always)]
         fn advance(
@@ -399,52 +351,19 @@ pub mod body_in_quadratic_field {
         }
     }
     impl<T: Real> Reversible for BodyInQuadraticField<T> {}
-    impl<T: Real> ::clebsch::OfScalars for BodyInQuadraticFieldParameters<T> {
-        type Scalar = T;
-        type Over<U: Real> = BodyInQuadraticFieldParameters<U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> BodyInQuadraticFieldParameters<U> {
-            BodyInQuadraticFieldParameters {
-                J: self.J.over(change),
-                K: self.K.over(change),
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] BodyInQuadraticFieldParameters { J, K }
     }
-    impl<T: Real> ::clebsch::OfScalars for BodyInQuadraticFieldInitial<T> {
-        type Scalar = T;
-        type Over<U: Real> = BodyInQuadraticFieldInitial<U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> BodyInQuadraticFieldInitial<U> {
-            BodyInQuadraticFieldInitial {
-                Λ: self.Λ.over(change),
-                body_momentum: self.body_momentum.over(change),
-                Γ: self.Γ.over(change),
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] BodyInQuadraticFieldInitial { Λ, body_momentum, Γ }
     }
-    impl<T: Real> ::clebsch::OfScalars for BodyInQuadraticFieldState<T> {
-        type Scalar = T;
-        type Over<U: Real> = BodyInQuadraticFieldState<U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> BodyInQuadraticFieldState<U> {
-            BodyInQuadraticFieldState {
-                Λ: self.Λ.over(change),
-                momentum: self.momentum.over(change),
-                Γ: self.Γ.over(change),
-                node: self.node,
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] BodyInQuadraticFieldState { Λ, momentum, Γ } at node
     }
     impl<T: Real> ::clebsch::integrate::Model for BodyInQuadraticField<T> {
         type Parameters = BodyInQuadraticFieldParameters<T>;
         type Initial = BodyInQuadraticFieldInitial<T>;
-        type Choice = ();
+        type Choice = Option<Method>;
         type Over<U: Real> = BodyInQuadraticField<U>;
         const SIDE_BY_SIDE: bool = true;
         fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
@@ -457,15 +376,34 @@ pub mod body_in_quadratic_field {
             &self,
             initial: Self::Initial,
         ) -> Result<BodyInQuadraticFieldState<T>, StartError> {
-            self.at_node_0(initial)
+            validate::finite("Λ", &initial.Λ.quaternion())?;
+            validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
+            validate::finite("Γ", initial.Γ.as_slice())?;
+            let Γ = {
+                let Λ = initial.Λ.matrix();
+                let Γ_start = initial.Γ;
+                Λ * Γ_start
+            };
+            Ok(BodyInQuadraticFieldState {
+                Λ: initial.Λ,
+                momentum: initial.body_momentum.to_space(&initial.Λ),
+                Γ,
+                node: 0,
+            })
         }
-        fn prepare(
+        fn prepared(
             &self,
             state: &BodyInQuadraticFieldState<T>,
             h: T,
-            _: Self::Choice,
+            choice: Self::Choice,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h)
+            let method = choice.unwrap_or(self.method);
+            Ok(BodyInQuadraticFieldWorkspace {
+                h,
+                method,
+                edge: self.edge(state, h),
+                here: *state,
+            })
         }
     }
     /// A configuration at one node, solution or not.
@@ -615,95 +553,74 @@ pub mod body_in_quadratic_field {
                 - h.powi(-2) * (J * less_identity(&Ω_matrix)).trace()
         }
     }
-    /// One trajectory of the model, its type hidden.
-    struct BodyInQuadraticFieldTrajectory {
-        model: BodyInQuadraticField<f64>,
-        state: BodyInQuadraticFieldState<f64>,
-        steps: Steps<BodyInQuadraticField<f64>>,
-        h: f64,
-        /// The state before the last step.
-        before: BodyInQuadraticFieldState<f64>,
-        /// Whether a step is one of the derivation, not composed and without modified moments.
-        plain: bool,
-        kinetic: Option<KineticWarning>,
-    }
-    impl Trajectory for BodyInQuadraticFieldTrajectory {
-        fn node(&self) -> u64 {
-            self.state.node()
+    impl ::clebsch::integrate::Described for BodyInQuadraticField<f64> {
+        fn card() -> &'static Card {
+            &Self::CARD
         }
-        fn time(&self) -> f64 {
-            self.h * self.state.node() as f64
+        fn read(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+        ) -> Result<(Self, Self::Initial), OpenError> {
+            let model = Self::new(BodyInQuadraticFieldParameters {
+                J: matrix_of("J", parameters.get(0usize))?,
+                K: matrix_of("K", parameters.get(1usize))?,
+            })?;
+            let initial = BodyInQuadraticFieldInitial {
+                Λ: rotation_of("Λ", initial.get(0usize))?,
+                body_momentum: BodyMomentum(
+                    matrix_of("body_momentum", initial.get(1usize))?,
+                ),
+                Γ: matrix_of("Γ", initial.get(2usize))?,
+            };
+            Ok((model, initial))
         }
-        fn step(&mut self) -> Result<(), StepError> {
-            let before = self.state;
-            self.steps.step(&self.model, &mut self.state)?;
-            self.before = before;
-            Ok(())
+        fn ways(
+            self,
+            state: &Self::State,
+            settings: Settings,
+        ) -> Result<(Self, Steps<Self>), OpenError> {
+            let model = match chosen_solver(settings, Self::CARD.solvers)? {
+                Some(method) => self.with_solver(method),
+                None => self,
+            };
+            let steps = Steps::of_order(&model, state, settings, Self::CARD.orders)?;
+            Ok((model, steps))
         }
-        fn card(&self) -> &'static Card {
-            &BodyInQuadraticField::<f64>::CARD
+        fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
+            self.kinetic_warning(state)
         }
-        fn kinetic_warning(&self) -> Option<KineticWarning> {
-            self.kinetic
+        fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
+            Residual::largest(&self.residual(before, after, h))
         }
-        fn residual(&self) -> Option<f64> {
-            let moved = self.before.node() != self.state.node();
-            (self.plain && moved)
-                .then(|| {
-                    Residual::largest(
-                        &self.model.residual(&self.before, &self.state, self.h),
-                    )
-                })
-        }
-        fn observe(&self, out: &mut [f64]) {
-            let state = &self.state;
+        fn observe(&self, state: &Self::State, out: &mut [f64]) {
             let out = put(out, rows(state.Λ().matrix()));
             let out = put(out, rows(state.body_momentum().0));
             let out = put(out, rows(state.spatial_momentum().0));
-            let out = put(out, rows(self.model.Γ(state)));
+            let out = put(out, rows(self.Γ(state)));
             let _ = out;
         }
-        fn invariants(&self, out: &mut [f64]) {
-            let state = &self.state;
-            let out = put(out, [self.model.energy(state)]);
-            let out = put(out, [self.model.momentum_Gamma(state)]);
-            let out = put(out, [self.model.Gamma_squared(state)]);
-            let _ = out;
+        fn invariants(
+            &self,
+            state: &Self::State,
+            _: Option<&Self::Workspace>,
+            out: &mut [f64],
+        ) {
+            let out = put(out, [self.energy(state)]);
+            let out = put(out, [self.momentum_Gamma(state)]);
+            let out = put(out, [self.Gamma_squared(state)]);
+            let _ = (state, out);
         }
-        fn scales(&self, out: &mut [f64]) {
-            let state = &self.state;
-            let out = put(
-                out,
-                [{
-                    let (kinetic, potential) = self.model.energies(state);
-                    kinetic.abs() + potential.abs()
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let Λ = state.Λ.matrix();
-                    let Γ_reference = state.Γ;
-                    let Γ = Λ.tr_mul(&Γ_reference);
-                    let μ = state.body_momentum().0;
-                    let value: T = μ.dot(&μ).sqrt() * Γ.dot(&Γ).sqrt();
-                    value
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let Λ = state.Λ.matrix();
-                    let Γ_reference = state.Γ;
-                    let Γ = Λ.tr_mul(&Γ_reference);
-                    let t1 = Γ.dot(&Γ).sqrt();
-                    let value: T = t1 * t1;
-                    value
-                }; 1usize],
-            );
-            let _ = out;
+        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+            type T = f64;
+            let Λ = state.Λ.matrix();
+            let Γ_reference = state.Γ;
+            let Γ = Λ.tr_mul(&Γ_reference);
+            let μ = state.body_momentum().0;
+            let t1 = Γ.dot(&Γ).sqrt();
+            let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
+            let out = put(out, [μ.dot(&μ).sqrt() * t1; 1usize]);
+            let out = put(out, [t1 * t1; 1usize]);
+            let _ = (state, out);
         }
     }
     impl BodyInQuadraticField<f64> {
@@ -721,113 +638,49 @@ pub mod body_in_quadratic_field {
             preprocessed: false,
             reversible: true,
             parameters: &[
-                Field {
-                    name: "J",
-                    ascii: "J",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::SecondMoments,
-                    doc: "Poinsot (second-moment) matrix",
-                },
-                Field {
-                    name: "K",
-                    ascii: "K",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::Symmetric,
-                    doc: "the field: energy ½ Γ·KΓ",
-                },
+                Kind::SecondMoments.field("J", [3, 3], "Poinsot (second-moment) matrix"),
+                Kind::Symmetric.field("K", [3, 3], "the field: energy ½ Γ·KΓ"),
             ],
             initial: &[
-                Field {
-                    name: "Λ",
-                    ascii: "Lambda",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::Rotation,
-                    doc: "attitude, body to space",
-                },
-                Field {
-                    name: "body_momentum",
-                    ascii: "body_momentum",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::BodyMomentum,
-                    doc: "momentum, body frame",
-                },
-                Field {
-                    name: "Γ",
-                    ascii: "Gamma",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::Vector,
-                    doc: "axis of the field seen from the body",
-                },
+                Kind::Rotation
+                    .field("Λ", [3, 3], "attitude, body to space")
+                    .spelt("Lambda"),
+                Kind::BodyMomentum
+                    .field("body_momentum", [3, 1], "momentum, body frame"),
+                Kind::Vector
+                    .field("Γ", [3, 1], "axis of the field seen from the body")
+                    .spelt("Gamma"),
             ],
             observables: &[
-                Field {
-                    name: "Λ",
-                    ascii: "Lambda",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::Rotation,
-                    doc: "attitude, body to space",
-                },
-                Field {
-                    name: "body_momentum",
-                    ascii: "body_momentum",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::BodyMomentum,
-                    doc: "momentum, body frame",
-                },
-                Field {
-                    name: "spatial_momentum",
-                    ascii: "spatial_momentum",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::SpatialMomentum,
-                    doc: "momentum, space frame",
-                },
-                Field {
-                    name: "Γ",
-                    ascii: "Gamma",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::Vector,
-                    doc: "axis of the field seen from the body",
-                },
+                Kind::Rotation
+                    .field("Λ", [3, 3], "attitude, body to space")
+                    .spelt("Lambda"),
+                Kind::BodyMomentum
+                    .field("body_momentum", [3, 1], "momentum, body frame"),
+                Kind::SpatialMomentum
+                    .field("spatial_momentum", [3, 1], "momentum, space frame"),
+                Kind::Vector
+                    .field("Γ", [3, 1], "axis of the field seen from the body")
+                    .spelt("Gamma"),
             ],
             invariants: &[
-                Invariant {
-                    name: "energy",
-                    formula: "½ μ_k·ζ + ½ Γ_k·(K Γ_k), where μ_k = -J ζ + tr(J) ζ",
-                    rows: 1usize,
-                    conserved: Conserved::Boundedly,
-                },
-                Invariant {
-                    name: "momentum_Gamma",
-                    formula: "μ_k·Γ_k",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "Gamma_squared",
-                    formula: "Γ_k·Γ_k",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
+                Invariant::bounded(
+                    "energy",
+                    "½ μ_k·ζ + ½ Γ_k·(K Γ_k), where μ_k = -J ζ + tr(J) ζ",
+                    1usize,
+                ),
+                Invariant::exact("momentum_Gamma", "μ_k·Γ_k", 1usize),
+                Invariant::exact("Gamma_squared", "Γ_k·Γ_k", 1usize),
             ],
-            discrete_energy: Invariant {
-                name: "discrete_energy",
-                formula: "tr(J)/h² - tr(J Ω_k)/h² + ¼ Γ_k·(K Γ_k) + ¼ Γ_{k+1}·(K Γ_{k+1})",
-                rows: 1,
-                conserved: Conserved::Boundedly,
-            },
-            open: Self::open,
+            discrete_energy: Invariant::bounded(
+                "discrete_energy",
+                "tr(J)/h² - tr(J Ω_k)/h² + ¼ Γ_k·(K Γ_k) + ¼ Γ_{k+1}·(K Γ_{k+1})",
+                1,
+            ),
+            open: open::<Self>,
             solvers: &Method::NAMES,
             dimensions: &[],
-            sized: Self::sized,
+            sized: only_size::<Self>,
         };
         /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
         /// velocities together, at the identity, should be positive definite.
@@ -851,62 +704,6 @@ pub mod body_in_quadratic_field {
                 inertia.set_column(axis, &parts[0]);
             }
             KineticWarning::of(&inertia, 3)
-        }
-        /// The card of the model at the given sizes, in the order of their declaration.
-        fn sized(sizes: &[usize]) -> Option<Card> {
-            match sizes {
-                [] => Some(BodyInQuadraticField::<f64>::CARD),
-                _ => None,
-            }
-        }
-        fn open(
-            parameters: &[Vec<f64>],
-            initial: &[Vec<f64>],
-            settings: Settings,
-        ) -> Result<Box<dyn Trajectory>, OpenError> {
-            for (field, expected, found) in [
-                ("parameters", 2usize, parameters.len()),
-                ("initial values", 3usize, initial.len()),
-            ] {
-                if expected != found {
-                    return Err(OpenError::Count {
-                        field,
-                        expected,
-                        found,
-                    });
-                }
-            }
-            let model = BodyInQuadraticField::new(BodyInQuadraticFieldParameters {
-                J: matrix_of("J", parameters.get(0usize))?,
-                K: matrix_of("K", parameters.get(1usize))?,
-            })?;
-            let initial = BodyInQuadraticFieldInitial {
-                Λ: rotation_of("Λ", initial.get(0usize))?,
-                body_momentum: BodyMomentum(
-                    matrix_of("body_momentum", initial.get(1usize))?,
-                ),
-                Γ: matrix_of("Γ", initial.get(2usize))?,
-            };
-            let model = match chosen_solver(settings, Self::CARD.solvers)? {
-                Some(method) => model.with_solver(method),
-                None => model,
-            };
-            let state = model.at_node_0(initial)?;
-            let kinetic = model.kinetic_warning(&state);
-            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)
-                .map_err(|e| OpenError::from(e).beside(kinetic))?;
-            let plain = matches!(steps, Steps::Plain(_));
-            Ok(
-                Box::new(BodyInQuadraticFieldTrajectory {
-                    model,
-                    state,
-                    steps,
-                    h: settings.h,
-                    before: state,
-                    plain,
-                    kinetic,
-                }),
-            )
         }
     }
 }

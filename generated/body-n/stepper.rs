@@ -98,74 +98,37 @@ pub mod body_n {
         method: Method,
     }
     impl<const N: usize, T: Real> BodyN<N, T> {
-        /// Starts a trajectory with step `h` from data at node 0, with the model's solver.
+        /// Starts a trajectory with step `h` from data at node 0.
         ///
         /// # Errors
-        /// Names the value that is not finite, or says why the first step cannot be solved and
-        /// which step could.
+        /// Names the value that is not admissible, or says why the first step cannot be solved and
+        /// which could.
         pub fn start(
             &self,
             initial: BodyNInitial<N, T>,
             h: T,
         ) -> Result<(BodyNState<N, T>, BodyNWorkspace<N, T>), StartError> {
-            self.start_with(initial, h, self.method)
+            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
         }
         /// As `start`, with the solver named.
         ///
         /// # Errors
-        /// As `start`; also when the solver does not serve this size or scalar.
+        /// As `start`; also for what this size or scalar does not have.
         pub fn start_with(
             &self,
             initial: BodyNInitial<N, T>,
             h: T,
-            method: Method,
+            choice: impl Into<Option<Method>>,
         ) -> Result<(BodyNState<N, T>, BodyNWorkspace<N, T>), StartError> {
-            validate::positive_step(h)?;
-            let state = self.at_node_0(initial)?;
-            Ok((state, self.workspace_with(&state, h, method)?))
+            ::clebsch::integrate::Model::start_with(self, initial, h, choice.into())
         }
-        /// The state at node 0.
-        fn at_node_0(
-            &self,
-            initial: BodyNInitial<N, T>,
-        ) -> Result<BodyNState<N, T>, StartError> {
-            validate::finite("Λ", initial.Λ.matrix().as_slice())?;
-            validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
-            validate::skew("body_momentum", &initial.body_momentum.0)?;
-            Ok(BodyNState {
-                Λ: initial.Λ,
-                momentum: initial.body_momentum.to_space(&initial.Λ),
-                node: 0,
-            })
-        }
-        /// A workspace for steps of `h`, of either sign, from any state.
-        ///
-        /// # Errors
-        /// When `h` is zero or not finite, or the first step cannot be solved.
+        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
         pub fn workspace(
             &self,
             state: &BodyNState<N, T>,
             h: T,
         ) -> Result<BodyNWorkspace<N, T>, StartError> {
-            self.workspace_with(state, h, self.method)
-        }
-        /// The same with the solver named.
-        ///
-        /// # Errors
-        /// When `h` is zero or not finite, or the first step cannot be solved.
-        pub fn workspace_with(
-            &self,
-            state: &BodyNState<N, T>,
-            h: T,
-            method: Method,
-        ) -> Result<BodyNWorkspace<N, T>, StartError> {
-            validate::directed_step(h)?;
-            let state = *state;
-            let work = BodyNWorkspace { h, method };
-            let (mut trial, mut scratch) = (state, work);
-            self.step(&mut trial, &mut scratch)
-                .map_err(|e| StartError::Refused(e.cause))?;
-            Ok(work)
+            self.prepare(state, h, Default::default())
         }
         /// One step, in place. Solved thus: C is constant: Newton's method on the Lie algebra.
         ///
@@ -229,7 +192,7 @@ pub mod body_n {
             state: &Self::State,
             h: T,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h)
+            self.prepare(state, h, Default::default())
         }
         #[inline(always)]
         fn advance(
@@ -246,43 +209,19 @@ pub mod body_n {
             BodyNState { node: node, ..state }
         }
     }
-    impl<const N: usize, T: Real> ::clebsch::OfScalars for BodyNParameters<N, T> {
-        type Scalar = T;
-        type Over<U: Real> = BodyNParameters<N, U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> BodyNParameters<N, U> {
-            BodyNParameters {
-                C: self.C.over(change),
-            }
-        }
+    ::clebsch::of_scalars! {
+        [N] BodyNParameters { C }
     }
-    impl<const N: usize, T: Real> ::clebsch::OfScalars for BodyNInitial<N, T> {
-        type Scalar = T;
-        type Over<U: Real> = BodyNInitial<N, U>;
-        fn over<U: Real>(&self, change: &mut impl FnMut(T) -> U) -> BodyNInitial<N, U> {
-            BodyNInitial {
-                Λ: self.Λ.over(change),
-                body_momentum: self.body_momentum.over(change),
-            }
-        }
+    ::clebsch::of_scalars! {
+        [N] BodyNInitial { Λ, body_momentum }
     }
-    impl<const N: usize, T: Real> ::clebsch::OfScalars for BodyNState<N, T> {
-        type Scalar = T;
-        type Over<U: Real> = BodyNState<N, U>;
-        fn over<U: Real>(&self, change: &mut impl FnMut(T) -> U) -> BodyNState<N, U> {
-            BodyNState {
-                Λ: self.Λ.over(change),
-                momentum: self.momentum.over(change),
-                node: self.node,
-            }
-        }
+    ::clebsch::of_scalars! {
+        [N] BodyNState { Λ, momentum } at node
     }
     impl<const N: usize, T: Real> ::clebsch::integrate::Model for BodyN<N, T> {
         type Parameters = BodyNParameters<N, T>;
         type Initial = BodyNInitial<N, T>;
-        type Choice = ();
+        type Choice = Option<Method>;
         type Over<U: Real> = BodyN<N, U>;
         const SIDE_BY_SIDE: bool = false;
         fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
@@ -292,15 +231,23 @@ pub mod body_n {
             &self.parameters
         }
         fn begin(&self, initial: Self::Initial) -> Result<BodyNState<N, T>, StartError> {
-            self.at_node_0(initial)
+            validate::finite("Λ", initial.Λ.matrix().as_slice())?;
+            validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
+            validate::skew("body_momentum", &initial.body_momentum.0)?;
+            Ok(BodyNState {
+                Λ: initial.Λ,
+                momentum: initial.body_momentum.to_space(&initial.Λ),
+                node: 0,
+            })
         }
-        fn prepare(
+        fn prepared(
             &self,
-            state: &BodyNState<N, T>,
+            _: &BodyNState<N, T>,
             h: T,
-            _: Self::Choice,
+            choice: Self::Choice,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h)
+            let method = choice.unwrap_or(self.method);
+            Ok(BodyNWorkspace { h, method })
         }
     }
     /// A configuration at one node, solution or not.
@@ -409,133 +356,86 @@ pub mod body_n {
             -(h.powi(-2) * (C * less_identity(&Ω_matrix.transpose())).trace())
         }
     }
-    /// One trajectory of the model, its type hidden.
-    struct BodyNTrajectory<const N: usize> {
-        model: BodyN<N, f64>,
-        state: BodyNState<N, f64>,
-        steps: Steps<BodyN<N, f64>>,
-        h: f64,
-        /// The state before the last step.
-        before: BodyNState<N, f64>,
-        /// Whether a step is one of the derivation, not composed and without modified moments.
-        plain: bool,
-        kinetic: Option<KineticWarning>,
-    }
-    impl<const N: usize> Trajectory for BodyNTrajectory<N> {
-        fn node(&self) -> u64 {
-            self.state.node()
+    impl<const N: usize> ::clebsch::integrate::Described for BodyN<N, f64> {
+        fn card() -> &'static Card {
+            &Self::CARD
         }
-        fn time(&self) -> f64 {
-            self.h * self.state.node() as f64
+        fn read(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+        ) -> Result<(Self, Self::Initial), OpenError> {
+            let model = Self::new(BodyNParameters {
+                C: matrix_of("C", parameters.get(0usize))?,
+            })?;
+            let initial = BodyNInitial {
+                Λ: orthogonal_of("Λ", initial.get(0usize))?,
+                body_momentum: BodyMomentumMatrix(
+                    matrix_of("body_momentum", initial.get(1usize))?,
+                ),
+            };
+            Ok((model, initial))
         }
-        fn step(&mut self) -> Result<(), StepError> {
-            let before = self.state;
-            self.steps.step(&self.model, &mut self.state)?;
-            self.before = before;
-            Ok(())
+        fn ways(
+            self,
+            state: &Self::State,
+            settings: Settings,
+        ) -> Result<(Self, Steps<Self>), OpenError> {
+            let model = match chosen_solver(settings, Self::CARD.solvers)? {
+                Some(method) => self.with_solver(method),
+                None => self,
+            };
+            let steps = Steps::plain(&model, state, settings, Self::CARD.orders)?;
+            Ok((model, steps))
         }
-        fn card(&self) -> &'static Card {
-            &BodyN::<N, f64>::CARD
+        fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
+            self.kinetic_warning(state)
         }
-        fn kinetic_warning(&self) -> Option<KineticWarning> {
-            self.kinetic
+        fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
+            Residual::largest(&self.residual(before, after, h))
         }
-        fn residual(&self) -> Option<f64> {
-            let moved = self.before.node() != self.state.node();
-            (self.plain && moved)
-                .then(|| {
-                    Residual::largest(
-                        &self.model.residual(&self.before, &self.state, self.h),
-                    )
-                })
-        }
-        fn observe(&self, out: &mut [f64]) {
-            let state = &self.state;
+        fn observe(&self, state: &Self::State, out: &mut [f64]) {
             let out = put(out, rows(state.Λ().matrix()));
             let out = put(out, rows(state.body_momentum().0));
             let out = put(out, rows(state.spatial_momentum().0));
             let _ = out;
         }
-        fn invariants(&self, out: &mut [f64]) {
-            let state = &self.state;
+        fn invariants(
+            &self,
+            state: &Self::State,
+            _: Option<&Self::Workspace>,
+            out: &mut [f64],
+        ) {
             let out = put(out, skew_coordinates(&state.spatial_momentum().0));
-            let out = put(out, [self.model.momentum_squared(state)]);
-            let out = put(out, [self.model.trace_momentum4(state)]);
-            let out = put(out, [self.model.trace_momentum6(state)]);
-            let out = put(out, [self.model.trace_momentum8(state)]);
-            let _ = out;
+            let out = put(out, [self.momentum_squared(state)]);
+            let out = put(out, [self.trace_momentum4(state)]);
+            let out = put(out, [self.trace_momentum6(state)]);
+            let out = put(out, [self.trace_momentum8(state)]);
+            let _ = (state, out);
         }
-        fn scales(&self, out: &mut [f64]) {
-            let state = &self.state;
+        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+            type T = f64;
+            let Λ = state.Λ.matrix();
+            let μ = state.body_momentum().0;
+            let t1 = (-(μ * μ).trace()).sqrt();
             let out = put(
                 out,
                 ::core::iter::repeat_n(
-                    {
-                        type T = f64;
-                        let Λ = state.Λ.matrix();
-                        let μ = state.body_momentum().0;
-                        let value: T = (-(Λ
-                            * (μ * Λ.tr_mul(&(Λ * (μ * Λ.transpose())))))
-                            .trace())
-                            .sqrt();
-                        value
-                    },
+                    (-(Λ * (μ * Λ.tr_mul(&(Λ * (μ * Λ.transpose()))))).trace())
+                        .sqrt(),
                     (N * (N - 1) / 2),
                 ),
             );
+            let out = put(out, ::core::iter::repeat_n(t1 * t1, 1usize));
+            let out = put(out, ::core::iter::repeat_n(t1 * t1 * t1 * t1, 1usize));
             let out = put(
                 out,
-                ::core::iter::repeat_n(
-                    {
-                        type T = f64;
-                        let μ = state.body_momentum().0;
-                        let t1 = (-(μ * μ).trace()).sqrt();
-                        let value: T = t1 * t1;
-                        value
-                    },
-                    1usize,
-                ),
+                ::core::iter::repeat_n(t1 * t1 * t1 * t1 * t1 * t1, 1usize),
             );
             let out = put(
                 out,
-                ::core::iter::repeat_n(
-                    {
-                        type T = f64;
-                        let μ = state.body_momentum().0;
-                        let t1 = (-(μ * μ).trace()).sqrt();
-                        let value: T = t1 * t1 * t1 * t1;
-                        value
-                    },
-                    1usize,
-                ),
+                ::core::iter::repeat_n(t1 * t1 * t1 * t1 * t1 * t1 * t1 * t1, 1usize),
             );
-            let out = put(
-                out,
-                ::core::iter::repeat_n(
-                    {
-                        type T = f64;
-                        let μ = state.body_momentum().0;
-                        let t1 = (-(μ * μ).trace()).sqrt();
-                        let value: T = t1 * t1 * t1 * t1 * t1 * t1;
-                        value
-                    },
-                    1usize,
-                ),
-            );
-            let out = put(
-                out,
-                ::core::iter::repeat_n(
-                    {
-                        type T = f64;
-                        let μ = state.body_momentum().0;
-                        let t1 = (-(μ * μ).trace()).sqrt();
-                        let value: T = t1 * t1 * t1 * t1 * t1 * t1 * t1 * t1;
-                        value
-                    },
-                    1usize,
-                ),
-            );
-            let _ = out;
+            let _ = (state, out);
         }
     }
     impl<const N: usize> BodyN<N, f64> {
@@ -553,98 +453,45 @@ pub mod body_n {
             preprocessed: false,
             reversible: false,
             parameters: &[
-                Field {
-                    name: "C",
-                    ascii: "C",
-                    rows: N,
-                    cols: N,
-                    kind: Kind::Matrix,
-                    doc: "second moments; any matrix of positive determinant",
-                },
+                Kind::Matrix
+                    .field(
+                        "C",
+                        [N, N],
+                        "second moments; any matrix of positive determinant",
+                    ),
             ],
             initial: &[
-                Field {
-                    name: "Λ",
-                    ascii: "Lambda",
-                    rows: N,
-                    cols: N,
-                    kind: Kind::Rotation,
-                    doc: "attitude, body to space",
-                },
-                Field {
-                    name: "body_momentum",
-                    ascii: "body_momentum",
-                    rows: N,
-                    cols: N,
-                    kind: Kind::BodyMomentum,
-                    doc: "momentum, body frame",
-                },
+                Kind::Rotation
+                    .field("Λ", [N, N], "attitude, body to space")
+                    .spelt("Lambda"),
+                Kind::BodyMomentum.field("body_momentum", [N, N], "momentum, body frame"),
             ],
             observables: &[
-                Field {
-                    name: "Λ",
-                    ascii: "Lambda",
-                    rows: N,
-                    cols: N,
-                    kind: Kind::Rotation,
-                    doc: "attitude, body to space",
-                },
-                Field {
-                    name: "body_momentum",
-                    ascii: "body_momentum",
-                    rows: N,
-                    cols: N,
-                    kind: Kind::BodyMomentum,
-                    doc: "momentum, body frame",
-                },
-                Field {
-                    name: "spatial_momentum",
-                    ascii: "spatial_momentum",
-                    rows: N,
-                    cols: N,
-                    kind: Kind::SpatialMomentum,
-                    doc: "momentum, space frame",
-                },
+                Kind::Rotation
+                    .field("Λ", [N, N], "attitude, body to space")
+                    .spelt("Lambda"),
+                Kind::BodyMomentum
+                    .field("body_momentum", [N, N], "momentum, body frame"),
+                Kind::SpatialMomentum
+                    .field("spatial_momentum", [N, N], "momentum, space frame"),
             ],
             invariants: &[
-                Invariant {
-                    name: "spatial_momentum",
-                    formula: "Λ_k μ_k Λ_kᵀ",
-                    rows: (N * (N - 1) / 2),
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "momentum_squared",
-                    formula: "-½ tr(μ_k²)",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "trace_momentum4",
-                    formula: "tr(μ_k⁴)",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "trace_momentum6",
-                    formula: "tr(μ_k⁶)",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "trace_momentum8",
-                    formula: "tr(μ_k⁸)",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
+                Invariant::exact(
+                    "spatial_momentum",
+                    "Λ_k μ_k Λ_kᵀ",
+                    (N * (N - 1) / 2),
+                ),
+                Invariant::exact("momentum_squared", "-½ tr(μ_k²)", 1usize),
+                Invariant::exact("trace_momentum4", "tr(μ_k⁴)", 1usize),
+                Invariant::exact("trace_momentum6", "tr(μ_k⁶)", 1usize),
+                Invariant::exact("trace_momentum8", "tr(μ_k⁸)", 1usize),
             ],
-            discrete_energy: Invariant {
-                name: "discrete_energy",
-                formula: "tr(C)/h² - tr(C Ω_kᵀ)/h²",
-                rows: 1,
-                conserved: Conserved::Boundedly,
-            },
-            open: Self::open,
+            discrete_energy: Invariant::bounded(
+                "discrete_energy",
+                "tr(C)/h² - tr(C Ω_kᵀ)/h²",
+                1,
+            ),
+            open: open::<Self>,
             solvers: if N == 3 { &Method::NAMES } else { &Method::ANY_SIZE },
             dimensions: &[
                 Dimension {
@@ -699,53 +546,6 @@ pub mod body_n {
                 [8] => Some(BodyN::<8, f64>::CARD),
                 _ => None,
             }
-        }
-        fn open(
-            parameters: &[Vec<f64>],
-            initial: &[Vec<f64>],
-            settings: Settings,
-        ) -> Result<Box<dyn Trajectory>, OpenError> {
-            for (field, expected, found) in [
-                ("parameters", 1usize, parameters.len()),
-                ("initial values", 2usize, initial.len()),
-            ] {
-                if expected != found {
-                    return Err(OpenError::Count {
-                        field,
-                        expected,
-                        found,
-                    });
-                }
-            }
-            let model = BodyN::new(BodyNParameters {
-                C: matrix_of("C", parameters.get(0usize))?,
-            })?;
-            let initial = BodyNInitial {
-                Λ: orthogonal_of("Λ", initial.get(0usize))?,
-                body_momentum: BodyMomentumMatrix(
-                    matrix_of("body_momentum", initial.get(1usize))?,
-                ),
-            };
-            let model = match chosen_solver(settings, Self::CARD.solvers)? {
-                Some(method) => model.with_solver(method),
-                None => model,
-            };
-            let state = model.at_node_0(initial)?;
-            let kinetic = model.kinetic_warning(&state);
-            let steps = Steps::plain(&model, &state, settings, Self::CARD.orders)
-                .map_err(|e| OpenError::from(e).beside(kinetic))?;
-            let plain = matches!(steps, Steps::Plain(_));
-            Ok(
-                Box::new(BodyNTrajectory::<N> {
-                    model,
-                    state,
-                    steps,
-                    h: settings.h,
-                    before: state,
-                    plain,
-                    kinetic,
-                }),
-            )
         }
     }
 }

@@ -90,8 +90,8 @@ pub mod cayley_klein_spatial {
         /// Starts a trajectory with step `h` from data at node 0.
         ///
         /// # Errors
-        /// Names the value that is not finite, or says why the first step cannot be solved and
-        /// which step could.
+        /// Names the value that is not admissible, or says why the first step cannot be solved and
+        /// which could.
         pub fn start(
             &self,
             initial: CayleyKleinSpatialInitial<T>,
@@ -100,51 +100,15 @@ pub mod cayley_klein_spatial {
             (CayleyKleinSpatialState<T>, CayleyKleinSpatialWorkspace<T>),
             StartError,
         > {
-            validate::positive_step(h)?;
-            let state = self.at_node_0(initial)?;
-            Ok((state, self.workspace(&state, h)?))
+            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
         }
-        /// The state at node 0.
-        fn at_node_0(
-            &self,
-            initial: CayleyKleinSpatialInitial<T>,
-        ) -> Result<CayleyKleinSpatialState<T>, StartError> {
-            validate::finite("q", &initial.q.components())?;
-            validate::finite("spatial_momentum", initial.spatial_momentum.0.as_slice())?;
-            validate::finite_entries("I", &initial.I)?;
-            let I = {
-                let q = initial.q.matrix();
-                let I_start = initial.I;
-                quaternion_rotation(&q).tr_mul(&(I_start * quaternion_rotation(&q)))
-            };
-            Ok(CayleyKleinSpatialState {
-                q: initial.q,
-                momentum: initial.spatial_momentum,
-                I,
-                node: 0,
-            })
-        }
-        /// A workspace for steps of `h`, of either sign, from any state.
-        ///
-        /// # Errors
-        /// When `h` is zero or not finite, or the first step cannot be solved.
+        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
         pub fn workspace(
             &self,
             state: &CayleyKleinSpatialState<T>,
             h: T,
         ) -> Result<CayleyKleinSpatialWorkspace<T>, StartError> {
-            validate::directed_step(h)?;
-            let state = *state;
-            let work = CayleyKleinSpatialWorkspace {
-                h,
-                factor: self.factor(&state)?,
-                edge: self.edge(&state, h),
-                here: state,
-            };
-            let (mut trial, mut scratch) = (state, work);
-            self.step(&mut trial, &mut scratch)
-                .map_err(|e| StartError::Refused(e.cause))?;
-            Ok(work)
+            self.prepare(state, h, Default::default())
         }
         /// The body behind the quantities of a state.
         #[inline(never)]
@@ -234,7 +198,7 @@ pub mod cayley_klein_spatial {
             state: &Self::State,
             h: T,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h)
+            self.prepare(state, h, Default::default())
         }
         #[inline(always)]
         fn advance(
@@ -255,46 +219,14 @@ pub mod cayley_klein_spatial {
         }
     }
     impl<T: Real> Reversible for CayleyKleinSpatial<T> {}
-    impl<T: Real> ::clebsch::OfScalars for CayleyKleinSpatialParameters<T> {
-        type Scalar = T;
-        type Over<U: Real> = CayleyKleinSpatialParameters<U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> CayleyKleinSpatialParameters<U> {
-            CayleyKleinSpatialParameters {
-                c: self.c.over(change),
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] CayleyKleinSpatialParameters { c }
     }
-    impl<T: Real> ::clebsch::OfScalars for CayleyKleinSpatialInitial<T> {
-        type Scalar = T;
-        type Over<U: Real> = CayleyKleinSpatialInitial<U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> CayleyKleinSpatialInitial<U> {
-            CayleyKleinSpatialInitial {
-                q: self.q.over(change),
-                spatial_momentum: self.spatial_momentum.over(change),
-                I: self.I.over(change),
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] CayleyKleinSpatialInitial { q, spatial_momentum, I }
     }
-    impl<T: Real> ::clebsch::OfScalars for CayleyKleinSpatialState<T> {
-        type Scalar = T;
-        type Over<U: Real> = CayleyKleinSpatialState<U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> CayleyKleinSpatialState<U> {
-            CayleyKleinSpatialState {
-                q: self.q.over(change),
-                momentum: self.momentum.over(change),
-                I: self.I.over(change),
-                node: self.node,
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] CayleyKleinSpatialState { q, momentum, I } at node
     }
     impl<T: Real> ::clebsch::integrate::Model for CayleyKleinSpatial<T> {
         type Parameters = CayleyKleinSpatialParameters<T>;
@@ -312,15 +244,33 @@ pub mod cayley_klein_spatial {
             &self,
             initial: Self::Initial,
         ) -> Result<CayleyKleinSpatialState<T>, StartError> {
-            self.at_node_0(initial)
+            validate::finite("q", &initial.q.components())?;
+            validate::finite("spatial_momentum", initial.spatial_momentum.0.as_slice())?;
+            validate::finite_entries("I", &initial.I)?;
+            let I = {
+                let q = initial.q.matrix();
+                let I_start = initial.I;
+                quaternion_rotation(&q).tr_mul(&(I_start * quaternion_rotation(&q)))
+            };
+            Ok(CayleyKleinSpatialState {
+                q: initial.q,
+                momentum: initial.spatial_momentum,
+                I,
+                node: 0,
+            })
         }
-        fn prepare(
+        fn prepared(
             &self,
             state: &CayleyKleinSpatialState<T>,
             h: T,
             _: Self::Choice,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h)
+            Ok(CayleyKleinSpatialWorkspace {
+                h,
+                factor: self.factor(state)?,
+                edge: self.edge(state, h),
+                here: *state,
+            })
         }
     }
     /// A configuration at one node, solution or not.
@@ -510,120 +460,75 @@ pub mod cayley_klein_spatial {
                     / (h * h)
         }
     }
-    /// One trajectory of the model, its type hidden.
-    struct CayleyKleinSpatialTrajectory {
-        model: CayleyKleinSpatial<f64>,
-        state: CayleyKleinSpatialState<f64>,
-        steps: Steps<CayleyKleinSpatial<f64>>,
-        h: f64,
-        /// The state before the last step.
-        before: CayleyKleinSpatialState<f64>,
-        /// Whether a step is one of the derivation, not composed and without modified moments.
-        plain: bool,
-        kinetic: Option<KineticWarning>,
-    }
-    impl Trajectory for CayleyKleinSpatialTrajectory {
-        fn node(&self) -> u64 {
-            self.state.node()
+    impl ::clebsch::integrate::Described for CayleyKleinSpatial<f64> {
+        fn card() -> &'static Card {
+            &Self::CARD
         }
-        fn time(&self) -> f64 {
-            self.h * self.state.node() as f64
+        fn read(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+        ) -> Result<(Self, Self::Initial), OpenError> {
+            let model = Self::new(CayleyKleinSpatialParameters {
+                c: number_of("c", parameters.get(0usize))?,
+            })?;
+            let initial = CayleyKleinSpatialInitial {
+                q: quaternion_of("q", initial.get(0usize))?,
+                spatial_momentum: SpatialMomentum(
+                    matrix_of("spatial_momentum", initial.get(1usize))?,
+                ),
+                I: matrix_of("I", initial.get(2usize))?,
+            };
+            Ok((model, initial))
         }
-        fn step(&mut self) -> Result<(), StepError> {
-            let before = self.state;
-            self.steps.step(&self.model, &mut self.state)?;
-            self.before = before;
-            Ok(())
+        fn ways(
+            self,
+            state: &Self::State,
+            settings: Settings,
+        ) -> Result<(Self, Steps<Self>), OpenError> {
+            let model = chosen_solver(settings, Self::CARD.solvers).map(|_| self)?;
+            let steps = Steps::of_order(&model, state, settings, Self::CARD.orders)?;
+            Ok((model, steps))
         }
-        fn card(&self) -> &'static Card {
-            &CayleyKleinSpatial::<f64>::CARD
+        fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
+            self.kinetic_warning(state)
         }
-        fn kinetic_warning(&self) -> Option<KineticWarning> {
-            self.kinetic
+        fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
+            Residual::largest(&self.residual(before, after, h))
         }
-        fn residual(&self) -> Option<f64> {
-            let moved = self.before.node() != self.state.node();
-            (self.plain && moved)
-                .then(|| {
-                    Residual::largest(
-                        &self.model.residual(&self.before, &self.state, self.h),
-                    )
-                })
-        }
-        fn observe(&self, out: &mut [f64]) {
-            let state = &self.state;
+        fn observe(&self, state: &Self::State, out: &mut [f64]) {
             let out = put(out, state.q().components());
             let out = put(out, rows(state.body_momentum().0));
             let out = put(out, rows(state.spatial_momentum().0));
-            let out = put(out, rows(self.model.I(state)));
+            let out = put(out, rows(self.I(state)));
             let _ = out;
         }
-        fn invariants(&self, out: &mut [f64]) {
-            let state = &self.state;
-            let out = put(out, [self.model.energy(state)]);
+        fn invariants(
+            &self,
+            state: &Self::State,
+            _: Option<&Self::Workspace>,
+            out: &mut [f64],
+        ) {
+            let out = put(out, [self.energy(state)]);
             let out = put(out, rows(state.spatial_momentum().0));
-            let out = put(out, [self.model.trace_I1(state)]);
-            let out = put(out, [self.model.trace_I2(state)]);
-            let out = put(out, [self.model.trace_I3(state)]);
-            let _ = out;
+            let out = put(out, [self.trace_I1(state)]);
+            let out = put(out, [self.trace_I2(state)]);
+            let out = put(out, [self.trace_I3(state)]);
+            let _ = (state, out);
         }
-        fn scales(&self, out: &mut [f64]) {
-            let state = &self.state;
-            let out = put(
-                out,
-                [{
-                    let (kinetic, potential) = self.model.energies(state);
-                    kinetic.abs() + potential.abs()
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let m = state.spatial_momentum().0;
-                    let value: T = m.dot(&m).sqrt();
-                    value
-                }; 3usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let q = state.q.matrix();
-                    let I_reference = state.I;
-                    let I = quaternion_rotation(&q)
-                        * (I_reference * quaternion_rotation(&q).transpose());
-                    let value: T = T::from_f64(3.0).sqrt() * (I * I).trace().sqrt();
-                    value
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let q = state.q.matrix();
-                    let I_reference = state.I;
-                    let I = quaternion_rotation(&q)
-                        * (I_reference * quaternion_rotation(&q).transpose());
-                    let t1 = (I * I).trace().sqrt();
-                    let value: T = t1 * t1;
-                    value
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let q = state.q.matrix();
-                    let I_reference = state.I;
-                    let I = quaternion_rotation(&q)
-                        * (I_reference * quaternion_rotation(&q).transpose());
-                    let t1 = (I * I).trace().sqrt();
-                    let value: T = t1 * t1 * t1;
-                    value
-                }; 1usize],
-            );
-            let _ = out;
+        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+            type T = f64;
+            let q = state.q.matrix();
+            let I_reference = state.I;
+            let I = quaternion_rotation(&q)
+                * (I_reference * quaternion_rotation(&q).transpose());
+            let m = state.spatial_momentum().0;
+            let t1 = (I * I).trace().sqrt();
+            let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
+            let out = put(out, [m.dot(&m).sqrt(); 3usize]);
+            let out = put(out, [T::from_f64(3.0).sqrt() * t1; 1usize]);
+            let out = put(out, [t1 * t1; 1usize]);
+            let out = put(out, [t1 * t1 * t1; 1usize]);
+            let _ = (state, out);
         }
     }
     impl CayleyKleinSpatial<f64> {
@@ -641,117 +546,38 @@ pub mod cayley_klein_spatial {
             preprocessed: false,
             reversible: true,
             parameters: &[
-                Field {
-                    name: "c",
-                    ascii: "c",
-                    rows: 1,
-                    cols: 1,
-                    kind: Kind::Scalar,
-                    doc: "0: Moser-Veselov; 1: as in the thesis",
-                },
+                Kind::Scalar.field("c", [1, 1], "0: Moser-Veselov; 1: as in the thesis"),
             ],
             initial: &[
-                Field {
-                    name: "q",
-                    ascii: "q",
-                    rows: 4,
-                    cols: 1,
-                    kind: Kind::UnitQuaternion,
-                    doc: "attitude, body to space",
-                },
-                Field {
-                    name: "spatial_momentum",
-                    ascii: "spatial_momentum",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::SpatialMomentum,
-                    doc: "momentum, space frame",
-                },
-                Field {
-                    name: "I",
-                    ascii: "I",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::Symmetric,
-                    doc: "inertia, space frame",
-                },
+                Kind::UnitQuaternion.field("q", [4, 1], "attitude, body to space"),
+                Kind::SpatialMomentum
+                    .field("spatial_momentum", [3, 1], "momentum, space frame"),
+                Kind::Symmetric.field("I", [3, 3], "inertia, space frame"),
             ],
             observables: &[
-                Field {
-                    name: "q",
-                    ascii: "q",
-                    rows: 4,
-                    cols: 1,
-                    kind: Kind::UnitQuaternion,
-                    doc: "attitude, body to space",
-                },
-                Field {
-                    name: "body_momentum",
-                    ascii: "body_momentum",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::BodyMomentum,
-                    doc: "momentum, body frame",
-                },
-                Field {
-                    name: "spatial_momentum",
-                    ascii: "spatial_momentum",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::SpatialMomentum,
-                    doc: "momentum, space frame",
-                },
-                Field {
-                    name: "I",
-                    ascii: "I",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::Symmetric,
-                    doc: "inertia, space frame",
-                },
+                Kind::UnitQuaternion.field("q", [4, 1], "attitude, body to space"),
+                Kind::BodyMomentum
+                    .field("body_momentum", [3, 1], "momentum, body frame"),
+                Kind::SpatialMomentum
+                    .field("spatial_momentum", [3, 1], "momentum, space frame"),
+                Kind::Symmetric.field("I", [3, 3], "inertia, space frame"),
             ],
             invariants: &[
-                Invariant {
-                    name: "energy",
-                    formula: "½ m_k·ζ, where m_k = I_k ζ",
-                    rows: 1usize,
-                    conserved: Conserved::Boundedly,
-                },
-                Invariant {
-                    name: "spatial_momentum",
-                    formula: "m_k",
-                    rows: 3usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "trace_I1",
-                    formula: "tr(I_k)",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "trace_I2",
-                    formula: "tr(I_k²)",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "trace_I3",
-                    formula: "tr(I_k³)",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
+                Invariant::bounded("energy", "½ m_k·ζ, where m_k = I_k ζ", 1usize),
+                Invariant::exact("spatial_momentum", "m_k", 3usize),
+                Invariant::exact("trace_I1", "tr(I_k)", 1usize),
+                Invariant::exact("trace_I2", "tr(I_k²)", 1usize),
+                Invariant::exact("trace_I3", "tr(I_k³)", 1usize),
             ],
-            discrete_energy: Invariant {
-                name: "discrete_energy",
-                formula: "-4 c re(w_k)/h² + 2 im(w_k)·((I_k - c Id) im(w_k))/h² + 4 c/h²",
-                rows: 1,
-                conserved: Conserved::Boundedly,
-            },
-            open: Self::open,
+            discrete_energy: Invariant::bounded(
+                "discrete_energy",
+                "-4 c re(w_k)/h² + 2 im(w_k)·((I_k - c Id) im(w_k))/h² + 4 c/h²",
+                1,
+            ),
+            open: open::<Self>,
             solvers: &[],
             dimensions: &[],
-            sized: Self::sized,
+            sized: only_size::<Self>,
         };
         /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
         /// velocities together, at the identity, should be positive definite.
@@ -784,58 +610,6 @@ pub mod cayley_klein_spatial {
                     );
             }
             KineticWarning::of(&inertia, 0 + 3)
-        }
-        /// The card of the model at the given sizes, in the order of their declaration.
-        fn sized(sizes: &[usize]) -> Option<Card> {
-            match sizes {
-                [] => Some(CayleyKleinSpatial::<f64>::CARD),
-                _ => None,
-            }
-        }
-        fn open(
-            parameters: &[Vec<f64>],
-            initial: &[Vec<f64>],
-            settings: Settings,
-        ) -> Result<Box<dyn Trajectory>, OpenError> {
-            for (field, expected, found) in [
-                ("parameters", 1usize, parameters.len()),
-                ("initial values", 3usize, initial.len()),
-            ] {
-                if expected != found {
-                    return Err(OpenError::Count {
-                        field,
-                        expected,
-                        found,
-                    });
-                }
-            }
-            let model = CayleyKleinSpatial::new(CayleyKleinSpatialParameters {
-                c: number_of("c", parameters.get(0usize))?,
-            })?;
-            let initial = CayleyKleinSpatialInitial {
-                q: quaternion_of("q", initial.get(0usize))?,
-                spatial_momentum: SpatialMomentum(
-                    matrix_of("spatial_momentum", initial.get(1usize))?,
-                ),
-                I: matrix_of("I", initial.get(2usize))?,
-            };
-            chosen_solver(settings, Self::CARD.solvers)?;
-            let state = model.at_node_0(initial)?;
-            let kinetic = model.kinetic_warning(&state);
-            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)
-                .map_err(|e| OpenError::from(e).beside(kinetic))?;
-            let plain = matches!(steps, Steps::Plain(_));
-            Ok(
-                Box::new(CayleyKleinSpatialTrajectory {
-                    model,
-                    state,
-                    steps,
-                    h: settings.h,
-                    before: state,
-                    plain,
-                    kinetic,
-                }),
-            )
         }
     }
 }

@@ -98,50 +98,22 @@ pub mod cayley_klein {
         /// Starts a trajectory with step `h` from data at node 0.
         ///
         /// # Errors
-        /// Names the value that is not finite, or says why the first step cannot be solved and
-        /// which step could.
+        /// Names the value that is not admissible, or says why the first step cannot be solved and
+        /// which could.
         pub fn start(
             &self,
             initial: CayleyKleinInitial<T>,
             h: T,
         ) -> Result<(CayleyKleinState<T>, CayleyKleinWorkspace<T>), StartError> {
-            validate::positive_step(h)?;
-            let state = self.at_node_0(initial)?;
-            Ok((state, self.workspace(&state, h)?))
+            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
         }
-        /// The state at node 0.
-        fn at_node_0(
-            &self,
-            initial: CayleyKleinInitial<T>,
-        ) -> Result<CayleyKleinState<T>, StartError> {
-            validate::finite("q", &initial.q.components())?;
-            validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
-            Ok(CayleyKleinState {
-                q: initial.q,
-                momentum: initial.body_momentum.to_space(&initial.q),
-                node: 0,
-            })
-        }
-        /// A workspace for steps of `h`, of either sign, from any state.
-        ///
-        /// # Errors
-        /// When `h` is zero or not finite, or the first step cannot be solved.
+        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
         pub fn workspace(
             &self,
             state: &CayleyKleinState<T>,
             h: T,
         ) -> Result<CayleyKleinWorkspace<T>, StartError> {
-            validate::directed_step(h)?;
-            let state = *state;
-            let work = CayleyKleinWorkspace {
-                h,
-                edge: self.edge(&state, h),
-                here: state,
-            };
-            let (mut trial, mut scratch) = (state, work);
-            self.step(&mut trial, &mut scratch)
-                .map_err(|e| StartError::Refused(e.cause))?;
-            Ok(work)
+            self.prepare(state, h, Default::default())
         }
         /// One step, in place. Solved thus: A is constant and symmetric, β constant: one equation for one number a step.
         ///
@@ -197,7 +169,7 @@ pub mod cayley_klein {
             state: &Self::State,
             h: T,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h)
+            self.prepare(state, h, Default::default())
         }
         #[inline(always)]
         fn advance(
@@ -218,42 +190,14 @@ pub mod cayley_klein {
         }
     }
     impl<T: Real> Reversible for CayleyKlein<T> {}
-    impl<T: Real> ::clebsch::OfScalars for CayleyKleinParameters<T> {
-        type Scalar = T;
-        type Over<U: Real> = CayleyKleinParameters<U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> CayleyKleinParameters<U> {
-            CayleyKleinParameters {
-                I: self.I.over(change),
-                c: self.c.over(change),
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] CayleyKleinParameters { I, c }
     }
-    impl<T: Real> ::clebsch::OfScalars for CayleyKleinInitial<T> {
-        type Scalar = T;
-        type Over<U: Real> = CayleyKleinInitial<U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> CayleyKleinInitial<U> {
-            CayleyKleinInitial {
-                q: self.q.over(change),
-                body_momentum: self.body_momentum.over(change),
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] CayleyKleinInitial { q, body_momentum }
     }
-    impl<T: Real> ::clebsch::OfScalars for CayleyKleinState<T> {
-        type Scalar = T;
-        type Over<U: Real> = CayleyKleinState<U>;
-        fn over<U: Real>(&self, change: &mut impl FnMut(T) -> U) -> CayleyKleinState<U> {
-            CayleyKleinState {
-                q: self.q.over(change),
-                momentum: self.momentum.over(change),
-                node: self.node,
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] CayleyKleinState { q, momentum } at node
     }
     impl<T: Real> ::clebsch::integrate::Model for CayleyKlein<T> {
         type Parameters = CayleyKleinParameters<T>;
@@ -271,15 +215,25 @@ pub mod cayley_klein {
             &self,
             initial: Self::Initial,
         ) -> Result<CayleyKleinState<T>, StartError> {
-            self.at_node_0(initial)
+            validate::finite("q", &initial.q.components())?;
+            validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
+            Ok(CayleyKleinState {
+                q: initial.q,
+                momentum: initial.body_momentum.to_space(&initial.q),
+                node: 0,
+            })
         }
-        fn prepare(
+        fn prepared(
             &self,
             state: &CayleyKleinState<T>,
             h: T,
             _: Self::Choice,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h)
+            Ok(CayleyKleinWorkspace {
+                h,
+                edge: self.edge(state, h),
+                here: *state,
+            })
         }
     }
     /// A configuration at one node, solution or not.
@@ -435,91 +389,68 @@ pub mod cayley_klein {
                     / (h * h)
         }
     }
-    /// One trajectory of the model, its type hidden.
-    struct CayleyKleinTrajectory {
-        model: CayleyKlein<f64>,
-        state: CayleyKleinState<f64>,
-        steps: Steps<CayleyKlein<f64>>,
-        h: f64,
-        /// The state before the last step.
-        before: CayleyKleinState<f64>,
-        /// Whether a step is one of the derivation, not composed and without modified moments.
-        plain: bool,
-        kinetic: Option<KineticWarning>,
-    }
-    impl Trajectory for CayleyKleinTrajectory {
-        fn node(&self) -> u64 {
-            self.state.node()
+    impl ::clebsch::integrate::Described for CayleyKlein<f64> {
+        fn card() -> &'static Card {
+            &Self::CARD
         }
-        fn time(&self) -> f64 {
-            self.h * self.state.node() as f64
+        fn read(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+        ) -> Result<(Self, Self::Initial), OpenError> {
+            let model = Self::new(CayleyKleinParameters {
+                I: matrix_of("I", parameters.get(0usize))?,
+                c: number_of("c", parameters.get(1usize))?,
+            })?;
+            let initial = CayleyKleinInitial {
+                q: quaternion_of("q", initial.get(0usize))?,
+                body_momentum: BodyMomentum(
+                    matrix_of("body_momentum", initial.get(1usize))?,
+                ),
+            };
+            Ok((model, initial))
         }
-        fn step(&mut self) -> Result<(), StepError> {
-            let before = self.state;
-            self.steps.step(&self.model, &mut self.state)?;
-            self.before = before;
-            Ok(())
+        fn ways(
+            self,
+            state: &Self::State,
+            settings: Settings,
+        ) -> Result<(Self, Steps<Self>), OpenError> {
+            let model = chosen_solver(settings, Self::CARD.solvers).map(|_| self)?;
+            let steps = Steps::of_order(&model, state, settings, Self::CARD.orders)?;
+            Ok((model, steps))
         }
-        fn card(&self) -> &'static Card {
-            &CayleyKlein::<f64>::CARD
+        fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
+            self.kinetic_warning(state)
         }
-        fn kinetic_warning(&self) -> Option<KineticWarning> {
-            self.kinetic
+        fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
+            Residual::largest(&self.residual(before, after, h))
         }
-        fn residual(&self) -> Option<f64> {
-            let moved = self.before.node() != self.state.node();
-            (self.plain && moved)
-                .then(|| {
-                    Residual::largest(
-                        &self.model.residual(&self.before, &self.state, self.h),
-                    )
-                })
-        }
-        fn observe(&self, out: &mut [f64]) {
-            let state = &self.state;
+        fn observe(&self, state: &Self::State, out: &mut [f64]) {
             let out = put(out, state.q().components());
             let out = put(out, rows(state.body_momentum().0));
             let out = put(out, rows(state.spatial_momentum().0));
             let _ = out;
         }
-        fn invariants(&self, out: &mut [f64]) {
-            let state = &self.state;
-            let out = put(out, [self.model.energy(state)]);
+        fn invariants(
+            &self,
+            state: &Self::State,
+            _: Option<&Self::Workspace>,
+            out: &mut [f64],
+        ) {
+            let out = put(out, [self.energy(state)]);
             let out = put(out, rows(state.spatial_momentum().0));
-            let out = put(out, [self.model.momentum_squared(state)]);
-            let _ = out;
+            let out = put(out, [self.momentum_squared(state)]);
+            let _ = (state, out);
         }
-        fn scales(&self, out: &mut [f64]) {
-            let state = &self.state;
-            let out = put(
-                out,
-                [{
-                    let (kinetic, potential) = self.model.energies(state);
-                    kinetic.abs() + potential.abs()
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let q = state.q.matrix();
-                    let μ = state.body_momentum().0;
-                    let t1 = quaternion_rotation(&q) * μ;
-                    let value: T = t1.dot(&t1).sqrt();
-                    value
-                }; 3usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let μ = state.body_momentum().0;
-                    let t1 = μ.dot(&μ).sqrt();
-                    let value: T = t1 * t1;
-                    value
-                }; 1usize],
-            );
-            let _ = out;
+        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+            type T = f64;
+            let q = state.q.matrix();
+            let μ = state.body_momentum().0;
+            let t1 = quaternion_rotation(&q) * μ;
+            let t2 = μ.dot(&μ).sqrt();
+            let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
+            let out = put(out, [t1.dot(&t1).sqrt(); 3usize]);
+            let out = put(out, [t2 * t2; 1usize]);
+            let _ = (state, out);
         }
     }
     impl CayleyKlein<f64> {
@@ -537,97 +468,34 @@ pub mod cayley_klein {
             preprocessed: false,
             reversible: true,
             parameters: &[
-                Field {
-                    name: "I",
-                    ascii: "I",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::Diagonal,
-                    doc: "principal moments of inertia",
-                },
-                Field {
-                    name: "c",
-                    ascii: "c",
-                    rows: 1,
-                    cols: 1,
-                    kind: Kind::Scalar,
-                    doc: "0: Moser-Veselov; 1: as in the thesis",
-                },
+                Kind::Diagonal.field("I", [3, 3], "principal moments of inertia"),
+                Kind::Scalar.field("c", [1, 1], "0: Moser-Veselov; 1: as in the thesis"),
             ],
             initial: &[
-                Field {
-                    name: "q",
-                    ascii: "q",
-                    rows: 4,
-                    cols: 1,
-                    kind: Kind::UnitQuaternion,
-                    doc: "attitude, body to space",
-                },
-                Field {
-                    name: "body_momentum",
-                    ascii: "body_momentum",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::BodyMomentum,
-                    doc: "momentum, body frame",
-                },
+                Kind::UnitQuaternion.field("q", [4, 1], "attitude, body to space"),
+                Kind::BodyMomentum.field("body_momentum", [3, 1], "momentum, body frame"),
             ],
             observables: &[
-                Field {
-                    name: "q",
-                    ascii: "q",
-                    rows: 4,
-                    cols: 1,
-                    kind: Kind::UnitQuaternion,
-                    doc: "attitude, body to space",
-                },
-                Field {
-                    name: "body_momentum",
-                    ascii: "body_momentum",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::BodyMomentum,
-                    doc: "momentum, body frame",
-                },
-                Field {
-                    name: "spatial_momentum",
-                    ascii: "spatial_momentum",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::SpatialMomentum,
-                    doc: "momentum, space frame",
-                },
+                Kind::UnitQuaternion.field("q", [4, 1], "attitude, body to space"),
+                Kind::BodyMomentum
+                    .field("body_momentum", [3, 1], "momentum, body frame"),
+                Kind::SpatialMomentum
+                    .field("spatial_momentum", [3, 1], "momentum, space frame"),
             ],
             invariants: &[
-                Invariant {
-                    name: "energy",
-                    formula: "½ μ_k·ζ, where μ_k = I ζ",
-                    rows: 1usize,
-                    conserved: Conserved::Boundedly,
-                },
-                Invariant {
-                    name: "spatial_momentum",
-                    formula: "rot(q_k) μ_k",
-                    rows: 3usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "momentum_squared",
-                    formula: "μ_k·μ_k",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
+                Invariant::bounded("energy", "½ μ_k·ζ, where μ_k = I ζ", 1usize),
+                Invariant::exact("spatial_momentum", "rot(q_k) μ_k", 3usize),
+                Invariant::exact("momentum_squared", "μ_k·μ_k", 1usize),
             ],
-            discrete_energy: Invariant {
-                name: "discrete_energy",
-                formula: "-4 c re(W_k)/h² + 2 im(W_k)·((I - c Id) im(W_k))/h² + 4 c/h²",
-                rows: 1,
-                conserved: Conserved::Boundedly,
-            },
-            open: Self::open,
+            discrete_energy: Invariant::bounded(
+                "discrete_energy",
+                "-4 c re(W_k)/h² + 2 im(W_k)·((I - c Id) im(W_k))/h² + 4 c/h²",
+                1,
+            ),
+            open: open::<Self>,
             solvers: &[],
             dimensions: &[],
-            sized: Self::sized,
+            sized: only_size::<Self>,
         };
         /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
         /// velocities together, at the identity, should be positive definite.
@@ -657,58 +525,6 @@ pub mod cayley_klein {
                     );
             }
             KineticWarning::of(&inertia, 0 + 3)
-        }
-        /// The card of the model at the given sizes, in the order of their declaration.
-        fn sized(sizes: &[usize]) -> Option<Card> {
-            match sizes {
-                [] => Some(CayleyKlein::<f64>::CARD),
-                _ => None,
-            }
-        }
-        fn open(
-            parameters: &[Vec<f64>],
-            initial: &[Vec<f64>],
-            settings: Settings,
-        ) -> Result<Box<dyn Trajectory>, OpenError> {
-            for (field, expected, found) in [
-                ("parameters", 2usize, parameters.len()),
-                ("initial values", 2usize, initial.len()),
-            ] {
-                if expected != found {
-                    return Err(OpenError::Count {
-                        field,
-                        expected,
-                        found,
-                    });
-                }
-            }
-            let model = CayleyKlein::new(CayleyKleinParameters {
-                I: matrix_of("I", parameters.get(0usize))?,
-                c: number_of("c", parameters.get(1usize))?,
-            })?;
-            let initial = CayleyKleinInitial {
-                q: quaternion_of("q", initial.get(0usize))?,
-                body_momentum: BodyMomentum(
-                    matrix_of("body_momentum", initial.get(1usize))?,
-                ),
-            };
-            chosen_solver(settings, Self::CARD.solvers)?;
-            let state = model.at_node_0(initial)?;
-            let kinetic = model.kinetic_warning(&state);
-            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)
-                .map_err(|e| OpenError::from(e).beside(kinetic))?;
-            let plain = matches!(steps, Steps::Plain(_));
-            Ok(
-                Box::new(CayleyKleinTrajectory {
-                    model,
-                    state,
-                    steps,
-                    h: settings.h,
-                    before: state,
-                    plain,
-                    kinetic,
-                }),
-            )
         }
     }
 }

@@ -91,48 +91,22 @@ pub mod charged_particle {
         /// Starts a trajectory with step `h` from data at node 0.
         ///
         /// # Errors
-        /// Names the value that is not finite, or says why the first step cannot be solved and
-        /// which step could.
+        /// Names the value that is not admissible, or says why the first step cannot be solved and
+        /// which could.
         pub fn start(
             &self,
             initial: ChargedParticleInitial<T>,
             h: T,
         ) -> Result<(ChargedParticleState<T>, ChargedParticleWorkspace<T>), StartError> {
-            validate::positive_step(h)?;
-            let state = self.at_node_0(initial)?;
-            Ok((state, self.workspace(&state, h)?))
+            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
         }
-        /// The state at node 0.
-        fn at_node_0(
-            &self,
-            initial: ChargedParticleInitial<T>,
-        ) -> Result<ChargedParticleState<T>, StartError> {
-            validate::finite("X", initial.X.matrix().as_slice())?;
-            validate::finite("momentum", initial.momentum.0.as_slice())?;
-            Ok(ChargedParticleState {
-                X: initial.X,
-                momentum: initial.momentum,
-                place_rest: SMatrix::zeros(),
-                momentum_rest: SMatrix::zeros(),
-                node: 0,
-            })
-        }
-        /// A workspace for steps of `h`, of either sign, from any state.
-        ///
-        /// # Errors
-        /// When `h` is zero or not finite, or the first step cannot be solved.
+        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
         pub fn workspace(
             &self,
             state: &ChargedParticleState<T>,
             h: T,
         ) -> Result<ChargedParticleWorkspace<T>, StartError> {
-            validate::directed_step(h)?;
-            let state = *state;
-            let work = ChargedParticleWorkspace { h };
-            let (mut trial, mut scratch) = (state, work);
-            self.step(&mut trial, &mut scratch)
-                .map_err(|e| StartError::Refused(e.cause))?;
-            Ok(work)
+            self.prepare(state, h, Default::default())
         }
         /// One step, in place. Solved thus: the balance is linear: one small linear system.
         ///
@@ -190,7 +164,7 @@ pub mod charged_particle {
             state: &Self::State,
             h: T,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h)
+            self.prepare(state, h, Default::default())
         }
         #[inline(always)]
         fn advance(
@@ -217,49 +191,14 @@ pub mod charged_particle {
         }
     }
     impl<T: Real> Reversible for ChargedParticle<T> {}
-    impl<T: Real> ::clebsch::OfScalars for ChargedParticleParameters<T> {
-        type Scalar = T;
-        type Over<U: Real> = ChargedParticleParameters<U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> ChargedParticleParameters<U> {
-            ChargedParticleParameters {
-                m: self.m.over(change),
-                q: self.q.over(change),
-                B: self.B.over(change),
-                E: self.E.over(change),
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] ChargedParticleParameters { m, q, B, E }
     }
-    impl<T: Real> ::clebsch::OfScalars for ChargedParticleInitial<T> {
-        type Scalar = T;
-        type Over<U: Real> = ChargedParticleInitial<U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> ChargedParticleInitial<U> {
-            ChargedParticleInitial {
-                X: self.X.over(change),
-                momentum: self.momentum.over(change),
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] ChargedParticleInitial { X, momentum }
     }
-    impl<T: Real> ::clebsch::OfScalars for ChargedParticleState<T> {
-        type Scalar = T;
-        type Over<U: Real> = ChargedParticleState<U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> ChargedParticleState<U> {
-            ChargedParticleState {
-                X: self.X.over(change),
-                momentum: self.momentum.over(change),
-                place_rest: self.place_rest.over(change),
-                momentum_rest: self.momentum_rest.over(change),
-                node: self.node,
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] ChargedParticleState { X, momentum, place_rest, momentum_rest } at node
     }
     impl<T: Real> ::clebsch::integrate::Model for ChargedParticle<T> {
         type Parameters = ChargedParticleParameters<T>;
@@ -277,15 +216,23 @@ pub mod charged_particle {
             &self,
             initial: Self::Initial,
         ) -> Result<ChargedParticleState<T>, StartError> {
-            self.at_node_0(initial)
+            validate::finite("X", initial.X.matrix().as_slice())?;
+            validate::finite("momentum", initial.momentum.0.as_slice())?;
+            Ok(ChargedParticleState {
+                X: initial.X,
+                momentum: initial.momentum,
+                place_rest: SMatrix::zeros(),
+                momentum_rest: SMatrix::zeros(),
+                node: 0,
+            })
         }
-        fn prepare(
+        fn prepared(
             &self,
-            state: &ChargedParticleState<T>,
+            _: &ChargedParticleState<T>,
             h: T,
             _: Self::Choice,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h)
+            Ok(ChargedParticleWorkspace { h })
         }
     }
     /// A configuration at one node, solution or not.
@@ -443,83 +390,68 @@ pub mod charged_particle {
                 - T::from_f64(0.5) * q * E.dot(&X_next)
         }
     }
-    /// One trajectory of the model, its type hidden.
-    struct ChargedParticleTrajectory {
-        model: ChargedParticle<f64>,
-        state: ChargedParticleState<f64>,
-        steps: Steps<ChargedParticle<f64>>,
-        h: f64,
-        /// The state before the last step.
-        before: ChargedParticleState<f64>,
-        /// Whether a step is one of the derivation, not composed and without modified moments.
-        plain: bool,
-        kinetic: Option<KineticWarning>,
-    }
-    impl Trajectory for ChargedParticleTrajectory {
-        fn node(&self) -> u64 {
-            self.state.node()
+    impl ::clebsch::integrate::Described for ChargedParticle<f64> {
+        fn card() -> &'static Card {
+            &Self::CARD
         }
-        fn time(&self) -> f64 {
-            self.h * self.state.node() as f64
+        fn read(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+        ) -> Result<(Self, Self::Initial), OpenError> {
+            let model = Self::new(ChargedParticleParameters {
+                m: number_of("m", parameters.get(0usize))?,
+                q: number_of("q", parameters.get(1usize))?,
+                B: matrix_of("B", parameters.get(2usize))?,
+                E: matrix_of("E", parameters.get(3usize))?,
+            })?;
+            let initial = ChargedParticleInitial {
+                X: additive_of("X", initial.get(0usize))?,
+                momentum: FieldMomentum(matrix_of("momentum", initial.get(1usize))?),
+            };
+            Ok((model, initial))
         }
-        fn step(&mut self) -> Result<(), StepError> {
-            let before = self.state;
-            self.steps.step(&self.model, &mut self.state)?;
-            self.before = before;
-            Ok(())
+        fn ways(
+            self,
+            state: &Self::State,
+            settings: Settings,
+        ) -> Result<(Self, Steps<Self>), OpenError> {
+            let model = chosen_solver(settings, Self::CARD.solvers).map(|_| self)?;
+            let steps = Steps::of_order(&model, state, settings, Self::CARD.orders)?;
+            Ok((model, steps))
         }
-        fn card(&self) -> &'static Card {
-            &ChargedParticle::<f64>::CARD
+        fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
+            self.kinetic_warning(state)
         }
-        fn kinetic_warning(&self) -> Option<KineticWarning> {
-            self.kinetic
+        fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
+            Residual::largest(&self.residual(before, after, h))
         }
-        fn residual(&self) -> Option<f64> {
-            let moved = self.before.node() != self.state.node();
-            (self.plain && moved)
-                .then(|| {
-                    Residual::largest(
-                        &self.model.residual(&self.before, &self.state, self.h),
-                    )
-                })
-        }
-        fn observe(&self, out: &mut [f64]) {
-            let state = &self.state;
+        fn observe(&self, state: &Self::State, out: &mut [f64]) {
             let out = put(out, rows(state.X().matrix()));
             let out = put(out, rows(state.momentum().0));
             let _ = out;
         }
-        fn invariants(&self, out: &mut [f64]) {
-            let state = &self.state;
-            let out = put(out, [self.model.energy(state)]);
-            let out = put(out, rows(self.model.momentum_across_E(state)));
-            let _ = out;
+        fn invariants(
+            &self,
+            state: &Self::State,
+            _: Option<&Self::Workspace>,
+            out: &mut [f64],
+        ) {
+            let out = put(out, [self.energy(state)]);
+            let out = put(out, rows(self.momentum_across_E(state)));
+            let _ = (state, out);
         }
-        fn scales(&self, out: &mut [f64]) {
-            let state = &self.state;
+        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+            type T = f64;
+            let ChargedParticleParameters { q, B, E, .. } = self.parameters;
+            let X = state.X.matrix();
+            let p = state.momentum().0;
+            let t1 = E.cross(&X.cross(&(B * T::from_f64(0.5) * q)));
+            let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
             let out = put(
                 out,
-                [{
-                    let (kinetic, potential) = self.model.energies(state);
-                    kinetic.abs() + potential.abs()
-                }; 1usize],
+                [t1.dot(&t1).sqrt() + p.dot(&p).sqrt() * E.dot(&E).sqrt(); 3 * 1],
             );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let ChargedParticleParameters { q, B, E, .. } = self
-                        .model
-                        .parameters;
-                    let X = state.X.matrix();
-                    let p = state.momentum().0;
-                    let t1 = E.cross(&X.cross(&(B * T::from_f64(0.5) * q)));
-                    let value: T = t1.dot(&t1).sqrt()
-                        + p.dot(&p).sqrt() * E.dot(&E).sqrt();
-                    value
-                }; 3 * 1],
-            );
-            let _ = out;
+            let _ = (state, out);
         }
     }
     impl ChargedParticle<f64> {
@@ -537,99 +469,40 @@ pub mod charged_particle {
             preprocessed: false,
             reversible: true,
             parameters: &[
-                Field {
-                    name: "m",
-                    ascii: "m",
-                    rows: 1,
-                    cols: 1,
-                    kind: Kind::Scalar,
-                    doc: "mass",
-                },
-                Field {
-                    name: "q",
-                    ascii: "q",
-                    rows: 1,
-                    cols: 1,
-                    kind: Kind::Scalar,
-                    doc: "charge",
-                },
-                Field {
-                    name: "B",
-                    ascii: "B",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::Vector,
-                    doc: "magnetic field",
-                },
-                Field {
-                    name: "E",
-                    ascii: "E",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::Vector,
-                    doc: "electric field",
-                },
+                Kind::Scalar.field("m", [1, 1], "mass"),
+                Kind::Scalar.field("q", [1, 1], "charge"),
+                Kind::Vector.field("B", [3, 1], "magnetic field"),
+                Kind::Vector.field("E", [3, 1], "electric field"),
             ],
             initial: &[
-                Field {
-                    name: "X",
-                    ascii: "X",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::Vector,
-                    doc: "place of the particle",
-                },
-                Field {
-                    name: "momentum",
-                    ascii: "momentum",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::FieldMomentum,
-                    doc: "momentum of X",
-                },
+                Kind::Vector.field("X", [3, 1], "place of the particle"),
+                Kind::FieldMomentum.field("momentum", [3, 1], "momentum of X"),
             ],
             observables: &[
-                Field {
-                    name: "X",
-                    ascii: "X",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::Vector,
-                    doc: "place of the particle",
-                },
-                Field {
-                    name: "momentum",
-                    ascii: "momentum",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::FieldMomentum,
-                    doc: "momentum of X",
-                },
+                Kind::Vector.field("X", [3, 1], "place of the particle"),
+                Kind::FieldMomentum.field("momentum", [3, 1], "momentum of X"),
             ],
             invariants: &[
-                Invariant {
-                    name: "energy",
-                    formula: "½ (p_k + X_k × (½ q B))·ζ - q E·X_k, where p_k = m ζ + ½ q (B × X_k)",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "momentum_across_E",
-                    formula: "E × p_k - E × (X_k × (½ q B))",
-                    rows: 3 * 1,
-                    conserved: Conserved::Exactly,
-                },
+                Invariant::exact(
+                    "energy",
+                    "½ (p_k + X_k × (½ q B))·ζ - q E·X_k, where p_k = m ζ + ½ q (B × X_k)",
+                    1usize,
+                ),
+                Invariant::exact(
+                    "momentum_across_E",
+                    "E × p_k - E × (X_k × (½ q B))",
+                    3 * 1,
+                ),
             ],
-            discrete_energy: Invariant {
-                name: "discrete_energy",
-                formula: "m ΔX_k·ΔX_k/(2 h²) - ½ q E·X_k - ½ q E·X_{k+1}",
-                rows: 1,
-                conserved: Conserved::Boundedly,
-            },
-            open: Self::open,
+            discrete_energy: Invariant::bounded(
+                "discrete_energy",
+                "m ΔX_k·ΔX_k/(2 h²) - ½ q E·X_k - ½ q E·X_{k+1}",
+                1,
+            ),
+            open: open::<Self>,
             solvers: &[],
             dimensions: &[],
-            sized: Self::sized,
+            sized: only_size::<Self>,
         };
         /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
         /// velocities together, at the identity, should be positive definite.
@@ -659,58 +532,6 @@ pub mod charged_particle {
                     );
             }
             KineticWarning::of(&inertia, 0 + (3 * 1))
-        }
-        /// The card of the model at the given sizes, in the order of their declaration.
-        fn sized(sizes: &[usize]) -> Option<Card> {
-            match sizes {
-                [] => Some(ChargedParticle::<f64>::CARD),
-                _ => None,
-            }
-        }
-        fn open(
-            parameters: &[Vec<f64>],
-            initial: &[Vec<f64>],
-            settings: Settings,
-        ) -> Result<Box<dyn Trajectory>, OpenError> {
-            for (field, expected, found) in [
-                ("parameters", 4usize, parameters.len()),
-                ("initial values", 2usize, initial.len()),
-            ] {
-                if expected != found {
-                    return Err(OpenError::Count {
-                        field,
-                        expected,
-                        found,
-                    });
-                }
-            }
-            let model = ChargedParticle::new(ChargedParticleParameters {
-                m: number_of("m", parameters.get(0usize))?,
-                q: number_of("q", parameters.get(1usize))?,
-                B: matrix_of("B", parameters.get(2usize))?,
-                E: matrix_of("E", parameters.get(3usize))?,
-            })?;
-            let initial = ChargedParticleInitial {
-                X: additive_of("X", initial.get(0usize))?,
-                momentum: FieldMomentum(matrix_of("momentum", initial.get(1usize))?),
-            };
-            chosen_solver(settings, Self::CARD.solvers)?;
-            let state = model.at_node_0(initial)?;
-            let kinetic = model.kinetic_warning(&state);
-            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)
-                .map_err(|e| OpenError::from(e).beside(kinetic))?;
-            let plain = matches!(steps, Steps::Plain(_));
-            Ok(
-                Box::new(ChargedParticleTrajectory {
-                    model,
-                    state,
-                    steps,
-                    h: settings.h,
-                    before: state,
-                    plain,
-                    kinetic,
-                }),
-            )
         }
     }
 }

@@ -124,59 +124,22 @@ pub mod coupled_bodies {
         /// Starts a trajectory with step `h` from data at node 0.
         ///
         /// # Errors
-        /// Names the value that is not finite, or says why the first step cannot be solved and
-        /// which step could.
+        /// Names the value that is not admissible, or says why the first step cannot be solved and
+        /// which could.
         pub fn start(
             &self,
             initial: CoupledBodiesInitial<T>,
             h: T,
         ) -> Result<(CoupledBodiesState<T>, CoupledBodiesWorkspace<T>), StartError> {
-            validate::positive_step(h)?;
-            let state = self.at_node_0(initial)?;
-            Ok((state, self.workspace(&state, h)?))
+            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
         }
-        /// The state at node 0.
-        fn at_node_0(
-            &self,
-            initial: CoupledBodiesInitial<T>,
-        ) -> Result<CoupledBodiesState<T>, StartError> {
-            validate::finite("Λ1", &initial.Λ1.quaternion())?;
-            validate::finite(
-                "body_momentum_Λ1",
-                initial.body_momentum_Λ1.0.as_slice(),
-            )?;
-            validate::finite("Λ2", &initial.Λ2.quaternion())?;
-            validate::finite(
-                "body_momentum_Λ2",
-                initial.body_momentum_Λ2.0.as_slice(),
-            )?;
-            Ok(CoupledBodiesState {
-                Λ1: initial.Λ1,
-                momentum_Λ1: initial.body_momentum_Λ1.to_space(&initial.Λ1),
-                Λ2: initial.Λ2,
-                momentum_Λ2: initial.body_momentum_Λ2.to_space(&initial.Λ2),
-                node: 0,
-            })
-        }
-        /// A workspace for steps of `h`, of either sign, from any state.
-        ///
-        /// # Errors
-        /// When `h` is zero or not finite, or the first step cannot be solved.
+        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
         pub fn workspace(
             &self,
             state: &CoupledBodiesState<T>,
             h: T,
         ) -> Result<CoupledBodiesWorkspace<T>, StartError> {
-            validate::directed_step(h)?;
-            let state = *state;
-            let work = CoupledBodiesWorkspace {
-                h,
-                search: newton::Search::from_rest(),
-            };
-            let (mut trial, mut scratch) = (state, work);
-            self.step(&mut trial, &mut scratch)
-                .map_err(|e| StartError::Refused(e.cause))?;
-            Ok(work)
+            self.prepare(state, h, Default::default())
         }
         /// One step, in place. Solved thus: several velocities are solved together: Newton on the derived residuals.
         ///
@@ -534,7 +497,7 @@ pub mod coupled_bodies {
             state: &Self::State,
             h: T,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h)
+            self.prepare(state, h, Default::default())
         }
         #[inline(always)]
         fn advance(
@@ -568,52 +531,14 @@ pub mod coupled_bodies {
         }
     }
     impl<T: Real> Reversible for CoupledBodies<T> {}
-    impl<T: Real> ::clebsch::OfScalars for CoupledBodiesParameters<T> {
-        type Scalar = T;
-        type Over<U: Real> = CoupledBodiesParameters<U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> CoupledBodiesParameters<U> {
-            CoupledBodiesParameters {
-                J1: self.J1.over(change),
-                J2: self.J2.over(change),
-                d1: self.d1.over(change),
-                d2: self.d2.over(change),
-                eps: self.eps.over(change),
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] CoupledBodiesParameters { J1, J2, d1, d2, eps }
     }
-    impl<T: Real> ::clebsch::OfScalars for CoupledBodiesInitial<T> {
-        type Scalar = T;
-        type Over<U: Real> = CoupledBodiesInitial<U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> CoupledBodiesInitial<U> {
-            CoupledBodiesInitial {
-                Λ1: self.Λ1.over(change),
-                body_momentum_Λ1: self.body_momentum_Λ1.over(change),
-                Λ2: self.Λ2.over(change),
-                body_momentum_Λ2: self.body_momentum_Λ2.over(change),
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] CoupledBodiesInitial { Λ1, body_momentum_Λ1, Λ2, body_momentum_Λ2 }
     }
-    impl<T: Real> ::clebsch::OfScalars for CoupledBodiesState<T> {
-        type Scalar = T;
-        type Over<U: Real> = CoupledBodiesState<U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> CoupledBodiesState<U> {
-            CoupledBodiesState {
-                Λ1: self.Λ1.over(change),
-                momentum_Λ1: self.momentum_Λ1.over(change),
-                Λ2: self.Λ2.over(change),
-                momentum_Λ2: self.momentum_Λ2.over(change),
-                node: self.node,
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] CoupledBodiesState { Λ1, momentum_Λ1, Λ2, momentum_Λ2 } at node
     }
     impl<T: Real> ::clebsch::integrate::Model for CoupledBodies<T> {
         type Parameters = CoupledBodiesParameters<T>;
@@ -631,15 +556,34 @@ pub mod coupled_bodies {
             &self,
             initial: Self::Initial,
         ) -> Result<CoupledBodiesState<T>, StartError> {
-            self.at_node_0(initial)
+            validate::finite("Λ1", &initial.Λ1.quaternion())?;
+            validate::finite(
+                "body_momentum_Λ1",
+                initial.body_momentum_Λ1.0.as_slice(),
+            )?;
+            validate::finite("Λ2", &initial.Λ2.quaternion())?;
+            validate::finite(
+                "body_momentum_Λ2",
+                initial.body_momentum_Λ2.0.as_slice(),
+            )?;
+            Ok(CoupledBodiesState {
+                Λ1: initial.Λ1,
+                momentum_Λ1: initial.body_momentum_Λ1.to_space(&initial.Λ1),
+                Λ2: initial.Λ2,
+                momentum_Λ2: initial.body_momentum_Λ2.to_space(&initial.Λ2),
+                node: 0,
+            })
         }
-        fn prepare(
+        fn prepared(
             &self,
-            state: &CoupledBodiesState<T>,
+            _: &CoupledBodiesState<T>,
             h: T,
             _: Self::Choice,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h)
+            Ok(CoupledBodiesWorkspace {
+                h,
+                search: newton::Search::from_rest(),
+            })
         }
     }
     /// A configuration at one node, solution or not.
@@ -879,99 +823,82 @@ pub mod coupled_bodies {
                 - (J1 * t1).trace() / (h * h) - (J2 * t2).trace() / (h * h)
         }
     }
-    /// One trajectory of the model, its type hidden.
-    struct CoupledBodiesTrajectory {
-        model: CoupledBodies<f64>,
-        state: CoupledBodiesState<f64>,
-        steps: Steps<CoupledBodies<f64>>,
-        h: f64,
-        /// The state before the last step.
-        before: CoupledBodiesState<f64>,
-        /// Whether a step is one of the derivation, not composed and without modified moments.
-        plain: bool,
-        kinetic: Option<KineticWarning>,
-    }
-    impl Trajectory for CoupledBodiesTrajectory {
-        fn node(&self) -> u64 {
-            self.state.node()
+    impl ::clebsch::integrate::Described for CoupledBodies<f64> {
+        fn card() -> &'static Card {
+            &Self::CARD
         }
-        fn time(&self) -> f64 {
-            self.h * self.state.node() as f64
+        fn read(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+        ) -> Result<(Self, Self::Initial), OpenError> {
+            let model = Self::new(CoupledBodiesParameters {
+                J1: matrix_of("J1", parameters.get(0usize))?,
+                J2: matrix_of("J2", parameters.get(1usize))?,
+                d1: matrix_of("d1", parameters.get(2usize))?,
+                d2: matrix_of("d2", parameters.get(3usize))?,
+                eps: number_of("eps", parameters.get(4usize))?,
+            })?;
+            let initial = CoupledBodiesInitial {
+                Λ1: rotation_of("Λ1", initial.get(0usize))?,
+                body_momentum_Λ1: BodyMomentum(
+                    matrix_of("body_momentum_Λ1", initial.get(1usize))?,
+                ),
+                Λ2: rotation_of("Λ2", initial.get(2usize))?,
+                body_momentum_Λ2: BodyMomentum(
+                    matrix_of("body_momentum_Λ2", initial.get(3usize))?,
+                ),
+            };
+            Ok((model, initial))
         }
-        fn step(&mut self) -> Result<(), StepError> {
-            let before = self.state;
-            self.steps.step(&self.model, &mut self.state)?;
-            self.before = before;
-            Ok(())
+        fn ways(
+            self,
+            state: &Self::State,
+            settings: Settings,
+        ) -> Result<(Self, Steps<Self>), OpenError> {
+            let model = chosen_solver(settings, Self::CARD.solvers).map(|_| self)?;
+            let steps = Steps::of_order(&model, state, settings, Self::CARD.orders)?;
+            Ok((model, steps))
         }
-        fn card(&self) -> &'static Card {
-            &CoupledBodies::<f64>::CARD
+        fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
+            self.kinetic_warning(state)
         }
-        fn kinetic_warning(&self) -> Option<KineticWarning> {
-            self.kinetic
+        fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
+            Residual::largest(&self.residual(before, after, h))
         }
-        fn residual(&self) -> Option<f64> {
-            let moved = self.before.node() != self.state.node();
-            (self.plain && moved)
-                .then(|| {
-                    Residual::largest(
-                        &self.model.residual(&self.before, &self.state, self.h),
-                    )
-                })
-        }
-        fn observe(&self, out: &mut [f64]) {
-            let state = &self.state;
+        fn observe(&self, state: &Self::State, out: &mut [f64]) {
             let out = put(out, rows(state.Λ1().matrix()));
             let out = put(out, rows(state.body_momentum_Λ1().0));
             let out = put(out, rows(state.spatial_momentum_Λ1().0));
             let out = put(out, rows(state.Λ2().matrix()));
             let out = put(out, rows(state.body_momentum_Λ2().0));
             let out = put(out, rows(state.spatial_momentum_Λ2().0));
-            let out = put(out, rows(self.model.R(state)));
+            let out = put(out, rows(self.R(state)));
             let _ = out;
         }
-        fn invariants(&self, out: &mut [f64]) {
-            let state = &self.state;
-            let out = put(out, [self.model.energy(state)]);
-            let out = put(out, rows(self.model.total_momentum(state)));
-            let out = put(out, [self.model.total_momentum_squared(state)]);
-            let _ = out;
+        fn invariants(
+            &self,
+            state: &Self::State,
+            _: Option<&Self::Workspace>,
+            out: &mut [f64],
+        ) {
+            let out = put(out, [self.energy(state)]);
+            let out = put(out, rows(self.total_momentum(state)));
+            let out = put(out, [self.total_momentum_squared(state)]);
+            let _ = (state, out);
         }
-        fn scales(&self, out: &mut [f64]) {
-            let state = &self.state;
-            let out = put(
-                out,
-                [{
-                    let (kinetic, potential) = self.model.energies(state);
-                    kinetic.abs() + potential.abs()
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let Λ1 = state.Λ1.matrix();
-                    let Λ2 = state.Λ2.matrix();
-                    let μ1 = state.body_momentum_Λ1().0;
-                    let μ2 = state.body_momentum_Λ2().0;
-                    let t1 = Λ1 * μ1;
-                    let t2 = Λ2 * μ2;
-                    let value: T = t1.dot(&t1).sqrt() + t2.dot(&t2).sqrt();
-                    value
-                }; 3usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let μ1 = state.body_momentum_Λ1().0;
-                    let μ2 = state.body_momentum_Λ2().0;
-                    let t1 = μ1.dot(&μ1).sqrt() + μ2.dot(&μ2).sqrt();
-                    let value: T = t1 * t1;
-                    value
-                }; 1usize],
-            );
-            let _ = out;
+        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+            type T = f64;
+            let Λ1 = state.Λ1.matrix();
+            let Λ2 = state.Λ2.matrix();
+            let μ1 = state.body_momentum_Λ1().0;
+            let μ2 = state.body_momentum_Λ2().0;
+            let t1 = Λ1 * μ1;
+            let t2 = Λ2 * μ2;
+            let t3 = μ1.dot(&μ1).sqrt() + μ2.dot(&μ2).sqrt();
+            let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
+            let out = put(out, [t1.dot(&t1).sqrt() + t2.dot(&t2).sqrt(); 3usize]);
+            let out = put(out, [t3 * t3; 1usize]);
+            let _ = (state, out);
         }
     }
     impl CoupledBodies<f64> {
@@ -989,169 +916,93 @@ pub mod coupled_bodies {
             preprocessed: false,
             reversible: true,
             parameters: &[
-                Field {
-                    name: "J1",
-                    ascii: "J1",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::SecondMoments,
-                    doc: "Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ",
-                },
-                Field {
-                    name: "J2",
-                    ascii: "J2",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::SecondMoments,
-                    doc: "Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ",
-                },
-                Field {
-                    name: "d1",
-                    ascii: "d1",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::Vector,
-                    doc: "joint -> centre of mass, each in its body's axes",
-                },
-                Field {
-                    name: "d2",
-                    ascii: "d2",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::Vector,
-                    doc: "joint -> centre of mass, each in its body's axes",
-                },
-                Field {
-                    name: "eps",
-                    ascii: "eps",
-                    rows: 1,
-                    cols: 1,
-                    kind: Kind::Scalar,
-                    doc: "reduced mass m₁ m₂/(m₁ + m₂)",
-                },
+                Kind::SecondMoments
+                    .field(
+                        "J1",
+                        [3, 3],
+                        "Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ",
+                    ),
+                Kind::SecondMoments
+                    .field(
+                        "J2",
+                        [3, 3],
+                        "Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ",
+                    ),
+                Kind::Vector
+                    .field(
+                        "d1",
+                        [3, 1],
+                        "joint -> centre of mass, each in its body's axes",
+                    ),
+                Kind::Vector
+                    .field(
+                        "d2",
+                        [3, 1],
+                        "joint -> centre of mass, each in its body's axes",
+                    ),
+                Kind::Scalar.field("eps", [1, 1], "reduced mass m₁ m₂/(m₁ + m₂)"),
             ],
             initial: &[
-                Field {
-                    name: "Λ1",
-                    ascii: "Lambda1",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::Rotation,
-                    doc: "attitude of body 1, body to space",
-                },
-                Field {
-                    name: "body_momentum_Λ1",
-                    ascii: "body_momentum_Lambda1",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::BodyMomentum,
-                    doc: "momentum, body frame",
-                },
-                Field {
-                    name: "Λ2",
-                    ascii: "Lambda2",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::Rotation,
-                    doc: "attitude of body 2, body to space",
-                },
-                Field {
-                    name: "body_momentum_Λ2",
-                    ascii: "body_momentum_Lambda2",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::BodyMomentum,
-                    doc: "momentum, body frame",
-                },
+                Kind::Rotation
+                    .field("Λ1", [3, 3], "attitude of body 1, body to space")
+                    .spelt("Lambda1"),
+                Kind::BodyMomentum
+                    .field("body_momentum_Λ1", [3, 1], "momentum, body frame")
+                    .spelt("body_momentum_Lambda1"),
+                Kind::Rotation
+                    .field("Λ2", [3, 3], "attitude of body 2, body to space")
+                    .spelt("Lambda2"),
+                Kind::BodyMomentum
+                    .field("body_momentum_Λ2", [3, 1], "momentum, body frame")
+                    .spelt("body_momentum_Lambda2"),
             ],
             observables: &[
-                Field {
-                    name: "Λ1",
-                    ascii: "Lambda1",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::Rotation,
-                    doc: "attitude of body 1, body to space",
-                },
-                Field {
-                    name: "body_momentum_Λ1",
-                    ascii: "body_momentum_Lambda1",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::BodyMomentum,
-                    doc: "momentum, body frame",
-                },
-                Field {
-                    name: "spatial_momentum_Λ1",
-                    ascii: "spatial_momentum_Lambda1",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::SpatialMomentum,
-                    doc: "momentum, space frame",
-                },
-                Field {
-                    name: "Λ2",
-                    ascii: "Lambda2",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::Rotation,
-                    doc: "attitude of body 2, body to space",
-                },
-                Field {
-                    name: "body_momentum_Λ2",
-                    ascii: "body_momentum_Lambda2",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::BodyMomentum,
-                    doc: "momentum, body frame",
-                },
-                Field {
-                    name: "spatial_momentum_Λ2",
-                    ascii: "spatial_momentum_Lambda2",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::SpatialMomentum,
-                    doc: "momentum, space frame",
-                },
-                Field {
-                    name: "R",
-                    ascii: "R",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::Matrix,
-                    doc: "body 2 seen from body 1",
-                },
+                Kind::Rotation
+                    .field("Λ1", [3, 3], "attitude of body 1, body to space")
+                    .spelt("Lambda1"),
+                Kind::BodyMomentum
+                    .field("body_momentum_Λ1", [3, 1], "momentum, body frame")
+                    .spelt("body_momentum_Lambda1"),
+                Kind::SpatialMomentum
+                    .field("spatial_momentum_Λ1", [3, 1], "momentum, space frame")
+                    .spelt("spatial_momentum_Lambda1"),
+                Kind::Rotation
+                    .field("Λ2", [3, 3], "attitude of body 2, body to space")
+                    .spelt("Lambda2"),
+                Kind::BodyMomentum
+                    .field("body_momentum_Λ2", [3, 1], "momentum, body frame")
+                    .spelt("body_momentum_Lambda2"),
+                Kind::SpatialMomentum
+                    .field("spatial_momentum_Λ2", [3, 1], "momentum, space frame")
+                    .spelt("spatial_momentum_Lambda2"),
+                Kind::Matrix.field("R", [3, 3], "body 2 seen from body 1"),
             ],
             invariants: &[
-                Invariant {
-                    name: "energy",
-                    formula: "½ μ_{1,k}·ζ₁ + ½ μ_{2,k}·ζ₂, where μ_{1,k} = -J₁ ζ₁ - eps (d₁·(R_k d₂)) R_k ζ₂ + eps (d₁·(R_k ζ₂)) R_k d₂ + tr(J₁) ζ₁, μ_{2,k} = -J₂ ζ₂ - eps (d₁·(R_k d₂)) R_kᵀ ζ₁ + eps (d₂·(R_kᵀ ζ₁)) R_kᵀ d₁ + tr(J₂) ζ₂",
-                    rows: 1usize,
-                    conserved: Conserved::Boundedly,
-                },
-                Invariant {
-                    name: "total_momentum",
-                    formula: "Λ_{1,k} μ_{1,k} + Λ_{2,k} μ_{2,k}",
-                    rows: 3usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "total_momentum_squared",
-                    formula: "(μ_{1,k} + R_k μ_{2,k})·(μ_{1,k} + R_k μ_{2,k})",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
+                Invariant::bounded(
+                    "energy",
+                    "½ μ_{1,k}·ζ₁ + ½ μ_{2,k}·ζ₂, where μ_{1,k} = -J₁ ζ₁ - eps (d₁·(R_k d₂)) R_k ζ₂ + eps (d₁·(R_k ζ₂)) R_k d₂ + tr(J₁) ζ₁, μ_{2,k} = -J₂ ζ₂ - eps (d₁·(R_k d₂)) R_kᵀ ζ₁ + eps (d₂·(R_kᵀ ζ₁)) R_kᵀ d₁ + tr(J₂) ζ₂",
+                    1usize,
+                ),
+                Invariant::exact(
+                    "total_momentum",
+                    "Λ_{1,k} μ_{1,k} + Λ_{2,k} μ_{2,k}",
+                    3usize,
+                ),
+                Invariant::exact(
+                    "total_momentum_squared",
+                    "(μ_{1,k} + R_k μ_{2,k})·(μ_{1,k} + R_k μ_{2,k})",
+                    1usize,
+                ),
             ],
-            discrete_energy: Invariant {
-                name: "discrete_energy",
-                formula: "-tr(J₁ Ω_{1,k})/h² - tr(J₂ Ω_{2,k})/h² - eps ((Ω_{1,k} - Id) d₁)·(R_k (Ω_{2,k} - Id) d₂)/h² + tr(J₁)/h² + tr(J₂)/h²",
-                rows: 1,
-                conserved: Conserved::Boundedly,
-            },
-            open: Self::open,
+            discrete_energy: Invariant::bounded(
+                "discrete_energy",
+                "-tr(J₁ Ω_{1,k})/h² - tr(J₂ Ω_{2,k})/h² - eps ((Ω_{1,k} - Id) d₁)·(R_k (Ω_{2,k} - Id) d₂)/h² + tr(J₁)/h² + tr(J₂)/h²",
+                1,
+            ),
+            open: open::<Self>,
             solvers: &[],
             dimensions: &[],
-            sized: Self::sized,
+            sized: only_size::<Self>,
         };
         /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
         /// velocities together, at the identity, should be positive definite.
@@ -1226,65 +1077,6 @@ pub mod coupled_bodies {
                     );
             }
             KineticWarning::of(&inertia, 6)
-        }
-        /// The card of the model at the given sizes, in the order of their declaration.
-        fn sized(sizes: &[usize]) -> Option<Card> {
-            match sizes {
-                [] => Some(CoupledBodies::<f64>::CARD),
-                _ => None,
-            }
-        }
-        fn open(
-            parameters: &[Vec<f64>],
-            initial: &[Vec<f64>],
-            settings: Settings,
-        ) -> Result<Box<dyn Trajectory>, OpenError> {
-            for (field, expected, found) in [
-                ("parameters", 5usize, parameters.len()),
-                ("initial values", 4usize, initial.len()),
-            ] {
-                if expected != found {
-                    return Err(OpenError::Count {
-                        field,
-                        expected,
-                        found,
-                    });
-                }
-            }
-            let model = CoupledBodies::new(CoupledBodiesParameters {
-                J1: matrix_of("J1", parameters.get(0usize))?,
-                J2: matrix_of("J2", parameters.get(1usize))?,
-                d1: matrix_of("d1", parameters.get(2usize))?,
-                d2: matrix_of("d2", parameters.get(3usize))?,
-                eps: number_of("eps", parameters.get(4usize))?,
-            })?;
-            let initial = CoupledBodiesInitial {
-                Λ1: rotation_of("Λ1", initial.get(0usize))?,
-                body_momentum_Λ1: BodyMomentum(
-                    matrix_of("body_momentum_Λ1", initial.get(1usize))?,
-                ),
-                Λ2: rotation_of("Λ2", initial.get(2usize))?,
-                body_momentum_Λ2: BodyMomentum(
-                    matrix_of("body_momentum_Λ2", initial.get(3usize))?,
-                ),
-            };
-            chosen_solver(settings, Self::CARD.solvers)?;
-            let state = model.at_node_0(initial)?;
-            let kinetic = model.kinetic_warning(&state);
-            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)
-                .map_err(|e| OpenError::from(e).beside(kinetic))?;
-            let plain = matches!(steps, Steps::Plain(_));
-            Ok(
-                Box::new(CoupledBodiesTrajectory {
-                    model,
-                    state,
-                    steps,
-                    h: settings.h,
-                    before: state,
-                    plain,
-                    kinetic,
-                }),
-            )
         }
     }
 }

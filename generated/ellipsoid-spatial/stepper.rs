@@ -106,8 +106,8 @@ pub mod ellipsoid_spatial {
         /// Starts a trajectory with step `h` from data at node 0.
         ///
         /// # Errors
-        /// Names the value that is not finite, or says why the first step cannot be solved and
-        /// which step could.
+        /// Names the value that is not admissible, or says why the first step cannot be solved and
+        /// which could.
         pub fn start(
             &self,
             initial: EllipsoidSpatialInitial<N, T>,
@@ -116,50 +116,15 @@ pub mod ellipsoid_spatial {
             (EllipsoidSpatialState<N, T>, EllipsoidSpatialWorkspace<N, T>),
             StartError,
         > {
-            validate::positive_step(h)?;
-            let state = self.at_node_0(initial)?;
-            Ok((state, self.workspace(&state, h)?))
+            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
         }
-        /// The state at node 0.
-        fn at_node_0(
-            &self,
-            initial: EllipsoidSpatialInitial<N, T>,
-        ) -> Result<EllipsoidSpatialState<N, T>, StartError> {
-            validate::finite("Q", initial.Q.matrix().as_slice())?;
-            validate::finite("spatial_momentum", initial.spatial_momentum.0.as_slice())?;
-            Ok(EllipsoidSpatialState {
-                Q: initial.Q,
-                momentum: initial.spatial_momentum,
-                node: 0,
-            })
-        }
-        /// A workspace for steps of `h`, of either sign, from any state.
-        ///
-        /// # Errors
-        /// When `h` is zero or not finite, or the first step cannot be solved.
+        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
         pub fn workspace(
             &self,
             state: &EllipsoidSpatialState<N, T>,
             h: T,
         ) -> Result<EllipsoidSpatialWorkspace<N, T>, StartError> {
-            validate::directed_step(h)?;
-            let state = *state;
-            {
-                let EllipsoidSpatialParameters { I0, .. } = self.parameters;
-                let Q = state.Q.matrix();
-                let S = Q * (I0 * Q.transpose());
-                validate::defined(
-                    domain::Domain::Positive,
-                    domain::Function::Log,
-                    "det(S_k)",
-                    determinant(&(S)),
-                )?;
-            }
-            let work = EllipsoidSpatialWorkspace { h };
-            let (mut trial, mut scratch) = (state, work);
-            self.step(&mut trial, &mut scratch)
-                .map_err(|e| StartError::Refused(e.cause))?;
-            Ok(work)
+            self.prepare(state, h, Default::default())
         }
         /// One step, in place. Solved thus: the balance is linear: two small linear systems.
         ///
@@ -313,7 +278,7 @@ pub mod ellipsoid_spatial {
             state: &Self::State,
             h: T,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h)
+            self.prepare(state, h, Default::default())
         }
         #[inline(always)]
         fn advance(
@@ -340,51 +305,14 @@ pub mod ellipsoid_spatial {
         }
     }
     impl<const N: usize, T: Real> Reversible for EllipsoidSpatial<N, T> {}
-    impl<const N: usize, T: Real> ::clebsch::OfScalars
-    for EllipsoidSpatialParameters<N, T> {
-        type Scalar = T;
-        type Over<U: Real> = EllipsoidSpatialParameters<N, U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> EllipsoidSpatialParameters<N, U> {
-            EllipsoidSpatialParameters {
-                C0: self.C0.over(change),
-                I0: self.I0.over(change),
-                a: self.a.over(change),
-                b: self.b.over(change),
-                c: self.c.over(change),
-                d: self.d.over(change),
-            }
-        }
+    ::clebsch::of_scalars! {
+        [N] EllipsoidSpatialParameters { C0, I0, a, b, c, d }
     }
-    impl<const N: usize, T: Real> ::clebsch::OfScalars
-    for EllipsoidSpatialInitial<N, T> {
-        type Scalar = T;
-        type Over<U: Real> = EllipsoidSpatialInitial<N, U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> EllipsoidSpatialInitial<N, U> {
-            EllipsoidSpatialInitial {
-                Q: self.Q.over(change),
-                spatial_momentum: self.spatial_momentum.over(change),
-            }
-        }
+    ::clebsch::of_scalars! {
+        [N] EllipsoidSpatialInitial { Q, spatial_momentum }
     }
-    impl<const N: usize, T: Real> ::clebsch::OfScalars for EllipsoidSpatialState<N, T> {
-        type Scalar = T;
-        type Over<U: Real> = EllipsoidSpatialState<N, U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> EllipsoidSpatialState<N, U> {
-            EllipsoidSpatialState {
-                Q: self.Q.over(change),
-                momentum: self.momentum.over(change),
-                node: self.node,
-            }
-        }
+    ::clebsch::of_scalars! {
+        [N] EllipsoidSpatialState { Q, momentum } at node
     }
     impl<const N: usize, T: Real> ::clebsch::integrate::Model
     for EllipsoidSpatial<N, T> {
@@ -403,15 +331,32 @@ pub mod ellipsoid_spatial {
             &self,
             initial: Self::Initial,
         ) -> Result<EllipsoidSpatialState<N, T>, StartError> {
-            self.at_node_0(initial)
+            validate::finite("Q", initial.Q.matrix().as_slice())?;
+            validate::finite("spatial_momentum", initial.spatial_momentum.0.as_slice())?;
+            Ok(EllipsoidSpatialState {
+                Q: initial.Q,
+                momentum: initial.spatial_momentum,
+                node: 0,
+            })
         }
-        fn prepare(
+        fn prepared(
             &self,
             state: &EllipsoidSpatialState<N, T>,
             h: T,
             _: Self::Choice,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h)
+            {
+                let EllipsoidSpatialParameters { I0, .. } = self.parameters;
+                let Q = state.Q.matrix();
+                let S = Q * (I0 * Q.transpose());
+                validate::defined(
+                    domain::Domain::Positive,
+                    domain::Function::Log,
+                    "det(S_k)",
+                    determinant(&(S)),
+                )?;
+            }
+            Ok(EllipsoidSpatialWorkspace { h })
         }
     }
     /// A configuration at one node, solution or not.
@@ -621,140 +566,91 @@ pub mod ellipsoid_spatial {
                 + T::from_f64(0.5) * c * t4 - T::from_f64(0.25) * d * t4.ln()
         }
     }
-    /// One trajectory of the model, its type hidden.
-    struct EllipsoidSpatialTrajectory<const N: usize> {
-        model: EllipsoidSpatial<N, f64>,
-        state: EllipsoidSpatialState<N, f64>,
-        steps: Steps<EllipsoidSpatial<N, f64>>,
-        h: f64,
-        /// The state before the last step.
-        before: EllipsoidSpatialState<N, f64>,
-        /// Whether a step is one of the derivation, not composed and without modified moments.
-        plain: bool,
-        kinetic: Option<KineticWarning>,
-    }
-    impl<const N: usize> Trajectory for EllipsoidSpatialTrajectory<N> {
-        fn node(&self) -> u64 {
-            self.state.node()
+    impl<const N: usize> ::clebsch::integrate::Described for EllipsoidSpatial<N, f64> {
+        fn card() -> &'static Card {
+            &Self::CARD
         }
-        fn time(&self) -> f64 {
-            self.h * self.state.node() as f64
+        fn read(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+        ) -> Result<(Self, Self::Initial), OpenError> {
+            let model = Self::new(EllipsoidSpatialParameters {
+                C0: matrix_of("C0", parameters.get(0usize))?,
+                I0: matrix_of("I0", parameters.get(1usize))?,
+                a: number_of("a", parameters.get(2usize))?,
+                b: number_of("b", parameters.get(3usize))?,
+                c: number_of("c", parameters.get(4usize))?,
+                d: number_of("d", parameters.get(5usize))?,
+            })?;
+            let initial = EllipsoidSpatialInitial {
+                Q: linear_of("Q", initial.get(0usize))?,
+                spatial_momentum: SpatialMomentumMatrix(
+                    matrix_of("spatial_momentum", initial.get(1usize))?,
+                ),
+            };
+            Ok((model, initial))
         }
-        fn step(&mut self) -> Result<(), StepError> {
-            let before = self.state;
-            self.steps.step(&self.model, &mut self.state)?;
-            self.before = before;
-            Ok(())
+        fn ways(
+            self,
+            state: &Self::State,
+            settings: Settings,
+        ) -> Result<(Self, Steps<Self>), OpenError> {
+            let model = chosen_solver(settings, Self::CARD.solvers).map(|_| self)?;
+            let steps = Steps::of_order(&model, state, settings, Self::CARD.orders)?;
+            Ok((model, steps))
         }
-        fn card(&self) -> &'static Card {
-            &EllipsoidSpatial::<N, f64>::CARD
+        fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
+            self.kinetic_warning(state)
         }
-        fn kinetic_warning(&self) -> Option<KineticWarning> {
-            self.kinetic
+        fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
+            Residual::largest(&self.residual(before, after, h))
         }
-        fn residual(&self) -> Option<f64> {
-            let moved = self.before.node() != self.state.node();
-            (self.plain && moved)
-                .then(|| {
-                    Residual::largest(
-                        &self.model.residual(&self.before, &self.state, self.h),
-                    )
-                })
-        }
-        fn observe(&self, out: &mut [f64]) {
-            let state = &self.state;
+        fn observe(&self, state: &Self::State, out: &mut [f64]) {
             let out = put(out, rows(state.Q().matrix()));
             let out = put(out, rows(state.body_momentum().0));
             let out = put(out, rows(state.spatial_momentum().0));
-            let out = put(out, rows(self.model.S(state)));
+            let out = put(out, rows(self.S(state)));
             let _ = out;
         }
-        fn invariants(&self, out: &mut [f64]) {
-            let state = &self.state;
-            let out = put(out, [self.model.energy(state)]);
-            let out = put(out, [self.model.circulation_S_2(state)]);
-            let out = put(out, [self.model.circulation_S_4(state)]);
-            let out = put(
-                out,
-                rows(self.model.body_momentum_skew_I0_inverse_right(state)),
-            );
-            let _ = out;
+        fn invariants(
+            &self,
+            state: &Self::State,
+            _: Option<&Self::Workspace>,
+            out: &mut [f64],
+        ) {
+            let out = put(out, [self.energy(state)]);
+            let out = put(out, [self.circulation_S_2(state)]);
+            let out = put(out, [self.circulation_S_4(state)]);
+            let out = put(out, rows(self.body_momentum_skew_I0_inverse_right(state)));
+            let _ = (state, out);
         }
-        fn scales(&self, out: &mut [f64]) {
-            let state = &self.state;
+        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+            type T = f64;
+            let EllipsoidSpatialParameters { I0, .. } = self.parameters;
+            let Q = state.Q.matrix();
+            let S = Q * (I0 * Q.transpose());
+            let m = state.spatial_momentum().0;
+            let t1 = inverse_or_nan(&(S));
+            let t2 = (m.tr_mul(&m)).trace().sqrt() * (S * S).trace().sqrt()
+                * (t1 * t1).trace().sqrt();
+            let t3 = inverse_or_nan(&(Q));
+            let t4 = inverse_or_nan(&(I0));
             let out = put(
                 out,
-                ::core::iter::repeat_n(
-                    {
-                        let (kinetic, potential) = self.model.energies(state);
-                        kinetic.abs() + potential.abs()
-                    },
-                    1usize,
-                ),
+                ::core::iter::repeat_n(sum_of_sizes(self.energies(state)), 1usize),
             );
+            let out = put(out, ::core::iter::repeat_n(t2 * t2, 1usize));
+            let out = put(out, ::core::iter::repeat_n(t2.powi(4), 1usize));
             let out = put(
                 out,
                 ::core::iter::repeat_n(
-                    {
-                        type T = f64;
-                        let EllipsoidSpatialParameters { I0, .. } = self
-                            .model
-                            .parameters;
-                        let Q = state.Q.matrix();
-                        let S = Q * (I0 * Q.transpose());
-                        let m = state.spatial_momentum().0;
-                        let t1 = inverse_or_nan(&(S));
-                        let value: T = ((m.tr_mul(&m)).trace().sqrt()
-                            * (S * S).trace().sqrt() * (t1 * t1).trace().sqrt())
-                            * ((m.tr_mul(&m)).trace().sqrt() * (S * S).trace().sqrt()
-                                * (t1 * t1).trace().sqrt());
-                        value
-                    },
-                    1usize,
-                ),
-            );
-            let out = put(
-                out,
-                ::core::iter::repeat_n(
-                    {
-                        type T = f64;
-                        let EllipsoidSpatialParameters { I0, .. } = self
-                            .model
-                            .parameters;
-                        let Q = state.Q.matrix();
-                        let S = Q * (I0 * Q.transpose());
-                        let m = state.spatial_momentum().0;
-                        let t1 = inverse_or_nan(&(S));
-                        let value: T = ((m.tr_mul(&m)).trace().sqrt()
-                            * (S * S).trace().sqrt() * (t1 * t1).trace().sqrt())
-                            .powi(4);
-                        value
-                    },
-                    1usize,
-                ),
-            );
-            let out = put(
-                out,
-                ::core::iter::repeat_n(
-                    {
-                        type T = f64;
-                        let EllipsoidSpatialParameters { I0, .. } = self
-                            .model
-                            .parameters;
-                        let Q = state.Q.matrix();
-                        let m = state.spatial_momentum().0;
-                        let t1 = inverse_or_nan(&(Q));
-                        let t2 = inverse_or_nan(&(I0));
-                        let value: T = (t1
-                            * m.tr_mul(&(Q * Q.tr_mul(&(m * t1.transpose())))))
-                            .trace()
-                            .sqrt() * (t2 * t2).trace().sqrt();
-                        value
-                    },
+                    (t3 * m.tr_mul(&(Q * Q.tr_mul(&(m * t3.transpose())))))
+                        .trace()
+                        .sqrt() * (t4 * t4).trace().sqrt(),
                     N * N,
                 ),
             );
-            let _ = out;
+            let _ = (state, out);
         }
     }
     impl<const N: usize> EllipsoidSpatial<N, f64> {
@@ -772,140 +668,63 @@ pub mod ellipsoid_spatial {
             preprocessed: false,
             reversible: true,
             parameters: &[
-                Field {
-                    name: "C0",
-                    ascii: "C0",
-                    rows: N,
-                    cols: N,
-                    kind: Kind::Symmetric,
-                    doc: "metric of space",
-                },
-                Field {
-                    name: "I0",
-                    ascii: "I0",
-                    rows: N,
-                    cols: N,
-                    kind: Kind::Symmetric,
-                    doc: "second moments of mass in the reference",
-                },
-                Field {
-                    name: "a",
-                    ascii: "a",
-                    rows: 1,
-                    cols: 1,
-                    kind: Kind::Scalar,
-                    doc: "stiffness of lengths, of areas and of volumes",
-                },
-                Field {
-                    name: "b",
-                    ascii: "b",
-                    rows: 1,
-                    cols: 1,
-                    kind: Kind::Scalar,
-                    doc: "stiffness of lengths, of areas and of volumes",
-                },
-                Field {
-                    name: "c",
-                    ascii: "c",
-                    rows: 1,
-                    cols: 1,
-                    kind: Kind::Scalar,
-                    doc: "stiffness of lengths, of areas and of volumes",
-                },
-                Field {
-                    name: "d",
-                    ascii: "d",
-                    rows: 1,
-                    cols: 1,
-                    kind: Kind::Scalar,
-                    doc: "resistance to collapse; without stress at the identity if d = 2 a + 2 (n - 1) b + 2 c",
-                },
+                Kind::Symmetric.field("C0", [N, N], "metric of space"),
+                Kind::Symmetric
+                    .field("I0", [N, N], "second moments of mass in the reference"),
+                Kind::Scalar
+                    .field("a", [1, 1], "stiffness of lengths, of areas and of volumes"),
+                Kind::Scalar
+                    .field("b", [1, 1], "stiffness of lengths, of areas and of volumes"),
+                Kind::Scalar
+                    .field("c", [1, 1], "stiffness of lengths, of areas and of volumes"),
+                Kind::Scalar
+                    .field(
+                        "d",
+                        [1, 1],
+                        "resistance to collapse; without stress at the identity if d = 2 a + 2 (n - 1) b + 2 c",
+                    ),
             ],
             initial: &[
-                Field {
-                    name: "Q",
-                    ascii: "Q",
-                    rows: N,
-                    cols: N,
-                    kind: Kind::Matrix,
-                    doc: "placement, reference to space",
-                },
-                Field {
-                    name: "spatial_momentum",
-                    ascii: "spatial_momentum",
-                    rows: N,
-                    cols: N,
-                    kind: Kind::SpatialMomentum,
-                    doc: "momentum, space frame",
-                },
+                Kind::Matrix.field("Q", [N, N], "placement, reference to space"),
+                Kind::SpatialMomentum
+                    .field("spatial_momentum", [N, N], "momentum, space frame"),
             ],
             observables: &[
-                Field {
-                    name: "Q",
-                    ascii: "Q",
-                    rows: N,
-                    cols: N,
-                    kind: Kind::Matrix,
-                    doc: "placement, reference to space",
-                },
-                Field {
-                    name: "body_momentum",
-                    ascii: "body_momentum",
-                    rows: N,
-                    cols: N,
-                    kind: Kind::BodyMomentum,
-                    doc: "momentum, body frame",
-                },
-                Field {
-                    name: "spatial_momentum",
-                    ascii: "spatial_momentum",
-                    rows: N,
-                    cols: N,
-                    kind: Kind::SpatialMomentum,
-                    doc: "momentum, space frame",
-                },
-                Field {
-                    name: "S",
-                    ascii: "S",
-                    rows: N,
-                    cols: N,
-                    kind: Kind::Symmetric,
-                    doc: "second moments in space",
-                },
+                Kind::Matrix.field("Q", [N, N], "placement, reference to space"),
+                Kind::BodyMomentum
+                    .field("body_momentum", [N, N], "momentum, body frame"),
+                Kind::SpatialMomentum
+                    .field("spatial_momentum", [N, N], "momentum, space frame"),
+                Kind::Symmetric.field("S", [N, N], "second moments in space"),
             ],
             invariants: &[
-                Invariant {
-                    name: "energy",
-                    formula: "½ tr(m_kᵀ ζ) + a tr(S_k) + ½ b tr(S_k)² - ½ b tr(S_k²) + c det(S_k) - ½ d log(det(S_k)), where m_k = C₀ ζ S_k",
-                    rows: 1usize,
-                    conserved: Conserved::Boundedly,
-                },
-                Invariant {
-                    name: "circulation_S_2",
-                    formula: "tr(skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k)",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "circulation_S_4",
-                    formula: "tr(skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k)",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "body_momentum_skew_I0_inverse_right",
-                    formula: "skew(Q_kᵀ m_k Q_k⁻ᵀ I₀⁻¹)",
-                    rows: N * N,
-                    conserved: Conserved::Exactly,
-                },
+                Invariant::bounded(
+                    "energy",
+                    "½ tr(m_kᵀ ζ) + a tr(S_k) + ½ b tr(S_k)² - ½ b tr(S_k²) + c det(S_k) - ½ d log(det(S_k)), where m_k = C₀ ζ S_k",
+                    1usize,
+                ),
+                Invariant::exact(
+                    "circulation_S_2",
+                    "tr(skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k)",
+                    1usize,
+                ),
+                Invariant::exact(
+                    "circulation_S_4",
+                    "tr(skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k)",
+                    1usize,
+                ),
+                Invariant::exact(
+                    "body_momentum_skew_I0_inverse_right",
+                    "skew(Q_kᵀ m_k Q_k⁻ᵀ I₀⁻¹)",
+                    N * N,
+                ),
             ],
-            discrete_energy: Invariant {
-                name: "discrete_energy",
-                formula: "2 tr(C₀ (g_k - Id) S_k (g_kᵀ - Id))/(2 h)² + ½ a tr(S_k) + ¼ b tr(S_k)² - ¼ b tr(S_k²) + ½ c det(S_k) - ¼ d log(det(S_k)) + ½ a tr(S_{k+1}) + ¼ b tr(S_{k+1})² - ¼ b tr(S_{k+1}²) + ½ c det(S_{k+1}) - ¼ d log(det(S_{k+1}))",
-                rows: 1,
-                conserved: Conserved::Boundedly,
-            },
-            open: Self::open,
+            discrete_energy: Invariant::bounded(
+                "discrete_energy",
+                "2 tr(C₀ (g_k - Id) S_k (g_kᵀ - Id))/(2 h)² + ½ a tr(S_k) + ¼ b tr(S_k)² - ¼ b tr(S_k²) + ½ c det(S_k) - ¼ d log(det(S_k)) + ½ a tr(S_{k+1}) + ¼ b tr(S_{k+1})² - ¼ b tr(S_{k+1}²) + ½ c det(S_{k+1}) - ¼ d log(det(S_{k+1}))",
+                1,
+            ),
+            open: open::<Self>,
             solvers: &[],
             dimensions: &[
                 Dimension {
@@ -956,55 +775,6 @@ pub mod ellipsoid_spatial {
                 [4] => Some(EllipsoidSpatial::<4, f64>::CARD),
                 _ => None,
             }
-        }
-        fn open(
-            parameters: &[Vec<f64>],
-            initial: &[Vec<f64>],
-            settings: Settings,
-        ) -> Result<Box<dyn Trajectory>, OpenError> {
-            for (field, expected, found) in [
-                ("parameters", 6usize, parameters.len()),
-                ("initial values", 2usize, initial.len()),
-            ] {
-                if expected != found {
-                    return Err(OpenError::Count {
-                        field,
-                        expected,
-                        found,
-                    });
-                }
-            }
-            let model = EllipsoidSpatial::new(EllipsoidSpatialParameters {
-                C0: matrix_of("C0", parameters.get(0usize))?,
-                I0: matrix_of("I0", parameters.get(1usize))?,
-                a: number_of("a", parameters.get(2usize))?,
-                b: number_of("b", parameters.get(3usize))?,
-                c: number_of("c", parameters.get(4usize))?,
-                d: number_of("d", parameters.get(5usize))?,
-            })?;
-            let initial = EllipsoidSpatialInitial {
-                Q: linear_of("Q", initial.get(0usize))?,
-                spatial_momentum: SpatialMomentumMatrix(
-                    matrix_of("spatial_momentum", initial.get(1usize))?,
-                ),
-            };
-            chosen_solver(settings, Self::CARD.solvers)?;
-            let state = model.at_node_0(initial)?;
-            let kinetic = model.kinetic_warning(&state);
-            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)
-                .map_err(|e| OpenError::from(e).beside(kinetic))?;
-            let plain = matches!(steps, Steps::Plain(_));
-            Ok(
-                Box::new(EllipsoidSpatialTrajectory::<N> {
-                    model,
-                    state,
-                    steps,
-                    h: settings.h,
-                    before: state,
-                    plain,
-                    kinetic,
-                }),
-            )
         }
     }
 }

@@ -112,82 +112,37 @@ pub mod free_body_spatial {
         }
     }
     impl<T: Real> FreeBodySpatial<T> {
-        /// Starts a trajectory with step `h` from data at node 0; of order two, symplectic.
+        /// Starts a trajectory with step `h` from data at node 0.
         ///
         /// # Errors
-        /// Names the value that is not finite, or says why the first step cannot be solved and
-        /// which step could.
+        /// Names the value that is not admissible, or says why the first step cannot be solved and
+        /// which could.
         pub fn start(
             &self,
             initial: FreeBodySpatialInitial<T>,
             h: T,
         ) -> Result<(FreeBodySpatialState<T>, FreeBodySpatialWorkspace<T>), StartError> {
-            self.start_of_order(initial, h, Order::Two)
+            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
         }
-        /// As `start`, with steps of the given order: the moments are modified once, a step
-        /// costs the same. Above two the step is Poisson in the momentum, but symplectic with
-        /// the attitude only up to its error, unless the workspace is `compensated`.
+        /// As `start`, with steps of this order: see [`Order`].
         ///
         /// # Errors
-        /// As `start`.
-        pub fn start_of_order(
+        /// As `start`; also for what this size or scalar does not have.
+        pub fn start_with(
             &self,
             initial: FreeBodySpatialInitial<T>,
             h: T,
-            order: Order,
+            choice: Order,
         ) -> Result<(FreeBodySpatialState<T>, FreeBodySpatialWorkspace<T>), StartError> {
-            validate::positive_step(h)?;
-            let state = self.at_node_0(initial)?;
-            Ok((state, self.workspace(&state, h, order)?))
+            ::clebsch::integrate::Model::start_with(self, initial, h, choice)
         }
-        /// The state at node 0.
-        fn at_node_0(
-            &self,
-            initial: FreeBodySpatialInitial<T>,
-        ) -> Result<FreeBodySpatialState<T>, StartError> {
-            validate::finite("Λ", &initial.Λ.quaternion())?;
-            validate::finite("spatial_momentum", initial.spatial_momentum.0.as_slice())?;
-            validate::finite_entries("J", &initial.J)?;
-            let J = {
-                let Λ = initial.Λ.matrix();
-                let J_start = initial.J;
-                Λ.tr_mul(&(J_start * Λ))
-            };
-            Ok(FreeBodySpatialState {
-                Λ: initial.Λ,
-                momentum: initial.spatial_momentum,
-                J,
-                node: 0,
-            })
-        }
-        /// A workspace for steps of `h`, of either sign, from any state.
-        ///
-        /// # Errors
-        /// When `h` is zero or not finite, or the first step cannot be solved.
+        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
         pub fn workspace(
             &self,
             state: &FreeBodySpatialState<T>,
             h: T,
-            order: Order,
         ) -> Result<FreeBodySpatialWorkspace<T>, StartError> {
-            validate::directed_step(h)?;
-            let state = *state;
-            let work = FreeBodySpatialWorkspace {
-                h,
-                solver: Free::start_of_order(
-                        &self.factor(&state)?,
-                        &state.Λ,
-                        &state.momentum,
-                        h,
-                        order,
-                    )?
-                    .solved_by(self.method),
-                J: state.J,
-            };
-            let (mut trial, mut scratch) = (state, work);
-            self.step(&mut trial, &mut scratch)
-                .map_err(|e| StartError::Refused(e.cause))?;
-            Ok(work)
+            self.prepare(state, h, Default::default())
         }
         /// The body behind the quantities of a state.
         #[inline(never)]
@@ -249,7 +204,7 @@ pub mod free_body_spatial {
             state: &Self::State,
             h: T,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h, Order::Two)
+            self.prepare(state, h, Default::default())
         }
         #[inline(always)]
         fn advance(
@@ -286,46 +241,14 @@ pub mod free_body_spatial {
         }
     }
     impl<T: Real> Reversible for FreeBodySpatial<T> {}
-    impl<T: Real> ::clebsch::OfScalars for FreeBodySpatialParameters<T> {
-        type Scalar = T;
-        type Over<U: Real> = FreeBodySpatialParameters<U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> FreeBodySpatialParameters<U> {
-            FreeBodySpatialParameters {
-                scalar: ::core::marker::PhantomData,
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] FreeBodySpatialParameters { scalar }
     }
-    impl<T: Real> ::clebsch::OfScalars for FreeBodySpatialInitial<T> {
-        type Scalar = T;
-        type Over<U: Real> = FreeBodySpatialInitial<U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> FreeBodySpatialInitial<U> {
-            FreeBodySpatialInitial {
-                Λ: self.Λ.over(change),
-                spatial_momentum: self.spatial_momentum.over(change),
-                J: self.J.over(change),
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] FreeBodySpatialInitial { Λ, spatial_momentum, J }
     }
-    impl<T: Real> ::clebsch::OfScalars for FreeBodySpatialState<T> {
-        type Scalar = T;
-        type Over<U: Real> = FreeBodySpatialState<U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> FreeBodySpatialState<U> {
-            FreeBodySpatialState {
-                Λ: self.Λ.over(change),
-                momentum: self.momentum.over(change),
-                J: self.J.over(change),
-                node: self.node,
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] FreeBodySpatialState { Λ, momentum, J } at node
     }
     impl<T: Real> ::clebsch::integrate::Model for FreeBodySpatial<T> {
         type Parameters = FreeBodySpatialParameters<T>;
@@ -343,15 +266,42 @@ pub mod free_body_spatial {
             &self,
             initial: Self::Initial,
         ) -> Result<FreeBodySpatialState<T>, StartError> {
-            self.at_node_0(initial)
+            validate::finite("Λ", &initial.Λ.quaternion())?;
+            validate::finite("spatial_momentum", initial.spatial_momentum.0.as_slice())?;
+            validate::finite_entries("J", &initial.J)?;
+            let J = {
+                let Λ = initial.Λ.matrix();
+                let J_start = initial.J;
+                Λ.tr_mul(&(J_start * Λ))
+            };
+            Ok(FreeBodySpatialState {
+                Λ: initial.Λ,
+                momentum: initial.spatial_momentum,
+                J,
+                node: 0,
+            })
         }
-        fn prepare(
+        fn prepared(
             &self,
             state: &FreeBodySpatialState<T>,
             h: T,
-            order: Self::Choice,
+            choice: Self::Choice,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h, order)
+            Ok(FreeBodySpatialWorkspace {
+                h,
+                solver: Free::start_of_order(
+                        &self.factor(state)?,
+                        &state.Λ,
+                        &state.momentum,
+                        h,
+                        choice,
+                    )?
+                    .solved_by(self.method),
+                J: state.J,
+            })
+        }
+        fn compensated(work: Self::Workspace) -> Self::Workspace {
+            work.compensated()
         }
     }
     /// A configuration at one node, solution or not.
@@ -497,131 +447,82 @@ pub mod free_body_spatial {
             -(h.powi(-2) * (less_identity(&ω_matrix) * J).trace())
         }
     }
-    /// One trajectory of the model, its type hidden.
-    struct FreeBodySpatialTrajectory {
-        model: FreeBodySpatial<f64>,
-        state: FreeBodySpatialState<f64>,
-        work: FreeBodySpatialWorkspace<f64>,
-        /// The state before the last step.
-        before: FreeBodySpatialState<f64>,
-        /// Whether a step is one of the derivation, not composed and without modified moments.
-        plain: bool,
-        kinetic: Option<KineticWarning>,
-    }
-    impl Trajectory for FreeBodySpatialTrajectory {
-        fn node(&self) -> u64 {
-            self.state.node()
+    impl ::clebsch::integrate::Described for FreeBodySpatial<f64> {
+        fn card() -> &'static Card {
+            &Self::CARD
         }
-        fn time(&self) -> f64 {
-            self.work.h * self.state.node() as f64
+        fn read(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+        ) -> Result<(Self, Self::Initial), OpenError> {
+            let model = Self::new(FreeBodySpatialParameters {
+                scalar: ::core::marker::PhantomData,
+            })?;
+            let initial = FreeBodySpatialInitial {
+                Λ: rotation_of("Λ", initial.get(0usize))?,
+                spatial_momentum: SpatialMomentum(
+                    matrix_of("spatial_momentum", initial.get(1usize))?,
+                ),
+                J: matrix_of("J", initial.get(2usize))?,
+            };
+            Ok((model, initial))
         }
-        fn step(&mut self) -> Result<(), StepError> {
-            let before = self.state;
-            self.model.step(&mut self.state, &mut self.work)?;
-            self.before = before;
-            Ok(())
+        fn ways(
+            self,
+            state: &Self::State,
+            settings: Settings,
+        ) -> Result<(Self, Steps<Self>), OpenError> {
+            let model = match chosen_solver(settings, Self::CARD.solvers)? {
+                Some(method) => self.with_solver(method),
+                None => self,
+            };
+            let steps = Steps::modified(&model, state, settings, Self::CARD.orders)?;
+            Ok((model, steps))
         }
-        fn card(&self) -> &'static Card {
-            &FreeBodySpatial::<f64>::CARD
+        fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
+            self.kinetic_warning(state)
         }
-        fn kinetic_warning(&self) -> Option<KineticWarning> {
-            self.kinetic
+        fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
+            Residual::largest(&self.residual(before, after, h))
         }
-        fn residual(&self) -> Option<f64> {
-            let moved = self.before.node() != self.state.node();
-            (self.plain && moved)
-                .then(|| {
-                    Residual::largest(
-                        &self.model.residual(&self.before, &self.state, self.work.h),
-                    )
-                })
-        }
-        fn observe(&self, out: &mut [f64]) {
-            let state = &self.state;
+        fn observe(&self, state: &Self::State, out: &mut [f64]) {
             let out = put(out, rows(state.Λ().matrix()));
             let out = put(out, rows(state.body_momentum().0));
             let out = put(out, rows(state.spatial_momentum().0));
-            let out = put(out, rows(self.model.J(state)));
+            let out = put(out, rows(self.J(state)));
             let _ = out;
         }
-        fn invariants(&self, out: &mut [f64]) {
-            let state = &self.state;
-            let out = put(out, [self.model.energy(state)]);
-            let momentum = self.work.solver.body_momentum().to_space(&state.Λ());
-            let out = put(out, rows(momentum.0));
-            let out = put(out, [self.model.trace_J1(state)]);
-            let out = put(out, [self.model.trace_J2(state)]);
-            let out = put(out, [self.model.trace_J3(state)]);
-            let out = put(out, [self.model.momentum_quadratic(state)]);
-            let _ = out;
+        fn invariants(
+            &self,
+            state: &Self::State,
+            work: Option<&Self::Workspace>,
+            out: &mut [f64],
+        ) {
+            let out = put(out, [self.energy(state)]);
+            let iterated = work.map(|w| w.solver.body_momentum().to_space(&state.Λ()));
+            let out = put(out, rows(iterated.unwrap_or(state.spatial_momentum()).0));
+            let out = put(out, [self.trace_J1(state)]);
+            let out = put(out, [self.trace_J2(state)]);
+            let out = put(out, [self.trace_J3(state)]);
+            let out = put(out, [self.momentum_quadratic(state)]);
+            let _ = (state, out);
         }
-        fn scales(&self, out: &mut [f64]) {
-            let state = &self.state;
-            let out = put(
-                out,
-                [{
-                    let (kinetic, potential) = self.model.energies(state);
-                    kinetic.abs() + potential.abs()
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let m = state.spatial_momentum().0;
-                    let value: T = m.dot(&m).sqrt();
-                    value
-                }; 3usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let Λ = state.Λ.matrix();
-                    let J_reference = state.J;
-                    let J = Λ * (J_reference * Λ.transpose());
-                    let value: T = T::from_f64(3.0).sqrt() * (J * J).trace().sqrt();
-                    value
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let Λ = state.Λ.matrix();
-                    let J_reference = state.J;
-                    let J = Λ * (J_reference * Λ.transpose());
-                    let t1 = (J * J).trace().sqrt();
-                    let value: T = t1 * t1;
-                    value
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let Λ = state.Λ.matrix();
-                    let J_reference = state.J;
-                    let J = Λ * (J_reference * Λ.transpose());
-                    let t1 = (J * J).trace().sqrt();
-                    let value: T = t1 * t1 * t1;
-                    value
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let Λ = state.Λ.matrix();
-                    let J_reference = state.J;
-                    let J = Λ * (J_reference * Λ.transpose());
-                    let m = state.spatial_momentum().0;
-                    let value: T = (J * J).trace()
-                        * (m.dot(&m).sqrt() * m.dot(&m).sqrt());
-                    value
-                }; 1usize],
-            );
-            let _ = out;
+        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+            type T = f64;
+            let Λ = state.Λ.matrix();
+            let J_reference = state.J;
+            let J = Λ * (J_reference * Λ.transpose());
+            let m = state.spatial_momentum().0;
+            let t1 = m.dot(&m).sqrt();
+            let t2 = (J * J).trace();
+            let t3 = t2.sqrt();
+            let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
+            let out = put(out, [t1; 3usize]);
+            let out = put(out, [T::from_f64(3.0).sqrt() * t3; 1usize]);
+            let out = put(out, [t3 * t3; 1usize]);
+            let out = put(out, [t3 * t3 * t3; 1usize]);
+            let out = put(out, [t2 * (t1 * t1); 1usize]);
+            let _ = (state, out);
         }
     }
     impl FreeBodySpatial<f64> {
@@ -640,113 +541,46 @@ pub mod free_body_spatial {
             reversible: true,
             parameters: &[],
             initial: &[
-                Field {
-                    name: "Λ",
-                    ascii: "Lambda",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::Rotation,
-                    doc: "attitude, body to space",
-                },
-                Field {
-                    name: "spatial_momentum",
-                    ascii: "spatial_momentum",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::SpatialMomentum,
-                    doc: "momentum, space frame",
-                },
-                Field {
-                    name: "J",
-                    ascii: "J",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::SecondMoments,
-                    doc: "Poinsot (second-moment) matrix in space axes",
-                },
+                Kind::Rotation
+                    .field("Λ", [3, 3], "attitude, body to space")
+                    .spelt("Lambda"),
+                Kind::SpatialMomentum
+                    .field("spatial_momentum", [3, 1], "momentum, space frame"),
+                Kind::SecondMoments
+                    .field("J", [3, 3], "Poinsot (second-moment) matrix in space axes"),
             ],
             observables: &[
-                Field {
-                    name: "Λ",
-                    ascii: "Lambda",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::Rotation,
-                    doc: "attitude, body to space",
-                },
-                Field {
-                    name: "body_momentum",
-                    ascii: "body_momentum",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::BodyMomentum,
-                    doc: "momentum, body frame",
-                },
-                Field {
-                    name: "spatial_momentum",
-                    ascii: "spatial_momentum",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::SpatialMomentum,
-                    doc: "momentum, space frame",
-                },
-                Field {
-                    name: "J",
-                    ascii: "J",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::SecondMoments,
-                    doc: "Poinsot (second-moment) matrix in space axes",
-                },
+                Kind::Rotation
+                    .field("Λ", [3, 3], "attitude, body to space")
+                    .spelt("Lambda"),
+                Kind::BodyMomentum
+                    .field("body_momentum", [3, 1], "momentum, body frame"),
+                Kind::SpatialMomentum
+                    .field("spatial_momentum", [3, 1], "momentum, space frame"),
+                Kind::SecondMoments
+                    .field("J", [3, 3], "Poinsot (second-moment) matrix in space axes"),
             ],
             invariants: &[
-                Invariant {
-                    name: "energy",
-                    formula: "½ m_k·ζ, where m_k = -J_k ζ + tr(J_k) ζ",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "spatial_momentum",
-                    formula: "m_k",
-                    rows: 3usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "trace_J1",
-                    formula: "tr(J_k)",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "trace_J2",
-                    formula: "tr(J_k²)",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "trace_J3",
-                    formula: "tr(J_k³)",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "momentum_quadratic",
-                    formula: "m_k·(J_k² m_k)",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
+                Invariant::exact(
+                    "energy",
+                    "½ m_k·ζ, where m_k = -J_k ζ + tr(J_k) ζ",
+                    1usize,
+                ),
+                Invariant::exact("spatial_momentum", "m_k", 3usize),
+                Invariant::exact("trace_J1", "tr(J_k)", 1usize),
+                Invariant::exact("trace_J2", "tr(J_k²)", 1usize),
+                Invariant::exact("trace_J3", "tr(J_k³)", 1usize),
+                Invariant::exact("momentum_quadratic", "m_k·(J_k² m_k)", 1usize),
             ],
-            discrete_energy: Invariant {
-                name: "discrete_energy",
-                formula: "-tr(ω_k J_k)/h² + tr(J_k)/h²",
-                rows: 1,
-                conserved: Conserved::Exactly,
-            },
-            open: Self::open,
+            discrete_energy: Invariant::exact(
+                "discrete_energy",
+                "-tr(ω_k J_k)/h² + tr(J_k)/h²",
+                1,
+            ),
+            open: open::<Self>,
             solvers: &Method::NAMES,
             dimensions: &[],
-            sized: Self::sized,
+            sized: only_size::<Self>,
         };
         /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
         /// velocities together, at the identity, should be positive definite.
@@ -772,63 +606,6 @@ pub mod free_body_spatial {
                 inertia.set_column(axis, &parts[0]);
             }
             KineticWarning::of(&inertia, 3)
-        }
-        /// The card of the model at the given sizes, in the order of their declaration.
-        fn sized(sizes: &[usize]) -> Option<Card> {
-            match sizes {
-                [] => Some(FreeBodySpatial::<f64>::CARD),
-                _ => None,
-            }
-        }
-        fn open(
-            parameters: &[Vec<f64>],
-            initial: &[Vec<f64>],
-            settings: Settings,
-        ) -> Result<Box<dyn Trajectory>, OpenError> {
-            for (field, expected, found) in [
-                ("parameters", 0usize, parameters.len()),
-                ("initial values", 3usize, initial.len()),
-            ] {
-                if expected != found {
-                    return Err(OpenError::Count {
-                        field,
-                        expected,
-                        found,
-                    });
-                }
-            }
-            let model = FreeBodySpatial::new(FreeBodySpatialParameters {
-                scalar: ::core::marker::PhantomData,
-            })?;
-            let initial = FreeBodySpatialInitial {
-                Λ: rotation_of("Λ", initial.get(0usize))?,
-                spatial_momentum: SpatialMomentum(
-                    matrix_of("spatial_momentum", initial.get(1usize))?,
-                ),
-                J: matrix_of("J", initial.get(2usize))?,
-            };
-            let model = match chosen_solver(settings, Self::CARD.solvers)? {
-                Some(method) => model.with_solver(method),
-                None => model,
-            };
-            let order = preprocessing_order(settings, Self::CARD.orders)?;
-            let state = model.at_node_0(initial)?;
-            let kinetic = model.kinetic_warning(&state);
-            let (state, work) = model
-                .start_of_order(initial, settings.h, order)
-                .map_err(|e| OpenError::from(e).beside(kinetic))?;
-            let work = if settings.compensated { work.compensated() } else { work };
-            let plain = order == Order::Two;
-            Ok(
-                Box::new(FreeBodySpatialTrajectory {
-                    model,
-                    state,
-                    work,
-                    before: state,
-                    plain,
-                    kinetic,
-                }),
-            )
         }
     }
 }

@@ -112,74 +112,37 @@ pub mod free_body {
         }
     }
     impl<T: Real> FreeBody<T> {
-        /// Starts a trajectory with step `h` from data at node 0; of order two, symplectic.
+        /// Starts a trajectory with step `h` from data at node 0.
         ///
         /// # Errors
-        /// Names the value that is not finite, or says why the first step cannot be solved and
-        /// which step could.
+        /// Names the value that is not admissible, or says why the first step cannot be solved and
+        /// which could.
         pub fn start(
             &self,
             initial: FreeBodyInitial<T>,
             h: T,
         ) -> Result<(FreeBodyState<T>, FreeBodyWorkspace<T>), StartError> {
-            self.start_of_order(initial, h, Order::Two)
+            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
         }
-        /// As `start`, with steps of the given order: the moments are modified once, a step
-        /// costs the same. Above two the step is Poisson in the momentum, but symplectic with
-        /// the attitude only up to its error, unless the workspace is `compensated`.
+        /// As `start`, with steps of this order: see [`Order`].
         ///
         /// # Errors
-        /// As `start`.
-        pub fn start_of_order(
+        /// As `start`; also for what this size or scalar does not have.
+        pub fn start_with(
             &self,
             initial: FreeBodyInitial<T>,
             h: T,
-            order: Order,
+            choice: Order,
         ) -> Result<(FreeBodyState<T>, FreeBodyWorkspace<T>), StartError> {
-            validate::positive_step(h)?;
-            let state = self.at_node_0(initial)?;
-            Ok((state, self.workspace(&state, h, order)?))
+            ::clebsch::integrate::Model::start_with(self, initial, h, choice)
         }
-        /// The state at node 0.
-        fn at_node_0(
-            &self,
-            initial: FreeBodyInitial<T>,
-        ) -> Result<FreeBodyState<T>, StartError> {
-            validate::finite("Λ", &initial.Λ.quaternion())?;
-            validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
-            Ok(FreeBodyState {
-                Λ: initial.Λ,
-                momentum: initial.body_momentum.to_space(&initial.Λ),
-                node: 0,
-            })
-        }
-        /// A workspace for steps of `h`, of either sign, from any state.
-        ///
-        /// # Errors
-        /// When `h` is zero or not finite, or the first step cannot be solved.
+        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
         pub fn workspace(
             &self,
             state: &FreeBodyState<T>,
             h: T,
-            order: Order,
         ) -> Result<FreeBodyWorkspace<T>, StartError> {
-            validate::directed_step(h)?;
-            let state = *state;
-            let work = FreeBodyWorkspace {
-                h,
-                solver: Free::start_of_order(
-                        &self.factor,
-                        &state.Λ,
-                        &state.momentum,
-                        h,
-                        order,
-                    )?
-                    .solved_by(self.method),
-            };
-            let (mut trial, mut scratch) = (state, work);
-            self.step(&mut trial, &mut scratch)
-                .map_err(|e| StartError::Refused(e.cause))?;
-            Ok(work)
+            self.prepare(state, h, Default::default())
         }
         /// One step, in place. Solved thus: C is constant and no node term acts, so κ is conserved: solved once, every step explicit.
         ///
@@ -207,7 +170,7 @@ pub mod free_body {
             state: &Self::State,
             h: T,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h, Order::Two)
+            self.prepare(state, h, Default::default())
         }
         #[inline(always)]
         fn advance(
@@ -244,38 +207,14 @@ pub mod free_body {
         }
     }
     impl<T: Real> Reversible for FreeBody<T> {}
-    impl<T: Real> ::clebsch::OfScalars for FreeBodyParameters<T> {
-        type Scalar = T;
-        type Over<U: Real> = FreeBodyParameters<U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> FreeBodyParameters<U> {
-            FreeBodyParameters {
-                J: self.J.over(change),
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] FreeBodyParameters { J }
     }
-    impl<T: Real> ::clebsch::OfScalars for FreeBodyInitial<T> {
-        type Scalar = T;
-        type Over<U: Real> = FreeBodyInitial<U>;
-        fn over<U: Real>(&self, change: &mut impl FnMut(T) -> U) -> FreeBodyInitial<U> {
-            FreeBodyInitial {
-                Λ: self.Λ.over(change),
-                body_momentum: self.body_momentum.over(change),
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] FreeBodyInitial { Λ, body_momentum }
     }
-    impl<T: Real> ::clebsch::OfScalars for FreeBodyState<T> {
-        type Scalar = T;
-        type Over<U: Real> = FreeBodyState<U>;
-        fn over<U: Real>(&self, change: &mut impl FnMut(T) -> U) -> FreeBodyState<U> {
-            FreeBodyState {
-                Λ: self.Λ.over(change),
-                momentum: self.momentum.over(change),
-                node: self.node,
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] FreeBodyState { Λ, momentum } at node
     }
     impl<T: Real> ::clebsch::integrate::Model for FreeBody<T> {
         type Parameters = FreeBodyParameters<T>;
@@ -290,15 +229,34 @@ pub mod free_body {
             &self.parameters
         }
         fn begin(&self, initial: Self::Initial) -> Result<FreeBodyState<T>, StartError> {
-            self.at_node_0(initial)
+            validate::finite("Λ", &initial.Λ.quaternion())?;
+            validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
+            Ok(FreeBodyState {
+                Λ: initial.Λ,
+                momentum: initial.body_momentum.to_space(&initial.Λ),
+                node: 0,
+            })
         }
-        fn prepare(
+        fn prepared(
             &self,
             state: &FreeBodyState<T>,
             h: T,
-            order: Self::Choice,
+            choice: Self::Choice,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h, order)
+            Ok(FreeBodyWorkspace {
+                h,
+                solver: Free::start_of_order(
+                        &self.factor,
+                        &state.Λ,
+                        &state.momentum,
+                        h,
+                        choice,
+                    )?
+                    .solved_by(self.method),
+            })
+        }
+        fn compensated(work: Self::Workspace) -> Self::Workspace {
+            work.compensated()
         }
     }
     /// A configuration at one node, solution or not.
@@ -416,103 +374,74 @@ pub mod free_body {
             -(h.powi(-2) * (J * less_identity(&Ω_matrix)).trace())
         }
     }
-    /// One trajectory of the model, its type hidden.
-    struct FreeBodyTrajectory {
-        model: FreeBody<f64>,
-        state: FreeBodyState<f64>,
-        work: FreeBodyWorkspace<f64>,
-        /// The state before the last step.
-        before: FreeBodyState<f64>,
-        /// Whether a step is one of the derivation, not composed and without modified moments.
-        plain: bool,
-        kinetic: Option<KineticWarning>,
-    }
-    impl Trajectory for FreeBodyTrajectory {
-        fn node(&self) -> u64 {
-            self.state.node()
+    impl ::clebsch::integrate::Described for FreeBody<f64> {
+        fn card() -> &'static Card {
+            &Self::CARD
         }
-        fn time(&self) -> f64 {
-            self.work.h * self.state.node() as f64
+        fn read(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+        ) -> Result<(Self, Self::Initial), OpenError> {
+            let model = Self::new(FreeBodyParameters {
+                J: matrix_of("J", parameters.get(0usize))?,
+            })?;
+            let initial = FreeBodyInitial {
+                Λ: rotation_of("Λ", initial.get(0usize))?,
+                body_momentum: BodyMomentum(
+                    matrix_of("body_momentum", initial.get(1usize))?,
+                ),
+            };
+            Ok((model, initial))
         }
-        fn step(&mut self) -> Result<(), StepError> {
-            let before = self.state;
-            self.model.step(&mut self.state, &mut self.work)?;
-            self.before = before;
-            Ok(())
+        fn ways(
+            self,
+            state: &Self::State,
+            settings: Settings,
+        ) -> Result<(Self, Steps<Self>), OpenError> {
+            let model = match chosen_solver(settings, Self::CARD.solvers)? {
+                Some(method) => self.with_solver(method),
+                None => self,
+            };
+            let steps = Steps::modified(&model, state, settings, Self::CARD.orders)?;
+            Ok((model, steps))
         }
-        fn card(&self) -> &'static Card {
-            &FreeBody::<f64>::CARD
+        fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
+            self.kinetic_warning(state)
         }
-        fn kinetic_warning(&self) -> Option<KineticWarning> {
-            self.kinetic
+        fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
+            Residual::largest(&self.residual(before, after, h))
         }
-        fn residual(&self) -> Option<f64> {
-            let moved = self.before.node() != self.state.node();
-            (self.plain && moved)
-                .then(|| {
-                    Residual::largest(
-                        &self.model.residual(&self.before, &self.state, self.work.h),
-                    )
-                })
-        }
-        fn observe(&self, out: &mut [f64]) {
-            let state = &self.state;
+        fn observe(&self, state: &Self::State, out: &mut [f64]) {
             let out = put(out, rows(state.Λ().matrix()));
             let out = put(out, rows(state.body_momentum().0));
             let out = put(out, rows(state.spatial_momentum().0));
             let _ = out;
         }
-        fn invariants(&self, out: &mut [f64]) {
-            let state = &self.state;
-            let out = put(out, [self.model.energy(state)]);
-            let momentum = self.work.solver.body_momentum().to_space(&state.Λ());
-            let out = put(out, rows(momentum.0));
-            let out = put(out, [self.model.momentum_squared(state)]);
-            let out = put(out, [self.model.momentum_quadratic(state)]);
-            let _ = out;
+        fn invariants(
+            &self,
+            state: &Self::State,
+            work: Option<&Self::Workspace>,
+            out: &mut [f64],
+        ) {
+            let out = put(out, [self.energy(state)]);
+            let iterated = work.map(|w| w.solver.body_momentum().to_space(&state.Λ()));
+            let out = put(out, rows(iterated.unwrap_or(state.spatial_momentum()).0));
+            let out = put(out, [self.momentum_squared(state)]);
+            let out = put(out, [self.momentum_quadratic(state)]);
+            let _ = (state, out);
         }
-        fn scales(&self, out: &mut [f64]) {
-            let state = &self.state;
-            let out = put(
-                out,
-                [{
-                    let (kinetic, potential) = self.model.energies(state);
-                    kinetic.abs() + potential.abs()
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let Λ = state.Λ.matrix();
-                    let μ = state.body_momentum().0;
-                    let t1 = Λ * μ;
-                    let value: T = t1.dot(&t1).sqrt();
-                    value
-                }; 3usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let μ = state.body_momentum().0;
-                    let t1 = μ.dot(&μ).sqrt();
-                    let value: T = t1 * t1;
-                    value
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let FreeBodyParameters { J, .. } = self.model.parameters;
-                    let μ = state.body_momentum().0;
-                    let value: T = (J * J).trace()
-                        * (μ.dot(&μ).sqrt() * μ.dot(&μ).sqrt());
-                    value
-                }; 1usize],
-            );
-            let _ = out;
+        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+            type T = f64;
+            let FreeBodyParameters { J, .. } = self.parameters;
+            let Λ = state.Λ.matrix();
+            let μ = state.body_momentum().0;
+            let t1 = Λ * μ;
+            let t2 = μ.dot(&μ).sqrt();
+            let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
+            let out = put(out, [t1.dot(&t1).sqrt(); 3usize]);
+            let out = put(out, [t2 * t2; 1usize]);
+            let out = put(out, [(J * J).trace() * (t2 * t2); 1usize]);
+            let _ = (state, out);
         }
     }
     impl FreeBody<f64> {
@@ -530,95 +459,42 @@ pub mod free_body {
             preprocessed: true,
             reversible: true,
             parameters: &[
-                Field {
-                    name: "J",
-                    ascii: "J",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::SecondMoments,
-                    doc: "Poinsot (second-moment) matrix",
-                },
+                Kind::SecondMoments.field("J", [3, 3], "Poinsot (second-moment) matrix"),
             ],
             initial: &[
-                Field {
-                    name: "Λ",
-                    ascii: "Lambda",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::Rotation,
-                    doc: "attitude, body to space",
-                },
-                Field {
-                    name: "body_momentum",
-                    ascii: "body_momentum",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::BodyMomentum,
-                    doc: "momentum, body frame",
-                },
+                Kind::Rotation
+                    .field("Λ", [3, 3], "attitude, body to space")
+                    .spelt("Lambda"),
+                Kind::BodyMomentum.field("body_momentum", [3, 1], "momentum, body frame"),
             ],
             observables: &[
-                Field {
-                    name: "Λ",
-                    ascii: "Lambda",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::Rotation,
-                    doc: "attitude, body to space",
-                },
-                Field {
-                    name: "body_momentum",
-                    ascii: "body_momentum",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::BodyMomentum,
-                    doc: "momentum, body frame",
-                },
-                Field {
-                    name: "spatial_momentum",
-                    ascii: "spatial_momentum",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::SpatialMomentum,
-                    doc: "momentum, space frame",
-                },
+                Kind::Rotation
+                    .field("Λ", [3, 3], "attitude, body to space")
+                    .spelt("Lambda"),
+                Kind::BodyMomentum
+                    .field("body_momentum", [3, 1], "momentum, body frame"),
+                Kind::SpatialMomentum
+                    .field("spatial_momentum", [3, 1], "momentum, space frame"),
             ],
             invariants: &[
-                Invariant {
-                    name: "energy",
-                    formula: "½ μ_k·ζ, where μ_k = -J ζ + tr(J) ζ",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "spatial_momentum",
-                    formula: "Λ_k μ_k",
-                    rows: 3usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "momentum_squared",
-                    formula: "μ_k·μ_k",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "momentum_quadratic",
-                    formula: "μ_k·(J² μ_k)",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
+                Invariant::exact(
+                    "energy",
+                    "½ μ_k·ζ, where μ_k = -J ζ + tr(J) ζ",
+                    1usize,
+                ),
+                Invariant::exact("spatial_momentum", "Λ_k μ_k", 3usize),
+                Invariant::exact("momentum_squared", "μ_k·μ_k", 1usize),
+                Invariant::exact("momentum_quadratic", "μ_k·(J² μ_k)", 1usize),
             ],
-            discrete_energy: Invariant {
-                name: "discrete_energy",
-                formula: "tr(J)/h² - tr(J Ω_k)/h²",
-                rows: 1,
-                conserved: Conserved::Exactly,
-            },
-            open: Self::open,
+            discrete_energy: Invariant::exact(
+                "discrete_energy",
+                "tr(J)/h² - tr(J Ω_k)/h²",
+                1,
+            ),
+            open: open::<Self>,
             solvers: &Method::NAMES,
             dimensions: &[],
-            sized: Self::sized,
+            sized: only_size::<Self>,
         };
         /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
         /// velocities together, at the identity, should be positive definite.
@@ -642,62 +518,6 @@ pub mod free_body {
                 inertia.set_column(axis, &parts[0]);
             }
             KineticWarning::of(&inertia, 3)
-        }
-        /// The card of the model at the given sizes, in the order of their declaration.
-        fn sized(sizes: &[usize]) -> Option<Card> {
-            match sizes {
-                [] => Some(FreeBody::<f64>::CARD),
-                _ => None,
-            }
-        }
-        fn open(
-            parameters: &[Vec<f64>],
-            initial: &[Vec<f64>],
-            settings: Settings,
-        ) -> Result<Box<dyn Trajectory>, OpenError> {
-            for (field, expected, found) in [
-                ("parameters", 1usize, parameters.len()),
-                ("initial values", 2usize, initial.len()),
-            ] {
-                if expected != found {
-                    return Err(OpenError::Count {
-                        field,
-                        expected,
-                        found,
-                    });
-                }
-            }
-            let model = FreeBody::new(FreeBodyParameters {
-                J: matrix_of("J", parameters.get(0usize))?,
-            })?;
-            let initial = FreeBodyInitial {
-                Λ: rotation_of("Λ", initial.get(0usize))?,
-                body_momentum: BodyMomentum(
-                    matrix_of("body_momentum", initial.get(1usize))?,
-                ),
-            };
-            let model = match chosen_solver(settings, Self::CARD.solvers)? {
-                Some(method) => model.with_solver(method),
-                None => model,
-            };
-            let order = preprocessing_order(settings, Self::CARD.orders)?;
-            let state = model.at_node_0(initial)?;
-            let kinetic = model.kinetic_warning(&state);
-            let (state, work) = model
-                .start_of_order(initial, settings.h, order)
-                .map_err(|e| OpenError::from(e).beside(kinetic))?;
-            let work = if settings.compensated { work.compensated() } else { work };
-            let plain = order == Order::Two;
-            Ok(
-                Box::new(FreeBodyTrajectory {
-                    model,
-                    state,
-                    work,
-                    before: state,
-                    plain,
-                    kinetic,
-                }),
-            )
         }
     }
 }

@@ -103,93 +103,37 @@ pub mod heavy_top_spatial {
         here: HeavyTopSpatialState<T>,
     }
     impl<T: Real> HeavyTopSpatial<T> {
-        /// Starts a trajectory with step `h` from data at node 0, with the model's solver.
+        /// Starts a trajectory with step `h` from data at node 0.
         ///
         /// # Errors
-        /// Names the value that is not finite, or says why the first step cannot be solved and
-        /// which step could.
+        /// Names the value that is not admissible, or says why the first step cannot be solved and
+        /// which could.
         pub fn start(
             &self,
             initial: HeavyTopSpatialInitial<T>,
             h: T,
         ) -> Result<(HeavyTopSpatialState<T>, HeavyTopSpatialWorkspace<T>), StartError> {
-            self.start_with(initial, h, self.method)
+            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
         }
         /// As `start`, with the solver named.
         ///
         /// # Errors
-        /// As `start`; also when the solver does not serve this size or scalar.
+        /// As `start`; also for what this size or scalar does not have.
         pub fn start_with(
             &self,
             initial: HeavyTopSpatialInitial<T>,
             h: T,
-            method: Method,
+            choice: impl Into<Option<Method>>,
         ) -> Result<(HeavyTopSpatialState<T>, HeavyTopSpatialWorkspace<T>), StartError> {
-            validate::positive_step(h)?;
-            let state = self.at_node_0(initial)?;
-            Ok((state, self.workspace_with(&state, h, method)?))
+            ::clebsch::integrate::Model::start_with(self, initial, h, choice.into())
         }
-        /// The state at node 0.
-        fn at_node_0(
-            &self,
-            initial: HeavyTopSpatialInitial<T>,
-        ) -> Result<HeavyTopSpatialState<T>, StartError> {
-            validate::finite("Λ", &initial.Λ.quaternion())?;
-            validate::finite("spatial_momentum", initial.spatial_momentum.0.as_slice())?;
-            validate::finite_entries("J", &initial.J)?;
-            validate::finite("χ", initial.χ.as_slice())?;
-            let J = {
-                let Λ = initial.Λ.matrix();
-                let J_start = initial.J;
-                Λ.tr_mul(&(J_start * Λ))
-            };
-            let χ = {
-                let Λ = initial.Λ.matrix();
-                let χ_start = initial.χ;
-                Λ.tr_mul(&χ_start)
-            };
-            Ok(HeavyTopSpatialState {
-                Λ: initial.Λ,
-                momentum: initial.spatial_momentum,
-                J,
-                χ,
-                node: 0,
-            })
-        }
-        /// A workspace for steps of `h`, of either sign, from any state.
-        ///
-        /// # Errors
-        /// When `h` is zero or not finite, or the first step cannot be solved.
+        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
         pub fn workspace(
             &self,
             state: &HeavyTopSpatialState<T>,
             h: T,
         ) -> Result<HeavyTopSpatialWorkspace<T>, StartError> {
-            self.workspace_with(state, h, self.method)
-        }
-        /// The same with the solver named.
-        ///
-        /// # Errors
-        /// When `h` is zero or not finite, or the first step cannot be solved.
-        pub fn workspace_with(
-            &self,
-            state: &HeavyTopSpatialState<T>,
-            h: T,
-            method: Method,
-        ) -> Result<HeavyTopSpatialWorkspace<T>, StartError> {
-            validate::directed_step(h)?;
-            let state = *state;
-            let work = HeavyTopSpatialWorkspace {
-                h,
-                method,
-                factor: self.factor(&state)?,
-                edge: self.edge(&state, h),
-                here: state,
-            };
-            let (mut trial, mut scratch) = (state, work);
-            self.step(&mut trial, &mut scratch)
-                .map_err(|e| StartError::Refused(e.cause))?;
-            Ok(work)
+            self.prepare(state, h, Default::default())
         }
         /// The body behind the quantities of a state.
         #[inline(never)]
@@ -328,7 +272,7 @@ pub mod heavy_top_spatial {
             state: &Self::State,
             h: T,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h)
+            self.prepare(state, h, Default::default())
         }
         #[inline(always)]
         fn advance(
@@ -430,54 +374,19 @@ pub mod heavy_top_spatial {
         }
     }
     impl<T: Real> Reversible for HeavyTopSpatial<T> {}
-    impl<T: Real> ::clebsch::OfScalars for HeavyTopSpatialParameters<T> {
-        type Scalar = T;
-        type Over<U: Real> = HeavyTopSpatialParameters<U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> HeavyTopSpatialParameters<U> {
-            HeavyTopSpatialParameters {
-                w: self.w.over(change),
-                z: self.z.over(change),
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] HeavyTopSpatialParameters { w, z }
     }
-    impl<T: Real> ::clebsch::OfScalars for HeavyTopSpatialInitial<T> {
-        type Scalar = T;
-        type Over<U: Real> = HeavyTopSpatialInitial<U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> HeavyTopSpatialInitial<U> {
-            HeavyTopSpatialInitial {
-                Λ: self.Λ.over(change),
-                spatial_momentum: self.spatial_momentum.over(change),
-                J: self.J.over(change),
-                χ: self.χ.over(change),
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] HeavyTopSpatialInitial { Λ, spatial_momentum, J, χ }
     }
-    impl<T: Real> ::clebsch::OfScalars for HeavyTopSpatialState<T> {
-        type Scalar = T;
-        type Over<U: Real> = HeavyTopSpatialState<U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> HeavyTopSpatialState<U> {
-            HeavyTopSpatialState {
-                Λ: self.Λ.over(change),
-                momentum: self.momentum.over(change),
-                J: self.J.over(change),
-                χ: self.χ.over(change),
-                node: self.node,
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] HeavyTopSpatialState { Λ, momentum, J, χ } at node
     }
     impl<T: Real> ::clebsch::integrate::Model for HeavyTopSpatial<T> {
         type Parameters = HeavyTopSpatialParameters<T>;
         type Initial = HeavyTopSpatialInitial<T>;
-        type Choice = ();
+        type Choice = Option<Method>;
         type Over<U: Real> = HeavyTopSpatial<U>;
         const SIDE_BY_SIDE: bool = true;
         fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
@@ -490,15 +399,42 @@ pub mod heavy_top_spatial {
             &self,
             initial: Self::Initial,
         ) -> Result<HeavyTopSpatialState<T>, StartError> {
-            self.at_node_0(initial)
+            validate::finite("Λ", &initial.Λ.quaternion())?;
+            validate::finite("spatial_momentum", initial.spatial_momentum.0.as_slice())?;
+            validate::finite_entries("J", &initial.J)?;
+            validate::finite("χ", initial.χ.as_slice())?;
+            let J = {
+                let Λ = initial.Λ.matrix();
+                let J_start = initial.J;
+                Λ.tr_mul(&(J_start * Λ))
+            };
+            let χ = {
+                let Λ = initial.Λ.matrix();
+                let χ_start = initial.χ;
+                Λ.tr_mul(&χ_start)
+            };
+            Ok(HeavyTopSpatialState {
+                Λ: initial.Λ,
+                momentum: initial.spatial_momentum,
+                J,
+                χ,
+                node: 0,
+            })
         }
-        fn prepare(
+        fn prepared(
             &self,
             state: &HeavyTopSpatialState<T>,
             h: T,
-            _: Self::Choice,
+            choice: Self::Choice,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h)
+            let method = choice.unwrap_or(self.method);
+            Ok(HeavyTopSpatialWorkspace {
+                h,
+                method,
+                factor: self.factor(state)?,
+                edge: self.edge(state, h),
+                here: *state,
+            })
         }
     }
     /// A configuration at one node, solution or not.
@@ -692,163 +628,90 @@ pub mod heavy_top_spatial {
                 - h.powi(-2) * (less_identity(&ω_matrix) * J).trace()
         }
     }
-    /// One trajectory of the model, its type hidden.
-    struct HeavyTopSpatialTrajectory {
-        model: HeavyTopSpatial<f64>,
-        state: HeavyTopSpatialState<f64>,
-        steps: Steps<HeavyTopSpatial<f64>>,
-        h: f64,
-        /// The state before the last step.
-        before: HeavyTopSpatialState<f64>,
-        /// Whether a step is one of the derivation, not composed and without modified moments.
-        plain: bool,
-        kinetic: Option<KineticWarning>,
-    }
-    impl Trajectory for HeavyTopSpatialTrajectory {
-        fn node(&self) -> u64 {
-            self.state.node()
+    impl ::clebsch::integrate::Described for HeavyTopSpatial<f64> {
+        fn card() -> &'static Card {
+            &Self::CARD
         }
-        fn time(&self) -> f64 {
-            self.h * self.state.node() as f64
+        fn read(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+        ) -> Result<(Self, Self::Initial), OpenError> {
+            let model = Self::new(HeavyTopSpatialParameters {
+                w: number_of("w", parameters.get(0usize))?,
+                z: matrix_of("z", parameters.get(1usize))?,
+            })?;
+            let initial = HeavyTopSpatialInitial {
+                Λ: rotation_of("Λ", initial.get(0usize))?,
+                spatial_momentum: SpatialMomentum(
+                    matrix_of("spatial_momentum", initial.get(1usize))?,
+                ),
+                J: matrix_of("J", initial.get(2usize))?,
+                χ: matrix_of("χ", initial.get(3usize))?,
+            };
+            Ok((model, initial))
         }
-        fn step(&mut self) -> Result<(), StepError> {
-            let before = self.state;
-            self.steps.step(&self.model, &mut self.state)?;
-            self.before = before;
-            Ok(())
+        fn ways(
+            self,
+            state: &Self::State,
+            settings: Settings,
+        ) -> Result<(Self, Steps<Self>), OpenError> {
+            let model = match chosen_solver(settings, Self::CARD.solvers)? {
+                Some(method) => self.with_solver(method),
+                None => self,
+            };
+            let steps = Steps::of_order(&model, state, settings, Self::CARD.orders)?;
+            Ok((model, steps))
         }
-        fn card(&self) -> &'static Card {
-            &HeavyTopSpatial::<f64>::CARD
+        fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
+            self.kinetic_warning(state)
         }
-        fn kinetic_warning(&self) -> Option<KineticWarning> {
-            self.kinetic
+        fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
+            Residual::largest(&self.residual(before, after, h))
         }
-        fn residual(&self) -> Option<f64> {
-            let moved = self.before.node() != self.state.node();
-            (self.plain && moved)
-                .then(|| {
-                    Residual::largest(
-                        &self.model.residual(&self.before, &self.state, self.h),
-                    )
-                })
-        }
-        fn observe(&self, out: &mut [f64]) {
-            let state = &self.state;
+        fn observe(&self, state: &Self::State, out: &mut [f64]) {
             let out = put(out, rows(state.Λ().matrix()));
             let out = put(out, rows(state.body_momentum().0));
             let out = put(out, rows(state.spatial_momentum().0));
-            let out = put(out, rows(self.model.J(state)));
-            let out = put(out, rows(self.model.χ(state)));
+            let out = put(out, rows(self.J(state)));
+            let out = put(out, rows(self.χ(state)));
             let _ = out;
         }
-        fn invariants(&self, out: &mut [f64]) {
-            let state = &self.state;
-            let out = put(out, [self.model.energy(state)]);
-            let out = put(out, [self.model.chi_squared(state)]);
-            let out = put(out, [self.model.trace_J1(state)]);
-            let out = put(out, [self.model.trace_J2(state)]);
-            let out = put(out, [self.model.trace_J3(state)]);
-            let out = put(out, [self.model.chi_J_chi(state)]);
-            let out = put(out, [self.model.chi_J2_chi(state)]);
-            let out = put(out, [self.model.momentum_z(state)]);
-            let _ = out;
+        fn invariants(
+            &self,
+            state: &Self::State,
+            _: Option<&Self::Workspace>,
+            out: &mut [f64],
+        ) {
+            let out = put(out, [self.energy(state)]);
+            let out = put(out, [self.chi_squared(state)]);
+            let out = put(out, [self.trace_J1(state)]);
+            let out = put(out, [self.trace_J2(state)]);
+            let out = put(out, [self.trace_J3(state)]);
+            let out = put(out, [self.chi_J_chi(state)]);
+            let out = put(out, [self.chi_J2_chi(state)]);
+            let out = put(out, [self.momentum_z(state)]);
+            let _ = (state, out);
         }
-        fn scales(&self, out: &mut [f64]) {
-            let state = &self.state;
-            let out = put(
-                out,
-                [{
-                    let (kinetic, potential) = self.model.energies(state);
-                    kinetic.abs() + potential.abs()
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let Λ = state.Λ.matrix();
-                    let χ_reference = state.χ;
-                    let χ = Λ * χ_reference;
-                    let t1 = χ.dot(&χ).sqrt();
-                    let value: T = t1 * t1;
-                    value
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let Λ = state.Λ.matrix();
-                    let J_reference = state.J;
-                    let J = Λ * (J_reference * Λ.transpose());
-                    let value: T = T::from_f64(3.0).sqrt() * (J * J).trace().sqrt();
-                    value
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let Λ = state.Λ.matrix();
-                    let J_reference = state.J;
-                    let J = Λ * (J_reference * Λ.transpose());
-                    let t1 = (J * J).trace().sqrt();
-                    let value: T = t1 * t1;
-                    value
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let Λ = state.Λ.matrix();
-                    let J_reference = state.J;
-                    let J = Λ * (J_reference * Λ.transpose());
-                    let t1 = (J * J).trace().sqrt();
-                    let value: T = t1 * t1 * t1;
-                    value
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let Λ = state.Λ.matrix();
-                    let J_reference = state.J;
-                    let J = Λ * (J_reference * Λ.transpose());
-                    let χ_reference = state.χ;
-                    let χ = Λ * χ_reference;
-                    let t1 = χ.dot(&χ).sqrt();
-                    let value: T = t1 * (J * J).trace().sqrt() * t1;
-                    value
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let Λ = state.Λ.matrix();
-                    let J_reference = state.J;
-                    let J = Λ * (J_reference * Λ.transpose());
-                    let χ_reference = state.χ;
-                    let χ = Λ * χ_reference;
-                    let t1 = χ.dot(&χ).sqrt();
-                    let t2 = (J * J).trace().sqrt();
-                    let value: T = t1 * t2 * t2 * t1;
-                    value
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let HeavyTopSpatialParameters { z, .. } = self.model.parameters;
-                    let m = state.spatial_momentum().0;
-                    let value: T = m.dot(&m).sqrt() * z.dot(&z).sqrt();
-                    value
-                }; 1usize],
-            );
-            let _ = out;
+        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+            type T = f64;
+            let HeavyTopSpatialParameters { z, .. } = self.parameters;
+            let Λ = state.Λ.matrix();
+            let J_reference = state.J;
+            let J = Λ * (J_reference * Λ.transpose());
+            let χ_reference = state.χ;
+            let χ = Λ * χ_reference;
+            let m = state.spatial_momentum().0;
+            let t1 = χ.dot(&χ).sqrt();
+            let t2 = (J * J).trace().sqrt();
+            let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
+            let out = put(out, [t1 * t1; 1usize]);
+            let out = put(out, [T::from_f64(3.0).sqrt() * t2; 1usize]);
+            let out = put(out, [t2 * t2; 1usize]);
+            let out = put(out, [t2 * t2 * t2; 1usize]);
+            let out = put(out, [t1 * t2 * t1; 1usize]);
+            let out = put(out, [t1 * t2 * t2 * t1; 1usize]);
+            let out = put(out, [m.dot(&m).sqrt() * z.dot(&z).sqrt(); 1usize]);
+            let _ = (state, out);
         }
     }
     impl HeavyTopSpatial<f64> {
@@ -866,159 +729,58 @@ pub mod heavy_top_spatial {
             preprocessed: false,
             reversible: true,
             parameters: &[
-                Field {
-                    name: "w",
-                    ascii: "w",
-                    rows: 1,
-                    cols: 1,
-                    kind: Kind::Scalar,
-                    doc: "weight",
-                },
-                Field {
-                    name: "z",
-                    ascii: "z",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::Vector,
-                    doc: "vertical (up), space frame",
-                },
+                Kind::Scalar.field("w", [1, 1], "weight"),
+                Kind::Vector.field("z", [3, 1], "vertical (up), space frame"),
             ],
             initial: &[
-                Field {
-                    name: "Λ",
-                    ascii: "Lambda",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::Rotation,
-                    doc: "attitude, body to space",
-                },
-                Field {
-                    name: "spatial_momentum",
-                    ascii: "spatial_momentum",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::SpatialMomentum,
-                    doc: "momentum, space frame",
-                },
-                Field {
-                    name: "J",
-                    ascii: "J",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::SecondMoments,
-                    doc: "Poinsot (second-moment) matrix in space axes",
-                },
-                Field {
-                    name: "χ",
-                    ascii: "chi",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::Vector,
-                    doc: "support -> centre of mass, space axes",
-                },
+                Kind::Rotation
+                    .field("Λ", [3, 3], "attitude, body to space")
+                    .spelt("Lambda"),
+                Kind::SpatialMomentum
+                    .field("spatial_momentum", [3, 1], "momentum, space frame"),
+                Kind::SecondMoments
+                    .field("J", [3, 3], "Poinsot (second-moment) matrix in space axes"),
+                Kind::Vector
+                    .field("χ", [3, 1], "support -> centre of mass, space axes")
+                    .spelt("chi"),
             ],
             observables: &[
-                Field {
-                    name: "Λ",
-                    ascii: "Lambda",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::Rotation,
-                    doc: "attitude, body to space",
-                },
-                Field {
-                    name: "body_momentum",
-                    ascii: "body_momentum",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::BodyMomentum,
-                    doc: "momentum, body frame",
-                },
-                Field {
-                    name: "spatial_momentum",
-                    ascii: "spatial_momentum",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::SpatialMomentum,
-                    doc: "momentum, space frame",
-                },
-                Field {
-                    name: "J",
-                    ascii: "J",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::SecondMoments,
-                    doc: "Poinsot (second-moment) matrix in space axes",
-                },
-                Field {
-                    name: "χ",
-                    ascii: "chi",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::Vector,
-                    doc: "support -> centre of mass, space axes",
-                },
+                Kind::Rotation
+                    .field("Λ", [3, 3], "attitude, body to space")
+                    .spelt("Lambda"),
+                Kind::BodyMomentum
+                    .field("body_momentum", [3, 1], "momentum, body frame"),
+                Kind::SpatialMomentum
+                    .field("spatial_momentum", [3, 1], "momentum, space frame"),
+                Kind::SecondMoments
+                    .field("J", [3, 3], "Poinsot (second-moment) matrix in space axes"),
+                Kind::Vector
+                    .field("χ", [3, 1], "support -> centre of mass, space axes")
+                    .spelt("chi"),
             ],
             invariants: &[
-                Invariant {
-                    name: "energy",
-                    formula: "½ m_k·ζ + w z·χ_k, where m_k = -J_k ζ + tr(J_k) ζ",
-                    rows: 1usize,
-                    conserved: Conserved::Boundedly,
-                },
-                Invariant {
-                    name: "chi_squared",
-                    formula: "χ_k·χ_k",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "trace_J1",
-                    formula: "tr(J_k)",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "trace_J2",
-                    formula: "tr(J_k²)",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "trace_J3",
-                    formula: "tr(J_k³)",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "chi_J_chi",
-                    formula: "χ_k·(J_k χ_k)",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "chi_J2_chi",
-                    formula: "χ_k·(J_k² χ_k)",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "momentum_z",
-                    formula: "m_k·z",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
+                Invariant::bounded(
+                    "energy",
+                    "½ m_k·ζ + w z·χ_k, where m_k = -J_k ζ + tr(J_k) ζ",
+                    1usize,
+                ),
+                Invariant::exact("chi_squared", "χ_k·χ_k", 1usize),
+                Invariant::exact("trace_J1", "tr(J_k)", 1usize),
+                Invariant::exact("trace_J2", "tr(J_k²)", 1usize),
+                Invariant::exact("trace_J3", "tr(J_k³)", 1usize),
+                Invariant::exact("chi_J_chi", "χ_k·(J_k χ_k)", 1usize),
+                Invariant::exact("chi_J2_chi", "χ_k·(J_k² χ_k)", 1usize),
+                Invariant::exact("momentum_z", "m_k·z", 1usize),
             ],
-            discrete_energy: Invariant {
-                name: "discrete_energy",
-                formula: "-tr(ω_k J_k)/h² + tr(J_k)/h² + ½ w z·χ_k + ½ w z·χ_{k+1}",
-                rows: 1,
-                conserved: Conserved::Boundedly,
-            },
-            open: Self::open,
+            discrete_energy: Invariant::bounded(
+                "discrete_energy",
+                "-tr(ω_k J_k)/h² + tr(J_k)/h² + ½ w z·χ_k + ½ w z·χ_{k+1}",
+                1,
+            ),
+            open: open::<Self>,
             solvers: &Method::NAMES,
             dimensions: &[],
-            sized: Self::sized,
+            sized: only_size::<Self>,
         };
         /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
         /// velocities together, at the identity, should be positive definite.
@@ -1044,63 +806,6 @@ pub mod heavy_top_spatial {
                 inertia.set_column(axis, &parts[0]);
             }
             KineticWarning::of(&inertia, 3)
-        }
-        /// The card of the model at the given sizes, in the order of their declaration.
-        fn sized(sizes: &[usize]) -> Option<Card> {
-            match sizes {
-                [] => Some(HeavyTopSpatial::<f64>::CARD),
-                _ => None,
-            }
-        }
-        fn open(
-            parameters: &[Vec<f64>],
-            initial: &[Vec<f64>],
-            settings: Settings,
-        ) -> Result<Box<dyn Trajectory>, OpenError> {
-            for (field, expected, found) in [
-                ("parameters", 2usize, parameters.len()),
-                ("initial values", 4usize, initial.len()),
-            ] {
-                if expected != found {
-                    return Err(OpenError::Count {
-                        field,
-                        expected,
-                        found,
-                    });
-                }
-            }
-            let model = HeavyTopSpatial::new(HeavyTopSpatialParameters {
-                w: number_of("w", parameters.get(0usize))?,
-                z: matrix_of("z", parameters.get(1usize))?,
-            })?;
-            let initial = HeavyTopSpatialInitial {
-                Λ: rotation_of("Λ", initial.get(0usize))?,
-                spatial_momentum: SpatialMomentum(
-                    matrix_of("spatial_momentum", initial.get(1usize))?,
-                ),
-                J: matrix_of("J", initial.get(2usize))?,
-                χ: matrix_of("χ", initial.get(3usize))?,
-            };
-            let model = match chosen_solver(settings, Self::CARD.solvers)? {
-                Some(method) => model.with_solver(method),
-                None => model,
-            };
-            let state = model.at_node_0(initial)?;
-            let kinetic = model.kinetic_warning(&state);
-            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)
-                .map_err(|e| OpenError::from(e).beside(kinetic))?;
-            let plain = matches!(steps, Steps::Plain(_));
-            Ok(
-                Box::new(HeavyTopSpatialTrajectory {
-                    model,
-                    state,
-                    steps,
-                    h: settings.h,
-                    before: state,
-                    plain,
-                    kinetic,
-                }),
-            )
         }
     }
 }

@@ -83,57 +83,22 @@ pub mod kepler {
         /// Starts a trajectory with step `h` from data at node 0.
         ///
         /// # Errors
-        /// Names the value that is not finite, or says why the first step cannot be solved and
-        /// which step could.
+        /// Names the value that is not admissible, or says why the first step cannot be solved and
+        /// which could.
         pub fn start(
             &self,
             initial: KeplerInitial<T>,
             h: T,
         ) -> Result<(KeplerState<T>, KeplerWorkspace<T>), StartError> {
-            validate::positive_step(h)?;
-            let state = self.at_node_0(initial)?;
-            Ok((state, self.workspace(&state, h)?))
+            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
         }
-        /// The state at node 0.
-        fn at_node_0(
-            &self,
-            initial: KeplerInitial<T>,
-        ) -> Result<KeplerState<T>, StartError> {
-            validate::finite("X", initial.X.matrix().as_slice())?;
-            validate::finite("momentum", initial.momentum.0.as_slice())?;
-            Ok(KeplerState {
-                X: initial.X,
-                momentum: initial.momentum,
-                place_rest: SMatrix::zeros(),
-                momentum_rest: SMatrix::zeros(),
-                node: 0,
-            })
-        }
-        /// A workspace for steps of `h`, of either sign, from any state.
-        ///
-        /// # Errors
-        /// When `h` is zero or not finite, or the first step cannot be solved.
+        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
         pub fn workspace(
             &self,
             state: &KeplerState<T>,
             h: T,
         ) -> Result<KeplerWorkspace<T>, StartError> {
-            validate::directed_step(h)?;
-            let state = *state;
-            {
-                let X = state.X.matrix();
-                validate::defined(
-                    domain::Domain::NotZero,
-                    domain::Function::Quotient,
-                    "√(X_k·X_k)",
-                    X.dot(&X).sqrt(),
-                )?;
-            }
-            let work = KeplerWorkspace { h };
-            let (mut trial, mut scratch) = (state, work);
-            self.step(&mut trial, &mut scratch)
-                .map_err(|e| StartError::Refused(e.cause))?;
-            Ok(work)
+            self.prepare(state, h, Default::default())
         }
         /// One step, in place. Solved thus: the balance is linear: one division.
         ///
@@ -193,7 +158,7 @@ pub mod kepler {
             state: &Self::State,
             h: T,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h)
+            self.prepare(state, h, Default::default())
         }
         #[inline(always)]
         fn advance(
@@ -217,38 +182,14 @@ pub mod kepler {
         }
     }
     impl<T: Real> Reversible for Kepler<T> {}
-    impl<T: Real> ::clebsch::OfScalars for KeplerParameters<T> {
-        type Scalar = T;
-        type Over<U: Real> = KeplerParameters<U>;
-        fn over<U: Real>(&self, change: &mut impl FnMut(T) -> U) -> KeplerParameters<U> {
-            KeplerParameters {
-                m: self.m.over(change),
-                k: self.k.over(change),
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] KeplerParameters { m, k }
     }
-    impl<T: Real> ::clebsch::OfScalars for KeplerInitial<T> {
-        type Scalar = T;
-        type Over<U: Real> = KeplerInitial<U>;
-        fn over<U: Real>(&self, change: &mut impl FnMut(T) -> U) -> KeplerInitial<U> {
-            KeplerInitial {
-                X: self.X.over(change),
-                momentum: self.momentum.over(change),
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] KeplerInitial { X, momentum }
     }
-    impl<T: Real> ::clebsch::OfScalars for KeplerState<T> {
-        type Scalar = T;
-        type Over<U: Real> = KeplerState<U>;
-        fn over<U: Real>(&self, change: &mut impl FnMut(T) -> U) -> KeplerState<U> {
-            KeplerState {
-                X: self.X.over(change),
-                momentum: self.momentum.over(change),
-                place_rest: self.place_rest.over(change),
-                momentum_rest: self.momentum_rest.over(change),
-                node: self.node,
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] KeplerState { X, momentum, place_rest, momentum_rest } at node
     }
     impl<T: Real> ::clebsch::integrate::Model for Kepler<T> {
         type Parameters = KeplerParameters<T>;
@@ -263,15 +204,32 @@ pub mod kepler {
             &self.parameters
         }
         fn begin(&self, initial: Self::Initial) -> Result<KeplerState<T>, StartError> {
-            self.at_node_0(initial)
+            validate::finite("X", initial.X.matrix().as_slice())?;
+            validate::finite("momentum", initial.momentum.0.as_slice())?;
+            Ok(KeplerState {
+                X: initial.X,
+                momentum: initial.momentum,
+                place_rest: SMatrix::zeros(),
+                momentum_rest: SMatrix::zeros(),
+                node: 0,
+            })
         }
-        fn prepare(
+        fn prepared(
             &self,
             state: &KeplerState<T>,
             h: T,
             _: Self::Choice,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h)
+            {
+                let X = state.X.matrix();
+                validate::defined(
+                    domain::Domain::NotZero,
+                    domain::Function::Quotient,
+                    "√(X_k·X_k)",
+                    X.dot(&X).sqrt(),
+                )?;
+            }
+            Ok(KeplerWorkspace { h })
         }
     }
     /// A configuration at one node, solution or not.
@@ -425,78 +383,61 @@ pub mod kepler {
                 - T::from_f64(0.5) * m * k * X_next.dot(&X_next).powr(-1, 2)
         }
     }
-    /// One trajectory of the model, its type hidden.
-    struct KeplerTrajectory {
-        model: Kepler<f64>,
-        state: KeplerState<f64>,
-        steps: Steps<Kepler<f64>>,
-        h: f64,
-        /// The state before the last step.
-        before: KeplerState<f64>,
-        /// Whether a step is one of the derivation, not composed and without modified moments.
-        plain: bool,
-        kinetic: Option<KineticWarning>,
-    }
-    impl Trajectory for KeplerTrajectory {
-        fn node(&self) -> u64 {
-            self.state.node()
+    impl ::clebsch::integrate::Described for Kepler<f64> {
+        fn card() -> &'static Card {
+            &Self::CARD
         }
-        fn time(&self) -> f64 {
-            self.h * self.state.node() as f64
+        fn read(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+        ) -> Result<(Self, Self::Initial), OpenError> {
+            let model = Self::new(KeplerParameters {
+                m: number_of("m", parameters.get(0usize))?,
+                k: number_of("k", parameters.get(1usize))?,
+            })?;
+            let initial = KeplerInitial {
+                X: additive_of("X", initial.get(0usize))?,
+                momentum: FieldMomentum(matrix_of("momentum", initial.get(1usize))?),
+            };
+            Ok((model, initial))
         }
-        fn step(&mut self) -> Result<(), StepError> {
-            let before = self.state;
-            self.steps.step(&self.model, &mut self.state)?;
-            self.before = before;
-            Ok(())
+        fn ways(
+            self,
+            state: &Self::State,
+            settings: Settings,
+        ) -> Result<(Self, Steps<Self>), OpenError> {
+            let model = chosen_solver(settings, Self::CARD.solvers).map(|_| self)?;
+            let steps = Steps::of_order(&model, state, settings, Self::CARD.orders)?;
+            Ok((model, steps))
         }
-        fn card(&self) -> &'static Card {
-            &Kepler::<f64>::CARD
+        fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
+            self.kinetic_warning(state)
         }
-        fn kinetic_warning(&self) -> Option<KineticWarning> {
-            self.kinetic
+        fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
+            Residual::largest(&self.residual(before, after, h))
         }
-        fn residual(&self) -> Option<f64> {
-            let moved = self.before.node() != self.state.node();
-            (self.plain && moved)
-                .then(|| {
-                    Residual::largest(
-                        &self.model.residual(&self.before, &self.state, self.h),
-                    )
-                })
-        }
-        fn observe(&self, out: &mut [f64]) {
-            let state = &self.state;
+        fn observe(&self, state: &Self::State, out: &mut [f64]) {
             let out = put(out, rows(state.X().matrix()));
             let out = put(out, rows(state.momentum().0));
             let _ = out;
         }
-        fn invariants(&self, out: &mut [f64]) {
-            let state = &self.state;
-            let out = put(out, [self.model.energy(state)]);
-            let out = put(out, rows(self.model.momentum_angular(state)));
-            let _ = out;
+        fn invariants(
+            &self,
+            state: &Self::State,
+            _: Option<&Self::Workspace>,
+            out: &mut [f64],
+        ) {
+            let out = put(out, [self.energy(state)]);
+            let out = put(out, rows(self.momentum_angular(state)));
+            let _ = (state, out);
         }
-        fn scales(&self, out: &mut [f64]) {
-            let state = &self.state;
-            let out = put(
-                out,
-                [{
-                    let (kinetic, potential) = self.model.energies(state);
-                    kinetic.abs() + potential.abs()
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let X = state.X.matrix();
-                    let p = state.momentum().0;
-                    let value: T = p.dot(&p).sqrt() * X.dot(&X).sqrt();
-                    value
-                }; 3 * 1],
-            );
-            let _ = out;
+        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+            type T = f64;
+            let X = state.X.matrix();
+            let p = state.momentum().0;
+            let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
+            let out = put(out, [p.dot(&p).sqrt() * X.dot(&X).sqrt(); 3 * 1]);
+            let _ = (state, out);
         }
     }
     impl Kepler<f64> {
@@ -514,83 +455,41 @@ pub mod kepler {
             preprocessed: false,
             reversible: true,
             parameters: &[
-                Field {
-                    name: "m",
-                    ascii: "m",
-                    rows: 1,
-                    cols: 1,
-                    kind: Kind::Scalar,
-                    doc: "mass of the planet",
-                },
-                Field {
-                    name: "k",
-                    ascii: "k",
-                    rows: 1,
-                    cols: 1,
-                    kind: Kind::Scalar,
-                    doc: "gravitational parameter of the sun: its mass times the constant of gravitation",
-                },
+                Kind::Scalar.field("m", [1, 1], "mass of the planet"),
+                Kind::Scalar
+                    .field(
+                        "k",
+                        [1, 1],
+                        "gravitational parameter of the sun: its mass times the constant of gravitation",
+                    ),
             ],
             initial: &[
-                Field {
-                    name: "X",
-                    ascii: "X",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::Vector,
-                    doc: "place of the planet, the sun at the origin",
-                },
-                Field {
-                    name: "momentum",
-                    ascii: "momentum",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::FieldMomentum,
-                    doc: "momentum of X",
-                },
+                Kind::Vector
+                    .field("X", [3, 1], "place of the planet, the sun at the origin"),
+                Kind::FieldMomentum.field("momentum", [3, 1], "momentum of X"),
             ],
             observables: &[
-                Field {
-                    name: "X",
-                    ascii: "X",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::Vector,
-                    doc: "place of the planet, the sun at the origin",
-                },
-                Field {
-                    name: "momentum",
-                    ascii: "momentum",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::FieldMomentum,
-                    doc: "momentum of X",
-                },
+                Kind::Vector
+                    .field("X", [3, 1], "place of the planet, the sun at the origin"),
+                Kind::FieldMomentum.field("momentum", [3, 1], "momentum of X"),
             ],
             invariants: &[
-                Invariant {
-                    name: "energy",
-                    formula: "½ p_k·ζ - m k/√(X_k·X_k), where p_k = m ζ",
-                    rows: 1usize,
-                    conserved: Conserved::Boundedly,
-                },
-                Invariant {
-                    name: "momentum_angular",
-                    formula: "X_k × p_k",
-                    rows: 3 * 1,
-                    conserved: Conserved::Exactly,
-                },
+                Invariant::bounded(
+                    "energy",
+                    "½ p_k·ζ - m k/√(X_k·X_k), where p_k = m ζ",
+                    1usize,
+                ),
+                Invariant::exact("momentum_angular", "X_k × p_k", 3 * 1),
             ],
-            discrete_energy: Invariant {
-                name: "discrete_energy",
-                formula: "m ΔX_k·ΔX_k/(2 h²) - m k/(2 √(X_k·X_k)) - m k/(2 √(X_{k+1}·X_{k+1}))",
-                rows: 1,
-                conserved: Conserved::Boundedly,
-            },
-            open: Self::open,
+            discrete_energy: Invariant::bounded(
+                "discrete_energy",
+                "m ΔX_k·ΔX_k/(2 h²) - m k/(2 √(X_k·X_k)) - m k/(2 √(X_{k+1}·X_{k+1}))",
+                1,
+            ),
+            open: open::<Self>,
             solvers: &[],
             dimensions: &[],
-            sized: Self::sized,
+            sized: only_size::<Self>,
         };
         /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
         /// velocities together, at the identity, should be positive definite.
@@ -620,56 +519,6 @@ pub mod kepler {
                     );
             }
             KineticWarning::of(&inertia, 0 + (3 * 1))
-        }
-        /// The card of the model at the given sizes, in the order of their declaration.
-        fn sized(sizes: &[usize]) -> Option<Card> {
-            match sizes {
-                [] => Some(Kepler::<f64>::CARD),
-                _ => None,
-            }
-        }
-        fn open(
-            parameters: &[Vec<f64>],
-            initial: &[Vec<f64>],
-            settings: Settings,
-        ) -> Result<Box<dyn Trajectory>, OpenError> {
-            for (field, expected, found) in [
-                ("parameters", 2usize, parameters.len()),
-                ("initial values", 2usize, initial.len()),
-            ] {
-                if expected != found {
-                    return Err(OpenError::Count {
-                        field,
-                        expected,
-                        found,
-                    });
-                }
-            }
-            let model = Kepler::new(KeplerParameters {
-                m: number_of("m", parameters.get(0usize))?,
-                k: number_of("k", parameters.get(1usize))?,
-            })?;
-            let initial = KeplerInitial {
-                X: additive_of("X", initial.get(0usize))?,
-                momentum: FieldMomentum(matrix_of("momentum", initial.get(1usize))?),
-            };
-            chosen_solver(settings, Self::CARD.solvers)?;
-            let state = model.at_node_0(initial)?;
-            let kinetic = model.kinetic_warning(&state);
-            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)
-                .map_err(|e| OpenError::from(e).beside(kinetic))?;
-            let plain = matches!(steps, Steps::Plain(_));
-            Ok(
-                Box::new(KeplerTrajectory {
-                    model,
-                    state,
-                    steps,
-                    h: settings.h,
-                    before: state,
-                    plain,
-                    kinetic,
-                }),
-            )
         }
     }
 }

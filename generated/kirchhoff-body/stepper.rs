@@ -108,51 +108,22 @@ pub mod kirchhoff_body {
         /// Starts a trajectory with step `h` from data at node 0.
         ///
         /// # Errors
-        /// Names the value that is not finite, or says why the first step cannot be solved and
-        /// which step could.
+        /// Names the value that is not admissible, or says why the first step cannot be solved and
+        /// which could.
         pub fn start(
             &self,
             initial: KirchhoffBodyInitial<T>,
             h: T,
         ) -> Result<(KirchhoffBodyState<T>, KirchhoffBodyWorkspace<T>), StartError> {
-            validate::positive_step(h)?;
-            let state = self.at_node_0(initial)?;
-            Ok((state, self.workspace(&state, h)?))
+            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
         }
-        /// The state at node 0.
-        fn at_node_0(
-            &self,
-            initial: KirchhoffBodyInitial<T>,
-        ) -> Result<KirchhoffBodyState<T>, StartError> {
-            validate::finite("G", initial.G.matrix().as_slice())?;
-            validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
-            Ok(KirchhoffBodyState {
-                G: initial.G,
-                momentum: initial.body_momentum.carried(&initial.G),
-                place_rest: SMatrix::zeros(),
-                momentum_rest: SMatrix::zeros(),
-                node: 0,
-            })
-        }
-        /// A workspace for steps of `h`, of either sign, from any state.
-        ///
-        /// # Errors
-        /// When `h` is zero or not finite, or the first step cannot be solved.
+        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
         pub fn workspace(
             &self,
             state: &KirchhoffBodyState<T>,
             h: T,
         ) -> Result<KirchhoffBodyWorkspace<T>, StartError> {
-            validate::directed_step(h)?;
-            let state = *state;
-            let work = KirchhoffBodyWorkspace {
-                h,
-                search: newton::Search::from_rest(),
-            };
-            let (mut trial, mut scratch) = (state, work);
-            self.step(&mut trial, &mut scratch)
-                .map_err(|e| StartError::Refused(e.cause))?;
-            Ok(work)
+            self.prepare(state, h, Default::default())
         }
         /// One step, in place. Solved thus: the group is not SO(n): Newton on the derived residual.
         ///
@@ -599,7 +570,7 @@ pub mod kirchhoff_body {
             state: &Self::State,
             h: T,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h)
+            self.prepare(state, h, Default::default())
         }
         #[inline(always)]
         fn advance(
@@ -633,50 +604,14 @@ pub mod kirchhoff_body {
         }
     }
     impl<T: Real> Reversible for KirchhoffBody<T> {}
-    impl<T: Real> ::clebsch::OfScalars for KirchhoffBodyParameters<T> {
-        type Scalar = T;
-        type Over<U: Real> = KirchhoffBodyParameters<U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> KirchhoffBodyParameters<U> {
-            KirchhoffBodyParameters {
-                J: self.J.over(change),
-                M: self.M.over(change),
-                D: self.D.over(change),
-                b: self.b.over(change),
-                Z: self.Z.over(change),
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] KirchhoffBodyParameters { J, M, D, b, Z }
     }
-    impl<T: Real> ::clebsch::OfScalars for KirchhoffBodyInitial<T> {
-        type Scalar = T;
-        type Over<U: Real> = KirchhoffBodyInitial<U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> KirchhoffBodyInitial<U> {
-            KirchhoffBodyInitial {
-                G: self.G.over(change),
-                body_momentum: self.body_momentum.over(change),
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] KirchhoffBodyInitial { G, body_momentum }
     }
-    impl<T: Real> ::clebsch::OfScalars for KirchhoffBodyState<T> {
-        type Scalar = T;
-        type Over<U: Real> = KirchhoffBodyState<U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> KirchhoffBodyState<U> {
-            KirchhoffBodyState {
-                G: self.G.over(change),
-                momentum: self.momentum.over(change),
-                place_rest: self.place_rest.over(change),
-                momentum_rest: self.momentum_rest.over(change),
-                node: self.node,
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] KirchhoffBodyState { G, momentum, place_rest, momentum_rest } at node
     }
     impl<T: Real> ::clebsch::integrate::Model for KirchhoffBody<T> {
         type Parameters = KirchhoffBodyParameters<T>;
@@ -694,15 +629,26 @@ pub mod kirchhoff_body {
             &self,
             initial: Self::Initial,
         ) -> Result<KirchhoffBodyState<T>, StartError> {
-            self.at_node_0(initial)
+            validate::finite("G", initial.G.matrix().as_slice())?;
+            validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
+            Ok(KirchhoffBodyState {
+                G: initial.G,
+                momentum: initial.body_momentum.carried(&initial.G),
+                place_rest: SMatrix::zeros(),
+                momentum_rest: SMatrix::zeros(),
+                node: 0,
+            })
         }
-        fn prepare(
+        fn prepared(
             &self,
-            state: &KirchhoffBodyState<T>,
+            _: &KirchhoffBodyState<T>,
             h: T,
             _: Self::Choice,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h)
+            Ok(KirchhoffBodyWorkspace {
+                h,
+                search: newton::Search::from_rest(),
+            })
         }
     }
     /// A configuration at one node, solution or not.
@@ -1064,132 +1010,87 @@ pub mod kirchhoff_body {
                 - (J * less_identity(&motion_rotation(&V_matrix))).trace() / (h * h)
         }
     }
-    /// One trajectory of the model, its type hidden.
-    struct KirchhoffBodyTrajectory {
-        model: KirchhoffBody<f64>,
-        state: KirchhoffBodyState<f64>,
-        steps: Steps<KirchhoffBody<f64>>,
-        h: f64,
-        /// The state before the last step.
-        before: KirchhoffBodyState<f64>,
-        /// Whether a step is one of the derivation, not composed and without modified moments.
-        plain: bool,
-        kinetic: Option<KineticWarning>,
-    }
-    impl Trajectory for KirchhoffBodyTrajectory {
-        fn node(&self) -> u64 {
-            self.state.node()
+    impl ::clebsch::integrate::Described for KirchhoffBody<f64> {
+        fn card() -> &'static Card {
+            &Self::CARD
         }
-        fn time(&self) -> f64 {
-            self.h * self.state.node() as f64
+        fn read(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+        ) -> Result<(Self, Self::Initial), OpenError> {
+            let model = Self::new(KirchhoffBodyParameters {
+                J: matrix_of("J", parameters.get(0usize))?,
+                M: matrix_of("M", parameters.get(1usize))?,
+                D: matrix_of("D", parameters.get(2usize))?,
+                b: matrix_of("b", parameters.get(3usize))?,
+                Z: matrix_of("Z", parameters.get(4usize))?,
+            })?;
+            let initial = KirchhoffBodyInitial {
+                G: motion_of("G", initial.get(0usize))?,
+                body_momentum: BodyImpulse(
+                    matrix_of("body_momentum", initial.get(1usize))?,
+                ),
+            };
+            Ok((model, initial))
         }
-        fn step(&mut self) -> Result<(), StepError> {
-            let before = self.state;
-            self.steps.step(&self.model, &mut self.state)?;
-            self.before = before;
-            Ok(())
+        fn ways(
+            self,
+            state: &Self::State,
+            settings: Settings,
+        ) -> Result<(Self, Steps<Self>), OpenError> {
+            let model = chosen_solver(settings, Self::CARD.solvers).map(|_| self)?;
+            let steps = Steps::of_order(&model, state, settings, Self::CARD.orders)?;
+            Ok((model, steps))
         }
-        fn card(&self) -> &'static Card {
-            &KirchhoffBody::<f64>::CARD
+        fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
+            self.kinetic_warning(state)
         }
-        fn kinetic_warning(&self) -> Option<KineticWarning> {
-            self.kinetic
+        fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
+            Residual::largest(&self.residual(before, after, h))
         }
-        fn residual(&self) -> Option<f64> {
-            let moved = self.before.node() != self.state.node();
-            (self.plain && moved)
-                .then(|| {
-                    Residual::largest(
-                        &self.model.residual(&self.before, &self.state, self.h),
-                    )
-                })
-        }
-        fn observe(&self, out: &mut [f64]) {
-            let state = &self.state;
+        fn observe(&self, state: &Self::State, out: &mut [f64]) {
             let out = put(out, rows(state.G().matrix()));
             let out = put(out, rows(state.body_momentum().0));
             let out = put(out, rows(state.spatial_momentum().0));
-            let out = put(out, rows(self.model.P(state)));
+            let out = put(out, rows(self.P(state)));
             let _ = out;
         }
-        fn invariants(&self, out: &mut [f64]) {
-            let state = &self.state;
-            let out = put(out, [self.model.energy(state)]);
-            let out = put(out, [self.model.P_part_squared(state)]);
-            let out = put(
-                out,
-                [self.model.momentum_linear_across_P_part_squared(state)],
-            );
-            let out = put(out, rows(self.model.spatial_momentum_linear_across_Z(state)));
-            let out = put(out, [self.model.spatial_momentum_angular_Z(state)]);
-            let _ = out;
+        fn invariants(
+            &self,
+            state: &Self::State,
+            _: Option<&Self::Workspace>,
+            out: &mut [f64],
+        ) {
+            let out = put(out, [self.energy(state)]);
+            let out = put(out, [self.P_part_squared(state)]);
+            let out = put(out, [self.momentum_linear_across_P_part_squared(state)]);
+            let out = put(out, rows(self.spatial_momentum_linear_across_Z(state)));
+            let out = put(out, [self.spatial_momentum_angular_Z(state)]);
+            let _ = (state, out);
         }
-        fn scales(&self, out: &mut [f64]) {
-            let state = &self.state;
+        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+            type T = f64;
+            let KirchhoffBodyParameters { Z, .. } = self.parameters;
+            let G = state.G.matrix();
+            let P = G.tr_mul(&Z);
+            let μ = state.body_momentum().0;
+            let t1 = rows_from::<T, 4, 3, 1>(&P, 0);
+            let t2 = t1.dot(&t1).sqrt();
+            let t3 = rows_from::<T, 6, 3, 1>(&μ, 3);
+            let t4 = t3.dot(&t3).sqrt();
+            let t5 = rows_from::<T, 4, 3, 1>(&Z, 0);
+            let t6 = t5.dot(&t5).sqrt();
+            let t7 = rows_from::<T, 6, 3, 1>(&μ, 0);
+            let t8 = motion_translation(&G);
+            let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
+            let out = put(out, [t2 * t2; 1usize]);
+            let out = put(out, [(t4 * t2) * (t4 * t2); 1usize]);
+            let out = put(out, [t4 * t6; 3 * 1]);
             let out = put(
                 out,
-                [{
-                    let (kinetic, potential) = self.model.energies(state);
-                    kinetic.abs() + potential.abs()
-                }; 1usize],
+                [(t7.dot(&t7).sqrt() + t8.dot(&t8).sqrt() * t4) * t6; 1usize],
             );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let KirchhoffBodyParameters { Z, .. } = self.model.parameters;
-                    let G = state.G.matrix();
-                    let P = G.tr_mul(&Z);
-                    let t1 = rows_from::<T, 4, 3, 1>(&P, 0);
-                    let t2 = t1.dot(&t1).sqrt();
-                    let value: T = t2 * t2;
-                    value
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let KirchhoffBodyParameters { Z, .. } = self.model.parameters;
-                    let G = state.G.matrix();
-                    let P = G.tr_mul(&Z);
-                    let μ = state.body_momentum().0;
-                    let t1 = rows_from::<T, 6, 3, 1>(&μ, 3);
-                    let t2 = rows_from::<T, 4, 3, 1>(&P, 0);
-                    let value: T = (t1.dot(&t1).sqrt() * t2.dot(&t2).sqrt())
-                        * (t1.dot(&t1).sqrt() * t2.dot(&t2).sqrt());
-                    value
-                }; 1usize],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let KirchhoffBodyParameters { Z, .. } = self.model.parameters;
-                    let μ = state.body_momentum().0;
-                    let t1 = rows_from::<T, 6, 3, 1>(&μ, 3);
-                    let t2 = rows_from::<T, 4, 3, 1>(&Z, 0);
-                    let value: T = t1.dot(&t1).sqrt() * t2.dot(&t2).sqrt();
-                    value
-                }; 3 * 1],
-            );
-            let out = put(
-                out,
-                [{
-                    type T = f64;
-                    let KirchhoffBodyParameters { Z, .. } = self.model.parameters;
-                    let G = state.G.matrix();
-                    let μ = state.body_momentum().0;
-                    let t1 = rows_from::<T, 6, 3, 1>(&μ, 0);
-                    let t2 = motion_translation(&G);
-                    let t3 = rows_from::<T, 6, 3, 1>(&μ, 3);
-                    let t4 = rows_from::<T, 4, 3, 1>(&Z, 0);
-                    let value: T = (t1.dot(&t1).sqrt()
-                        + t2.dot(&t2).sqrt() * t3.dot(&t3).sqrt()) * t4.dot(&t4).sqrt();
-                    value
-                }; 1usize],
-            );
-            let _ = out;
+            let _ = (state, out);
         }
     }
     impl KirchhoffBody<f64> {
@@ -1207,141 +1108,71 @@ pub mod kirchhoff_body {
             preprocessed: false,
             reversible: true,
             parameters: &[
-                Field {
-                    name: "J",
-                    ascii: "J",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::SecondMoments,
-                    doc: "Poinsot matrix of the rotational inertia, fluid included",
-                },
-                Field {
-                    name: "M",
-                    ascii: "M",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::Symmetric,
-                    doc: "mass and added masses",
-                },
-                Field {
-                    name: "D",
-                    ascii: "D",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::Matrix,
-                    doc: "coupling of rotation and translation",
-                },
-                Field {
-                    name: "b",
-                    ascii: "b",
-                    rows: 4,
-                    cols: 1,
-                    kind: Kind::Vector,
-                    doc: "(moment of weight less buoyancy, net weight), body frame",
-                },
-                Field {
-                    name: "Z",
-                    ascii: "Z",
-                    rows: 4,
-                    cols: 1,
-                    kind: Kind::Vector,
-                    doc: "(vertical up, 0), the plane of height 0 in space",
-                },
+                Kind::SecondMoments
+                    .field(
+                        "J",
+                        [3, 3],
+                        "Poinsot matrix of the rotational inertia, fluid included",
+                    ),
+                Kind::Symmetric.field("M", [3, 3], "mass and added masses"),
+                Kind::Matrix.field("D", [3, 3], "coupling of rotation and translation"),
+                Kind::Vector
+                    .field(
+                        "b",
+                        [4, 1],
+                        "(moment of weight less buoyancy, net weight), body frame",
+                    ),
+                Kind::Vector
+                    .field(
+                        "Z",
+                        [4, 1],
+                        "(vertical up, 0), the plane of height 0 in space",
+                    ),
             ],
             initial: &[
-                Field {
-                    name: "G",
-                    ascii: "G",
-                    rows: 4,
-                    cols: 4,
-                    kind: Kind::RigidMotion,
-                    doc: "position, body to space",
-                },
-                Field {
-                    name: "body_momentum",
-                    ascii: "body_momentum",
-                    rows: 6,
-                    cols: 1,
-                    kind: Kind::BodyMomentum,
-                    doc: "momentum, body frame",
-                },
+                Kind::RigidMotion.field("G", [4, 4], "position, body to space"),
+                Kind::BodyMomentum.field("body_momentum", [6, 1], "momentum, body frame"),
             ],
             observables: &[
-                Field {
-                    name: "G",
-                    ascii: "G",
-                    rows: 4,
-                    cols: 4,
-                    kind: Kind::RigidMotion,
-                    doc: "position, body to space",
-                },
-                Field {
-                    name: "body_momentum",
-                    ascii: "body_momentum",
-                    rows: 6,
-                    cols: 1,
-                    kind: Kind::BodyMomentum,
-                    doc: "momentum, body frame",
-                },
-                Field {
-                    name: "spatial_momentum",
-                    ascii: "spatial_momentum",
-                    rows: 6,
-                    cols: 1,
-                    kind: Kind::SpatialMomentum,
-                    doc: "momentum, space frame",
-                },
-                Field {
-                    name: "P",
-                    ascii: "P",
-                    rows: 4,
-                    cols: 1,
-                    kind: Kind::Vector,
-                    doc: "(vertical, height) seen from the body",
-                },
+                Kind::RigidMotion.field("G", [4, 4], "position, body to space"),
+                Kind::BodyMomentum
+                    .field("body_momentum", [6, 1], "momentum, body frame"),
+                Kind::SpatialMomentum
+                    .field("spatial_momentum", [6, 1], "momentum, space frame"),
+                Kind::Vector.field("P", [4, 1], "(vertical, height) seen from the body"),
             ],
             invariants: &[
-                Invariant {
-                    name: "energy",
-                    formula: "½ μ_k·ζ + b·P_k, where μ_k = (-J ang(ζ) + D lin(ζ) + tr(J) ang(ζ), M lin(ζ) + Dᵀ ang(ζ))",
-                    rows: 1usize,
-                    conserved: Conserved::Boundedly,
-                },
-                Invariant {
-                    name: "P_part_squared",
-                    formula: "P_k[1:3]·P_k[1:3]",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "momentum_linear_across_P_part_squared",
-                    formula: "(lin(μ_k) × P_k[1:3])·(lin(μ_k) × P_k[1:3])",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "spatial_momentum_linear_across_Z",
-                    formula: "Z[1:3] × (rot(G_k) lin(μ_k))",
-                    rows: 3 * 1,
-                    conserved: Conserved::Exactly,
-                },
-                Invariant {
-                    name: "spatial_momentum_angular_Z",
-                    formula: "(rot(G_k) ang(μ_k) + pos(G_k) × (rot(G_k) lin(μ_k)))·Z[1:3]",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
+                Invariant::bounded(
+                    "energy",
+                    "½ μ_k·ζ + b·P_k, where μ_k = (-J ang(ζ) + D lin(ζ) + tr(J) ang(ζ), M lin(ζ) + Dᵀ ang(ζ))",
+                    1usize,
+                ),
+                Invariant::exact("P_part_squared", "P_k[1:3]·P_k[1:3]", 1usize),
+                Invariant::exact(
+                    "momentum_linear_across_P_part_squared",
+                    "(lin(μ_k) × P_k[1:3])·(lin(μ_k) × P_k[1:3])",
+                    1usize,
+                ),
+                Invariant::exact(
+                    "spatial_momentum_linear_across_Z",
+                    "Z[1:3] × (rot(G_k) lin(μ_k))",
+                    3 * 1,
+                ),
+                Invariant::exact(
+                    "spatial_momentum_angular_Z",
+                    "(rot(G_k) ang(μ_k) + pos(G_k) × (rot(G_k) lin(μ_k)))·Z[1:3]",
+                    1usize,
+                ),
             ],
-            discrete_energy: Invariant {
-                name: "discrete_energy",
-                formula: "-tr(J rot(V_k))/h² + 2 (½ (pos(V_k) + rot(V_k)ᵀ pos(V_k)))·(½ M (pos(V_k) + rot(V_k)ᵀ pos(V_k)))/(2 h)² + (vee(rot(V_k))·(½ D (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/h² + ½ b·P_k + ½ b·P_{k+1} + tr(J)/h²",
-                rows: 1,
-                conserved: Conserved::Boundedly,
-            },
-            open: Self::open,
+            discrete_energy: Invariant::bounded(
+                "discrete_energy",
+                "-tr(J rot(V_k))/h² + 2 (½ (pos(V_k) + rot(V_k)ᵀ pos(V_k)))·(½ M (pos(V_k) + rot(V_k)ᵀ pos(V_k)))/(2 h)² + (vee(rot(V_k))·(½ D (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/h² + ½ b·P_k + ½ b·P_{k+1} + tr(J)/h²",
+                1,
+            ),
+            open: open::<Self>,
             solvers: &[],
             dimensions: &[],
-            sized: Self::sized,
+            sized: only_size::<Self>,
         };
         /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
         /// velocities together, at the identity, should be positive definite.
@@ -1398,61 +1229,6 @@ pub mod kirchhoff_body {
                     );
             }
             KineticWarning::of(&inertia, 0 + 6)
-        }
-        /// The card of the model at the given sizes, in the order of their declaration.
-        fn sized(sizes: &[usize]) -> Option<Card> {
-            match sizes {
-                [] => Some(KirchhoffBody::<f64>::CARD),
-                _ => None,
-            }
-        }
-        fn open(
-            parameters: &[Vec<f64>],
-            initial: &[Vec<f64>],
-            settings: Settings,
-        ) -> Result<Box<dyn Trajectory>, OpenError> {
-            for (field, expected, found) in [
-                ("parameters", 5usize, parameters.len()),
-                ("initial values", 2usize, initial.len()),
-            ] {
-                if expected != found {
-                    return Err(OpenError::Count {
-                        field,
-                        expected,
-                        found,
-                    });
-                }
-            }
-            let model = KirchhoffBody::new(KirchhoffBodyParameters {
-                J: matrix_of("J", parameters.get(0usize))?,
-                M: matrix_of("M", parameters.get(1usize))?,
-                D: matrix_of("D", parameters.get(2usize))?,
-                b: matrix_of("b", parameters.get(3usize))?,
-                Z: matrix_of("Z", parameters.get(4usize))?,
-            })?;
-            let initial = KirchhoffBodyInitial {
-                G: motion_of("G", initial.get(0usize))?,
-                body_momentum: BodyImpulse(
-                    matrix_of("body_momentum", initial.get(1usize))?,
-                ),
-            };
-            chosen_solver(settings, Self::CARD.solvers)?;
-            let state = model.at_node_0(initial)?;
-            let kinetic = model.kinetic_warning(&state);
-            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)
-                .map_err(|e| OpenError::from(e).beside(kinetic))?;
-            let plain = matches!(steps, Steps::Plain(_));
-            Ok(
-                Box::new(KirchhoffBodyTrajectory {
-                    model,
-                    state,
-                    steps,
-                    h: settings.h,
-                    before: state,
-                    plain,
-                    kinetic,
-                }),
-            )
         }
     }
 }

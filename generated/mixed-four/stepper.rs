@@ -187,103 +187,37 @@ pub mod mixed_four {
     type MixedFourNode2<T> = [T; 0];
     type MixedFourNode4<T> = [T; 0];
     impl<T: Real> MixedFour<T> {
-        /// Starts a trajectory with step `h` from data at node 0, with the model's solver.
+        /// Starts a trajectory with step `h` from data at node 0.
         ///
         /// # Errors
-        /// Names the value that is not finite, or says why the first step cannot be solved and
-        /// which step could.
+        /// Names the value that is not admissible, or says why the first step cannot be solved and
+        /// which could.
         pub fn start(
             &self,
             initial: MixedFourInitial<T>,
             h: T,
         ) -> Result<(MixedFourState<T>, MixedFourWorkspace<T>), StartError> {
-            self.start_with(initial, h, self.method)
+            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
         }
         /// As `start`, with the solver named.
         ///
         /// # Errors
-        /// As `start`; also when the solver does not serve this size or scalar.
+        /// As `start`; also for what this size or scalar does not have.
         pub fn start_with(
             &self,
             initial: MixedFourInitial<T>,
             h: T,
-            method: Method,
+            choice: impl Into<Option<Method>>,
         ) -> Result<(MixedFourState<T>, MixedFourWorkspace<T>), StartError> {
-            validate::positive_step(h)?;
-            let state = self.at_node_0(initial)?;
-            Ok((state, self.workspace_with(&state, h, method)?))
+            ::clebsch::integrate::Model::start_with(self, initial, h, choice.into())
         }
-        /// The state at node 0.
-        fn at_node_0(
-            &self,
-            initial: MixedFourInitial<T>,
-        ) -> Result<MixedFourState<T>, StartError> {
-            validate::finite("R", &initial.R.quaternion())?;
-            validate::finite("body_momentum_R", initial.body_momentum_R.0.as_slice())?;
-            validate::finite("G", initial.G.matrix().as_slice())?;
-            validate::finite("body_momentum_G", initial.body_momentum_G.0.as_slice())?;
-            validate::finite("q", &initial.q.components())?;
-            validate::finite("body_momentum_q", initial.body_momentum_q.0.as_slice())?;
-            validate::finite("X", initial.X.matrix().as_slice())?;
-            validate::finite("momentum_X", initial.momentum_X.0.as_slice())?;
-            Ok(MixedFourState {
-                R: initial.R,
-                momentum_R: initial.body_momentum_R.to_space(&initial.R),
-                G: initial.G,
-                momentum_G: initial.body_momentum_G.carried(&initial.G),
-                place_rest_G: SMatrix::zeros(),
-                momentum_rest_G: SMatrix::zeros(),
-                q: initial.q,
-                momentum_q: initial.body_momentum_q.to_space(&initial.q),
-                X: initial.X,
-                momentum_X: initial.momentum_X,
-                place_rest_X: SMatrix::zeros(),
-                momentum_rest_X: SMatrix::zeros(),
-                node: 0,
-            })
-        }
-        /// A workspace for steps of `h`, of either sign, from any state.
-        ///
-        /// # Errors
-        /// When `h` is zero or not finite, or the first step cannot be solved.
+        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
         pub fn workspace(
             &self,
             state: &MixedFourState<T>,
             h: T,
         ) -> Result<MixedFourWorkspace<T>, StartError> {
-            self.workspace_with(state, h, self.method)
-        }
-        /// The same with the solver named.
-        ///
-        /// # Errors
-        /// When `h` is zero or not finite, or the first step cannot be solved.
-        pub fn workspace_with(
-            &self,
-            state: &MixedFourState<T>,
-            h: T,
-            method: Method,
-        ) -> Result<MixedFourWorkspace<T>, StartError> {
-            validate::directed_step(h)?;
-            {
-                let h = h;
-                validate::inside(
-                    domain::Domain::NotZero,
-                    domain::Function::Quotient,
-                    "h³",
-                    h.powi(3),
-                )?;
-            }
-            let state = *state;
-            let work = MixedFourWorkspace {
-                h,
-                method,
-                search_2: newton::Search::from_rest(),
-                search_4: newton::Search::from_rest(),
-            };
-            let (mut trial, mut scratch) = (state, work);
-            self.step(&mut trial, &mut scratch)
-                .map_err(|e| StartError::Refused(e.cause))?;
-            Ok(work)
+            self.prepare(state, h, Default::default())
         }
         /// One step, in place. Solved thus: every block of velocities by itself: V, C is constant: Moser-Veselov; W, the group is not SO(n): Newton; Y, A is constant and symmetric, β constant: one equation for one number; ΔX, the balance is not linear in ΔX: Newton.
         ///
@@ -1123,7 +1057,7 @@ pub mod mixed_four {
             state: &Self::State,
             h: T,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h)
+            self.prepare(state, h, Default::default())
         }
         #[inline(always)]
         fn advance(
@@ -1162,69 +1096,21 @@ pub mod mixed_four {
         }
     }
     impl<T: Real> Reversible for MixedFour<T> {}
-    impl<T: Real> ::clebsch::OfScalars for MixedFourParameters<T> {
-        type Scalar = T;
-        type Over<U: Real> = MixedFourParameters<U>;
-        fn over<U: Real>(
-            &self,
-            change: &mut impl FnMut(T) -> U,
-        ) -> MixedFourParameters<U> {
-            MixedFourParameters {
-                J: self.J.over(change),
-                A: self.A.over(change),
-                M: self.M.over(change),
-                I: self.I.over(change),
-                m: self.m.over(change),
-                b: self.b.over(change),
-                k: self.k.over(change),
-                p: self.p.over(change),
-                s: self.s.over(change),
-                e: self.e.over(change),
-                g: self.g.over(change),
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] MixedFourParameters { J, A, M, I, m, b, k, p, s, e, g }
     }
-    impl<T: Real> ::clebsch::OfScalars for MixedFourInitial<T> {
-        type Scalar = T;
-        type Over<U: Real> = MixedFourInitial<U>;
-        fn over<U: Real>(&self, change: &mut impl FnMut(T) -> U) -> MixedFourInitial<U> {
-            MixedFourInitial {
-                R: self.R.over(change),
-                body_momentum_R: self.body_momentum_R.over(change),
-                G: self.G.over(change),
-                body_momentum_G: self.body_momentum_G.over(change),
-                q: self.q.over(change),
-                body_momentum_q: self.body_momentum_q.over(change),
-                X: self.X.over(change),
-                momentum_X: self.momentum_X.over(change),
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] MixedFourInitial { R, body_momentum_R, G, body_momentum_G, q, body_momentum_q,
+        X, momentum_X }
     }
-    impl<T: Real> ::clebsch::OfScalars for MixedFourState<T> {
-        type Scalar = T;
-        type Over<U: Real> = MixedFourState<U>;
-        fn over<U: Real>(&self, change: &mut impl FnMut(T) -> U) -> MixedFourState<U> {
-            MixedFourState {
-                R: self.R.over(change),
-                momentum_R: self.momentum_R.over(change),
-                G: self.G.over(change),
-                momentum_G: self.momentum_G.over(change),
-                place_rest_G: self.place_rest_G.over(change),
-                momentum_rest_G: self.momentum_rest_G.over(change),
-                q: self.q.over(change),
-                momentum_q: self.momentum_q.over(change),
-                X: self.X.over(change),
-                momentum_X: self.momentum_X.over(change),
-                place_rest_X: self.place_rest_X.over(change),
-                momentum_rest_X: self.momentum_rest_X.over(change),
-                node: self.node,
-            }
-        }
+    ::clebsch::of_scalars! {
+        [] MixedFourState { R, momentum_R, G, momentum_G, place_rest_G, momentum_rest_G,
+        q, momentum_q, X, momentum_X, place_rest_X, momentum_rest_X } at node
     }
     impl<T: Real> ::clebsch::integrate::Model for MixedFour<T> {
         type Parameters = MixedFourParameters<T>;
         type Initial = MixedFourInitial<T>;
-        type Choice = ();
+        type Choice = Option<Method>;
         type Over<U: Real> = MixedFour<U>;
         const SIDE_BY_SIDE: bool = false;
         fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
@@ -1237,15 +1123,52 @@ pub mod mixed_four {
             &self,
             initial: Self::Initial,
         ) -> Result<MixedFourState<T>, StartError> {
-            self.at_node_0(initial)
+            validate::finite("R", &initial.R.quaternion())?;
+            validate::finite("body_momentum_R", initial.body_momentum_R.0.as_slice())?;
+            validate::finite("G", initial.G.matrix().as_slice())?;
+            validate::finite("body_momentum_G", initial.body_momentum_G.0.as_slice())?;
+            validate::finite("q", &initial.q.components())?;
+            validate::finite("body_momentum_q", initial.body_momentum_q.0.as_slice())?;
+            validate::finite("X", initial.X.matrix().as_slice())?;
+            validate::finite("momentum_X", initial.momentum_X.0.as_slice())?;
+            Ok(MixedFourState {
+                R: initial.R,
+                momentum_R: initial.body_momentum_R.to_space(&initial.R),
+                G: initial.G,
+                momentum_G: initial.body_momentum_G.carried(&initial.G),
+                place_rest_G: SMatrix::zeros(),
+                momentum_rest_G: SMatrix::zeros(),
+                q: initial.q,
+                momentum_q: initial.body_momentum_q.to_space(&initial.q),
+                X: initial.X,
+                momentum_X: initial.momentum_X,
+                place_rest_X: SMatrix::zeros(),
+                momentum_rest_X: SMatrix::zeros(),
+                node: 0,
+            })
         }
-        fn prepare(
+        fn prepared(
             &self,
-            state: &MixedFourState<T>,
+            _: &MixedFourState<T>,
             h: T,
-            _: Self::Choice,
+            choice: Self::Choice,
         ) -> Result<Self::Workspace, StartError> {
-            self.workspace(state, h)
+            {
+                let h = h;
+                validate::inside(
+                    domain::Domain::NotZero,
+                    domain::Function::Quotient,
+                    "h³",
+                    h.powi(3),
+                )?;
+            }
+            let method = choice.unwrap_or(self.method);
+            Ok(MixedFourWorkspace {
+                h,
+                method,
+                search_2: newton::Search::from_rest(),
+                search_4: newton::Search::from_rest(),
+            })
         }
     }
     /// A configuration at one node, solution or not.
@@ -1597,48 +1520,64 @@ pub mod mixed_four {
                 - (A * less_identity(&motion_rotation(&W_matrix))).trace() / (h * h)
         }
     }
-    /// One trajectory of the model, its type hidden.
-    struct MixedFourTrajectory {
-        model: MixedFour<f64>,
-        state: MixedFourState<f64>,
-        steps: Steps<MixedFour<f64>>,
-        h: f64,
-        /// The state before the last step.
-        before: MixedFourState<f64>,
-        /// Whether a step is one of the derivation, not composed and without modified moments.
-        plain: bool,
-        kinetic: Option<KineticWarning>,
-    }
-    impl Trajectory for MixedFourTrajectory {
-        fn node(&self) -> u64 {
-            self.state.node()
+    impl ::clebsch::integrate::Described for MixedFour<f64> {
+        fn card() -> &'static Card {
+            &Self::CARD
         }
-        fn time(&self) -> f64 {
-            self.h * self.state.node() as f64
+        fn read(
+            parameters: &[Vec<f64>],
+            initial: &[Vec<f64>],
+        ) -> Result<(Self, Self::Initial), OpenError> {
+            let model = Self::new(MixedFourParameters {
+                J: matrix_of("J", parameters.get(0usize))?,
+                A: matrix_of("A", parameters.get(1usize))?,
+                M: number_of("M", parameters.get(2usize))?,
+                I: matrix_of("I", parameters.get(3usize))?,
+                m: number_of("m", parameters.get(4usize))?,
+                b: number_of("b", parameters.get(5usize))?,
+                k: number_of("k", parameters.get(6usize))?,
+                p: matrix_of("p", parameters.get(7usize))?,
+                s: matrix_of("s", parameters.get(8usize))?,
+                e: matrix_of("e", parameters.get(9usize))?,
+                g: matrix_of("g", parameters.get(10usize))?,
+            })?;
+            let initial = MixedFourInitial {
+                R: rotation_of("R", initial.get(0usize))?,
+                body_momentum_R: BodyMomentum(
+                    matrix_of("body_momentum_R", initial.get(1usize))?,
+                ),
+                G: motion_of("G", initial.get(2usize))?,
+                body_momentum_G: BodyImpulse(
+                    matrix_of("body_momentum_G", initial.get(3usize))?,
+                ),
+                q: quaternion_of("q", initial.get(4usize))?,
+                body_momentum_q: BodyMomentum(
+                    matrix_of("body_momentum_q", initial.get(5usize))?,
+                ),
+                X: additive_of("X", initial.get(6usize))?,
+                momentum_X: FieldMomentum(matrix_of("momentum_X", initial.get(7usize))?),
+            };
+            Ok((model, initial))
         }
-        fn step(&mut self) -> Result<(), StepError> {
-            let before = self.state;
-            self.steps.step(&self.model, &mut self.state)?;
-            self.before = before;
-            Ok(())
+        fn ways(
+            self,
+            state: &Self::State,
+            settings: Settings,
+        ) -> Result<(Self, Steps<Self>), OpenError> {
+            let model = match chosen_solver(settings, Self::CARD.solvers)? {
+                Some(method) => self.with_solver(method),
+                None => self,
+            };
+            let steps = Steps::of_order(&model, state, settings, Self::CARD.orders)?;
+            Ok((model, steps))
         }
-        fn card(&self) -> &'static Card {
-            &MixedFour::<f64>::CARD
+        fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
+            self.kinetic_warning(state)
         }
-        fn kinetic_warning(&self) -> Option<KineticWarning> {
-            self.kinetic
+        fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
+            Residual::largest(&self.residual(before, after, h))
         }
-        fn residual(&self) -> Option<f64> {
-            let moved = self.before.node() != self.state.node();
-            (self.plain && moved)
-                .then(|| {
-                    Residual::largest(
-                        &self.model.residual(&self.before, &self.state, self.h),
-                    )
-                })
-        }
-        fn observe(&self, out: &mut [f64]) {
-            let state = &self.state;
+        fn observe(&self, state: &Self::State, out: &mut [f64]) {
             let out = put(out, rows(state.R().matrix()));
             let out = put(out, rows(state.body_momentum_R().0));
             let out = put(out, rows(state.spatial_momentum_R().0));
@@ -1650,43 +1589,43 @@ pub mod mixed_four {
             let out = put(out, rows(state.spatial_momentum_q().0));
             let out = put(out, rows(state.X().matrix()));
             let out = put(out, rows(state.momentum_X().0));
-            let out = put(out, rows(self.model.relative_R_q(state)));
+            let out = put(out, rows(self.relative_R_q(state)));
             let _ = out;
         }
-        fn invariants(&self, out: &mut [f64]) {
-            let state = &self.state;
-            let out = put(out, [self.model.total_momentum_angular_g(state)]);
-            let _ = out;
+        fn invariants(
+            &self,
+            state: &Self::State,
+            _: Option<&Self::Workspace>,
+            out: &mut [f64],
+        ) {
+            let out = put(out, [self.total_momentum_angular_g(state)]);
+            let _ = (state, out);
         }
-        fn scales(&self, out: &mut [f64]) {
-            let state = &self.state;
+        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+            type T = f64;
+            let MixedFourParameters { g, .. } = self.parameters;
+            let R = state.R.matrix();
+            let G = state.G.matrix();
+            let q = state.q.matrix();
+            let X = state.X.matrix();
+            let μ1 = state.body_momentum_R().0;
+            let μ2 = state.body_momentum_G().0;
+            let μ3 = state.body_momentum_q().0;
+            let p4 = state.momentum_X().0;
+            let t1 = R * μ1;
+            let t2 = g.dot(&g).sqrt();
+            let t3 = rows_from::<T, 6, 3, 1>(&μ2, 0);
+            let t4 = motion_translation(&G);
+            let t5 = rows_from::<T, 6, 3, 1>(&μ2, 3);
+            let t6 = quaternion_rotation(&q) * μ3;
             let out = put(
                 out,
-                [{
-                    type T = f64;
-                    let MixedFourParameters { g, .. } = self.model.parameters;
-                    let R = state.R.matrix();
-                    let G = state.G.matrix();
-                    let q = state.q.matrix();
-                    let X = state.X.matrix();
-                    let μ1 = state.body_momentum_R().0;
-                    let μ2 = state.body_momentum_G().0;
-                    let μ3 = state.body_momentum_q().0;
-                    let p4 = state.momentum_X().0;
-                    let t1 = R * μ1;
-                    let t2 = g.dot(&g).sqrt();
-                    let t3 = rows_from::<T, 6, 3, 1>(&μ2, 0);
-                    let t4 = motion_translation(&G);
-                    let t5 = rows_from::<T, 6, 3, 1>(&μ2, 3);
-                    let t6 = quaternion_rotation(&q) * μ3;
-                    let value: T = t1.dot(&t1).sqrt() * t2
-                        + (t3.dot(&t3).sqrt() + t4.dot(&t4).sqrt() * t5.dot(&t5).sqrt())
-                            * t2 + t6.dot(&t6).sqrt() * t2
-                        + p4.dot(&p4).sqrt() * X.dot(&X).sqrt() * t2;
-                    value
-                }; 1usize],
+                [t1.dot(&t1).sqrt() * t2
+                    + (t3.dot(&t3).sqrt() + t4.dot(&t4).sqrt() * t5.dot(&t5).sqrt()) * t2
+                    + t6.dot(&t6).sqrt() * t2
+                    + p4.dot(&p4).sqrt() * X.dot(&X).sqrt() * t2; 1usize],
             );
-            let _ = out;
+            let _ = (state, out);
         }
     }
     impl MixedFour<f64> {
@@ -1704,277 +1643,109 @@ pub mod mixed_four {
             preprocessed: false,
             reversible: true,
             parameters: &[
-                Field {
-                    name: "J",
-                    ascii: "J",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::SecondMoments,
-                    doc: "second moments of the first body about its fixed point",
-                },
-                Field {
-                    name: "A",
-                    ascii: "A",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::SecondMoments,
-                    doc: "second moments of the rigid motion about its own point",
-                },
-                Field {
-                    name: "M",
-                    ascii: "M",
-                    rows: 1,
-                    cols: 1,
-                    kind: Kind::Scalar,
-                    doc: "mass of the rigid motion",
-                },
-                Field {
-                    name: "I",
-                    ascii: "I",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::Diagonal,
-                    doc: "principal moments of inertia of the second body",
-                },
-                Field {
-                    name: "m",
-                    ascii: "m",
-                    rows: 1,
-                    cols: 1,
-                    kind: Kind::Scalar,
-                    doc: "mass of the point",
-                },
-                Field {
-                    name: "b",
-                    ascii: "b",
-                    rows: 1,
-                    cols: 1,
-                    kind: Kind::Scalar,
-                    doc: "weight of the quartic term of its kinetic energy",
-                },
-                Field {
-                    name: "k",
-                    ascii: "k",
-                    rows: 1,
-                    cols: 1,
-                    kind: Kind::Scalar,
-                    doc: "stiffness of the springs",
-                },
-                Field {
-                    name: "p",
-                    ascii: "p",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::Vector,
-                    doc: "where springs are fixed: in the first body, in the rigid motion, in the second body",
-                },
-                Field {
-                    name: "s",
-                    ascii: "s",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::Vector,
-                    doc: "where springs are fixed: in the first body, in the rigid motion, in the second body",
-                },
-                Field {
-                    name: "e",
-                    ascii: "e",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::Vector,
-                    doc: "where springs are fixed: in the first body, in the rigid motion, in the second body",
-                },
-                Field {
-                    name: "g",
-                    ascii: "g",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::Vector,
-                    doc: "acceleration of gravity, which acts on the point",
-                },
+                Kind::SecondMoments
+                    .field(
+                        "J",
+                        [3, 3],
+                        "second moments of the first body about its fixed point",
+                    ),
+                Kind::SecondMoments
+                    .field(
+                        "A",
+                        [3, 3],
+                        "second moments of the rigid motion about its own point",
+                    ),
+                Kind::Scalar.field("M", [1, 1], "mass of the rigid motion"),
+                Kind::Diagonal
+                    .field(
+                        "I",
+                        [3, 3],
+                        "principal moments of inertia of the second body",
+                    ),
+                Kind::Scalar.field("m", [1, 1], "mass of the point"),
+                Kind::Scalar
+                    .field(
+                        "b",
+                        [1, 1],
+                        "weight of the quartic term of its kinetic energy",
+                    ),
+                Kind::Scalar.field("k", [1, 1], "stiffness of the springs"),
+                Kind::Vector
+                    .field(
+                        "p",
+                        [3, 1],
+                        "where springs are fixed: in the first body, in the rigid motion, in the second body",
+                    ),
+                Kind::Vector
+                    .field(
+                        "s",
+                        [3, 1],
+                        "where springs are fixed: in the first body, in the rigid motion, in the second body",
+                    ),
+                Kind::Vector
+                    .field(
+                        "e",
+                        [3, 1],
+                        "where springs are fixed: in the first body, in the rigid motion, in the second body",
+                    ),
+                Kind::Vector
+                    .field(
+                        "g",
+                        [3, 1],
+                        "acceleration of gravity, which acts on the point",
+                    ),
             ],
             initial: &[
-                Field {
-                    name: "R",
-                    ascii: "R",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::Rotation,
-                    doc: "attitude of the first body",
-                },
-                Field {
-                    name: "body_momentum_R",
-                    ascii: "body_momentum_R",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::BodyMomentum,
-                    doc: "momentum, body frame",
-                },
-                Field {
-                    name: "G",
-                    ascii: "G",
-                    rows: 4,
-                    cols: 4,
-                    kind: Kind::RigidMotion,
-                    doc: "attitude and place of the rigid motion",
-                },
-                Field {
-                    name: "body_momentum_G",
-                    ascii: "body_momentum_G",
-                    rows: 6,
-                    cols: 1,
-                    kind: Kind::BodyMomentum,
-                    doc: "momentum, body frame",
-                },
-                Field {
-                    name: "q",
-                    ascii: "q",
-                    rows: 4,
-                    cols: 1,
-                    kind: Kind::UnitQuaternion,
-                    doc: "attitude of the second body",
-                },
-                Field {
-                    name: "body_momentum_q",
-                    ascii: "body_momentum_q",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::BodyMomentum,
-                    doc: "momentum, body frame",
-                },
-                Field {
-                    name: "X",
-                    ascii: "X",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::Vector,
-                    doc: "place of the point",
-                },
-                Field {
-                    name: "momentum_X",
-                    ascii: "momentum_X",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::FieldMomentum,
-                    doc: "momentum of X",
-                },
+                Kind::Rotation.field("R", [3, 3], "attitude of the first body"),
+                Kind::BodyMomentum
+                    .field("body_momentum_R", [3, 1], "momentum, body frame"),
+                Kind::RigidMotion
+                    .field("G", [4, 4], "attitude and place of the rigid motion"),
+                Kind::BodyMomentum
+                    .field("body_momentum_G", [6, 1], "momentum, body frame"),
+                Kind::UnitQuaternion.field("q", [4, 1], "attitude of the second body"),
+                Kind::BodyMomentum
+                    .field("body_momentum_q", [3, 1], "momentum, body frame"),
+                Kind::Vector.field("X", [3, 1], "place of the point"),
+                Kind::FieldMomentum.field("momentum_X", [3, 1], "momentum of X"),
             ],
             observables: &[
-                Field {
-                    name: "R",
-                    ascii: "R",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::Rotation,
-                    doc: "attitude of the first body",
-                },
-                Field {
-                    name: "body_momentum_R",
-                    ascii: "body_momentum_R",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::BodyMomentum,
-                    doc: "momentum, body frame",
-                },
-                Field {
-                    name: "spatial_momentum_R",
-                    ascii: "spatial_momentum_R",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::SpatialMomentum,
-                    doc: "momentum, space frame",
-                },
-                Field {
-                    name: "G",
-                    ascii: "G",
-                    rows: 4,
-                    cols: 4,
-                    kind: Kind::RigidMotion,
-                    doc: "attitude and place of the rigid motion",
-                },
-                Field {
-                    name: "body_momentum_G",
-                    ascii: "body_momentum_G",
-                    rows: 6,
-                    cols: 1,
-                    kind: Kind::BodyMomentum,
-                    doc: "momentum, body frame",
-                },
-                Field {
-                    name: "spatial_momentum_G",
-                    ascii: "spatial_momentum_G",
-                    rows: 6,
-                    cols: 1,
-                    kind: Kind::SpatialMomentum,
-                    doc: "momentum, space frame",
-                },
-                Field {
-                    name: "q",
-                    ascii: "q",
-                    rows: 4,
-                    cols: 1,
-                    kind: Kind::UnitQuaternion,
-                    doc: "attitude of the second body",
-                },
-                Field {
-                    name: "body_momentum_q",
-                    ascii: "body_momentum_q",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::BodyMomentum,
-                    doc: "momentum, body frame",
-                },
-                Field {
-                    name: "spatial_momentum_q",
-                    ascii: "spatial_momentum_q",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::SpatialMomentum,
-                    doc: "momentum, space frame",
-                },
-                Field {
-                    name: "X",
-                    ascii: "X",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::Vector,
-                    doc: "place of the point",
-                },
-                Field {
-                    name: "momentum_X",
-                    ascii: "momentum_X",
-                    rows: 3,
-                    cols: 1,
-                    kind: Kind::FieldMomentum,
-                    doc: "momentum of X",
-                },
-                Field {
-                    name: "relative_R_q",
-                    ascii: "relative_R_q",
-                    rows: 3,
-                    cols: 3,
-                    kind: Kind::Matrix,
-                    doc: "",
-                },
+                Kind::Rotation.field("R", [3, 3], "attitude of the first body"),
+                Kind::BodyMomentum
+                    .field("body_momentum_R", [3, 1], "momentum, body frame"),
+                Kind::SpatialMomentum
+                    .field("spatial_momentum_R", [3, 1], "momentum, space frame"),
+                Kind::RigidMotion
+                    .field("G", [4, 4], "attitude and place of the rigid motion"),
+                Kind::BodyMomentum
+                    .field("body_momentum_G", [6, 1], "momentum, body frame"),
+                Kind::SpatialMomentum
+                    .field("spatial_momentum_G", [6, 1], "momentum, space frame"),
+                Kind::UnitQuaternion.field("q", [4, 1], "attitude of the second body"),
+                Kind::BodyMomentum
+                    .field("body_momentum_q", [3, 1], "momentum, body frame"),
+                Kind::SpatialMomentum
+                    .field("spatial_momentum_q", [3, 1], "momentum, space frame"),
+                Kind::Vector.field("X", [3, 1], "place of the point"),
+                Kind::FieldMomentum.field("momentum_X", [3, 1], "momentum of X"),
+                Kind::Matrix.field("relative_R_q", [3, 3], ""),
             ],
             invariants: &[
-                Invariant {
-                    name: "total_momentum_angular_g",
-                    formula: "(R_k μ_{1,k} + rot(G_k) ang(μ_{2,k}) + pos(G_k) × (rot(G_k) lin(μ_{2,k})) + rot(q_k) μ_{3,k} + X_k × p_{4,k})·g",
-                    rows: 1usize,
-                    conserved: Conserved::Exactly,
-                },
+                Invariant::exact(
+                    "total_momentum_angular_g",
+                    "(R_k μ_{1,k} + rot(G_k) ang(μ_{2,k}) + pos(G_k) × (rot(G_k) lin(μ_{2,k})) + rot(q_k) μ_{3,k} + X_k × p_{4,k})·g",
+                    1usize,
+                ),
             ],
-            discrete_energy: Invariant {
-                name: "discrete_energy",
-                formula: "-tr(J V_k)/h² - tr(A rot(W_k))/h² + 2 M pos(W_k)·pos(W_k)/(2 h)² + 2 im(Y_k)·(I im(Y_k))/h² + 2 m ΔX_k·ΔX_k/(2 h)² + 3 b (ΔX_k·ΔX_k)² h²/h⁶ - ½ m g·X_k + ¼ k (X_k - R_k p)·(X_k - R_k p) + ¼ k (pos(G_k) + rot(G_k) s - X_k)·(pos(G_k) + rot(G_k) s - X_k) + ½ k e·(relative_{R,q,k}ᵀ p) - ½ m g·X_{k+1} + ¼ k (X_{k+1} - R_{k+1} p)·(X_{k+1} - R_{k+1} p) + ¼ k (pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1})·(pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1}) + ½ k e·(relative_{R,q,k+1}ᵀ p) + tr(J)/h² + tr(A)/h²",
-                rows: 1,
-                conserved: Conserved::Boundedly,
-            },
-            open: Self::open,
+            discrete_energy: Invariant::bounded(
+                "discrete_energy",
+                "-tr(J V_k)/h² - tr(A rot(W_k))/h² + 2 M pos(W_k)·pos(W_k)/(2 h)² + 2 im(Y_k)·(I im(Y_k))/h² + 2 m ΔX_k·ΔX_k/(2 h)² + 3 b (ΔX_k·ΔX_k)² h²/h⁶ - ½ m g·X_k + ¼ k (X_k - R_k p)·(X_k - R_k p) + ¼ k (pos(G_k) + rot(G_k) s - X_k)·(pos(G_k) + rot(G_k) s - X_k) + ½ k e·(relative_{R,q,k}ᵀ p) - ½ m g·X_{k+1} + ¼ k (X_{k+1} - R_{k+1} p)·(X_{k+1} - R_{k+1} p) + ¼ k (pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1})·(pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1}) + ½ k e·(relative_{R,q,k+1}ᵀ p) + tr(J)/h² + tr(A)/h²",
+                1,
+            ),
+            open: open::<Self>,
             solvers: &Method::NAMES,
             dimensions: &[],
-            sized: Self::sized,
+            sized: only_size::<Self>,
         };
         /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
         /// velocities together, at the identity, should be positive definite.
@@ -2172,80 +1943,6 @@ pub mod mixed_four {
                     );
             }
             KineticWarning::of(&inertia, 0 + 3 + 6 + 3 + (3 * 1))
-        }
-        /// The card of the model at the given sizes, in the order of their declaration.
-        fn sized(sizes: &[usize]) -> Option<Card> {
-            match sizes {
-                [] => Some(MixedFour::<f64>::CARD),
-                _ => None,
-            }
-        }
-        fn open(
-            parameters: &[Vec<f64>],
-            initial: &[Vec<f64>],
-            settings: Settings,
-        ) -> Result<Box<dyn Trajectory>, OpenError> {
-            for (field, expected, found) in [
-                ("parameters", 11usize, parameters.len()),
-                ("initial values", 8usize, initial.len()),
-            ] {
-                if expected != found {
-                    return Err(OpenError::Count {
-                        field,
-                        expected,
-                        found,
-                    });
-                }
-            }
-            let model = MixedFour::new(MixedFourParameters {
-                J: matrix_of("J", parameters.get(0usize))?,
-                A: matrix_of("A", parameters.get(1usize))?,
-                M: number_of("M", parameters.get(2usize))?,
-                I: matrix_of("I", parameters.get(3usize))?,
-                m: number_of("m", parameters.get(4usize))?,
-                b: number_of("b", parameters.get(5usize))?,
-                k: number_of("k", parameters.get(6usize))?,
-                p: matrix_of("p", parameters.get(7usize))?,
-                s: matrix_of("s", parameters.get(8usize))?,
-                e: matrix_of("e", parameters.get(9usize))?,
-                g: matrix_of("g", parameters.get(10usize))?,
-            })?;
-            let initial = MixedFourInitial {
-                R: rotation_of("R", initial.get(0usize))?,
-                body_momentum_R: BodyMomentum(
-                    matrix_of("body_momentum_R", initial.get(1usize))?,
-                ),
-                G: motion_of("G", initial.get(2usize))?,
-                body_momentum_G: BodyImpulse(
-                    matrix_of("body_momentum_G", initial.get(3usize))?,
-                ),
-                q: quaternion_of("q", initial.get(4usize))?,
-                body_momentum_q: BodyMomentum(
-                    matrix_of("body_momentum_q", initial.get(5usize))?,
-                ),
-                X: additive_of("X", initial.get(6usize))?,
-                momentum_X: FieldMomentum(matrix_of("momentum_X", initial.get(7usize))?),
-            };
-            let model = match chosen_solver(settings, Self::CARD.solvers)? {
-                Some(method) => model.with_solver(method),
-                None => model,
-            };
-            let state = model.at_node_0(initial)?;
-            let kinetic = model.kinetic_warning(&state);
-            let steps = Steps::of_order(&model, &state, settings, Self::CARD.orders)
-                .map_err(|e| OpenError::from(e).beside(kinetic))?;
-            let plain = matches!(steps, Steps::Plain(_));
-            Ok(
-                Box::new(MixedFourTrajectory {
-                    model,
-                    state,
-                    steps,
-                    h: settings.h,
-                    before: state,
-                    plain,
-                    kinetic,
-                }),
-            )
         }
     }
 }

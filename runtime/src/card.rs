@@ -38,6 +38,26 @@ pub enum Kind {
     FieldMomentum,
 }
 
+impl Kind {
+    /// A quantity of this kind with these rows and columns, whose name is ASCII.
+    #[must_use]
+    pub const fn field(
+        self,
+        name: &'static str,
+        [rows, cols]: [usize; 2],
+        doc: &'static str,
+    ) -> Field {
+        Field {
+            name,
+            ascii: name,
+            rows,
+            cols,
+            kind: self,
+            doc,
+        }
+    }
+}
+
 /// A parameter, an initial value or an observable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Field {
@@ -56,6 +76,12 @@ pub struct Field {
 }
 
 impl Field {
+    /// The same with its name in ASCII.
+    #[must_use]
+    pub const fn spelt(self, ascii: &'static str) -> Self {
+        Self { ascii, ..self }
+    }
+
     /// How many numbers the field has.
     #[must_use]
     pub const fn count(&self) -> usize {
@@ -83,6 +109,30 @@ pub struct Invariant {
     pub rows: usize,
     /// How well it is kept.
     pub conserved: Conserved,
+}
+
+impl Invariant {
+    /// What oscillates without drift, with this many components.
+    #[must_use]
+    pub const fn bounded(name: &'static str, formula: &'static str, rows: usize) -> Self {
+        Self {
+            name,
+            formula,
+            rows,
+            conserved: Conserved::Boundedly,
+        }
+    }
+
+    /// What is kept to rounding, with this many components.
+    #[must_use]
+    pub const fn exact(name: &'static str, formula: &'static str, rows: usize) -> Self {
+        Self {
+            name,
+            formula,
+            rows,
+            conserved: Conserved::Exactly,
+        }
+    }
 }
 
 /// A named size of a model's matrices, such as `n`, and the one a card is for.

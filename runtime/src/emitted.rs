@@ -2,8 +2,7 @@
 //! description of a model. Not meant to be written by hand; steppers import it whole.
 
 pub use crate::card::{
-    Card, Conserved, Dimension, Field, Invariant, Kind, OpenError, Settings, Trajectory,
-    chosen_solver,
+    Card, Dimension, Field, Invariant, Kind, OpenError, Settings, chosen_solver,
 };
 pub use crate::domain;
 pub use crate::groups::{
@@ -14,7 +13,8 @@ pub use crate::groups::{
 };
 pub use crate::integrate::Residual;
 pub use crate::integrate::{
-    Moving, Reversible, SideBySide, Stepper, Steps, advance_side_by_side, preprocessing_order,
+    Model as _, Moving, Reversible, SideBySide, Stepper, Steps, advance_side_by_side, only_size,
+    open,
 };
 pub use crate::kinetic::KineticWarning;
 pub use crate::linalg::{
@@ -54,6 +54,13 @@ pub fn solve_or_nan<T: Real, const N: usize>(
     b: &SVector<T, N>,
 ) -> SVector<T, N> {
     solve(a, b).unwrap_or_else(|| SVector::repeat(T::from_f64(f64::NAN)))
+}
+
+/// The sum of the sizes of a kinetic and a potential energy.
+#[inline]
+#[must_use]
+pub fn sum_of_sizes((kinetic, potential): (f64, f64)) -> f64 {
+    kinetic.abs() + potential.abs()
 }
 
 /// The coefficients of a pencil that do not vanish, row by row.

@@ -339,8 +339,8 @@ fn main() {
     quartic(256);
     quartic(4096);
     anew(256, 64);
-    table::<HeavyTop>("heavy top", heavy_top, (), [256, 64]);
-    table::<HeavyTop>("heavy top", heavy_top, (), [100_000, 64]);
+    table::<HeavyTop>("heavy top", heavy_top, None, [256, 64]);
+    table::<HeavyTop>("heavy top", heavy_top, None, [100_000, 64]);
     table::<StiffTop>("stiff top, by Newton", stiff_top, (), [256, 64]);
     table::<CoupledBodies>("coupled bodies, by Newton", coupled, (), [256, 64]);
 }

@@ -3,6 +3,7 @@
 //! Takes a trajectory and an observer; gives a summary with the drift of every invariant.
 
 mod composition;
+mod described;
 mod drift;
 mod ensemble;
 mod model;
@@ -14,6 +15,7 @@ mod steps;
 mod stop;
 
 pub use composition::{Composition, CompositionOrder};
+pub use described::{Described, only_size, open};
 pub use drift::Drift;
 pub use ensemble::{Ensemble, EnsembleError, InstructionSet, Work};
 pub use model::Model;
@@ -21,5 +23,5 @@ pub use residual::Residual;
 pub use run::{LargestResidual, Observer, Summary, run, run_until_stopped};
 pub use side_by_side::{Moving, SideBySide, advance_side_by_side};
 pub use stepper::{Reversible, Stepper};
-pub use steps::{Steps, preprocessing_order};
+pub use steps::Steps;
 pub use stop::{NotFinite, RunError, Watched};

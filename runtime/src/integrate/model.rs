@@ -2,7 +2,7 @@
 //! Takes parameters and initial data as plain data; gives a stepper and its state.
 
 use super::Stepper;
-use crate::{OfScalars, ParameterError, Real, StartError};
+use crate::{OfScalars, ParameterError, Real, StartError, validate};
 use core::fmt::Debug;
 
 /// What every emitted model is, whatever its scalar: generic code builds it from data, and goes over
@@ -45,14 +45,55 @@ pub trait Model:
     /// Names the value that is not admissible.
     fn begin(&self, initial: Self::Initial) -> Result<Self::State, StartError>;
 
-    /// A workspace for steps of `h`, of either sign, from `state`.
+    /// What steps of `h` from `state` begin with. No step is tried: see [`Model::prepare`].
     ///
     /// # Errors
-    /// When the first step could not be made.
-    fn prepare(
+    /// Where the model is not defined at the state, or a factor of its equations cannot be made.
+    fn prepared(
         &self,
         state: &Self::State,
         h: Self::Scalar,
         choice: Self::Choice,
     ) -> Result<Self::Workspace, StartError>;
+
+    /// A workspace for steps of `h`, of either sign, from `state`.
+    ///
+    /// # Errors
+    /// When `h` is zero or not finite, or the first step cannot be made: it is tried on a copy.
+    fn prepare(
+        &self,
+        state: &Self::State,
+        h: Self::Scalar,
+        choice: Self::Choice,
+    ) -> Result<Self::Workspace, StartError> {
+        validate::directed_step(h)?;
+        let work = self.prepared(state, h, choice)?;
+        let (mut trial, mut scratch) = (*state, work.clone());
+        self.advance(&mut trial, &mut scratch)
+            .map_err(|e| StartError::Refused(e.cause))?;
+        Ok(work)
+    }
+
+    /// Starts a trajectory with step `h` from data at node 0.
+    ///
+    /// # Errors
+    /// Names the value that is not admissible, or says why the first step cannot be solved and which
+    /// could.
+    fn start_with(
+        &self,
+        initial: Self::Initial,
+        h: Self::Scalar,
+        choice: Self::Choice,
+    ) -> Result<(Self::State, Self::Workspace), StartError> {
+        validate::positive_step(h)?;
+        let state = self.begin(initial)?;
+        Ok((state, self.prepare(&state, h, choice)?))
+    }
+
+    /// The workspace of steps of an order above two, made symplectic with the attitude where that is known
+    /// to be missing; the same one for most models.
+    #[must_use]
+    fn compensated(work: Self::Workspace) -> Self::Workspace {
+        work
+    }
 }

@@ -1,16 +1,14 @@
 //! The steps of one trajectory, plain or composed, chosen when it is started.
 //! Takes a model, a state and the settings; advances the state.
 
-use super::{Composition, CompositionOrder, Reversible, Stepper};
+use super::{Composition, CompositionOrder, Model, Reversible, Stepper};
 use crate::card::{OpenError, Settings};
 use crate::solvers::moser_veselov::Order;
 use crate::{StepError, validate};
 
-/// The order of modified moments that the settings ask for.
-///
-/// # Errors
-/// When there is none, or it is to be compensated and cannot be.
-pub fn preprocessing_order(settings: Settings, orders: &'static [u32]) -> Result<Order, OpenError> {
+/// The order of modified moments that the settings ask for; an error where there is none, or it is to be
+/// compensated and cannot be.
+fn preprocessing_order(settings: Settings, orders: &'static [u32]) -> Result<Order, OpenError> {
     let asked = settings.order.unwrap_or(2);
     let order = Order::of_number(asked).ok_or(OpenError::Order {
         asked,
@@ -41,6 +39,8 @@ fn uncompensated(settings: Settings, orders: &'static [u32]) -> Result<(), OpenE
 pub enum Steps<S: Stepper> {
     /// One step of the model each.
     Plain(S::Workspace),
+    /// One step of the model each, with modified moments.
+    Modified(S::Workspace),
     /// Several.
     Composed(Composition<S>),
 }
@@ -73,9 +73,48 @@ impl<S: Stepper<Scalar = f64>> Steps<S> {
     /// When it cannot be solved; the state is then unchanged.
     pub fn step(&mut self, model: &S, state: &mut S::State) -> Result<(), StepError> {
         match self {
-            Self::Plain(workspace) => model.advance(state, workspace),
+            Self::Plain(workspace) | Self::Modified(workspace) => model.advance(state, workspace),
             Self::Composed(composition) => composition.step(model, state),
         }
+    }
+}
+
+impl<S: Stepper> Steps<S> {
+    /// Whether each is a step of the derivation as it stands.
+    #[must_use]
+    pub fn are_plain(&self) -> bool {
+        matches!(self, Self::Plain(_))
+    }
+
+    /// The workspace of steps that are not composed.
+    #[must_use]
+    pub fn workspace(&self) -> Option<&S::Workspace> {
+        match self {
+            Self::Plain(workspace) | Self::Modified(workspace) => Some(workspace),
+            Self::Composed(_) => None,
+        }
+    }
+}
+
+impl<S: Model<Scalar = f64, Choice = Order>> Steps<S> {
+    /// Steps of the order asked for, above two with modified moments.
+    ///
+    /// # Errors
+    /// As [`Steps::plain`].
+    pub fn modified(
+        model: &S,
+        state: &S::State,
+        settings: Settings,
+        orders: &'static [u32],
+    ) -> Result<Self, OpenError> {
+        let order = preprocessing_order(settings, orders)?;
+        validate::positive_step(settings.h)?;
+        let work = model.prepare(state, settings.h, order)?;
+        Ok(match (order, settings.compensated) {
+            (Order::Two, _) => Self::Plain(work),
+            (_, true) => Self::Modified(S::compensated(work)),
+            (_, false) => Self::Modified(work),
+        })
     }
 }
 

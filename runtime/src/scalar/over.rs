@@ -21,6 +21,34 @@ pub trait OfScalars: Copy + core::fmt::Debug + Send + Sync {
     fn over<U: Real>(&self, change: &mut impl FnMut(Self::Scalar) -> U) -> Self::Over<U>;
 }
 
+impl<T: Real> OfScalars for core::marker::PhantomData<T> {
+    type Scalar = T;
+    type Over<U: Real> = core::marker::PhantomData<U>;
+
+    fn over<U: Real>(&self, _: &mut impl FnMut(T) -> U) -> core::marker::PhantomData<U> {
+        core::marker::PhantomData
+    }
+}
+
+/// [`OfScalars`] for a struct of such fields over its last type parameter, after const parameters in
+/// brackets; `at` names the number of a node, which is not changed. Emitted for the data of every model.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! of_scalars {
+    ([$($size:ident)*] $name:ident { $($field:ident),* } $(at $node:ident)?) => {
+        impl<$(const $size: usize,)* __T: $crate::Real> $crate::OfScalars for $name<$($size,)* __T> {
+            type Scalar = __T;
+            type Over<__U: $crate::Real> = $name<$($size,)* __U>;
+            fn over<__U: $crate::Real>(
+                &self,
+                change: &mut impl FnMut(__T) -> __U,
+            ) -> $name<$($size,)* __U> {
+                $name { $($field: self.$field.over(change),)* $($node: self.$node,)? }
+            }
+        }
+    };
+}
+
 /// `N` bodies side by side: lane `i` is `body(i)`.
 ///
 /// ```

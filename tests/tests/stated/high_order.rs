@@ -261,7 +261,7 @@ fn modified_moments_for_a_model_in_no_gallery() {
                 body_momentum: BodyMomentum(mu),
             };
             let h = Quad::from_f64(4.0 / f64::from(steps));
-            let (mut state, mut work) = model.start_of_order(initial, h, order).unwrap();
+            let (mut state, mut work) = model.start_with(initial, h, order).unwrap();
             for _ in 0..steps {
                 model.step(&mut state, &mut work).unwrap();
             }

@@ -3,7 +3,7 @@
 
 use super::element::{self, Family, family};
 use super::formula::formula;
-use super::invariants::{Form, scale};
+use super::invariants::Form;
 use super::items::kept;
 use super::names::{Names, item, kebab, own};
 use super::sizes::{Generics, size};
@@ -30,9 +30,8 @@ impl FieldOf {
         let ascii = crate::expr::symbol::ascii(name);
         let (rows, cols) = super::expression::dims(s, self.shape);
         let kind = format_ident!("{}", self.kind);
-        quote! {
-            Field { name: #name, ascii: #ascii, rows: #rows, cols: #cols, kind: Kind::#kind, doc: #doc }
-        }
+        let spelt = (ascii != *name).then(|| quote!(.spelt(#ascii)));
+        quote!(Kind::#kind.field(#name, [#rows, #cols], #doc) #spelt)
     }
 }
 
@@ -121,11 +120,10 @@ fn momentum_field(d: &Derivation, i: usize, side: Side) -> FieldOf {
     }
 }
 
-/// `CARD` and the trajectory behind it.
+/// `CARD` and what stands behind it.
 pub fn card(d: &Derivation, names: &Names) -> TokenStream {
-    let (name, state, work) = (item(d, ""), item(d, "State"), item(d, "Workspace"));
+    let name = item(d, "");
     let preprocessed = super::stepper::preprocessed(d);
-    let trajectory = item(d, "Trajectory");
     let count = d.spec.configurations.len();
     let parameters: Vec<FieldOf> = d
         .spec
@@ -174,20 +172,20 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
         let method = own(d, a.quantity);
         let scalar = d.letters.symbols.get(a.quantity).shape.is_scalar();
         observed.push(if scalar {
-            quote!(let out = put(out, [self.model.#method(state)]);)
+            quote!(let out = put(out, [self.#method(state)]);)
         } else {
-            quote!(let out = put(out, rows(self.model.#method(state)));)
+            quote!(let out = put(out, rows(self.#method(state)));)
         });
     }
     let mut values = TokenStream::new();
-    let mut scales = TokenStream::new();
+    let scales = super::invariants::scales(d, names);
     let invariants: Vec<TokenStream> = d
         .invariants
         .iter()
         .map(|v| {
             let (label, text) = (&v.name, formula(d, v));
             let rows = super::invariants::rows(d, v);
-            let conserved = format_ident!("{}", if v.exact { "Exactly" } else { "Boundedly" });
+            let conserved = format_ident!("{}", if v.exact { "exact" } else { "bounded" });
             let method = format_ident!("{}", v.name);
             values.extend(match &v.kind {
                 Kind::SpatialMomentum(i) => {
@@ -197,8 +195,8 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                     // the solver iterates in the body, seen from space.
                     match d.solve.method {
                         Method::FreeMoserVeselov => quote! {
-                            let momentum = self.work.solver.body_momentum().to_space(&state.#element());
-                            let out = put(out, rows(momentum.0));
+                            let iterated = work.map(|w| w.solver.body_momentum().to_space(&state.#element()));
+                            let out = put(out, rows(iterated.unwrap_or(state.#m()).0));
                         },
                         Method::ForcedMoserVeselov
                         | Method::UnitQuaternions
@@ -223,7 +221,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                     }
                 }
                 Kind::Value | Kind::Energy | Kind::TotalMomentum(_) | Kind::Spectrum => {
-                    let value = quote!(self.model.#method(state));
+                    let value = quote!(self.#method(state));
                     match super::invariants::form(d, v) {
                         Form::Number => quote!(let out = put(out, [#value]);),
                         Form::Entries => quote!(let out = put(out, rows(#value));),
@@ -232,16 +230,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                     }
                 }
             });
-            if matches!(v.kind, Kind::Spectrum) {
-                let sizes = super::invariants::spectrum_scales(d, names);
-                scales.extend(quote!(let out = put(out, #sizes);));
-            } else {
-                let sizes = scale(d, names, v);
-                scales.extend(quote!(let out = put(out, #sizes);));
-            }
-            quote! {
-                Invariant { name: #label, formula: #text, rows: #rows, conserved: Conserved::#conserved }
-            }
+            quote!(Invariant::#conserved(#label, #text, #rows))
         })
         .collect();
     let constructor = constructor(d);
@@ -278,110 +267,71 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
     };
     let (p, i, o) = (fields(&parameters), fields(&initial), fields(&observables));
     let g = Generics::of(d);
-    let (bound, used, plain) = (g.sizes_bound(), g.sizes_used(), g.plain());
+    let (bound, plain) = (g.sizes_bound(), g.plain());
     let solvers = super::left_factor::offered(d);
-    let choose = match super::left_factor::default_solver(d).is_some() {
+    let model = match super::left_factor::default_solver(d).is_some() {
         true => quote! {
-            let model = match chosen_solver(settings, Self::CARD.solvers)? {
-                Some(method) => model.with_solver(method),
-                None => model,
-            };
+            match chosen_solver(settings, Self::CARD.solvers)? {
+                Some(method) => self.with_solver(method),
+                None => self,
+            }
         },
-        false => quote!(chosen_solver(settings, Self::CARD.solvers)?;),
+        false => quote!(chosen_solver(settings, Self::CARD.solvers).map(|_| self)?),
     };
-    let turbofish = (!used.is_empty()).then(|| quote!(:: #used));
-    let (dimensions, sized) = (dimensions(d), sized(d));
+    let dimensions = dimensions(d);
+    let (sized, sized_by) = match d.spec.dimensions.is_empty() {
+        true => (TokenStream::new(), quote!(only_size::<Self>)),
+        false => (sized(d), quote!(Self::sized)),
+    };
     let kinetic_warning = super::kinetic::kinetic_warning(d, names);
-    // Judged before the first step is tried: it may be why that is refused.
-    let [judge, told] = match kinetic_warning.is_empty() {
-        true => [quote!(let kinetic = None;), quote!()],
-        false => [
-            quote!(let kinetic = model.kinetic_warning(&state);),
-            quote!(.map_err(|e| OpenError::from(e).beside(kinetic))),
-        ],
-    };
+    let judged = (!kinetic_warning.is_empty()).then(|| {
+        quote! {
+            fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
+                self.kinetic_warning(state)
+            }
+        }
+    });
     let orders = match (preprocessed, d.reversible) {
         (true, _) => quote!(&[2, 4, 6, 8, 10]),
         (false, true) => quote!(&[2, 4, 6, 8]),
         (false, false) => quote!(&[1]),
     };
-    let (work, h, step, begin) = if preprocessed {
-        (
-            quote!(work: #work #plain),
-            quote!(self.work.h),
-            quote!(self.model.step(&mut self.state, &mut self.work)),
-            quote! {
-                let order = preprocessing_order(settings, Self::CARD.orders)?;
-                let state = model.at_node_0(initial)?;
-                #judge
-                let (state, work) = model.start_of_order(initial, settings.h, order)#told?;
-                let work = if settings.compensated { work.compensated() } else { work };
-                let plain = order == Order::Two;
-                Ok(Box::new(#trajectory #turbofish { model, state, work, before: state, plain, kinetic }))
-            },
-        )
-    } else {
-        let of_order = match d.reversible {
-            true => quote!(of_order),
-            false => quote!(plain),
-        };
-        (
-            quote!(steps: Steps<#name #plain>, h: f64),
-            quote!(self.h),
-            quote!(self.steps.step(&self.model, &mut self.state)),
-            quote! {
-                let state = model.at_node_0(initial)?;
-                #judge
-                let steps = Steps::#of_order(&model, &state, settings, Self::CARD.orders)#told?;
-                let plain = matches!(steps, Steps::Plain(_));
-                Ok(Box::new(#trajectory #turbofish { model, state, steps, h: settings.h, before: state, plain, kinetic }))
-            },
-        )
+    let of_order = match (preprocessed, d.reversible) {
+        (true, _) => quote!(modified),
+        (false, true) => quote!(of_order),
+        (false, false) => quote!(plain),
     };
+    let work = match values.to_string().contains("work") {
+        true => quote!(work),
+        false => quote!(_),
+    };
+    let arguments = quote!(parameters: &[Vec<f64>], initial: &[Vec<f64>]);
     quote! {
-        /// One trajectory of the model, its type hidden.
-        struct #trajectory #bound {
-            model: #name #plain,
-            state: #state #plain,
-            #work,
-            /// The state before the last step.
-            before: #state #plain,
-            /// Whether a step is one of the derivation, not composed and without modified moments.
-            plain: bool,
-            kinetic: Option<KineticWarning>,
-        }
-
-        impl #bound Trajectory for #trajectory #used {
-            fn node(&self) -> u64 { self.state.node() }
-            fn time(&self) -> f64 { #h * self.state.node() as f64 }
-            fn step(&mut self) -> Result<(), StepError> {
-                let before = self.state;
-                #step?;
-                self.before = before;
-                Ok(())
+        impl #bound ::clebsch::integrate::Described for #name #plain {
+            fn card() -> &'static Card { &Self::CARD }
+            fn read(#arguments) -> Result<(Self, Self::Initial), OpenError> {
+                #constructor
             }
-            fn card(&self) -> &'static Card { &#name::#plain::CARD }
-            fn kinetic_warning(&self) -> Option<KineticWarning> { self.kinetic }
-            fn residual(&self) -> Option<f64> {
-                let moved = self.before.node() != self.state.node();
-                (self.plain && moved).then(|| {
-                    Residual::largest(&self.model.residual(&self.before, &self.state, #h))
-                })
+            fn ways(self, state: &Self::State, settings: Settings) -> Result<(Self, Steps<Self>), OpenError> {
+                let model = #model;
+                let steps = Steps::#of_order(&model, state, settings, Self::CARD.orders)?;
+                Ok((model, steps))
             }
-            fn observe(&self, out: &mut [f64]) {
-                let state = &self.state;
+            #judged
+            fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
+                Residual::largest(&self.residual(before, after, h))
+            }
+            fn observe(&self, state: &Self::State, out: &mut [f64]) {
                 #(#observed)*
                 let _ = out;
             }
-            fn invariants(&self, out: &mut [f64]) {
-                let state = &self.state;
+            fn invariants(&self, state: &Self::State, #work: Option<&Self::Workspace>, out: &mut [f64]) {
                 #values
-                let _ = out;
+                let _ = (state, out);
             }
-            fn scales(&self, out: &mut [f64]) {
-                let state = &self.state;
+            fn scales(&self, state: &Self::State, out: &mut [f64]) {
                 #scales
-                let _ = out;
+                let _ = (state, out);
             }
         }
 
@@ -404,21 +354,15 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                 observables: &[#(#o),*],
                 invariants: &[#(#invariants),*],
                 discrete_energy: #discrete_energy,
-                open: Self::open,
+                open: open::<Self>,
                 solvers: #solvers,
                 dimensions: &[#(#dimensions),*],
-                sized: Self::sized,
+                sized: #sized_by,
             };
 
             #kinetic_warning
 
             #sized
-
-            fn open(parameters: &[Vec<f64>], initial: &[Vec<f64>], settings: Settings) -> Result<Box<dyn Trajectory>, OpenError> {
-                #constructor
-                #choose
-                #begin
-            }
         }
     }
 }
@@ -427,21 +371,14 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
 fn discrete_energy(d: &Derivation) -> TokenStream {
     let energy = &d.integrability.discrete_energy;
     let formula = super::items::text(d, &energy.value);
-    let conserved = format_ident!("{}", if energy.exact { "Exactly" } else { "Boundedly" });
-    quote! {
-        Invariant {
-            name: "discrete_energy",
-            formula: #formula,
-            rows: 1,
-            conserved: Conserved::#conserved,
-        }
-    }
+    let conserved = format_ident!("{}", if energy.exact { "exact" } else { "bounded" });
+    quote!(Invariant::#conserved("discrete_energy", #formula, 1))
 }
 
 /// From lists of numbers to parameters and initial data.
 fn constructor(d: &Derivation) -> TokenStream {
     let s = &d.letters.symbols;
-    let (name, data, start) = (item(d, ""), item(d, "Parameters"), item(d, "Initial"));
+    let (data, start) = (item(d, "Parameters"), item(d, "Initial"));
     let read = |id: SymbolId, source: TokenStream, index: usize| {
         let (field, label) = (own(d, id), &s.get(id).name);
         if s.get(id).shape.is_scalar() {
@@ -489,18 +426,10 @@ fn constructor(d: &Derivation) -> TokenStream {
             2 * d.spec.configurations.len() + i,
         ));
     }
-    let (np, ni) = (d.spec.parameters.len(), initial.len());
     quote! {
-        for (field, expected, found) in [
-            ("parameters", #np, parameters.len()),
-            ("initial values", #ni, initial.len()),
-        ] {
-            if expected != found {
-                return Err(OpenError::Count { field, expected, found });
-            }
-        }
-        let model = #name::new(#data { #(#parameters),* })?;
+        let model = Self::new(#data { #(#parameters),* })?;
         let initial = #start { #(#initial),* };
+        Ok((model, initial))
     }
 }
 

@@ -10,7 +10,7 @@ use super::step::{at, here};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::invariants::{Invariant, Kind};
-use crate::expr::{Letter, Shift};
+use crate::expr::{Expr, Letter, Shift};
 use crate::schedule;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -141,7 +141,7 @@ fn spectrum(d: &Derivation, names: &Names, v: &Invariant) -> TokenStream {
 /// The scales of the coefficients.
 pub fn spectrum_scales(d: &Derivation, names: &Names) -> TokenStream {
     let n = spectrum_size(d);
-    let [locals, momentum, square] = lax_parts(d, names, quote!(self.model.parameters));
+    let [locals, momentum, square] = lax_parts(d, names, quote!(self.parameters));
     quote!({
         type T = f64;
         #locals
@@ -216,35 +216,48 @@ pub fn invariants(d: &Derivation, names: &Names) -> TokenStream {
     quote!(impl #bound #name #used { #functions })
 }
 
-/// The scales of all components of an invariant, as something to iterate over.
-pub fn scale(d: &Derivation, names: &Names, v: &Invariant) -> TokenStream {
-    let rows = rows(d, v);
-    // Arrays of a length that is computed from a named size are not stable Rust.
-    let alike = |value: TokenStream| match d.spec.dimensions.is_empty() {
-        true => quote!([#value; #rows]),
-        false => quote!(::core::iter::repeat_n(#value, #rows)),
-    };
+/// The scales of all components of all invariants, written to `out` one after the other.
+pub fn scales(d: &Derivation, names: &Names) -> TokenStream {
     let s = &d.letters.symbols;
-    let Some(e) = &v.scale else {
-        return alike(quote!({
-            let (kinetic, potential) = self.model.energies(state);
-            kinetic.abs() + potential.abs()
-        }));
-    };
-    let needed = letters_of([e]);
+    let list: Vec<Expr> = d
+        .invariants
+        .iter()
+        .filter(|v| !matches!(v.kind, Kind::Spectrum))
+        .filter_map(|v| v.scale.clone())
+        .collect();
+    let needed = letters_of(&list);
     let all = with_transports(d, &needed, 0);
-    let parameters = parameter_locals(d, quote!(self.model.parameters), &all);
+    let parameters = parameter_locals(d, quote!(self.parameters), &all);
     let mut bindings = Bindings::new();
     let locals = here(d, names, &needed, &mut bindings);
     let mu = momenta(d, &needed, &mut bindings);
-    let p = schedule::program(s, std::slice::from_ref(e), "t");
+    let p = schedule::program(s, &list, "t");
     let (lets, values) = program(&p, &bindings);
-    let (value, t) = (&values[0], ty(s, e.shape()));
-    // Scales are taken on plain numbers.
-    let value =
-        quote!({ type T = f64; #parameters #locals #mu #lets let value: #t = #value; value });
-    match e.shape().is_scalar() {
-        true => alike(value),
-        false => quote!(rows(#value)),
+    let mut values = list.iter().zip(values);
+    let mut written = TokenStream::new();
+    for v in &d.invariants {
+        let rows = rows(d, v);
+        // Arrays of a length that is computed from a named size are not stable Rust.
+        let alike = |value: TokenStream| match d.spec.dimensions.is_empty() {
+            true => quote!([#value; #rows]),
+            false => quote!(::core::iter::repeat_n(#value, #rows)),
+        };
+        let sizes = match (&v.kind, &v.scale) {
+            (Kind::Spectrum, _) => spectrum_scales(d, names),
+            (_, None) => alike(quote!(sum_of_sizes(self.energies(state)))),
+            (_, Some(_)) => match values.next() {
+                Some((e, value)) if e.shape().is_scalar() => alike(value),
+                Some((_, value)) => quote!(rows(#value)),
+                None => continue,
+            },
+        };
+        written.extend(quote!(let out = put(out, #sizes);));
     }
+    // Scales are taken on plain numbers.
+    let scalar = (!list.is_empty()).then(|| {
+        quote!(
+            type T = f64;
+        )
+    });
+    quote!(#scalar #parameters #locals #mu #lets #written)
 }

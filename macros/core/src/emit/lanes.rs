@@ -1,5 +1,6 @@
 //! The model over any scalar, as data: what ensembles are gathered from and taken apart into.
-//! Takes the derivation; gives the implementations for parameters, initial data, state and model.
+//! Takes the derivation; gives the implementations for parameters, initial data, state and model, with
+//! how a trajectory begins.
 
 use super::items::kept;
 use super::names::{Names, item, own, per_configuration};
@@ -7,7 +8,7 @@ use super::sizes::Generics;
 use crate::derive::Derivation;
 use crate::derive::recognise::Method;
 use proc_macro2::{Ident, TokenStream};
-use quote::quote;
+use quote::{format_ident, quote};
 
 /// `OfScalars` for the data, `Model` for the model.
 pub fn over_any_scalar(d: &Derivation, names: &Names) -> TokenStream {
@@ -16,11 +17,12 @@ pub fn over_any_scalar(d: &Derivation, names: &Names) -> TokenStream {
     let other = names.local("U");
     let other_used = g.used_over(&other);
     let node = names.local("node");
+    let sizes = super::sizes::constants(&d.letters.symbols);
 
-    let parameters: Vec<Ident> = d.spec.parameters.iter().map(|p| own(d, *p)).collect();
-    let no_parameters = parameters
-        .is_empty()
-        .then(|| quote!(scalar: ::core::marker::PhantomData));
+    let mut parameters: Vec<Ident> = d.spec.parameters.iter().map(|p| own(d, *p)).collect();
+    if parameters.is_empty() {
+        parameters.push(format_ident!("scalar"));
+    }
     let (mut initial, mut state) = (Vec::new(), Vec::new());
     for (i, c) in d.spec.configurations.iter().enumerate() {
         let element = own(d, c.element);
@@ -33,23 +35,14 @@ pub fn over_any_scalar(d: &Derivation, names: &Names) -> TokenStream {
         initial.push(own(d, id));
         state.push(own(d, id));
     }
-    let node = quote!(#node: self.#node);
     let data = [
-        ("Parameters", parameters, no_parameters),
+        ("Parameters", parameters, None),
         ("Initial", initial, None),
-        ("State", state, Some(node)),
+        ("State", state, Some(quote!(at #node))),
     ];
     let data = data.map(|(suffix, fields, rest)| {
         let name = item(d, suffix);
-        quote! {
-            impl #bound ::clebsch::OfScalars for #name #used {
-                type Scalar = T;
-                type Over<#other: Real> = #name #other_used;
-                fn over<#other: Real>(&self, change: &mut impl FnMut(T) -> #other) -> #name #other_used {
-                    #name { #(#fields: self.#fields.over(change),)* #rest }
-                }
-            }
-        }
+        quote!(::clebsch::of_scalars! { [#(#sizes)*] #name { #(#fields),* } #rest })
     });
 
     let (name, given) = (item(d, ""), item(d, "Parameters"));
@@ -58,11 +51,26 @@ pub fn over_any_scalar(d: &Derivation, names: &Names) -> TokenStream {
         d.solve.method,
         Method::FreeMoserVeselov | Method::ForcedMoserVeselov
     ) && !super::domain::is_guarded(d);
-    let (choice, chosen, passed) = if super::stepper::preprocessed(d) {
-        (quote!(Order), quote!(order), Some(quote!(, order)))
-    } else {
-        (quote!(()), quote!(_), None)
+    let choice = super::start::Choice::of(d);
+    let chosen = match choice {
+        super::start::Choice::Nothing => quote!(_),
+        _ => quote!(choice),
     };
+    let choice = choice.ty();
+    let begin = super::start::state_of(d, names);
+    let prepared = super::start::workspace_of(d, names);
+    let asks = |tokens: &TokenStream| tokens.to_string().contains("state");
+    let from = match asks(&prepared) {
+        true => quote!(state),
+        false => quote!(_),
+    };
+    let compensated = super::stepper::preprocessed(d).then(|| {
+        quote! {
+            fn compensated(work: Self::Workspace) -> Self::Workspace {
+                work.compensated()
+            }
+        }
+    });
     quote! {
         #(#data)*
 
@@ -79,11 +87,12 @@ pub fn over_any_scalar(d: &Derivation, names: &Names) -> TokenStream {
                 &self.parameters
             }
             fn begin(&self, initial: Self::Initial) -> Result<#state #used, StartError> {
-                self.at_node_0(initial)
+                #begin
             }
-            fn prepare(&self, state: &#state #used, h: T, #chosen: Self::Choice) -> Result<Self::Workspace, StartError> {
-                self.workspace(state, h #passed)
+            fn prepared(&self, #from: &#state #used, h: T, #chosen: Self::Choice) -> Result<Self::Workspace, StartError> {
+                #prepared
             }
+            #compensated
         }
     }
 }

@@ -170,7 +170,7 @@ pub(super) fn work_init(d: &Derivation) -> TokenStream {
     let (made_of, label) = (made_of(d, turned), text(d, turned));
     quote! {
         method,
-        factor: self.factor_at(&state).map_err(|e| e.in_field(#label))?,
+        factor: self.factor_at(state).map_err(|e| e.in_field(#label))?,
         made_of: #made_of,
     }
 }

@@ -28,6 +28,7 @@ mod quaternionic;
 mod residual;
 mod residual_of_step;
 mod sizes;
+mod start;
 mod state;
 mod step;
 mod stepper;

@@ -44,7 +44,7 @@ pub fn own(d: &Derivation, id: SymbolId) -> Ident {
 }
 
 /// Types, traits and variants that emitted code calls by a plain name: no model can bear one.
-const TYPES: [&str; 59] = [
+const TYPES: [&str; 57] = [
     "AboutBody",
     "Additive",
     "BodyMomentum",
@@ -52,7 +52,6 @@ const TYPES: [&str; 59] = [
     "Box",
     "Card",
     "Coadjoint",
-    "Conserved",
     "Dimension",
     "Edge",
     "Err",
@@ -99,7 +98,6 @@ const TYPES: [&str; 59] = [
     "Stepper",
     "Steps",
     "T",
-    "Trajectory",
     "TurnedRotation",
     "UnitQuaternion",
     "Unsolved",

@@ -104,13 +104,4 @@ impl Generics {
         let list = &self.constants;
         quote!(<#(#list,)* f64>)
     }
-
-    /// As a type without a scalar takes them: `<N>`, or nothing.
-    pub fn sizes_used(&self) -> TokenStream {
-        let list = &self.constants;
-        match list.is_empty() {
-            true => TokenStream::new(),
-            false => quote!(<#(#list),*>),
-        }
-    }
 }

@@ -1,17 +1,16 @@
-//! `start` and `step`: the momentum of the edge from that of the node, the solve, the new element,
-//! the momentum of the next node.
+//! `step`: the momentum of the edge from that of the node, the solve, the new element, the momentum of
+//! the next node.
 
 use super::carried::carried;
 use super::element::{self, Family, family};
-use super::expression::{Bindings, Writer, program};
+use super::expression::{Bindings, program};
 use super::items::{self, kept, letters_of, node_locals, parameter_locals, with_transports};
-use super::names::{Names, field, item, own, per_configuration, tagged, variable};
+use super::names::{Names, item, own, per_configuration, tagged, variable};
 use super::sizes::Generics;
 use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::carry::Carry;
 use crate::derive::recognise::{Method, Riccati};
-use crate::derive::transport::Transport;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::schedule;
 use proc_macro2::TokenStream;
@@ -24,7 +23,7 @@ pub(super) fn at(symbol: crate::expr::symbol::SymbolId, shift: Shift) -> Letter 
 /// `start` and `step`.
 pub fn start_and_step(d: &Derivation, names: &Names) -> TokenStream {
     let name = item(d, "");
-    let start = start(d, names);
+    let start = super::start::entry(d);
     let factor = items::factor_of_state(d);
     let access = advected_access(d, names);
     let mut beside = TokenStream::new();
@@ -62,122 +61,6 @@ pub fn start_and_step(d: &Derivation, names: &Names) -> TokenStream {
             #access
         }
     }
-}
-
-fn start(d: &Derivation, names: &Names) -> TokenStream {
-    let s = &d.letters.symbols;
-    let state = item(d, "State");
-    let node = names.local("node");
-    let (mut checks, mut fields) = (Vec::new(), Vec::new());
-    for (i, c) in d.spec.configurations.iter().enumerate() {
-        let element = own(d, c.element);
-        let momentum = per_configuration(d, "momentum", i);
-        let given = element::momentum_field(d, i, c.side);
-        let label = given.to_string();
-        let name = &s.get(c.element).name;
-        let numbers = element::numbers(d, i, quote!(initial.#element));
-        let skew = matches!(family(c), Family::Orthogonal(_))
-            .then(|| quote!(validate::skew(#label, &initial.#given.0)?;));
-        checks.push(quote! {
-            validate::finite(#name, #numbers)?;
-            validate::finite(#label, initial.#given.0.as_slice())?;
-            #skew
-        });
-        let rests = element::rests(d, i).into_iter().flatten();
-        let value = match c.side {
-            _ if element::about_body(c) => quote!(initial.#given.carried(&initial.#element)),
-            Side::Body => quote!(initial.#given.to_space(&initial.#element)),
-            Side::Spatial => quote!(initial.#given),
-        };
-        fields.push(
-            quote!(#element: initial.#element, #momentum: #value #(, #rests: SMatrix::zeros())*),
-        );
-    }
-    // References: the inverse element acts on the value given at node 0.
-    let mut references = TokenStream::new();
-    for (a, t) in d.spec.advected.iter().zip(&d.transports) {
-        let own_name = own(d, a.quantity);
-        let label = &s.get(a.quantity).name;
-        if matches!(t, Transport::Defined(_)) {
-            continue;
-        }
-        let shape = s.get(a.quantity).shape;
-        checks.push(if shape.is_scalar() {
-            quote!(validate::finite(#label, &[initial.#own_name])?;)
-        } else if shape.is_vector() {
-            quote!(validate::finite(#label, initial.#own_name.as_slice())?;)
-        } else {
-            quote!(validate::finite_entries(#label, &initial.#own_name)?;)
-        });
-        let local = variable(s, a.quantity);
-        fields.push(field(d, a.quantity));
-        let value = match t {
-            Transport::Carried { reference, .. } => {
-                let mut bindings = Bindings::new();
-                let needed = expr::letters(reference);
-                let elements: TokenStream = d
-                    .spec
-                    .configurations
-                    .iter()
-                    .filter(|c| needed.contains(&at(c.element, Shift::HERE)))
-                    .map(|c| {
-                        let (e, local) = (own(d, c.element), variable(s, c.element));
-                        let value = element::matrix(c, quote!(initial.#e));
-                        quote!(let #local = #value;)
-                    })
-                    .collect();
-                let source = tagged(d, names, a.quantity, "start");
-                bindings.bind(at(a.quantity, Shift::HERE), source.clone());
-                let parameters = parameter_locals(d, quote!(self.parameters), &needed);
-                let e = Writer {
-                    symbols: s,
-                    bindings: &bindings,
-                }
-                .write(reference);
-                quote!({ #parameters #elements let #source = initial.#own_name; #e })
-            }
-            Transport::Defined(_) | Transport::Advanced => quote!(initial.#own_name),
-        };
-        references.extend(quote!(let #local = #value;));
-    }
-    let work_init = match d.solve.method {
-        Method::FreeMoserVeselov => {
-            let element = own(d, d.spec.configurations[0].element);
-            let momentum = per_configuration(d, "momentum", 0);
-            let references: Vec<_> = items::factor_references(d)
-                .into_iter()
-                .map(|id| own(d, id))
-                .collect();
-            let factor = match references.is_empty() {
-                true => quote!(&self.factor),
-                false => quote!(&self.factor(&state)?),
-            };
-            quote! {
-                solver: Free::start_of_order(#factor, &state.#element, &state.#momentum, h, order)?
-                    .solved_by(self.method),
-                #(#references: state.#references,)*
-            }
-        }
-        Method::ForcedMoserVeselov => {
-            let factor = (!items::factor_references(d).is_empty())
-                .then(|| quote!(factor: self.factor(&state)?,));
-            quote!(method, #factor edge: self.edge(&state, h), here: state)
-        }
-        Method::UnitQuaternions => {
-            let factor = (!items::factor_references(d).is_empty())
-                .then(|| quote!(factor: self.factor(&state)?,));
-            quote!(#factor edge: self.edge(&state, h), here: state)
-        }
-        Method::LeftFactor | Method::Davenport => super::left_factor::work_init(d),
-        Method::Newton => quote!(search: newton::Search::from_rest(),),
-        Method::Linear | Method::Blocks => super::blocks::work_init(d),
-    };
-    let state_of = quote! {
-        #(#checks)*
-        #references
-        Ok(#state { #(#fields,)* #node: 0 })
-    };
-    super::stepper::start(d, names, state_of, work_init)
 }
 
 pub(super) fn step_signature(d: &Derivation, body: TokenStream) -> TokenStream {

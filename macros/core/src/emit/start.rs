@@ -1,0 +1,234 @@
+//! How a trajectory begins: the state at node 0 from initial data, and the workspace of its steps.
+//! Takes the derivation; gives the bodies of what the runtime's protocol asks of a model, and its
+//! entry.
+
+use super::element::{self, Family, family};
+use super::expression::{Bindings, Writer};
+use super::items::{self, parameter_locals};
+use super::names::{Names, field, item, own, per_configuration, tagged, variable};
+use super::sizes::Generics;
+use super::step::at;
+use crate::check::spec::Side;
+use crate::derive::Derivation;
+use crate::derive::recognise::Method;
+use crate::derive::transport::Transport;
+use crate::expr::{self, Shift};
+use proc_macro2::TokenStream;
+use quote::quote;
+
+/// What may be chosen about the steps of a model.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Choice {
+    /// The order, by modified moments.
+    Order,
+    /// The solver, the model's own unless another is named.
+    Solver,
+    /// Nothing.
+    Nothing,
+}
+
+impl Choice {
+    /// What this model leaves open.
+    pub fn of(d: &Derivation) -> Choice {
+        if super::stepper::preprocessed(d) {
+            Choice::Order
+        } else if super::left_factor::default_solver(d).is_some() {
+            Choice::Solver
+        } else {
+            Choice::Nothing
+        }
+    }
+
+    /// Its type.
+    pub fn ty(self) -> TokenStream {
+        match self {
+            Choice::Order => quote!(Order),
+            Choice::Solver => quote!(Option<Method>),
+            Choice::Nothing => quote!(()),
+        }
+    }
+}
+
+/// `start` and `workspace`, which the runtime's protocol makes of [`state_of`] and [`workspace_of`].
+pub(super) fn entry(d: &Derivation) -> TokenStream {
+    let (initial, state) = (item(d, "Initial"), item(d, "State"));
+    let work = item(d, "Workspace");
+    let used = Generics::of(d).used();
+    let choice = Choice::of(d);
+    let (kind, open) = (choice.ty(), choice != Choice::Nothing);
+    let doc = match choice {
+        Choice::Order => " As `start`, with steps of this order: see [`Order`].",
+        Choice::Solver | Choice::Nothing => " As `start`, with the solver named.",
+    };
+    let kind = match choice {
+        Choice::Solver => quote!(impl Into<#kind>),
+        Choice::Order | Choice::Nothing => kind,
+    };
+    let chosen = match choice {
+        Choice::Solver => quote!(choice.into()),
+        Choice::Order | Choice::Nothing => quote!(choice),
+    };
+    let start_with = open.then(|| {
+        quote! {
+            #[doc = #doc]
+            ///
+            /// # Errors
+            /// As `start`; also for what this size or scalar does not have.
+            pub fn start_with(&self, initial: #initial #used, h: T, choice: #kind) -> Result<(#state #used, #work #used), StartError> {
+                ::clebsch::integrate::Model::start_with(self, initial, h, #chosen)
+            }
+        }
+    });
+    quote! {
+        /// Starts a trajectory with step `h` from data at node 0.
+        ///
+        /// # Errors
+        /// Names the value that is not admissible, or says why the first step cannot be solved and
+        /// which could.
+        pub fn start(&self, initial: #initial #used, h: T) -> Result<(#state #used, #work #used), StartError> {
+            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
+        }
+
+        #start_with
+
+        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
+        pub fn workspace(&self, state: &#state #used, h: T) -> Result<#work #used, StartError> {
+            self.prepare(state, h, Default::default())
+        }
+    }
+}
+
+/// The state at node 0, as the body of a function of the initial data.
+pub(super) fn state_of(d: &Derivation, names: &Names) -> TokenStream {
+    let s = &d.letters.symbols;
+    let state = item(d, "State");
+    let node = names.local("node");
+    let (mut checks, mut fields) = (Vec::new(), Vec::new());
+    for (i, c) in d.spec.configurations.iter().enumerate() {
+        let element = own(d, c.element);
+        let momentum = per_configuration(d, "momentum", i);
+        let given = element::momentum_field(d, i, c.side);
+        let label = given.to_string();
+        let name = &s.get(c.element).name;
+        let numbers = element::numbers(d, i, quote!(initial.#element));
+        let skew = matches!(family(c), Family::Orthogonal(_))
+            .then(|| quote!(validate::skew(#label, &initial.#given.0)?;));
+        checks.push(quote! {
+            validate::finite(#name, #numbers)?;
+            validate::finite(#label, initial.#given.0.as_slice())?;
+            #skew
+        });
+        let rests = element::rests(d, i).into_iter().flatten();
+        let value = match c.side {
+            _ if element::about_body(c) => quote!(initial.#given.carried(&initial.#element)),
+            Side::Body => quote!(initial.#given.to_space(&initial.#element)),
+            Side::Spatial => quote!(initial.#given),
+        };
+        fields.push(
+            quote!(#element: initial.#element, #momentum: #value #(, #rests: SMatrix::zeros())*),
+        );
+    }
+    // References: the inverse element acts on the value given at node 0.
+    let mut references = TokenStream::new();
+    for (a, t) in d.spec.advected.iter().zip(&d.transports) {
+        let own_name = own(d, a.quantity);
+        let label = &s.get(a.quantity).name;
+        if matches!(t, Transport::Defined(_)) {
+            continue;
+        }
+        let shape = s.get(a.quantity).shape;
+        checks.push(if shape.is_scalar() {
+            quote!(validate::finite(#label, &[initial.#own_name])?;)
+        } else if shape.is_vector() {
+            quote!(validate::finite(#label, initial.#own_name.as_slice())?;)
+        } else {
+            quote!(validate::finite_entries(#label, &initial.#own_name)?;)
+        });
+        let local = variable(s, a.quantity);
+        fields.push(field(d, a.quantity));
+        let value = match t {
+            Transport::Carried { reference, .. } => {
+                let mut bindings = Bindings::new();
+                let needed = expr::letters(reference);
+                let elements: TokenStream = d
+                    .spec
+                    .configurations
+                    .iter()
+                    .filter(|c| needed.contains(&at(c.element, Shift::HERE)))
+                    .map(|c| {
+                        let (e, local) = (own(d, c.element), variable(s, c.element));
+                        let value = element::matrix(c, quote!(initial.#e));
+                        quote!(let #local = #value;)
+                    })
+                    .collect();
+                let source = tagged(d, names, a.quantity, "start");
+                bindings.bind(at(a.quantity, Shift::HERE), source.clone());
+                let parameters = parameter_locals(d, quote!(self.parameters), &needed);
+                let e = Writer {
+                    symbols: s,
+                    bindings: &bindings,
+                }
+                .write(reference);
+                quote!({ #parameters #elements let #source = initial.#own_name; #e })
+            }
+            Transport::Defined(_) | Transport::Advanced => quote!(initial.#own_name),
+        };
+        references.extend(quote!(let #local = #value;));
+    }
+    quote! {
+        #(#checks)*
+        #references
+        Ok(#state { #(#fields,)* #node: 0 })
+    }
+}
+
+/// The workspace of steps of `h` from a state, as the body of a function of both and of the choice.
+pub(super) fn workspace_of(d: &Derivation, names: &Names) -> TokenStream {
+    let work = item(d, "Workspace");
+    let admitted = super::domain::of_step(d);
+    let defined = super::domain::of_start(d, names);
+    let fields = fields_of_workspace(d);
+    let method = (Choice::of(d) == Choice::Solver)
+        .then(|| quote!(let method = choice.unwrap_or(self.method);));
+    quote! {
+        #admitted
+        #defined
+        #method
+        Ok(#work { h, #fields })
+    }
+}
+
+fn fields_of_workspace(d: &Derivation) -> TokenStream {
+    match d.solve.method {
+        Method::FreeMoserVeselov => {
+            let element = own(d, d.spec.configurations[0].element);
+            let momentum = per_configuration(d, "momentum", 0);
+            let references: Vec<_> = items::factor_references(d)
+                .into_iter()
+                .map(|id| own(d, id))
+                .collect();
+            let factor = match references.is_empty() {
+                true => quote!(&self.factor),
+                false => quote!(&self.factor(state)?),
+            };
+            quote! {
+                solver: Free::start_of_order(#factor, &state.#element, &state.#momentum, h, choice)?
+                    .solved_by(self.method),
+                #(#references: state.#references,)*
+            }
+        }
+        Method::ForcedMoserVeselov => {
+            let factor = (!items::factor_references(d).is_empty())
+                .then(|| quote!(factor: self.factor(state)?,));
+            quote!(method, #factor edge: self.edge(state, h), here: *state)
+        }
+        Method::UnitQuaternions => {
+            let factor = (!items::factor_references(d).is_empty())
+                .then(|| quote!(factor: self.factor(state)?,));
+            quote!(#factor edge: self.edge(state, h), here: *state)
+        }
+        Method::LeftFactor | Method::Davenport => super::left_factor::work_init(d),
+        Method::Newton => quote!(search: newton::Search::from_rest(),),
+        Method::Linear | Method::Blocks => super::blocks::work_init(d),
+    }
+}

@@ -1,0 +1,150 @@
+//! One trajectory of any model, its type hidden: what lists of numbers start, and what a card names.
+//! Takes what an emitted model says of itself; gives what the command line and the tests run.
+
+use super::{Model, Steps};
+use crate::StepError;
+use crate::card::{Card, OpenError, Settings, Trajectory};
+use crate::kinetic::KineticWarning;
+
+/// A model over plain numbers as its [`Card`] describes it. Slices of numbers are row-major, fields in
+/// the order of the card.
+pub trait Described: Model<Scalar = f64> + Sized + 'static {
+    /// The description.
+    fn card() -> &'static Card;
+
+    /// The model and its initial data from the fields of the card, of which there are as many as it says.
+    ///
+    /// # Errors
+    /// Names the field that is not admissible, or has too few or too many numbers.
+    fn read(
+        parameters: &[Vec<f64>],
+        initial: &[Vec<f64>],
+    ) -> Result<(Self, Self::Initial), OpenError>;
+
+    /// What makes the steps that are asked for, and the model by whose solver.
+    ///
+    /// # Errors
+    /// For an order or a solver that is not offered, and a first step that cannot be made.
+    fn ways(
+        self,
+        state: &Self::State,
+        settings: Settings,
+    ) -> Result<(Self, Steps<Self>), OpenError>;
+
+    /// What is wrong with the kinetic energy at a state, if anything.
+    fn judged(&self, _state: &Self::State) -> Option<KineticWarning> {
+        None
+    }
+
+    /// What a plain step leaves of its equations, relative to their terms: the largest of all momenta.
+    fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64;
+
+    /// All observables.
+    fn observe(&self, state: &Self::State, out: &mut [f64]);
+
+    /// All invariants; `work` is the workspace of plain steps.
+    fn invariants(&self, state: &Self::State, work: Option<&Self::Workspace>, out: &mut [f64]);
+
+    /// Their sizes, see [`Trajectory::scales`].
+    fn scales(&self, state: &Self::State, out: &mut [f64]);
+}
+
+/// One trajectory of a model.
+struct Running<M: Described> {
+    model: M,
+    state: M::State,
+    /// The state before the last step.
+    before: M::State,
+    steps: Steps<M>,
+    h: f64,
+    kinetic: Option<KineticWarning>,
+}
+
+/// Starts a trajectory: [`Card::open`] of the model `M`.
+///
+/// # Errors
+/// [`OpenError`] for a wrong number of values, bad parameters, an order that is not offered, or a
+/// refused start.
+pub fn open<M: Described>(
+    parameters: &[Vec<f64>],
+    initial: &[Vec<f64>],
+    settings: Settings,
+) -> Result<Box<dyn Trajectory>, OpenError> {
+    let card = M::card();
+    for (field, expected, found) in [
+        ("parameters", card.parameters.len(), parameters.len()),
+        ("initial values", card.initial.len(), initial.len()),
+    ] {
+        if expected != found {
+            return Err(OpenError::Count {
+                field,
+                expected,
+                found,
+            });
+        }
+    }
+    let (model, initial) = M::read(parameters, initial)?;
+    let state = model.begin(initial)?;
+    // Judged before the first step is tried: it may be why that is refused.
+    let kinetic = model.judged(&state);
+    let (model, steps) = model
+        .ways(&state, settings)
+        .map_err(|e| e.beside(kinetic))?;
+    Ok(Box::new(Running {
+        model,
+        state,
+        before: state,
+        steps,
+        h: settings.h,
+        kinetic,
+    }))
+}
+
+/// The card of a model that has no named sizes: [`Card::sized`] of the model `M`.
+pub fn only_size<M: Described>(sizes: &[usize]) -> Option<Card> {
+    sizes.is_empty().then(|| *M::card())
+}
+
+impl<M: Described> Trajectory for Running<M> {
+    fn node(&self) -> u64 {
+        M::node(&self.state)
+    }
+
+    fn time(&self) -> f64 {
+        self.h * self.node() as f64
+    }
+
+    fn step(&mut self) -> Result<(), StepError> {
+        let before = self.state;
+        self.steps.step(&self.model, &mut self.state)?;
+        self.before = before;
+        Ok(())
+    }
+
+    fn card(&self) -> &'static Card {
+        M::card()
+    }
+
+    fn kinetic_warning(&self) -> Option<KineticWarning> {
+        self.kinetic
+    }
+
+    fn residual(&self) -> Option<f64> {
+        let moved = M::node(&self.before) != self.node();
+        (moved && self.steps.are_plain())
+            .then(|| self.model.left_over(&self.before, &self.state, self.h))
+    }
+
+    fn observe(&self, out: &mut [f64]) {
+        self.model.observe(&self.state, out);
+    }
+
+    fn invariants(&self, out: &mut [f64]) {
+        self.model
+            .invariants(&self.state, self.steps.workspace(), out);
+    }
+
+    fn scales(&self, out: &mut [f64]) {
+        self.model.scales(&self.state, out);
+    }
+}
