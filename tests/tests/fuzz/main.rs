@@ -13,7 +13,7 @@ use std::sync::{Mutex, MutexGuard};
 
 /// Inputs of each kind; a hundred thousand by `FUZZ_INPUTS=100000`.
 fn inputs() -> u64 {
-    asked_for("FUZZ_INPUTS", 20_000)
+    asked_for("FUZZ_INPUTS", 6_000)
 }
 
 /// Threads that probe; the machines this runs on have two cores.

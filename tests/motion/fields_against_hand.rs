@@ -1,5 +1,5 @@
 //! Generated steppers of fields, of ellipsoids on GL(n) and of four groups together against hand-written ones: one step
-//! from two thousand random states each. Takes nothing but seeds; every datum changed by a millionth is noticed, shown too.
+//! from five hundred random states each. Takes nothing but seeds; every datum changed by a millionth is noticed, shown too.
 //! What is known of the motion in closed form, the turn of a charge, is looked at as well.
 
 use super::groups_against_hand::{System, agree, generated, rigid, stretched};
@@ -408,7 +408,7 @@ fn off_a_turn(start: &InFields, angle: f64) -> f64 {
 fn kinetic_momenta_of_a_charge_turn_by_twice_the_angle_of_boris() {
     let mut source = Source::seeded(44);
     let (mut exact, mut continuous) = (0.0_f64, 0.0_f64);
-    for _ in 0..2_000 {
+    for _ in 0..500 {
         let mut start = InFields::draw(&mut source);
         start.charge.electric = [0.0; 3];
         // Far from a turn of half a revolution.

@@ -7,7 +7,7 @@
 #![allow(deprecated)]
 
 mod allocation;
-#[path = "../common/allocations.rs"]
+#[path = "../tests/common/allocations.rs"]
 mod allocations;
 mod cayley_klein_symmetric;
 mod coupled_solve;

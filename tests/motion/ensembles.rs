@@ -227,7 +227,7 @@ fn explicit_steps_side_by_side_are_those_alone_bit_for_bit() {
 #[test]
 fn quartics_side_by_side_are_those_alone_bit_for_bit() {
     let slow = heavy_tops(BODIES);
-    assert_eq!(gaps::<HeavyTop>(&slow, (), 1000), 0.0);
+    assert_eq!(gaps::<HeavyTop>(&slow, None, 1000), 0.0);
     // Up to nearly the largest momentum the step can take, all speeds side by side: the root is
     // then found by more than one iteration in some lanes, and slowly in others.
     let mut fast = slow;
@@ -235,7 +235,7 @@ fn quartics_side_by_side_are_those_alone_bit_for_bit() {
         let length = 10f64.powf(i as f64 / 15.0 - 0.1);
         initial.body_momentum.0 = initial.body_momentum.0.normalize() * length;
     }
-    assert_eq!(gaps::<HeavyTop>(&fast, (), 1000), 0.0);
+    assert_eq!(gaps::<HeavyTop>(&fast, None, 1000), 0.0);
 }
 
 #[test]
@@ -319,7 +319,7 @@ fn every_group_is_gathered_and_scattered() {
     for (name, gap) in [
         ("SU(2)", gaps::<CayleyKlein>(&quaternions, (), 100)),
         ("SE(3)", gaps::<KirchhoffBody>(&motions, (), 100)),
-        ("SO(4)", gaps::<BodyN<4>>(&matrices, (), 100)),
+        ("SO(4)", gaps::<BodyN<4>>(&matrices, None, 100)),
     ] {
         assert_eq!(gap, 0.0, "{name}");
     }
@@ -383,15 +383,15 @@ fn threads_tasks_and_instructions_do_not_matter() {
         assert_eq!(states(&pieces), wanted);
     }
     check::<FreeBody>(&free_bodies(50), Order::Ten);
-    check::<HeavyTop>(&heavy_tops(50), ());
+    check::<HeavyTop>(&heavy_tops(50), None);
     check::<HingedTop>(&hinged_tops(50), ());
 }
 
 #[test]
 fn bodies_can_be_taken_out_and_go_on() {
     let bodies = heavy_tops(BODIES);
-    let whole = together::<HeavyTop, 8>(&bodies, (), 100);
-    let mut first = ensemble::<HeavyTop, 8>(&bodies, ());
+    let whole = together::<HeavyTop, 8>(&bodies, None, 100);
+    let mut first = ensemble::<HeavyTop, 8>(&bodies, None);
     first.run(60).expect("solvable");
     assert_eq!((first.len(), first.is_empty()), (BODIES, false));
     assert!(first.body(BODIES).is_none());
@@ -402,7 +402,7 @@ fn bodies_can_be_taken_out_and_go_on() {
     model
         .step(&mut taken[3].1, &mut workspace)
         .expect("solvable");
-    let mut second = Ensemble::<HeavyTop, 4>::resume(taken, H, ()).expect("solvable");
+    let mut second = Ensemble::<HeavyTop, 4>::resume(taken, H, None).expect("solvable");
     second.run(40).expect("solvable");
     let nodes: Vec<u64> = second.bodies().map(|(_, s)| s.node()).collect();
     assert!((0..BODIES).all(|i| nodes[i] == if i == 3 { 101 } else { 100 }));
