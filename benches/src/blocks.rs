@@ -3,8 +3,8 @@
 
 use rustix::time::{ClockId, clock_gettime};
 
-/// Groups of four blocks; a median of 202 blocks each.
-pub const QUADRUPLES: usize = 101;
+/// Groups of four blocks in each process; a median of 42 blocks each.
+pub const QUADRUPLES: usize = 21;
 
 /// Steps of one block: about a millisecond, far above the resolution of the clock and below a time slice.
 pub const STEPS: u32 = 32_000;

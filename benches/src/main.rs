@@ -1,6 +1,6 @@
 //! Time per step of generated steppers beside hand-written ones, called as a user calls them: one step at a time.
-//! Takes a part of the names of the cases wanted, or nothing for all; prints a table.
-//! `cargo run --release --manifest-path benches/Cargo.toml`, about a minute; `-- coupled` behind it for some.
+//! Takes a part of the names of the cases wanted, or nothing for all; prints a table of medians over eight processes, with the worst.
+//! `cargo run --release --manifest-path benches/Cargo.toml`, about two minutes; `-- coupled` behind it for some.
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables)]
@@ -10,6 +10,7 @@ mod elastic;
 mod groups;
 mod loops;
 mod points;
+mod processes;
 mod steppers;
 mod systems;
 
@@ -35,20 +36,22 @@ use systems::{
 };
 
 fn main() {
-    println!("{}; {}", machine(), env!("RUSTC_VERSION"));
-    println!(
-        "{} blocks of {} steps each way, in the order generated, hand, hand, generated; ns of computing per step",
-        2 * blocks::QUADRUPLES,
-        blocks::STEPS
-    );
-    println!();
-    println!(
-        "{:<34} {:>9} {:>9} {:>7}   quartiles of the ratio",
-        "case", "generated", "hand", "ratio"
-    );
-    let table = Table {
-        only: std::env::args().nth(1),
+    let only = std::env::args().nth(1);
+    let Some(number) = processes::number() else {
+        println!("{}; {}", machine(), env!("RUSTC_VERSION"));
+        println!(
+            "{} processes, stack and heap shifted; in each {} blocks of {} steps each way, in the order generated, hand, \
+             hand, generated; ns of computing per step, medians; ratios of processes: median, best, worst",
+            processes::SHIFTS.len(),
+            2 * blocks::QUADRUPLES,
+            blocks::STEPS
+        );
+        println!();
+        processes::gather(only.as_deref());
+        return;
     };
+    processes::shift_heap(number);
+    let table = Table { only };
     let bodies: [(&str, Start); 3] = [
         ("free body, I = (2, 2, 1)", symmetric_body()),
         ("free body, I = (3.5, 2.5, 2)", asymmetric_body()),
@@ -141,13 +144,7 @@ impl Table {
             return;
         }
         let times = compare(generated, hand);
-        let [low, high] = times.quartiles;
-        println!(
-            "{name:<34} {:>9.2} {:>9.2} {:>7.3}   {low:.3} to {high:.3}",
-            times.generated,
-            times.hand,
-            times.generated / times.hand
-        );
+        processes::hand_on(name, times.generated, times.hand);
     }
 }
 

@@ -4,7 +4,7 @@
 use clebsch::solvers::Method;
 use clebsch::solvers::moser_veselov::Edge;
 use clebsch::{Order, Poinsot, Rotation};
-use clebsch_benches::blocks::{Comparison, QUADRUPLES, STEPS, compare_blocks};
+use clebsch_benches::blocks::{Comparison, STEPS, compare_blocks};
 use clebsch_benches::body::{Generated, body_of, start_of};
 use clebsch_comparisons::body::exact::Exact;
 use clebsch_comparisons::body::implicit::{FixedPoint, Newton};
@@ -16,6 +16,9 @@ use clebsch_comparisons::handwritten::attitude::Quaternion;
 use clebsch_comparisons::handwritten::free_body::FreeBody as Written;
 use clebsch_comparisons::runge_kutta::{Accuracy, Method54, Method85, RungeKutta, Scheme};
 use std::hint::black_box;
+
+/// Groups of four blocks: one process measures all.
+const QUADRUPLES: usize = 101;
 
 /// The bodies of thesis figures 2.5, 2.6 and 2.17.
 const BODIES: [(&str, [f64; 3], [f64; 3]); 3] = [
