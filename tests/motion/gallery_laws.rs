@@ -7,6 +7,8 @@ use clebsch_models::Case;
 use clebsch_oracle::physics::measure::worse;
 use clebsch_oracle::physics::order::orders;
 use clebsch_oracle::physics::trend::trend;
+use rand_xoshiro::Xoshiro256StarStar;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 const MILLION: u64 = 1_000_000;
 
@@ -54,10 +56,14 @@ struct Component {
     series: Vec<f64>,
 }
 
-/// In long runs invariants are looked at after so many steps: looking takes longer than stepping.
-const EVERY: u64 = 8;
+/// Whether a long run is looked at after this step: after one of eight on average, as looking takes longer than
+/// stepping. Equal gaps would beat against the periods of a regular motion and show a drift that is none, so the steps
+/// are drawn at random, the same ones in every run.
+fn is_looked_at(step: u64) -> bool {
+    Xoshiro256StarStar::seed_from_u64(step).next_u64() >> 61 == 0
+}
 
-/// Runs a case and looks at every invariant at every step, in long runs at every eighth.
+/// Runs a case and looks at every invariant at every step, in long runs at one of eight.
 fn components(card: &Card, case: &Case, h: f64, steps: u64, fault: Fault) -> Vec<Component> {
     let mut motion = open(card, case, h);
     let count = card.invariant_count();
@@ -87,7 +93,7 @@ fn components(card: &Card, case: &Case, h: f64, steps: u64, fault: Fault) -> Vec
         motion
             .step()
             .unwrap_or_else(|why| panic!("{} {}: {why}", card.kebab, case.name));
-        if steps >= MILLION / 10 && step % EVERY != 0 {
+        if steps >= MILLION / 10 && !is_looked_at(step) {
             continue;
         }
         motion.invariants(&mut here);

@@ -2,7 +2,7 @@
 //! generated ones through their cards. Takes nothing but seeds; every datum changed by a millionth is noticed, shown too.
 
 use clebsch::card::{Card, Field, Settings};
-use clebsch_models::find;
+use clebsch_models::{Entry, gallery};
 use clebsch_oracle::handwritten::attitude::{Quaternion, Vector, apply};
 use clebsch_oracle::handwritten::cayley_klein::CayleyKlein;
 use clebsch_oracle::handwritten::kirchhoff_body::{KirchhoffBody, Momentum, Submerged};
@@ -10,6 +10,7 @@ use clebsch_oracle::oracle::points::Source;
 use clebsch_oracle::oracle::points::asked_for;
 use clebsch_oracle::physics::measure::worse;
 use std::array::from_fn;
+use std::sync::LazyLock;
 
 /// Some thirty roundings of numbers of order one, for data that are not magnified.
 const ONE_STEP: f64 = 1e-14;
@@ -44,7 +45,10 @@ pub(super) fn generated(
     initial: &[Vec<f64>],
     h: f64,
 ) -> Option<Vec<f64>> {
-    let entry = find(model).expect("a model of the gallery");
+    // Once: reading the cases of all models takes a thousand times longer than a step.
+    static GALLERY: LazyLock<Vec<Entry>> = LazyLock::new(gallery);
+    let entry = GALLERY.iter().find(|entry| entry.card.kebab == model);
+    let entry = entry.expect("a model of the gallery");
     let sizes = |card: &Card| -> Vec<usize> { card.parameters.iter().map(Field::count).collect() };
     let given: Vec<usize> = parameters.iter().map(Vec::len).collect();
     let of_size = entry.cards().into_iter().find(|card| sizes(card) == given);
