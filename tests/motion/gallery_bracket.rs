@@ -8,6 +8,7 @@ mod ellipsoids;
 mod mixed_four;
 mod points;
 
+use super::seeded::{SEEDS, Seeded};
 use clebsch::nalgebra::{DMatrix, Matrix3, SMatrix, SVector, Vector3};
 use clebsch::{
     BodyImpulse, BodyMomentum, BodyMomentumMatrix, Dual, Group, Orthogonal, RigidMotion, Rotation,
@@ -31,7 +32,7 @@ const POINTS: u64 = 10;
 /// How much longer the step is for each unit of the first momentum component, where that is asked for.
 const WARP: f64 = 0.1;
 
-/// A quantity at a node: its value, and its change along each direction that was seeded.
+/// A quantity at a node: its value, and its change along each direction that could be seeded.
 struct Quantity {
     rows: usize,
     cols: usize,
@@ -39,15 +40,13 @@ struct Quantity {
     change: Vec<Vec<f64>>,
 }
 
-fn quantity<const N: usize, const R: usize, const C: usize>(
-    m: &SMatrix<Dual<N>, R, C>,
-) -> Quantity {
-    let entries: Vec<Dual<N>> = (0..R * C).map(|k| m[(k / C, k % C)]).collect();
+fn quantity<const R: usize, const C: usize>(m: &SMatrix<Seeded, R, C>) -> Quantity {
+    let entries: Vec<Seeded> = (0..R * C).map(|k| m[(k / C, k % C)]).collect();
     Quantity {
         rows: R,
         cols: C,
         value: entries.iter().map(|x| x.real).collect(),
-        change: (0..N)
+        change: (0..SEEDS)
             .map(|seed| entries.iter().map(|x| x.dual[seed]).collect())
             .collect(),
     }
@@ -62,34 +61,34 @@ type Step = (Node, Node);
 /// One step of a case from a random point, with a step length that depends on the state by this share.
 type Start = fn(&Case, &mut Draws, f64) -> Step;
 
-fn number<const N: usize>(values: &[f64]) -> Dual<N> {
+fn number(values: &[f64]) -> Seeded {
     Dual::constant(values[0])
 }
 
-fn column<const N: usize, const R: usize>(values: &[f64]) -> SVector<Dual<N>, R> {
+fn column<const R: usize>(values: &[f64]) -> SVector<Seeded, R> {
     SVector::from_fn(|i, _| Dual::constant(values[i]))
 }
 
-fn matrix<const N: usize>(values: &[f64]) -> Matrix3<Dual<N>> {
+fn matrix(values: &[f64]) -> Matrix3<Seeded> {
     Matrix3::from_fn(|r, c| Dual::constant(values[3 * r + c]))
 }
 
 /// Independent changes of all components, from seed `first` on.
-fn seeded<const N: usize, const R: usize>(value: [f64; R], first: usize) -> SVector<Dual<N>, R> {
+fn seeded<const R: usize>(value: [f64; R], first: usize) -> SVector<Seeded, R> {
     SVector::from_fn(|i, _| Dual::variable(value[i], first + i))
 }
 
-fn attitude<const N: usize>(draws: &mut Draws) -> Rotation<Dual<N>> {
+fn attitude(draws: &mut Draws) -> Rotation<Seeded> {
     Rotation::from_quaternion(draws.attitude().0.map(Dual::constant)).expect("a unit quaternion")
 }
 
-fn quaternion<const N: usize>(draws: &mut Draws) -> UnitQuaternion<Dual<N>> {
+fn quaternion(draws: &mut Draws) -> UnitQuaternion<Seeded> {
     let q = draws.attitude().0.map(Dual::constant);
     UnitQuaternion::from_components(q).expect("a unit quaternion")
 }
 
 /// A tensor of the case as this attitude shows it, with independent changes from seed `first` on.
-fn tensor<const N: usize>(values: &[f64], r: &Rotation<Dual<N>>, first: usize) -> Matrix3<Dual<N>> {
+fn tensor(values: &[f64], r: &Rotation<Seeded>, first: usize) -> Matrix3<Seeded> {
     let r = r.matrix().map(|x| x.real);
     let turned = r * Matrix3::from_row_slice(values) * r.transpose();
     let mut out = Matrix3::repeat(Dual::constant(0.0));
@@ -102,12 +101,12 @@ fn tensor<const N: usize>(values: &[f64], r: &Rotation<Dual<N>>, first: usize) -
 }
 
 /// A vector of length 0.9 with independent changes.
-fn vector<const N: usize>(draws: &mut Draws, first: usize) -> Vector3<Dual<N>> {
+fn vector(draws: &mut Draws, first: usize) -> Vector3<Seeded> {
     seeded(draws.direction().map(|x| 0.9 * x), first)
 }
 
 /// The step length, longer by the share `warp` of the first momentum component.
-fn length<const N: usize>(case: &Case, warp: f64, momentum: Dual<N>) -> Dual<N> {
+fn length(case: &Case, warp: f64, momentum: Seeded) -> Seeded {
     Dual::constant(case.h) * (Dual::constant(1.0) + Dual::constant(warp) * momentum)
 }
 
@@ -128,7 +127,7 @@ macro_rules! stepped {
 
 fn free_body(case: &Case, draws: &mut Draws, warp: f64) -> Step {
     use clebsch_models::free_body::*;
-    let mu = vector::<3>(draws, 0);
+    let mu = vector(draws, 0);
     stepped!(
         FreeBody,
         FreeBodyParameters {
@@ -146,11 +145,11 @@ fn free_body(case: &Case, draws: &mut Draws, warp: f64) -> Step {
 
 fn free_body_spatial(case: &Case, draws: &mut Draws, warp: f64) -> Step {
     use clebsch_models::free_body_spatial::*;
-    let (m, r) = (vector::<9>(draws, 0), attitude(draws));
+    let (m, r) = (vector(draws, 0), attitude(draws));
     stepped!(
         FreeBodySpatial,
         FreeBodySpatialParameters {
-            scalar: std::marker::PhantomData::<Dual<9>>
+            scalar: std::marker::PhantomData::<Seeded>
         },
         FreeBodySpatialInitial {
             Λ: r,
@@ -165,7 +164,7 @@ fn free_body_spatial(case: &Case, draws: &mut Draws, warp: f64) -> Step {
 
 fn heavy_top(case: &Case, draws: &mut Draws, warp: f64) -> Step {
     use clebsch_models::heavy_top::*;
-    let (mu, gamma, r) = (vector::<6>(draws, 0), vector(draws, 3), attitude(draws));
+    let (mu, gamma, r) = (vector(draws, 0), vector(draws, 3), attitude(draws));
     // The vertical is chosen so that the body sees independent changes of it.
     stepped!(
         HeavyTop,
@@ -186,7 +185,7 @@ fn heavy_top(case: &Case, draws: &mut Draws, warp: f64) -> Step {
 
 fn heavy_top_spatial(case: &Case, draws: &mut Draws, warp: f64) -> Step {
     use clebsch_models::heavy_top_spatial::*;
-    let (m, r) = (vector::<12>(draws, 0), attitude(draws));
+    let (m, r) = (vector(draws, 0), attitude(draws));
     stepped!(
         HeavyTopSpatial,
         HeavyTopSpatialParameters {
@@ -207,7 +206,7 @@ fn heavy_top_spatial(case: &Case, draws: &mut Draws, warp: f64) -> Step {
 
 fn body_in_quadratic_field(case: &Case, draws: &mut Draws, warp: f64) -> Step {
     use clebsch_models::body_in_quadratic_field::*;
-    let mu = vector::<6>(draws, 0);
+    let mu = vector(draws, 0);
     stepped!(
         BodyInQuadraticField,
         BodyInQuadraticFieldParameters {
@@ -227,7 +226,7 @@ fn body_in_quadratic_field(case: &Case, draws: &mut Draws, warp: f64) -> Step {
 
 fn body_in_two_fields(case: &Case, draws: &mut Draws, warp: f64) -> Step {
     use clebsch_models::body_in_two_fields::*;
-    let (mu, r) = (vector::<9>(draws, 0), attitude(draws));
+    let (mu, r) = (vector(draws, 0), attitude(draws));
     let (vertical, field) = (vector(draws, 3), vector(draws, 6));
     stepped!(
         BodyInTwoFields,
@@ -250,7 +249,7 @@ fn body_in_two_fields(case: &Case, draws: &mut Draws, warp: f64) -> Step {
 
 fn coupled_bodies(case: &Case, draws: &mut Draws, warp: f64) -> Step {
     use clebsch_models::coupled_bodies::*;
-    let (first, second) = (vector::<9>(draws, 0), vector(draws, 3));
+    let (first, second) = (vector(draws, 0), vector(draws, 3));
     let turn = Rotation::exp(&seeded([0.0; 3], 6));
     stepped!(
         CoupledBodies,
@@ -264,7 +263,7 @@ fn coupled_bodies(case: &Case, draws: &mut Draws, warp: f64) -> Step {
         CoupledBodiesInitial {
             Λ1: attitude(draws),
             body_momentum_Λ1: BodyMomentum(first),
-            Λ2: attitude::<9>(draws) * turn,
+            Λ2: attitude(draws) * turn,
             body_momentum_Λ2: BodyMomentum(second),
         },
         length(case, warp, first[0]),
@@ -275,7 +274,7 @@ fn coupled_bodies(case: &Case, draws: &mut Draws, warp: f64) -> Step {
 
 fn cayley_klein(case: &Case, draws: &mut Draws, warp: f64) -> Step {
     use clebsch_models::cayley_klein::*;
-    let mu = vector::<3>(draws, 0);
+    let mu = vector(draws, 0);
     stepped!(
         CayleyKlein,
         CayleyKleinParameters {
@@ -294,7 +293,7 @@ fn cayley_klein(case: &Case, draws: &mut Draws, warp: f64) -> Step {
 
 fn cayley_klein_spatial(case: &Case, draws: &mut Draws, warp: f64) -> Step {
     use clebsch_models::cayley_klein_spatial::*;
-    let (m, turn) = (vector::<9>(draws, 0), quaternion(draws));
+    let (m, turn) = (vector(draws, 0), quaternion(draws));
     stepped!(
         CayleyKleinSpatial,
         CayleyKleinSpatialParameters {
@@ -314,14 +313,14 @@ fn cayley_klein_spatial(case: &Case, draws: &mut Draws, warp: f64) -> Step {
 fn kirchhoff_body(case: &Case, draws: &mut Draws, warp: f64) -> Step {
     use clebsch_models::kirchhoff_body::*;
     let ([a, b, c], [d, e, f]) = (draws.direction(), draws.direction());
-    let mu = seeded::<10, 6>([a, b, c, d, e, f].map(|x| 0.9 * x), 0);
+    let mu = seeded([a, b, c, d, e, f].map(|x| 0.9 * x), 0);
     let g = RigidMotion {
         rotation: attitude(draws),
         translation: column(&draws.direction()),
     };
     let [x, y, z] = draws.direction();
     // The plane is chosen so that the body sees independent changes of it: Z = G^-T P.
-    let seen = seeded::<10, 4>([x, y, z, 0.3], 6);
+    let seen = seeded([x, y, z, 0.3], 6);
     stepped!(
         KirchhoffBody,
         KirchhoffBodyParameters {
@@ -341,30 +340,24 @@ fn kirchhoff_body(case: &Case, draws: &mut Draws, warp: f64) -> Step {
     )
 }
 
-/// `SEEDS` is the dimension of SO(N).
-fn body_of_size<const N: usize, const SEEDS: usize>(
-    case: &Case,
-    draws: &mut Draws,
-    warp: f64,
-) -> Step {
+fn body_of_size<const N: usize>(case: &Case, draws: &mut Draws, warp: f64) -> Step {
     use clebsch_models::body_n::*;
     let planes = skew_entries(N);
-    assert_eq!(planes.len(), SEEDS);
     // Momenta in any direction; the largest of the cases is solvable in its own direction up to 0.95
     // of the bound, in another one less.
     let largest = case.initial[1]
         .iter()
         .fold(0.0_f64, |m, x| worse(m, x.abs()));
     let size = 0.4 * largest;
-    let mut mu = SMatrix::<Dual<SEEDS>, N, N>::repeat(Dual::constant(0.0));
+    let mut mu = SMatrix::<Seeded, N, N>::repeat(Dual::constant(0.0));
     for (k, (r, c)) in planes.iter().enumerate() {
         mu[(*r, *c)] = Dual::variable(draws.uniform(-size, size), k);
         mu[(*c, *r)] = -mu[(*r, *c)];
     }
-    let turn: Vec<Dual<SEEDS>> = (0..SEEDS)
+    let turn: Vec<Seeded> = (0..planes.len())
         .map(|_| Dual::constant(draws.uniform(-1.0, 1.0)))
         .collect();
-    let model = BodyN::<N, Dual<SEEDS>>::new(BodyNParameters {
+    let model = BodyN::<N, Seeded>::new(BodyNParameters {
         C: SMatrix::from_fn(|r, c| Dual::constant(case.parameters[0][N * r + c])),
     })
     .expect("parameters of a case");
@@ -375,8 +368,8 @@ fn body_of_size<const N: usize, const SEEDS: usize>(
     let h = length(case, warp / size, mu[planes[0]]);
     let (mut state, mut workspace) = model.start(initial, h).expect("solvable");
     // The bracket of three dimensions has a vector for its momentum.
-    let seen = |m: &SMatrix<Dual<SEEDS>, N, N>| match N {
-        3 => quantity(&SVector::<Dual<SEEDS>, 3>::from_fn(|i, _| m[planes[i]])),
+    let seen = |m: &SMatrix<Seeded, N, N>| match N {
+        3 => quantity(&SVector::<Seeded, 3>::from_fn(|i, _| m[planes[i]])),
         _ => quantity(m),
     };
     let before = vec![seen(&state.body_momentum().0)];
@@ -386,9 +379,9 @@ fn body_of_size<const N: usize, const SEEDS: usize>(
 
 fn body_n(case: &Case, draws: &mut Draws, warp: f64) -> Step {
     match case.parameters[0].len() {
-        9 => body_of_size::<3, 3>(case, draws, warp),
-        16 => body_of_size::<4, 6>(case, draws, warp),
-        25 => body_of_size::<5, 10>(case, draws, warp),
+        9 => body_of_size::<3>(case, draws, warp),
+        16 => body_of_size::<4>(case, draws, warp),
+        25 => body_of_size::<5>(case, draws, warp),
         entries => panic!("no start for {entries} entries"),
     }
 }
@@ -447,8 +440,13 @@ fn letters(d: &Derivation) -> Vec<(String, Structure)> {
     named.collect()
 }
 
-/// The changes of a node in the coordinates of the bracket: a row for each, a column for each seed.
+/// The changes of a node in the coordinates of the bracket: a row for each, a column for each seed. There are as many
+/// seeds as coordinates: nothing changes along any other.
 fn changes(letters: &[(String, Structure)], node: &Node) -> DMatrix<f64> {
+    let sizes = letters.iter().zip(node);
+    let seeds = sizes
+        .map(|((_, structure), q)| coordinates(*structure, q.rows, q.cols).len())
+        .sum();
     let mut rows: Vec<Vec<f64>> = Vec::new();
     for ((_, structure), q) in letters.iter().zip(node) {
         let seen = |change: &Vec<f64>| -> DMatrix<f64> {
@@ -462,7 +460,10 @@ fn changes(letters: &[(String, Structure)], node: &Node) -> DMatrix<f64> {
                 _ => change,
             }
         };
-        let seen: Vec<_> = q.change.iter().map(seen).collect();
+        let (own, others) = q.change.split_at(seeds);
+        let unseeded = others.iter().flatten().all(|x| *x == 0.0);
+        assert!(unseeded, "more seeds than coordinates");
+        let seen: Vec<_> = own.iter().map(seen).collect();
         for (i, j) in coordinates(*structure, q.rows, q.cols) {
             rows.push(seen.iter().map(|m| m[(i, j)]).collect());
         }

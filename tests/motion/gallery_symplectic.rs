@@ -6,6 +6,7 @@ mod ellipsoids;
 mod mixed_four;
 mod points;
 
+use super::seeded::Seeded;
 use clebsch::nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use clebsch::{
     BodyImpulse, BodyMomentum, BodyMomentumMatrix, Dual, Group, Orthogonal, Real, RigidMotion,
@@ -25,30 +26,26 @@ const TOLERANCE: f64 = 1e-10;
 /// Random phases of each case.
 const PHASES: u64 = 20;
 
-/// Numbers with derivatives with respect to (xi, mu) of one body, or of two.
-type One = Dual<6>;
-type Two = Dual<12>;
-
 /// Attitude and body momentum with their independent changes: Lambda exp(hat(xi)), mu + delta mu.
-struct Phase<const N: usize> {
-    attitude: Rotation<Dual<N>>,
-    momentum: Vector3<Dual<N>>,
+struct Phase {
+    attitude: Rotation<Seeded>,
+    momentum: Vector3<Seeded>,
 }
 
-fn number<const N: usize>(values: &[f64]) -> Dual<N> {
+fn number(values: &[f64]) -> Seeded {
     Dual::constant(values[0])
 }
 
-fn column<const N: usize>(values: &[f64]) -> Vector3<Dual<N>> {
+fn column(values: &[f64]) -> Vector3<Seeded> {
     Vector3::from_fn(|i, _| Dual::constant(values[i]))
 }
 
-fn matrix<const N: usize>(values: &[f64]) -> Matrix3<Dual<N>> {
+fn matrix(values: &[f64]) -> Matrix3<Seeded> {
     Matrix3::from_fn(|r, c| Dual::constant(values[3 * r + c]))
 }
 
 /// A random phase of body `block`: any attitude, a momentum of order one.
-fn phase<const N: usize>(draws: &mut Draws, block: usize) -> Phase<N> {
+fn phase(draws: &mut Draws, block: usize) -> Phase {
     let q = draws.attitude().0.map(Dual::constant);
     let attitude = Rotation::from_quaternion(q).expect("a unit quaternion");
     let xi = Vector3::from_fn(|i, _| Dual::variable(0.0, 6 * block + i));
@@ -59,58 +56,57 @@ fn phase<const N: usize>(draws: &mut Draws, block: usize) -> Phase<N> {
     }
 }
 
-impl<const N: usize> Phase<N> {
+impl Phase {
     /// A vector of the body in space.
-    fn to_space(&self, v: &Vector3<Dual<N>>) -> Vector3<Dual<N>> {
+    fn to_space(&self, v: &Vector3<Seeded>) -> Vector3<Seeded> {
         self.attitude.rotate(v)
     }
 
     /// A vector of space in the body.
-    fn to_body(&self, v: &Vector3<Dual<N>>) -> Vector3<Dual<N>> {
+    fn to_body(&self, v: &Vector3<Seeded>) -> Vector3<Seeded> {
         self.attitude.inverse_rotate(v)
     }
 
     /// R J R^T, symmetric to the last bit.
-    fn carried(&self, j: &Matrix3<Dual<N>>) -> Matrix3<Dual<N>> {
+    fn carried(&self, j: &Matrix3<Seeded>) -> Matrix3<Seeded> {
         let r = self.attitude.matrix();
         let seen = r * j * r.transpose();
         (seen + seen.transpose()) * Dual::constant(0.5)
     }
 
     /// One of the two quaternions of the attitude: momenta on SU(2) are those of the rotations they cover.
-    fn quaternion(&self) -> UnitQuaternion<Dual<N>> {
+    fn quaternion(&self) -> UnitQuaternion<Seeded> {
         UnitQuaternion::from_components(self.attitude.quaternion()).expect("a unit quaternion")
     }
 
-    fn space_momentum(&self) -> SpatialMomentum<Dual<N>> {
+    fn space_momentum(&self) -> SpatialMomentum<Seeded> {
         SpatialMomentum(self.to_space(&self.momentum))
     }
 
-    fn body_momentum(&self) -> BodyMomentum<Dual<N>> {
+    fn body_momentum(&self) -> BodyMomentum<Seeded> {
         BodyMomentum(self.momentum)
     }
 }
 
-fn values<const N: usize>(v: &Vector3<Dual<N>>) -> Vector {
+fn values(v: &Vector3<Seeded>) -> Vector {
     [v[0].real, v[1].real, v[2].real]
 }
 
 /// The step length, longer by the share `warp` of the first momentum component.
-fn step<const N: usize>(h: f64, warp: f64, phase: &Phase<N>) -> Dual<N> {
+fn step(h: f64, warp: f64, phase: &Phase) -> Seeded {
     let one = Dual::constant(1.0);
     Dual::constant(h) * (one + Dual::constant(warp) * phase.momentum[0])
 }
 
 /// Defect of a map between phases, over the size of the form, which holds momenta beside ones.
-fn defect<const N: usize>(
-    before: &[&Phase<N>],
-    after: &[(Matrix3<Dual<N>>, Vector3<Dual<N>>)],
-) -> f64 {
+fn defect(before: &[&Phase], after: &[(Matrix3<Seeded>, Vector3<Seeded>)]) -> f64 {
+    // Three turns and three momenta of each body.
+    let seeds = 6 * before.len();
     let mut jacobian = Vec::new();
     for (attitude, momentum) in after {
         let value: SMatrix<f64, 3, 3> = attitude.map(|x| x.real);
         // Lambda^T delta Lambda = hat(xi).
-        let turns: Vec<Matrix3<f64>> = (0..N)
+        let turns: Vec<Matrix3<f64>> = (0..seeds)
             .map(|seed| value.transpose() * attitude.map(|x| x.dual[seed]))
             .collect();
         for (r, c) in [(2, 1), (0, 2), (1, 0)] {
@@ -122,7 +118,7 @@ fn defect<const N: usize>(
             );
         }
         for i in 0..3 {
-            jacobian.push(momentum[i].dual.to_vec());
+            jacobian.push(momentum[i].dual[..seeds].to_vec());
         }
     }
     let before: Vec<Vector> = before.iter().map(|p| values(&p.momentum)).collect();
@@ -170,7 +166,7 @@ type Defect = fn(&Case, &mut Draws, f64) -> f64;
 
 fn free_body(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
     use clebsch_models::free_body::*;
-    let p = phase::<6>(draws, 0);
+    let p = phase(draws, 0);
     let after = stepped!(
         FreeBody,
         FreeBodyParameters {
@@ -188,12 +184,12 @@ fn free_body(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
 
 fn free_body_spatial(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
     use clebsch_models::free_body_spatial::*;
-    let p = phase::<6>(draws, 0);
+    let p = phase(draws, 0);
     // The body is the same in every phase: what the case gives in space is read in the body.
     let after = stepped!(
         FreeBodySpatial,
         FreeBodySpatialParameters {
-            scalar: std::marker::PhantomData::<One>
+            scalar: std::marker::PhantomData::<Seeded>
         },
         FreeBodySpatialInitial {
             Λ: p.attitude,
@@ -208,7 +204,7 @@ fn free_body_spatial(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
 
 fn heavy_top(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
     use clebsch_models::heavy_top::*;
-    let p = phase::<6>(draws, 0);
+    let p = phase(draws, 0);
     let after = stepped!(
         HeavyTop,
         HeavyTopParameters {
@@ -228,7 +224,7 @@ fn heavy_top(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
 
 fn heavy_top_spatial(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
     use clebsch_models::heavy_top_spatial::*;
-    let p = phase::<6>(draws, 0);
+    let p = phase(draws, 0);
     let after = stepped!(
         HeavyTopSpatial,
         HeavyTopSpatialParameters {
@@ -249,7 +245,7 @@ fn heavy_top_spatial(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
 
 fn body_in_quadratic_field(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
     use clebsch_models::body_in_quadratic_field::*;
-    let p = phase::<6>(draws, 0);
+    let p = phase(draws, 0);
     // The axis rests in space, so that it is seen differently from each attitude.
     let after = stepped!(
         BodyInQuadraticField,
@@ -270,7 +266,7 @@ fn body_in_quadratic_field(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
 
 fn body_in_two_fields(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
     use clebsch_models::body_in_two_fields::*;
-    let p = phase::<6>(draws, 0);
+    let p = phase(draws, 0);
     let after = stepped!(
         BodyInTwoFields,
         BodyInTwoFieldsParameters {
@@ -292,8 +288,7 @@ fn body_in_two_fields(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
 
 fn coupled_bodies(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
     use clebsch_models::coupled_bodies::*;
-    let (p, q) = (phase::<12>(draws, 0), phase::<12>(draws, 1));
-    let h: Two = step(case.h, warp, &p);
+    let (p, q) = (phase(draws, 0), phase(draws, 1));
     let after = stepped!(
         CoupledBodies,
         CoupledBodiesParameters {
@@ -309,7 +304,7 @@ fn coupled_bodies(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
             Λ2: q.attitude,
             body_momentum_Λ2: q.body_momentum(),
         },
-        h,
+        step(case.h, warp, &p),
         (Λ1, body_momentum_Λ1),
         (Λ2, body_momentum_Λ2)
     );
@@ -318,7 +313,7 @@ fn coupled_bodies(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
 
 fn cayley_klein(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
     use clebsch_models::cayley_klein::*;
-    let p = phase::<6>(draws, 0);
+    let p = phase(draws, 0);
     let after = stepped!(
         CayleyKlein,
         CayleyKleinParameters {
@@ -337,7 +332,7 @@ fn cayley_klein(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
 
 fn cayley_klein_spatial(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
     use clebsch_models::cayley_klein_spatial::*;
-    let p = phase::<6>(draws, 0);
+    let p = phase(draws, 0);
     let after = stepped!(
         CayleyKleinSpatial,
         CayleyKleinSpatialParameters {
@@ -361,7 +356,7 @@ fn kirchhoff_body(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
         [a, b, c, d, e, f]
     };
     let (place, start) = (random(draws), random(draws));
-    let change = |first: usize| Vector3::from_fn(|i, _| Dual::<12>::variable(0.0, first + i));
+    let change = |first: usize| Vector3::from_fn(|i, _| Seeded::variable(0.0, first + i));
     let q = draws.attitude().0.map(Dual::constant);
     let own = RigidMotion {
         rotation: Rotation::from_quaternion(q).expect("a unit quaternion"),
@@ -373,7 +368,7 @@ fn kirchhoff_body(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
             rotation: Rotation::exp(&change(0)),
             translation: change(3),
         };
-    let mu = SVector::from_fn(|i, _| Dual::<12>::variable(start[i], 6 + i));
+    let mu = SVector::from_fn(|i, _| Seeded::variable(start[i], 6 + i));
     let model = KirchhoffBody::new(KirchhoffBodyParameters {
         J: matrix(&case.parameters[0]),
         M: matrix(&case.parameters[1]),
@@ -392,7 +387,8 @@ fn kirchhoff_body(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
     let (moved, after) = (state.G().matrix(), state.body_momentum().0);
     // G^-1 dG = [hat(xi) v; 0 0].
     let back = state.G().inverse().matrix().map(|x| x.real);
-    let turns: Vec<_> = (0..12)
+    let seeds = 12;
+    let turns: Vec<_> = (0..seeds)
         .map(|seed| back * moved.map(|x| x.dual[seed]))
         .collect();
     let entries = [(2, 1), (0, 2), (1, 0), (0, 3), (1, 3), (2, 3)];
@@ -400,7 +396,7 @@ fn kirchhoff_body(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
         .iter()
         .map(|at| turns.iter().map(|t| t[*at]).collect())
         .collect();
-    jacobian.extend(after.iter().map(|x| x.dual.to_vec()));
+    jacobian.extend(after.iter().map(|x| x.dual[..seeds].to_vec()));
     let (before, after) = (start, std::array::from_fn(|i| after[i].real));
     let size = before
         .iter()
@@ -416,17 +412,12 @@ fn planes(n: usize) -> Vec<(usize, usize)> {
         .collect()
 }
 
-/// `SEEDS` is twice the dimension of SO(N).
-fn body_of_size<const N: usize, const SEEDS: usize>(
-    case: &Case,
-    draws: &mut Draws,
-    warp: f64,
-) -> f64 {
+fn body_of_size<const N: usize>(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
     use clebsch_models::body_n::*;
-    type Number<const S: usize> = Dual<S>;
     let planes = planes(N);
+    // Seeds are the changes of the attitude, then those of the momentum.
     let d = planes.len();
-    assert_eq!(2 * d, SEEDS);
+    let seeds = 2 * d;
     // Momenta in any direction; the largest of the cases is solvable in its own direction up to 0.95
     // of the bound, in another one less.
     let largest = case.initial[1]
@@ -434,19 +425,19 @@ fn body_of_size<const N: usize, const SEEDS: usize>(
         .fold(0.0_f64, |m, x| worse(m, x.abs()));
     let size = 0.4 * largest;
     let start: Vec<f64> = (0..d).map(|_| draws.uniform(-size, size)).collect();
-    let turn: Vec<Number<SEEDS>> = (0..d)
+    let turn: Vec<Seeded> = (0..d)
         .map(|_| Dual::constant(draws.uniform(-1.0, 1.0)))
         .collect();
-    let change: Vec<Number<SEEDS>> = (0..d).map(|k| Dual::variable(0.0, k)).collect();
+    let change: Vec<Seeded> = (0..d).map(|k| Dual::variable(0.0, k)).collect();
     // To first order a retraction is the exponential.
-    let own = Orthogonal::<N, Number<SEEDS>>::identity().retract(&turn);
+    let own = Orthogonal::<N, Seeded>::identity().retract(&turn);
     let attitude = own.retract(&change);
-    let mut mu = SMatrix::<Number<SEEDS>, N, N>::repeat(Dual::constant(0.0));
+    let mut mu = SMatrix::<Seeded, N, N>::repeat(Dual::constant(0.0));
     for (k, (r, c)) in planes.iter().enumerate() {
         mu[(*r, *c)] = Dual::variable(start[k], d + k);
         mu[(*c, *r)] = -mu[(*r, *c)];
     }
-    let model = BodyN::<N, Number<SEEDS>>::new(BodyNParameters {
+    let model = BodyN::<N, Seeded>::new(BodyNParameters {
         C: SMatrix::from_fn(|r, c| Dual::constant(case.parameters[0][N * r + c])),
     })
     .expect("parameters of a case");
@@ -461,14 +452,14 @@ fn body_of_size<const N: usize, const SEEDS: usize>(
     model.step(&mut state, &mut workspace).expect("solvable");
     let (moved, after) = (state.Λ().matrix(), state.body_momentum().0);
     let back = moved.map(|x| x.real).transpose();
-    let turns: Vec<_> = (0..SEEDS)
+    let turns: Vec<_> = (0..seeds)
         .map(|seed| back * moved.map(|x| x.dual[seed]))
         .collect();
     let mut jacobian: Vec<Vec<f64>> = planes
         .iter()
         .map(|at| turns.iter().map(|t| t[*at]).collect())
         .collect();
-    jacobian.extend(planes.iter().map(|at| after[*at].dual.to_vec()));
+    jacobian.extend(planes.iter().map(|at| after[*at].dual[..seeds].to_vec()));
     let after: Vec<f64> = planes.iter().map(|at| after[*at].real).collect();
     let size = start
         .iter()
@@ -479,9 +470,9 @@ fn body_of_size<const N: usize, const SEEDS: usize>(
 
 fn body_n(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
     match case.parameters[0].len() {
-        9 => body_of_size::<3, 6>(case, draws, warp),
-        16 => body_of_size::<4, 12>(case, draws, warp),
-        25 => body_of_size::<5, 20>(case, draws, warp),
+        9 => body_of_size::<3>(case, draws, warp),
+        16 => body_of_size::<4>(case, draws, warp),
+        25 => body_of_size::<5>(case, draws, warp),
         entries => panic!("no start for {entries} entries"),
     }
 }
@@ -515,7 +506,7 @@ fn for_every_case(mut look: impl FnMut(&str, &Case, Defect)) {
             .unwrap_or_else(|| panic!("say above how {name} is started"));
         let named = !entry.card.dimensions.is_empty();
         for case in &entry.cases {
-            // Each size is compiled with as many derivatives as it has phases.
+            // Larger ones would be compiled for this alone.
             if named && case.parameters[0].len() > 25 {
                 continue;
             }

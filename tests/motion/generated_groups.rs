@@ -2,9 +2,10 @@
 //! momenta, bounded energies, measured orders, reversibility, every scalar, no allocation.
 
 use super::allocations::allocations;
+use super::seeded::Seeded;
 use clebsch::nalgebra::{Matrix3, SVector, Vector3, Vector4};
 use clebsch::{
-    BodyImpulse, BodyMomentum, DoubleDouble, Dual, Group, Lanes, Real, RigidMotion, Rotation,
+    BodyImpulse, BodyMomentum, DoubleDouble, Group, Lanes, Real, RigidMotion, Rotation,
     SpatialMomentum, UnitQuaternion,
 };
 use clebsch_models::cayley_klein::{CayleyKlein, CayleyKleinInitial, CayleyKleinParameters};
@@ -393,16 +394,16 @@ fn every_scalar_runs() {
     assert!(Group::<DoubleDouble>::distance_from_group(&long.G().rotation) < 1e-29);
     // The derivative by the net weight, against a difference of two runs.
     let case = heavy();
-    let mut parameters = case.parameters::<Dual<1>>();
-    parameters.b[3] = Dual::variable(case.b[3], 0);
+    let mut parameters = case.parameters::<Seeded>();
+    parameters.b[3] = Seeded::variable(case.b[3], 0);
     let model = KirchhoffBody::new(parameters).expect("a body");
-    let (_, start, _) = case.start::<Dual<1>>(0.05);
+    let (_, start, _) = case.start::<Seeded>(0.05);
     let initial = KirchhoffBodyInitial {
         G: start.G(),
         body_momentum: start.body_momentum(),
     };
     let (mut state, mut work) = model
-        .start(initial, Dual::from_f64(0.05))
+        .start(initial, Seeded::from_f64(0.05))
         .expect("solvable");
     for _ in 0..steps {
         model.step(&mut state, &mut work).expect("solvable");

@@ -2,8 +2,9 @@
 //! canonical two-form. A step whose length depends on the state fails, which is shown too.
 
 use super::generated_motion::{column, matrix, rotation};
+use super::seeded::Seeded;
 use clebsch::nalgebra::{Matrix3, Vector3};
-use clebsch::{BodyMomentum, Dual, Rotation};
+use clebsch::{BodyMomentum, Rotation};
 use clebsch_models::free_body::{FreeBody, FreeBodyInitial, FreeBodyParameters};
 use clebsch_models::heavy_top::{HeavyTop, HeavyTopInitial, HeavyTopParameters};
 use clebsch_oracle::handwritten::attitude::Vector;
@@ -12,29 +13,26 @@ use clebsch_oracle::physics::draws::Draws;
 use clebsch_oracle::physics::measure::worse;
 use clebsch_oracle::physics::symplectic::{Jacobian, defect};
 
-/// A number with derivatives with respect to (xi, mu).
-type Number = Dual<6>;
-
 /// Rounding of a product of three six by six matrices with entries of order one to ten, with a wide margin.
 const TOLERANCE: f64 = 1e-10;
 
 fn constants<const R: usize, const C: usize>(
     m: &clebsch::nalgebra::SMatrix<f64, R, C>,
-) -> clebsch::nalgebra::SMatrix<Number, R, C> {
-    m.map(Number::constant)
+) -> clebsch::nalgebra::SMatrix<Seeded, R, C> {
+    m.map(Seeded::constant)
 }
 
 /// Attitude and body momentum with their six independent changes: Lambda exp(hat(xi)), mu + delta mu.
-fn varied(start: &Start) -> (Rotation<Number>, Vector3<Number>) {
-    let q = rotation(&start.attitude).quaternion().map(Number::constant);
+fn varied(start: &Start) -> (Rotation<Seeded>, Vector3<Seeded>) {
+    let q = rotation(&start.attitude).quaternion().map(Seeded::constant);
     let attitude = Rotation::from_quaternion(q).expect("a unit quaternion");
-    let xi = Vector3::from_fn(|i, _| Number::variable(0.0, i));
-    let momentum = Vector3::from_fn(|i, _| Number::variable(start.body_momentum[i], i + 3));
+    let xi = Vector3::from_fn(|i, _| Seeded::variable(0.0, i));
+    let momentum = Vector3::from_fn(|i, _| Seeded::variable(start.body_momentum[i], i + 3));
     (attitude * Rotation::exp(&xi), momentum)
 }
 
 /// Jacobian in left-trivialised coordinates, and the momentum after the step.
-fn jacobian(attitude: &Matrix3<Number>, momentum: &Vector3<Number>) -> (Jacobian, Vector) {
+fn jacobian(attitude: &Matrix3<Seeded>, momentum: &Vector3<Seeded>) -> (Jacobian, Vector) {
     let value = attitude.map(|x| x.real);
     let column = |seed: usize| {
         // Lambda^T delta Lambda = hat(xi).
@@ -65,7 +63,7 @@ fn top_defect(start: &Start, warp: f64) -> f64 {
     })
     .expect("a top");
     let h =
-        Number::constant(start.h) * (Number::constant(1.0) + Number::constant(warp) * momentum[0]);
+        Seeded::constant(start.h) * (Seeded::constant(1.0) + Seeded::constant(warp) * momentum[0]);
     let initial = HeavyTopInitial {
         Λ: attitude,
         body_momentum: BodyMomentum(momentum),
@@ -83,7 +81,7 @@ fn body_defect(start: &Start, warp: f64) -> f64 {
     })
     .expect("a body");
     let h =
-        Number::constant(start.h) * (Number::constant(1.0) + Number::constant(warp) * momentum[0]);
+        Seeded::constant(start.h) * (Seeded::constant(1.0) + Seeded::constant(warp) * momentum[0]);
     let initial = FreeBodyInitial {
         Λ: attitude,
         body_momentum: BodyMomentum(momentum),

@@ -31,5 +31,6 @@ mod handwritten;
 mod handwritten_laws;
 mod handwritten_oracle;
 mod handwritten_systems;
+mod seeded;
 mod solver_choice;
 mod systems_against_hand;

@@ -2,6 +2,7 @@
 //! the judge is the order at which an error falls, or the two-form of a map by dual numbers.
 
 use super::{Matrix, Vector, judge, size, skew};
+use crate::seeded::Seeded;
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{BodyMomentum, Dual, Rotation};
 use clebsch_models::free_body::{FreeBody, FreeBodyInitial, FreeBodyParameters};
@@ -62,11 +63,9 @@ fn appendix_a_4_the_coupling_is_of_the_order_of_the_rest() {
     });
 }
 
-type Number = Dual<6>;
-
 /// How far a step of (Λ, μ) is from symplectic.
 fn off(
-    step: impl Fn(Rotation<Number>, Vector3<Number>) -> (Matrix3<Number>, Vector3<Number>),
+    step: impl Fn(Rotation<Seeded>, Vector3<Seeded>) -> (Matrix3<Seeded>, Vector3<Seeded>),
     mu: &Vector,
 ) -> f64 {
     let xi = Vector3::from_fn(|i, _| Dual::variable(0.0, i));
@@ -97,7 +96,7 @@ fn two_63_holds_the_velocity_fixed_and_would_prove_too_much() {
             s.between(1.1, 1.4),
         ];
         let h = Dual::constant(0.5);
-        let turned = |r: Rotation<Number>, w: Rotation<Number>, m: Vector3<Number>| {
+        let turned = |r: Rotation<Seeded>, w: Rotation<Seeded>, m: Vector3<Seeded>| {
             ((r * w).matrix(), w.inverse_rotate(&m))
         };
         let printed = off(

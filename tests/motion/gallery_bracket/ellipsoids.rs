@@ -1,17 +1,15 @@
 //! Ellipsoids on GL(n): how they are started and stepped. Takes a case and random points; gives both nodes.
 
 use super::{Step, length, number, quantity};
+use crate::seeded::Seeded;
 use clebsch::nalgebra::SMatrix;
 use clebsch::{BodyMomentumMatrix, Dual, Linear, SpatialMomentumMatrix};
 use clebsch_models::Case;
 use clebsch_oracle::physics::draws::Draws;
 
 /// A symmetric matrix near the identity with independent changes from seed `first` on.
-fn near_identity<const S: usize, const N: usize>(
-    draws: &mut Draws,
-    first: usize,
-) -> SMatrix<Dual<S>, N, N> {
-    let mut out = SMatrix::<Dual<S>, N, N>::repeat(Dual::constant(0.0));
+fn near_identity<const N: usize>(draws: &mut Draws, first: usize) -> SMatrix<Seeded, N, N> {
+    let mut out = SMatrix::<Seeded, N, N>::repeat(Dual::constant(0.0));
     let upper = (0..N).flat_map(|i| (i..N).map(move |j| (i, j)));
     for (k, (i, j)) in upper.enumerate() {
         let one = f64::from(u8::from(i == j));
@@ -22,7 +20,7 @@ fn near_identity<const S: usize, const N: usize>(
 }
 
 /// `(A + A^T)/2`, symmetric to the last bit.
-fn symmetric<const S: usize, const N: usize>(a: SMatrix<Dual<S>, N, N>) -> SMatrix<Dual<S>, N, N> {
+fn symmetric<const N: usize>(a: SMatrix<Seeded, N, N>) -> SMatrix<Seeded, N, N> {
     (a + a.transpose()) * Dual::constant(0.5)
 }
 
@@ -31,18 +29,13 @@ fn symmetric<const S: usize, const N: usize>(a: SMatrix<Dual<S>, N, N>) -> SMatr
 macro_rules! ellipsoid {
     ($name:ident, $of_size:ident, $module:ident, $model:ident, $parameters:ident, $initial:ident,
      $momentum:ident, $kind:ident, $advected:ident, $chosen:expr) => {
-        /// `SEEDS` is `N * N + N * (N + 1)/2`.
-        fn $of_size<const N: usize, const SEEDS: usize>(
-            case: &Case,
-            draws: &mut Draws,
-            warp: f64,
-        ) -> Step {
+        fn $of_size<const N: usize>(case: &Case, draws: &mut Draws, warp: f64) -> Step {
             use clebsch_models::$module::*;
-            type Matrix<const N: usize, const S: usize> = SMatrix<Dual<S>, N, N>;
-            let mu: Matrix<N, SEEDS> =
+            type Matrix<const N: usize> = SMatrix<Seeded, N, N>;
+            let mu: Matrix<N> =
                 SMatrix::from_fn(|r, c| Dual::variable(draws.uniform(-0.4, 0.4), N * r + c));
-            let advected: Matrix<N, SEEDS> = near_identity(draws, N * N);
-            let square = |values: &[f64]| -> Matrix<N, SEEDS> {
+            let advected: Matrix<N> = near_identity(draws, N * N);
+            let square = |values: &[f64]| -> Matrix<N> {
                 SMatrix::from_fn(|r, c| Dual::constant(values[N * r + c]))
             };
             let random: Vec<f64> = (0..N * N).map(|_| draws.uniform(-0.1, 0.1)).collect();
@@ -50,9 +43,9 @@ macro_rules! ellipsoid {
             let placement = Linear::from_matrix(&placement).expect("regular");
             let (metric, moments) = (square(&case.parameters[0]), square(&case.parameters[1]));
             let back = placement.inverse().matrix();
-            let (metric, moments): (Matrix<N, SEEDS>, Matrix<N, SEEDS>) =
+            let (metric, moments): (Matrix<N>, Matrix<N>) =
                 $chosen(back, advected, metric, moments);
-            let model = $model::<N, Dual<SEEDS>>::new($parameters {
+            let model = $model::<N, Seeded>::new($parameters {
                 C0: metric,
                 I0: moments,
                 a: number(&case.parameters[2]),
@@ -81,9 +74,9 @@ macro_rules! ellipsoid {
 
         pub(super) fn $name(case: &Case, draws: &mut Draws, warp: f64) -> Step {
             match case.parameters[0].len() {
-                4 => $of_size::<2, 7>(case, draws, warp),
-                9 => $of_size::<3, 15>(case, draws, warp),
-                16 => $of_size::<4, 26>(case, draws, warp),
+                4 => $of_size::<2>(case, draws, warp),
+                9 => $of_size::<3>(case, draws, warp),
+                16 => $of_size::<4>(case, draws, warp),
                 entries => panic!("no start for {entries} entries"),
             }
         }
@@ -100,7 +93,7 @@ ellipsoid!(
     body_momentum,
     BodyMomentumMatrix,
     C,
-    |back: Matrix<N, SEEDS>, advected, _, moments| (
+    |back: Matrix<N>, advected, _, moments| (
         symmetric(back.transpose() * advected * back),
         moments
     )
@@ -116,8 +109,5 @@ ellipsoid!(
     spatial_momentum,
     SpatialMomentumMatrix,
     S,
-    |back: Matrix<N, SEEDS>, advected, metric, _| (
-        metric,
-        symmetric(back * advected * back.transpose())
-    )
+    |back: Matrix<N>, advected, metric, _| (metric, symmetric(back * advected * back.transpose()))
 );

@@ -1,6 +1,7 @@
 //! Four groups together: how they are started and stepped. Takes a case and random points; gives both nodes.
 
 use super::{Node, Step, attitude, column, length, matrix, number, quantity, seeded};
+use crate::seeded::Seeded;
 use clebsch::nalgebra::{SVector, Vector3};
 use clebsch::{
     Additive, BodyImpulse, BodyMomentum, Dual, FieldMomentum, RigidMotion, Rotation, UnitQuaternion,
@@ -10,8 +11,7 @@ use clebsch_oracle::physics::draws::Draws;
 
 pub(super) fn mixed_four(case: &Case, draws: &mut Draws, warp: f64) -> Step {
     use clebsch_models::mixed_four::*;
-    type Thirty = Dual<30>;
-    let vector = |at: usize| column::<30, 3>(&case.parameters[at]);
+    let vector = |at: usize| column::<3>(&case.parameters[at]);
     let model = MixedFour::new(MixedFourParameters {
         J: matrix(&case.parameters[0]),
         A: matrix(&case.parameters[1]),
@@ -26,8 +26,8 @@ pub(super) fn mixed_four(case: &Case, draws: &mut Draws, warp: f64) -> Step {
         g: vector(10),
     })
     .expect("parameters of a case");
-    let turn = |first: usize| Rotation::exp(&seeded::<30, 3>([0.0; 3], first));
-    let second = attitude::<30>(draws) * turn(24);
+    let turn = |first: usize| Rotation::exp(&seeded([0.0; 3], first));
+    let second = attitude(draws) * turn(24);
     let own = RigidMotion {
         rotation: attitude(draws),
         translation: column(&draws.direction()),
@@ -37,13 +37,13 @@ pub(super) fn mixed_four(case: &Case, draws: &mut Draws, warp: f64) -> Step {
             rotation: turn(18),
             translation: seeded([0.0; 3], 21),
         };
-    let mut momentum: Vec<Thirty> = Vec::new();
+    let mut momentum: Vec<Seeded> = Vec::new();
     for at in 0..15 {
         momentum.push(Dual::variable(draws.uniform(-0.5, 0.5), at));
     }
     let part = |first: usize| Vector3::from_column_slice(&momentum[first..first + 3]);
     let initial = MixedFourInitial {
-        R: attitude::<30>(draws) * turn(15),
+        R: attitude(draws) * turn(15),
         body_momentum_R: BodyMomentum(part(0)),
         G: motion,
         body_momentum_G: BodyImpulse(SVector::from_column_slice(&momentum[3..9])),
@@ -54,7 +54,7 @@ pub(super) fn mixed_four(case: &Case, draws: &mut Draws, warp: f64) -> Step {
     };
     let h = length(case, warp, momentum[0]);
     let (mut state, mut workspace) = model.start(initial, h).expect("solvable");
-    let seen = |s: &MixedFourState<Thirty>| -> Node {
+    let seen = |s: &MixedFourState<Seeded>| -> Node {
         vec![
             quantity(&s.body_momentum_R().0),
             quantity(&s.body_momentum_G().0),

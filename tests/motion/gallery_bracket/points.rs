@@ -1,14 +1,15 @@
 //! Points in space: how they are started and stepped. Takes a case and random points; gives both nodes.
 
 use super::{Node, Step, column, length, number, quantity, vector};
-use clebsch::{Additive, Dual, FieldMomentum};
+use crate::seeded::Seeded;
+use clebsch::{Additive, FieldMomentum};
 use clebsch_models::Case;
 use clebsch_oracle::physics::draws::Draws;
 
 /// Starts the model of a point, steps once, and gives both nodes.
 macro_rules! point_stepped {
     ($model:ident, $parameters:expr, $initial:ident, $case:expr, $draws:expr, $warp:expr) => {{
-        let (momentum, place) = (vector::<6>($draws, 0), vector::<6>($draws, 3));
+        let (momentum, place) = (vector($draws, 0), vector($draws, 3));
         let model = $model::new($parameters).expect("parameters of a case");
         let initial = $initial {
             X: Additive::new(place),
@@ -17,7 +18,7 @@ macro_rules! point_stepped {
         let h = length($case, $warp, momentum[0]);
         let (mut state, mut workspace) = model.start(initial, h).expect("solvable");
         let seen = |s: &_| -> Node {
-            let s: &<$model<Dual<6>> as clebsch::integrate::Stepper>::State = s;
+            let s: &<$model<Seeded> as clebsch::integrate::Stepper>::State = s;
             vec![quantity(&s.momentum().0), quantity(&s.X().matrix())]
         };
         let before = seen(&state);

@@ -1,6 +1,7 @@
 //! Ellipsoids on GL(n): one step, symplectic. Takes a case and random states; gives the defect.
 
 use super::number;
+use crate::seeded::Seeded;
 use clebsch::nalgebra::SMatrix;
 use clebsch::{BodyMomentumMatrix, Dual, Linear, SpatialMomentumMatrix};
 use clebsch_models::Case;
@@ -12,26 +13,21 @@ use clebsch_oracle::physics::symplectic::defect_on_group;
 macro_rules! ellipsoid {
     ($name:ident, $of_size:ident, $module:ident, $model:ident, $parameters:ident, $initial:ident,
      $momentum:ident, $seen:expr) => {
-        /// `SEEDS` is twice the square of `N`.
-        fn $of_size<const N: usize, const SEEDS: usize>(
-            case: &Case,
-            draws: &mut Draws,
-            warp: f64,
-        ) -> f64 {
+        fn $of_size<const N: usize>(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
             use clebsch_models::$module::*;
-            let square = |values: &[f64]| -> SMatrix<Dual<SEEDS>, N, N> {
+            // The changes of the placement, then those of the momentum.
+            let seeds = 2 * N * N;
+            let square = |values: &[f64]| -> SMatrix<Seeded, N, N> {
                 SMatrix::from_fn(|r, c| Dual::constant(values[N * r + c]))
             };
             let random: Vec<f64> = (0..N * N).map(|_| draws.uniform(-0.1, 0.1)).collect();
             let start: Vec<f64> = (0..N * N).map(|_| draws.uniform(-0.4, 0.4)).collect();
-            let one = SMatrix::<Dual<SEEDS>, N, N>::identity();
+            let one = SMatrix::<Seeded, N, N>::identity();
             let change = SMatrix::from_fn(|r, c| Dual::variable(0.0, N * r + c));
-            let mu = SMatrix::from_fn(|r, c| {
-                Dual::<SEEDS>::variable(start[N * r + c], N * N + N * r + c)
-            });
+            let mu = SMatrix::from_fn(|r, c| Seeded::variable(start[N * r + c], N * N + N * r + c));
             let placement = square(&case.initial[0]) * (one + square(&random)) * (one + change);
             let placement = Linear::from_matrix(&placement).expect("regular");
-            let model = $model::<N, Dual<SEEDS>>::new($parameters {
+            let model = $model::<N, Seeded>::new($parameters {
                 C0: square(&case.parameters[0]),
                 I0: square(&case.parameters[1]),
                 a: number(&case.parameters[2]),
@@ -51,7 +47,7 @@ macro_rules! ellipsoid {
             model.step(&mut state, &mut workspace).expect("solvable");
             let (moved, after) = (state.Q().matrix(), state.body_momentum().0);
             let back = state.Q().inverse().matrix().map(|x| x.real);
-            let turns: Vec<_> = (0..SEEDS)
+            let turns: Vec<_> = (0..seeds)
                 .map(|seed| back * moved.map(|x| x.dual[seed]))
                 .collect();
             let places: Vec<(usize, usize)> = (0..N * N).map(|k| (k / N, k % N)).collect();
@@ -59,7 +55,7 @@ macro_rules! ellipsoid {
                 .iter()
                 .map(|at| turns.iter().map(|t| t[*at]).collect())
                 .collect();
-            jacobian.extend(places.iter().map(|at| after[*at].dual.to_vec()));
+            jacobian.extend(places.iter().map(|at| after[*at].dual[..seeds].to_vec()));
             let after: Vec<f64> = places.iter().map(|at| after[*at].real).collect();
             // tr(mu^T [E_ij, E_kl]).
             let along = |mu: &[f64], a: usize, b: usize| {
@@ -73,9 +69,9 @@ macro_rules! ellipsoid {
 
         pub(super) fn $name(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
             match case.parameters[0].len() {
-                4 => $of_size::<2, 8>(case, draws, warp),
-                9 => $of_size::<3, 18>(case, draws, warp),
-                16 => $of_size::<4, 32>(case, draws, warp),
+                4 => $of_size::<2>(case, draws, warp),
+                9 => $of_size::<3>(case, draws, warp),
+                16 => $of_size::<4>(case, draws, warp),
                 entries => panic!("no start for {entries} entries"),
             }
         }
@@ -101,8 +97,8 @@ ellipsoid!(
     EllipsoidSpatialParameters,
     EllipsoidSpatialInitial,
     spatial_momentum,
-    |q: &Linear<N, Dual<SEEDS>>, mu| {
-        let turned: SMatrix<Dual<SEEDS>, N, N> = mu * q.matrix().transpose();
+    |q: &Linear<N, Seeded>, mu| {
+        let turned: SMatrix<Seeded, N, N> = mu * q.matrix().transpose();
         SpatialMomentumMatrix(q.inverse().matrix().transpose() * turned)
     }
 );

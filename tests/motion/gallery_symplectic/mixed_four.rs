@@ -1,6 +1,7 @@
 //! Four groups together: one step, symplectic on their product. Takes a case and random states; gives the defect.
 
 use super::Turn;
+use crate::seeded::Seeded;
 use clebsch::nalgebra::{Matrix3, SVector, Vector3};
 use clebsch::{
     Additive, BodyImpulse, BodyMomentum, Dual, FieldMomentum, RigidMotion, Rotation, UnitQuaternion,
@@ -28,9 +29,10 @@ fn along_mixed(mu: &[f64], a: usize, b: usize) -> f64 {
 
 pub(super) fn mixed_four(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
     use clebsch_models::mixed_four::*;
-    type Thirty = Dual<30>;
+    // Fifteen changes of the elements, then fifteen of the momenta.
+    let seeds = 30;
     let numbers =
-        |values: &[f64]| -> Vec<Thirty> { values.iter().map(|x| Dual::constant(*x)).collect() };
+        |values: &[f64]| -> Vec<Seeded> { values.iter().map(|x| Dual::constant(*x)).collect() };
     let vector = |at: usize| Vector3::from_column_slice(&numbers(&case.parameters[at]));
     let square = |at: usize| Matrix3::from_row_slice(&numbers(&case.parameters[at]));
     let one = |at: usize| Dual::constant(case.parameters[at][0]);
@@ -48,7 +50,7 @@ pub(super) fn mixed_four(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
         g: vector(10),
     })
     .expect("parameters of a case");
-    let change = |first: usize| Vector3::from_fn(|i, _| Thirty::variable(0.0, first + i));
+    let change = |first: usize| Vector3::from_fn(|i, _| Seeded::variable(0.0, first + i));
     let mut turn = |first: usize| {
         let q = draws.attitude().0.map(Dual::constant);
         Rotation::from_quaternion(q).expect("a unit quaternion") * Rotation::exp(&change(first))
@@ -67,7 +69,7 @@ pub(super) fn mixed_four(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
         };
     let place = draws.direction();
     let start: Vec<f64> = (0..15).map(|_| draws.uniform(-0.5, 0.5)).collect();
-    let momentum = |at: usize| Thirty::variable(start[at], 15 + at);
+    let momentum = |at: usize| Seeded::variable(start[at], 15 + at);
     let initial = MixedFourInitial {
         R: body,
         body_momentum_R: BodyMomentum(Vector3::from_fn(|i, _| momentum(i))),
@@ -81,9 +83,9 @@ pub(super) fn mixed_four(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
     let h = Dual::constant(case.h) * (Dual::constant(1.0) + Dual::constant(warp) * momentum(0));
     let (mut state, mut workspace) = model.start(initial, h).expect("solvable");
     model.step(&mut state, &mut workspace).expect("solvable");
-    let turns = |m: Matrix3<Thirty>| -> Vec<Vec<f64>> {
+    let turns = |m: Matrix3<Seeded>| -> Vec<Vec<f64>> {
         let value = m.map(|x| x.real);
-        let seen: Vec<_> = (0..30)
+        let seen: Vec<_> = (0..seeds)
             .map(|seed| value.transpose() * m.map(|x| x.dual[seed]))
             .collect();
         [(2, 1), (0, 2), (1, 0)]
@@ -92,21 +94,21 @@ pub(super) fn mixed_four(case: &Case, draws: &mut Draws, warp: f64) -> f64 {
     };
     let rigid = state.G();
     let back = rigid.rotation.matrix().map(|x| x.real).transpose();
-    let moved: Vec<_> = (0..30)
+    let moved: Vec<_> = (0..seeds)
         .map(|seed| back * rigid.translation.map(|x| x.dual[seed]))
         .collect();
     let mut jacobian = turns(state.R().turn());
     jacobian.extend(turns(rigid.rotation.matrix()));
     jacobian.extend((0..3).map(|i| moved.iter().map(|v| v[i]).collect()));
     jacobian.extend(turns(state.q().turn()));
-    jacobian.extend(state.X().matrix().iter().map(|x| x.dual.to_vec()));
-    let after: Vec<Thirty> = (state.body_momentum_R().0.iter())
+    jacobian.extend(state.X().matrix().iter().map(|x| x.dual[..seeds].to_vec()));
+    let after: Vec<Seeded> = (state.body_momentum_R().0.iter())
         .chain(&state.body_momentum_G().0)
         .chain(&state.body_momentum_q().0)
         .chain(&state.momentum_X().0)
         .copied()
         .collect();
-    jacobian.extend(after.iter().map(|x| x.dual.to_vec()));
+    jacobian.extend(after.iter().map(|x| x.dual[..seeds].to_vec()));
     let after: Vec<f64> = after.iter().map(|x| x.real).collect();
     defect_on_group(&jacobian, &start, &after, along_mixed)
 }

@@ -1,6 +1,7 @@
 //! Points in space: one step, symplectic. Takes a case and random states; gives the defect.
 
-use super::{One, column, number, values};
+use super::{column, number, values};
+use crate::seeded::Seeded;
 use clebsch::nalgebra::Vector3;
 use clebsch::{Additive, Dual, FieldMomentum};
 use clebsch_models::Case;
@@ -9,7 +10,7 @@ use clebsch_oracle::physics::measure::worse;
 use clebsch_oracle::physics::symplectic::defect_on_group;
 
 /// A place at distance one from the origin and a momentum, with independent changes.
-fn point(draws: &mut Draws) -> (Vector3<One>, Vector3<One>) {
+fn point(draws: &mut Draws) -> (Vector3<Seeded>, Vector3<Seeded>) {
     let (place, momentum) = (draws.direction(), draws.direction());
     (
         Vector3::from_fn(|i, _| Dual::variable(place[i], i)),
@@ -27,12 +28,12 @@ macro_rules! point_stepped {
         };
         let (mut state, mut workspace) = model.start(initial, $h).expect("solvable");
         model.step(&mut state, &mut workspace).expect("solvable");
-        let moved: Vec<One> = state.X().matrix().iter().copied().collect();
+        let moved: Vec<Seeded> = state.X().matrix().iter().copied().collect();
         let after = state.momentum().0;
         let jacobian: Vec<Vec<f64>> = moved
             .iter()
             .chain(&after)
-            .map(|x| x.dual.to_vec())
+            .map(|x| x.dual[..6].to_vec())
             .collect();
         let size = $momentum
             .iter()

@@ -3,7 +3,6 @@
 //! Deliberately plain: no shape is special-cased and no identity of the algebra is used.
 
 use super::dual::Number;
-use std::array::from_fn;
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// An `N` by `N` matrix, rows first.
@@ -13,7 +12,14 @@ pub struct Square<T, const N: usize>(pub [[T; N]; N]);
 impl<T: Number, const N: usize> Square<T, N> {
     /// The matrix whose entry in row `i` and column `j` is `entry(i, j)`.
     pub fn from_entries(entry: impl Fn(usize, usize) -> T) -> Self {
-        Self(from_fn(|i| from_fn(|j| entry(i, j))))
+        let mut entries = [[T::constant(0.0); N]; N];
+        // Loops: a function of arrays with its closures would be compiled anew for every caller.
+        for (i, row) in entries.iter_mut().enumerate() {
+            for (j, place) in row.iter_mut().enumerate() {
+                *place = entry(i, j);
+            }
+        }
+        Self(entries)
     }
 
     /// The identity.
@@ -43,7 +49,11 @@ impl<T: Number, const N: usize> Square<T, N> {
     /// The matrix times a column.
     #[must_use]
     pub fn apply(&self, column: &[T; N]) -> [T; N] {
-        from_fn(|i| dot(&self.0[i], column))
+        let mut result = *column;
+        for (entry, row) in result.iter_mut().zip(&self.0) {
+            *entry = dot(row, column);
+        }
+        result
     }
 
     /// The sum of the diagonal.
@@ -92,8 +102,10 @@ impl<T: Number, const N: usize> Square<T, N> {
             }
             let head = left[column][column];
             determinant = determinant * head;
-            left[column] = left[column].map(|entry| entry / head);
-            right[column] = right[column].map(|entry| entry / head);
+            for j in 0..N {
+                left[column][j] = left[column][j] / head;
+                right[column][j] = right[column][j] / head;
+            }
             for row in 0..N {
                 if row != column {
                     let factor = left[row][column];
