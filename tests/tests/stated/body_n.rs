@@ -196,7 +196,7 @@ fn the_spectrum_of_manakov_is_kept() {
 }
 
 #[test]
-fn spatial_momentum_of_the_edges_is_kept_for_a_million_steps() {
+fn spatial_momentum_of_the_edges_is_kept_for_a_hundred_thousand_steps() {
     let mut source = Source::seeded(6);
     for symmetric in [true, false] {
         let c = factor::<4>(&mut source, symmetric);
@@ -204,7 +204,7 @@ fn spatial_momentum_of_the_edges_is_kept_for_a_million_steps() {
         let (mut state, mut work) = model.start(initial, H).expect("solvable");
         let first = state.spatial_momentum().0;
         let (mut worst, mut group) = (0.0f64, 0.0f64);
-        for step in 0..1_000_000 {
+        for step in 0..100_000 {
             let before = state.Λ().matrix();
             model.step(&mut state, &mut work).expect("solvable");
             if step % 64 == 0 {
