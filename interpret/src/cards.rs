@@ -1,0 +1,83 @@
+//! Models that are open in this process. A card starts trajectories by a function without captures, so
+//! each open model has a number, and each number a function.
+
+use crate::Refused;
+use crate::opened::Opened;
+use clebsch::card::{Card, Open, OpenError, Settings, Trajectory};
+use std::sync::{PoisonError, RwLock};
+
+/// What is open, by number; each stays for as long as the process, as its card may.
+static OPEN: RwLock<Vec<&'static Opened>> = RwLock::new(Vec::new());
+
+type Sized = fn(&[usize]) -> Option<Card>;
+
+fn opened(number: usize) -> Option<&'static Opened> {
+    let list = OPEN.read().unwrap_or_else(PoisonError::into_inner);
+    list.get(number).copied()
+}
+
+fn open_at<const I: usize>(
+    parameters: &[Vec<f64>],
+    initial: &[Vec<f64>],
+    settings: Settings,
+) -> Result<Box<dyn Trajectory>, OpenError> {
+    match opened(I) {
+        Some(model) => model.open(parameters, initial, settings),
+        None => Err(OpenError::Count {
+            field: "open models",
+            expected: I + 1,
+            found: 0,
+        }),
+    }
+}
+
+fn sized_at<const I: usize>(sizes: &[usize]) -> Option<Card> {
+    let model = opened(I)?;
+    let source = model.source;
+    match model.sizes == sizes {
+        true => model.card,
+        false => at_sizes(source, Some(sizes)).ok(),
+    }
+}
+
+macro_rules! functions {
+    ($($i:literal)*) => {
+        [$((open_at::<$i> as Open, sized_at::<$i> as Sized)),*]
+    };
+}
+
+const FUNCTIONS: [(Open, Sized); 64] = functions!(
+    0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31
+    32 33 34 35 36 37 38 39 40 41 42 43 44 45 46 47 48 49 50 51 52 53 54 55 56 57 58 59 60 61 62 63
+);
+
+/// The card of the model that a text states: a bare `model NAME { ... }`, or Rust source with one
+/// `model! { ... }`. Of named sizes each is three where that is admitted, else its smallest.
+///
+/// # Errors
+/// [`Refused`] for what is no model, and for models that need a build.
+pub fn card(source: &str) -> Result<Card, Refused> {
+    at_sizes(source, None)
+}
+
+/// The same at given sizes.
+fn at_sizes(source: &str, sizes: Option<&[usize]>) -> Result<Card, Refused> {
+    let find = |list: &[&'static Opened]| {
+        let mut known = list.iter();
+        let same = |sizes: &[usize], model: &Opened| model.sizes == sizes;
+        known
+            .find(|m| m.source == source && sizes.map_or(m.is_default, |s| same(s, m)))
+            .and_then(|m| m.card)
+    };
+    if let Some(card) = find(&OPEN.read().unwrap_or_else(PoisonError::into_inner)) {
+        return Ok(card);
+    }
+    let mut model = Opened::read(source, sizes)?;
+    let mut list = OPEN.write().unwrap_or_else(PoisonError::into_inner);
+    let most = FUNCTIONS.len();
+    let (open, sized) = *FUNCTIONS.get(list.len()).ok_or(Refused::TooMany { most })?;
+    let card = Card { open, sized, ..model.card.ok_or(Refused::TooMany { most })? };
+    model.card = Some(card);
+    list.push(Box::leak(Box::new(model)));
+    Ok(card)
+}

@@ -1,0 +1,82 @@
+//! Runs a model file without a Rust build. What a build would compile, the emitted program, is read
+//! as operations over numbered places and executed, so that steps agree with compiled ones to the last bit.
+//! Takes the text of a model; gives a [`Card`](clebsch::card::Card) whose trajectories run.
+
+mod cards;
+mod code;
+mod constants;
+mod dense;
+mod failure;
+mod library;
+mod lower;
+mod opened;
+mod packed;
+mod program;
+mod running;
+mod value;
+
+pub use cards::card;
+
+use clebsch_core::Errors;
+use core::fmt;
+
+/// Why a model file is not run.
+#[derive(Debug)]
+pub enum Refused {
+    /// The text is no model, or one that has no stepper.
+    Model(Errors),
+    /// The model is solved by a method that only built models have.
+    Method {
+        /// The name of the model.
+        model: String,
+        /// How it is solved.
+        method: String,
+    },
+    /// A model has no such size.
+    Size {
+        /// The name of the model.
+        model: String,
+        /// Which sizes it has.
+        admitted: String,
+    },
+    /// An operation that is not known here.
+    Construct(String),
+    /// More models than one process holds.
+    TooMany {
+        /// How many that is.
+        most: usize,
+    },
+}
+
+impl fmt::Display for Refused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Model(errors) => write!(f, "{errors:?}"),
+            Self::Method { model, method } => write!(
+                f,
+                "a model file with this method is not run yet: {model} is solved so: {method}; put the \
+                 model into a crate by `model! {{ ... }}`, which builds it"
+            ),
+            Self::Size { model, admitted } => {
+                write!(f, "{model} has no such size; it has {admitted}")
+            }
+            Self::Construct(what) => write!(
+                f,
+                "a model file with this operation is not run yet: `{what}`; put the model into a \
+                 crate by `model! {{ ... }}`, which builds it"
+            ),
+            Self::TooMany { most } => write!(
+                f,
+                "more than {most} model files in one process; open fewer, or other sizes of fewer"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for Refused {}
+
+/// A text for as long as the process: cards and errors name fields and parameters without owning them.
+/// A process opens a few models, each once.
+fn text(text: &str) -> &'static str {
+    Box::leak(text.to_owned().into_boxed_str())
+}

@@ -1,0 +1,232 @@
+//! Group elements: products, velocities, matrices, places.
+
+use super::of_size;
+use crate::code::Native;
+use crate::dense::Dense;
+use crate::value::{Kept, Value};
+use clebsch::emitted::{Additive, Group, Linear, Orthogonal, Placed, added};
+use clebsch::{OfScalars, Real};
+use nalgebra::SMatrix;
+
+/// The element of a group with this matrix: its numbers are put in, none is computed anew.
+pub(super) fn orthogonal<T: Real, const N: usize>(a: &Dense<T>) -> Orthogonal<N, T> {
+    let mut all = a.data.iter();
+    Orthogonal::<N, T>::identity().over(&mut |x| all.next().copied().unwrap_or(x))
+}
+
+/// The same of an invertible map.
+pub(super) fn linear<T: Real, const N: usize>(a: &Dense<T>) -> Linear<N, T> {
+    let mut all = a.data.iter();
+    Linear::<N, T>::identity().over(&mut |x| all.next().copied().unwrap_or(x))
+}
+
+/// What two elements kept as matrices give, for each group.
+macro_rules! of_both {
+    ($a:expr, $b:expr, $f:expr) => {
+        match ($a, $b) {
+            (Value::Element(Kept::Orthogonal, a), Value::Element(_, b)) => {
+                of_size!(a.rows, N, {
+                    let f = $f;
+                    let g = f(orthogonal::<T, N>(a), orthogonal::<T, N>(b));
+                    Some(Value::Element(Kept::Orthogonal, Dense::of(&g.matrix())))
+                })
+            }
+            (Value::Element(Kept::Linear, a), Value::Element(_, b)) => {
+                of_size!(a.rows, N, {
+                    let f = $f;
+                    let g = f(linear::<T, N>(a), linear::<T, N>(b));
+                    Some(Value::Element(Kept::Linear, Dense::of(&g.matrix())))
+                })
+            }
+            _ => None,
+        }
+    };
+}
+
+/// The product of two elements kept as matrices.
+pub(super) fn composed<T: Real>(a: &Value<T>, b: &Value<T>) -> Option<Value<T>> {
+    of_both!(a, b, |a, b| a * b)
+}
+
+fn velocity<T: Real>(a: &Value<T>, b: &Value<T>) -> Option<Value<T>> {
+    Some(match (a, b) {
+        (Value::Rotation(a), Value::Rotation(b)) => Value::Rotation(a.body_velocity(b)),
+        (Value::Quaternion(a), Value::Quaternion(b)) => Value::Quaternion(a.body_velocity(b)),
+        (Value::Motion(a), Value::Motion(b)) => Value::Motion(Box::new(a.body_velocity(b))),
+        (Value::Plane(a), Value::Plane(b)) => Value::Plane(Box::new(a.body_velocity(b))),
+        (Value::Element(Kept::Field, a), Value::Element(_, b)) => column_wise(a, b)?,
+        _ => return of_both!(a, b, |a, b| Group::<T>::body_velocity(&a, &b)),
+    })
+}
+
+fn spatial_velocity<T: Real>(a: &Value<T>, b: &Value<T>) -> Option<Value<T>> {
+    Some(match (a, b) {
+        (Value::Rotation(a), Value::Rotation(b)) => Value::Rotation(a.spatial_velocity(b)),
+        (Value::Quaternion(a), Value::Quaternion(b)) => Value::Quaternion(a.spatial_velocity(b)),
+        (Value::Motion(a), Value::Motion(b)) => Value::Motion(Box::new(a.spatial_velocity(b))),
+        (Value::Plane(a), Value::Plane(b)) => Value::Plane(Box::new(a.spatial_velocity(b))),
+        (Value::Element(Kept::Field, a), Value::Element(_, b)) => {
+            let (one, two) = (single(a), single(b));
+            let each = one.iter().zip(&two).map(|(a, b)| a.spatial_velocity(b));
+            field(a, each.map(|v| v.matrix()[0]).collect())
+        }
+        _ => return of_both!(a, b, |a, b| Group::<T>::spatial_velocity(&a, &b)),
+    })
+}
+
+/// The entries of a field one by one, as fields of numbers: their operations are entry by entry.
+fn single<T: Real>(a: &Dense<T>) -> Vec<Additive<1, 1, T>> {
+    let one = |x: &T| Additive::new(SMatrix::<T, 1, 1>::new(*x));
+    a.data.iter().map(one).collect()
+}
+
+fn field<T: Real>(like: &Dense<T>, data: Vec<T>) -> Value<T> {
+    let (rows, cols) = (like.rows, like.cols);
+    Value::Element(Kept::Field, Dense { rows, cols, data })
+}
+
+fn column_wise<T: Real>(a: &Dense<T>, b: &Dense<T>) -> Option<Value<T>> {
+    let (one, two) = (single(a), single(b));
+    let each = one.iter().zip(&two).map(|(a, b)| a.body_velocity(b));
+    Some(field(a, each.map(|v| v.matrix()[0]).collect()))
+}
+
+fn matrix<T: Real>(a: &Value<T>) -> Option<Value<T>> {
+    Some(match a {
+        Value::Rotation(r) => Value::Matrix(r.matrix()),
+        Value::Turned(r) => Value::Matrix(r.matrix()),
+        Value::Quaternion(q) => Value::of(Dense::of(&q.matrix())),
+        Value::Motion(g) => Value::of(Dense::of(&g.matrix())),
+        Value::Plane(g) => Value::of(Dense::of(&g.matrix())),
+        Value::Element(_, a) => Value::of(a.clone()),
+        _ => return None,
+    })
+}
+
+/// The rest of a place as the static type takes it.
+fn way<T: Real, const R: usize>(a: &Value<T>) -> Option<SMatrix<T, R, 1>> {
+    Some(a.dense()?.fixed())
+}
+
+fn moved<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
+    let [place, velocity, rest] = a else { return None };
+    let (end, left) = match (place, velocity) {
+        (Value::Motion(g), Value::Motion(v)) => {
+            let (end, left) = g.moved(v, &way(rest)?);
+            (Value::Motion(Box::new(end)), Value::of(Dense::of(&left)))
+        }
+        (Value::Plane(g), Value::Plane(v)) => {
+            let (end, left) = g.moved(v, &way(rest)?);
+            (Value::Plane(Box::new(end)), Value::of(Dense::of(&left)))
+        }
+        (Value::Element(Kept::Field, x), Value::Element(_, v)) => {
+            let rest = rest.dense()?;
+            let parts = single(x).into_iter().zip(single(v)).zip(&rest.data);
+            let parts = parts.map(|((x, v), r)| x.moved(&v, &SMatrix::<T, 1, 1>::new(*r)));
+            let (ends, left): (Vec<T>, Vec<T>) =
+                parts.map(|(end, left)| (end.matrix()[0], left[0])).unzip();
+            let (rows, cols) = (x.rows, x.cols);
+            let left = Dense { rows, cols, data: left };
+            (field(x, ends), Value::of(left))
+        }
+        _ => return None,
+    };
+    Some(Value::List(vec![end, left]))
+}
+
+fn between<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
+    let [from, rest, to, next] = a else { return None };
+    Some(match (from, to) {
+        (Value::Motion(g), Value::Motion(f)) => {
+            Value::Motion(Box::new(g.velocity_between(&way(rest)?, f, &way(next)?)))
+        }
+        (Value::Plane(g), Value::Plane(f)) => {
+            Value::Plane(Box::new(g.velocity_between(&way(rest)?, f, &way(next)?)))
+        }
+        (Value::Element(Kept::Field, x), Value::Element(_, y)) => {
+            let (rest, next) = (rest.dense()?, next.dense()?);
+            let ends = single(x).into_iter().zip(single(y));
+            let rests = rest.data.iter().zip(&next.data);
+            let one = |x: &T| SMatrix::<T, 1, 1>::new(*x);
+            let each = ends.zip(rests).map(|((x, y), (r, s))| {
+                x.velocity_between(&one(r), &y, &one(s)).matrix()[0]
+            });
+            field(x, each.collect())
+        }
+        _ => return None,
+    })
+}
+
+fn inverse<T: Real>(a: &Value<T>) -> Option<Value<T>> {
+    Some(match a {
+        Value::Rotation(r) => Value::Rotation(r.inverse()),
+        Value::Quaternion(q) => Value::Quaternion(q.inverse()),
+        Value::Motion(g) => Value::Motion(Box::new(g.inverse())),
+        Value::Plane(g) => Value::Plane(Box::new(g.inverse())),
+        Value::Element(..) => return of_both!(a, a, |a, _| Group::<T>::inverse(&a)),
+        _ => return None,
+    })
+}
+
+pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
+    Some(match (name, arguments) {
+        ("matrix", 1) => |a, _| matrix(a.first()?),
+        ("body_velocity", 2) => |a, _| velocity(a.first()?, a.get(1)?),
+        ("spatial_velocity", 2) => |a, _| spatial_velocity(a.first()?, a.get(1)?),
+        ("inverse", 1) => |a, _| inverse(a.first()?),
+        ("moved", 3) => moved,
+        ("velocity_between", 4) => between,
+        ("way", 2) => |a, _| match (a.first()?, a.get(1)?) {
+            (Value::Motion(g), Value::Motion(v)) => Some(Value::of(Dense::of(&g.way(v)))),
+            (Value::Plane(g), Value::Plane(v)) => Some(Value::of(Dense::of(&g.way(v)))),
+            _ => None,
+        },
+        ("added", 3) => |a, _| {
+            let [value, rest, more] = a else { return None };
+            let (value, rest, more) = (value.dense()?, rest.dense()?, more.dense()?);
+            if !value.fits(&rest) || !value.fits(&more) {
+                return None;
+            }
+            let one = |x: T| SMatrix::<T, 1, 1>::new(x);
+            let parts = value.data.iter().zip(&rest.data).zip(&more.data);
+            let parts = parts.map(|((v, r), m)| added(&one(*v), &one(*r), &one(*m)));
+            let (sums, left): (Vec<T>, Vec<T>) = parts.map(|(s, l)| (s[0], l[0])).unzip();
+            let of = |data| {
+                let (rows, cols) = (value.rows, value.cols);
+                Value::of(Dense { rows, cols, data })
+            };
+            Some(Value::List(vec![of(sums), of(left)]))
+        },
+        ("quaternion", 1) => |a, _| match a.first()? {
+            Value::Rotation(r) => Some(list(r.quaternion())),
+            _ => None,
+        },
+        ("components", 1) => |a, _| match a.first()? {
+            Value::Quaternion(q) => Some(list(q.components())),
+            _ => None,
+        },
+        ("rotation", 1) => |a, _| match a.first()? {
+            Value::Quaternion(q) => Some(Value::Rotation(q.rotation())),
+            Value::Turned(r) => Some(Value::Rotation(r.rotation())),
+            _ => None,
+        },
+        ("unit_quaternion", 1) => |a, _| match a.first()? {
+            Value::Turned(r) => Some(Value::Quaternion(r.unit_quaternion())),
+            _ => None,
+        },
+        ("inverse_rotate", 2) => |a, _| match (a.first()?, a.get(1)?) {
+            (Value::Rotation(r), Value::Vector(v)) => Some(Value::Vector(r.inverse_rotate(v))),
+            (Value::Turned(r), Value::Vector(v)) => Some(Value::Vector(r.inverse_rotate(v))),
+            _ => None,
+        },
+        ("rotate", 2) => |a, _| match (a.first()?, a.get(1)?) {
+            (Value::Rotation(r), Value::Vector(v)) => Some(Value::Vector(r.rotate(v))),
+            _ => None,
+        },
+        _ => return None,
+    })
+}
+
+fn list<T: Real>(all: [T; 4]) -> Value<T> {
+    Value::List(all.map(Value::Real).to_vec())
+}

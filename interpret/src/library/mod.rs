@@ -1,0 +1,80 @@
+//! What emitted code calls, by name: the runtime's own functions on [`Value`]s. One file a kind.
+
+mod algebra;
+mod domain;
+mod groups;
+mod momenta;
+mod solvers;
+mod special;
+mod validate;
+
+pub use algebra::{binary, entry, negative};
+pub use solvers::Factor;
+
+use crate::code::{Native, Special};
+use crate::value::Value;
+use clebsch::Real;
+
+/// The numbers of field names that mean something to the runtime's own types.
+pub const NAMES: [&str; 6] = [
+    "rotation",
+    "translation",
+    "cause",
+    "attitude",
+    "momentum",
+    "edge",
+];
+
+/// A field of a type of the runtime.
+pub fn field<T: Real>(value: &Value<T>, name: u32) -> Option<Value<T>> {
+    match (NAMES.get(name as usize).copied()?, value) {
+        ("rotation", Value::Motion(g)) => Some(Value::Rotation(g.rotation)),
+        ("translation", Value::Motion(g)) => Some(Value::Vector(g.translation)),
+        ("cause", Value::Failed(e)) => Some(Value::failed((**e).clone().cause())),
+        _ => None,
+    }
+}
+
+/// What stands inside: the components of a momentum.
+pub fn inner<T: Real>(value: &Value<T>) -> Option<Value<T>> {
+    match value {
+        Value::Momentum(_, v) => Some(Value::Vector(*v)),
+        Value::Impulse(_, a) => Some(Value::of(a.clone())),
+        Value::List(list) => list.first().cloned(),
+        _ => None,
+    }
+}
+
+/// The function of the runtime with this name, as it is called with so many arguments; a method
+/// counts what it is a method of.
+pub fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
+    algebra::native(name, arguments)
+        .or_else(|| groups::native(name, arguments))
+        .or_else(|| momenta::native(name, arguments))
+        .or_else(|| solvers::native(name, arguments))
+        .or_else(|| domain::native(name, arguments))
+        .or_else(|| validate::native(name, arguments))
+}
+
+/// The same for those that change their first argument, or call back.
+pub fn special<T: Real>(name: &str) -> Option<Special<T>> {
+    special::special(name)
+}
+
+/// The body for each size that static matrices are compiled for.
+macro_rules! of_size {
+    ($n:expr, $N:ident, $body:expr) => {
+        match $n {
+            1 => { const $N: usize = 1; $body }
+            2 => { const $N: usize = 2; $body }
+            3 => { const $N: usize = 3; $body }
+            4 => { const $N: usize = 4; $body }
+            5 => { const $N: usize = 5; $body }
+            6 => { const $N: usize = 6; $body }
+            7 => { const $N: usize = 7; $body }
+            8 => { const $N: usize = 8; $body }
+            _ => None,
+        }
+    };
+}
+pub(crate) use of_size;

@@ -1,0 +1,365 @@
+//! The solvers of steps, and what is prepared for them.
+
+use super::momenta::three;
+use super::of_size;
+use crate::code::Native;
+use crate::dense::Dense;
+use crate::failure::Failure;
+use crate::value::{Frame, Kept, Value};
+use clebsch::emitted::{
+    Edge, Free, LeftFactor, Poinsot, QuaternionBody, divided, left_sided, reach_of, right_sided,
+    rotation_at, two_sided, two_sided_increment,
+};
+use clebsch::{Real, StepCause};
+use nalgebra::{SMatrix, Vector3};
+use std::sync::Arc;
+
+/// A left factor of one of the sizes that are compiled.
+#[derive(Clone, Debug)]
+pub enum Factor<T: Real> {
+    /// Two rows.
+    Two(Arc<LeftFactor<2, T>>),
+    /// Three.
+    Three(Arc<LeftFactor<3, T>>),
+    /// Four.
+    Four(Arc<LeftFactor<4, T>>),
+    /// Five.
+    Five(Arc<LeftFactor<5, T>>),
+    /// Six.
+    Six(Arc<LeftFactor<6, T>>),
+    /// Seven.
+    Seven(Arc<LeftFactor<7, T>>),
+    /// Eight.
+    Eight(Arc<LeftFactor<8, T>>),
+}
+
+fn prepared<T: Real>(c: &Dense<T>) -> Option<Value<T>> {
+    macro_rules! of {
+        ($($n:literal $kind:ident),*) => {
+            match c.rows {
+                $($n => LeftFactor::<$n, T>::new(c.fixed())
+                    .map(|f| Factor::$kind(Arc::new(f)))
+                    .map_err(Failure::from),)*
+                _ => return None,
+            }
+        };
+    }
+    let factor = of!(2 Two, 3 Three, 4 Four, 5 Five, 6 Six, 7 Seven, 8 Eight);
+    Some(match factor {
+        Ok(factor) => Value::LeftFactor(factor),
+        Err(e) => Value::failed(e),
+    })
+}
+
+macro_rules! with_factor {
+    ($factor:expr, $f:ident => $body:expr) => {
+        match $factor {
+            Factor::Two($f) => $body,
+            Factor::Three($f) => $body,
+            Factor::Four($f) => $body,
+            Factor::Five($f) => $body,
+            Factor::Six($f) => $body,
+            Factor::Seven($f) => $body,
+            Factor::Eight($f) => $body,
+        }
+    };
+}
+
+fn turned<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
+    let (edge, method, body, h, element) = match a {
+        [edge, body, h, element] => (edge, None, body, h, element),
+        [edge, Value::Method(method), body, h, element] => (edge, Some(*method), body, h, element),
+        _ => return None,
+    };
+    let (Value::Edge(edge), Value::Real(h)) = (edge, h) else {
+        return None;
+    };
+    Some(match (body, element, method) {
+        (Value::Poinsot(body), Value::Rotation(r), None) => {
+            Value::result(edge.turn(body, *h, r).map(Value::Turned))
+        }
+        (Value::Poinsot(body), Value::Rotation(r), Some(method)) => {
+            Value::result(edge.turn_by(method, body, *h, r).map(Value::Turned))
+        }
+        _ => return None,
+    })
+}
+
+/// The arguments of a step in unit quaternions.
+macro_rules! in_quaternions {
+    ($a:expr, $edge:ident, $body:ident, $h:ident, $q:ident, $made:expr) => {{
+        let [Value::Edge($edge), Value::QuaternionBody($body), Value::Real($h), Value::Quaternion($q)] =
+            $a
+        else {
+            return None;
+        };
+        Some($made)
+    }};
+}
+
+fn vector<T: Real>(a: &Value<T>) -> Option<Vector3<T>> {
+    match a {
+        Value::Vector(v) => Some(*v),
+        _ => None,
+    }
+}
+
+fn text<T: Real>(a: &Value<T>) -> Option<&'static str> {
+    match a {
+        Value::Text(name) => Some(name),
+        _ => None,
+    }
+}
+
+fn increment<T: Real, const R: usize, const C: usize>(
+    shape: (usize, usize),
+    solved: Result<
+        clebsch::Additive<R, C, T>,
+        clebsch::solvers::two_sided::SingularFactor,
+    >,
+) -> Value<T> {
+    let cut = |a: SMatrix<T, R, C>| Dense::from_fn(shape.0, shape.1, |i, j| a[(i, j)]);
+    Value::result(solved.map(|x| Value::Element(Kept::Field, cut(x.matrix()))))
+}
+
+/// The linear equations of fields, for every shape of up to four rows and columns, and of square and
+/// column shapes beyond.
+macro_rules! of_shape {
+    ($rows:expr, $cols:expr, $R:ident, $C:ident, $body:expr) => {
+        match ($rows, $cols) {
+            (1, 1) => { const $R: usize = 1; const $C: usize = 1; $body }
+            (1, 2) => { const $R: usize = 1; const $C: usize = 2; $body }
+            (1, 3) => { const $R: usize = 1; const $C: usize = 3; $body }
+            (1, 4) => { const $R: usize = 1; const $C: usize = 4; $body }
+            (2, 1) => { const $R: usize = 2; const $C: usize = 1; $body }
+            (2, 2) => { const $R: usize = 2; const $C: usize = 2; $body }
+            (2, 3) => { const $R: usize = 2; const $C: usize = 3; $body }
+            (2, 4) => { const $R: usize = 2; const $C: usize = 4; $body }
+            (3, 1) => { const $R: usize = 3; const $C: usize = 1; $body }
+            (3, 2) => { const $R: usize = 3; const $C: usize = 2; $body }
+            (3, 3) => { const $R: usize = 3; const $C: usize = 3; $body }
+            (3, 4) => { const $R: usize = 3; const $C: usize = 4; $body }
+            (4, 1) => { const $R: usize = 4; const $C: usize = 1; $body }
+            (4, 2) => { const $R: usize = 4; const $C: usize = 2; $body }
+            (4, 3) => { const $R: usize = 4; const $C: usize = 3; $body }
+            (4, 4) => { const $R: usize = 4; const $C: usize = 4; $body }
+            (5, 1) => { const $R: usize = 5; const $C: usize = 1; $body }
+            (6, 1) => { const $R: usize = 6; const $C: usize = 1; $body }
+            (7, 1) => { const $R: usize = 7; const $C: usize = 1; $body }
+            (8, 1) => { const $R: usize = 8; const $C: usize = 1; $body }
+            (5, 5) => { const $R: usize = 5; const $C: usize = 5; $body }
+            (6, 6) => { const $R: usize = 6; const $C: usize = 6; $body }
+            (7, 7) => { const $R: usize = 7; const $C: usize = 7; $body }
+            (8, 8) => { const $R: usize = 8; const $C: usize = 8; $body }
+            _ => None,
+        }
+    };
+}
+
+/// The names of two factors, kept for good: they stand in errors.
+fn names<T: Real>(a: &Value<T>) -> Option<[&'static str; 2]> {
+    match a {
+        Value::List(list) => match list.as_slice() {
+            [Value::Text(a), Value::Text(b)] => Some([a, b]),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
+    Some(match (name, arguments) {
+        ("Edge::new", 2) => |a, _| Some(Value::Edge(Edge::new(vector(a.first()?)?, vector(a.get(1)?)?))),
+        ("space", 1) => |a, _| match a.first()? {
+            Value::Edge(edge) => Some(Value::Vector(edge.space())),
+            _ => None,
+        },
+        ("body", 1) => |a, _| match a.first()? {
+            Value::Edge(edge) => Some(Value::Vector(edge.body())),
+            _ => None,
+        },
+        ("turn", 4) | ("turn_by", 5) => turned,
+        ("turn_in_quaternions", 4) => |a, _| {
+            in_quaternions!(a, edge, body, h, q, {
+                Value::result(edge.turn_in_quaternions(body, *h, q).map(Value::Turned))
+            })
+        },
+        ("free_in_quaternions", 4) => |a, _| {
+            in_quaternions!(a, edge, body, h, q, {
+                let solved = edge.free_in_quaternions(body, *h, q);
+                Value::result(solved.map(|(q, edge)| {
+                    Value::List(vec![Value::Quaternion(q), Value::Edge(edge)])
+                }))
+            })
+        },
+        ("Poinsot::new", 1) => |a, _| match a.first()? {
+            Value::Matrix(j) => {
+                let body = Poinsot::new(*j);
+                Some(Value::result(body.map(|b| Value::Poinsot(Arc::new(b)))))
+            }
+            _ => None,
+        },
+        ("QuaternionBody::new", 3) => |a, _| match a {
+            [Value::Text(name), Value::Matrix(m), Value::Real(c)] => {
+                let body = QuaternionBody::new(name, *m, *c);
+                Some(Value::result(body.map(|b| Value::QuaternionBody(Arc::new(b)))))
+            }
+            _ => None,
+        },
+        ("velocity", 2) => |a, _| match a {
+            [Value::QuaternionBody(body), Value::Vector(v)] => {
+                Some(Value::result(body.velocity(v).map(Value::Quaternion)))
+            }
+            _ => None,
+        },
+        ("LeftFactor::new", 1) => |a, _| prepared(&a.first()?.dense()?),
+        ("solve", 3) => |a, _| match a {
+            [Value::LeftFactor(f), v, Value::Method(method)] => {
+                let v = v.dense()?;
+                with_factor!(f, f => {
+                    let solved = f.solve(&v.fixed(), *method);
+                    Some(Value::result(
+                        solved.map(|g| Value::Element(Kept::Orthogonal, Dense::of(&g.matrix()))),
+                    ))
+                })
+            }
+            _ => None,
+        },
+        ("rotation", 3) => |a, _| match a {
+            [Value::LeftFactor(f), Value::Vector(v), Value::Method(method)] => {
+                with_factor!(f, f => Some(Value::result(f.rotation(v, *method).map(Value::Rotation))))
+            }
+            _ => None,
+        },
+        ("reach", 2) => |a, _| match a {
+            [Value::LeftFactor(f), v] => {
+                let v = v.dense()?;
+                with_factor!(f, f => Some(Value::Double(f.reach(&v.fixed()))))
+            }
+            _ => None,
+        },
+        ("reach_of", 2) => |a, _| {
+            let (c, v) = (a.first()?.dense()?, a.get(1)?.dense()?);
+            of_size!(c.rows, N, {
+                Some(Value::Double(reach_of(&c.fixed::<N, N>(), &v.fixed::<N, N>())))
+            })
+        },
+        ("rotation_at", 3) => |a, _| match a {
+            [Value::Matrix(c), Value::Vector(v), Value::Method(method)] => {
+                Some(Value::result(rotation_at(c, v, *method).map(Value::Rotation)))
+            }
+            _ => None,
+        },
+        ("Free::start_of_order", 5) => |a, _| match a {
+            [Value::Poinsot(body), Value::Rotation(r), m, Value::Real(h), Value::Order(order)] => {
+                let m = clebsch::SpatialMomentum(three(Frame::Spatial, m)?);
+                let free = Free::start_of_order(body, r, &m, *h, *order);
+                Some(Value::result(free.map(|f| Value::Free(Box::new(f)))))
+            }
+            _ => None,
+        },
+        ("solved_by", 2) => |a, _| match a {
+            [Value::Free(free), Value::Method(method)] => {
+                Some(Value::Free(Box::new(free.solved_by(*method))))
+            }
+            _ => None,
+        },
+        ("compensated", 1) => |a, _| match a.first()? {
+            Value::Free(free) => Some(Value::Free(Box::new(free.compensated()))),
+            _ => None,
+        },
+        ("body_momentum", 1) => |a, _| match a.first()? {
+            Value::Free(free) => Some(Value::Momentum(Frame::Body, free.body_momentum().0)),
+            _ => None,
+        },
+        ("Method::of_size", 1) => |a, _| {
+            Some(Value::Method(clebsch::solvers::Method::of_size(a.first()?.count()?)))
+        },
+        ("two_sided", 4) => |a, _| {
+            let [left, known, right, label] = a else { return None };
+            let (l, m, r, label) = (left.dense()?, known.dense()?, right.dense()?, names(label)?);
+            of_size!(m.rows, N, {
+                let solved = two_sided(
+                    &l.fixed::<N, N>(),
+                    &m.fixed::<N, N>(),
+                    &r.fixed::<N, N>(),
+                    &label,
+                );
+                Some(Value::result(
+                    solved.map(|g| Value::Element(Kept::Linear, Dense::of(&g.matrix()))),
+                ))
+            })
+        },
+        ("two_sided_increment", 4) => |a, _| {
+            let [left, known, right, label] = a else { return None };
+            let (l, m, r, label) = (left.dense()?, known.dense()?, right.dense()?, names(label)?);
+            of_shape!(m.rows, m.cols, R, C, {
+                let solved = two_sided_increment(
+                    &l.fixed::<R, R>(),
+                    &m.fixed::<R, C>(),
+                    &r.fixed::<C, C>(),
+                    &label,
+                );
+                Some(increment((R, C), solved))
+            })
+        },
+        ("left_sided", 3) => |a, _| {
+            let (l, m, label) = (a.first()?.dense()?, a.get(1)?.dense()?, text(a.get(2)?)?);
+            of_shape!(m.rows, m.cols, R, C, {
+                let solved = left_sided(&l.fixed::<R, R>(), &m.fixed::<R, C>(), label);
+                Some(increment((R, C), solved))
+            })
+        },
+        ("right_sided", 3) => |a, _| {
+            let (m, r, label) = (a.first()?.dense()?, a.get(1)?.dense()?, text(a.get(2)?)?);
+            of_shape!(m.rows, m.cols, R, C, {
+                let solved = right_sided(&m.fixed::<R, C>(), &r.fixed::<C, C>(), label);
+                Some(increment((R, C), solved))
+            })
+        },
+        ("divided", 3) => |a, _| {
+            let (m, label) = (a.first()?.dense()?, text(a.get(2)?)?);
+            let Value::Real(number) = a.get(1)? else { return None };
+            of_shape!(m.rows, m.cols, R, C, {
+                Some(increment((R, C), divided(&m.fixed::<R, C>(), *number, label)))
+            })
+        },
+        ("StepCause::from", 1) => |a, _| match a.first()? {
+            Value::Failed(e) => Some(Value::failed((**e).clone().cause())),
+            _ => None,
+        },
+        ("StepCause::Singular", 1) | ("StepCause::Factor", 1) | ("StepCause::LeftFactor", 1) => {
+            |a, _| match a.first()? {
+                Value::Failed(e) => Some(Value::failed((**e).clone().cause())),
+                _ => None,
+            }
+        }
+        ("StepCause::NotFinite", 1) => |a, _| {
+            let what = text(a.first()?)?;
+            Some(Value::failed(StepCause::NotFinite { what }))
+        },
+        ("StartError::Refused", 1) => |a, _| match a.first()? {
+            Value::Failed(e) => {
+                let cause = (**e).clone().cause();
+                Some(Value::failed(clebsch::StartError::Refused(cause)))
+            }
+            _ => None,
+        },
+        ("at_node", 2) => |a, _| match (a.first()?, a.get(1)?) {
+            (Value::Failed(e), Value::Int(node)) => {
+                let cause = (**e).clone().cause();
+                Some(Value::failed(cause.at_node(u64::try_from(*node).ok()?)))
+            }
+            _ => None,
+        },
+        ("in_field", 2) => |a, _| match (a.first()?, a.get(1)?) {
+            (Value::Failed(e), Value::Text(field)) => {
+                Some(Value::failed((**e).clone().in_field(field)))
+            }
+            _ => None,
+        },
+        // Errors and values that are told as they are.
+        ("Ok", 1) | ("Some", 1) | ("Err", 1) => |a, _| Some((*a.first()?).clone()),
+        _ => return None,
+    })
+}

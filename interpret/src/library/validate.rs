@@ -1,0 +1,106 @@
+//! What is asked of parameters and initial values.
+
+use super::algebra::numbers;
+use super::of_size;
+use crate::code::Native;
+use crate::value::Value;
+use clebsch::{ParameterError, Real, validate};
+use nalgebra::SMatrix;
+
+fn told<T: Real>(r: Result<(), ParameterError>) -> Option<Value<T>> {
+    Some(Value::result(r.map(|()| Value::Unit)))
+}
+
+/// A question to a square matrix.
+macro_rules! square {
+    ($f:path) => {
+        |a, _| {
+            let [Value::Text(name), m] = a else { return None };
+            let m = m.dense()?;
+            of_size!(m.rows, N, told($f(name, &m.fixed::<N, N>())))
+        }
+    };
+}
+
+/// A question to an argument of a function.
+macro_rules! argument {
+    ($f:path) => {
+        |a, _| match a {
+            [Value::Domain(d), Value::Function(f), Value::Text(label), Value::Real(x)] => {
+                told($f(*d, *f, label, *x))
+            }
+            _ => None,
+        }
+    };
+}
+
+pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
+    Some(match (name, arguments) {
+        ("validate::finite", 2) => |a, _| match a {
+            [Value::Text(name), values] => {
+                let values = match values {
+                    Value::Momentum(..) | Value::Impulse(..) => numbers(&super::inner(values)?)?,
+                    values => numbers(values)?,
+                };
+                told(validate::finite(name, &values))
+            }
+            _ => None,
+        },
+        ("validate::finite_entries", 2) => |a, _| {
+            let [Value::Text(name), m] = a else { return None };
+            let m = m.dense()?;
+            macro_rules! wide {
+                ($C:literal) => {
+                    of_size!(m.rows, N, {
+                        told(validate::finite_entries(name, &m.fixed::<N, $C>()))
+                    })
+                };
+            }
+            match m.cols {
+                1 => wide!(1),
+                2 => wide!(2),
+                3 => wide!(3),
+                4 => wide!(4),
+                5 => wide!(5),
+                6 => wide!(6),
+                7 => wide!(7),
+                8 => wide!(8),
+                _ => None,
+            }
+        },
+        ("validate::symmetric", 2) => square!(validate::symmetric),
+        ("validate::skew", 2) => square!(validate::skew),
+        ("validate::diagonal", 2) => square!(validate::diagonal),
+        ("validate::orthogonal", 2) => square!(validate::orthogonal),
+        ("validate::invertible", 2) => square!(validate::invertible),
+        ("validate::unit_quaternion", 2) => |a, _| {
+            let [Value::Text(name), m] = a else { return None };
+            told(validate::unit_quaternion(name, &m.dense()?.fixed::<4, 4>()))
+        },
+        ("validate::rigid_motion", 2) => |a, _| {
+            let [Value::Text(name), m] = a else { return None };
+            match m {
+                Value::Matrix(m) => told(validate::rigid_motion::<T, 3, 2>(name, m)),
+                m => {
+                    let m: SMatrix<T, 4, 4> = m.dense()?.fixed();
+                    told(validate::rigid_motion::<T, 4, 3>(name, &m))
+                }
+            }
+        },
+        ("validate::positive_step", 1) => |a, _| match a.first()? {
+            Value::Real(h) => told(validate::positive_step(*h)),
+            _ => None,
+        },
+        ("validate::directed_step", 1) => |a, _| match a.first()? {
+            Value::Real(h) => told(validate::directed_step(*h)),
+            _ => None,
+        },
+        ("validate::assumption", 2) => |a, _| match a {
+            [Value::Bool(holds), Value::Text(label)] => told(validate::assumption(*holds, label)),
+            _ => None,
+        },
+        ("validate::inside", 4) => argument!(validate::inside),
+        ("validate::defined", 4) => argument!(validate::defined),
+        _ => return None,
+    })
+}

@@ -1,0 +1,276 @@
+//! Calls: of the model's own functions and of the runtime's.
+
+use super::expression::whole;
+use super::statement::is_place;
+use super::{Binding, Lower, refuse};
+use crate::Refused;
+use crate::code::{Code, Pattern, Routine};
+use crate::library;
+use crate::program::named;
+use crate::value::{Frame, Value};
+use clebsch::Real;
+use std::collections::BTreeMap;
+use std::sync::{Arc, OnceLock};
+
+impl<T: Real> Lower<'_, '_, T> {
+    /// A function of the runtime, if there is one.
+    pub(super) fn native(
+        &self,
+        name: &str,
+        arguments: Vec<Code<T>>,
+        sizes: Vec<usize>,
+    ) -> Option<Code<T>> {
+        let native = library::native(name, arguments.len())?;
+        Some(Code::Call(native, arguments, sizes))
+    }
+
+    /// The sizes among generic arguments; the scalar is none of them.
+    fn generics(&self, list: Option<&syn::AngleBracketedGenericArguments>) -> Vec<usize> {
+        let Some(list) = list else {
+            return Vec::new();
+        };
+        let sizes = list.args.iter().filter_map(|a| match a {
+            syn::GenericArgument::Const(e) => self.size(e),
+            syn::GenericArgument::Type(syn::Type::Path(p)) => {
+                let name = p.path.get_ident()?.to_string();
+                self.shared.sizes.get(&name).copied()
+            }
+            _ => None,
+        });
+        sizes.collect()
+    }
+
+    fn sizes_of(&self, path: &syn::Path) -> Vec<usize> {
+        let lists = path.segments.iter().filter_map(|s| match &s.arguments {
+            syn::PathArguments::AngleBracketed(list) => Some(list),
+            _ => None,
+        });
+        lists.flat_map(|list| self.generics(Some(list))).collect()
+    }
+
+    /// The sizes of a declared matrix.
+    fn sizes_of_type(&self, ty: Option<&syn::Type>) -> Vec<usize> {
+        match ty {
+            Some(syn::Type::Path(p)) => self.sizes_of(&p.path),
+            _ => Vec::new(),
+        }
+    }
+
+    /// A closure, given as it is or by name.
+    fn argument(&mut self, e: &syn::Expr) -> Result<Code<T>, Refused> {
+        if let syn::Expr::Path(p) = e
+            && let Some(name) = p.path.get_ident()
+            && let Some(Binding::Closure(closure)) = self.find(&name.to_string())
+        {
+            let closure = closure.clone();
+            return self.closure(&closure);
+        }
+        self.expression(e, None)
+    }
+
+    pub(super) fn call(
+        &mut self,
+        c: &syn::ExprCall,
+        ty: Option<&syn::Type>,
+    ) -> Result<Code<T>, Refused> {
+        let syn::Expr::Path(path) = &*c.func else {
+            return Err(refuse(c));
+        };
+        let path = &path.path;
+        let sizes = self.sizes_of(path);
+        let names: Vec<String> = path.segments.iter().map(|s| s.ident.to_string()).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        match names.as_slice() {
+            ["T", "from_f64"] => {
+                let [argument] = &self.all(c.args.iter())?[..] else {
+                    return Err(refuse(c));
+                };
+                return match argument {
+                    Code::Constant(Value::Double(x)) => {
+                        Ok(Code::Constant(Value::Real(T::from_f64(*x))))
+                    }
+                    other => {
+                        let call = self.native("from_f64", vec![other.clone()], sizes);
+                        call.ok_or_else(|| refuse(c))
+                    }
+                };
+            }
+            ["T", "zero"] => return Ok(Code::Constant(Value::Real(T::zero()))),
+            ["T", "one"] => return Ok(Code::Constant(Value::Real(T::one()))),
+            ["SMatrix" | "SVector", "zeros"] if sizes.is_empty() => {
+                let sizes = self.sizes_of_type(ty);
+                return self.native("zeros", Vec::new(), sizes).ok_or_else(|| refuse(c));
+            }
+            ["SMatrix" | "SVector", "from_fn"] => {
+                let mut arguments = vec![
+                    whole(sizes.first().copied().unwrap_or(1)),
+                    whole(sizes.get(1).copied().unwrap_or(1)),
+                ];
+                for a in &c.args {
+                    arguments.push(self.argument(a)?);
+                }
+                let special = library::special("from_fn").ok_or_else(|| refuse(c))?;
+                return Ok(Code::Special(special, arguments));
+            }
+            ["SVector", "new"] => {
+                let arguments = self.all(c.args.iter())?;
+                return self.native("single", arguments, sizes).ok_or_else(|| refuse(c));
+            }
+            [.., "repeat_n"] => {
+                let [value, count] = &self.all(c.args.iter())?[..] else {
+                    return Err(refuse(c));
+                };
+                let (value, count) = (value.clone(), count.clone());
+                return Ok(Code::Repeat(Box::new(value), Box::new(count)));
+            }
+            _ => {}
+        }
+        if let Some(frame) = frame(&named(path)) {
+            let [inner] = &self.all(c.args.iter())?[..] else {
+                return Err(refuse(c));
+            };
+            return Ok(Code::Momentum(frame, Box::new(inner.clone())));
+        }
+        // A function of the model without a receiver.
+        if let [owner, name] = names.as_slice() {
+            let owner = match *owner {
+                "Self" => self.own_type().to_owned(),
+                other => other.to_owned(),
+            };
+            if self.shared.program.function(&owner, name).is_some() {
+                return self.written_out(&owner, name, None, c.args.iter());
+            }
+        }
+        let name = match names.as_slice() {
+            ["SMatrix" | "SVector", name] => (*name).to_owned(),
+            [name] => (*name).to_owned(),
+            [.., owner, name] => format!("{owner}::{name}"),
+            [] => return Err(refuse(c)),
+        };
+        self.runtime(&name, c.args.iter(), None, sizes)?
+            .ok_or_else(|| refuse(c))
+    }
+
+    /// A function or a method of the runtime.
+    fn runtime<'e>(
+        &mut self,
+        name: &str,
+        list: impl Iterator<Item = &'e syn::Expr>,
+        receiver: Option<Code<T>>,
+        sizes: Vec<usize>,
+    ) -> Result<Option<Code<T>>, Refused> {
+        let mut arguments: Vec<Code<T>> = receiver.into_iter().collect();
+        for e in list {
+            arguments.push(self.argument(e)?);
+        }
+        // What calls back or changes places is no function of values.
+        let calls_back = arguments.iter().any(|a| matches!(a, Code::Closure(..)));
+        if let Some(special) = library::special(name)
+            && (calls_back || library::native::<T>(name, arguments.len()).is_none())
+        {
+            return Ok(Some(Code::Special(special, arguments)));
+        }
+        Ok(self.native(name, arguments, sizes))
+    }
+
+    pub(super) fn method(&mut self, m: &syn::ExprMethodCall) -> Result<Code<T>, Refused> {
+        let name = m.method.to_string();
+        if let Some(owner) = self.kind(&m.receiver)
+            && self.shared.program.function(&owner, &name).is_some()
+        {
+            return self.written_out(&owner, &name, Some(&m.receiver), m.args.iter());
+        }
+        let receiver = self.expression(&m.receiver, None)?;
+        let sizes = self.generics(m.turbofish.as_ref());
+        self.runtime(&name, m.args.iter(), Some(receiver), sizes)?
+            .ok_or_else(|| refuse(m))
+    }
+
+    /// A function of the model: its body, with the parameters standing for what is given. Those that
+    /// are rarely called, or call themselves, have places of their own instead.
+    fn written_out<'e>(
+        &mut self,
+        owner: &str,
+        name: &str,
+        receiver: Option<&'e syn::Expr>,
+        list: impl Iterator<Item = &'e syn::Expr>,
+    ) -> Result<Code<T>, Refused> {
+        let program = self.shared.program;
+        let Some(function) = program.function(owner, name) else {
+            return Err(Refused::Construct(format!("{owner}::{name}")));
+        };
+        let given: Vec<&syn::Expr> = receiver.into_iter().chain(list).collect();
+        let mut arguments = Vec::new();
+        for e in &given {
+            arguments.push(self.expression(e, None)?);
+        }
+        let key = (owner.to_owned(), name.to_owned());
+        let rare = function.attrs.iter().any(|a| a.path().is_ident("cold"));
+        if rare || self.within.contains(&key) {
+            return Ok(Code::Routine(self.routine(&key, function)?, arguments));
+        }
+        self.within.push(key);
+        let mut scope = BTreeMap::new();
+        let mut all = Vec::new();
+        for (parameter, code) in function.sig.inputs.iter().zip(arguments) {
+            let (name, kind) = self.parameter(parameter)?;
+            let place = match is_place(&code) {
+                true => code,
+                false => {
+                    let at = self.fresh();
+                    all.push(Code::Let(Pattern::Place(at), Box::new(code), None));
+                    Code::Place(at)
+                }
+            };
+            scope.insert(name, Binding::Place(place, kind));
+        }
+        // Names of the caller are not seen.
+        let outer = std::mem::replace(&mut self.scopes, vec![scope]);
+        let body = self.block(&function.block);
+        self.scopes = outer;
+        self.within.pop();
+        all.push(body?);
+        Ok(Code::Function(Box::new(Code::Block(all))))
+    }
+
+    fn routine(
+        &mut self,
+        key: &(String, String),
+        function: &syn::ImplItemFn,
+    ) -> Result<Arc<OnceLock<Routine<T>>>, Refused> {
+        if let Some(known) = self.shared.routines.get(key) {
+            return Ok(known.clone());
+        }
+        let routine = Arc::new(OnceLock::new());
+        self.shared.routines.insert(key.clone(), routine.clone());
+        let mut inner = Lower {
+            shared: self.shared,
+            scopes: vec![BTreeMap::new()],
+            next: function.sig.inputs.len(),
+            within: vec![key.clone()],
+        };
+        for (at, parameter) in function.sig.inputs.iter().enumerate() {
+            let (name, kind) = inner.parameter(parameter)?;
+            inner.bind(name, Binding::Place(Code::Place(at), kind));
+        }
+        let body = inner.block(&function.block)?;
+        let places = inner.next;
+        let body = Code::Function(Box::new(body));
+        // Set once: it was missing a moment ago.
+        let _ = routine.set(Routine { places, body });
+        Ok(routine)
+    }
+}
+
+/// The frame of a momentum by its type.
+fn frame(name: &str) -> Option<Frame> {
+    Some(match name {
+        "BodyMomentum" | "BodyMomentumMatrix" | "BodyImpulse" | "BodyPlaneImpulse" => Frame::Body,
+        "SpatialMomentum" | "SpatialMomentumMatrix" | "SpatialImpulse" | "SpatialPlaneImpulse" => {
+            Frame::Spatial
+        }
+        "CarriedImpulse" | "CarriedPlaneImpulse" => Frame::Carried,
+        "FieldMomentum" => Frame::Field,
+        _ => return None,
+    })
+}

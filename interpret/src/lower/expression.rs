@@ -1,0 +1,369 @@
+//! Expressions that are no calls.
+
+use super::{Binding, Lower, refuse};
+use crate::Refused;
+use crate::code::{Arm, Code, Operator, Pattern};
+use crate::program::named;
+use crate::value::Value;
+use clebsch::Real;
+use clebsch::domain;
+use clebsch::emitted::{Method, Order};
+use std::collections::BTreeMap;
+
+impl<T: Real> Lower<'_, '_, T> {
+    /// An expression; `ty` is what is known of its type.
+    pub(super) fn expression(
+        &mut self,
+        e: &syn::Expr,
+        ty: Option<&syn::Type>,
+    ) -> Result<Code<T>, Refused> {
+        Ok(match e {
+            syn::Expr::Lit(lit) => Code::Constant(self.literal(&lit.lit)?),
+            syn::Expr::Path(p) => self.path(&p.path)?.ok_or_else(|| refuse(e))?,
+            syn::Expr::Paren(p) => self.expression(&p.expr, ty)?,
+            syn::Expr::Group(g) => self.expression(&g.expr, ty)?,
+            syn::Expr::Reference(r) => self.expression(&r.expr, ty)?,
+            syn::Expr::Cast(c) => self.expression(&c.expr, ty)?,
+            syn::Expr::Unary(u) => {
+                let a = self.expression(&u.expr, ty)?;
+                match u.op {
+                    syn::UnOp::Deref(_) => a,
+                    syn::UnOp::Neg(_) => Code::Negative(Box::new(a)),
+                    syn::UnOp::Not(_) => Code::Not(Box::new(a)),
+                    _ => return Err(refuse(e)),
+                }
+            }
+            syn::Expr::Binary(b) => self.binary(b)?,
+            syn::Expr::Field(f) => self.field(f)?,
+            syn::Expr::Index(i) => {
+                let base = self.expression(&i.expr, None)?;
+                let at = match &*i.index {
+                    syn::Expr::Tuple(t) => self.all(t.elems.iter())?,
+                    one => vec![self.expression(one, None)?],
+                };
+                Code::Index(Box::new(base), at)
+            }
+            syn::Expr::Call(c) => self.call(c, ty)?,
+            syn::Expr::MethodCall(m) => self.method(m)?,
+            syn::Expr::Block(b) => self.block(&b.block)?,
+            syn::Expr::If(i) => self.conditional(i)?,
+            syn::Expr::Match(m) => self.matched(m)?,
+            syn::Expr::Assign(a) => {
+                let value = self.expression(&a.right, None)?;
+                let targets = match &*a.left {
+                    syn::Expr::Tuple(t) => self.all(t.elems.iter())?,
+                    one => vec![self.expression(one, None)?],
+                };
+                Code::Assign(targets, Box::new(value))
+            }
+            syn::Expr::Struct(s) => self.made(s)?,
+            syn::Expr::Tuple(t) => Code::List(self.all(t.elems.iter())?),
+            syn::Expr::Array(a) => Code::List(self.all(a.elems.iter())?),
+            syn::Expr::Repeat(r) => {
+                let (value, count) = (self.expression(&r.expr, None)?, self.size(&r.len));
+                let count = count.ok_or_else(|| refuse(&r.len))?;
+                Code::Repeat(Box::new(value), Box::new(whole(count)))
+            }
+            syn::Expr::Return(r) => {
+                let value = match &r.expr {
+                    Some(value) => self.expression(value, None)?,
+                    None => Code::Constant(Value::Unit),
+                };
+                Code::Return(Box::new(value))
+            }
+            syn::Expr::Try(t) => Code::Try(Box::new(self.expression(&t.expr, ty)?)),
+            syn::Expr::ForLoop(f) => self.counted(f)?,
+            syn::Expr::Closure(c) => self.closure(c)?,
+            other => return Err(refuse(other)),
+        })
+    }
+
+    /// Several expressions.
+    pub(super) fn all<'e>(
+        &mut self,
+        list: impl Iterator<Item = &'e syn::Expr>,
+    ) -> Result<Vec<Code<T>>, Refused> {
+        list.map(|e| self.expression(e, None)).collect()
+    }
+
+    fn literal(&self, lit: &syn::Lit) -> Result<Value<T>, Refused> {
+        Ok(match lit {
+            syn::Lit::Int(n) => Value::Int(n.base10_parse().map_err(|_| refuse(lit))?),
+            syn::Lit::Float(x) => Value::Double(x.base10_parse().map_err(|_| refuse(lit))?),
+            syn::Lit::Bool(b) => Value::Bool(b.value),
+            syn::Lit::Str(s) => Value::Text(crate::text(&s.value())),
+            other => return Err(refuse(other)),
+        })
+    }
+
+    /// What a path names: a local, a size, a constant of the runtime.
+    pub(super) fn path(&self, path: &syn::Path) -> Result<Option<Code<T>>, Refused> {
+        let constant = |value| Ok(Some(Code::Constant(value)));
+        if let Some(name) = path.get_ident() {
+            let name = name.to_string();
+            if let Some(Binding::Place(code, _)) = self.find(&name) {
+                return Ok(Some(code.clone()));
+            }
+            if let Some(n) = self.shared.sizes.get(&name) {
+                return Ok(Some(whole(*n)));
+            }
+            return match name.as_str() {
+                "None" => constant(Value::None),
+                _ => Ok(None),
+            };
+        }
+        let names: Vec<String> = path.segments.iter().map(|s| s.ident.to_string()).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        Ok(Some(Code::Constant(match names.as_slice() {
+            [.., "Method", name] => {
+                let all = Method::ALL.into_iter();
+                let found = all.into_iter().find(|m| format!("{m:?}") == *name);
+                Value::Method(found.ok_or_else(|| refuse(path))?)
+            }
+            [.., "Order", "Two"] => Value::Order(Order::Two),
+            [.., "Domain", "Positive"] => Value::Domain(domain::Domain::Positive),
+            [.., "Domain", "NotNegative"] => Value::Domain(domain::Domain::NotNegative),
+            [.., "Domain", "NotZero"] => Value::Domain(domain::Domain::NotZero),
+            [.., "Function", name] => {
+                Value::Function(function(name).ok_or_else(|| refuse(path))?)
+            }
+            // Sizes are looked at when they are chosen.
+            [.., "ADMITTED"] => Value::Unit,
+            _ => return Ok(None),
+        })))
+    }
+
+    fn binary(&mut self, b: &syn::ExprBinary) -> Result<Code<T>, Refused> {
+        use syn::BinOp;
+        let operator = match b.op {
+            BinOp::Add(_) => Operator::Add,
+            BinOp::Sub(_) => Operator::Sub,
+            BinOp::Mul(_) => Operator::Mul,
+            BinOp::Div(_) => Operator::Div,
+            BinOp::Eq(_) => Operator::Equal,
+            BinOp::Ne(_) => Operator::Differs,
+            BinOp::Lt(_) => Operator::Less,
+            BinOp::Le(_) => Operator::AtMost,
+            BinOp::Gt(_) => Operator::More,
+            BinOp::Ge(_) => Operator::AtLeast,
+            BinOp::And(_) | BinOp::BitAnd(_) | BinOp::Or(_) | BinOp::BitOr(_) => {
+                let settles = matches!(b.op, BinOp::Or(_) | BinOp::BitOr(_));
+                let (x, y) = (
+                    self.expression(&b.left, None)?,
+                    self.expression(&b.right, None)?,
+                );
+                return Ok(Code::Lazy(settles, Box::new(x), Box::new(y)));
+            }
+            BinOp::AddAssign(_) => {
+                let (x, y) = (
+                    self.expression(&b.left, None)?,
+                    self.expression(&b.right, None)?,
+                );
+                return Ok(Code::Increase(Box::new(x), Box::new(y)));
+            }
+            _ => return Err(refuse(b)),
+        };
+        let (x, y) = (
+            self.expression(&b.left, None)?,
+            self.expression(&b.right, None)?,
+        );
+        Ok(Code::Binary(operator, Box::new(x), Box::new(y)))
+    }
+
+    fn field(&mut self, f: &syn::ExprField) -> Result<Code<T>, Refused> {
+        match &f.member {
+            syn::Member::Named(name) => {
+                let name = name.to_string();
+                if let syn::Expr::Path(p) = &*f.base
+                    && p.path.is_ident("self")
+                    && let Some(Binding::Members(members)) = self.find("self")
+                {
+                    let member = members.get(&name).cloned();
+                    return member.ok_or_else(|| refuse(f));
+                }
+                let base = self.expression(&f.base, None)?;
+                Ok(Code::Field(Box::new(base), self.shared.name(&name)))
+            }
+            syn::Member::Unnamed(index) => {
+                let base = self.expression(&f.base, None)?;
+                Ok(match index.index {
+                    0 => Code::Inner(Box::new(base)),
+                    n => Code::Index(Box::new(base), vec![whole(n as usize)]),
+                })
+            }
+        }
+    }
+
+    fn conditional(&mut self, i: &syn::ExprIf) -> Result<Code<T>, Refused> {
+        let otherwise = match &i.else_branch {
+            Some((_, e)) => Some(self.expression(e, None)?),
+            None => None,
+        };
+        let syn::Expr::Let(condition) = &*i.cond else {
+            let condition = self.expression(&i.cond, None)?;
+            let then = self.block(&i.then_branch)?;
+            return Ok(Code::If(
+                Box::new(condition),
+                Box::new(then),
+                otherwise.map(Box::new),
+            ));
+        };
+        let value = self.expression(&condition.expr, None)?;
+        self.scopes.push(BTreeMap::new());
+        let pattern = self.pattern(&condition.pat, None);
+        let then = self.block(&i.then_branch);
+        self.scopes.pop();
+        let arm = |pattern, body| Arm {
+            pattern,
+            guard: None,
+            body,
+        };
+        let rest = otherwise.unwrap_or(Code::Constant(Value::Unit));
+        let arms = vec![arm(pattern?, then?), arm(Pattern::Any, rest)];
+        Ok(Code::Match(Box::new(value), arms))
+    }
+
+    fn matched(&mut self, m: &syn::ExprMatch) -> Result<Code<T>, Refused> {
+        let value = self.expression(&m.expr, None)?;
+        let mut arms = Vec::new();
+        for arm in &m.arms {
+            self.scopes.push(BTreeMap::new());
+            let made = self.arm(arm);
+            self.scopes.pop();
+            arms.push(made?);
+        }
+        Ok(Code::Match(Box::new(value), arms))
+    }
+
+    fn arm(&mut self, arm: &syn::Arm) -> Result<Arm<T>, Refused> {
+        let (pat, guard) = match &arm.pat {
+            syn::Pat::Guard(guarded) => (&*guarded.pat, Some(&guarded.guard)),
+            pat => (pat, None),
+        };
+        let pattern = self.pattern(pat, None)?;
+        let guard = match guard {
+            Some(guard) => Some(self.expression(guard, None)?),
+            None => None,
+        };
+        let body = self.expression(&arm.body, None)?;
+        Ok(Arm {
+            pattern,
+            guard,
+            body,
+        })
+    }
+
+    fn counted(&mut self, f: &syn::ExprForLoop) -> Result<Code<T>, Refused> {
+        let (syn::Expr::Range(range), syn::Pat::Ident(name)) = (&*f.expr, &*f.pat) else {
+            return Err(refuse(f));
+        };
+        let (Some(from), Some(to)) = (&range.start, &range.end) else {
+            return Err(refuse(f));
+        };
+        let (from, to) = (self.expression(from, None)?, self.expression(to, None)?);
+        self.scopes.push(BTreeMap::new());
+        let at = self.fresh();
+        self.bind(name.ident.to_string(), Binding::Place(Code::Place(at), None));
+        let body = self.block(&f.body);
+        self.scopes.pop();
+        Ok(Code::For(at, Box::new(from), Box::new(to), Box::new(body?)))
+    }
+
+    /// A closure: its parameters at places of their own.
+    pub(super) fn closure(&mut self, c: &syn::ExprClosure) -> Result<Code<T>, Refused> {
+        self.scopes.push(BTreeMap::new());
+        let mut parameters = Vec::new();
+        for input in &c.inputs {
+            let at = self.fresh();
+            parameters.push(at);
+            let input = match input {
+                syn::Pat::Type(typed) => &*typed.pat,
+                other => other,
+            };
+            if let syn::Pat::Ident(name) = input {
+                self.bind(name.ident.to_string(), Binding::Place(Code::Place(at), None));
+            }
+        }
+        let body = self.expression(&c.body, None);
+        self.scopes.pop();
+        Ok(Code::Closure(parameters, Box::new(body?)))
+    }
+
+    /// A struct literal.
+    fn made(&mut self, s: &syn::ExprStruct) -> Result<Code<T>, Refused> {
+        let name = named(&s.path);
+        let values: Vec<(String, &syn::Expr)> = s
+            .fields
+            .iter()
+            .filter_map(|f| match &f.member {
+                syn::Member::Named(name) => Some((name.to_string(), &f.expr)),
+                syn::Member::Unnamed(_) => None,
+            })
+            .collect();
+        let by_name = |field: &str| values.iter().find(|(n, _)| n == field).map(|(_, e)| *e);
+        match name.as_str() {
+            "Residual" => {
+                let (Some(size), Some(scale)) = (by_name("size"), by_name("scale")) else {
+                    return Err(refuse(s));
+                };
+                let arguments = self.all([size, scale].into_iter())?;
+                return self.native("Residual", arguments, Vec::new()).ok_or_else(|| refuse(s));
+            }
+            "NotFinite" => {
+                let arguments = self.all(by_name("what").into_iter())?;
+                let name = "StepCause::NotFinite";
+                return self.native(name, arguments, Vec::new()).ok_or_else(|| refuse(s));
+            }
+            "Call" => {
+                let all = [by_name("function"), by_name("argument")];
+                let all = self.all(all.into_iter().flatten())?;
+                let [
+                    Code::Constant(Value::Function(function)),
+                    Code::Constant(Value::Text(argument)),
+                ] = all[..]
+                else {
+                    return Err(refuse(s));
+                };
+                // Errors name it for as long as they live.
+                let call = Box::leak(Box::new(domain::Call { function, argument }));
+                return Ok(Code::Constant(Value::Call(call)));
+            }
+            _ => {}
+        }
+        let name = match name.as_str() {
+            "Self" => self.own_type().to_owned(),
+            _ => name,
+        };
+        let layout = self.shared.layout(&name)?;
+        let declared = self.shared.program.structs.get(&name).cloned().unwrap_or_default();
+        let mut given = Vec::new();
+        for (field, e) in values {
+            let number = self.shared.name(&field);
+            let at = layout.fields.iter().position(|f| *f == number);
+            let at = at.ok_or_else(|| refuse(s))?;
+            let ty = declared.iter().find(|(n, _)| *n == field).map(|(_, ty)| ty);
+            given.push((at, self.expression(e, ty)?));
+        }
+        let base = match &s.rest {
+            Some(rest) => Some(Box::new(self.expression(rest, None)?)),
+            None => None,
+        };
+        Ok(Code::Struct(layout, given, base))
+    }
+}
+
+/// A count.
+pub(super) fn whole<T: Real>(n: usize) -> Code<T> {
+    Code::Constant(Value::Int(i64::try_from(n).unwrap_or(i64::MAX)))
+}
+
+fn function(name: &str) -> Option<domain::Function> {
+    Some(match name {
+        "Log" => domain::Function::Log,
+        "Sqrt" => domain::Function::Sqrt,
+        "Power" => domain::Function::Power,
+        "Quotient" => domain::Function::Quotient,
+        "Inverse" => domain::Function::Inverse,
+        _ => return None,
+    })
+}

@@ -1,0 +1,259 @@
+//! From the emitted functions to operations over numbered places: names are looked up here and never
+//! again. Functions are written out where they are called, but for those that are rarely called.
+
+mod call;
+mod expression;
+mod statement;
+
+use crate::Refused;
+use crate::code::{Code, Routine};
+use crate::program::{Program, type_name};
+use crate::value::Layout;
+use clebsch::Real;
+use quote::ToTokens;
+use std::collections::BTreeMap;
+use std::sync::{Arc, OnceLock};
+
+/// What a name stands for.
+#[derive(Clone)]
+enum Binding<T: Real> {
+    /// A place, and the struct that stands there.
+    Place(Code<T>, Option<String>),
+    /// Places by the names of fields.
+    Members(BTreeMap<String, Code<T>>),
+    /// A closure, written out where it is given to a function.
+    Closure(Box<syn::ExprClosure>),
+}
+
+type Routines<T> = BTreeMap<(String, String), Arc<OnceLock<Routine<T>>>>;
+
+/// What the lowering of all functions of one model shares.
+pub struct Shared<'a, T: Real> {
+    /// The items.
+    pub program: &'a Program,
+    /// The values of named sizes.
+    pub sizes: BTreeMap<String, usize>,
+    names: BTreeMap<String, u32>,
+    layouts: BTreeMap<String, Arc<Layout>>,
+    routines: Routines<T>,
+}
+
+impl<'a, T: Real> Shared<'a, T> {
+    /// Nothing lowered yet.
+    pub fn new(program: &'a Program, sizes: BTreeMap<String, usize>) -> Self {
+        let names = crate::library::NAMES.iter().zip(0..);
+        Shared {
+            program,
+            sizes,
+            names: names.map(|(name, i)| ((*name).to_owned(), i)).collect(),
+            layouts: BTreeMap::new(),
+            routines: BTreeMap::new(),
+        }
+    }
+
+    /// The number of a field's name.
+    pub fn name(&mut self, name: &str) -> u32 {
+        let next = self.names.len() as u32;
+        *self.names.entry(name.to_owned()).or_insert(next)
+    }
+
+    /// The fields of a struct.
+    pub fn layout(&mut self, name: &str) -> Result<Arc<Layout>, Refused> {
+        if let Some(known) = self.layouts.get(name) {
+            return Ok(known.clone());
+        }
+        let fields: Vec<String> = match (name, self.program.structs.get(name)) {
+            ("Moving", _) => ["attitude", "momentum", "edge"].map(str::to_owned).to_vec(),
+            (_, Some(fields)) => fields.iter().map(|(f, _)| f.clone()).collect(),
+            _ => return Err(Refused::Construct(format!("struct {name}"))),
+        };
+        let fields = fields.iter().map(|f| self.name(f)).collect();
+        let layout = Arc::new(Layout {
+            name: name.to_owned(),
+            fields,
+        });
+        self.layouts.insert(name.to_owned(), layout.clone());
+        Ok(layout)
+    }
+}
+
+/// The lowering of one function.
+pub struct Lower<'a, 'b, T: Real> {
+    shared: &'b mut Shared<'a, T>,
+    scopes: Vec<BTreeMap<String, Binding<T>>>,
+    /// The next free place.
+    next: usize,
+    /// The type whose function is lowered, and its name.
+    within: Vec<(String, String)>,
+}
+
+/// What a function is lowered for: the values of its parameters.
+pub enum Given<'a> {
+    /// A place.
+    Place(usize),
+    /// Places by the names of fields.
+    Members(&'a [(&'static str, usize)]),
+}
+
+/// Lowers a function of a type, with its parameters at given places and locals from `first` on.
+///
+/// # Errors
+/// [`Refused`] for what emitted code may do and the interpreter does not.
+pub fn entry<T: Real>(
+    shared: &mut Shared<'_, T>,
+    (ty, name): (&str, &str),
+    given: &[Given],
+    first: usize,
+) -> Result<Routine<T>, Refused> {
+    let program = shared.program;
+    let Some(function) = program.function(ty, name) else {
+        return Err(Refused::Construct(format!("{ty}::{name}")));
+    };
+    let mut lower = Lower {
+        shared,
+        scopes: vec![BTreeMap::new()],
+        next: first,
+        within: vec![(ty.to_owned(), name.to_owned())],
+    };
+    for (parameter, given) in function.sig.inputs.iter().zip(given) {
+        let (name, kind) = lower.parameter(parameter)?;
+        let binding = match given {
+            Given::Place(at) => Binding::Place(Code::Place(*at), kind),
+            Given::Members(list) => Binding::Members(
+                list.iter()
+                    .map(|(field, at)| ((*field).to_owned(), Code::Place(*at)))
+                    .collect(),
+            ),
+        };
+        lower.bind(name, binding);
+    }
+    let body = lower.block(&function.block)?;
+    Ok(Routine {
+        places: lower.next,
+        body: Code::Function(Box::new(body)),
+    })
+}
+
+impl<T: Real> Lower<'_, '_, T> {
+    fn bind(&mut self, name: String, binding: Binding<T>) {
+        if let Some(scope) = self.scopes.last_mut() {
+            scope.insert(name, binding);
+        }
+    }
+
+    fn find(&self, name: &str) -> Option<&Binding<T>> {
+        self.scopes.iter().rev().find_map(|s| s.get(name))
+    }
+
+    fn fresh(&mut self) -> usize {
+        self.next += 1;
+        self.next - 1
+    }
+
+    /// The type whose functions are lowered now.
+    fn own_type(&self) -> &str {
+        self.within.last().map_or("", |(ty, _)| ty.as_str())
+    }
+
+    /// The name and the struct of a parameter.
+    fn parameter(&self, parameter: &syn::FnArg) -> Result<(String, Option<String>), Refused> {
+        match parameter {
+            syn::FnArg::Receiver(_) => Ok(("self".to_owned(), Some(self.own_type().to_owned()))),
+            syn::FnArg::Typed(p) => {
+                let name = match &*p.pat {
+                    syn::Pat::Ident(name) => name.ident.to_string(),
+                    syn::Pat::Wild(_) => String::new(),
+                    other => return Err(refuse(other)),
+                };
+                Ok((name, self.struct_of(&p.ty)))
+            }
+        }
+    }
+
+    /// The struct of the model that a type names.
+    fn struct_of(&self, ty: &syn::Type) -> Option<String> {
+        let name = match type_name(ty)? {
+            own if own == "Self" => self.own_type().to_owned(),
+            other => other,
+        };
+        let known = self.shared.program.structs.contains_key(&name) || name == "Moving";
+        known.then_some(name)
+    }
+
+    /// The struct that an expression gives, where it is seen.
+    fn kind(&self, e: &syn::Expr) -> Option<String> {
+        match e {
+            syn::Expr::Path(p) => match self.find(&p.path.get_ident()?.to_string())? {
+                Binding::Place(_, kind) => kind.clone(),
+                _ => None,
+            },
+            syn::Expr::Reference(r) => self.kind(&r.expr),
+            syn::Expr::Unary(u) => self.kind(&u.expr),
+            syn::Expr::Paren(p) => self.kind(&p.expr),
+            syn::Expr::Field(f) => {
+                let syn::Member::Named(field) = &f.member else {
+                    return None;
+                };
+                let field = field.to_string();
+                let owner = self.kind(&f.base).or_else(|| match &*f.base {
+                    // The members of a trajectory.
+                    syn::Expr::Path(p) if p.path.is_ident("self") => {
+                        Some(self.own_type().to_owned())
+                    }
+                    _ => None,
+                })?;
+                let fields = self.shared.program.structs.get(&owner)?;
+                let (_, ty) = fields.iter().find(|(name, _)| *name == field)?;
+                self.struct_of(ty)
+            }
+            syn::Expr::MethodCall(m) => {
+                let owner = self.kind(&m.receiver)?;
+                let function = self.shared.program.function(&owner, &m.method.to_string())?;
+                match &function.sig.output {
+                    syn::ReturnType::Type(_, ty) => self.struct_of(ty),
+                    syn::ReturnType::Default => None,
+                }
+            }
+            _ => None,
+        }
+    }
+
+    /// The value of a size: a literal, a named size, or arithmetic with them.
+    fn size(&self, e: &syn::Expr) -> Option<usize> {
+        constant(e, &self.shared.sizes)
+    }
+}
+
+/// The value of an expression in named sizes.
+pub fn constant(e: &syn::Expr, sizes: &BTreeMap<String, usize>) -> Option<usize> {
+    match e {
+        syn::Expr::Lit(lit) => match &lit.lit {
+            syn::Lit::Int(n) => n.base10_parse().ok(),
+            _ => None,
+        },
+        syn::Expr::Path(p) => sizes.get(&p.path.get_ident()?.to_string()).copied(),
+        syn::Expr::Paren(p) => constant(&p.expr, sizes),
+        syn::Expr::Group(g) => constant(&g.expr, sizes),
+        syn::Expr::Block(b) => match b.block.stmts.as_slice() {
+            [syn::Stmt::Expr(e, None)] => constant(e, sizes),
+            _ => None,
+        },
+        syn::Expr::Binary(b) => {
+            let (x, y) = (constant(&b.left, sizes)?, constant(&b.right, sizes)?);
+            match b.op {
+                syn::BinOp::Add(_) => x.checked_add(y),
+                syn::BinOp::Sub(_) => x.checked_sub(y),
+                syn::BinOp::Mul(_) => x.checked_mul(y),
+                syn::BinOp::Div(_) => x.checked_div(y),
+                _ => None,
+            }
+        }
+        _ => None,
+    }
+}
+
+/// What is not understood, in the words of the emitted code.
+fn refuse(tokens: &impl ToTokens) -> Refused {
+    let text: String = tokens.to_token_stream().to_string();
+    Refused::Construct(text.chars().take(160).collect())
+}

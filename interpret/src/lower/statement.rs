@@ -1,0 +1,150 @@
+//! Blocks, bindings and patterns.
+
+use super::{Binding, Lower, refuse};
+use crate::Refused;
+use crate::code::{Code, Pattern};
+use crate::program::named;
+use crate::value::Value;
+use clebsch::Real;
+use std::collections::BTreeMap;
+
+impl<T: Real> Lower<'_, '_, T> {
+    /// A block, with a scope of its own.
+    pub(super) fn block(&mut self, block: &syn::Block) -> Result<Code<T>, Refused> {
+        self.scopes.push(BTreeMap::new());
+        let all = self.statements(&block.stmts);
+        self.scopes.pop();
+        let mut all = all?;
+        Ok(match all.len() {
+            1 => all.remove(0),
+            _ => Code::Block(all),
+        })
+    }
+
+    fn statements(&mut self, list: &[syn::Stmt]) -> Result<Vec<Code<T>>, Refused> {
+        let mut out = Vec::new();
+        for (i, statement) in list.iter().enumerate() {
+            match statement {
+                syn::Stmt::Local(local) => self.local(local, &mut out)?,
+                // The scalar of a block, a list of names.
+                syn::Stmt::Item(_) => {}
+                syn::Stmt::Expr(e, semicolon) => {
+                    out.push(self.expression(e, None)?);
+                    if semicolon.is_some() && i + 1 == list.len() {
+                        out.push(Code::Constant(Value::Unit));
+                    }
+                }
+                other => return Err(refuse(other)),
+            }
+        }
+        if matches!(list.last(), Some(syn::Stmt::Local(_))) {
+            out.push(Code::Constant(Value::Unit));
+        }
+        Ok(out)
+    }
+
+    fn local(&mut self, local: &syn::Local, out: &mut Vec<Code<T>>) -> Result<(), Refused> {
+        let (pat, ty) = match &local.pat {
+            syn::Pat::Type(typed) => (&*typed.pat, Some(&*typed.ty)),
+            other => (other, None),
+        };
+        let Some(init) = &local.init else {
+            return Err(refuse(local));
+        };
+        match (pat, &*init.expr) {
+            (syn::Pat::Wild(_), syn::Expr::Path(_) | syn::Expr::Tuple(_)) => return Ok(()),
+            (syn::Pat::Ident(name), syn::Expr::Closure(closure)) => {
+                let binding = Binding::Closure(Box::new(closure.clone()));
+                self.bind(name.ident.to_string(), binding);
+                return Ok(());
+            }
+            _ => {}
+        }
+        let kind = self.kind(&init.expr);
+        let value = self.expression(&init.expr, ty)?;
+        if let syn::Pat::Struct(fields) = pat {
+            // Fields of what stands somewhere are used there.
+            let base = match is_place(&value) {
+                true => value,
+                false => {
+                    let at = self.fresh();
+                    out.push(Code::Let(Pattern::Place(at), Box::new(value), None));
+                    Code::Place(at)
+                }
+            };
+            for field in &fields.fields {
+                let (syn::Member::Named(member), syn::Pat::Ident(name)) =
+                    (&field.member, &*field.pat)
+                else {
+                    return Err(refuse(pat));
+                };
+                let number = self.shared.name(&member.to_string());
+                let code = Code::Field(Box::new(base.clone()), number);
+                self.bind(name.ident.to_string(), Binding::Place(code, None));
+            }
+            return Ok(());
+        }
+        let otherwise = match &init.diverge {
+            Some((_, diverge)) => Some(Box::new(self.expression(diverge, None)?)),
+            None => None,
+        };
+        let pattern = self.pattern(pat, kind)?;
+        out.push(Code::Let(pattern, Box::new(value), otherwise));
+        Ok(())
+    }
+
+    /// A pattern; its names are bound in the innermost scope.
+    pub(super) fn pattern(
+        &mut self,
+        pat: &syn::Pat,
+        kind: Option<String>,
+    ) -> Result<Pattern<T>, Refused> {
+        Ok(match pat {
+            syn::Pat::Wild(_) => Pattern::Any,
+            syn::Pat::Ident(name) if name.ident == "None" => Pattern::None,
+            syn::Pat::Ident(name) => {
+                let at = self.fresh();
+                self.bind(name.ident.to_string(), Binding::Place(Code::Place(at), kind));
+                Pattern::Place(at)
+            }
+            syn::Pat::Paren(inner) => self.pattern(&inner.pat, kind)?,
+            syn::Pat::Reference(inner) => self.pattern(&inner.pat, kind)?,
+            syn::Pat::Type(inner) => {
+                let kind = self.struct_of(&inner.ty);
+                self.pattern(&inner.pat, kind)?
+            }
+            syn::Pat::Tuple(all) => {
+                let all = all.elems.iter().map(|p| self.pattern(p, None));
+                Pattern::List(all.collect::<Result<_, _>>()?)
+            }
+            syn::Pat::TupleStruct(t) => {
+                let [inner] = &t.elems.iter().collect::<Vec<_>>()[..] else {
+                    return Err(refuse(pat));
+                };
+                let inner = Box::new(self.pattern(inner, None)?);
+                match named(&t.path).as_str() {
+                    "Ok" | "Some" => Pattern::Done(inner),
+                    "Err" => Pattern::Failed(inner),
+                    _ => return Err(refuse(pat)),
+                }
+            }
+            syn::Pat::Path(p) => match self.path(&p.path)? {
+                Some(Code::Constant(value)) => Pattern::Exactly(value),
+                _ => return Err(refuse(pat)),
+            },
+            other => return Err(refuse(other)),
+        })
+    }
+}
+
+/// Whether an expression names a place, which may stand for it.
+pub(super) fn is_place<T: Real>(code: &Code<T>) -> bool {
+    match code {
+        Code::Place(_) => true,
+        Code::Field(base, _) => is_place(base),
+        Code::Index(base, at) => {
+            is_place(base) && matches!(at.as_slice(), [Code::Constant(Value::Int(_))])
+        }
+        _ => false,
+    }
+}

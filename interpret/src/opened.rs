@@ -1,0 +1,286 @@
+//! A model read from its text: the operations of everything that a trajectory asks for.
+
+use crate::code::{Places, Routine};
+use crate::constants::Constants;
+use crate::lower::{Given, Shared, entry};
+use crate::program::{Program, type_name};
+use crate::value::{Layout, Value};
+use crate::{Refused, text};
+use clebsch::card::{Card, OpenError};
+use clebsch_core::emit;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Where values stand while a function of a model runs.
+pub mod at {
+    /// The model: parameters and what is prepared.
+    pub const MODEL: usize = 0;
+    /// The state.
+    pub const STATE: usize = 1;
+    /// The workspace.
+    pub const WORK: usize = 2;
+    /// The state before the last step.
+    pub const BEFORE: usize = 3;
+    /// The step size.
+    pub const STEP: usize = 4;
+    /// What is observed.
+    pub const OUT: usize = 5;
+    /// What else is given.
+    pub const GIVEN: usize = 6;
+    /// The first local.
+    pub const FIRST: usize = 7;
+}
+
+/// How an initial value is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Read {
+    /// A number.
+    Number,
+    /// A vector or a matrix.
+    Matrix,
+    /// An element or a momentum, by its type.
+    Of(&'static str),
+}
+
+/// The functions of a model.
+#[derive(Debug)]
+pub struct Functions {
+    /// From parameters to the model.
+    pub new: Routine<f64>,
+    /// From initial values to the state.
+    pub begin: Routine<f64>,
+    /// The model with another solver, where one can be chosen.
+    pub with_solver: Option<Routine<f64>>,
+    /// The workspace of a state.
+    pub workspace: Routine<f64>,
+    /// The workspace compensated, of a free body.
+    pub compensated: Option<Routine<f64>>,
+    /// One step.
+    pub step: Routine<f64>,
+    /// What a step leaves of its equations.
+    pub residual: Routine<f64>,
+    /// The observables.
+    pub observe: Routine<f64>,
+    /// The invariants.
+    pub invariants: Routine<f64>,
+    /// Their scales.
+    pub scales: Routine<f64>,
+    /// What is wrong with the kinetic energy.
+    pub kinetic: Option<Routine<f64>>,
+}
+
+/// A model that can be started.
+#[derive(Debug)]
+pub struct Opened {
+    /// The text it was read from.
+    pub source: &'static str,
+    /// The values of its sizes, as declared.
+    pub sizes: Vec<usize>,
+    /// Whether those are the ones taken where none are named.
+    pub is_default: bool,
+    /// The card; its functions are those of the number that the model gets.
+    pub card: Option<Card>,
+    /// The functions.
+    pub functions: Functions,
+    /// The struct of the parameters.
+    pub parameters: (Arc<Layout>, Vec<Read>),
+    /// The struct of the initial values.
+    pub initial: (Arc<Layout>, Vec<Read>),
+    /// The number of the name of a state's node.
+    pub node: u32,
+    /// How many places the functions need.
+    pub places: usize,
+}
+
+fn never(
+    _: &[Vec<f64>],
+    _: &[Vec<f64>],
+    _: clebsch::card::Settings,
+) -> Result<Box<dyn clebsch::card::Trajectory>, OpenError> {
+    Err(OpenError::Solver { offered: &[] })
+}
+
+impl Opened {
+    /// Reads a model, at given sizes or those that are taken where none are named.
+    ///
+    /// # Errors
+    /// [`Refused`] for what is no model, and for models that need a build.
+    pub fn read(source: &str, sizes: Option<&[usize]>) -> Result<Self, Refused> {
+        let d = clebsch_core::derive_source(source).map_err(Refused::Model)?;
+        if let Some(refused) = emit::refusal(&d) {
+            return Err(Refused::Model(refused.into()));
+        }
+        let name = d.spec.name.clone();
+        let program = Program::read(emit::emit(&d, false))?;
+        let (values, chosen, is_default) = chosen_sizes(&program, &name, sizes)?;
+        let constants = Constants::new(&program, &name, &values);
+        let card = constants.card(never, |_| None)?;
+        let mut shared = Shared::new(&program, values.clone());
+        let functions = functions(&mut shared, &name).map_err(|refused| match refused {
+            // What is not known yet belongs to a method that is not.
+            Refused::Construct(what) if has_newton(&d) => Refused::Method {
+                model: name.clone(),
+                method: format!("{} (at `{what}`)", card.solver),
+            },
+            other => other,
+        })?;
+        let all = [
+            Some(&functions.new),
+            Some(&functions.begin),
+            functions.with_solver.as_ref(),
+            Some(&functions.workspace),
+            functions.compensated.as_ref(),
+            Some(&functions.step),
+            Some(&functions.residual),
+            Some(&functions.observe),
+            Some(&functions.invariants),
+            Some(&functions.scales),
+            functions.kinetic.as_ref(),
+        ];
+        let places = all.into_iter().flatten().map(|r| r.places).max();
+        let parameters = given(&mut shared, &format!("{name}Parameters"))?;
+        let initial = given(&mut shared, &format!("{name}Initial"))?;
+        let node = shared.name(&node_name(&program, &name));
+        Ok(Opened {
+            source: text(source),
+            sizes: chosen,
+            is_default,
+            card: Some(card),
+            functions,
+            parameters,
+            initial,
+            node,
+            places: places.unwrap_or(at::FIRST),
+        })
+    }
+
+    /// Places for its functions, with the model where they expect it.
+    pub fn places(&self, model: Value<f64>) -> Places<f64> {
+        let mut places = vec![Value::Unit; self.places];
+        if let Some(place) = places.get_mut(at::MODEL) {
+            *place = model;
+        }
+        places
+    }
+}
+
+fn has_newton(d: &clebsch_core::Derivation) -> bool {
+    use clebsch_core::derive::recognise::Method;
+    matches!(d.solve.method, Method::Newton | Method::Blocks)
+}
+
+/// The field of a state that counts nodes: the only count in it.
+fn node_name(program: &Program, name: &str) -> String {
+    let fields = program.structs.get(&format!("{name}State"));
+    let counts = fields.into_iter().flatten();
+    let count = counts
+        .filter(|(_, ty)| type_name(ty).as_deref() == Some("u64"))
+        .map(|(field, _)| field.clone());
+    count.last().unwrap_or_default()
+}
+
+type Chosen = (BTreeMap<String, usize>, Vec<usize>, bool);
+
+/// The values of the sizes by their names in the emitted code, and in the order of their declaration.
+fn chosen_sizes(program: &Program, name: &str, sizes: Option<&[usize]>) -> Result<Chosen, Refused> {
+    let none = BTreeMap::new();
+    let constants = Constants::new(program, name, &none);
+    let unknown = || Refused::Construct(format!("{name}::CARD"));
+    let dimensions = constants.dimensions().ok_or_else(unknown)?;
+    let names = constants.size_names().ok_or_else(unknown)?;
+    let default: Vec<usize> = dimensions.iter().map(|d| 3.clamp(d.from, d.to)).collect();
+    let chosen = sizes.map_or_else(|| default.clone(), <[usize]>::to_vec);
+    let admitted = chosen.len() == dimensions.len()
+        && (chosen.iter().zip(&dimensions)).all(|(n, d)| (d.from..=d.to).contains(n));
+    if !admitted {
+        let list = dimensions.iter();
+        let list = list.map(|d| format!("{} from {} to {}", d.name, d.from, d.to));
+        return Err(Refused::Size {
+            model: name.to_owned(),
+            admitted: list.collect::<Vec<_>>().join(", "),
+        });
+    }
+    let values = names.into_iter().zip(chosen.iter().copied()).collect();
+    let is_default = chosen == default;
+    Ok((values, chosen, is_default))
+}
+
+/// The struct of what is given, and how each field is read.
+fn given(
+    shared: &mut Shared<'_, f64>,
+    name: &str,
+) -> Result<(Arc<Layout>, Vec<Read>), Refused> {
+    let layout = shared.layout(name)?;
+    let fields = shared.program.structs.get(name);
+    let reads = fields.into_iter().flatten().map(|(_, ty)| {
+        match type_name(ty).unwrap_or_default().as_str() {
+            "T" | "f64" => Read::Number,
+            "SMatrix" | "SVector" => Read::Matrix,
+            other => Read::Of(text(other)),
+        }
+    });
+    Ok((layout, reads.collect()))
+}
+
+fn functions(shared: &mut Shared<'_, f64>, name: &str) -> Result<Functions, Refused> {
+    use Given::{Members, Place};
+    let program = shared.program;
+    let trajectory = format!("{name}Trajectory");
+    let workspace = format!("{name}Workspace");
+    let members = [
+        ("model", at::MODEL),
+        ("state", at::STATE),
+        ("work", at::WORK),
+        ("before", at::BEFORE),
+        ("h", at::STEP),
+    ];
+    let mut lower = |ty: &str, function: &str, given: &[Given]| {
+        entry(shared, (ty, function), given, at::FIRST)
+    };
+    let optional = |found: bool, made: &mut dyn FnMut() -> Result<Routine<f64>, Refused>| match found {
+        true => made().map(Some),
+        false => Ok(None),
+    };
+    let seen = |function: &str| [Members(&members), Place(at::OUT)].map(|g| (function.to_owned(), g));
+    let mut watch = |function: &str| {
+        let [(f, a), (_, b)] = seen(function);
+        lower(&trajectory, &f, &[a, b])
+    };
+    let observe = watch("observe")?;
+    let invariants = watch("invariants")?;
+    let scales = watch("scales")?;
+    let (model, state, step) = (
+        || Place(at::MODEL),
+        || Place(at::STATE),
+        || Place(at::STEP),
+    );
+    Ok(Functions {
+        new: lower(name, "new", &[Place(at::GIVEN)])?,
+        begin: lower(name, "at_node_0", &[model(), Place(at::GIVEN)])?,
+        with_solver: optional(program.function(name, "with_solver").is_some(), &mut || {
+            lower(name, "with_solver", &[model(), Place(at::GIVEN)])
+        })?,
+        workspace: lower(
+            name,
+            "workspace",
+            &[model(), state(), step(), Place(at::GIVEN)],
+        )?,
+        compensated: optional(
+            program.function(&workspace, "compensated").is_some(),
+            &mut || lower(&workspace, "compensated", &[Place(at::WORK)]),
+        )?,
+        step: lower(name, "step", &[model(), state(), Place(at::WORK)])?,
+        residual: lower(
+            name,
+            "residual",
+            &[model(), Place(at::BEFORE), state(), step()],
+        )?,
+        observe,
+        invariants,
+        scales,
+        kinetic: optional(
+            program.function(name, "kinetic_warning").is_some(),
+            &mut || lower(name, "kinetic_warning", &[model(), state()]),
+        )?,
+    })
+}

@@ -1,0 +1,94 @@
+//! The emitted program of a model as its items: the structs and the functions of each type.
+//! Takes the tokens that a build would compile; gives tables by name.
+
+use crate::Refused;
+use proc_macro2::TokenStream;
+use std::collections::BTreeMap;
+
+/// The items of a model.
+#[derive(Default)]
+pub struct Program {
+    /// Fields and types of each struct.
+    pub structs: BTreeMap<String, Vec<(String, syn::Type)>>,
+    /// Functions by type and name.
+    pub functions: BTreeMap<(String, String), syn::ImplItemFn>,
+    /// Constants by type and name.
+    pub constants: BTreeMap<(String, String), syn::Expr>,
+}
+
+impl Program {
+    /// Sorts the emitted items.
+    ///
+    /// # Errors
+    /// When the tokens are no items, which emission never gives.
+    pub fn read(tokens: TokenStream) -> Result<Self, Refused> {
+        let file: syn::File =
+            syn::parse2(tokens).map_err(|e| Refused::Construct(e.to_string()))?;
+        let mut program = Program::default();
+        program.take(file.items);
+        Ok(program)
+    }
+
+    fn take(&mut self, items: Vec<syn::Item>) {
+        for item in items {
+            match item {
+                syn::Item::Mod(module) => {
+                    if let Some((_, items)) = module.content {
+                        self.take(items);
+                    }
+                }
+                syn::Item::Struct(item) => {
+                    let fields = item.fields.iter().filter_map(|f| {
+                        Some((f.ident.as_ref()?.to_string(), f.ty.clone()))
+                    });
+                    self.structs
+                        .insert(item.ident.to_string(), fields.collect());
+                }
+                syn::Item::Impl(item) => self.take_impl(item),
+                _ => {}
+            }
+        }
+    }
+
+    fn take_impl(&mut self, item: syn::ItemImpl) {
+        // Of the traits only the one that is observed is looked at: the others repeat what types have.
+        let wanted = item.trait_.as_ref().is_none_or(|t| named(&t.0) == "Trajectory");
+        let Some(ty) = type_name(&item.self_ty).filter(|_| wanted) else {
+            return;
+        };
+        for inner in item.items {
+            match inner {
+                syn::ImplItem::Fn(f) => {
+                    let name = f.sig.ident.to_string();
+                    self.functions.insert((ty.clone(), name), f);
+                }
+                syn::ImplItem::Const(c) => {
+                    self.constants
+                        .insert((ty.clone(), c.ident.to_string()), c.expr);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// A function of a type.
+    pub fn function(&self, ty: &str, name: &str) -> Option<&syn::ImplItemFn> {
+        self.functions.get(&(ty.to_owned(), name.to_owned()))
+    }
+}
+
+/// The last name of a path.
+pub fn named(path: &syn::Path) -> String {
+    let last = path.segments.last();
+    last.map_or_else(String::new, |s| s.ident.to_string())
+}
+
+/// The name of a type, past references.
+pub fn type_name(ty: &syn::Type) -> Option<String> {
+    match ty {
+        syn::Type::Path(path) => Some(named(&path.path)),
+        syn::Type::Reference(inner) => type_name(&inner.elem),
+        syn::Type::Paren(inner) => type_name(&inner.elem),
+        _ => None,
+    }
+}

@@ -1,0 +1,427 @@
+//! Trajectories of models that were read from files: the same calls in the same order as emitted ones.
+
+use crate::code::{Exit, Places, Routine};
+use crate::failure::Failure;
+use crate::opened::{Opened, Read, at};
+use crate::packed::Packed;
+use crate::value::{Frame, Kept, Layout, Struct, Value};
+use clebsch::card::{Card, Field, OpenError, Settings, Trajectory, chosen_solver};
+use clebsch::emitted as e;
+use clebsch::integrate::{
+    Composition, CompositionOrder, Residual, Reversible, Stepper, preprocessing_order,
+};
+use clebsch::kinetic::KineticWarning;
+use clebsch::{StartError, StepError, validate};
+use std::cell::RefCell;
+use std::sync::Arc;
+
+/// Runs a function to its value; what cannot be is an error of the step.
+fn run(routine: &Routine<f64>, places: &mut Places<f64>) -> Result<Value<f64>, Failure> {
+    match routine.body.run(places) {
+        Ok(Value::Failed(e)) | Err(Exit::Return(Value::Failed(e))) => Err(*e),
+        Ok(value) | Err(Exit::Return(value)) => Ok(value),
+        Err(Exit::Unfit(what)) => Err(clebsch::StepCause::NotFinite { what }.into()),
+    }
+}
+
+fn put(places: &mut Places<f64>, at: usize, value: Value<f64>) {
+    if let Some(place) = places.get_mut(at) {
+        *place = value;
+    }
+}
+
+fn take(places: &mut Places<f64>, at: usize) -> Value<f64> {
+    places
+        .get_mut(at)
+        .map_or(Value::Unit, |p| std::mem::replace(p, Value::Unit))
+}
+
+impl Opened {
+    /// Starts a trajectory.
+    ///
+    /// # Errors
+    /// As the function of any card.
+    pub fn open(
+        &'static self,
+        parameters: &[Vec<f64>],
+        initial: &[Vec<f64>],
+        settings: Settings,
+    ) -> Result<Box<dyn Trajectory>, OpenError> {
+        let card = self.card.as_ref().ok_or(OpenError::Solver { offered: &[] })?;
+        let f = &self.functions;
+        for (field, expected, found) in [
+            ("parameters", card.parameters.len(), parameters.len()),
+            ("initial values", card.initial.len(), initial.len()),
+        ] {
+            if expected != found {
+                return Err(OpenError::Count {
+                    field,
+                    expected,
+                    found,
+                });
+            }
+        }
+        let mut places = self.places(Value::Unit);
+        let given = collected(&self.parameters, card.parameters, parameters)?;
+        put(&mut places, at::GIVEN, given);
+        let model = run(&f.new, &mut places).map_err(Failure::open)?;
+        put(&mut places, at::MODEL, model);
+        let given = collected(&self.initial, card.initial, initial)?;
+        if let Some(method) = chosen_solver(settings, card.solvers)?
+            && let Some(with_solver) = &f.with_solver
+        {
+            put(&mut places, at::GIVEN, Value::Method(method));
+            let model = run(with_solver, &mut places).map_err(Failure::open)?;
+            put(&mut places, at::MODEL, model);
+        }
+        let order = match card.preprocessed {
+            true => Some(preprocessing_order(settings, card.orders)?),
+            false => None,
+        };
+        put(&mut places, at::GIVEN, given);
+        let state = run(&f.begin, &mut places).map_err(Failure::open)?;
+        put(&mut places, at::STATE, state.clone());
+        let kinetic = match &f.kinetic {
+            Some(kinetic) => match run(kinetic, &mut places).map_err(Failure::open)? {
+                Value::Warning(warning) => Some(warning),
+                _ => None,
+            },
+            None => None,
+        };
+        put(&mut places, at::STATE, state.clone());
+        put(&mut places, at::BEFORE, state.clone());
+        put(&mut places, at::STEP, Value::Real(settings.h));
+        let steps = match order {
+            Some(order) => {
+                let told = |e: StartError| OpenError::from(e).beside(kinetic);
+                validate::positive_step(settings.h).map_err(|e| told(e.into()))?;
+                put(&mut places, at::GIVEN, Value::Order(order));
+                let work = run(&f.workspace, &mut places).map_err(|e| told(e.start()))?;
+                put(&mut places, at::WORK, work);
+                if let Some(compensated) = f.compensated.as_ref().filter(|_| settings.compensated) {
+                    let work = run(compensated, &mut places).map_err(Failure::open)?;
+                    put(&mut places, at::WORK, work);
+                }
+                Steps::Own
+            }
+            None => self
+                .steps(card, &mut places, settings)
+                .map_err(|e| match f.kinetic {
+                    Some(_) => e.beside(kinetic),
+                    None => e,
+                })?,
+        };
+        let plain = match order {
+            Some(order) => order == e::Order::Two,
+            None => matches!(steps, Steps::Own),
+        };
+        put(&mut places, at::STATE, state);
+        Ok(Box::new(Running {
+            opened: self,
+            card: self.card.as_ref().map_or(card, |c| c),
+            places: RefCell::new(places),
+            spare: Value::Unit,
+            steps,
+            h: settings.h,
+            plain,
+            kinetic,
+        }))
+    }
+
+    /// Plain or composed steps.
+    fn steps(
+        &'static self,
+        card: &'static Card,
+        places: &mut Places<f64>,
+        settings: Settings,
+    ) -> Result<Steps, OpenError> {
+        let composed = settings.order.and_then(CompositionOrder::of_number);
+        let composed = composed.filter(|_| card.reversible);
+        let other = settings.order.filter(|o| card.orders.first() != Some(o));
+        if let Some(asked) = other.filter(|_| composed.is_none()) {
+            return Err(OpenError::Order {
+                asked,
+                offered: card.orders,
+            });
+        }
+        if settings.compensated {
+            return Err(OpenError::Compensation {
+                order: settings.order.or(card.orders.first().copied()).unwrap_or(2),
+                preprocessed: false,
+            });
+        }
+        validate::positive_step(settings.h)?;
+        let Some(order) = composed else {
+            let work = run(&self.functions.workspace, places).map_err(Failure::start)?;
+            put(places, at::WORK, work);
+            return Ok(Steps::Own);
+        };
+        let of = |at: usize| places.get(at).cloned().unwrap_or(Value::Unit);
+        let model = Model {
+            opened: self,
+            model: of(at::MODEL),
+            state: of(at::STATE),
+        };
+        let Some(state) = Packed::of(&model.state) else {
+            return Err(OpenError::Order {
+                asked: order.number(),
+                offered: card.orders.get(..1).unwrap_or_default(),
+            });
+        };
+        let composition = Composition::start(&model, &state, settings.h, order)?;
+        Ok(Steps::Composed(Box::new((model, composition))))
+    }
+}
+
+/// The values of a struct from lists of numbers.
+fn collected(
+    (layout, reads): &(Arc<Layout>, Vec<Read>),
+    fields: &'static [Field],
+    lists: &[Vec<f64>],
+) -> Result<Value<f64>, OpenError> {
+    let mut values = Vec::new();
+    for ((read, field), list) in reads.iter().zip(fields).zip(lists) {
+        values.push(one(*read, field, list)?);
+    }
+    values.resize(layout.fields.len(), Value::Unit);
+    Ok(Value::Struct(Struct {
+        layout: layout.clone(),
+        values,
+    }))
+}
+
+/// A value of a field, read as its type asks.
+fn one(read: Read, field: &'static Field, list: &Vec<f64>) -> Result<Value<f64>, OpenError> {
+    use crate::dense::Dense;
+    use crate::library::of_size;
+    let (name, rows, cols) = (field.name, field.rows, field.cols);
+    let given = Some(list);
+    let matrix = || {
+        if list.len() != rows * cols {
+            return Err(OpenError::Count {
+                field: name,
+                expected: rows * cols,
+                found: list.len(),
+            });
+        }
+        let entry = |i: usize, j: usize| list.get(i * cols + j).copied().unwrap_or(f64::NAN);
+        Ok(Dense::from_fn(rows, cols, entry))
+    };
+    let wide = || OpenError::Count {
+        field: name,
+        expected: 64,
+        found: list.len(),
+    };
+    let momentum = |frame| -> Result<Value<f64>, OpenError> {
+        Value::momentum(frame, &Value::of(matrix()?)).ok_or_else(wide)
+    };
+    Ok(match read {
+        Read::Number => Value::Real(e::number_of(name, given)?),
+        Read::Matrix => Value::of(matrix()?),
+        Read::Of(kind) => match kind {
+            "Rotation" => Value::Rotation(e::rotation_of(name, given)?),
+            "UnitQuaternion" => Value::Quaternion(e::quaternion_of(name, given)?),
+            "RigidMotion" => Value::Motion(Box::new(e::motion_of(name, given)?)),
+            "PlaneMotion" => Value::Plane(Box::new(e::plane_motion_of(name, given)?)),
+            "Orthogonal" => of_size!(rows, N, {
+                let g = e::orthogonal_of::<N>(name, given)?;
+                Some(Value::Element(Kept::Orthogonal, Dense::of(&g.matrix())))
+            })
+            .ok_or_else(wide)?,
+            "Linear" => of_size!(rows, N, {
+                let g = e::linear_of::<N>(name, given)?;
+                Some(Value::Element(Kept::Linear, Dense::of(&g.matrix())))
+            })
+            .ok_or_else(wide)?,
+            "Additive" => Value::Element(Kept::Field, matrix()?),
+            "BodyMomentum" | "BodyMomentumMatrix" | "BodyImpulse" | "BodyPlaneImpulse" => {
+                momentum(Frame::Body)?
+            }
+            "FieldMomentum" => momentum(Frame::Field)?,
+            _ => momentum(Frame::Spatial)?,
+        },
+    })
+}
+
+/// How steps are made.
+enum Steps {
+    /// By the model's own step.
+    Own,
+    /// By several of them.
+    Composed(Box<(Model, Composition<Model>)>),
+}
+
+/// A running trajectory.
+struct Running {
+    opened: &'static Opened,
+    card: &'static Card,
+    places: RefCell<Places<f64>>,
+    /// Where the state is put that a step begins with.
+    spare: Value<f64>,
+    steps: Steps,
+    h: f64,
+    plain: bool,
+    kinetic: Option<KineticWarning>,
+}
+
+impl Opened {
+    fn node_of(&self, state: Option<&Value<f64>>) -> u64 {
+        match state {
+            Some(Value::Struct(s)) => match s.field(self.node) {
+                Some(Value::Int(n)) => u64::try_from(*n).unwrap_or(0),
+                _ => 0,
+            },
+            _ => 0,
+        }
+    }
+}
+
+impl Running {
+    fn node_at(&self, at: usize) -> u64 {
+        self.opened.node_of(self.places.borrow().get(at))
+    }
+
+    /// Runs an observer; its numbers are written to `out`.
+    fn watch(&self, routine: &Routine<f64>, out: &mut [f64]) {
+        let mut places = self.places.borrow_mut();
+        let mut list = match take(&mut places, at::OUT) {
+            Value::List(list) => list,
+            _ => Vec::with_capacity(out.len()),
+        };
+        list.clear();
+        put(&mut places, at::OUT, Value::List(list));
+        let done = run(routine, &mut places).is_ok();
+        let Some(Value::List(list)) = places.get(at::OUT) else {
+            return;
+        };
+        for (i, slot) in out.iter_mut().enumerate() {
+            *slot = match list.get(i) {
+                Some(Value::Real(x)) if done => *x,
+                _ => f64::NAN,
+            };
+        }
+    }
+}
+
+impl Trajectory for Running {
+    fn node(&self) -> u64 {
+        self.node_at(at::STATE)
+    }
+
+    fn time(&self) -> f64 {
+        self.h * self.node() as f64
+    }
+
+    fn step(&mut self) -> Result<(), StepError> {
+        let places = self.places.get_mut();
+        if let Some(state) = places.get(at::STATE) {
+            self.spare.clone_from(state);
+        }
+        match &mut self.steps {
+            Steps::Own => {
+                let node = self.opened.node_of(places.get(at::STATE));
+                run(&self.opened.functions.step, places).map_err(|e| e.step(node))?;
+            }
+            Steps::Composed(both) => {
+                let (model, composition) = &mut **both;
+                if let Some(state) = places.get_mut(at::STATE)
+                    && let Some(mut packed) = Packed::of(state)
+                {
+                    composition.step(model, &mut packed)?;
+                    packed.put(state);
+                }
+            }
+        }
+        if let Some(before) = places.get_mut(at::BEFORE) {
+            std::mem::swap(before, &mut self.spare);
+        }
+        Ok(())
+    }
+
+    fn card(&self) -> &'static Card {
+        self.card
+    }
+
+    fn kinetic_warning(&self) -> Option<KineticWarning> {
+        self.kinetic
+    }
+
+    fn residual(&self) -> Option<f64> {
+        if !self.plain || self.node_at(at::BEFORE) == self.node_at(at::STATE) {
+            return None;
+        }
+        let mut places = self.places.borrow_mut();
+        let parts = match run(&self.opened.functions.residual, &mut places) {
+            Ok(Value::List(list)) => list,
+            _ => return Some(f64::NAN),
+        };
+        let parts = parts.iter().map(|p| match p {
+            Value::Residual(part) => *part,
+            _ => Residual {
+                size: f64::NAN,
+                scale: f64::NAN,
+            },
+        });
+        Some(Residual::largest(&parts.collect::<Vec<_>>()))
+    }
+
+    fn observe(&self, out: &mut [f64]) {
+        self.watch(&self.opened.functions.observe, out);
+    }
+
+    fn invariants(&self, out: &mut [f64]) {
+        self.watch(&self.opened.functions.invariants, out);
+    }
+
+    fn scales(&self, out: &mut [f64]) {
+        self.watch(&self.opened.functions.scales, out);
+    }
+}
+
+/// A model with its parameters, as compositions take it.
+#[derive(Clone, Debug)]
+struct Model {
+    opened: &'static Opened,
+    model: Value<f64>,
+    /// Any state: what the numbers of one mean.
+    state: Value<f64>,
+}
+
+impl Stepper for Model {
+    type Scalar = f64;
+    type State = Packed;
+    type Workspace = Places<f64>;
+
+    fn workspace(&self, state: &Packed, h: f64) -> Result<Places<f64>, StartError> {
+        let mut places = self.opened.places(self.model.clone());
+        let mut here = self.state.clone();
+        state.put(&mut here);
+        put(&mut places, at::STATE, here);
+        put(&mut places, at::STEP, Value::Real(h));
+        put(&mut places, at::GIVEN, Value::Order(e::Order::Two));
+        let work = run(&self.opened.functions.workspace, &mut places);
+        put(&mut places, at::WORK, work.map_err(Failure::start)?);
+        Ok(places)
+    }
+
+    fn advance(&self, state: &mut Packed, places: &mut Places<f64>) -> Result<(), StepError> {
+        if let Some(here) = places.get_mut(at::STATE) {
+            state.put(here);
+        }
+        run(&self.opened.functions.step, places).map_err(|e| e.step(state.node))?;
+        if let Some(next) = places.get(at::STATE).and_then(Packed::of) {
+            *state = next;
+        }
+        Ok(())
+    }
+
+    fn node(state: &Packed) -> u64 {
+        state.node
+    }
+
+    fn at_node(state: Packed, node: u64) -> Packed {
+        state.counted(node)
+    }
+}
+
+impl Reversible for Model {}

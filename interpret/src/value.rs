@@ -1,0 +1,239 @@
+//! What an expression of a step may be: numbers, matrices, group elements, momenta, prepared solvers.
+
+use crate::dense::Dense;
+use crate::failure::Failure;
+use clebsch::domain;
+use clebsch::emitted::{
+    Edge, Free, Method, Order, PlaneMotion, Poinsot, QuaternionBody, Residual, RigidMotion,
+    Rotation, TurnedRotation, UnitQuaternion,
+};
+use clebsch::kinetic::KineticWarning;
+use clebsch::Real;
+use nalgebra::{Matrix3, Vector3};
+use std::sync::Arc;
+
+/// The frame a momentum is seen from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Frame {
+    /// That of the body.
+    Body,
+    /// That of space.
+    Spatial,
+    /// The axes of space, about the origin of the body.
+    Carried,
+    /// That of a field, which has one only.
+    Field,
+}
+
+/// A group whose elements are kept as their matrices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kept {
+    /// Rotations of n-dimensional space.
+    Orthogonal,
+    /// Invertible maps.
+    Linear,
+    /// Fields.
+    Field,
+}
+
+/// A named list of fields.
+#[derive(Debug, PartialEq)]
+pub struct Layout {
+    /// The name of the struct.
+    pub name: String,
+    /// The names of its fields, as numbers.
+    pub fields: Vec<u32>,
+}
+
+/// A struct of the emitted code.
+#[derive(Debug)]
+pub struct Struct<T: Real> {
+    /// The names of the fields.
+    pub layout: Arc<Layout>,
+    /// Their values.
+    pub values: Vec<Value<T>>,
+}
+
+impl<T: Real> Clone for Struct<T> {
+    fn clone(&self) -> Self {
+        Struct {
+            layout: self.layout.clone(),
+            values: self.values.clone(),
+        }
+    }
+
+    // The state before a step is kept without allocating anew.
+    fn clone_from(&mut self, source: &Self) {
+        if !Arc::ptr_eq(&self.layout, &source.layout) {
+            self.layout = source.layout.clone();
+        }
+        self.values.clone_from(&source.values);
+    }
+}
+
+impl<T: Real> Struct<T> {
+    /// A field by the number of its name.
+    #[inline]
+    pub fn field(&self, name: u32) -> Option<&Value<T>> {
+        let at = self.layout.fields.iter().position(|f| *f == name)?;
+        self.values.get(at)
+    }
+
+    /// The same, to be changed.
+    #[inline]
+    pub fn field_mut(&mut self, name: u32) -> Option<&mut Value<T>> {
+        let at = self.layout.fields.iter().position(|f| *f == name)?;
+        self.values.get_mut(at)
+    }
+}
+
+/// A value. `Ok(x)` and `Some(x)` are `x` itself.
+#[derive(Clone, Debug)]
+pub enum Value<T: Real> {
+    /// Nothing to tell, `()`.
+    Unit,
+    /// No value.
+    None,
+    /// A truth.
+    Bool(bool),
+    /// A count.
+    Int(i64),
+    /// A number.
+    Real(T),
+    /// A number that is `f64` whatever the scalar.
+    Double(f64),
+    /// A text.
+    Text(&'static str),
+    /// A vector of three components.
+    Vector(Vector3<T>),
+    /// A 3 x 3 matrix.
+    Matrix(Matrix3<T>),
+    /// A matrix of any other size.
+    Dense(Dense<T>),
+    /// Zeros of a size that stands elsewhere.
+    Zeros,
+    /// A rotation of space.
+    Rotation(Rotation<T>),
+    /// A rotation that is not normalised yet.
+    Turned(TurnedRotation<T>),
+    /// A unit quaternion.
+    Quaternion(UnitQuaternion<T>),
+    /// A rigid motion of space.
+    Motion(Box<RigidMotion<T>>),
+    /// A rigid motion of the plane.
+    Plane(Box<PlaneMotion<T>>),
+    /// An element kept as its matrix.
+    Element(Kept, Dense<T>),
+    /// A momentum of three components.
+    Momentum(Frame, Vector3<T>),
+    /// A momentum of any other shape.
+    Impulse(Frame, Dense<T>),
+    /// The momentum of an edge on SO(3) or SU(2).
+    Edge(Edge<T>),
+    /// A body on SO(3).
+    Poinsot(Arc<Poinsot<T>>),
+    /// A body on SU(2).
+    QuaternionBody(Arc<QuaternionBody<T>>),
+    /// A left factor, by its matrix and prepared.
+    LeftFactor(crate::library::Factor<T>),
+    /// A free body on its way.
+    Free(Box<Free<T>>),
+    /// A solver by name.
+    Method(Method),
+    /// An order of modified moments.
+    Order(Order),
+    /// What a function asks of its argument.
+    Domain(domain::Domain),
+    /// What has a domain.
+    Function(domain::Function),
+    /// A function called.
+    Call(&'static domain::Call),
+    /// What a step leaves of an equation.
+    Residual(Residual),
+    /// What is wrong with a kinetic energy.
+    Warning(KineticWarning),
+    /// A struct of the emitted code.
+    Struct(Struct<T>),
+    /// An array or a tuple.
+    List(Vec<Value<T>>),
+    /// Part of an array, from an offset on: the place of the array.
+    Part(usize, usize),
+    /// An error.
+    Failed(Box<Failure>),
+}
+
+impl<T: Real> Value<T> {
+    /// A matrix of any size, in the form that is kept for it.
+    #[inline]
+    pub fn of(a: Dense<T>) -> Self {
+        match (a.rows, a.cols, a.data.as_slice()) {
+            (3, 1, _) => Value::Vector(a.fixed()),
+            (3, 3, _) => Value::Matrix(a.fixed()),
+            _ => Value::Dense(a),
+        }
+    }
+
+    /// Any matrix as one of any size.
+    #[inline]
+    pub fn dense(&self) -> Option<Dense<T>> {
+        Some(match self {
+            Value::Vector(v) => Dense::of(v),
+            Value::Matrix(m) => Dense::of(m),
+            Value::Dense(a) => a.clone(),
+            _ => return None,
+        })
+    }
+
+    /// A momentum.
+    pub fn momentum(frame: Frame, a: &Value<T>) -> Option<Self> {
+        Some(match a {
+            Value::Vector(v) => Value::Momentum(frame, *v),
+            other => Value::Impulse(frame, other.dense()?),
+        })
+    }
+
+    /// An error.
+    pub fn failed(e: impl Into<Failure>) -> Self {
+        Value::Failed(Box::new(e.into()))
+    }
+
+    /// A result.
+    pub fn result(r: Result<Self, impl Into<Failure>>) -> Self {
+        r.unwrap_or_else(Self::failed)
+    }
+
+    /// A count.
+    pub fn count(&self) -> Option<usize> {
+        match self {
+            Value::Int(n) => usize::try_from(*n).ok(),
+            _ => None,
+        }
+    }
+}
+
+impl<T: Real> PartialEq for Value<T> {
+    /// Numbers, matrices, group elements and momenta are compared; what is prepared never is.
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Value::Unit, Value::Unit) | (Value::None, Value::None) => true,
+            (Value::Bool(a), Value::Bool(b)) => a == b,
+            (Value::Int(a), Value::Int(b)) => a == b,
+            (Value::Real(a), Value::Real(b)) => a == b,
+            (Value::Double(a), Value::Double(b)) => a == b,
+            (Value::Vector(a), Value::Vector(b)) => a == b,
+            (Value::Matrix(a), Value::Matrix(b)) => a == b,
+            (Value::Dense(a), Value::Dense(b)) => a == b,
+            (Value::Rotation(a), Value::Rotation(b)) => a == b,
+            (Value::Quaternion(a), Value::Quaternion(b)) => a == b,
+            (Value::Motion(a), Value::Motion(b)) => a == b,
+            (Value::Plane(a), Value::Plane(b)) => a == b,
+            (Value::Element(k, a), Value::Element(l, b)) => k == l && a == b,
+            (Value::Momentum(f, a), Value::Momentum(g, b)) => f == g && a == b,
+            (Value::Impulse(f, a), Value::Impulse(g, b)) => f == g && a == b,
+            (Value::Method(a), Value::Method(b)) => a == b,
+            (Value::Struct(a), Value::Struct(b)) => a.values == b.values,
+            (Value::List(a), Value::List(b)) => a == b,
+            _ => false,
+        }
+    }
+}

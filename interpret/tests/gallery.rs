@@ -1,0 +1,180 @@
+//! The models of the gallery, read from their texts, against the same models built: cards, steps,
+//! observables, invariants, scales and residuals agree to the last bit.
+
+use clebsch::card::{Card, OpenError, Settings, Trajectory};
+use clebsch_models::{Case, Entry, gallery};
+
+/// How many steps are compared.
+const STEPS: u64 = 1000;
+
+/// Everything a trajectory shows at a node, as bits.
+fn seen(t: &dyn Trajectory, card: &Card) -> Vec<u64> {
+    let mut out = vec![0.0; card.observable_count() + 2 * card.invariant_count() + 1];
+    let (observed, rest) = out.split_at_mut(card.observable_count());
+    let (invariants, rest) = rest.split_at_mut(card.invariant_count());
+    let (scales, residual) = rest.split_at_mut(card.invariant_count());
+    t.observe(observed);
+    t.invariants(invariants);
+    t.scales(scales);
+    residual[0] = t.residual().unwrap_or(-1.0);
+    out.iter().map(|x| x.to_bits()).collect()
+}
+
+fn start(card: &Card, case: &Case, settings: Settings) -> Result<Box<dyn Trajectory>, OpenError> {
+    (card.open)(&case.parameters, &case.initial, settings)
+}
+
+/// Both trajectories side by side; how many steps were compared.
+fn compare(built: &Card, read: &Card, case: &Case, settings: Settings, steps: u64) -> u64 {
+    let label = format!("{} {} {settings:?}", built.name, case.name);
+    let (mut a, mut b) = match (start(built, case, settings), start(read, case, settings)) {
+        (Ok(a), Ok(b)) => (a, b),
+        (a, b) => {
+            let told = |r: Result<Box<dyn Trajectory>, OpenError>| r.err().map(|e| e.to_string());
+            assert_eq!(told(a), told(b), "{label}");
+            return 0;
+        }
+    };
+    assert_eq!(a.kinetic_warning(), b.kinetic_warning(), "{label}");
+    assert_eq!(seen(&*a, built), seen(&*b, read), "{label} at the start");
+    for k in 0..steps {
+        let (x, y) = (a.step(), b.step());
+        assert_eq!(x, y, "{label} in step {k}");
+        assert_eq!(
+            (a.node(), a.time().to_bits()),
+            (b.node(), b.time().to_bits()),
+            "{label}"
+        );
+        if k % 7 == 0 || k + 1 == steps || k < 3 {
+            assert_eq!(seen(&*a, built), seen(&*b, read), "{label} after step {k}");
+        }
+        if x.is_err() {
+            return k;
+        }
+    }
+    steps
+}
+
+/// The card that is read from the text of a built one; nothing where a build is needed.
+fn read(entry: &Entry) -> Option<Card> {
+    match clebsch_interpret::card(entry.card.source) {
+        Ok(card) => Some(card),
+        Err(refused) => {
+            println!("{}: {refused}", entry.card.name);
+            None
+        }
+    }
+}
+
+/// What the model's step is solved by needs a build.
+const BUILT_ONLY: [&str; 3] = ["CoupledBodies", "KirchhoffBody", "MixedFour"];
+
+fn served() -> Vec<(Entry, Card)> {
+    let mut all = Vec::new();
+    for entry in gallery() {
+        match read(&entry) {
+            Some(card) => all.push((entry, card)),
+            None => assert!(BUILT_ONLY.contains(&entry.card.name), "{}", entry.card.name),
+        }
+    }
+    all
+}
+
+/// A card without what differs: the functions, and sizes that are chosen otherwise.
+fn told(card: &Card) -> String {
+    let all = [
+        format!("{:?}", (card.name, card.kebab, card.doc, card.source, card.summary)),
+        format!("{:?}", (card.solver, card.order, card.orders, card.fingerprint)),
+        format!("{:?}", (card.preprocessed, card.reversible, card.solvers)),
+        format!("{:?}", (card.parameters, card.initial, card.observables)),
+        format!("{:?}", (card.invariants, card.discrete_energy, card.dimensions)),
+    ];
+    all.join("\n")
+}
+
+#[test]
+fn cards_are_those_of_built_models() {
+    for (entry, card) in served() {
+        let sizes: Vec<usize> = entry.card.dimensions.iter().map(|d| d.value).collect();
+        let card = (card.sized)(&sizes).unwrap_or(card);
+        assert_eq!(told(&entry.card), told(&card), "{}", entry.card.name);
+    }
+}
+
+#[test]
+fn steps_agree_to_the_last_bit() {
+    for (entry, card) in served() {
+        for case in &entry.cases {
+            let built = entry.card_of(case);
+            let sizes: Vec<usize> = built.dimensions.iter().map(|d| d.value).collect();
+            let Some(read) = (card.sized)(&sizes) else {
+                panic!("{} {sizes:?}", card.name);
+            };
+            let made = compare(&built, &read, case, Settings::step(case.h), STEPS.min(case.steps));
+            println!("{} {}: {made} steps", card.name, case.name);
+        }
+    }
+}
+
+#[test]
+fn orders_and_solvers_agree_to_the_last_bit() {
+    for (entry, card) in served() {
+        let Some(case) = entry.cases.first() else {
+            continue;
+        };
+        let built = entry.card_of(case);
+        let sizes: Vec<usize> = built.dimensions.iter().map(|d| d.value).collect();
+        let Some(read) = (card.sized)(&sizes) else {
+            panic!("{} {sizes:?}", card.name);
+        };
+        let plain = Settings::step(case.h);
+        for order in [1, 2, 3, 4, 6, 8, 10] {
+            compare(&built, &read, case, plain.of_order(order), 60);
+            let compensated = Settings {
+                compensated: true,
+                ..plain.of_order(order)
+            };
+            compare(&built, &read, case, compensated, 60);
+        }
+        for name in clebsch::solvers::Method::ALL {
+            let settings = Settings {
+                solver: Some(name),
+                ..plain
+            };
+            compare(&built, &read, case, settings, 60);
+        }
+    }
+}
+
+#[test]
+fn refusals_are_told_alike() {
+    for (entry, card) in served() {
+        for case in &entry.cases {
+            let built = entry.card_of(case);
+            let sizes: Vec<usize> = built.dimensions.iter().map(|d| d.value).collect();
+            let Some(read) = (card.sized)(&sizes) else {
+                panic!("{} {sizes:?}", card.name);
+            };
+            // Steps that are too long, of either kind of start, and values that are none.
+            for h in [0.0, -1.0, f64::NAN, 10.0 * case.h, 1e3 * case.h, 1e9] {
+                compare(&built, &read, case, Settings::step(h), 20);
+            }
+            for spoiled in [f64::NAN, -1.0] {
+                for i in 0..case.parameters.len() {
+                    let mut other = case.clone();
+                    if let Some(x) = other.parameters[i].first_mut() {
+                        *x = spoiled;
+                    }
+                    compare(&built, &read, &other, Settings::step(case.h), 20);
+                }
+                for i in 0..case.initial.len() {
+                    let mut other = case.clone();
+                    if let Some(x) = other.initial[i].first_mut() {
+                        *x = spoiled;
+                    }
+                    compare(&built, &read, &other, Settings::step(case.h), 20);
+                }
+            }
+        }
+    }
+}
