@@ -100,14 +100,6 @@ impl Failure {
         }
     }
 
-    /// As the error of a parameter, where it is one.
-    pub fn parameter(self) -> Option<ParameterError> {
-        match self {
-            Failure::Parameter(e) | Failure::Start(StartError::Initial(e)) => Some(e),
-            _ => None,
-        }
-    }
-
     /// As the error of a start.
     pub fn start(self) -> StartError {
         match self {

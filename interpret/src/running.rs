@@ -79,7 +79,7 @@ impl Opened {
             false => None,
         };
         put(&mut places, at::GIVEN, given);
-        let state = run(&f.begin, &mut places).map_err(Failure::open)?;
+        let state = run(&f.begin, &mut places).map_err(Failure::start)?;
         put(&mut places, at::STATE, state.clone());
         let kinetic = match &f.kinetic {
             Some(kinetic) => match run(kinetic, &mut places).map_err(Failure::open)? {
