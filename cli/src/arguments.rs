@@ -198,7 +198,7 @@ fn model() -> Arg {
     Arg::new("model")
         .value_name("MODEL")
         .required(true)
-        .help("Model, as `clebsch list` shows it")
+        .help("Model, as `clebsch list` shows it, or a file with its text")
 }
 
 fn json() -> Arg {

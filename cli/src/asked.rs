@@ -3,38 +3,28 @@
 
 use crate::failure::Failure;
 use crate::gallery::{Entry, Gallery};
+use crate::model_file;
 use crate::plain::shown;
+use std::borrow::Cow;
 use std::path::Path;
 use toml::de::DeTable;
 
-/// The model that `run`, `compare` or `case` is to work on.
+/// The model that `run`, `compare` or `case` is to work on: one of the gallery, else that of a file.
 ///
 /// # Errors
-/// Usage: no model of the gallery. A case file and a file with a model's text are told apart, and the
-/// message says what they are for.
-pub(crate) fn model<'a>(gallery: &'a Gallery, name: &str) -> Result<&'a Entry, Failure> {
+/// Usage: neither; a case file is told apart, and the message says what it is for.
+pub(crate) fn model<'a>(gallery: &'a Gallery, name: &str) -> Result<Cow<'a, Entry>, Failure> {
     let unknown = match gallery.find(name) {
-        Ok(entry) => return Ok(entry),
+        Ok(entry) => return Ok(Cow::Borrowed(entry)),
         Err(unknown) => unknown,
     };
     if let Some(failure) = case_file(gallery, name, "here a model is named") {
         return Err(failure);
     }
-    let path = Path::new(name);
-    if path.is_file() || path.extension().is_some_and(|end| end == "clebsch") {
-        let name = shown(name);
-        let what = match path.is_file() {
-            true => format!("`{name}` is a file"),
-            false => format!("there is no file `{name}`"),
-        };
-        return Err(Failure::Usage(format!(
-            "{what}, and only models that were compiled are run: `clebsch list` shows them\n\
-             \x20 its equations:  clebsch derive {name}\n\
-             \x20 to run it:      state it in `clebsch::model! {{ ... }}` in a crate of your own, and give it\n\
-             \x20                 to `clebsch_cli::run_process_on`: README, \"A command line of your own\""
-        )));
+    match model_file::is_meant(name) {
+        true => model_file::read(name).map(Cow::Owned),
+        false => Err(unknown),
     }
-    Err(unknown)
 }
 
 /// The message for a case file in the place of a model, if `name` is one.

@@ -16,6 +16,7 @@ mod figures;
 pub mod gallery;
 mod lines;
 mod list;
+mod model_file;
 mod output;
 mod plain;
 mod plan;
@@ -122,7 +123,7 @@ fn dispatch(
         Some(("case", matches)) => {
             let text = |key: &str| matches.get_one::<String>(key).map(String::as_str);
             let entry = asked::model(gallery, text("model").unwrap_or_default())?;
-            let case = gallery::case(entry, text("case"))?;
+            let case = gallery::case(&entry, text("case"))?;
             let toml = case_file::write(&entry.card_of(case), case);
             streams.out.write_all(toml.as_bytes())?;
             Ok(DONE)

@@ -40,7 +40,7 @@ pub fn run(
         .get_one::<String>("model")
         .map_or("", String::as_str);
     let entry = asked::model(gallery, model)?;
-    let plan = Plan::new(entry, matches)?;
+    let plan = Plan::new(&entry, matches)?;
     let card = &entry.card_of(&plan.case);
     let target = matches.get_one::<PathBuf>("out");
     let as_json = matches.get_flag("json");

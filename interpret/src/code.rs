@@ -18,7 +18,7 @@ pub type Special<T> = fn(&mut Places<T>, &[Code<T>]) -> Result<Value<T>, Exit<T>
 #[derive(Debug)]
 pub enum Exit<T: Real> {
     /// The function returns.
-    Return(Value<T>),
+    Return(Box<Value<T>>),
     /// An operation on values that it does not take, which emission never asks for.
     Unfit(&'static str),
 }
@@ -163,9 +163,10 @@ enum Given<T: Real> {
 
 impl<T: Real> Given<T> {
     fn of(code: &Code<T>, places: &mut Places<T>) -> Result<Self, Exit<T>> {
-        match code.place(places).is_some() {
-            true => Ok(Given::There),
-            false => Ok(Given::Made(code.run(places)?)),
+        match code {
+            Code::Place(_) | Code::Constant(_) => Ok(Given::There),
+            Code::Field(..) | Code::Index(..) if code.place(places).is_some() => Ok(Given::There),
+            _ => Ok(Given::Made(code.run(places)?)),
         }
     }
 
@@ -178,30 +179,38 @@ impl<T: Real> Given<T> {
 }
 
 impl<T: Real> Pattern<T> {
-    /// Whether a value is met; it is then bound.
-    pub fn bind(&self, value: Value<T>, places: &mut Places<T>) -> bool {
+    /// Whether a value is met.
+    fn meets(&self, value: &Value<T>) -> bool {
         match self {
-            Pattern::Any => true,
-            Pattern::Place(at) => {
-                if let Some(place) = places.get_mut(*at) {
-                    *place = value;
-                }
-                true
-            }
+            Pattern::Any | Pattern::Place(_) => true,
             Pattern::List(patterns) => match value {
-                Value::List(list) => {
-                    let pairs = patterns.iter().zip(list);
-                    pairs.fold(true, |met, (p, v)| met && p.bind(v, places))
-                }
+                Value::List(list) => patterns.iter().zip(list).all(|(p, v)| p.meets(v)),
                 Value::Unit => patterns.is_empty(),
                 _ => false,
             },
             Pattern::Done(inner) => {
-                !matches!(value, Value::Failed(_) | Value::None) && inner.bind(value, places)
+                !matches!(value, Value::Failed(_) | Value::None) && inner.meets(value)
             }
-            Pattern::Failed(inner) => matches!(value, Value::Failed(_)) && inner.bind(value, places),
+            Pattern::Failed(inner) => matches!(value, Value::Failed(_)) && inner.meets(value),
             Pattern::None => matches!(value, Value::None),
-            Pattern::Exactly(other) => value == *other,
+            Pattern::Exactly(other) => value == other,
+        }
+    }
+
+    /// Binds a value that is met.
+    fn bind(&self, value: Value<T>, places: &mut Places<T>) {
+        match (self, value) {
+            (Pattern::Place(at), value) => {
+                if let Some(place) = places.get_mut(*at) {
+                    *place = value;
+                }
+            }
+            (Pattern::List(patterns), Value::List(list)) => {
+                let pairs = patterns.iter().zip(list);
+                pairs.for_each(|(p, v)| p.bind(v, places));
+            }
+            (Pattern::Done(inner) | Pattern::Failed(inner), value) => inner.bind(value, places),
+            _ => {}
         }
     }
 }
@@ -269,117 +278,84 @@ impl<T: Real> Code<T> {
     /// # Errors
     /// [`Exit`] where a function returns from within.
     pub fn run(&self, places: &mut Places<T>) -> Evaluated<T> {
-        Ok(match self {
-            Code::Constant(value) => value.clone(),
-            Code::Place(at) => unfit(places.get(*at))?.clone(),
-            Code::Field(base, name) => {
-                if let Some(value) = self.place(places) {
-                    return Ok(value.clone());
-                }
-                let given = Given::of(base, places)?;
-                unfit(crate::library::field(given.get(base, places)?, *name))?
-            }
-            Code::Inner(base) => {
-                let given = Given::of(base, places)?;
-                unfit(crate::library::inner(given.get(base, places)?))?
-            }
-            Code::Index(base, at) => {
-                if let Some(value) = self.place(places) {
-                    return Ok(value.clone());
-                }
-                let mut indices = [0; 2];
-                for (index, code) in indices.iter_mut().zip(at) {
-                    *index = code.count(places)?;
-                }
-                let given = Given::of(base, places)?;
-                let value = given.get(base, places)?;
-                unfit(crate::library::entry(value, indices, at.len()))?
-            }
-            Code::Binary(operator, a, b) => {
-                let (x, y) = (Given::of(a, places)?, Given::of(b, places)?);
-                let (x, y) = (x.get(a, places)?, y.get(b, places)?);
-                unfit(crate::library::binary(*operator, x, y))?
-            }
+        // Each kind by itself: together they would need places for the values of all.
+        match self {
+            Code::Constant(value) => Ok(value.clone()),
+            Code::Place(at) => Ok(unfit(places.get(*at))?.clone()),
+            Code::Field(base, name) => self.field(base, *name, places),
+            Code::Inner(base) => apply(base, places, crate::library::inner),
+            Code::Index(base, at) => self.entry(base, at, places),
+            Code::Binary(operator, a, b) => operation(*operator, a, b, places),
             Code::Lazy(settles, a, b) => match a.truth(places)? {
-                truth if truth == *settles => Value::Bool(truth),
-                _ => Value::Bool(b.truth(places)?),
+                truth if truth == *settles => Ok(Value::Bool(truth)),
+                _ => Ok(Value::Bool(b.truth(places)?)),
             },
-            Code::Negative(a) => {
-                let x = Given::of(a, places)?;
-                unfit(crate::library::negative(x.get(a, places)?))?
-            }
-            Code::Not(a) => Value::Bool(!a.truth(places)?),
+            Code::Negative(a) => apply(a, places, crate::library::negative),
+            Code::Not(a) => Ok(Value::Bool(!a.truth(places)?)),
             Code::Call(native, arguments, sizes) => match arguments.as_slice() {
-                [] => unfit(native(&[], sizes))?,
-                [a] => {
-                    let x = Given::of(a, places)?;
-                    unfit(native(&[x.get(a, places)?], sizes))?
-                }
-                [a, b] => {
-                    let (x, y) = (Given::of(a, places)?, Given::of(b, places)?);
-                    let list = [x.get(a, places)?, y.get(b, places)?];
-                    unfit(native(&list, sizes))?
-                }
-                all => {
-                    let mut given = Vec::with_capacity(all.len());
-                    for a in all {
-                        given.push(Given::of(a, places)?);
-                    }
-                    let pairs = given.iter().zip(all);
-                    let list = pairs.map(|(x, a)| x.get(a, places));
-                    let list: Vec<&Value<T>> = list.collect::<Result<_, _>>()?;
-                    unfit(native(&list, sizes))?
-                }
+                [a] => one(*native, a, sizes, places),
+                [a, b] => two(*native, a, b, sizes, places),
+                all => many(*native, all, sizes, places),
             },
-            Code::Special(special, arguments) => special(places, arguments)?,
-            Code::Routine(routine, arguments) => called(routine, arguments, places)?,
-            Code::Closure(..) => return Err(Exit::Unfit(WRONG)),
+            Code::Special(special, arguments) => special(places, arguments),
+            Code::Routine(routine, arguments) => called(routine, arguments, places),
+            Code::Closure(..) => Err(Exit::Unfit(WRONG)),
             Code::Block(all) => {
                 let Some((last, first)) = all.split_last() else {
                     return Ok(Value::Unit);
                 };
                 for code in first {
-                    code.run(places)?;
+                    code.follow(places)?;
                 }
-                last.run(places)?
+                last.run(places)
             }
-            Code::Let(pattern, value, otherwise) => {
-                let value = value.run(places)?;
-                if !pattern.bind(value, places) {
-                    match otherwise {
-                        Some(otherwise) => return otherwise.run(places),
-                        None => return Err(Exit::Unfit(WRONG)),
-                    }
-                }
-                Value::Unit
+            Code::Let(..) | Code::Assign(..) | Code::Increase(..) | Code::For(..) => {
+                self.follow(places)?;
+                Ok(Value::Unit)
             }
             Code::If(condition, then, otherwise) => match (condition.truth(places)?, otherwise) {
-                (true, _) => then.run(places)?,
-                (false, Some(otherwise)) => otherwise.run(places)?,
-                (false, None) => Value::Unit,
+                (true, _) => then.run(places),
+                (false, Some(otherwise)) => otherwise.run(places),
+                (false, None) => Ok(Value::Unit),
             },
-            Code::Match(value, arms) => {
+            Code::Match(value, arms) => matched(value, arms, places),
+            Code::Struct(layout, given, base) => made(layout, given, base.as_deref(), places),
+            Code::List(all) => listed(all, places),
+            Code::Repeat(value, count) => repeated(value, count, places),
+            Code::Momentum(frame, a) => apply(a, places, |x| match x {
+                Value::Failed(e) => Some(Value::Failed(e.clone())),
+                value => Value::momentum(*frame, value),
+            }),
+            Code::Function(body) => match body.run(places) {
+                Err(Exit::Return(value)) => Ok(*value),
+                other => other,
+            },
+            Code::Return(value) => Err(Exit::Return(Box::new(value.run(places)?))),
+            Code::Try(value) => match value.run(places)? {
+                Value::Failed(e) => Err(Exit::Return(Box::new(Value::Failed(e)))),
+                Value::None => Err(Exit::Return(Box::new(Value::None))),
+                value => Ok(value),
+            },
+        }
+    }
+
+    /// A statement.
+    fn follow(&self, places: &mut Places<T>) -> Result<(), Exit<T>> {
+        match self {
+            Code::Let(pattern, value, otherwise) => {
                 let value = value.run(places)?;
-                for arm in arms {
-                    if !arm.pattern.bind(value.clone(), places) {
-                        continue;
-                    }
-                    let holds = match &arm.guard {
-                        Some(guard) => guard.truth(places)?,
-                        None => true,
-                    };
-                    if holds {
-                        return arm.body.run(places);
-                    }
+                if let Pattern::Place(at) = pattern {
+                    *unfit(places.get_mut(*at))? = value;
+                    return Ok(());
                 }
-                return Err(Exit::Unfit(WRONG));
-            }
-            Code::For(at, from, to, body) => {
-                for i in from.count(places)?..to.count(places)? {
-                    *unfit(places.get_mut(*at))? = Value::Int(i as i64);
-                    body.run(places)?;
+                if pattern.meets(&value) {
+                    pattern.bind(value, places);
+                    return Ok(());
                 }
-                Value::Unit
+                match otherwise {
+                    Some(otherwise) => otherwise.run(places).map(|_| ()),
+                    None => Err(Exit::Unfit(WRONG)),
+                }
             }
             Code::Assign(targets, value) => {
                 let value = value.run(places)?;
@@ -392,60 +368,43 @@ impl<T: Real> Code<T> {
                     }
                     _ => return Err(Exit::Unfit(WRONG)),
                 }
-                Value::Unit
+                Ok(())
             }
             Code::Increase(target, value) => {
                 let value = value.run(places)?;
                 let place = unfit(target.place_mut(places))?;
                 *place = unfit(crate::library::binary(Operator::Add, place, &value))?;
-                Value::Unit
+                Ok(())
             }
-            Code::Struct(layout, given, base) => {
-                let mut values = match base {
-                    Some(base) => match base.run(places)? {
-                        Value::Struct(base) => base.values,
-                        _ => return Err(Exit::Unfit(WRONG)),
-                    },
-                    None => vec![Value::Unit; layout.fields.len()],
-                };
-                for (at, code) in given {
-                    let value = code.run(places)?;
-                    *unfit(values.get_mut(*at))? = value;
+            Code::For(at, from, to, body) => {
+                for i in from.count(places)?..to.count(places)? {
+                    *unfit(places.get_mut(*at))? = Value::Int(i as i64);
+                    body.run(places)?;
                 }
-                Value::Struct(Struct {
-                    layout: layout.clone(),
-                    values,
-                })
+                Ok(())
             }
-            Code::List(all) => {
-                let values = all.iter().map(|code| code.run(places));
-                match values.collect::<Result<Vec<_>, _>>()? {
-                    values if values.is_empty() => Value::Unit,
-                    values => Value::List(values),
-                }
-            }
-            Code::Repeat(value, count) => {
-                let (value, count) = (value.run(places)?, count.count(places)?);
-                Value::List(vec![value; count])
-            }
-            Code::Momentum(frame, a) => {
-                let x = Given::of(a, places)?;
-                match x.get(a, places)? {
-                    Value::Failed(e) => Value::Failed(e.clone()),
-                    value => unfit(Value::momentum(*frame, value))?,
-                }
-            }
-            Code::Function(body) => match body.run(places) {
-                Err(Exit::Return(value)) => value,
-                other => return other,
-            },
-            Code::Return(value) => return Err(Exit::Return(value.run(places)?)),
-            Code::Try(value) => match value.run(places)? {
-                Value::Failed(e) => return Err(Exit::Return(Value::Failed(e))),
-                Value::None => return Err(Exit::Return(Value::None)),
-                value => value,
-            },
-        })
+            other => other.run(places).map(|_| ()),
+        }
+    }
+
+    #[inline(never)]
+    fn field(&self, base: &Code<T>, name: u32, places: &mut Places<T>) -> Evaluated<T> {
+        match self.place(places) {
+            Some(value) => Ok(value.clone()),
+            None => apply(base, places, |x| crate::library::field(x, name)),
+        }
+    }
+
+    #[inline(never)]
+    fn entry(&self, base: &Code<T>, at: &[Code<T>], places: &mut Places<T>) -> Evaluated<T> {
+        if let Some(value) = self.place(places) {
+            return Ok(value.clone());
+        }
+        let mut indices = [0; 2];
+        for (index, code) in indices.iter_mut().zip(at) {
+            *index = code.count(places)?;
+        }
+        apply(base, places, |x| crate::library::entry(x, indices, at.len()))
     }
 
     /// Calls a closure back.
@@ -460,13 +419,157 @@ impl<T: Real> Code<T> {
             *unfit(places.get_mut(*at))? = value;
         }
         match body.run(places) {
-            Err(Exit::Return(value)) => Ok(value),
+            Err(Exit::Return(value)) => Ok(*value),
             other => other,
         }
     }
 }
 
+/// A function of one value.
+#[inline(never)]
+fn apply<T: Real>(
+    a: &Code<T>,
+    places: &mut Places<T>,
+    f: impl Fn(&Value<T>) -> Option<Value<T>>,
+) -> Evaluated<T> {
+    let x = Given::of(a, places)?;
+    unfit(f(x.get(a, places)?))
+}
+
+#[inline(never)]
+fn operation<T: Real>(
+    operator: Operator,
+    a: &Code<T>,
+    b: &Code<T>,
+    places: &mut Places<T>,
+) -> Evaluated<T> {
+    let x = Given::of(a, places)?;
+    let y = Given::of(b, places)?;
+    unfit(crate::library::binary(operator, x.get(a, places)?, y.get(b, places)?))
+}
+
+#[inline(never)]
+fn one<T: Real>(
+    native: Native<T>,
+    a: &Code<T>,
+    sizes: &[usize],
+    places: &mut Places<T>,
+) -> Evaluated<T> {
+    let x = Given::of(a, places)?;
+    unfit(native(&[x.get(a, places)?], sizes))
+}
+
+#[inline(never)]
+fn two<T: Real>(
+    native: Native<T>,
+    a: &Code<T>,
+    b: &Code<T>,
+    sizes: &[usize],
+    places: &mut Places<T>,
+) -> Evaluated<T> {
+    let x = Given::of(a, places)?;
+    let y = Given::of(b, places)?;
+    unfit(native(&[x.get(a, places)?, y.get(b, places)?], sizes))
+}
+
+#[inline(never)]
+fn many<T: Real>(
+    native: Native<T>,
+    all: &[Code<T>],
+    sizes: &[usize],
+    places: &mut Places<T>,
+) -> Evaluated<T> {
+    match all.len() {
+        0 => unfit(native(&[], sizes)),
+        3 => several::<T, 3>(native, all, sizes, places),
+        4 => several::<T, 4>(native, all, sizes, places),
+        5 => several::<T, 5>(native, all, sizes, places),
+        _ => Err(Exit::Unfit(WRONG)),
+    }
+}
+
+#[inline(never)]
+fn several<T: Real, const N: usize>(
+    native: Native<T>,
+    all: &[Code<T>],
+    sizes: &[usize],
+    places: &mut Places<T>,
+) -> Evaluated<T> {
+    let mut given = [const { Given::There }; N];
+    for (slot, a) in given.iter_mut().zip(all) {
+        *slot = Given::of(a, places)?;
+    }
+    let nothing = Value::Unit;
+    let mut list = [&nothing; N];
+    for (slot, (x, a)) in list.iter_mut().zip(given.iter().zip(all)) {
+        *slot = x.get(a, places)?;
+    }
+    unfit(native(&list, sizes))
+}
+
+#[inline(never)]
+fn matched<T: Real>(value: &Code<T>, arms: &[Arm<T>], places: &mut Places<T>) -> Evaluated<T> {
+    let value = value.run(places)?;
+    for arm in arms {
+        if !arm.pattern.meets(&value) {
+            continue;
+        }
+        let Some(guard) = &arm.guard else {
+            arm.pattern.bind(value, places);
+            return arm.body.run(places);
+        };
+        arm.pattern.bind(value.clone(), places);
+        if guard.truth(places)? {
+            return arm.body.run(places);
+        }
+    }
+    Err(Exit::Unfit(WRONG))
+}
+
+#[inline(never)]
+fn made<T: Real>(
+    layout: &Arc<Layout>,
+    given: &[(usize, Code<T>)],
+    base: Option<&Code<T>>,
+    places: &mut Places<T>,
+) -> Evaluated<T> {
+    let mut values = match base {
+        Some(base) => match base.run(places)? {
+            Value::Struct(base) => base.values,
+            _ => return Err(Exit::Unfit(WRONG)),
+        },
+        None => vec![Value::Unit; layout.fields.len()],
+    };
+    for (at, code) in given {
+        let value = code.run(places)?;
+        *unfit(values.get_mut(*at))? = value;
+    }
+    Ok(Value::Struct(Struct {
+        layout: layout.clone(),
+        values,
+    }))
+}
+
+#[inline(never)]
+fn listed<T: Real>(all: &[Code<T>], places: &mut Places<T>) -> Evaluated<T> {
+    let mut values = Vec::with_capacity(all.len());
+    for code in all {
+        values.push(code.run(places)?);
+    }
+    Ok(match values.is_empty() {
+        true => Value::Unit,
+        false => Value::List(values),
+    })
+}
+
+#[inline(never)]
+fn repeated<T: Real>(value: &Code<T>, count: &Code<T>, places: &mut Places<T>) -> Evaluated<T> {
+    let value = value.run(places)?;
+    Ok(Value::List(vec![value; count.count(places)?]))
+}
+
 /// Calls a function of the model with places of its own.
+#[inline(never)]
 fn called<T: Real>(
     routine: &OnceLock<Routine<T>>,
     arguments: &[Code<T>],
@@ -479,7 +582,7 @@ fn called<T: Real>(
     }
     own.resize(routine.places.max(own.len()), Value::Unit);
     let value = match routine.body.run(&mut own) {
-        Err(Exit::Return(value)) => value,
+        Err(Exit::Return(value)) => *value,
         other => other?,
     };
     for (a, changed) in arguments.iter().zip(own) {
@@ -493,6 +596,6 @@ fn called<T: Real>(
 
 impl<T: Real> From<Failure> for Exit<T> {
     fn from(e: Failure) -> Self {
-        Exit::Return(Value::failed(e))
+        Exit::Return(Box::new(Value::failed(e)))
     }
 }

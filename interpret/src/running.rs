@@ -17,10 +17,14 @@ use std::sync::Arc;
 
 /// Runs a function to its value; what cannot be is an error of the step.
 fn run(routine: &Routine<f64>, places: &mut Places<f64>) -> Result<Value<f64>, Failure> {
-    match routine.body.run(places) {
-        Ok(Value::Failed(e)) | Err(Exit::Return(Value::Failed(e))) => Err(*e),
-        Ok(value) | Err(Exit::Return(value)) => Ok(value),
-        Err(Exit::Unfit(what)) => Err(clebsch::StepCause::NotFinite { what }.into()),
+    let value = match routine.body.run(places) {
+        Ok(value) => value,
+        Err(Exit::Return(value)) => *value,
+        Err(Exit::Unfit(what)) => Value::failed(clebsch::StepCause::NotFinite { what }),
+    };
+    match value {
+        Value::Failed(e) => Err(*e),
+        value => Ok(value),
     }
 }
 

@@ -49,6 +49,9 @@ impl<T: Real> Lower<'_, '_, T> {
             syn::Expr::If(i) => self.conditional(i)?,
             syn::Expr::Match(m) => self.matched(m)?,
             syn::Expr::Assign(a) => {
+                if let Some(all) = self.one_by_one(a)? {
+                    return Ok(all);
+                }
                 let value = self.expression(&a.right, None)?;
                 let targets = match &*a.left {
                     syn::Expr::Tuple(t) => self.all(t.elems.iter())?,
@@ -76,6 +79,22 @@ impl<T: Real> Lower<'_, '_, T> {
             syn::Expr::Closure(c) => self.closure(c)?,
             other => return Err(refuse(other)),
         })
+    }
+
+    /// A tuple assigned to a tuple, where nothing assigned is read: one after the other.
+    fn one_by_one(&mut self, a: &syn::ExprAssign) -> Result<Option<Code<T>>, Refused> {
+        let (syn::Expr::Tuple(left), syn::Expr::Tuple(right)) = (&*a.left, &*a.right) else {
+            return Ok(None);
+        };
+        let (targets, values) = (self.all(left.elems.iter())?, self.all(right.elems.iter())?);
+        let assigned: Vec<Option<usize>> = targets.iter().map(root).collect();
+        let apart = |value: &Code<T>| root(value).is_some_and(|r| !assigned.contains(&Some(r)));
+        if targets.len() != values.len() || !values.iter().all(apart) {
+            return Ok(None);
+        }
+        let pairs = targets.into_iter().zip(values);
+        let each = pairs.map(|(target, value)| Code::Assign(vec![target], Box::new(value)));
+        Ok(Some(Code::Block(each.collect())))
     }
 
     /// Several expressions.
@@ -349,6 +368,15 @@ impl<T: Real> Lower<'_, '_, T> {
             None => None,
         };
         Ok(Code::Struct(layout, given, base))
+    }
+}
+
+/// The place that an expression is part of.
+fn root<T: Real>(code: &Code<T>) -> Option<usize> {
+    match code {
+        Code::Place(at) => Some(*at),
+        Code::Field(base, _) => root(base),
+        _ => None,
     }
 }
 

@@ -1,0 +1,84 @@
+//! A model in a file: read, derived and executed without a build.
+//! Takes a path; gives the model with a case of sample values, to start one's own from.
+
+use crate::failure::Failure;
+use crate::gallery::{Case, Entry};
+use crate::plain::shown;
+use clebsch::card::{Card, Field, Kind};
+use clebsch_interpret::Refused;
+use std::path::Path;
+
+/// Whether a model's text is meant rather than its name.
+pub(crate) fn is_meant(name: &str) -> bool {
+    let path = Path::new(name);
+    path.is_file() || path.extension().is_some_and(|end| end == "clebsch")
+}
+
+/// The model of a file.
+///
+/// # Errors
+/// Usage: the file cannot be read, its text does not derive, or the model needs a build.
+pub(crate) fn read(name: &str) -> Result<Entry, Failure> {
+    let shown_name = shown(name).to_string();
+    let text = std::fs::read_to_string(name).map_err(|error| {
+        Failure::Usage(format!("cannot read the model file {shown_name}: {error}"))
+    })?;
+    let card = clebsch_interpret::card(&text).map_err(|refused| match refused {
+        Refused::Model(errors) => {
+            Failure::Usage(format!("\n{}", errors.render(&text, &shown_name)))
+        }
+        other => Failure::Usage(format!("{shown_name}: {other}")),
+    })?;
+    Ok(Entry {
+        card,
+        cases: vec![sample(&card, &shown_name)],
+    })
+}
+
+/// Values that are admissible for most models, and of no further meaning.
+fn sample(card: &Card, file: &str) -> Case {
+    let turned = card.initial.iter().any(|f| f.kind == Kind::Rotation);
+    let values = |fields: &[Field]| fields.iter().map(|f| of_field(f, turned)).collect();
+    Case {
+        name: "sample".to_owned(),
+        doc: format!(
+            "sample values, to start a case of your own from: clebsch case {file} > my.toml"
+        ),
+        h: 0.01,
+        steps: 1000,
+        parameters: values(card.parameters),
+        initial: values(card.initial),
+        bounds: Vec::new(),
+    }
+}
+
+/// Sample values of a field; `turned` where momenta of square shape are skew.
+fn of_field(field: &Field, turned: bool) -> Vec<f64> {
+    let (rows, cols) = (field.rows, field.cols);
+    let square = rows == cols && rows > 1;
+    let entry = |i: usize, j: usize| match field.kind {
+        Kind::UnitQuaternion => f64::from(u8::from(i == 0)),
+        Kind::SecondMoments | Kind::Diagonal | Kind::Symmetric if i == j => (i + 1) as f64,
+        Kind::Matrix | Kind::Rotation | Kind::RigidMotion if square => f64::from(u8::from(i == j)),
+        Kind::SecondMoments | Kind::Diagonal | Kind::Symmetric => 0.0,
+        Kind::Skew => skew(i, j),
+        Kind::BodyMomentum | Kind::SpatialMomentum if square && turned => 0.1 * skew(i, j),
+        Kind::BodyMomentum | Kind::SpatialMomentum | Kind::FieldMomentum => {
+            0.1 / (1 + i + cols * j) as f64
+        }
+        _ => 1.0 / (1 + i * cols + j) as f64,
+    };
+    (0..rows)
+        .flat_map(|i| (0..cols).map(move |j| (i, j)))
+        .map(|(i, j)| entry(i, j))
+        .collect()
+}
+
+fn skew(i: usize, j: usize) -> f64 {
+    let size = 1.0 / (i + j).max(1) as f64;
+    match i.cmp(&j) {
+        std::cmp::Ordering::Less => -size,
+        std::cmp::Ordering::Equal => 0.0,
+        std::cmp::Ordering::Greater => size,
+    }
+}
