@@ -3,7 +3,7 @@
 use crate::lower::constant;
 use crate::program::{Program, named};
 use crate::{Refused, text};
-use clebsch::card::{Card, Conserved, Dimension, Field, Invariant, Kind, Open};
+use clebsch::card::{Card, Dimension, Field, Invariant, Kind, Open};
 use clebsch::solvers::Method;
 use std::collections::BTreeMap;
 
@@ -127,28 +127,36 @@ impl<'a> Constants<'a> {
         }
     }
 
+    /// `Kind::X.field(name, [rows, cols], doc)`, and the name in ASCII where that is another.
     fn field(&self, e: &syn::Expr) -> Option<Field> {
-        let f = fields(e)?;
-        Some(Field {
-            name: self.text(f.get("name")?)?,
-            ascii: self.text(f.get("ascii")?)?,
-            rows: self.count(f.get("rows")?)?,
-            cols: self.count(f.get("cols")?)?,
-            kind: kind(f.get("kind")?)?,
-            doc: self.text(f.get("doc")?)?,
-        })
+        let syn::Expr::MethodCall(call) = e else {
+            return None;
+        };
+        let mut arguments = call.args.iter();
+        if call.method == "spelt" {
+            let ascii = self.text(arguments.next()?)?;
+            return Some(self.field(&call.receiver)?.spelt(ascii));
+        }
+        let name = self.text(arguments.next()?)?;
+        let size = self.list(arguments.next()?, Self::count)?;
+        let doc = self.text(arguments.next()?)?;
+        let size = <[usize; 2]>::try_from(size).ok()?;
+        Some(kind(&call.receiver)?.field(name, size, doc))
     }
 
+    /// `Invariant::exact(name, formula, rows)`, or `bounded`.
     fn invariant(&self, e: &syn::Expr) -> Option<Invariant> {
-        let f = fields(e)?;
-        Some(Invariant {
-            name: self.text(f.get("name")?)?,
-            formula: self.text(f.get("formula")?)?,
-            rows: self.count(f.get("rows")?)?,
-            conserved: match is_named(f.get("conserved")?, "Exactly") {
-                true => Conserved::Exactly,
-                false => Conserved::Boundedly,
-            },
+        let syn::Expr::Call(call) = e else {
+            return None;
+        };
+        let [name, formula, rows] = &call.args.iter().collect::<Vec<_>>()[..] else {
+            return None;
+        };
+        let (name, formula) = (self.text(name)?, self.text(formula)?);
+        let rows = self.count(rows)?;
+        Some(match is_named(&call.func, "exact") {
+            true => Invariant::exact(name, formula, rows),
+            false => Invariant::bounded(name, formula, rows),
         })
     }
 

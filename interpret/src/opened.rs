@@ -2,7 +2,7 @@
 
 use crate::code::{Places, Routine};
 use crate::constants::Constants;
-use crate::lower::{Given, Shared, entry};
+use crate::lower::{Shared, entry};
 use crate::program::{Program, type_name};
 use crate::value::{Layout, Value};
 use crate::{Refused, text};
@@ -51,8 +51,8 @@ pub struct Functions {
     pub begin: Routine<f64>,
     /// The model with another solver, where one can be chosen.
     pub with_solver: Option<Routine<f64>>,
-    /// The workspace of a state.
-    pub workspace: Routine<f64>,
+    /// The workspace of a state, without a step that is tried.
+    pub prepared: Routine<f64>,
     /// The workspace compensated, of a free body.
     pub compensated: Option<Routine<f64>>,
     /// One step.
@@ -128,7 +128,7 @@ impl Opened {
             Some(&functions.new),
             Some(&functions.begin),
             functions.with_solver.as_ref(),
-            Some(&functions.workspace),
+            Some(&functions.prepared),
             functions.compensated.as_ref(),
             Some(&functions.step),
             Some(&functions.residual),
@@ -223,64 +223,28 @@ fn given(
 }
 
 fn functions(shared: &mut Shared<'_, f64>, name: &str) -> Result<Functions, Refused> {
-    use Given::{Members, Place};
+    use at::{BEFORE, GIVEN, MODEL, OUT, STATE, STEP, WORK};
     let program = shared.program;
-    let trajectory = format!("{name}Trajectory");
-    let workspace = format!("{name}Workspace");
-    let members = [
-        ("model", at::MODEL),
-        ("state", at::STATE),
-        ("work", at::WORK),
-        ("before", at::BEFORE),
-        ("h", at::STEP),
-    ];
-    let mut lower = |ty: &str, function: &str, given: &[Given]| {
-        entry(shared, (ty, function), given, at::FIRST)
+    let mut lower =
+        |function: &str, given: &[usize]| entry(shared, (name, function), given, at::FIRST);
+    let mut where_given = |function: &str, given: &[usize]| match program.function(name, function) {
+        Some(_) => lower(function, given).map(Some),
+        None => Ok(None),
     };
-    let optional = |found: bool, made: &mut dyn FnMut() -> Result<Routine<f64>, Refused>| match found {
-        true => made().map(Some),
-        false => Ok(None),
-    };
-    let seen = |function: &str| [Members(&members), Place(at::OUT)].map(|g| (function.to_owned(), g));
-    let mut watch = |function: &str| {
-        let [(f, a), (_, b)] = seen(function);
-        lower(&trajectory, &f, &[a, b])
-    };
-    let observe = watch("observe")?;
-    let invariants = watch("invariants")?;
-    let scales = watch("scales")?;
-    let (model, state, step) = (
-        || Place(at::MODEL),
-        || Place(at::STATE),
-        || Place(at::STEP),
-    );
+    let with_solver = where_given("with_solver", &[MODEL, GIVEN])?;
+    let compensated = where_given("Model::compensated", &[WORK])?;
+    let kinetic = where_given("kinetic_warning", &[MODEL, STATE])?;
     Ok(Functions {
-        new: lower(name, "new", &[Place(at::GIVEN)])?,
-        begin: lower(name, "at_node_0", &[model(), Place(at::GIVEN)])?,
-        with_solver: optional(program.function(name, "with_solver").is_some(), &mut || {
-            lower(name, "with_solver", &[model(), Place(at::GIVEN)])
-        })?,
-        workspace: lower(
-            name,
-            "workspace",
-            &[model(), state(), step(), Place(at::GIVEN)],
-        )?,
-        compensated: optional(
-            program.function(&workspace, "compensated").is_some(),
-            &mut || lower(&workspace, "compensated", &[Place(at::WORK)]),
-        )?,
-        step: lower(name, "step", &[model(), state(), Place(at::WORK)])?,
-        residual: lower(
-            name,
-            "residual",
-            &[model(), Place(at::BEFORE), state(), step()],
-        )?,
-        observe,
-        invariants,
-        scales,
-        kinetic: optional(
-            program.function(name, "kinetic_warning").is_some(),
-            &mut || lower(name, "kinetic_warning", &[model(), state()]),
-        )?,
+        new: lower("new", &[GIVEN])?,
+        begin: lower("Model::begin", &[MODEL, GIVEN])?,
+        with_solver,
+        prepared: lower("Model::prepared", &[MODEL, STATE, STEP, GIVEN])?,
+        compensated,
+        step: lower("step", &[MODEL, STATE, WORK])?,
+        residual: lower("residual", &[MODEL, BEFORE, STATE, STEP])?,
+        observe: lower("Described::observe", &[MODEL, STATE, OUT])?,
+        invariants: lower("Described::invariants", &[MODEL, STATE, WORK, OUT])?,
+        scales: lower("Described::scales", &[MODEL, STATE, OUT])?,
+        kinetic,
     })
 }

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 pub struct Program {
     /// Fields and types of each struct.
     pub structs: BTreeMap<String, Vec<(String, syn::Type)>>,
-    /// Functions by type and name.
+    /// Functions by type and name; those of a trait have its name before theirs.
     pub functions: BTreeMap<(String, String), syn::ImplItemFn>,
     /// Constants by type and name.
     pub constants: BTreeMap<(String, String), syn::Expr>,
@@ -51,18 +51,24 @@ impl Program {
     }
 
     fn take_impl(&mut self, item: syn::ItemImpl) {
-        // Of the traits only the one that is observed is looked at: the others repeat what types have.
-        let wanted = item.trait_.as_ref().is_none_or(|t| named(&t.0) == "Trajectory");
-        let Some(ty) = type_name(&item.self_ty).filter(|_| wanted) else {
+        // Of the traits those that only the model can answer: the others repeat what types have.
+        let of_trait = item.trait_.as_ref().map(|t| named(&t.0));
+        let prefix = match of_trait.as_deref() {
+            None => "",
+            Some("Model") => "Model::",
+            Some("Described") => "Described::",
+            Some(_) => return,
+        };
+        let Some(ty) = type_name(&item.self_ty) else {
             return;
         };
         for inner in item.items {
             match inner {
                 syn::ImplItem::Fn(f) => {
-                    let name = f.sig.ident.to_string();
+                    let name = format!("{prefix}{}", f.sig.ident);
                     self.functions.insert((ty.clone(), name), f);
                 }
-                syn::ImplItem::Const(c) => {
+                syn::ImplItem::Const(c) if prefix.is_empty() => {
                     self.constants
                         .insert((ty.clone(), c.ident.to_string()), c.expr);
                 }

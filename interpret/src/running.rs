@@ -8,7 +8,7 @@ use crate::value::{Frame, Kept, Layout, Struct, Value};
 use clebsch::card::{Card, Field, OpenError, Settings, Trajectory, chosen_solver};
 use clebsch::emitted as e;
 use clebsch::integrate::{
-    Composition, CompositionOrder, Residual, Reversible, Stepper, preprocessing_order,
+    Composition, CompositionOrder, Residual, Reversible, Stepper, preprocessing_order, uncompensated,
 };
 use clebsch::kinetic::KineticWarning;
 use clebsch::{StartError, StepError, validate};
@@ -71,20 +71,10 @@ impl Opened {
         let model = run(&f.new, &mut places).map_err(Failure::open)?;
         put(&mut places, at::MODEL, model);
         let given = collected(&self.initial, card.initial, initial)?;
-        if let Some(method) = chosen_solver(settings, card.solvers)?
-            && let Some(with_solver) = &f.with_solver
-        {
-            put(&mut places, at::GIVEN, Value::Method(method));
-            let model = run(with_solver, &mut places).map_err(Failure::open)?;
-            put(&mut places, at::MODEL, model);
-        }
-        let order = match card.preprocessed {
-            true => Some(preprocessing_order(settings, card.orders)?),
-            false => None,
-        };
         put(&mut places, at::GIVEN, given);
-        let state = run(&f.begin, &mut places).map_err(Failure::start)?;
+        let state = run(&f.begin, &mut places).map_err(Failure::open)?;
         put(&mut places, at::STATE, state.clone());
+        // Judged before the first step is tried: it may be why that is refused.
         let kinetic = match &f.kinetic {
             Some(kinetic) => match run(kinetic, &mut places).map_err(Failure::open)? {
                 Value::Warning(warning) => Some(warning),
@@ -95,31 +85,9 @@ impl Opened {
         put(&mut places, at::STATE, state.clone());
         put(&mut places, at::BEFORE, state.clone());
         put(&mut places, at::STEP, Value::Real(settings.h));
-        let steps = match order {
-            Some(order) => {
-                let told = |e: StartError| OpenError::from(e).beside(kinetic);
-                validate::positive_step(settings.h).map_err(|e| told(e.into()))?;
-                put(&mut places, at::GIVEN, Value::Order(order));
-                let work = run(&f.workspace, &mut places).map_err(|e| told(e.start()))?;
-                put(&mut places, at::WORK, work);
-                if let Some(compensated) = f.compensated.as_ref().filter(|_| settings.compensated) {
-                    let work = run(compensated, &mut places).map_err(Failure::open)?;
-                    put(&mut places, at::WORK, work);
-                }
-                Steps::Own
-            }
-            None => self
-                .steps(card, &mut places, settings)
-                .map_err(|e| match f.kinetic {
-                    Some(_) => e.beside(kinetic),
-                    None => e,
-                })?,
-        };
-        let plain = match order {
-            Some(order) => order == e::Order::Two,
-            None => matches!(steps, Steps::Own),
-        };
-        put(&mut places, at::STATE, state);
+        let steps = self
+            .ways(card, &mut places, settings)
+            .map_err(|e| e.beside(kinetic))?;
         Ok(Box::new(Running {
             opened: self,
             card: self.card.as_ref().map_or(card, |c| c),
@@ -127,39 +95,55 @@ impl Opened {
             spare: Value::Unit,
             steps,
             h: settings.h,
-            plain,
             kinetic,
         }))
     }
 
-    /// Plain or composed steps.
-    fn steps(
+    /// What makes the steps that are asked for.
+    fn ways(
         &'static self,
         card: &'static Card,
         places: &mut Places<f64>,
         settings: Settings,
     ) -> Result<Steps, OpenError> {
+        let f = &self.functions;
+        if let Some(method) = chosen_solver(settings, card.solvers)?
+            && let Some(with_solver) = &f.with_solver
+        {
+            put(places, at::GIVEN, Value::Method(method));
+            let model = run(with_solver, places).map_err(Failure::open)?;
+            put(places, at::MODEL, model);
+        }
+        if card.preprocessed {
+            let order = preprocessing_order(settings, card.orders)?;
+            validate::positive_step(settings.h)?;
+            self.prepare(places, settings.h, Value::Order(order))?;
+            if let Some(compensated) = f.compensated.as_ref().filter(|_| settings.compensated)
+                && order != e::Order::Two
+            {
+                let work = run(compensated, places).map_err(Failure::open)?;
+                put(places, at::WORK, work);
+            }
+            return Ok(match order {
+                e::Order::Two => Steps::Plain,
+                _ => Steps::Modified,
+            });
+        }
         let composed = settings.order.and_then(CompositionOrder::of_number);
-        let composed = composed.filter(|_| card.reversible);
-        let other = settings.order.filter(|o| card.orders.first() != Some(o));
-        if let Some(asked) = other.filter(|_| composed.is_none()) {
-            return Err(OpenError::Order {
-                asked,
-                offered: card.orders,
-            });
-        }
-        if settings.compensated {
-            return Err(OpenError::Compensation {
-                order: settings.order.or(card.orders.first().copied()).unwrap_or(2),
-                preprocessed: false,
-            });
-        }
-        validate::positive_step(settings.h)?;
-        let Some(order) = composed else {
-            let work = run(&self.functions.workspace, places).map_err(Failure::start)?;
-            put(places, at::WORK, work);
-            return Ok(Steps::Own);
+        let Some(order) = composed.filter(|_| card.reversible) else {
+            if let Some(asked) = settings.order.filter(|o| card.orders.first() != Some(o)) {
+                return Err(OpenError::Order {
+                    asked,
+                    offered: card.orders,
+                });
+            }
+            uncompensated(settings, card.orders)?;
+            validate::positive_step(settings.h)?;
+            self.prepare(places, settings.h, self.usual())?;
+            return Ok(Steps::Plain);
         };
+        uncompensated(settings, card.orders)?;
+        validate::positive_step(settings.h)?;
         let of = |at: usize| places.get(at).cloned().unwrap_or(Value::Unit);
         let model = Model {
             opened: self,
@@ -173,7 +157,35 @@ impl Opened {
             });
         };
         let composition = Composition::start(&model, &state, settings.h, order)?;
+        put(places, at::WORK, Value::None);
         Ok(Steps::Composed(Box::new((model, composition))))
+    }
+
+    /// What is chosen about steps where nothing is.
+    fn usual(&self) -> Value<f64> {
+        match self.functions.with_solver {
+            Some(_) => Value::None,
+            None => Value::Unit,
+        }
+    }
+
+    /// The workspace of the state, put where steps expect it; the first step is tried on a copy.
+    fn prepare(
+        &self,
+        places: &mut Places<f64>,
+        h: f64,
+        choice: Value<f64>,
+    ) -> Result<(), StartError> {
+        validate::directed_step(h)?;
+        put(places, at::GIVEN, choice);
+        let state = places.get(at::STATE).cloned().unwrap_or(Value::Unit);
+        let work = run(&self.functions.prepared, places).map_err(Failure::start)?;
+        put(places, at::STATE, state.clone());
+        put(places, at::WORK, work.clone());
+        run(&self.functions.step, places).map_err(|e| StartError::Refused(e.cause()))?;
+        put(places, at::STATE, state);
+        put(places, at::WORK, work);
+        Ok(())
     }
 }
 
@@ -250,7 +262,9 @@ fn one(read: Read, field: &'static Field, list: &Vec<f64>) -> Result<Value<f64>,
 /// How steps are made.
 enum Steps {
     /// By the model's own step.
-    Own,
+    Plain,
+    /// By the model's own step, with modified moments.
+    Modified,
     /// By several of them.
     Composed(Box<(Model, Composition<Model>)>),
 }
@@ -264,7 +278,6 @@ struct Running {
     spare: Value<f64>,
     steps: Steps,
     h: f64,
-    plain: bool,
     kinetic: Option<KineticWarning>,
 }
 
@@ -322,7 +335,7 @@ impl Trajectory for Running {
             self.spare.clone_from(state);
         }
         match &mut self.steps {
-            Steps::Own => {
+            Steps::Plain | Steps::Modified => {
                 let node = self.opened.node_of(places.get(at::STATE));
                 run(&self.opened.functions.step, places).map_err(|e| e.step(node))?;
             }
@@ -351,7 +364,8 @@ impl Trajectory for Running {
     }
 
     fn residual(&self) -> Option<f64> {
-        if !self.plain || self.node_at(at::BEFORE) == self.node_at(at::STATE) {
+        let plain = matches!(self.steps, Steps::Plain);
+        if !plain || self.node_at(at::BEFORE) == self.node_at(at::STATE) {
             return None;
         }
         let mut places = self.places.borrow_mut();
@@ -402,9 +416,7 @@ impl Stepper for Model {
         state.put(&mut here);
         put(&mut places, at::STATE, here);
         put(&mut places, at::STEP, Value::Real(h));
-        put(&mut places, at::GIVEN, Value::Order(e::Order::Two));
-        let work = run(&self.opened.functions.workspace, &mut places);
-        put(&mut places, at::WORK, work.map_err(Failure::start)?);
+        self.opened.prepare(&mut places, h, self.opened.usual())?;
         Ok(places)
     }
 

@@ -193,13 +193,6 @@ impl<T: Real> Lower<'_, '_, T> {
         match &f.member {
             syn::Member::Named(name) => {
                 let name = name.to_string();
-                if let syn::Expr::Path(p) = &*f.base
-                    && p.path.is_ident("self")
-                    && let Some(Binding::Members(members)) = self.find("self")
-                {
-                    let member = members.get(&name).cloned();
-                    return member.ok_or_else(|| refuse(f));
-                }
                 let base = self.expression(&f.base, None)?;
                 Ok(Code::Field(Box::new(base), self.shared.name(&name)))
             }

@@ -19,8 +19,6 @@ use std::sync::{Arc, OnceLock};
 enum Binding<T: Real> {
     /// A place, and the struct that stands there.
     Place(Code<T>, Option<String>),
-    /// Places by the names of fields.
-    Members(BTreeMap<String, Code<T>>),
     /// A closure, written out where it is given to a function.
     Closure(Box<syn::ExprClosure>),
 }
@@ -87,14 +85,6 @@ pub struct Lower<'a, 'b, T: Real> {
     within: Vec<(String, String)>,
 }
 
-/// What a function is lowered for: the values of its parameters.
-pub enum Given<'a> {
-    /// A place.
-    Place(usize),
-    /// Places by the names of fields.
-    Members(&'a [(&'static str, usize)]),
-}
-
 /// Lowers a function of a type, with its parameters at given places and locals from `first` on.
 ///
 /// # Errors
@@ -102,7 +92,7 @@ pub enum Given<'a> {
 pub fn entry<T: Real>(
     shared: &mut Shared<'_, T>,
     (ty, name): (&str, &str),
-    given: &[Given],
+    given: &[usize],
     first: usize,
 ) -> Result<Routine<T>, Refused> {
     let program = shared.program;
@@ -117,15 +107,7 @@ pub fn entry<T: Real>(
     };
     for (parameter, given) in function.sig.inputs.iter().zip(given) {
         let (name, kind) = lower.parameter(parameter)?;
-        let binding = match given {
-            Given::Place(at) => Binding::Place(Code::Place(*at), kind),
-            Given::Members(list) => Binding::Members(
-                list.iter()
-                    .map(|(field, at)| ((*field).to_owned(), Code::Place(*at)))
-                    .collect(),
-            ),
-        };
-        lower.bind(name, binding);
+        lower.bind(name, Binding::Place(Code::Place(*given), kind));
     }
     let body = lower.block(&function.block)?;
     Ok(Routine {
@@ -172,8 +154,10 @@ impl<T: Real> Lower<'_, '_, T> {
 
     /// The struct of the model that a type names.
     fn struct_of(&self, ty: &syn::Type) -> Option<String> {
+        let own = self.own_type();
         let name = match type_name(ty)? {
-            own if own == "Self" => self.own_type().to_owned(),
+            of_self if of_self == "Self" => own.to_owned(),
+            part if is_of_self(ty) => format!("{own}{part}"),
             other => other,
         };
         let known = self.shared.program.structs.contains_key(&name) || name == "Moving";
@@ -195,13 +179,7 @@ impl<T: Real> Lower<'_, '_, T> {
                     return None;
                 };
                 let field = field.to_string();
-                let owner = self.kind(&f.base).or_else(|| match &*f.base {
-                    // The members of a trajectory.
-                    syn::Expr::Path(p) if p.path.is_ident("self") => {
-                        Some(self.own_type().to_owned())
-                    }
-                    _ => None,
-                })?;
+                let owner = self.kind(&f.base)?;
                 let fields = self.shared.program.structs.get(&owner)?;
                 let (_, ty) = fields.iter().find(|(name, _)| *name == field)?;
                 self.struct_of(ty)
@@ -221,6 +199,15 @@ impl<T: Real> Lower<'_, '_, T> {
     /// The value of a size: a literal, a named size, or arithmetic with them.
     fn size(&self, e: &syn::Expr) -> Option<usize> {
         constant(e, &self.shared.sizes)
+    }
+}
+
+/// Whether a type is named as one that belongs to the type of the function, such as `Self::State`.
+fn is_of_self(ty: &syn::Type) -> bool {
+    match ty {
+        syn::Type::Path(p) => p.path.segments.first().is_some_and(|s| s.ident == "Self"),
+        syn::Type::Reference(inner) => is_of_self(&inner.elem),
+        _ => false,
     }
 }
 

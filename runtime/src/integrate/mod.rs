@@ -23,5 +23,5 @@ pub use residual::Residual;
 pub use run::{LargestResidual, Observer, Summary, run, run_until_stopped};
 pub use side_by_side::{Moving, SideBySide, advance_side_by_side};
 pub use stepper::{Reversible, Stepper};
-pub use steps::Steps;
+pub use steps::{Steps, preprocessing_order, uncompensated};
 pub use stop::{NotFinite, RunError, Watched};

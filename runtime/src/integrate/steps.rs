@@ -8,7 +8,10 @@ use crate::{StepError, validate};
 
 /// The order of modified moments that the settings ask for; an error where there is none, or it is to be
 /// compensated and cannot be.
-fn preprocessing_order(settings: Settings, orders: &'static [u32]) -> Result<Order, OpenError> {
+///
+/// # Errors
+/// [`OpenError::Order`] and [`OpenError::Compensation`].
+pub fn preprocessing_order(settings: Settings, orders: &'static [u32]) -> Result<Order, OpenError> {
     let asked = settings.order.unwrap_or(2);
     let order = Order::of_number(asked).ok_or(OpenError::Order {
         asked,
@@ -24,7 +27,10 @@ fn preprocessing_order(settings: Settings, orders: &'static [u32]) -> Result<Ord
 }
 
 /// Plain and composed steps are not compensated.
-fn uncompensated(settings: Settings, orders: &'static [u32]) -> Result<(), OpenError> {
+///
+/// # Errors
+/// [`OpenError::Compensation`] where that is asked for.
+pub fn uncompensated(settings: Settings, orders: &'static [u32]) -> Result<(), OpenError> {
     match settings.compensated {
         false => Ok(()),
         true => Err(OpenError::Compensation {
