@@ -76,7 +76,11 @@ fn at_sizes(source: &str, sizes: Option<&[usize]>) -> Result<Card, Refused> {
     let mut list = OPEN.write().unwrap_or_else(PoisonError::into_inner);
     let most = FUNCTIONS.len();
     let (open, sized) = *FUNCTIONS.get(list.len()).ok_or(Refused::TooMany { most })?;
-    let card = Card { open, sized, ..model.card.ok_or(Refused::TooMany { most })? };
+    let card = Card {
+        open,
+        sized,
+        ..model.card.ok_or(Refused::TooMany { most })?
+    };
     model.card = Some(card);
     list.push(Box::leak(Box::new(model)));
     Ok(card)

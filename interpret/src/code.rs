@@ -170,7 +170,11 @@ impl<T: Real> Given<T> {
         }
     }
 
-    fn get<'a>(&'a self, code: &'a Code<T>, places: &'a Places<T>) -> Result<&'a Value<T>, Exit<T>> {
+    fn get<'a>(
+        &'a self,
+        code: &'a Code<T>,
+        places: &'a Places<T>,
+    ) -> Result<&'a Value<T>, Exit<T>> {
         match self {
             Given::Made(value) => Ok(value),
             Given::There => unfit(code.place(places)),
@@ -404,7 +408,9 @@ impl<T: Real> Code<T> {
         for (index, code) in indices.iter_mut().zip(at) {
             *index = code.count(places)?;
         }
-        apply(base, places, |x| crate::library::entry(x, indices, at.len()))
+        apply(base, places, |x| {
+            crate::library::entry(x, indices, at.len())
+        })
     }
 
     /// Calls a closure back.
@@ -445,7 +451,11 @@ fn operation<T: Real>(
 ) -> Evaluated<T> {
     let x = Given::of(a, places)?;
     let y = Given::of(b, places)?;
-    unfit(crate::library::binary(operator, x.get(a, places)?, y.get(b, places)?))
+    unfit(crate::library::binary(
+        operator,
+        x.get(a, places)?,
+        y.get(b, places)?,
+    ))
 }
 
 #[inline(never)]

@@ -66,16 +66,23 @@ impl<'a> Constants<'a> {
             let of = |name: &str| constant(f.get(name)?, c.sizes);
             let (from, to) = (of("from")?, of("to")?);
             let name = c.text(f.get("name")?)?;
-            Some(Dimension { name, from, to, value: from })
+            Some(Dimension {
+                name,
+                from,
+                to,
+                value: from,
+            })
         })
     }
 
     /// The names of the sizes in the emitted code, in the same order.
     pub fn size_names(&self) -> Option<Vec<String>> {
         let card = fields(self.own("CARD")?)?;
-        self.list(card.get("dimensions").copied()?, |_, e| match fields(e)?.get("value")? {
-            syn::Expr::Path(p) => Some(named(&p.path)),
-            _ => None,
+        self.list(card.get("dimensions").copied()?, |_, e| {
+            match fields(e)?.get("value")? {
+                syn::Expr::Path(p) => Some(named(&p.path)),
+                _ => None,
+            }
         })
     }
 

@@ -206,10 +206,7 @@ fn chosen_sizes(program: &Program, name: &str, sizes: Option<&[usize]>) -> Resul
 }
 
 /// The struct of what is given, and how each field is read.
-fn given(
-    shared: &mut Shared<'_, f64>,
-    name: &str,
-) -> Result<(Arc<Layout>, Vec<Read>), Refused> {
+fn given(shared: &mut Shared<'_, f64>, name: &str) -> Result<(Arc<Layout>, Vec<Read>), Refused> {
     let layout = shared.layout(name)?;
     let fields = shared.program.structs.get(name);
     let reads = fields.into_iter().flatten().map(|(_, ty)| {

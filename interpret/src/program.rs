@@ -22,8 +22,7 @@ impl Program {
     /// # Errors
     /// When the tokens are no items, which emission never gives.
     pub fn read(tokens: TokenStream) -> Result<Self, Refused> {
-        let file: syn::File =
-            syn::parse2(tokens).map_err(|e| Refused::Construct(e.to_string()))?;
+        let file: syn::File = syn::parse2(tokens).map_err(|e| Refused::Construct(e.to_string()))?;
         let mut program = Program::default();
         program.take(file.items);
         Ok(program)
@@ -38,9 +37,10 @@ impl Program {
                     }
                 }
                 syn::Item::Struct(item) => {
-                    let fields = item.fields.iter().filter_map(|f| {
-                        Some((f.ident.as_ref()?.to_string(), f.ty.clone()))
-                    });
+                    let fields = item
+                        .fields
+                        .iter()
+                        .filter_map(|f| Some((f.ident.as_ref()?.to_string(), f.ty.clone())));
                     self.structs
                         .insert(item.ident.to_string(), fields.collect());
                 }

@@ -8,7 +8,8 @@ use crate::value::{Frame, Kept, Layout, Struct, Value};
 use clebsch::card::{Card, Field, OpenError, Settings, Trajectory, chosen_solver};
 use clebsch::emitted as e;
 use clebsch::integrate::{
-    Composition, CompositionOrder, Residual, Reversible, Stepper, preprocessing_order, uncompensated,
+    Composition, CompositionOrder, Residual, Reversible, Stepper, preprocessing_order,
+    uncompensated,
 };
 use clebsch::kinetic::KineticWarning;
 use clebsch::{StartError, StepError, validate};
@@ -51,7 +52,10 @@ impl Opened {
         initial: &[Vec<f64>],
         settings: Settings,
     ) -> Result<Box<dyn Trajectory>, OpenError> {
-        let card = self.card.as_ref().ok_or(OpenError::Solver { offered: &[] })?;
+        let card = self
+            .card
+            .as_ref()
+            .ok_or(OpenError::Solver { offered: &[] })?;
         let f = &self.functions;
         for (field, expected, found) in [
             ("parameters", card.parameters.len(), parameters.len()),
@@ -72,7 +76,7 @@ impl Opened {
         put(&mut places, at::MODEL, model);
         let given = collected(&self.initial, card.initial, initial)?;
         put(&mut places, at::GIVEN, given);
-        let state = run(&f.begin, &mut places).map_err(Failure::open)?;
+        let state = run(&f.begin, &mut places).map_err(Failure::start)?;
         put(&mut places, at::STATE, state.clone());
         // Judged before the first step is tried: it may be why that is refused.
         let kinetic = match &f.kinetic {

@@ -2,13 +2,13 @@
 
 use crate::dense::Dense;
 use crate::failure::Failure;
+use clebsch::Real;
 use clebsch::domain;
 use clebsch::emitted::{
     Edge, Free, Method, Order, PlaneMotion, Poinsot, QuaternionBody, Residual, RigidMotion,
     Rotation, TurnedRotation, UnitQuaternion,
 };
 use clebsch::kinetic::KineticWarning;
-use clebsch::Real;
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
@@ -244,6 +244,10 @@ mod tests {
 
     #[test]
     fn values_are_small_enough_to_be_moved() {
-        assert!(size_of::<Value<f64>>() <= 128, "{}", size_of::<Value<f64>>());
+        assert!(
+            size_of::<Value<f64>>() <= 128,
+            "{}",
+            size_of::<Value<f64>>()
+        );
     }
 }

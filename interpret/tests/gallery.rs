@@ -84,11 +84,20 @@ fn served() -> Vec<(Entry, Card)> {
 /// A card without what differs: the functions, and sizes that are chosen otherwise.
 fn told(card: &Card) -> String {
     let all = [
-        format!("{:?}", (card.name, card.kebab, card.doc, card.source, card.summary)),
-        format!("{:?}", (card.solver, card.order, card.orders, card.fingerprint)),
+        format!(
+            "{:?}",
+            (card.name, card.kebab, card.doc, card.source, card.summary)
+        ),
+        format!(
+            "{:?}",
+            (card.solver, card.order, card.orders, card.fingerprint)
+        ),
         format!("{:?}", (card.preprocessed, card.reversible, card.solvers)),
         format!("{:?}", (card.parameters, card.initial, card.observables)),
-        format!("{:?}", (card.invariants, card.discrete_energy, card.dimensions)),
+        format!(
+            "{:?}",
+            (card.invariants, card.discrete_energy, card.dimensions)
+        ),
     ];
     all.join("\n")
 }
@@ -111,7 +120,13 @@ fn steps_agree_to_the_last_bit() {
             let Some(read) = (card.sized)(&sizes) else {
                 panic!("{} {sizes:?}", card.name);
             };
-            let made = compare(&built, &read, case, Settings::step(case.h), STEPS.min(case.steps));
+            let made = compare(
+                &built,
+                &read,
+                case,
+                Settings::step(case.h),
+                STEPS.min(case.steps),
+            );
             println!("{} {}: {made} steps", card.name, case.name);
         }
     }

@@ -178,7 +178,11 @@ macro_rules! square_to_square {
             if a.rows != a.cols {
                 return None;
             }
-            of_size!(a.rows, N, Some(Value::of(Dense::of(&$f(&a.fixed::<N, N>())))))
+            of_size!(
+                a.rows,
+                N,
+                Some(Value::of(Dense::of(&$f(&a.fixed::<N, N>()))))
+            )
         }
     };
 }
@@ -208,14 +212,24 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         },
         ("diagonal", 1) => |a, _| {
             let a = a.first()?.dense()?;
-            of_size!(a.rows, N, Some(Value::of(Dense::of(&e::diagonal(&a.fixed::<N, 1>())))))
+            of_size!(
+                a.rows,
+                N,
+                Some(Value::of(Dense::of(&e::diagonal(&a.fixed::<N, 1>()))))
+            )
         },
         ("diagonal_of", 1) => |a, _| {
             let a = a.first()?.dense()?;
-            of_size!(a.rows, N, Some(Value::of(Dense::of(&e::diagonal_of(&a.fixed::<N, N>())))))
+            of_size!(
+                a.rows,
+                N,
+                Some(Value::of(Dense::of(&e::diagonal_of(&a.fixed::<N, N>()))))
+            )
         },
         ("powi", 2) => |a, _| match a.get(1)? {
-            Value::Int(n) => Some(Value::Real(number(a.first()?)?.powi(i32::try_from(*n).ok()?))),
+            Value::Int(n) => Some(Value::Real(
+                number(a.first()?)?.powi(i32::try_from(*n).ok()?),
+            )),
             _ => None,
         },
         ("powr", 3) => |a, _| match (a.get(1)?, a.get(2)?) {
@@ -224,15 +238,23 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         },
         ("hat", 1) => |a, _| Some(Value::Matrix(linalg::hat(three(a.first()?)?))),
         ("vee", 1) => |a, _| Some(Value::Vector(linalg::vee(square(a.first()?)?))),
-        ("axial_of_difference", 1) => {
-            |a, _| Some(Value::Vector(linalg::axial_of_difference(square(a.first()?)?)))
-        }
-        ("crossed", 2) => {
-            |a, _| Some(Value::Matrix(linalg::crossed(three(a.first()?)?, square(a.get(1)?)?)))
-        }
-        ("crossing", 2) => {
-            |a, _| Some(Value::Matrix(linalg::crossing(square(a.first()?)?, three(a.get(1)?)?)))
-        }
+        ("axial_of_difference", 1) => |a, _| {
+            Some(Value::Vector(linalg::axial_of_difference(square(
+                a.first()?,
+            )?)))
+        },
+        ("crossed", 2) => |a, _| {
+            Some(Value::Matrix(linalg::crossed(
+                three(a.first()?)?,
+                square(a.get(1)?)?,
+            )))
+        },
+        ("crossing", 2) => |a, _| {
+            Some(Value::Matrix(linalg::crossing(
+                square(a.first()?)?,
+                three(a.get(1)?)?,
+            )))
+        },
         ("trace_complement", 1) => {
             |a, _| Some(Value::Matrix(linalg::trace_complement(square(a.first()?)?)))
         }
@@ -243,7 +265,11 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         ("less_identity", 1) => square_to_square!(linalg::less_identity),
         ("determinant", 1) => |a, _| {
             let a = a.first()?.dense()?;
-            of_size!(a.rows, N, Some(Value::Real(linalg::determinant(&a.fixed::<N, N>()))))
+            of_size!(
+                a.rows,
+                N,
+                Some(Value::Real(linalg::determinant(&a.fixed::<N, N>())))
+            )
         },
         ("solve_or_nan", 2) => |a, _| {
             let (m, b) = (a.first()?.dense()?, a.get(1)?.dense()?);
@@ -271,22 +297,40 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         ("quaternion_real", 1) => {
             |a, _| Some(Value::Real(linalg::quaternion_real(&four(a.first()?)?)))
         }
-        ("quaternion_imaginary", 1) => {
-            |a, _| Some(Value::Vector(linalg::quaternion_imaginary(&four(a.first()?)?)))
-        }
-        ("quaternion_rotation", 1) => {
-            |a, _| Some(Value::Matrix(linalg::quaternion_rotation(&four(a.first()?)?)))
-        }
-        ("pure_quaternion", 1) => {
-            |a, _| Some(Value::of(Dense::of(&linalg::pure_quaternion(three(a.first()?)?))))
-        }
+        ("quaternion_imaginary", 1) => |a, _| {
+            Some(Value::Vector(linalg::quaternion_imaginary(&four(
+                a.first()?,
+            )?)))
+        },
+        ("quaternion_rotation", 1) => |a, _| {
+            Some(Value::Matrix(linalg::quaternion_rotation(&four(
+                a.first()?,
+            )?)))
+        },
+        ("pure_quaternion", 1) => |a, _| {
+            Some(Value::of(Dense::of(&linalg::pure_quaternion(three(
+                a.first()?,
+            )?))))
+        },
         ("length", 1) => |a, _| {
             let all = numbers(a.first()?)?;
-            Some(Value::Real(all.iter().fold(T::zero(), |s, x| s + *x * *x).sqrt()))
+            Some(Value::Real(
+                all.iter().fold(T::zero(), |s, x| s + *x * *x).sqrt(),
+            ))
+        },
+        ("sum_of_sizes", 1) => |a, _| match a.first()? {
+            Value::List(both) => {
+                let (kinetic, potential) = (number(both.first()?)?, number(both.get(1)?)?);
+                let sum = e::sum_of_sizes((kinetic.value(), potential.value()));
+                Some(Value::Real(T::from_f64(sum)))
+            }
+            _ => None,
         },
         ("size_of", 1) => |a, _| {
             let all = numbers(a.first()?)?;
-            Some(Value::Double(all.iter().fold(0.0, |s, x| s + x.magnitude())))
+            Some(Value::Double(
+                all.iter().fold(0.0, |s, x| s + x.magnitude()),
+            ))
         },
         ("same", 2) => |a, _| Some(Value::Bool(numbers(a.first()?)? == numbers(a.get(1)?)?)),
         ("all_finite", 1) => |a, _| match a.first()? {
@@ -314,12 +358,16 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         ("rows_from", 2) => |a, sizes| {
             let (m, at) = (a.first()?.dense()?, a.get(1)?.count()?);
             let rows = *sizes.get(1)?;
-            Some(Value::of(Dense::from_fn(rows, m.cols, |i, j| m.at(at + i, j))))
+            Some(Value::of(Dense::from_fn(rows, m.cols, |i, j| {
+                m.at(at + i, j)
+            })))
         },
         ("columns_from", 2) => |a, sizes| {
             let (m, at) = (a.first()?.dense()?, a.get(1)?.count()?);
             let cols = *sizes.get(1)?;
-            Some(Value::of(Dense::from_fn(m.rows, cols, |i, j| m.at(i, at + j))))
+            Some(Value::of(Dense::from_fn(m.rows, cols, |i, j| {
+                m.at(i, at + j)
+            })))
         },
         ("into_rows", 2) => |a, sizes| {
             let (m, at) = (a.first()?.dense()?, a.get(1)?.count()?);
@@ -334,7 +382,11 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         ("inclusion", 1) => |a, sizes| {
             let (at, one) = (a.first()?.count()?, T::one());
             let entry = |i, j| if i == at + j { one } else { T::zero() };
-            Some(Value::of(Dense::from_fn(*sizes.first()?, *sizes.get(1)?, entry)))
+            Some(Value::of(Dense::from_fn(
+                *sizes.first()?,
+                *sizes.get(1)?,
+                entry,
+            )))
         },
         ("unit", 1) => |a, sizes| {
             let (at, one) = (a.first()?.count()?, T::one());
@@ -344,7 +396,11 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         ("basis", 1) => |a, _| Some(Value::Matrix(e::basis(a.first()?.count()?))),
         ("skew_basis", 1) => |a, sizes| {
             let index = a.first()?.count()?;
-            of_size!(*sizes.first()?, N, Some(Value::of(Dense::of(&e::skew_basis::<T, N>(index)))))
+            of_size!(
+                *sizes.first()?,
+                N,
+                Some(Value::of(Dense::of(&e::skew_basis::<T, N>(index))))
+            )
         },
         ("matrix_basis", 1) => |a, sizes| {
             let (at, n, one) = (a.first()?.count()?, *sizes.first()?, T::one());
@@ -366,10 +422,12 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             [rows, cols] => Some(Value::of(Dense::identity(*rows, *cols))),
             _ => None,
         },
-        ("single", 1) => |a, _| Some(Value::of(Dense::from_fn(1, 1, {
-            let x = number(a.first()?)?;
-            move |_, _| x
-        }))),
+        ("single", 1) => |a, _| {
+            Some(Value::of(Dense::from_fn(1, 1, {
+                let x = number(a.first()?)?;
+                move |_, _| x
+            })))
+        },
         ("rows", 1) => |a, _| {
             let t = a.first()?.dense()?.transpose();
             Some(Value::List(t.data.into_iter().map(Value::Real).collect()))
@@ -395,24 +453,28 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             let m = a.first()?.dense()?;
             of_size!(m.rows, N, {
                 let m = m.fixed::<N, N>();
-                Some(Value::List(linalg::skew_coordinates(&m).map(Value::Real).collect()))
+                Some(Value::List(
+                    linalg::skew_coordinates(&m).map(Value::Real).collect(),
+                ))
             })
         },
         ("spectrum", 1) => |a, _| {
             let all = a.first()?.dense()?;
             let at = even_degrees(all.rows);
-            Some(Value::List(at.map(|(i, j)| Value::Real(all.at(i, j))).collect()))
+            Some(Value::List(
+                at.map(|(i, j)| Value::Real(all.at(i, j))).collect(),
+            ))
         },
         ("spectrum_scales", 2) => |a, sizes| {
             let (m, s) = (number(a.first()?)?.value(), number(a.get(1)?)?.value());
             of_size!(*sizes.first()?, N, {
                 let all = e::spectrum_scales::<N>(m, s);
-                Some(Value::List(all.map(|x| Value::Real(T::from_f64(x))).collect()))
+                Some(Value::List(
+                    all.map(|x| Value::Real(T::from_f64(x))).collect(),
+                ))
             })
         },
-        ("even_count", 1) => |a, _| {
-            Some(Value::Int(e::even_count(a.first()?.count()?) as i64))
-        },
+        ("even_count", 1) => |a, _| Some(Value::Int(e::even_count(a.first()?.count()?) as i64)),
         (name, 1) => return function(name),
         _ => return None,
     })

@@ -4,14 +4,19 @@ use super::groups::linear;
 use super::of_size;
 use crate::code::Native;
 use crate::value::{Kept, Value};
+use clebsch::Real;
 use clebsch::domain;
 use clebsch::emitted::Residual;
 use clebsch::kinetic::KineticWarning;
-use clebsch::Real;
 use nalgebra::SMatrix;
 
 fn invertible<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
-    let [Value::Text(name), Value::Element(_, before), Value::Element(_, after), Value::Real(h)] = a
+    let [
+        Value::Text(name),
+        Value::Element(_, before),
+        Value::Element(_, after),
+        Value::Real(h),
+    ] = a
     else {
         return None;
     };
@@ -26,9 +31,15 @@ fn invertible<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
 macro_rules! argument {
     ($method:ident) => {
         |a, _| match a {
-            [Value::Domain(d), Value::Call(call), Value::Real(x), Value::Real(y), Value::Real(h)] => {
-                Some(Value::result(d.$method(call, *x, *y, *h).map(|()| Value::Unit)))
-            }
+            [
+                Value::Domain(d),
+                Value::Call(call),
+                Value::Real(x),
+                Value::Real(y),
+                Value::Real(h),
+            ] => Some(Value::result(
+                d.$method(call, *x, *y, *h).map(|()| Value::Unit),
+            )),
             _ => None,
         }
     };
@@ -53,7 +64,10 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         },
         ("KineticWarning::of", 2) => |a, _| {
             let (form, count) = (a.first()?.dense()?, a.get(1)?.count()?);
-            fn of<const N: usize>(entry: impl Fn(usize, usize) -> f64, n: usize) -> Option<KineticWarning> {
+            fn of<const N: usize>(
+                entry: impl Fn(usize, usize) -> f64,
+                n: usize,
+            ) -> Option<KineticWarning> {
                 KineticWarning::of(&SMatrix::<f64, N, N>::from_fn(entry), n)
             }
             let entry = |i, j| form.at(i, j).value();

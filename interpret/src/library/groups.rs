@@ -109,7 +109,9 @@ fn way<T: Real, const R: usize>(a: &Value<T>) -> Option<SMatrix<T, R, 1>> {
 }
 
 fn moved<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
-    let [place, velocity, rest] = a else { return None };
+    let [place, velocity, rest] = a else {
+        return None;
+    };
     let (end, left) = match (place, velocity) {
         (Value::Motion(g), Value::Motion(v)) => {
             let (end, left) = g.moved(v, &way(rest)?);
@@ -126,7 +128,11 @@ fn moved<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
             let (ends, left): (Vec<T>, Vec<T>) =
                 parts.map(|(end, left)| (end.matrix()[0], left[0])).unzip();
             let (rows, cols) = (x.rows, x.cols);
-            let left = Dense { rows, cols, data: left };
+            let left = Dense {
+                rows,
+                cols,
+                data: left,
+            };
             (field(x, ends), Value::of(left))
         }
         _ => return None,
@@ -135,7 +141,9 @@ fn moved<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
 }
 
 fn between<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
-    let [from, rest, to, next] = a else { return None };
+    let [from, rest, to, next] = a else {
+        return None;
+    };
     Some(match (from, to) {
         (Value::Motion(g), Value::Motion(f)) => {
             Value::Motion(Box::new(g.velocity_between(&way(rest)?, f, &way(next)?)))
@@ -148,9 +156,9 @@ fn between<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
             let ends = single(x).into_iter().zip(single(y));
             let rests = rest.data.iter().zip(&next.data);
             let one = |x: &T| SMatrix::<T, 1, 1>::new(*x);
-            let each = ends.zip(rests).map(|((x, y), (r, s))| {
-                x.velocity_between(&one(r), &y, &one(s)).matrix()[0]
-            });
+            let each = ends
+                .zip(rests)
+                .map(|((x, y), (r, s))| x.velocity_between(&one(r), &y, &one(s)).matrix()[0]);
             field(x, each.collect())
         }
         _ => return None,

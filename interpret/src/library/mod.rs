@@ -65,14 +65,38 @@ pub fn special<T: Real>(name: &str) -> Option<Special<T>> {
 macro_rules! of_size {
     ($n:expr, $N:ident, $body:expr) => {
         match $n {
-            1 => { const $N: usize = 1; $body }
-            2 => { const $N: usize = 2; $body }
-            3 => { const $N: usize = 3; $body }
-            4 => { const $N: usize = 4; $body }
-            5 => { const $N: usize = 5; $body }
-            6 => { const $N: usize = 6; $body }
-            7 => { const $N: usize = 7; $body }
-            8 => { const $N: usize = 8; $body }
+            1 => {
+                const $N: usize = 1;
+                $body
+            }
+            2 => {
+                const $N: usize = 2;
+                $body
+            }
+            3 => {
+                const $N: usize = 3;
+                $body
+            }
+            4 => {
+                const $N: usize = 4;
+                $body
+            }
+            5 => {
+                const $N: usize = 5;
+                $body
+            }
+            6 => {
+                const $N: usize = 6;
+                $body
+            }
+            7 => {
+                const $N: usize = 7;
+                $body
+            }
+            8 => {
+                const $N: usize = 8;
+                $body
+            }
             _ => None,
         }
     };

@@ -67,7 +67,9 @@ macro_rules! turned {
 fn to_space<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
     let (momentum, element) = (a.first()?, a.get(1)?);
     Some(match (momentum, element) {
-        (Value::Momentum(Frame::Body, v), Value::Rotation(g)) => spatial(BodyMomentum(*v).to_space(g)),
+        (Value::Momentum(Frame::Body, v), Value::Rotation(g)) => {
+            spatial(BodyMomentum(*v).to_space(g))
+        }
         (Value::Momentum(Frame::Body, v), Value::Quaternion(g)) => {
             spatial(BodyMomentum(*v).to_space(g))
         }
@@ -133,7 +135,9 @@ fn carried<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
 }
 
 fn gained<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
-    let [element, velocity, turned] = a else { return None };
+    let [element, velocity, turned] = a else {
+        return None;
+    };
     Some(match (element, velocity, turned) {
         (Value::Motion(g), Value::Motion(v), Value::Dense(m)) => {
             Value::of(Dense::of(&g.gained_along(v, &m.fixed::<6, 1>())))

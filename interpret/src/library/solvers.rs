@@ -88,8 +88,12 @@ fn turned<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
 /// The arguments of a step in unit quaternions.
 macro_rules! in_quaternions {
     ($a:expr, $edge:ident, $body:ident, $h:ident, $q:ident, $made:expr) => {{
-        let [Value::Edge($edge), Value::QuaternionBody($body), Value::Real($h), Value::Quaternion($q)] =
-            $a
+        let [
+            Value::Edge($edge),
+            Value::QuaternionBody($body),
+            Value::Real($h),
+            Value::Quaternion($q),
+        ] = $a
         else {
             return None;
         };
@@ -113,10 +117,7 @@ fn text<T: Real>(a: &Value<T>) -> Option<&'static str> {
 
 fn increment<T: Real, const R: usize, const C: usize>(
     shape: (usize, usize),
-    solved: Result<
-        clebsch::Additive<R, C, T>,
-        clebsch::solvers::two_sided::SingularFactor,
-    >,
+    solved: Result<clebsch::Additive<R, C, T>, clebsch::solvers::two_sided::SingularFactor>,
 ) -> Value<T> {
     let cut = |a: SMatrix<T, R, C>| Dense::from_fn(shape.0, shape.1, |i, j| a[(i, j)]);
     Value::result(solved.map(|x| Value::Element(Kept::Field, cut(x.matrix()))))
@@ -127,30 +128,126 @@ fn increment<T: Real, const R: usize, const C: usize>(
 macro_rules! of_shape {
     ($rows:expr, $cols:expr, $R:ident, $C:ident, $body:expr) => {
         match ($rows, $cols) {
-            (1, 1) => { const $R: usize = 1; const $C: usize = 1; $body }
-            (1, 2) => { const $R: usize = 1; const $C: usize = 2; $body }
-            (1, 3) => { const $R: usize = 1; const $C: usize = 3; $body }
-            (1, 4) => { const $R: usize = 1; const $C: usize = 4; $body }
-            (2, 1) => { const $R: usize = 2; const $C: usize = 1; $body }
-            (2, 2) => { const $R: usize = 2; const $C: usize = 2; $body }
-            (2, 3) => { const $R: usize = 2; const $C: usize = 3; $body }
-            (2, 4) => { const $R: usize = 2; const $C: usize = 4; $body }
-            (3, 1) => { const $R: usize = 3; const $C: usize = 1; $body }
-            (3, 2) => { const $R: usize = 3; const $C: usize = 2; $body }
-            (3, 3) => { const $R: usize = 3; const $C: usize = 3; $body }
-            (3, 4) => { const $R: usize = 3; const $C: usize = 4; $body }
-            (4, 1) => { const $R: usize = 4; const $C: usize = 1; $body }
-            (4, 2) => { const $R: usize = 4; const $C: usize = 2; $body }
-            (4, 3) => { const $R: usize = 4; const $C: usize = 3; $body }
-            (4, 4) => { const $R: usize = 4; const $C: usize = 4; $body }
-            (5, 1) => { const $R: usize = 5; const $C: usize = 1; $body }
-            (6, 1) => { const $R: usize = 6; const $C: usize = 1; $body }
-            (7, 1) => { const $R: usize = 7; const $C: usize = 1; $body }
-            (8, 1) => { const $R: usize = 8; const $C: usize = 1; $body }
-            (5, 5) => { const $R: usize = 5; const $C: usize = 5; $body }
-            (6, 6) => { const $R: usize = 6; const $C: usize = 6; $body }
-            (7, 7) => { const $R: usize = 7; const $C: usize = 7; $body }
-            (8, 8) => { const $R: usize = 8; const $C: usize = 8; $body }
+            (1, 1) => {
+                const $R: usize = 1;
+                const $C: usize = 1;
+                $body
+            }
+            (1, 2) => {
+                const $R: usize = 1;
+                const $C: usize = 2;
+                $body
+            }
+            (1, 3) => {
+                const $R: usize = 1;
+                const $C: usize = 3;
+                $body
+            }
+            (1, 4) => {
+                const $R: usize = 1;
+                const $C: usize = 4;
+                $body
+            }
+            (2, 1) => {
+                const $R: usize = 2;
+                const $C: usize = 1;
+                $body
+            }
+            (2, 2) => {
+                const $R: usize = 2;
+                const $C: usize = 2;
+                $body
+            }
+            (2, 3) => {
+                const $R: usize = 2;
+                const $C: usize = 3;
+                $body
+            }
+            (2, 4) => {
+                const $R: usize = 2;
+                const $C: usize = 4;
+                $body
+            }
+            (3, 1) => {
+                const $R: usize = 3;
+                const $C: usize = 1;
+                $body
+            }
+            (3, 2) => {
+                const $R: usize = 3;
+                const $C: usize = 2;
+                $body
+            }
+            (3, 3) => {
+                const $R: usize = 3;
+                const $C: usize = 3;
+                $body
+            }
+            (3, 4) => {
+                const $R: usize = 3;
+                const $C: usize = 4;
+                $body
+            }
+            (4, 1) => {
+                const $R: usize = 4;
+                const $C: usize = 1;
+                $body
+            }
+            (4, 2) => {
+                const $R: usize = 4;
+                const $C: usize = 2;
+                $body
+            }
+            (4, 3) => {
+                const $R: usize = 4;
+                const $C: usize = 3;
+                $body
+            }
+            (4, 4) => {
+                const $R: usize = 4;
+                const $C: usize = 4;
+                $body
+            }
+            (5, 1) => {
+                const $R: usize = 5;
+                const $C: usize = 1;
+                $body
+            }
+            (6, 1) => {
+                const $R: usize = 6;
+                const $C: usize = 1;
+                $body
+            }
+            (7, 1) => {
+                const $R: usize = 7;
+                const $C: usize = 1;
+                $body
+            }
+            (8, 1) => {
+                const $R: usize = 8;
+                const $C: usize = 1;
+                $body
+            }
+            (5, 5) => {
+                const $R: usize = 5;
+                const $C: usize = 5;
+                $body
+            }
+            (6, 6) => {
+                const $R: usize = 6;
+                const $C: usize = 6;
+                $body
+            }
+            (7, 7) => {
+                const $R: usize = 7;
+                const $C: usize = 7;
+                $body
+            }
+            (8, 8) => {
+                const $R: usize = 8;
+                const $C: usize = 8;
+                $body
+            }
             _ => None,
         }
     };
@@ -169,7 +266,12 @@ fn names<T: Real>(a: &Value<T>) -> Option<[&'static str; 2]> {
 
 pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
     Some(match (name, arguments) {
-        ("Edge::new", 2) => |a, _| Some(Value::Edge(Edge::new(vector(a.first()?)?, vector(a.get(1)?)?))),
+        ("Edge::new", 2) => |a, _| {
+            Some(Value::Edge(Edge::new(
+                vector(a.first()?)?,
+                vector(a.get(1)?)?,
+            )))
+        },
         ("space", 1) => |a, _| match a.first()? {
             Value::Edge(edge) => Some(Value::Vector(edge.space())),
             _ => None,
@@ -184,14 +286,16 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
                 Value::result(edge.turn_in_quaternions(body, *h, q).map(Value::Turned))
             })
         },
-        ("free_in_quaternions", 4) => |a, _| {
-            in_quaternions!(a, edge, body, h, q, {
-                let solved = edge.free_in_quaternions(body, *h, q);
-                Value::result(solved.map(|(q, edge)| {
-                    Value::List(vec![Value::Quaternion(q), Value::Edge(edge)])
-                }))
-            })
-        },
+        ("free_in_quaternions", 4) => {
+            |a, _| {
+                in_quaternions!(a, edge, body, h, q, {
+                    let solved = edge.free_in_quaternions(body, *h, q);
+                    Value::result(solved.map(|(q, edge)| {
+                        Value::List(vec![Value::Quaternion(q), Value::Edge(edge)])
+                    }))
+                })
+            }
+        }
         ("Poinsot::new", 1) => |a, _| match a.first()? {
             Value::Matrix(j) => {
                 let body = Poinsot::new(*j);
@@ -202,7 +306,9 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         ("QuaternionBody::new", 3) => |a, _| match a {
             [Value::Text(name), Value::Matrix(m), Value::Real(c)] => {
                 let body = QuaternionBody::new(name, *m, *c);
-                Some(Value::result(body.map(|b| Value::QuaternionBody(Arc::new(b)))))
+                Some(Value::result(
+                    body.map(|b| Value::QuaternionBody(Arc::new(b))),
+                ))
             }
             _ => None,
         },
@@ -226,7 +332,11 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             _ => None,
         },
         ("rotation", 3) => |a, _| match a {
-            [Value::LeftFactor(f), Value::Vector(v), Value::Method(method)] => {
+            [
+                Value::LeftFactor(f),
+                Value::Vector(v),
+                Value::Method(method),
+            ] => {
                 with_factor!(f, f => Some(Value::result(f.rotation(v, *method).map(Value::Rotation))))
             }
             _ => None,
@@ -241,17 +351,26 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         ("reach_of", 2) => |a, _| {
             let (c, v) = (a.first()?.dense()?, a.get(1)?.dense()?);
             of_size!(c.rows, N, {
-                Some(Value::Double(reach_of(&c.fixed::<N, N>(), &v.fixed::<N, N>())))
+                Some(Value::Double(reach_of(
+                    &c.fixed::<N, N>(),
+                    &v.fixed::<N, N>(),
+                )))
             })
         },
         ("rotation_at", 3) => |a, _| match a {
-            [Value::Matrix(c), Value::Vector(v), Value::Method(method)] => {
-                Some(Value::result(rotation_at(c, v, *method).map(Value::Rotation)))
-            }
+            [Value::Matrix(c), Value::Vector(v), Value::Method(method)] => Some(Value::result(
+                rotation_at(c, v, *method).map(Value::Rotation),
+            )),
             _ => None,
         },
         ("Free::start_of_order", 5) => |a, _| match a {
-            [Value::Poinsot(body), Value::Rotation(r), m, Value::Real(h), Value::Order(order)] => {
+            [
+                Value::Poinsot(body),
+                Value::Rotation(r),
+                m,
+                Value::Real(h),
+                Value::Order(order),
+            ] => {
                 let m = clebsch::SpatialMomentum(three(Frame::Spatial, m)?);
                 let free = Free::start_of_order(body, r, &m, *h, *order);
                 Some(Value::result(free.map(|f| Value::Free(Box::new(f)))))
@@ -273,10 +392,14 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             _ => None,
         },
         ("Method::of_size", 1) => |a, _| {
-            Some(Value::Method(clebsch::solvers::Method::of_size(a.first()?.count()?)))
+            Some(Value::Method(clebsch::solvers::Method::of_size(
+                a.first()?.count()?,
+            )))
         },
         ("two_sided", 4) => |a, _| {
-            let [left, known, right, label] = a else { return None };
+            let [left, known, right, label] = a else {
+                return None;
+            };
             let (l, m, r, label) = (left.dense()?, known.dense()?, right.dense()?, names(label)?);
             of_size!(m.rows, N, {
                 let solved = two_sided(
@@ -285,13 +408,15 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
                     &r.fixed::<N, N>(),
                     &label,
                 );
-                Some(Value::result(
-                    solved.map(|g| Value::Element(Kept::Linear, Dense::of(&g.matrix()))),
-                ))
+                Some(Value::result(solved.map(|g| {
+                    Value::Element(Kept::Linear, Dense::of(&g.matrix()))
+                })))
             })
         },
         ("two_sided_increment", 4) => |a, _| {
-            let [left, known, right, label] = a else { return None };
+            let [left, known, right, label] = a else {
+                return None;
+            };
             let (l, m, r, label) = (left.dense()?, known.dense()?, right.dense()?, names(label)?);
             of_shape!(m.rows, m.cols, R, C, {
                 let solved = two_sided_increment(
@@ -319,9 +444,14 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         },
         ("divided", 3) => |a, _| {
             let (m, label) = (a.first()?.dense()?, text(a.get(2)?)?);
-            let Value::Real(number) = a.get(1)? else { return None };
+            let Value::Real(number) = a.get(1)? else {
+                return None;
+            };
             of_shape!(m.rows, m.cols, R, C, {
-                Some(increment((R, C), divided(&m.fixed::<R, C>(), *number, label)))
+                Some(increment(
+                    (R, C),
+                    divided(&m.fixed::<R, C>(), *number, label),
+                ))
             })
         },
         ("StepCause::from", 1) => |a, _| match a.first()? {
@@ -357,6 +487,10 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
                 Some(Value::failed((**e).clone().in_field(field)))
             }
             _ => None,
+        },
+        ("unwrap_or", 2) => |a, _| match a.first()? {
+            Value::None => Some((*a.get(1)?).clone()),
+            other => Some((*other).clone()),
         },
         // Errors and values that are told as they are.
         ("Ok", 1) | ("Some", 1) | ("Err", 1) => |a, _| Some((*a.first()?).clone()),

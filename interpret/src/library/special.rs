@@ -98,7 +98,13 @@ fn set_column<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
     let (index, column) = (unfit(index.count())?, unfit(column.dense())?);
     let place = unfit(matrix.place_mut(places))?;
     let old = unfit(place.dense())?;
-    let entry = |i, j| if j == index { column.at(i, 0) } else { old.at(i, j) };
+    let entry = |i, j| {
+        if j == index {
+            column.at(i, 0)
+        } else {
+            old.at(i, j)
+        }
+    };
     *place = Value::of(Dense::from_fn(old.rows, old.cols, entry));
     Ok(Value::Unit)
 }
@@ -216,7 +222,8 @@ fn with_trials<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
     match (contact, h) {
         (Value::Failed(e), Value::Real(h)) => match *e {
             Failure::Contact(contact) => {
-                let made = |trial: T| matches!(asked.answer(Value::Real(trial)), Some(Value::Bool(true)));
+                let made =
+                    |trial: T| matches!(asked.answer(Value::Real(trial)), Some(Value::Bool(true)));
                 Ok(Value::failed(contact.with_trials(h, made)))
             }
             _ => Err(missing()),
@@ -233,6 +240,18 @@ fn map_err<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
     match value.run(places)? {
         Value::Failed(e) => closure.call(vec![Value::Failed(e)], places),
         value => Ok(value),
+    }
+}
+
+/// `option.map(|x| ...)`
+fn map<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
+    let [value, closure] = a else {
+        return Err(missing());
+    };
+    match value.run(places)? {
+        Value::None => Ok(Value::None),
+        Value::Failed(e) => Ok(Value::Failed(e)),
+        value => closure.call(vec![value], places),
     }
 }
 
@@ -269,6 +288,7 @@ pub(super) fn special<T: Real>(name: &str) -> Option<Special<T>> {
         "with_searched_step" | "with_searched_steps" => with_searched_step,
         "with_trials" => with_trials,
         "map_err" => map_err,
+        "map" => map,
         "from_fn" => from_fn,
         _ => return None,
     })

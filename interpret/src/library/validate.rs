@@ -15,7 +15,9 @@ fn told<T: Real>(r: Result<(), ParameterError>) -> Option<Value<T>> {
 macro_rules! square {
     ($f:path) => {
         |a, _| {
-            let [Value::Text(name), m] = a else { return None };
+            let [Value::Text(name), m] = a else {
+                return None;
+            };
             let m = m.dense()?;
             of_size!(m.rows, N, told($f(name, &m.fixed::<N, N>())))
         }
@@ -26,9 +28,12 @@ macro_rules! square {
 macro_rules! argument {
     ($f:path) => {
         |a, _| match a {
-            [Value::Domain(d), Value::Function(f), Value::Text(label), Value::Real(x)] => {
-                told($f(*d, *f, label, *x))
-            }
+            [
+                Value::Domain(d),
+                Value::Function(f),
+                Value::Text(label),
+                Value::Real(x),
+            ] => told($f(*d, *f, label, *x)),
             _ => None,
         }
     };
@@ -47,7 +52,9 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             _ => None,
         },
         ("validate::finite_entries", 2) => |a, _| {
-            let [Value::Text(name), m] = a else { return None };
+            let [Value::Text(name), m] = a else {
+                return None;
+            };
             let m = m.dense()?;
             macro_rules! wide {
                 ($C:literal) => {
@@ -74,11 +81,15 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         ("validate::orthogonal", 2) => square!(validate::orthogonal),
         ("validate::invertible", 2) => square!(validate::invertible),
         ("validate::unit_quaternion", 2) => |a, _| {
-            let [Value::Text(name), m] = a else { return None };
+            let [Value::Text(name), m] = a else {
+                return None;
+            };
             told(validate::unit_quaternion(name, &m.dense()?.fixed::<4, 4>()))
         },
         ("validate::rigid_motion", 2) => |a, _| {
-            let [Value::Text(name), m] = a else { return None };
+            let [Value::Text(name), m] = a else {
+                return None;
+            };
             match m {
                 Value::Matrix(m) => told(validate::rigid_motion::<T, 3, 2>(name, m)),
                 m => {

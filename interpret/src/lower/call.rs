@@ -99,7 +99,9 @@ impl<T: Real> Lower<'_, '_, T> {
             ["T", "one"] => return Ok(Code::Constant(Value::Real(T::one()))),
             ["SMatrix" | "SVector", "zeros"] if sizes.is_empty() => {
                 let sizes = self.sizes_of_type(ty);
-                return self.native("zeros", Vec::new(), sizes).ok_or_else(|| refuse(c));
+                return self
+                    .native("zeros", Vec::new(), sizes)
+                    .ok_or_else(|| refuse(c));
             }
             ["SMatrix" | "SVector", "from_fn"] => {
                 let mut arguments = vec![
@@ -114,7 +116,9 @@ impl<T: Real> Lower<'_, '_, T> {
             }
             ["SVector", "new"] => {
                 let arguments = self.all(c.args.iter())?;
-                return self.native("single", arguments, sizes).ok_or_else(|| refuse(c));
+                return self
+                    .native("single", arguments, sizes)
+                    .ok_or_else(|| refuse(c));
             }
             [.., "repeat_n"] => {
                 let [value, count] = &self.all(c.args.iter())?[..] else {

@@ -143,9 +143,7 @@ impl<T: Real> Lower<'_, '_, T> {
             [.., "Domain", "Positive"] => Value::Domain(domain::Domain::Positive),
             [.., "Domain", "NotNegative"] => Value::Domain(domain::Domain::NotNegative),
             [.., "Domain", "NotZero"] => Value::Domain(domain::Domain::NotZero),
-            [.., "Function", name] => {
-                Value::Function(function(name).ok_or_else(|| refuse(path))?)
-            }
+            [.., "Function", name] => Value::Function(function(name).ok_or_else(|| refuse(path))?),
             // Sizes are looked at when they are chosen.
             [.., "ADMITTED"] => Value::Unit,
             _ => return Ok(None),
@@ -275,7 +273,10 @@ impl<T: Real> Lower<'_, '_, T> {
         let (from, to) = (self.expression(from, None)?, self.expression(to, None)?);
         self.scopes.push(BTreeMap::new());
         let at = self.fresh();
-        self.bind(name.ident.to_string(), Binding::Place(Code::Place(at), None));
+        self.bind(
+            name.ident.to_string(),
+            Binding::Place(Code::Place(at), None),
+        );
         let body = self.block(&f.body);
         self.scopes.pop();
         Ok(Code::For(at, Box::new(from), Box::new(to), Box::new(body?)))
@@ -293,7 +294,10 @@ impl<T: Real> Lower<'_, '_, T> {
                 other => other,
             };
             if let syn::Pat::Ident(name) = input {
-                self.bind(name.ident.to_string(), Binding::Place(Code::Place(at), None));
+                self.bind(
+                    name.ident.to_string(),
+                    Binding::Place(Code::Place(at), None),
+                );
             }
         }
         let body = self.expression(&c.body, None);
@@ -319,12 +323,16 @@ impl<T: Real> Lower<'_, '_, T> {
                     return Err(refuse(s));
                 };
                 let arguments = self.all([size, scale].into_iter())?;
-                return self.native("Residual", arguments, Vec::new()).ok_or_else(|| refuse(s));
+                return self
+                    .native("Residual", arguments, Vec::new())
+                    .ok_or_else(|| refuse(s));
             }
             "NotFinite" => {
                 let arguments = self.all(by_name("what").into_iter())?;
                 let name = "StepCause::NotFinite";
-                return self.native(name, arguments, Vec::new()).ok_or_else(|| refuse(s));
+                return self
+                    .native(name, arguments, Vec::new())
+                    .ok_or_else(|| refuse(s));
             }
             "Call" => {
                 let all = [by_name("function"), by_name("argument")];
@@ -347,7 +355,13 @@ impl<T: Real> Lower<'_, '_, T> {
             _ => name,
         };
         let layout = self.shared.layout(&name)?;
-        let declared = self.shared.program.structs.get(&name).cloned().unwrap_or_default();
+        let declared = self
+            .shared
+            .program
+            .structs
+            .get(&name)
+            .cloned()
+            .unwrap_or_default();
         let mut given = Vec::new();
         for (field, e) in values {
             let number = self.shared.name(&field);

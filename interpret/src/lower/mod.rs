@@ -186,7 +186,10 @@ impl<T: Real> Lower<'_, '_, T> {
             }
             syn::Expr::MethodCall(m) => {
                 let owner = self.kind(&m.receiver)?;
-                let function = self.shared.program.function(&owner, &m.method.to_string())?;
+                let function = self
+                    .shared
+                    .program
+                    .function(&owner, &m.method.to_string())?;
                 match &function.sig.output {
                     syn::ReturnType::Type(_, ty) => self.struct_of(ty),
                     syn::ReturnType::Default => None,

@@ -104,7 +104,10 @@ impl<T: Real> Lower<'_, '_, T> {
             syn::Pat::Ident(name) if name.ident == "None" => Pattern::None,
             syn::Pat::Ident(name) => {
                 let at = self.fresh();
-                self.bind(name.ident.to_string(), Binding::Place(Code::Place(at), kind));
+                self.bind(
+                    name.ident.to_string(),
+                    Binding::Place(Code::Place(at), kind),
+                );
                 Pattern::Place(at)
             }
             syn::Pat::Paren(inner) => self.pattern(&inner.pat, kind)?,
