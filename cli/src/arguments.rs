@@ -33,7 +33,8 @@ pub fn command(width: Option<usize>) -> Command {
             Command::new("case")
                 .about("Print a complete case as TOML, to start your own from")
                 .after_help(
-                    "Examples:\n  clebsch case heavy-top > my-top.toml\n  clebsch case heavy-top --case general",
+                    "Examples:\n  clebsch case heavy-top > my-top.toml\n  clebsch case heavy-top --case general\n  \
+                     clebsch case my-model.clebsch > my-case.toml",
                 )
                 .arg(model())
                 .arg(option(
@@ -54,7 +55,8 @@ fn run() -> Command {
             .about("Run a case and check what it conserves")
             .after_help(
                 "Examples:\n  clebsch run heavy-top\n  clebsch run free-body --order 6 --steps 1e6\n  \
-                 clebsch run heavy-top --case my-top.toml --out out/my-top",
+                 clebsch run heavy-top --case my-top.toml --out out/my-top\n  \
+                 clebsch run my-model.clebsch --case my-case.toml",
             ),
         "Write every N-th node; by default such that at most 10000 are written. Invariants are \
          watched at every node in any case",

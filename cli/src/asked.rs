@@ -6,14 +6,20 @@ use crate::gallery::{Entry, Gallery};
 use crate::model_file;
 use crate::plain::shown;
 use std::borrow::Cow;
+use std::io::Write;
 use std::path::Path;
 use toml::de::DeTable;
 
-/// The model that `run`, `compare` or `case` is to work on: one of the gallery, else that of a file.
+/// The model that `run`, `compare` or `case` is to work on: one of the gallery, else that of a file, whose
+/// warnings are told to `err`.
 ///
 /// # Errors
 /// Usage: neither; a case file is told apart, and the message says what it is for.
-pub(crate) fn model<'a>(gallery: &'a Gallery, name: &str) -> Result<Cow<'a, Entry>, Failure> {
+pub(crate) fn model<'a>(
+    gallery: &'a Gallery,
+    name: &str,
+    err: &mut dyn Write,
+) -> Result<Cow<'a, Entry>, Failure> {
     let unknown = match gallery.find(name) {
         Ok(entry) => return Ok(Cow::Borrowed(entry)),
         Err(unknown) => unknown,
@@ -22,7 +28,7 @@ pub(crate) fn model<'a>(gallery: &'a Gallery, name: &str) -> Result<Cow<'a, Entr
         return Err(failure);
     }
     match model_file::is_meant(name) {
-        true => model_file::read(name).map(Cow::Owned),
+        true => model_file::read(gallery, name, err).map(Cow::Owned),
         false => Err(unknown),
     }
 }

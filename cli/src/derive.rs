@@ -6,8 +6,8 @@ use crate::asked::case_file;
 use crate::failure::Failure;
 use crate::gallery::Gallery;
 use crate::lines::fitted;
+use crate::model_file;
 use crate::plain::shown;
-use crate::suggestion::did_you_mean;
 use clap::ArgMatches;
 use clebsch_core::print::Format;
 use clebsch_core::{Derivation, derive_source, document, generated};
@@ -78,20 +78,7 @@ fn source(
     if let Some(failure) = case_file(gallery, name, "derive takes a model or its text") {
         return Err(failure);
     }
-    if !Path::new(name).exists() {
-        let known = gallery.entries.iter().map(|entry| entry.card.kebab);
-        return Err(Failure::Usage(format!(
-            "`{}` is neither a model nor a file{}",
-            shown(name),
-            did_you_mean(name, known)
-        )));
-    }
-    let text = std::fs::read_to_string(name).map_err(|error| {
-        Failure::Usage(format!(
-            "cannot read the model file {}: {error}",
-            shown(name)
-        ))
-    })?;
+    let text = model_file::text(gallery, name)?;
     Ok((name.to_owned(), text))
 }
 

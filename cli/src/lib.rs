@@ -122,7 +122,7 @@ fn dispatch(
         }
         Some(("case", matches)) => {
             let text = |key: &str| matches.get_one::<String>(key).map(String::as_str);
-            let entry = asked::model(gallery, text("model").unwrap_or_default())?;
+            let entry = asked::model(gallery, text("model").unwrap_or_default(), &mut streams.err)?;
             let case = gallery::case(&entry, text("case"))?;
             let toml = case_file::write(&entry.card_of(case), case);
             streams.out.write_all(toml.as_bytes())?;

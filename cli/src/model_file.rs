@@ -2,10 +2,12 @@
 //! Takes a path; gives the model with a case of sample values, to start one's own from.
 
 use crate::failure::Failure;
-use crate::gallery::{Case, Entry};
+use crate::gallery::{Case, Entry, Gallery};
 use crate::plain::shown;
+use crate::suggestion::did_you_mean;
 use clebsch::card::{Card, Field, Kind};
 use clebsch_interpret::Refused;
+use std::io::Write;
 use std::path::Path;
 
 /// Whether a model's text is meant rather than its name.
@@ -14,24 +16,50 @@ pub(crate) fn is_meant(name: &str) -> bool {
     path.is_file() || path.extension().is_some_and(|end| end == "clebsch")
 }
 
-/// The model of a file.
+/// The text of a model's file.
+///
+/// # Errors
+/// Usage: there is no such file, or it cannot be read.
+pub(crate) fn text(gallery: &Gallery, name: &str) -> Result<String, Failure> {
+    if !Path::new(name).exists() {
+        let known = gallery.entries.iter().map(|entry| entry.card.kebab);
+        return Err(Failure::Usage(format!(
+            "`{}` is neither a model nor a file{}",
+            shown(name),
+            did_you_mean(name, known)
+        )));
+    }
+    std::fs::read_to_string(name).map_err(|error| {
+        Failure::Usage(format!(
+            "cannot read the model file {}: {error}",
+            shown(name)
+        ))
+    })
+}
+
+/// The model of a file, with a case of sample values. What derives and is hardly meant is told to `err`.
 ///
 /// # Errors
 /// Usage: the file cannot be read, its text does not derive, or the model needs a build.
-pub(crate) fn read(name: &str) -> Result<Entry, Failure> {
-    let shown_name = shown(name).to_string();
-    let text = std::fs::read_to_string(name).map_err(|error| {
-        Failure::Usage(format!("cannot read the model file {shown_name}: {error}"))
+pub(crate) fn read(gallery: &Gallery, name: &str, err: &mut dyn Write) -> Result<Entry, Failure> {
+    let text = text(gallery, name)?;
+    let name = shown(name).to_string();
+    let read = clebsch_interpret::card_and_warnings(&text);
+    let (card, warnings) = read.map_err(|refused| match refused {
+        Refused::Model(errors) => Failure::Usage(format!("\n{}", errors.render(&text, &name))),
+        other => Failure::Usage(format!("{name}: {other}")),
     })?;
-    let card = clebsch_interpret::card(&text).map_err(|refused| match refused {
-        Refused::Model(errors) => {
-            Failure::Usage(format!("\n{}", errors.render(&text, &shown_name)))
-        }
-        other => Failure::Usage(format!("{shown_name}: {other}")),
-    })?;
+    for warning in warnings {
+        // What cannot be written there stands in the derivation too.
+        let _ = write!(
+            err,
+            "{}",
+            warning.diagnostic.render("warning", &text, &name)
+        );
+    }
     Ok(Entry {
         card,
-        cases: vec![sample(&card, &shown_name)],
+        cases: vec![sample(&card, &name)],
     })
 }
 

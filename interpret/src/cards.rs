@@ -4,6 +4,8 @@
 use crate::Refused;
 use crate::opened::Opened;
 use clebsch::card::{Card, Open, OpenError, Settings, Trajectory};
+use clebsch_core::derive::warnings::Warning;
+use clebsch_core::{Derivation, derive_source};
 use std::sync::{PoisonError, RwLock};
 
 /// What is open, by number; each stays for as long as the process, as its card may.
@@ -60,19 +62,38 @@ pub fn card(source: &str) -> Result<Card, Refused> {
     at_sizes(source, None)
 }
 
-/// The same at given sizes.
-fn at_sizes(source: &str, sizes: Option<&[usize]>) -> Result<Card, Refused> {
-    let find = |list: &[&'static Opened]| {
-        let mut known = list.iter();
-        let same = |sizes: &[usize], model: &Opened| model.sizes == sizes;
-        known
-            .find(|m| m.source == source && sizes.map_or(m.is_default, |s| same(s, m)))
-            .and_then(|m| m.card)
+/// The same, and what derives in the text and is hardly meant.
+///
+/// # Errors
+/// As [`card`].
+pub fn card_and_warnings(source: &str) -> Result<(Card, Vec<Warning>), Refused> {
+    let d = derive_source(source).map_err(Refused::Model)?;
+    let card = match known(source, None) {
+        Some(card) => card,
+        None => opened_now(&d, source, None)?,
     };
-    if let Some(card) = find(&OPEN.read().unwrap_or_else(PoisonError::into_inner)) {
+    Ok((card, d.warnings))
+}
+
+/// The card at given sizes.
+fn at_sizes(source: &str, sizes: Option<&[usize]>) -> Result<Card, Refused> {
+    if let Some(card) = known(source, sizes) {
         return Ok(card);
     }
-    let mut model = Opened::read(source, sizes)?;
+    let d = derive_source(source).map_err(Refused::Model)?;
+    opened_now(&d, source, sizes)
+}
+
+/// The card of a model that is open.
+fn known(source: &str, sizes: Option<&[usize]>) -> Option<Card> {
+    let list = OPEN.read().unwrap_or_else(PoisonError::into_inner);
+    let same = |m: &Opened| sizes.map_or(m.is_default, |sizes| m.sizes == sizes);
+    let found = list.iter().find(|m| m.source == source && same(m));
+    found.and_then(|m| m.card)
+}
+
+fn opened_now(d: &Derivation, source: &str, sizes: Option<&[usize]>) -> Result<Card, Refused> {
+    let mut model = Opened::read(d, source, sizes)?;
     let mut list = OPEN.write().unwrap_or_else(PoisonError::into_inner);
     let most = FUNCTIONS.len();
     let (open, sized) = *FUNCTIONS.get(list.len()).ok_or(Refused::TooMany { most })?;

@@ -34,6 +34,8 @@ pub enum Operator {
     Mul,
     /// `/`
     Div,
+    /// `%`
+    Rem,
     /// `==`
     Equal,
     /// `!=`
@@ -87,6 +89,15 @@ pub struct Arm<T: Real> {
     pub body: Code<T>,
 }
 
+/// What iterates on operations.
+pub trait Iterate<T: Real>: std::fmt::Debug + Send + Sync {
+    /// To the solution.
+    ///
+    /// # Errors
+    /// [`Exit`] with the error of the step.
+    fn run(&self, places: &mut Places<T>) -> Result<Value<T>, Exit<T>>;
+}
+
 /// An expression or a statement.
 #[derive(Clone, Debug)]
 pub enum Code<T: Real> {
@@ -116,6 +127,8 @@ pub enum Code<T: Real> {
     Routine(Arc<OnceLock<Routine<T>>>, Vec<Code<T>>),
     /// A function with parameters at these places, to be called back.
     Closure(Vec<usize>, Box<Code<T>>),
+    /// The loop of Newton's method.
+    Iterate(Arc<dyn Iterate<T>>),
     /// Statements, of which the last is the value.
     Block(Vec<Code<T>>),
     /// A pattern bound.
@@ -303,6 +316,7 @@ impl<T: Real> Code<T> {
             },
             Code::Special(special, arguments) => special(places, arguments),
             Code::Routine(routine, arguments) => called(routine, arguments, places),
+            Code::Iterate(iterate) => iterate.run(places),
             Code::Closure(..) => Err(Exit::Unfit(WRONG)),
             Code::Block(all) => {
                 let Some((last, first)) = all.split_last() else {

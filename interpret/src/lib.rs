@@ -9,13 +9,14 @@ mod dense;
 mod failure;
 mod library;
 mod lower;
+mod newton;
 mod opened;
 mod packed;
 mod program;
 mod running;
 mod value;
 
-pub use cards::card;
+pub use cards::{card, card_and_warnings};
 
 use clebsch_core::Errors;
 use core::fmt;

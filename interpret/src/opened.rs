@@ -7,7 +7,7 @@ use crate::program::{Program, type_name};
 use crate::value::{Layout, Value};
 use crate::{Refused, text};
 use clebsch::card::{Card, OpenError};
-use clebsch_core::emit;
+use clebsch_core::{Derivation, emit};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -55,6 +55,8 @@ pub struct Functions {
     pub prepared: Routine<f64>,
     /// The workspace compensated, of a free body.
     pub compensated: Option<Routine<f64>>,
+    /// One step from a state that is not kept, where only the end is asked for.
+    pub attempt: Option<Routine<f64>>,
     /// One step.
     pub step: Routine<f64>,
     /// What a step leaves of its equations.
@@ -101,24 +103,23 @@ fn never(
 }
 
 impl Opened {
-    /// Reads a model, at given sizes or those that are taken where none are named.
+    /// Reads a derived model, at given sizes or those that are taken where none are named.
     ///
     /// # Errors
     /// [`Refused`] for what is no model, and for models that need a build.
-    pub fn read(source: &str, sizes: Option<&[usize]>) -> Result<Self, Refused> {
-        let d = clebsch_core::derive_source(source).map_err(Refused::Model)?;
-        if let Some(refused) = emit::refusal(&d) {
+    pub fn read(d: &Derivation, source: &str, sizes: Option<&[usize]>) -> Result<Self, Refused> {
+        if let Some(refused) = emit::refusal(d) {
             return Err(Refused::Model(refused.into()));
         }
         let name = d.spec.name.clone();
-        let program = Program::read(emit::emit(&d, false))?;
+        let program = Program::read(emit::emit(d, false))?;
         let (values, chosen, is_default) = chosen_sizes(&program, &name, sizes)?;
         let constants = Constants::new(&program, &name, &values);
         let card = constants.card(never, |_| None)?;
         let mut shared = Shared::new(&program, values.clone());
         let functions = functions(&mut shared, &name).map_err(|refused| match refused {
             // What is not known yet belongs to a method that is not.
-            Refused::Construct(what) if has_newton(&d) => Refused::Method {
+            Refused::Construct(what) if has_newton(d) => Refused::Method {
                 model: name.clone(),
                 method: format!("{} (at `{what}`)", card.solver),
             },
@@ -130,6 +131,7 @@ impl Opened {
             functions.with_solver.as_ref(),
             Some(&functions.prepared),
             functions.compensated.as_ref(),
+            functions.attempt.as_ref(),
             Some(&functions.step),
             Some(&functions.residual),
             Some(&functions.observe),
@@ -164,7 +166,7 @@ impl Opened {
     }
 }
 
-fn has_newton(d: &clebsch_core::Derivation) -> bool {
+fn has_newton(d: &Derivation) -> bool {
     use clebsch_core::derive::recognise::Method;
     matches!(d.solve.method, Method::Newton | Method::Blocks)
 }
@@ -230,6 +232,7 @@ fn functions(shared: &mut Shared<'_, f64>, name: &str) -> Result<Functions, Refu
     };
     let with_solver = where_given("with_solver", &[MODEL, GIVEN])?;
     let compensated = where_given("Model::compensated", &[WORK])?;
+    let attempt = where_given("Stepper::attempt", &[MODEL, STATE, STEP])?;
     let kinetic = where_given("kinetic_warning", &[MODEL, STATE])?;
     Ok(Functions {
         new: lower("new", &[GIVEN])?,
@@ -237,6 +240,7 @@ fn functions(shared: &mut Shared<'_, f64>, name: &str) -> Result<Functions, Refu
         with_solver,
         prepared: lower("Model::prepared", &[MODEL, STATE, STEP, GIVEN])?,
         compensated,
+        attempt,
         step: lower("step", &[MODEL, STATE, WORK])?,
         residual: lower("residual", &[MODEL, BEFORE, STATE, STEP])?,
         observe: lower("Described::observe", &[MODEL, STATE, OUT])?,

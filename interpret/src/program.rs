@@ -12,6 +12,8 @@ pub struct Program {
     pub structs: BTreeMap<String, Vec<(String, syn::Type)>>,
     /// Functions by type and name; those of a trait have its name before theirs.
     pub functions: BTreeMap<(String, String), syn::ImplItemFn>,
+    /// Types that have a name of their own.
+    pub aliases: BTreeMap<String, syn::Type>,
     /// Constants by type and name.
     pub constants: BTreeMap<(String, String), syn::Expr>,
 }
@@ -44,6 +46,9 @@ impl Program {
                     self.structs
                         .insert(item.ident.to_string(), fields.collect());
                 }
+                syn::Item::Type(item) => {
+                    self.aliases.insert(item.ident.to_string(), *item.ty);
+                }
                 syn::Item::Impl(item) => self.take_impl(item),
                 _ => {}
             }
@@ -57,6 +62,7 @@ impl Program {
             None => "",
             Some("Model") => "Model::",
             Some("Described") => "Described::",
+            Some("Stepper") => "Stepper::",
             Some(_) => return,
         };
         let Some(ty) = type_name(&item.self_ty) else {

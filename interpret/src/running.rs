@@ -435,6 +435,21 @@ impl Stepper for Model {
         Ok(())
     }
 
+    fn attempt(&self, state: &Packed, h: f64) -> Option<Packed> {
+        let Some(attempt) = &self.opened.functions.attempt else {
+            let mut moving = *state;
+            let mut places = self.workspace(state, h).ok()?;
+            self.advance(&mut moving, &mut places).ok()?;
+            return Some(moving);
+        };
+        let mut places = self.opened.places(self.model.clone());
+        let mut here = self.state.clone();
+        state.put(&mut here);
+        put(&mut places, at::STATE, here);
+        put(&mut places, at::STEP, Value::Real(h));
+        run(attempt, &mut places).ok().as_ref().and_then(Packed::of)
+    }
+
     fn node(state: &Packed) -> u64 {
         state.node
     }

@@ -156,6 +156,8 @@ pub enum Value<T: Real> {
     Struct(Struct<T>),
     /// An array or a tuple.
     List(Vec<Value<T>>),
+    /// A search for velocities.
+    Search(crate::newton::Held),
     /// Part of an array, from an offset on: the place of the array.
     Part(usize, usize),
     /// An error.

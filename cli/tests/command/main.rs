@@ -6,6 +6,7 @@ mod common;
 mod comparisons;
 mod exit_codes;
 mod figures;
+mod model_files;
 mod names;
 mod npz;
 mod own_models;

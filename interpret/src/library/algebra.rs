@@ -64,6 +64,7 @@ fn double<T: Real>(operator: Operator, x: f64, y: f64) -> Value<T> {
         Operator::Sub => Value::Double(x - y),
         Operator::Mul => Value::Double(x * y),
         Operator::Div => Value::Double(x / y),
+        Operator::Rem => Value::Double(x % y),
         Operator::Less => Value::Bool(x < y),
         Operator::AtMost => Value::Bool(x <= y),
         Operator::More => Value::Bool(x > y),
@@ -79,6 +80,7 @@ fn whole<T: Real>(operator: Operator, x: i64, y: i64) -> Option<Value<T>> {
         Operator::Sub => Value::Int(x.checked_sub(y)?),
         Operator::Mul => Value::Int(x.checked_mul(y)?),
         Operator::Div => Value::Int(x.checked_div(y)?),
+        Operator::Rem => Value::Int(x.checked_rem(y)?),
         Operator::Less => Value::Bool(x < y),
         Operator::AtMost => Value::Bool(x <= y),
         Operator::More => Value::Bool(x > y),
@@ -354,6 +356,34 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             let entry = |i, j| m.at(i, j) * d.at(j, j);
             Some(Value::of(Dense::from_fn(m.rows, m.cols, entry)))
         },
+        ("joined", 1) => |a, _| {
+            let data = numbers(a.first()?)?;
+            let (rows, cols) = (data.len(), 1);
+            Some(Value::of(Dense { rows, cols, data }))
+        },
+        ("assembled", 1) => |a, _| {
+            let Value::List(rows) = a.first()? else {
+                return None;
+            };
+            let mut blocks = Vec::with_capacity(rows.len());
+            for row in rows {
+                let Value::List(row) = row else { return None };
+                blocks.push(row.iter().map(square).collect::<Option<Vec<_>>>()?);
+            }
+            let size = 3 * rows.len();
+            let entry = |i: usize, j: usize| {
+                let block = blocks.get(i / 3).and_then(|row| row.get(j / 3));
+                block.map_or_else(T::zero, |block| block[(i % 3, j % 3)])
+            };
+            Some(Value::of(Dense::from_fn(size, size, entry)))
+        },
+        ("repeat", 1) => |a, sizes| {
+            let (x, [rows, cols]) = (number(a.first()?)?, sizes) else {
+                return None;
+            };
+            Some(Value::of(Dense::from_fn(*rows, *cols, |_, _| x)))
+        },
+        ("least", 1) => |a, _| Some(Value::Double(number(a.first()?)?.least())),
         // Sizes: of the longer, of the shorter.
         ("rows_from", 2) => |a, sizes| {
             let (m, at) = (a.first()?.dense()?, a.get(1)?.count()?);

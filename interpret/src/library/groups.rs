@@ -99,7 +99,7 @@ fn matrix<T: Real>(a: &Value<T>) -> Option<Value<T>> {
         Value::Motion(g) => Value::of(Dense::of(&g.matrix())),
         Value::Plane(g) => Value::of(Dense::of(&g.matrix())),
         Value::Element(_, a) => Value::of(a.clone()),
-        _ => return None,
+        other => super::part(other, "matrix")?,
     })
 }
 
@@ -221,6 +221,14 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         ("unit_quaternion", 1) => |a, _| match a.first()? {
             Value::Turned(r) => Some(Value::Quaternion(r.unit_quaternion())),
             _ => None,
+        },
+        ("real", 1) => |a, _| match a.first()? {
+            Value::Quaternion(q) => Some(Value::Real(q.real())),
+            other => super::part(other, "real"),
+        },
+        ("imaginary", 1) => |a, _| match a.first()? {
+            Value::Quaternion(q) => Some(Value::Vector(q.imaginary())),
+            other => super::part(other, "imaginary"),
         },
         ("inverse_rotate", 2) => |a, _| match (a.first()?, a.get(1)?) {
             (Value::Rotation(r), Value::Vector(v)) => Some(Value::Vector(r.inverse_rotate(v))),

@@ -8,7 +8,7 @@ mod solvers;
 mod special;
 mod validate;
 
-pub use algebra::{binary, entry, negative};
+pub use algebra::{binary, entry, negative, numbers};
 pub use solvers::Factor;
 
 use crate::code::{Native, Special};
@@ -16,13 +16,19 @@ use crate::value::Value;
 use clebsch::Real;
 
 /// The numbers of field names that mean something to the runtime's own types.
-pub const NAMES: [&str; 6] = [
+pub const NAMES: [&str; 12] = [
     "rotation",
     "translation",
     "cause",
     "attitude",
     "momentum",
     "edge",
+    "matrix",
+    "real",
+    "imaginary",
+    "element",
+    "iterations",
+    "residual",
 ];
 
 /// A field of a type of the runtime.
@@ -31,6 +37,17 @@ pub fn field<T: Real>(value: &Value<T>, name: u32) -> Option<Value<T>> {
         ("rotation", Value::Motion(g)) => Some(Value::Rotation(g.rotation)),
         ("translation", Value::Motion(g)) => Some(Value::Vector(g.translation)),
         ("cause", Value::Failed(e)) => Some(Value::failed((**e).clone().cause())),
+        _ => None,
+    }
+}
+
+/// A part of a region by its name.
+fn part<T: Real>(value: &Value<T>, name: &str) -> Option<Value<T>> {
+    match value {
+        Value::Struct(s) => {
+            let number = NAMES.iter().position(|n| *n == name)?;
+            s.field(u32::try_from(number).ok()?).cloned()
+        }
         _ => None,
     }
 }

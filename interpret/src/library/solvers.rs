@@ -488,6 +488,18 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             }
             _ => None,
         },
+        ("alike", 2) => |a, _| match (a.first()?, a.get(1)?) {
+            (Value::Search(search), Value::Search(like)) => {
+                Some(Value::Search(search.alike(like)?))
+            }
+            _ => None,
+        },
+        // What says whether a step is only tried.
+        ("tries", 1) => |a, _| Some((*a.first()?).clone()),
+        ("ok", 1) => |a, _| match a.first()? {
+            Value::Failed(_) => Some(Value::None),
+            other => Some((*other).clone()),
+        },
         ("unwrap_or", 2) => |a, _| match a.first()? {
             Value::None => Some((*a.get(1)?).clone()),
             other => Some((*other).clone()),

@@ -148,6 +148,17 @@ fn restart_as<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
     Ok(Value::result(done.map(|_| Value::Unit)))
 }
 
+/// `search.remember(node, &found)`
+fn remember<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
+    let [search, node, found] = a else {
+        return Err(missing());
+    };
+    let (node, found) = (node.run(places)?, found.run(places)?);
+    let search = unfit(search.place_mut(places))?;
+    unfit(crate::newton::remember(search, &node, &found))?;
+    Ok(Value::Unit)
+}
+
 /// A closure that is asked many times; what it cannot answer ends the search.
 struct Asked<'a, T: Real> {
     places: RefCell<&'a mut Places<T>>,
@@ -285,6 +296,7 @@ pub(super) fn special<T: Real>(name: &str) -> Option<Special<T>> {
         "set_column" => set_column,
         "follow" => follow,
         "restart_as" => restart_as,
+        "remember" => remember,
         "with_searched_step" | "with_searched_steps" => with_searched_step,
         "with_trials" => with_trials,
         "map_err" => map_err,

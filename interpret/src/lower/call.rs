@@ -2,17 +2,16 @@
 
 use super::expression::whole;
 use super::statement::is_place;
-use super::{Binding, Lower, refuse};
+use super::{Binding, Lower, Lowered, refuse};
 use crate::Refused;
 use crate::code::{Code, Pattern, Routine};
 use crate::library;
 use crate::program::named;
 use crate::value::{Frame, Value};
-use clebsch::Real;
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
-impl<T: Real> Lower<'_, '_, T> {
+impl<T: Lowered> Lower<'_, '_, T> {
     /// A function of the runtime, if there is one.
     pub(super) fn native(
         &self,
@@ -49,7 +48,7 @@ impl<T: Real> Lower<'_, '_, T> {
     }
 
     /// The sizes of a declared matrix.
-    fn sizes_of_type(&self, ty: Option<&syn::Type>) -> Vec<usize> {
+    pub(super) fn sizes_of_type(&self, ty: Option<&syn::Type>) -> Vec<usize> {
         match ty {
             Some(syn::Type::Path(p)) => self.sizes_of(&p.path),
             _ => Vec::new(),
@@ -120,6 +119,10 @@ impl<T: Real> Lower<'_, '_, T> {
                     .native("single", arguments, sizes)
                     .ok_or_else(|| refuse(c));
             }
+            ["newton", "Turn"] => return Ok(Code::List(self.all(c.args.iter())?)),
+            ["newton", "Search", constructor] => {
+                return self.search(constructor, ty)?.ok_or_else(|| refuse(c));
+            }
             [.., "repeat_n"] => {
                 let [value, count] = &self.all(c.args.iter())?[..] else {
                     return Err(refuse(c));
@@ -177,8 +180,21 @@ impl<T: Real> Lower<'_, '_, T> {
         Ok(self.native(name, arguments, sizes))
     }
 
-    pub(super) fn method(&mut self, m: &syn::ExprMethodCall) -> Result<Code<T>, Refused> {
+    pub(super) fn method(
+        &mut self,
+        m: &syn::ExprMethodCall,
+        ty: Option<&syn::Type>,
+    ) -> Result<Code<T>, Refused> {
         let name = m.method.to_string();
+        if let (true, Some(ty)) = (name == "alike", ty) {
+            let like = self
+                .search("from_rest", Some(ty))?
+                .ok_or_else(|| refuse(m))?;
+            let search = self.expression(&m.receiver, None)?;
+            return self
+                .native("alike", vec![search, like], Vec::new())
+                .ok_or_else(|| refuse(m));
+        }
         if let Some(owner) = self.kind(&m.receiver)
             && self.shared.program.function(&owner, &name).is_some()
         {

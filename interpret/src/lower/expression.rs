@@ -1,6 +1,6 @@
 //! Expressions that are no calls.
 
-use super::{Binding, Lower, refuse};
+use super::{Binding, Lower, Lowered, refuse};
 use crate::Refused;
 use crate::code::{Arm, Code, Operator, Pattern};
 use crate::program::named;
@@ -10,7 +10,7 @@ use clebsch::domain;
 use clebsch::emitted::{Method, Order};
 use std::collections::BTreeMap;
 
-impl<T: Real> Lower<'_, '_, T> {
+impl<T: Lowered> Lower<'_, '_, T> {
     /// An expression; `ty` is what is known of its type.
     pub(super) fn expression(
         &mut self,
@@ -44,7 +44,7 @@ impl<T: Real> Lower<'_, '_, T> {
                 Code::Index(Box::new(base), at)
             }
             syn::Expr::Call(c) => self.call(c, ty)?,
-            syn::Expr::MethodCall(m) => self.method(m)?,
+            syn::Expr::MethodCall(m) => self.method(m, ty)?,
             syn::Expr::Block(b) => self.block(&b.block)?,
             syn::Expr::If(i) => self.conditional(i)?,
             syn::Expr::Match(m) => self.matched(m)?,
@@ -157,6 +157,7 @@ impl<T: Real> Lower<'_, '_, T> {
             BinOp::Sub(_) => Operator::Sub,
             BinOp::Mul(_) => Operator::Mul,
             BinOp::Div(_) => Operator::Div,
+            BinOp::Rem(_) => Operator::Rem,
             BinOp::Eq(_) => Operator::Equal,
             BinOp::Ne(_) => Operator::Differs,
             BinOp::Lt(_) => Operator::Less,

@@ -3,6 +3,7 @@
 
 mod call;
 mod expression;
+mod newton;
 mod statement;
 
 use crate::Refused;
@@ -11,7 +12,9 @@ use crate::program::{Program, type_name};
 use crate::value::Layout;
 use clebsch::Real;
 use quote::ToTokens;
+use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::rc::Rc;
 use std::sync::{Arc, OnceLock};
 
 /// What a name stands for.
@@ -31,7 +34,7 @@ pub struct Shared<'a, T: Real> {
     pub program: &'a Program,
     /// The values of named sizes.
     pub sizes: BTreeMap<String, usize>,
-    names: BTreeMap<String, u32>,
+    names: Rc<RefCell<BTreeMap<String, u32>>>,
     layouts: BTreeMap<String, Arc<Layout>>,
     routines: Routines<T>,
 }
@@ -43,7 +46,9 @@ impl<'a, T: Real> Shared<'a, T> {
         Shared {
             program,
             sizes,
-            names: names.map(|(name, i)| ((*name).to_owned(), i)).collect(),
+            names: Rc::new(RefCell::new(
+                names.map(|(name, i)| ((*name).to_owned(), i)).collect(),
+            )),
             layouts: BTreeMap::new(),
             routines: BTreeMap::new(),
         }
@@ -51,8 +56,20 @@ impl<'a, T: Real> Shared<'a, T> {
 
     /// The number of a field's name.
     pub fn name(&mut self, name: &str) -> u32 {
-        let next = self.names.len() as u32;
-        *self.names.entry(name.to_owned()).or_insert(next)
+        let mut names = self.names.borrow_mut();
+        let next = names.len() as u32;
+        *names.entry(name.to_owned()).or_insert(next)
+    }
+
+    /// For the same program over another scalar: names have the same numbers.
+    fn over<U: Real>(&self) -> Shared<'a, U> {
+        Shared {
+            program: self.program,
+            sizes: self.sizes.clone(),
+            names: self.names.clone(),
+            layouts: BTreeMap::new(),
+            routines: BTreeMap::new(),
+        }
     }
 
     /// The fields of a struct.
@@ -75,6 +92,15 @@ impl<'a, T: Real> Shared<'a, T> {
     }
 }
 
+/// A scalar over which functions are lowered.
+pub trait Lowered: Real {
+    /// The loop of Newton's method.
+    ///
+    /// # Errors
+    /// [`Refused`] for scalars over which no step is made.
+    fn looped(lower: &mut Lower<'_, '_, Self>, of: &newton::Looped) -> Result<Code<Self>, Refused>;
+}
+
 /// The lowering of one function.
 pub struct Lower<'a, 'b, T: Real> {
     shared: &'b mut Shared<'a, T>,
@@ -89,7 +115,7 @@ pub struct Lower<'a, 'b, T: Real> {
 ///
 /// # Errors
 /// [`Refused`] for what emitted code may do and the interpreter does not.
-pub fn entry<T: Real>(
+pub fn entry<T: Lowered>(
     shared: &mut Shared<'_, T>,
     (ty, name): (&str, &str),
     given: &[usize],
@@ -116,7 +142,7 @@ pub fn entry<T: Real>(
     })
 }
 
-impl<T: Real> Lower<'_, '_, T> {
+impl<T: Lowered> Lower<'_, '_, T> {
     fn bind(&mut self, name: String, binding: Binding<T>) {
         if let Some(scope) = self.scopes.last_mut() {
             scope.insert(name, binding);

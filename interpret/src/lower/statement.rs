@@ -1,6 +1,6 @@
 //! Blocks, bindings and patterns.
 
-use super::{Binding, Lower, refuse};
+use super::{Binding, Lower, Lowered, refuse};
 use crate::Refused;
 use crate::code::{Code, Pattern};
 use crate::program::named;
@@ -8,7 +8,7 @@ use crate::value::Value;
 use clebsch::Real;
 use std::collections::BTreeMap;
 
-impl<T: Real> Lower<'_, '_, T> {
+impl<T: Lowered> Lower<'_, '_, T> {
     /// A block, with a scope of its own.
     pub(super) fn block(&mut self, block: &syn::Block) -> Result<Code<T>, Refused> {
         self.scopes.push(BTreeMap::new());
@@ -21,9 +21,18 @@ impl<T: Real> Lower<'_, '_, T> {
         })
     }
 
-    fn statements(&mut self, list: &[syn::Stmt]) -> Result<Vec<Code<T>>, Refused> {
+    pub(super) fn statements(&mut self, list: &[syn::Stmt]) -> Result<Vec<Code<T>>, Refused> {
         let mut out = Vec::new();
+        let mut skipped = false;
         for (i, statement) in list.iter().enumerate() {
+            if std::mem::take(&mut skipped) {
+                continue;
+            }
+            if let Some(looped) = super::newton::looped(statement, list.get(i + 1)) {
+                out.push(T::looped(self, &looped)?);
+                skipped = true;
+                continue;
+            }
             match statement {
                 syn::Stmt::Local(local) => self.local(local, &mut out)?,
                 // The scalar of a block, a list of names.

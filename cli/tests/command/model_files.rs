@@ -1,0 +1,169 @@
+//! Models that are run from their texts: the same tables as of built ones, and messages as good.
+
+use crate::common::{Folder, on};
+use clebsch_cli::gallery::Gallery;
+
+/// The text of a model of the gallery.
+fn text(model: &str) -> &'static str {
+    clebsch_models::find(model)
+        .expect("in the gallery")
+        .card
+        .source
+}
+
+/// A top that stands nowhere: another energy than any model of the gallery.
+const OTHER: &str = "model Beam {
+    param J: Sym<3>;
+    param a: Vec<3>;
+    param k: Real;
+    group R: SO<3> velocity W;
+    advected u: Vec<3>;
+    constraint next(R) = R*W;
+    constraint next(u) = W^T*u;
+    lagrangian = -tr(J*W)/h - h*k*(dot(a, u)^2 + dot(a, u));
+}";
+
+#[test]
+fn a_run_tells_the_same_as_that_of_the_built_model() {
+    let folder = Folder::new("model-files-same");
+    let gallery = Gallery::shipped();
+    for model in ["heavy-top", "free-body", "kepler"] {
+        let file = folder.write(&format!("{model}.clebsch"), text(model));
+        let case = folder.write(
+            &format!("{model}.toml"),
+            &on(&gallery, &["case", model]).out,
+        );
+        for more in [&[][..], &["--order", "4"], &["--json"]] {
+            let common = [&["--steps", "300", "--case", case.as_str()], more].concat();
+            let built = on(&gallery, &[&["run", model], &common[..]].concat());
+            let read = on(&gallery, &[&["run", file.as_str()], &common[..]].concat());
+            assert_eq!(built.code, 0, "{}", built.err);
+            assert_eq!((built.code, built.err), (read.code, read.err));
+            // How long a step took, and when it ran.
+            let timeless = |out: &str| -> Vec<String> {
+                let lines = out
+                    .lines()
+                    .filter(|l| !l.contains("second") && !l.contains("time"));
+                lines.map(str::to_owned).collect()
+            };
+            assert_eq!(
+                timeless(&built.out),
+                timeless(&read.out),
+                "{model} {more:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_a_run_writes_is_the_same_as_of_the_built_model() {
+    let folder = Folder::new("model-files-written");
+    let gallery = Gallery::shipped();
+    let file = folder.write("top.clebsch", text("heavy-top"));
+    let case = folder.write("case.toml", &on(&gallery, &["case", "heavy-top"]).out);
+    let (built, read) = (folder.path("built"), folder.path("read"));
+    for (model, out) in [("heavy-top", &built), (file.as_str(), &read)] {
+        let done = on(
+            &gallery,
+            &[
+                "run", model, "--case", &case, "--steps", "200", "--out", out,
+            ],
+        );
+        assert_eq!(done.code, 0, "{}", done.err);
+    }
+    for name in [
+        "trajectory.csv",
+        "trajectory.npz",
+        "momentum.svg",
+        "invariants.svg",
+    ] {
+        let bytes = |folder: &str| std::fs::read(format!("{folder}/{name}")).expect(name);
+        assert!(bytes(&built) == bytes(&read), "{name}");
+    }
+}
+
+#[test]
+fn a_model_outside_the_gallery_gives_a_case_that_runs_and_compares() {
+    let folder = Folder::new("model-files-other");
+    let gallery = Gallery::shipped();
+    let file = folder.write("beam.clebsch", OTHER);
+    let case = on(&gallery, &["case", &file]);
+    assert_eq!((case.code, case.err.as_str()), (0, ""));
+    assert!(case.out.contains("model = \"beam\""), "{}", case.out);
+    let case = folder.write("beam.toml", &case.out);
+    let run = on(&gallery, &["run", &file, "--case", &case, "--steps", "500"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    assert!(run.out.contains("energy"), "{}", run.out);
+    // Without a case, the sample.
+    let sample = on(&gallery, &["run", &file, "--steps", "500"]);
+    assert_eq!(sample.code, 0, "{}", sample.err);
+    let compared = on(
+        &gallery,
+        &["compare", &file, "--case", &case, "--steps", "100"],
+    );
+    assert_eq!(compared.code, 0, "{}", compared.err);
+    assert!(compared.out.contains("order"), "{}", compared.out);
+}
+
+#[test]
+fn a_file_without_a_model_that_runs_is_told_as_derive_tells_it() {
+    let folder = Folder::new("model-files-wrong");
+    let gallery = Gallery::shipped();
+    let wrong = OTHER.replace("next(u) = W^T*u", "next(u) = W*u");
+    for (name, text) in [
+        ("wrong.clebsch", wrong.as_str()),
+        ("two.clebsch", &format!("{OTHER}\n{OTHER}")),
+        ("none.clebsch", "fn main() {}"),
+        ("empty.clebsch", ""),
+    ] {
+        let file = folder.write(name, text);
+        let derived = on(&gallery, &["derive", &file]);
+        for command in ["run", "compare", "case"] {
+            let done = on(&gallery, &[command, &file]);
+            assert_eq!(
+                (done.code, done.out.as_str(), &done.err),
+                (2, "", &derived.err),
+                "{command}"
+            );
+            assert!(done.err.contains(name), "{}", done.err);
+        }
+    }
+    for missing in ["no-such-file.clebsch", "./no/such.clebsch"] {
+        let derived = on(&gallery, &["derive", missing]);
+        let done = on(&gallery, &["run", missing]);
+        assert_eq!((done.code, &done.err), (2, &derived.err));
+        assert!(
+            done.err.contains("neither a model nor a file"),
+            "{}",
+            done.err
+        );
+    }
+}
+
+#[test]
+fn wrong_values_are_told_with_file_and_line() {
+    let folder = Folder::new("model-files-values");
+    let gallery = Gallery::shipped();
+    let file = folder.write("top.clebsch", text("heavy-top"));
+    let case = on(&gallery, &["case", "heavy-top"]).out;
+    let place = case.find("\ngU = [").expect("a parameter") + "\ngU = [".len();
+    let end = place + case[place..].find(',').expect("numbers");
+    let spoiled = format!("{}nan{}", &case[..place], &case[end..]);
+    let case = folder.write("case.toml", &spoiled);
+    let built = on(&gallery, &["run", "heavy-top", "--case", &case]);
+    let read = on(&gallery, &["run", &file, "--case", &case]);
+    assert_eq!((built.code, &built.err), (read.code, &read.err));
+    assert_eq!(built.code, 2, "{}", built.err);
+}
+
+#[test]
+fn a_warning_of_the_derivation_is_told() {
+    let folder = Folder::new("model-files-warned");
+    let gallery = Gallery::shipped();
+    let text = OTHER.replace("param k: Real;", "param k: Real;\n    param unused: Real;");
+    let file = folder.write("beam.clebsch", &text);
+    let derived = on(&gallery, &["derive", &file]);
+    assert!(derived.err.contains("warning"), "{}", derived.err);
+    let run = on(&gallery, &["run", &file, "--steps", "10"]);
+    assert_eq!((run.code, run.err), (0, derived.err));
+}

@@ -1,0 +1,485 @@
+//! The loop of Newton's method, read from emitted code: what is evaluated at a trial becomes operations,
+//! what the solver does with it is the solver's own.
+
+use super::{Binding, Lower, Lowered, Shared, refuse};
+use crate::Refused;
+use crate::code::{Code, Routine};
+use crate::newton::{
+    Bounded, Kept, Kind, MOST_VARIABLES, Purpose, Settled, Shape, Solve, Sought, are_kept, begun,
+};
+use crate::program::type_name;
+use crate::value::Value;
+use clebsch::solvers::newton::Enclosure;
+use quote::ToTokens;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// What emitted code writes for one search.
+pub struct Looped<'e> {
+    /// `work.search.begin(node, values)`.
+    pub begin: &'e syn::ExprMethodCall,
+    /// What follows.
+    pub body: &'e syn::Block,
+}
+
+/// The loop in two statements, if these are one.
+pub fn looped<'e>(first: &'e syn::Stmt, second: Option<&'e syn::Stmt>) -> Option<Looped<'e>> {
+    let (syn::Stmt::Local(local), Some(syn::Stmt::Expr(syn::Expr::Loop(all), _))) = (first, second)
+    else {
+        return None;
+    };
+    let init = local.init.as_ref()?;
+    match &*init.expr {
+        syn::Expr::MethodCall(begin) if begin.method == "begin" => Some(Looped {
+            begin,
+            body: &all.body,
+        }),
+        _ => None,
+    }
+}
+
+/// The first method call with a name that `wanted` likes, anywhere in an expression.
+fn called<'e>(
+    e: &'e syn::Expr,
+    wanted: &dyn Fn(&syn::Ident) -> bool,
+) -> Option<&'e syn::ExprMethodCall> {
+    match e {
+        syn::Expr::MethodCall(m) if wanted(&m.method) => Some(m),
+        syn::Expr::MethodCall(m) => {
+            let inner = m.args.iter().find_map(|a| called(a, wanted));
+            inner.or_else(|| called(&m.receiver, wanted))
+        }
+        syn::Expr::Closure(c) => called(&c.body, wanted),
+        syn::Expr::Paren(p) => called(&p.expr, wanted),
+        syn::Expr::Reference(r) => called(&r.expr, wanted),
+        syn::Expr::Try(t) => called(&t.expr, wanted),
+        syn::Expr::Let(l) => called(&l.expr, wanted),
+        syn::Expr::Call(c) => c.args.iter().find_map(|a| called(a, wanted)),
+        syn::Expr::If(i) => called(&i.cond, wanted).or_else(|| in_block(&i.then_branch, wanted)),
+        syn::Expr::Block(b) => in_block(&b.block, wanted),
+        _ => None,
+    }
+}
+
+fn in_block<'e>(
+    block: &'e syn::Block,
+    wanted: &dyn Fn(&syn::Ident) -> bool,
+) -> Option<&'e syn::ExprMethodCall> {
+    block.stmts.iter().find_map(|s| match s {
+        syn::Stmt::Expr(e, _) => called(e, wanted),
+        syn::Stmt::Local(l) => called(&l.init.as_ref()?.expr, wanted),
+        _ => None,
+    })
+}
+
+/// The first name in code that begins so.
+fn name_in(tokens: &impl ToTokens, beginning: &str) -> Option<String> {
+    fn find(stream: proc_macro2::TokenStream, beginning: &str) -> Option<String> {
+        stream.into_iter().find_map(|t| match t {
+            proc_macro2::TokenTree::Ident(i) => {
+                Some(i.to_string()).filter(|i| i.starts_with(beginning))
+            }
+            proc_macro2::TokenTree::Group(g) => find(g.stream(), beginning),
+            _ => None,
+        })
+    }
+    find(tokens.to_token_stream(), beginning)
+}
+
+impl<T: Lowered> Lower<'_, '_, T> {
+    /// `newton::Search::...()` of a declared type, as a constant.
+    pub(super) fn search(
+        &self,
+        constructor: &str,
+        ty: Option<&syn::Type>,
+    ) -> Result<Option<Code<T>>, Refused> {
+        let purpose = match constructor {
+            "from_rest" => Purpose::Run,
+            "to_try" => Purpose::Trial,
+            "to_offer" => Purpose::Offer,
+            _ => return Ok(None),
+        };
+        let Some(ty) = ty else {
+            return Ok(None);
+        };
+        let sought = self.sought(ty)?;
+        Ok(begun(sought, purpose).map(|held| Code::Constant(Value::Search(held))))
+    }
+
+    /// What a search of a declared type is for.
+    pub(super) fn sought(&self, ty: &syn::Type) -> Result<&'static Sought, Refused> {
+        let generics = arguments(ty).ok_or_else(|| refuse(ty))?;
+        let [_, elements, node, ..] = generics.as_slice() else {
+            return Err(refuse(ty));
+        };
+        let unknowns =
+            |what: &str| Refused::Construct(format!("{what} in {}", ty.to_token_stream()));
+        let kinds = self.kinds(elements).ok_or_else(|| unknowns("a group"))?;
+        let shape = Shape { kinds };
+        let dimension = shape.dimension().ok_or_else(|| unknowns("a size"))?;
+        let mut kept = Vec::new();
+        self.node(node, &mut kept)
+            .ok_or_else(|| unknowns("a value"))?;
+        let sought = Sought {
+            shape,
+            node: kept,
+            dimension,
+        };
+        let kept_here = are_kept(&sought.node);
+        // Searches keep what they are for as long as they live; a model has a few.
+        let sought: &'static Sought = Box::leak(Box::new(sought));
+        match kept_here && begun(sought, Purpose::Run).is_some() {
+            true => Ok(sought),
+            false => Err(unknowns("more unknowns")),
+        }
+    }
+
+    /// The groups of a bundle: `[G; n]` or `(G, F)`.
+    fn kinds(&self, ty: &syn::Type) -> Option<Vec<Kind>> {
+        match ty {
+            syn::Type::Array(a) => {
+                let count = self.size(&a.len)?;
+                Some(vec![self.group(&a.elem)?; count])
+            }
+            syn::Type::Tuple(t) => t.elems.iter().map(|ty| self.group(ty)).collect(),
+            _ => None,
+        }
+    }
+
+    fn group(&self, ty: &syn::Type) -> Option<Kind> {
+        let sizes = self.sizes_of_type(Some(ty));
+        Some(match (type_name(ty)?.as_str(), sizes.as_slice()) {
+            ("Rotation", _) => Kind::Rotation,
+            ("UnitQuaternion", _) => Kind::Quaternion,
+            ("RigidMotion", _) => Kind::Motion,
+            ("PlaneMotion", _) => Kind::Plane,
+            ("Linear", [n]) => Kind::Linear(*n),
+            ("Orthogonal", [n]) => Kind::Orthogonal(*n),
+            ("Additive", [rows, cols]) => Kind::Field(*rows, *cols),
+            _ => return None,
+        })
+    }
+
+    /// Values at a node, one inside the other: `(a, (b, []))`.
+    fn node(&self, ty: &syn::Type, kept: &mut Vec<Kept>) -> Option<()> {
+        match ty {
+            syn::Type::Array(_) => Some(()),
+            syn::Type::Tuple(t) => {
+                let mut parts = t.elems.iter();
+                let (own, rest) = (parts.next()?, parts.next()?);
+                let (matrix, turn) = match type_name(own)?.as_str() {
+                    "Turn" => (arguments(own)?.into_iter().next()?, true),
+                    _ => (own.clone(), false),
+                };
+                let sizes = self.sizes_of_type(Some(&matrix));
+                let (rows, cols) = match (type_name(&matrix)?.as_str(), sizes.as_slice()) {
+                    ("SMatrix", [rows, cols]) => (*rows, *cols),
+                    ("SVector", [rows]) => (*rows, 1),
+                    _ => return None,
+                };
+                kept.push(Kept { rows, cols, turn });
+                self.node(rest, kept)
+            }
+            other => {
+                let alias = self.shared.program.aliases.get(&type_name(other)?)?;
+                self.node(alias, kept)
+            }
+        }
+    }
+}
+
+/// The types among the generic arguments of a type.
+fn arguments(ty: &syn::Type) -> Option<Vec<syn::Type>> {
+    let syn::Type::Path(p) = ty else {
+        return None;
+    };
+    let syn::PathArguments::AngleBracketed(list) = &p.path.segments.last()?.arguments else {
+        return None;
+    };
+    let types = list.args.iter().filter_map(|a| match a {
+        syn::GenericArgument::Type(ty) => Some(ty.clone()),
+        _ => None,
+    });
+    Some(types.collect())
+}
+
+/// A function by itself: residual or tangent.
+struct Alone<'e> {
+    function: &'e syn::ImplItemFn,
+    /// What binds the velocities, and the name of the trial that they are taken from.
+    velocities: Option<(&'e [syn::Stmt], &'e str)>,
+}
+
+impl Alone<'_> {
+    /// Its parameters at places from 0 on; after three of them the trial, where velocities are asked for.
+    fn lowered<U: Lowered>(
+        &self,
+        shared: &mut Shared<'_, U>,
+        own_type: &str,
+    ) -> Result<Routine<U>, Refused> {
+        let name = self.function.sig.ident.to_string();
+        let mut lower = Lower {
+            shared,
+            scopes: vec![BTreeMap::new()],
+            next: 5,
+            within: vec![(own_type.to_owned(), name)],
+        };
+        let mut all = Vec::new();
+        let mut given = self.function.sig.inputs.len();
+        if let Some((statements, trial)) = self.velocities {
+            lower.bind(trial.to_owned(), Binding::Place(Code::Place(3), None));
+            all.extend(lower.statements(statements)?);
+            given = 3;
+        }
+        lower.scopes.push(BTreeMap::new());
+        for (at, parameter) in self.function.sig.inputs.iter().take(given).enumerate() {
+            let (name, kind) = lower.parameter(parameter)?;
+            lower.bind(name, Binding::Place(Code::Place(at), kind));
+        }
+        all.push(lower.block(&self.function.block)?);
+        Ok(Routine {
+            places: lower.next,
+            body: Code::Function(Box::new(Code::Block(all))),
+        })
+    }
+}
+
+/// The pattern of an arm and its guard.
+fn guard(arm: &syn::Arm) -> Option<&syn::Expr> {
+    match &arm.pat {
+        syn::Pat::Guard(guarded) => Some(&guarded.guard),
+        _ => None,
+    }
+}
+
+impl<'a> Lower<'a, '_, f64> {
+    /// The loop as one operation.
+    pub(super) fn solved(&mut self, of: &Looped) -> Result<Code<f64>, Refused> {
+        self.scopes.push(BTreeMap::new());
+        let solve = self.solve(of);
+        self.scopes.pop();
+        Ok(Code::Iterate(Arc::new(solve?)))
+    }
+
+    fn solve(&mut self, of: &Looped) -> Result<Solve, Refused> {
+        let unknown = || refuse(of.body);
+        let search = self.expression(&of.begin.receiver, None)?;
+        let [node, values] =
+            <[Code<f64>; 2]>::try_from(self.all(of.begin.args.iter())?).map_err(|_| unknown())?;
+        let ty = self.field_type(&of.begin.receiver).ok_or_else(unknown)?;
+        let sought = self.sought(&ty)?;
+        let [syn::Stmt::Local(first), scale, at_trial @ .., assess, ended] =
+            of.body.stmts.as_slice()
+        else {
+            return Err(unknown());
+        };
+        let (
+            syn::Pat::Ident(name),
+            syn::Stmt::Expr(scale, _),
+            syn::Stmt::Expr(syn::Expr::If(assess), _),
+            syn::Stmt::Expr(syn::Expr::Match(ended), _),
+        ) = (&first.pat, scale, assess, ended)
+        else {
+            return Err(unknown());
+        };
+        let trial = self.fresh();
+        let trial_name = name.ident.to_string();
+        self.bind(trial_name.clone(), Binding::Place(Code::Place(trial), None));
+        let starts = |beginning: &'static str| {
+            move |name: &syn::Ident| name.to_string().starts_with(beginning)
+        };
+        let rounding = called(scale, &starts("rounding")).ok_or_else(unknown)?;
+        let mut known = vec![self.expression(&syn::parse_quote!(self.parameters), None)?];
+        for argument in rounding.args.iter().take(3) {
+            known.push(self.expression(argument, None)?);
+        }
+        let known = <[Code<f64>; 4]>::try_from(known).map_err(|_| unknown())?;
+        let at_trial_code = self.statements(at_trial)?;
+        let residual = called(&assess.cond, &starts("assess")).ok_or_else(unknown)?;
+        let residual = residual.args.first().ok_or_else(unknown)?;
+        let residual = self.expression(residual, None)?;
+        let tangent = in_block(&assess.then_branch, &starts("set_tangent")).ok_or_else(unknown)?;
+        let mut tangent = self.all(tangent.args.iter())?.into_iter();
+        let (tangent, unit) = (tangent.next().ok_or_else(unknown)?, tangent.next());
+        let syn::Expr::MethodCall(correct) = &*ended.expr else {
+            return Err(unknown());
+        };
+        let [_, solved, otherwise] = ended.arms.as_slice() else {
+            return Err(unknown());
+        };
+        let convex = match guard(solved) {
+            Some(syn::Expr::Binary(either)) => Some(self.expression(&either.left, None)?),
+            _ => None,
+        };
+        let settled = called(&otherwise.body, &starts("settled")).ok_or_else(unknown)?;
+        let (settled, principal) = self.settled(settled)?;
+        let own = self.own_type().to_owned();
+        let program = self.shared.program;
+        let function = |beginning: &str, from: &str| {
+            let from = program.function(&own, from)?;
+            program.function(&own, &name_in(&from.block, beginning)?)
+        };
+        let residual_at = Alone {
+            function: function("residual_at", &rounding.method.to_string()).ok_or_else(unknown)?,
+            velocities: None,
+        };
+        let tangent_at = Alone {
+            function: function("tangent_at", &principal).ok_or_else(unknown)?,
+            velocities: Some((at_trial, &trial_name)),
+        };
+        let mut rounded = self.shared.over::<Enclosure<0>>();
+        let rounded_at = residual_at.lowered(&mut rounded, &own)?;
+        let bounded_at = match sought.shape.variables() <= MOST_VARIABLES {
+            true => {
+                let mut shared = self.shared.over::<Enclosure<MOST_VARIABLES>>();
+                Bounded::Each(tangent_at.lowered(&mut shared, &own)?)
+            }
+            false => Bounded::Together(tangent_at.lowered(&mut rounded, &own)?),
+        };
+        Ok(Solve {
+            search,
+            node,
+            values,
+            trial,
+            known,
+            at_trial: at_trial_code,
+            residual,
+            tangent,
+            unit,
+            from_left: correct.method == "correct_from_left",
+            convex,
+            settled,
+            residual_at: residual_at.lowered(self.shared, &own)?,
+            rounded_at,
+            tangent_at: tangent_at.lowered(self.shared, &own)?,
+            bounded_at,
+        })
+    }
+
+    /// What is done where a solution is not known to be principal, and the function that looks for the
+    /// principal one.
+    fn settled(&mut self, call: &syn::ExprMethodCall) -> Result<(Settled, String), Refused> {
+        let unknown = || refuse(call);
+        let own = self.own_type().to_owned();
+        let program = self.shared.program;
+        let function = program.function(&own, &call.method.to_string());
+        let function = function.ok_or_else(unknown)?;
+        let principal = name_in(&function.block, "principal").ok_or_else(unknown)?;
+        let refused = name_in(&function.block, "refused").ok_or_else(unknown)?;
+        let refused = program.function(&own, &refused).ok_or_else(unknown)?;
+        // Its parameters: the receiver, the step, the state, what is given, momenta, the iteration, how it
+        // ended, and the solver by name where there is a choice.
+        let mut scope = BTreeMap::new();
+        let (mut at, tries) = (self.fresh(), self.fresh());
+        for (i, parameter) in function.sig.inputs.iter().skip(1).enumerate() {
+            let (name, kind) = self.parameter(parameter)?;
+            let code = match i {
+                0 | 1 | 6 => self.expression(call.args.get(i).ok_or_else(unknown)?, None)?,
+                4 => Code::Place(tries),
+                _ => continue,
+            };
+            scope.insert(name, Binding::Place(code, kind));
+        }
+        scope.insert("failed".to_owned(), Binding::Place(Code::Place(at), None));
+        if let Some(binding) = self.find("self") {
+            scope.insert("self".to_owned(), binding.clone());
+        }
+        let outer = std::mem::replace(&mut self.scopes, vec![scope]);
+        let contact = self.contact(function);
+        let other = self.other(refused);
+        self.scopes = outer;
+        let contact = contact?.map(|look| (std::mem::take(&mut at), tries, look));
+        let (other, configurations) = other?;
+        let settled = Settled {
+            contact,
+            other,
+            configurations,
+        };
+        Ok((settled, principal))
+    }
+
+    /// What looks whether the motion to a solution leaves the domain.
+    fn contact(&mut self, settled: &syn::ImplItemFn) -> Result<Option<Code<f64>>, Refused> {
+        for statement in &settled.block.stmts {
+            let syn::Stmt::Local(local) = statement else {
+                continue;
+            };
+            let Some(syn::Expr::Match(m)) = local.init.as_ref().map(|i| &*i.expr) else {
+                continue;
+            };
+            let folded = m.arms.iter().find(|a| name_in(&a.pat, "fold").is_some());
+            let Some(syn::Expr::Block(b)) = folded.map(|a| &*a.body) else {
+                continue;
+            };
+            let Some((_, looks @ [_, ..])) = b.block.stmts.split_last() else {
+                continue;
+            };
+            let mut all = self.statements(looks)?;
+            all.push(Code::Constant(Value::Unit));
+            return Ok(Some(Code::Function(Box::new(Code::Block(all)))));
+        }
+        Ok(None)
+    }
+
+    /// A step of another size by another search, and the names of the configurations.
+    fn other(
+        &mut self,
+        refused: &syn::ImplItemFn,
+    ) -> Result<(Code<f64>, &'static &'static [&'static str]), Refused> {
+        let unknown = || refuse(&refused.sig);
+        let explained =
+            in_block(&refused.block, &|name| name == "explained").ok_or_else(unknown)?;
+        let Some(syn::Expr::Closure(closure)) = explained.args.last() else {
+            return Err(unknown());
+        };
+        let other = self.closure(closure)?;
+        let names = refused.block.stmts.iter().find_map(|s| match s {
+            syn::Stmt::Item(syn::Item::Const(c)) => Some(&*c.expr),
+            _ => None,
+        });
+        let Some(syn::Expr::Reference(names)) = names else {
+            return Err(unknown());
+        };
+        let syn::Expr::Array(names) = &*names.expr else {
+            return Err(unknown());
+        };
+        let names = names.elems.iter().filter_map(|e| match e {
+            syn::Expr::Lit(syn::ExprLit {
+                lit: syn::Lit::Str(name),
+                ..
+            }) => Some(crate::text(&name.value())),
+            _ => None,
+        });
+        // Errors name them for as long as they live.
+        let names: &'static [&'static str] =
+            Box::leak(names.collect::<Vec<_>>().into_boxed_slice());
+        Ok((other, Box::leak(Box::new(names))))
+    }
+
+    /// The declared type of a field such as `work.search`.
+    fn field_type(&self, e: &syn::Expr) -> Option<syn::Type> {
+        let syn::Expr::Field(f) = e else {
+            return None;
+        };
+        let syn::Member::Named(field) = &f.member else {
+            return None;
+        };
+        let owner = self.kind(&f.base)?;
+        let fields = self.shared.program.structs.get(&owner)?;
+        let field = field.to_string();
+        let (_, ty) = fields.iter().find(|(name, _)| *name == field)?;
+        Some(ty.clone())
+    }
+}
+
+impl Lowered for f64 {
+    fn looped(lower: &mut Lower<'_, '_, f64>, of: &Looped) -> Result<Code<f64>, Refused> {
+        lower.solved(of)
+    }
+}
+
+impl<const K: usize> Lowered for Enclosure<K> {
+    fn looped(_: &mut Lower<'_, '_, Self>, of: &Looped) -> Result<Code<Self>, Refused> {
+        Err(refuse(of.body))
+    }
+}
