@@ -73,6 +73,11 @@ pub fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
         .or_else(|| validate::native(name, arguments))
 }
 
+/// The same of those that residuals and tangents call: no solver, no element is moved.
+pub fn kernel<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
+    algebra::native(name, arguments).or_else(|| groups::native(name, arguments))
+}
+
 /// The same for those that change their first argument, or call back.
 pub fn special<T: Real>(name: &str) -> Option<Special<T>> {
     special::special(name)

@@ -19,7 +19,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         arguments: Vec<Code<T>>,
         sizes: Vec<usize>,
     ) -> Option<Code<T>> {
-        let native = library::native(name, arguments.len())?;
+        let native = T::native(name, arguments.len())?;
         Some(Code::Call(native, arguments, sizes))
     }
 
@@ -173,7 +173,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         // What calls back or changes places is no function of values.
         let calls_back = arguments.iter().any(|a| matches!(a, Code::Closure(..)));
         if let Some(special) = library::special(name)
-            && (calls_back || library::native::<T>(name, arguments.len()).is_none())
+            && (calls_back || T::native(name, arguments.len()).is_none())
         {
             return Ok(Some(Code::Special(special, arguments)));
         }

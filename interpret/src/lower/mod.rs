@@ -7,7 +7,7 @@ mod newton;
 mod statement;
 
 use crate::Refused;
-use crate::code::{Code, Routine};
+use crate::code::{Code, Native, Routine};
 use crate::program::{Program, type_name};
 use crate::value::Layout;
 use clebsch::Real;
@@ -99,6 +99,9 @@ pub trait Lowered: Real {
     /// # Errors
     /// [`Refused`] for scalars over which no step is made.
     fn looped(lower: &mut Lower<'_, '_, Self>, of: &newton::Looped) -> Result<Code<Self>, Refused>;
+
+    /// The functions of the runtime that are called over it.
+    fn native(name: &str, arguments: usize) -> Option<Native<Self>>;
 }
 
 /// The lowering of one function.

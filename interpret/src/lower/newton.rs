@@ -3,13 +3,11 @@
 
 use super::{Binding, Lower, Lowered, Shared, refuse};
 use crate::Refused;
-use crate::code::{Code, Routine};
-use crate::newton::{
-    Bounded, Kept, Kind, MOST_VARIABLES, Purpose, Settled, Shape, Solve, Sought, are_kept, begun,
-};
+use crate::code::{Code, Native, Routine};
+use crate::library;
+use crate::newton::{Bound, Kept, Kind, Purpose, Settled, Shape, Solve, Sought, are_kept, begun};
 use crate::program::type_name;
 use crate::value::Value;
-use clebsch::solvers::newton::Enclosure;
 use quote::ToTokens;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -267,7 +265,7 @@ impl<'a> Lower<'a, '_, f64> {
         let [node, values] =
             <[Code<f64>; 2]>::try_from(self.all(of.begin.args.iter())?).map_err(|_| unknown())?;
         let ty = self.field_type(&of.begin.receiver).ok_or_else(unknown)?;
-        let sought = self.sought(&ty)?;
+        self.sought(&ty)?;
         let [syn::Stmt::Local(first), scale, at_trial @ .., assess, ended] =
             of.body.stmts.as_slice()
         else {
@@ -327,15 +325,9 @@ impl<'a> Lower<'a, '_, f64> {
             function: function("tangent_at", &principal).ok_or_else(unknown)?,
             velocities: Some((at_trial, &trial_name)),
         };
-        let mut rounded = self.shared.over::<Enclosure<0>>();
-        let rounded_at = residual_at.lowered(&mut rounded, &own)?;
-        let bounded_at = match sought.shape.variables() <= MOST_VARIABLES {
-            true => {
-                let mut shared = self.shared.over::<Enclosure<MOST_VARIABLES>>();
-                Bounded::Each(tangent_at.lowered(&mut shared, &own)?)
-            }
-            false => Bounded::Together(tangent_at.lowered(&mut rounded, &own)?),
-        };
+        let mut bounds = self.shared.over::<Bound>();
+        let rounded_at = residual_at.lowered(&mut bounds, &own)?;
+        let bounded_at = tangent_at.lowered(&mut bounds, &own)?;
         Ok(Solve {
             search,
             node,
@@ -476,10 +468,18 @@ impl Lowered for f64 {
     fn looped(lower: &mut Lower<'_, '_, f64>, of: &Looped) -> Result<Code<f64>, Refused> {
         lower.solved(of)
     }
+
+    fn native(name: &str, arguments: usize) -> Option<Native<f64>> {
+        library::native(name, arguments)
+    }
 }
 
-impl<const K: usize> Lowered for Enclosure<K> {
+impl Lowered for Bound {
     fn looped(_: &mut Lower<'_, '_, Self>, of: &Looped) -> Result<Code<Self>, Refused> {
         Err(refuse(of.body))
+    }
+
+    fn native(name: &str, arguments: usize) -> Option<Native<Bound>> {
+        library::kernel(name, arguments)
     }
 }

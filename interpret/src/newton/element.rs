@@ -1,11 +1,14 @@
 //! Velocities of any groups together, as one type for all of them. Every operation is that of the runtime's
 //! own group, factor by factor.
 
+use super::bound::{Bound, VARIABLES};
+use super::region::Seen;
 use super::shape::{Kind, factor_of, factor_of_part, kinds, of_kind};
 use crate::dense::Dense;
 use crate::value::{Kept, Value};
 use clebsch::OfScalars;
 use clebsch::groups::{Coordinate, Group, Part};
+use clebsch::solvers::newton::Region;
 use nalgebra::SMatrix;
 
 /// Most numbers of one element: a matrix of five rows.
@@ -13,7 +16,7 @@ const MOST: usize = 25;
 
 /// An element of one group, by its numbers.
 #[derive(Clone, Copy, Debug)]
-struct Factor {
+pub struct Factor {
     kind: Kind,
     numbers: [f64; MOST],
 }
@@ -116,17 +119,10 @@ impl<const D: usize> Element<D> {
         Element { factors }
     }
 
-    fn at(&self, i: usize) -> &Factor {
+    /// The factor with this index.
+    pub fn at(&self, i: usize) -> &Factor {
         let last = D.saturating_sub(1);
         &self.factors[i.min(last)]
-    }
-
-    /// The element of the runtime with this index.
-    pub fn factor<G>(&self, i: usize) -> G
-    where
-        G: Group<f64> + OfScalars<Scalar = f64, Over<f64> = G>,
-    {
-        self.at(i).get()
     }
 
     /// As emitted code has it: a list.
@@ -166,6 +162,100 @@ fn own_coordinates(xi: &[f64], i: usize) -> &[f64] {
     xi.get(from..(from + own).min(xi.len())).unwrap_or(&[])
 }
 
+/// What each group does, compiled once.
+impl Factor {
+    fn compose(&self, other: &Self) -> Self {
+        let kind = self.kind;
+        of_kind!(
+            kind,
+            G,
+            R,
+            K,
+            Self::of(kind, &self.get::<G>().compose(&other.get::<G>())),
+            *self
+        )
+    }
+
+    fn inverse(&self) -> Self {
+        let kind = self.kind;
+        of_kind!(
+            kind,
+            G,
+            R,
+            K,
+            Self::of(kind, &Group::inverse(&self.get::<G>())),
+            *self
+        )
+    }
+
+    fn retract(&self, xi: &[f64]) -> Self {
+        let kind = self.kind;
+        of_kind!(
+            kind,
+            G,
+            R,
+            K,
+            Self::of(kind, &self.get::<G>().retract(xi)),
+            *self
+        )
+    }
+
+    fn retract_from_left(&self, xi: &[f64]) -> Self {
+        let kind = self.kind;
+        of_kind!(
+            kind,
+            G,
+            R,
+            K,
+            Self::of(kind, &self.get::<G>().retract_from_left(xi)),
+            *self
+        )
+    }
+
+    fn combined(kind: Kind, weights: &[f64], one: &dyn Fn(usize) -> Self) -> Self {
+        let made = |k: usize| one(k);
+        of_kind!(
+            kind,
+            G,
+            R,
+            K,
+            Self::of(kind, &G::combined(weights, |k| made(k).get::<G>())),
+            one(0)
+        )
+    }
+
+    fn distance_from_group(&self) -> f64 {
+        of_kind!(
+            self.kind,
+            G,
+            R,
+            K,
+            self.get::<G>().distance_from_group(),
+            0.0
+        )
+    }
+
+    fn extents(&self, out: &mut [f64]) {
+        of_kind!(self.kind, G, R, K, self.get::<G>().extents(out), ());
+    }
+
+    fn is_within(&self, reach: &[f64]) -> bool {
+        of_kind!(self.kind, G, R, K, self.get::<G>().is_within(reach), false)
+    }
+
+    /// All elements near it, as a value.
+    pub fn around(&self, radii: &[f64], first: usize) -> Value<Bound> {
+        of_kind!(
+            self.kind,
+            G,
+            R,
+            K,
+            R::<VARIABLES>::around(&self.get::<G>(), radii, first).seen(),
+            Value::None
+        )
+    }
+}
+
 impl<const D: usize> Group<f64> for Element<D> {
     const DIMENSION: usize = D;
 
@@ -177,73 +267,23 @@ impl<const D: usize> Group<f64> for Element<D> {
     }
 
     fn compose(&self, other: &Self) -> Self {
-        Self::each(|i, kind| {
-            let (a, b) = (self.at(i), other.at(i));
-            of_kind!(
-                kind,
-                G,
-                R,
-                K,
-                Factor::of(kind, &a.get::<G>().compose(&b.get::<G>())),
-                *a
-            )
-        })
+        Self::each(|i, _| self.at(i).compose(other.at(i)))
     }
 
     fn inverse(&self) -> Self {
-        Self::each(|i, kind| {
-            let a = self.at(i);
-            of_kind!(
-                kind,
-                G,
-                R,
-                K,
-                Factor::of(kind, &Group::inverse(&a.get::<G>())),
-                *a
-            )
-        })
+        Self::each(|i, _| self.at(i).inverse())
     }
 
     fn retract(&self, xi: &[f64]) -> Self {
-        Self::each(|i, kind| {
-            let (a, own) = (self.at(i), own_coordinates(xi, i));
-            of_kind!(
-                kind,
-                G,
-                R,
-                K,
-                Factor::of(kind, &a.get::<G>().retract(own)),
-                *a
-            )
-        })
+        Self::each(|i, _| self.at(i).retract(own_coordinates(xi, i)))
     }
 
     fn retract_from_left(&self, xi: &[f64]) -> Self {
-        Self::each(|i, kind| {
-            let (a, own) = (self.at(i), own_coordinates(xi, i));
-            of_kind!(
-                kind,
-                G,
-                R,
-                K,
-                Factor::of(kind, &a.get::<G>().retract_from_left(own)),
-                *a
-            )
-        })
+        Self::each(|i, _| self.at(i).retract_from_left(own_coordinates(xi, i)))
     }
 
     fn combined(weights: &[f64], element: impl Fn(usize) -> Self) -> Self {
-        Self::each(|i, kind| {
-            let one = |k: usize| *element(k).at(i);
-            of_kind!(
-                kind,
-                G,
-                R,
-                K,
-                Factor::of(kind, &G::combined(weights, |k| one(k).get::<G>())),
-                one(0)
-            )
-        })
+        Self::each(|i, kind| Factor::combined(kind, weights, &|k| *element(k).at(i)))
     }
 
     fn coordinate(index: usize) -> Coordinate {
@@ -251,15 +291,11 @@ impl<const D: usize> Group<f64> for Element<D> {
         let Some((factor, kind, own)) = factor_of(index) else {
             return alone;
         };
-        let own = of_kind!(kind, G, R, K, <G as Group<f64>>::coordinate(own), alone);
-        own.in_factor(factor)
+        kind.coordinate(own).unwrap_or(alone).in_factor(factor)
     }
 
     fn distance_from_group(&self) -> f64 {
-        let each = kinds().iter().enumerate().map(|(i, kind)| {
-            let a = self.at(i);
-            of_kind!(*kind, G, R, K, a.get::<G>().distance_from_group(), 0.0)
-        });
+        let each = (0..kinds().len()).map(|i| self.at(i).distance_from_group());
         // NaN is not passed over.
         each.fold(0.0, |most: f64, x| if x <= most { most } else { x })
     }
@@ -269,21 +305,17 @@ impl<const D: usize> Group<f64> for Element<D> {
             return D.saturating_sub(1);
         };
         let before: usize = kinds().iter().take(factor).map(|k| k.parts()).sum();
-        before + of_kind!(kind, G, R, K, <G as Group<f64>>::part_of(own), 0)
+        before + kind.part_of(own)
     }
 
     fn is_pure(part: usize) -> bool {
-        factor_of_part(part).is_none_or(|(kind, own)| {
-            of_kind!(kind, G, R, K, <G as Group<f64>>::is_pure(own), true)
-        })
+        factor_of_part(part).is_none_or(|(kind, own)| kind.is_pure(own))
     }
 
     fn extents(&self, out: &mut [f64]) {
         let mut from = 0;
         for (i, kind) in kinds().iter().enumerate() {
-            let own = out.get_mut(from..).unwrap_or_default();
-            let a = self.at(i);
-            of_kind!(*kind, G, R, K, a.get::<G>().extents(own), ());
+            self.at(i).extents(out.get_mut(from..).unwrap_or_default());
             from += kind.parts();
         }
     }
@@ -291,9 +323,7 @@ impl<const D: usize> Group<f64> for Element<D> {
     fn is_within(&self, reach: &[f64]) -> bool {
         let (mut all, mut from) = (true, 0);
         for (i, kind) in kinds().iter().enumerate() {
-            let own = reach.get(from..).unwrap_or(&[]);
-            let a = self.at(i);
-            all &= of_kind!(*kind, G, R, K, a.get::<G>().is_within(own), false);
+            all &= self.at(i).is_within(reach.get(from..).unwrap_or(&[]));
             from += kind.parts();
         }
         all

@@ -2,6 +2,7 @@
 //! residual and tangent run as operations; the proof that a root is the principal one by the same
 //! operations over numbers in bounds.
 
+mod bound;
 mod element;
 mod node;
 mod region;
@@ -9,10 +10,11 @@ mod search;
 mod shape;
 mod solve;
 
+pub use bound::Bound;
 pub use node::{Kept, are_kept};
 pub use search::{Held, Purpose, Sought, begun, remember};
 pub use shape::{Kind, Shape};
-pub use solve::{Bounded, MOST_VARIABLES, Settled, Solve};
+pub use solve::{Settled, Solve};
 
 use crate::value::{Struct, Value};
 use clebsch::{OfScalars, Real};

@@ -1,46 +1,40 @@
 //! Velocities in bounds, of any groups together: the runtime's own regions, as values that equations are
 //! evaluated on.
 
+use super::bound::{Bound, VARIABLES};
 use super::element::Element;
-use super::shape::{kinds, of_kind};
+use super::shape::kinds;
 use crate::dense::Dense;
 use crate::library::NAMES;
 use crate::value::{Kept, Layout, Struct, Value};
-use clebsch::Real;
 use clebsch::solvers::newton::{
     AdditiveRegion, Enclosure, LinearRegion, MotionRegion, OrthogonalRegion, PlaneMotionRegion,
     QuaternionRegion, Region, RotationRegion,
 };
+use nalgebra::SMatrix;
 use std::sync::{Arc, OnceLock};
 
 /// Regions of all factors.
-pub struct Regions<const D: usize, const K: usize> {
-    values: Vec<Value<Enclosure<K>>>,
+pub struct Regions<const D: usize> {
+    values: Vec<Value<Bound>>,
 }
 
-impl<const D: usize, const K: usize> Regions<D, K> {
+impl<const D: usize> Regions<D> {
     /// As emitted code has them: a list.
-    pub fn value(&self) -> Value<Enclosure<K>> {
+    pub fn value(&self) -> Value<Bound> {
         Value::List(self.values.clone())
     }
 }
 
-impl<const D: usize, const K: usize> Region<K> for Regions<D, K> {
+impl<const D: usize> Region<VARIABLES> for Regions<D> {
     type Centre = Element<D>;
-    const VARIABLES: usize = K;
+    const VARIABLES: usize = VARIABLES;
 
     fn around(centre: &Element<D>, radii: &[f64], first: usize) -> Self {
         let (mut part, mut next) = (0, first);
         let values = kinds().iter().enumerate().map(|(i, kind)| {
             let own = radii.get(part..).unwrap_or(&[]);
-            let value = of_kind!(
-                *kind,
-                G,
-                R,
-                N,
-                R::<K>::around(&centre.factor::<G>(i), own, next).seen(),
-                Value::None
-            );
+            let value = centre.at(i).around(own, next);
             part += kind.parts();
             next += kind.variables();
             value
@@ -53,19 +47,12 @@ impl<const D: usize, const K: usize> Region<K> for Regions<D, K> {
     fn chart_tangent(
         radii: &[f64],
         first: usize,
-        put: &mut impl FnMut(usize, usize, Enclosure<K>),
+        put: &mut impl FnMut(usize, usize, Enclosure<VARIABLES>),
     ) {
         let (mut part, mut next, mut at) = (0, first, 0);
         for kind in kinds() {
             let own = radii.get(part..).unwrap_or(&[]);
-            of_kind!(
-                *kind,
-                G,
-                R,
-                N,
-                R::<K>::chart_tangent(own, next, &mut |i, j, x| put(at + i, at + j, x)),
-                ()
-            );
+            kind.chart_tangent(own, next, &mut |i, j, x| put(at + i, at + j, x));
             part += kind.parts();
             next += kind.variables();
             at += kind.dimension().unwrap_or(0);
@@ -74,8 +61,9 @@ impl<const D: usize, const K: usize> Region<K> for Regions<D, K> {
 }
 
 /// A region as a value, of which its matrix and its parts are asked.
-trait Seen<T: Real> {
-    fn seen(&self) -> Value<T>;
+pub trait Seen {
+    /// That value.
+    fn seen(&self) -> Value<Bound>;
 }
 
 /// The fields by which parts of a region go.
@@ -91,7 +79,11 @@ fn layout() -> Arc<Layout> {
     LAYOUT.get_or_init(made).clone()
 }
 
-fn parts<T: Real>(list: &[(&str, Value<T>)]) -> Value<T> {
+fn dense<const R: usize, const C: usize>(a: &SMatrix<Enclosure<VARIABLES>, R, C>) -> Dense<Bound> {
+    Dense::of(&a.map(Bound))
+}
+
+fn parts(list: &[(&str, Value<Bound>)]) -> Value<Bound> {
     let find = |name: &str| {
         list.iter()
             .find(|(n, _)| *n == name)
@@ -106,54 +98,52 @@ fn parts<T: Real>(list: &[(&str, Value<T>)]) -> Value<T> {
     })
 }
 
-impl<const K: usize> Seen<Enclosure<K>> for RotationRegion<K> {
-    fn seen(&self) -> Value<Enclosure<K>> {
-        Value::Element(Kept::Orthogonal, Dense::of(&self.matrix()))
+impl Seen for RotationRegion<VARIABLES> {
+    fn seen(&self) -> Value<Bound> {
+        Value::Element(Kept::Orthogonal, dense(&self.matrix()))
     }
 }
 
-impl<const K: usize> Seen<Enclosure<K>> for QuaternionRegion<K> {
-    fn seen(&self) -> Value<Enclosure<K>> {
+impl Seen for QuaternionRegion<VARIABLES> {
+    fn seen(&self) -> Value<Bound> {
         parts(&[
-            ("real", Value::Real(self.real())),
-            ("imaginary", Value::Vector(self.imaginary())),
-            ("matrix", Value::of(Dense::of(&self.matrix()))),
+            ("real", Value::Real(Bound(self.real()))),
+            ("imaginary", Value::Vector(self.imaginary().map(Bound))),
+            ("matrix", Value::of(dense(&self.matrix()))),
         ])
     }
 }
 
-impl<const K: usize> Seen<Enclosure<K>> for MotionRegion<K> {
-    fn seen(&self) -> Value<Enclosure<K>> {
+impl Seen for MotionRegion<VARIABLES> {
+    fn seen(&self) -> Value<Bound> {
         parts(&[
             ("rotation", self.rotation.seen()),
-            ("translation", Value::Vector(self.translation)),
-            ("matrix", Value::of(Dense::of(&self.matrix()))),
+            ("translation", Value::Vector(self.translation.map(Bound))),
+            ("matrix", Value::of(dense(&self.matrix()))),
         ])
     }
 }
 
-impl<const K: usize> Seen<Enclosure<K>> for PlaneMotionRegion<K> {
-    fn seen(&self) -> Value<Enclosure<K>> {
-        Value::Element(Kept::Linear, Dense::of(&self.matrix()))
+impl Seen for PlaneMotionRegion<VARIABLES> {
+    fn seen(&self) -> Value<Bound> {
+        Value::Element(Kept::Linear, dense(&self.matrix()))
     }
 }
 
-impl<const N: usize, const K: usize> Seen<Enclosure<K>> for LinearRegion<N, K> {
-    fn seen(&self) -> Value<Enclosure<K>> {
-        Value::Element(Kept::Linear, Dense::of(&self.matrix()))
+impl<const N: usize> Seen for LinearRegion<N, VARIABLES> {
+    fn seen(&self) -> Value<Bound> {
+        Value::Element(Kept::Linear, dense(&self.matrix()))
     }
 }
 
-impl<const N: usize, const K: usize> Seen<Enclosure<K>> for OrthogonalRegion<N, K> {
-    fn seen(&self) -> Value<Enclosure<K>> {
-        Value::Element(Kept::Orthogonal, Dense::of(&self.matrix()))
+impl<const N: usize> Seen for OrthogonalRegion<N, VARIABLES> {
+    fn seen(&self) -> Value<Bound> {
+        Value::Element(Kept::Orthogonal, dense(&self.matrix()))
     }
 }
 
-impl<const R: usize, const C: usize, const K: usize> Seen<Enclosure<K>>
-    for AdditiveRegion<R, C, K>
-{
-    fn seen(&self) -> Value<Enclosure<K>> {
-        Value::Element(Kept::Field, Dense::of(&self.matrix()))
+impl<const R: usize, const C: usize> Seen for AdditiveRegion<R, C, VARIABLES> {
+    fn seen(&self) -> Value<Bound> {
+        Value::Element(Kept::Field, dense(&self.matrix()))
     }
 }

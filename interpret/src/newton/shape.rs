@@ -1,8 +1,9 @@
 //! Which groups a search for velocities is in. The solver asks a type for what belongs to a group, such as
 //! its coordinates; here one type serves all groups, and the answer stands in the shape at work.
 
-use clebsch::groups::Group;
-use clebsch::solvers::newton::Region;
+use super::bound::VARIABLES;
+use clebsch::groups::{Coordinate, Group};
+use clebsch::solvers::newton::{Enclosure, Region};
 use std::cell::Cell;
 
 /// A group.
@@ -87,6 +88,45 @@ impl Kind {
         of_kind!(self, G, R, K, <G as Group<f64>>::PARTS, 1)
     }
 
+    /// What a coordinate stands for.
+    pub fn coordinate(self, index: usize) -> Option<Coordinate> {
+        of_kind!(
+            self,
+            G,
+            R,
+            K,
+            Some(<G as Group<f64>>::coordinate(index)),
+            None
+        )
+    }
+
+    /// The part that a coordinate belongs to.
+    pub fn part_of(self, index: usize) -> usize {
+        of_kind!(self, G, R, K, <G as Group<f64>>::part_of(index), 0)
+    }
+
+    /// Whether the coordinates of a part are pure numbers.
+    pub fn is_pure(self, part: usize) -> bool {
+        of_kind!(self, G, R, K, <G as Group<f64>>::is_pure(part), true)
+    }
+
+    /// The derivative of its chart, entry by entry.
+    pub fn chart_tangent(
+        self,
+        radii: &[f64],
+        first: usize,
+        mut put: &mut dyn FnMut(usize, usize, Enclosure<VARIABLES>),
+    ) {
+        of_kind!(
+            self,
+            G,
+            R,
+            K,
+            R::<VARIABLES>::chart_tangent(radii, first, &mut put),
+            ()
+        );
+    }
+
     /// How many variables a region of it takes.
     pub fn variables(self) -> usize {
         of_kind!(self, G, R, K, <R<0> as Region<0>>::VARIABLES, 0)
@@ -127,11 +167,6 @@ impl Shape {
     pub fn dimension(&self) -> Option<usize> {
         self.kinds.iter().map(|k| k.dimension()).sum()
     }
-
-    /// How many variables all take.
-    pub fn variables(&self) -> usize {
-        self.kinds.iter().map(|k| k.variables()).sum()
-    }
 }
 
 /// The groups at work.
@@ -167,7 +202,7 @@ pub fn factor_of_part(part: usize) -> Option<(Kind, usize)> {
 /// The body for each number of coordinates that searches are compiled for.
 macro_rules! of_dimension {
     ($n:expr, $D:ident, $body:expr) => {
-        of_dimension!($n, $D, $body, 1 2 3 4 5 6 7 8 9 10 12)
+        of_dimension!($n, $D, $body, 1 2 3 4 6 9)
     };
     ($n:expr, $D:ident, $body:expr, $($d:literal)*) => {
         match $n {

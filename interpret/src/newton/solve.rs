@@ -1,6 +1,7 @@
 //! The equations of a step as operations, and the loop that solves them: the calls that emitted code makes,
 //! in the same order.
 
+use super::bound::{Bound, VARIABLES};
 use super::element::{self, Element};
 use super::node::Asked;
 use super::over;
@@ -16,17 +17,8 @@ use clebsch::solvers::newton::{
 };
 use nalgebra::{SMatrix, SVector};
 
-/// More variables than this are bounded together.
-pub const MOST_VARIABLES: usize = 36;
-
 /// A function over numbers in bounds.
-#[derive(Debug)]
-pub enum Bounded {
-    /// Each variable followed.
-    Each(Routine<Enclosure<MOST_VARIABLES>>),
-    /// All together.
-    Together(Routine<Enclosure<0>>),
-}
+pub type Bounded = Routine<Bound>;
 
 /// What is done where a solution is not known to be principal, or none was found.
 #[derive(Debug)]
@@ -70,7 +62,7 @@ pub struct Solve {
     /// The residual by itself: of parameters, step, what is asked of the node, momenta, trial.
     pub residual_at: Routine<f64>,
     /// The same over numbers with their rounding.
-    pub rounded_at: Routine<Enclosure<0>>,
+    pub rounded_at: Bounded,
     /// The tangent by itself: of parameters, step, what is asked of the node, trial.
     pub tangent_at: Routine<f64>,
     /// The same over numbers in bounds.
@@ -181,16 +173,14 @@ impl Solve {
         places: &mut Places<f64>,
     ) -> Result<SVector<f64, D>, Exit<f64>> {
         let known = self.known(places)?;
-        let exactly = &mut |x: f64| Enclosure::<0>::exactly(x);
+        let exactly = &mut Bound::exactly;
         let mut given = Vec::with_capacity(self.rounded_at.places);
         for value in &known {
             given.push(unfit(over(value, exactly))?);
         }
-        given.push(unfit(over(&trial.value(), &mut |x: f64| {
-            Enclosure::<0>::rounded(x)
-        }))?);
+        given.push(unfit(over(&trial.value(), &mut Bound::rounded))?);
         let residual = unfit(run(&self.rounded_at, given))?;
-        let rest = unfit(over(&residual, &mut |x: Enclosure<0>| x.rest()))?;
+        let rest = unfit(over(&residual, &mut |x: Bound| x.0.rest()))?;
         unfit(element::vector(&rest))
     }
 
@@ -212,22 +202,8 @@ impl Solve {
         let asked = failed.as_ref().ok().map(|solved| solved.element);
         let values = iteration.values();
         let known = self.known(places)?;
-        let traced = match &self.bounded_at {
-            Bounded::Each(tangent) => self.principal(
-                &known,
-                tangent,
-                &values,
-                iteration.certificate(),
-                asked.as_ref(),
-            ),
-            Bounded::Together(tangent) => self.principal(
-                &known,
-                tangent,
-                &values,
-                iteration.certificate(),
-                asked.as_ref(),
-            ),
-        };
+        let certificate = iteration.certificate();
+        let traced = self.principal(&known, &values, certificate, asked.as_ref());
         let e = match (traced, failed) {
             (Ok(None), Ok(solved)) => return Ok(Some(solved)),
             (Ok(Some(root)), _) if iteration.restart(root) => return Ok(None),
@@ -249,16 +225,15 @@ impl Solve {
     }
 
     /// Finds the principal root, or shows that the solution is.
-    fn principal<V: Asked, const D: usize, const K: usize>(
+    fn principal<V: Asked, const D: usize>(
         &self,
         known: &[Value<f64>; 4],
-        bounded: &Routine<Enclosure<K>>,
         values: &V,
         certificate: &mut newton::Certificate<V, D>,
         solution: Option<&Element<D>>,
     ) -> Result<Option<Anchor<Element<D>, D>>, Fold> {
         let [parameters, step, given, momenta] = known;
-        let exactly = &mut |x: f64| Enclosure::<K>::exactly(x);
+        let exactly = &mut Bound::exactly;
         let bounds = (over(parameters, exactly), over(step, exactly));
         let near = V::given::<f64>(&values.over(&mut |x: f64| x));
         let residual = |trial: &Element<D>| {
@@ -279,16 +254,18 @@ impl Solve {
                 .unwrap_or_else(|| SMatrix::repeat(f64::NAN))
         };
         let unknown = || SMatrix::repeat(Enclosure::around(f64::NAN, f64::NAN));
-        let enclosed = |spread: newton::Spread, trial: &Regions<D, K>| {
+        let enclosed = |spread: newton::Spread, trial: &Regions<D>| {
             let (Some(parameters), Some(step)) = &bounds else {
                 return unknown();
             };
-            let values = V::given(&values.enclosed::<K>(0, spread));
+            let values = V::given(&values.enclosed::<VARIABLES>(0, spread));
+            let Some(values) = over(&values, &mut Bound) else {
+                return unknown();
+            };
             let all = vec![parameters.clone(), step.clone(), values, trial.value()];
-            let found = run(bounded, all);
-            found
-                .and_then(|v| element::matrix(&v))
-                .unwrap_or_else(unknown)
+            let found = run(&self.bounded_at, all);
+            let found = found.and_then(|v| element::matrix::<Bound, D>(&v));
+            found.map_or_else(unknown, |m| m.map(|x| x.0))
         };
         let equations = newton::Equations {
             residual: &residual,
