@@ -1,7 +1,10 @@
 //! The operations of a function, read once: a tree over numbered places. Executing it looks no name up.
 
+mod apply;
+
 use crate::failure::Failure;
-use crate::value::{Frame, Layout, Struct, Value};
+use crate::value::{Frame, Layout, Value};
+use apply::{apply, called, listed, made, many, matched, one, operation, repeated, two};
 use clebsch::Real;
 use std::sync::{Arc, OnceLock};
 
@@ -166,33 +169,6 @@ const WRONG: &str = "an operation on values of other kinds";
 /// What a missing value ends in.
 pub fn unfit<T: Real, V>(value: Option<V>) -> Result<V, Exit<T>> {
     value.ok_or(Exit::Unfit(WRONG))
-}
-
-/// An argument that stands at a place is not copied.
-enum Given<T: Real> {
-    There,
-    Made(Value<T>),
-}
-
-impl<T: Real> Given<T> {
-    fn of(code: &Code<T>, places: &mut Places<T>) -> Result<Self, Exit<T>> {
-        match code {
-            Code::Place(_) | Code::Constant(_) => Ok(Given::There),
-            Code::Field(..) | Code::Index(..) if code.place(places).is_some() => Ok(Given::There),
-            _ => Ok(Given::Made(code.run(places)?)),
-        }
-    }
-
-    fn get<'a>(
-        &'a self,
-        code: &'a Code<T>,
-        places: &'a Places<T>,
-    ) -> Result<&'a Value<T>, Exit<T>> {
-        match self {
-            Given::Made(value) => Ok(value),
-            Given::There => unfit(code.place(places)),
-        }
-    }
 }
 
 impl<T: Real> Pattern<T> {
@@ -443,179 +419,6 @@ impl<T: Real> Code<T> {
             other => other,
         }
     }
-}
-
-/// A function of one value.
-#[inline(never)]
-fn apply<T: Real>(
-    a: &Code<T>,
-    places: &mut Places<T>,
-    f: impl Fn(&Value<T>) -> Option<Value<T>>,
-) -> Evaluated<T> {
-    let x = Given::of(a, places)?;
-    unfit(f(x.get(a, places)?))
-}
-
-#[inline(never)]
-fn operation<T: Real>(
-    operator: Operator,
-    a: &Code<T>,
-    b: &Code<T>,
-    places: &mut Places<T>,
-) -> Evaluated<T> {
-    let x = Given::of(a, places)?;
-    let y = Given::of(b, places)?;
-    unfit(crate::library::binary(
-        operator,
-        x.get(a, places)?,
-        y.get(b, places)?,
-    ))
-}
-
-#[inline(never)]
-fn one<T: Real>(
-    native: Native<T>,
-    a: &Code<T>,
-    sizes: &[usize],
-    places: &mut Places<T>,
-) -> Evaluated<T> {
-    let x = Given::of(a, places)?;
-    unfit(native(&[x.get(a, places)?], sizes))
-}
-
-#[inline(never)]
-fn two<T: Real>(
-    native: Native<T>,
-    a: &Code<T>,
-    b: &Code<T>,
-    sizes: &[usize],
-    places: &mut Places<T>,
-) -> Evaluated<T> {
-    let x = Given::of(a, places)?;
-    let y = Given::of(b, places)?;
-    unfit(native(&[x.get(a, places)?, y.get(b, places)?], sizes))
-}
-
-#[inline(never)]
-fn many<T: Real>(
-    native: Native<T>,
-    all: &[Code<T>],
-    sizes: &[usize],
-    places: &mut Places<T>,
-) -> Evaluated<T> {
-    match all.len() {
-        0 => unfit(native(&[], sizes)),
-        3 => several::<T, 3>(native, all, sizes, places),
-        4 => several::<T, 4>(native, all, sizes, places),
-        5 => several::<T, 5>(native, all, sizes, places),
-        _ => Err(Exit::Unfit(WRONG)),
-    }
-}
-
-#[inline(never)]
-fn several<T: Real, const N: usize>(
-    native: Native<T>,
-    all: &[Code<T>],
-    sizes: &[usize],
-    places: &mut Places<T>,
-) -> Evaluated<T> {
-    let mut given = [const { Given::There }; N];
-    for (slot, a) in given.iter_mut().zip(all) {
-        *slot = Given::of(a, places)?;
-    }
-    let nothing = Value::Unit;
-    let mut list = [&nothing; N];
-    for (slot, (x, a)) in list.iter_mut().zip(given.iter().zip(all)) {
-        *slot = x.get(a, places)?;
-    }
-    unfit(native(&list, sizes))
-}
-
-#[inline(never)]
-fn matched<T: Real>(value: &Code<T>, arms: &[Arm<T>], places: &mut Places<T>) -> Evaluated<T> {
-    let value = value.run(places)?;
-    for arm in arms {
-        if !arm.pattern.meets(&value) {
-            continue;
-        }
-        let Some(guard) = &arm.guard else {
-            arm.pattern.bind(value, places);
-            return arm.body.run(places);
-        };
-        arm.pattern.bind(value.clone(), places);
-        if guard.truth(places)? {
-            return arm.body.run(places);
-        }
-    }
-    Err(Exit::Unfit(WRONG))
-}
-
-#[inline(never)]
-fn made<T: Real>(
-    layout: &Arc<Layout>,
-    given: &[(usize, Code<T>)],
-    base: Option<&Code<T>>,
-    places: &mut Places<T>,
-) -> Evaluated<T> {
-    let mut values = match base {
-        Some(base) => match base.run(places)? {
-            Value::Struct(base) => base.values,
-            _ => return Err(Exit::Unfit(WRONG)),
-        },
-        None => vec![Value::Unit; layout.fields.len()],
-    };
-    for (at, code) in given {
-        let value = code.run(places)?;
-        *unfit(values.get_mut(*at))? = value;
-    }
-    Ok(Value::Struct(Struct {
-        layout: layout.clone(),
-        values,
-    }))
-}
-
-#[inline(never)]
-fn listed<T: Real>(all: &[Code<T>], places: &mut Places<T>) -> Evaluated<T> {
-    let mut values = Vec::with_capacity(all.len());
-    for code in all {
-        values.push(code.run(places)?);
-    }
-    Ok(match values.is_empty() {
-        true => Value::Unit,
-        false => Value::List(values),
-    })
-}
-
-#[inline(never)]
-fn repeated<T: Real>(value: &Code<T>, count: &Code<T>, places: &mut Places<T>) -> Evaluated<T> {
-    let value = value.run(places)?;
-    Ok(Value::List(vec![value; count.count(places)?]))
-}
-
-/// Calls a function of the model with places of its own.
-#[inline(never)]
-fn called<T: Real>(
-    routine: &OnceLock<Routine<T>>,
-    arguments: &[Code<T>],
-    places: &mut Places<T>,
-) -> Evaluated<T> {
-    let routine = unfit(routine.get())?;
-    let mut own = Vec::with_capacity(routine.places);
-    for a in arguments {
-        own.push(a.run(places)?);
-    }
-    own.resize(routine.places.max(own.len()), Value::Unit);
-    let value = match routine.body.run(&mut own) {
-        Err(Exit::Return(value)) => *value,
-        other => other?,
-    };
-    for (a, changed) in arguments.iter().zip(own) {
-        // What was lent is given back; what was not changed is put back as it was.
-        if let Some(place) = a.place_mut(places) {
-            *place = changed;
-        }
-    }
-    Ok(value)
 }
 
 impl<T: Real> From<Failure> for Exit<T> {

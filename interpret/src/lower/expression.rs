@@ -45,7 +45,11 @@ impl<T: Lowered> Lower<'_, '_, T> {
             }
             syn::Expr::Call(c) => self.call(c, ty)?,
             syn::Expr::MethodCall(m) => self.method(m, ty)?,
-            syn::Expr::Block(b) => self.block(&b.block)?,
+            // Braces about a place make a copy, which is changed in its stead.
+            syn::Expr::Block(b) => match self.block(&b.block)? {
+                code if super::statement::is_place(&code) => Code::Block(vec![code]),
+                code => code,
+            },
             syn::Expr::If(i) => self.conditional(i)?,
             syn::Expr::Match(m) => self.matched(m)?,
             syn::Expr::Assign(a) => {
