@@ -136,6 +136,8 @@ pub enum Code<T: Real> {
     Block(Vec<Code<T>>),
     /// A pattern bound.
     Let(Pattern<T>, Box<Code<T>>, Option<Box<Code<T>>>),
+    /// A value that is made once and then stands at a place.
+    Once(usize, Box<Code<T>>),
     /// `if`
     If(Box<Code<T>>, Box<Code<T>>, Option<Box<Code<T>>>),
     /// `match`
@@ -303,7 +305,11 @@ impl<T: Real> Code<T> {
                 }
                 last.run(places)
             }
-            Code::Let(..) | Code::Assign(..) | Code::Increase(..) | Code::For(..) => {
+            Code::Let(..)
+            | Code::Once(..)
+            | Code::Assign(..)
+            | Code::Increase(..)
+            | Code::For(..) => {
                 self.follow(places)?;
                 Ok(Value::Unit)
             }
@@ -350,6 +356,13 @@ impl<T: Real> Code<T> {
                     Some(otherwise) => otherwise.run(places).map(|_| ()),
                     None => Err(Exit::Unfit(WRONG)),
                 }
+            }
+            Code::Once(at, value) => {
+                if let Some(Value::Unit) = places.get(*at) {
+                    let value = value.run(places)?;
+                    *unfit(places.get_mut(*at))? = value;
+                }
+                Ok(())
             }
             Code::Assign(targets, value) => {
                 let value = value.run(places)?;

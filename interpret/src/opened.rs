@@ -175,10 +175,10 @@ fn has_newton(d: &Derivation) -> bool {
 fn node_name(program: &Program, name: &str) -> String {
     let fields = program.structs.get(&format!("{name}State"));
     let counts = fields.into_iter().flatten();
-    let count = counts
+    let mut count = counts
         .filter(|(_, ty)| type_name(ty).as_deref() == Some("u64"))
         .map(|(field, _)| field.clone());
-    count.last().unwrap_or_default()
+    count.next_back().unwrap_or_default()
 }
 
 type Chosen = (BTreeMap<String, usize>, Vec<usize>, bool);

@@ -56,7 +56,7 @@ fn compare(built: &Card, read: &Card, case: &Case, settings: Settings, steps: u6
     steps
 }
 
-/// The card that is read from the text of a built one; nothing where a build is needed.
+/// The card that is read from the text of a built one.
 fn read(entry: &Entry) -> Option<Card> {
     match clebsch_interpret::card(entry.card.source) {
         Ok(card) => Some(card),
@@ -67,15 +67,12 @@ fn read(entry: &Entry) -> Option<Card> {
     }
 }
 
-/// What the model's step is solved by needs a build.
-const BUILT_ONLY: [&str; 0] = [];
-
 fn served() -> Vec<(Entry, Card)> {
     let mut all = Vec::new();
     for entry in gallery() {
         match read(&entry) {
             Some(card) => all.push((entry, card)),
-            None => assert!(BUILT_ONLY.contains(&entry.card.name), "{}", entry.card.name),
+            None => panic!("{} needs a build", entry.card.name),
         }
     }
     all
@@ -165,7 +162,13 @@ fn orders_and_solvers_agree_to_the_last_bit() {
 #[test]
 fn refusals_are_told_alike() {
     for (entry, card) in served() {
-        for case in &entry.cases {
+        // What is refused by Newton's method is searched for in many steps.
+        let few = if card.solver.contains("Newton") {
+            1
+        } else {
+            entry.cases.len()
+        };
+        for case in entry.cases.iter().take(few) {
             let built = entry.card_of(case);
             let sizes: Vec<usize> = built.dimensions.iter().map(|d| d.value).collect();
             let Some(read) = (card.sized)(&sizes) else {

@@ -268,6 +268,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
             scopes: vec![BTreeMap::new()],
             next: function.sig.inputs.len(),
             within: vec![key.clone()],
+            steady: Vec::new(),
         };
         for (at, parameter) in function.sig.inputs.iter().enumerate() {
             let (name, kind) = inner.parameter(parameter)?;

@@ -36,6 +36,8 @@ pub struct Shared<'a, T: Real> {
     pub sizes: BTreeMap<String, usize>,
     names: Rc<RefCell<BTreeMap<String, u32>>>,
     layouts: BTreeMap<String, Arc<Layout>>,
+    /// The first place that no function uses.
+    free: usize,
     routines: Routines<T>,
 }
 
@@ -50,6 +52,7 @@ impl<'a, T: Real> Shared<'a, T> {
                 names.map(|(name, i)| ((*name).to_owned(), i)).collect(),
             )),
             layouts: BTreeMap::new(),
+            free: 0,
             routines: BTreeMap::new(),
         }
     }
@@ -68,6 +71,7 @@ impl<'a, T: Real> Shared<'a, T> {
             sizes: self.sizes.clone(),
             names: self.names.clone(),
             layouts: BTreeMap::new(),
+            free: 0,
             routines: BTreeMap::new(),
         }
     }
@@ -112,6 +116,8 @@ pub struct Lower<'a, 'b, T: Real> {
     next: usize,
     /// The type whose function is lowered, and its name.
     within: Vec<(String, String)>,
+    /// Where the model stands, for as long as the places do; and the places of what was made of it.
+    steady: Vec<usize>,
 }
 
 /// Lowers a function of a type, with its parameters at given places and locals from `first` on.
@@ -129,16 +135,24 @@ pub fn entry<T: Lowered>(
         return Err(Refused::Construct(format!("{ty}::{name}")));
     };
     let mut lower = Lower {
+        // Places of their own: what is kept in one is not lost to another function.
+        next: first.max(shared.free),
         shared,
         scopes: vec![BTreeMap::new()],
-        next: first,
         within: vec![(ty.to_owned(), name.to_owned())],
+        steady: given
+            .first()
+            .into_iter()
+            .copied()
+            .filter(|at| *at == 0)
+            .collect(),
     };
     for (parameter, given) in function.sig.inputs.iter().zip(given) {
         let (name, kind) = lower.parameter(parameter)?;
         lower.bind(name, Binding::Place(Code::Place(*given), kind));
     }
     let body = lower.block(&function.block)?;
+    lower.shared.free = lower.next;
     Ok(Routine {
         places: lower.next,
         body: Code::Function(Box::new(body)),

@@ -221,6 +221,7 @@ impl Alone<'_> {
             scopes: vec![BTreeMap::new()],
             next: 5,
             within: vec![(own_type.to_owned(), name)],
+            steady: Vec::new(),
         };
         let mut all = Vec::new();
         let mut given = self.function.sig.inputs.len();

@@ -49,7 +49,32 @@ impl<T: Lowered> Lower<'_, '_, T> {
         if matches!(list.last(), Some(syn::Stmt::Local(_))) {
             out.push(Code::Constant(Value::Unit));
         }
+        self.filled_once(&mut out);
         Ok(out)
+    }
+
+    /// What is filled in by a loop, from the model alone, is filled once.
+    fn filled_once(&mut self, list: &mut Vec<Code<T>>) {
+        for i in 0..list.len() {
+            let Some(Code::Let(Pattern::Place(at), value, None)) = list.get(i) else {
+                continue;
+            };
+            let (at, mut own) = (*at, vec![*at]);
+            if !self.is_steady(value, &mut own) {
+                continue;
+            }
+            let loops = list.iter().skip(i + 1);
+            let loops = loops.take_while(|c| matches!(c, Code::For(..)));
+            let count = loops.take_while(|c| self.is_steady(c, &mut own)).count();
+            if count == 0 {
+                continue;
+            }
+            self.steady.push(at);
+            let mut all: Vec<Code<T>> = list.drain(i..=i + count).collect();
+            all.push(Code::Constant(Value::Bool(true)));
+            let made = Code::Once(self.fresh(), Box::new(Code::Block(all)));
+            list.insert(i, made);
+        }
     }
 
     fn local(&mut self, local: &syn::Local, out: &mut Vec<Code<T>>) -> Result<(), Refused> {
@@ -93,6 +118,19 @@ impl<T: Lowered> Lower<'_, '_, T> {
             }
             return Ok(());
         }
+        if let (syn::Pat::Ident(name), None) = (pat, &init.diverge)
+            && name.mutability.is_none()
+            && self.is_steady(&value, &mut Vec::new())
+        {
+            let at = self.fresh();
+            self.steady.push(at);
+            self.bind(
+                name.ident.to_string(),
+                Binding::Place(Code::Place(at), kind),
+            );
+            out.push(Code::Once(at, Box::new(value)));
+            return Ok(());
+        }
         let otherwise = match &init.diverge {
             Some((_, diverge)) => Some(Box::new(self.expression(diverge, None)?)),
             None => None,
@@ -100,6 +138,44 @@ impl<T: Lowered> Lower<'_, '_, T> {
         let pattern = self.pattern(pat, kind)?;
         out.push(Code::Let(pattern, Box::new(value), otherwise));
         Ok(())
+    }
+
+    /// Whether a value is made of the model alone: then it is made once. `own` are the places within it.
+    fn is_steady(&self, code: &Code<T>, own: &mut Vec<usize>) -> bool {
+        match code {
+            Code::Constant(_) => true,
+            Code::Place(at) => self.steady.contains(at) || own.contains(at),
+            Code::Field(a, _) | Code::Inner(a) | Code::Negative(a) => self.is_steady(a, own),
+            Code::Binary(_, a, b) => self.is_steady(a, own) && self.is_steady(b, own),
+            Code::Index(a, at) => {
+                self.is_steady(a, own) && at.iter().all(|c| self.is_steady(c, own))
+            }
+            Code::Call(_, list, _) | Code::List(list) => {
+                list.iter().all(|c| self.is_steady(c, own))
+            }
+            // What they change is given to them.
+            Code::Special(_, list) => list.iter().all(|c| self.is_steady(c, own)),
+            Code::Closure(parameters, body) => {
+                own.extend(parameters);
+                self.is_steady(body, own)
+            }
+            Code::For(at, from, to, body) => {
+                own.push(*at);
+                [from, to, body].iter().all(|c| self.is_steady(c, own))
+            }
+            Code::Block(list) => list.iter().all(|c| match c {
+                Code::Let(Pattern::Place(at), value, None) => {
+                    own.push(*at);
+                    self.is_steady(value, own)
+                }
+                Code::Once(at, value) => {
+                    own.push(*at);
+                    self.is_steady(value, own)
+                }
+                other => self.is_steady(other, own),
+            }),
+            _ => false,
+        }
     }
 
     /// A pattern; its names are bound in the innermost scope.
