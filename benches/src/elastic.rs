@@ -2,6 +2,7 @@
 //! from the same start, that of a case of the gallery, each step a call that may refuse. Takes nothing; gives closures for
 //! the clock. Everything is started outside them.
 
+use crate::counted::Block;
 use crate::loops::{generated, written};
 use clebsch::nalgebra::{Matrix3, Vector3, Vector6};
 use clebsch::{
@@ -34,7 +35,7 @@ fn matrix(rows: &Matrix) -> Matrix3<f64> {
 }
 
 /// A block of the generated ellipsoid seen from the body.
-pub fn generated_convective() -> impl FnOnce() {
+pub fn generated_convective() -> Block<impl FnOnce()> {
     let [a, b, c, d] = ENERGY;
     let parameters = EllipsoidConvectiveParameters {
         C0: Matrix3::identity(),
@@ -52,7 +53,7 @@ pub fn generated_convective() -> impl FnOnce() {
 }
 
 /// A block of the generated ellipsoid seen from space.
-pub fn generated_spatial() -> impl FnOnce() {
+pub fn generated_spatial() -> Block<impl FnOnce()> {
     let [a, b, c, d] = ENERGY;
     let parameters = EllipsoidSpatialParameters {
         C0: Matrix3::identity(),
@@ -117,7 +118,7 @@ const MOMENTA: Momenta = Momenta {
 };
 
 /// A block of the generated four configurations.
-pub fn generated_four() -> impl FnOnce() {
+pub fn generated_four() -> Block<impl FnOnce()> {
     let column = |v: &Vector| Vector3::from(*v);
     let [p, s, e] = FOUR.arms.each_ref().map(column);
     let parameters = MixedFourParameters {

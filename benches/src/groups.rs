@@ -1,6 +1,7 @@
 //! Blocks of work of models on SU(2) and SE(3), in unit quaternions and in a fluid: the same steps from the same start,
 //! each step a call that may refuse. Takes starting data; gives closures for the clock.
 
+use crate::counted::Block;
 use crate::loops::{generated, written};
 use clebsch::nalgebra::{Matrix3, Vector3, Vector4, Vector6};
 use clebsch::{BodyImpulse, BodyMomentum, RigidMotion, Rotation, SpatialMomentum, UnitQuaternion};
@@ -26,7 +27,7 @@ fn inertia() -> Matrix3<f64> {
 }
 
 /// A block of the generated body in unit quaternions, the member `c` of the family.
-pub fn generated_cayley_klein(c: f64) -> impl FnOnce() {
+pub fn generated_cayley_klein(c: f64) -> Block<impl FnOnce()> {
     let parameters = CayleyKleinParameters { I: inertia(), c };
     let initial = CayleyKleinInitial {
         q: UnitQuaternion::identity(),
@@ -36,7 +37,7 @@ pub fn generated_cayley_klein(c: f64) -> impl FnOnce() {
 }
 
 /// A block of the generated body in unit quaternions, seen from space.
-pub fn generated_cayley_klein_spatial(c: f64) -> impl FnOnce() {
+pub fn generated_cayley_klein_spatial(c: f64) -> Block<impl FnOnce()> {
     let initial = CayleyKleinSpatialInitial {
         q: UnitQuaternion::identity(),
         spatial_momentum: SpatialMomentum(Vector3::from(MOMENTUM)),
@@ -58,7 +59,7 @@ fn matrix(rows: &Matrix) -> Matrix3<f64> {
 }
 
 /// A block of the generated body in a fluid, without net weight: a heavy one would fall ever faster.
-pub fn generated_kirchhoff_body() -> impl FnOnce() {
+pub fn generated_kirchhoff_body() -> Block<impl FnOnce()> {
     let (body, attitude, place, momentum) = submerged(0.0);
     let [a, b, c] = body.moment;
     let [x, y, z] = body.up;

@@ -1,20 +1,26 @@
 //! The loops that are timed, as a user writes them: one call a step, each of which may refuse. Takes a model with its
 //! initial values, or a motion; gives a closure for the clock, everything started outside it.
 
-/// Steps a generated model from these initial values.
+/// Steps a generated model from these initial values, with the step of the references or another.
 macro_rules! generated {
-    ($model:expr, $initial:expr) => {{
+    ($model:expr, $initial:expr) => {
+        $crate::loops::generated!($model, $initial, clebsch_oracle::reference::H)
+    };
+    ($model:expr, $initial:expr, $h:expr) => {{
         let model = $model.expect("parameters");
-        let start = model.start($initial, clebsch_oracle::reference::H);
+        let start = model.start($initial, $h);
         let (state, workspace) = start.expect("solvable");
-        move || {
+        let counted = $crate::counted::work_of(&model, &state, $h);
+        let work = counted.expect("solvable");
+        let run = move || {
             let whole = std::hint::black_box((model, state, workspace));
             let (model, mut state, mut workspace) = whole;
             for _ in 0..$crate::blocks::STEPS {
                 model.step(&mut state, &mut workspace).expect("solvable");
             }
             std::hint::black_box((&state, &workspace));
-        }
+        };
+        $crate::counted::Block { work, run }
     }};
 }
 

@@ -5,7 +5,7 @@
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables)]
 
-mod blocks;
+mod counted;
 mod elastic;
 mod groups;
 mod loops;
@@ -14,11 +14,13 @@ mod processes;
 mod steppers;
 mod systems;
 
-use blocks::compare;
+use clebsch_benches::blocks;
+use clebsch_benches::blocks::compare;
 use clebsch_oracle::physics::cases::{
     Start, asymmetric_body, generic_top, lagrange_top, symmetric_body,
 };
 use clebsch_oracle::physics::systems::{generic_pair, reference_pair};
+use counted::Block;
 use elastic::{
     generated_convective, generated_four, generated_spatial, written_convective, written_four,
     written_spatial,
@@ -28,6 +30,7 @@ use groups::{
     written_cayley_klein, written_kirchhoff_body,
 };
 use points::{generated_charge, generated_kepler, written_charge, written_kepler};
+use processes::Row;
 use steppers::{generated_body, generated_top, written_body, written_top};
 use systems::{
     generated_free_body_spatial, generated_heavy_top_spatial, generated_pair,
@@ -137,14 +140,20 @@ impl Table {
     fn row<A: FnOnce(), B: FnOnce()>(
         &self,
         name: &str,
-        generated: impl Fn() -> A,
+        generated: impl Fn() -> Block<A>,
         hand: impl Fn() -> B,
     ) {
         if self.only.as_ref().is_some_and(|only| !name.contains(only)) {
             return;
         }
-        let times = compare(generated, hand);
-        processes::hand_on(name, times.generated, times.hand);
+        let work = generated().work;
+        let times = compare(|| generated().run, hand);
+        processes::hand_on(&Row {
+            name: name.to_owned(),
+            generated: times.generated,
+            hand: times.hand,
+            work,
+        });
     }
 }
 

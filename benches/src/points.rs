@@ -1,6 +1,7 @@
 //! Blocks of work of points in space, a planet and a charge: the same steps from the same start, each step a call that
 //! may refuse. Takes nothing; gives closures for the clock. Everything is started outside them.
 
+use crate::counted::Block;
 use crate::loops::{generated, written};
 use clebsch::nalgebra::Vector3;
 use clebsch::{Additive, FieldMomentum};
@@ -26,7 +27,7 @@ const CHARGE: Charge = Charge {
 };
 
 /// A block of the generated planet.
-pub fn generated_kepler() -> impl FnOnce() {
+pub fn generated_kepler() -> Block<impl FnOnce()> {
     let initial = KeplerInitial {
         X: Additive::new(Vector3::from(PLACE)),
         momentum: FieldMomentum(Vector3::from(MOMENTUM)),
@@ -41,7 +42,7 @@ pub fn written_kepler() -> impl FnOnce() {
 }
 
 /// A block of the generated charge.
-pub fn generated_charge() -> impl FnOnce() {
+pub fn generated_charge() -> Block<impl FnOnce()> {
     let parameters = ChargedParticleParameters {
         m: CHARGE.mass,
         q: CHARGE.charge,

@@ -1,6 +1,7 @@
 //! Every case in several processes, each with stack and heap shifted: how memory is laid out decides up to two thirds of the
 //! time of a short step on some processors. Takes the rows of one process after the other; gives medians and the worst.
 
+use crate::counted::Work;
 use std::process::{Command, exit};
 
 /// How many processes, and by how many bytes the environment of each is longer, which shifts its stack.
@@ -25,15 +26,29 @@ pub fn shift_heap(number: usize) {
 
 /// What one process measured of a case.
 #[derive(Clone, Debug)]
-struct Row {
-    name: String,
-    generated: f64,
-    hand: f64,
+pub struct Row {
+    /// The case.
+    pub name: String,
+    /// Nanoseconds a step of the generated stepper.
+    pub generated: f64,
+    /// And of the one by hand.
+    pub hand: f64,
+    /// What a generated step takes.
+    pub work: Work,
 }
 
 /// A row as processes hand it on.
-pub fn hand_on(name: &str, generated: f64, hand: f64) {
-    println!("{name}\t{generated}\t{hand}");
+pub fn hand_on(row: &Row) {
+    let Work {
+        operations,
+        divisions,
+        functions,
+        bytes,
+    } = row.work;
+    println!(
+        "{}\t{}\t{}\t{operations}\t{divisions}\t{functions}\t{bytes}",
+        row.name, row.generated, row.hand
+    );
 }
 
 fn read(line: &str) -> Option<Row> {
@@ -42,6 +57,12 @@ fn read(line: &str) -> Option<Row> {
         name: parts.next()?.to_owned(),
         generated: parts.next()?.parse().ok()?,
         hand: parts.next()?.parse().ok()?,
+        work: Work {
+            operations: parts.next()?.parse().ok()?,
+            divisions: parts.next()?.parse().ok()?,
+            functions: parts.next()?.parse().ok()?,
+            bytes: parts.next()?.parse().ok()?,
+        },
     })
 }
 
@@ -68,8 +89,17 @@ pub fn gather(only: Option<&str>) {
     }
     eprintln!();
     println!(
-        "{:<34} {:>9} {:>9} {:>7} {:>7} {:>7}",
-        "case", "generated", "hand", "ratio", "best", "worst"
+        "{:<34} {:>9} {:>9} {:>7} {:>7} {:>7}   {:>7} {:>7} {:>7} {:>7}",
+        "case",
+        "generated",
+        "hand",
+        "ratio",
+        "best",
+        "worst",
+        "+ - x",
+        "/ sqrt",
+        "exp sin",
+        "bytes"
     );
     for (place, first) in all.first().into_iter().flatten().enumerate() {
         let rows: Vec<&Row> = all.iter().filter_map(|rows| rows.get(place)).collect();
@@ -80,11 +110,15 @@ pub fn gather(only: Option<&str>) {
             continue;
         };
         println!(
-            "{:<34} {:>9.2} {:>9.2} {:>7.3} {best:>7.3} {worst:>7.3}",
+            "{:<34} {:>9.2} {:>9.2} {:>7.3} {best:>7.3} {worst:>7.3}   {:>7.1} {:>7.1} {:>7.1} {:>7}",
             first.name,
             median(of(|r| r.generated)),
             median(of(|r| r.hand)),
             median(ratios),
+            first.work.operations,
+            first.work.divisions,
+            first.work.functions,
+            first.work.bytes,
         );
     }
 }

@@ -2,6 +2,8 @@
 //! Takes starting data; gives closures for the clock. Everything is started outside them.
 
 use crate::blocks::STEPS;
+use crate::counted::Block;
+use crate::loops::generated;
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{BodyMomentum, Rotation};
 use clebsch_models::free_body::{FreeBody, FreeBodyInitial, FreeBodyParameters};
@@ -19,20 +21,16 @@ fn attitude(start: &Start) -> Rotation<f64> {
 }
 
 /// A block of the generated free body.
-pub fn generated_body(start: &Start) -> impl FnOnce() + use<> {
-    let model = FreeBody::new(FreeBodyParameters { J: matrix(start) }).expect("a body");
+pub fn generated_body(start: &Start) -> Block<impl FnOnce() + use<>> {
     let initial = FreeBodyInitial {
         Λ: attitude(start),
         body_momentum: BodyMomentum(Vector3::from(start.body_momentum)),
     };
-    let (state, workspace) = model.start(initial, start.h).expect("solvable");
-    move || {
-        let (model, mut state, mut workspace) = black_box((model, state, workspace));
-        for _ in 0..STEPS {
-            model.step(&mut state, &mut workspace).expect("solvable");
-        }
-        black_box((&state, &workspace));
-    }
+    generated!(
+        FreeBody::new(FreeBodyParameters { J: matrix(start) }),
+        initial,
+        start.h
+    )
 }
 
 /// A block of the hand-written free body.
@@ -54,25 +52,17 @@ pub fn written_body(start: &Start) -> impl FnOnce() + use<> {
 }
 
 /// A block of the generated heavy top.
-pub fn generated_top(start: &Start) -> impl FnOnce() + use<> {
-    let model = HeavyTop::new(HeavyTopParameters {
+pub fn generated_top(start: &Start) -> Block<impl FnOnce() + use<>> {
+    let parameters = HeavyTopParameters {
         J: matrix(start),
         gU: Vector3::from(start.top.weight),
         z: Vector3::from(start.top.up),
-    })
-    .expect("a top");
+    };
     let initial = HeavyTopInitial {
         Λ: attitude(start),
         body_momentum: BodyMomentum(Vector3::from(start.body_momentum)),
     };
-    let (state, workspace) = model.start(initial, start.h).expect("solvable");
-    move || {
-        let (model, mut state, mut workspace) = black_box((model, state, workspace));
-        for _ in 0..STEPS {
-            model.step(&mut state, &mut workspace).expect("solvable");
-        }
-        black_box((&state, &workspace));
-    }
+    generated!(HeavyTop::new(parameters), initial, start.h)
 }
 
 /// A block of the hand-written heavy top.

@@ -2,6 +2,7 @@
 //! step a call that may refuse. Takes nothing; gives closures for the clock. Everything is started outside them.
 
 use crate::blocks::STEPS;
+use crate::counted::Block;
 use crate::loops::{generated, written};
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{BodyMomentum, Rotation, SpatialMomentum};
@@ -39,7 +40,7 @@ fn rotation(q: &Quaternion) -> Rotation<f64> {
 }
 
 /// A block of the generated free body in space.
-pub fn generated_free_body_spatial() -> impl FnOnce() {
+pub fn generated_free_body_spatial() -> Block<impl FnOnce()> {
     let start = spatial_body(H);
     let initial = FreeBodySpatialInitial {
         Λ: rotation(&start.attitude()),
@@ -65,7 +66,7 @@ pub fn written_free_body_spatial() -> impl FnOnce() {
 }
 
 /// A block of the generated top in space.
-pub fn generated_heavy_top_spatial() -> impl FnOnce() {
+pub fn generated_heavy_top_spatial() -> Block<impl FnOnce()> {
     let start = spatial_top(H);
     let initial = HeavyTopSpatialInitial {
         Λ: rotation(&start.attitude()),
@@ -89,7 +90,7 @@ pub fn written_heavy_top_spatial() -> impl FnOnce() {
 pub type Joined = (Pair, [Quaternion; 2], [Vector; 2]);
 
 /// A block of the generated pair.
-pub fn generated_pair((pair, attitudes, momenta): &Joined) -> impl FnOnce() + use<> {
+pub fn generated_pair((pair, attitudes, momenta): &Joined) -> Block<impl FnOnce() + use<>> {
     let parameters = CoupledBodiesParameters {
         J1: matrix(&pair.poinsots[0]),
         J2: matrix(&pair.poinsots[1]),
@@ -113,7 +114,7 @@ pub fn written_pair((pair, attitudes, momenta): &Joined) -> impl FnOnce() + use<
 }
 
 /// A block of the generated body in a quadratic field.
-pub fn generated_quadratic_field() -> impl FnOnce() {
+pub fn generated_quadratic_field() -> Block<impl FnOnce()> {
     let (start, field) = (generic_top(), quadratic_field());
     let attitude = start.attitude.normalised();
     let parameters = BodyInQuadraticFieldParameters {
@@ -134,7 +135,7 @@ pub fn written_quadratic_field() -> impl FnOnce() {
 }
 
 /// A block of the generated body in two fields.
-pub fn generated_two_fields() -> impl FnOnce() {
+pub fn generated_two_fields() -> Block<impl FnOnce()> {
     let (start, fields) = (generic_top(), two_fields());
     let parameters = BodyInTwoFieldsParameters {
         J: matrix(&start.top.poinsot),
