@@ -122,9 +122,12 @@ fn dispatch(
         }
         Some(("case", matches)) => {
             let text = |key: &str| matches.get_one::<String>(key).map(String::as_str);
-            let entry = asked::model(gallery, text("model").unwrap_or_default(), &mut streams.err)?;
+            let name = text("model").unwrap_or_default();
+            let entry = asked::model(gallery, name, &mut streams.err)?;
             let case = gallery::case(&entry, text("case"))?;
-            let toml = case_file::write(&entry.card_of(case), case);
+            let known = gallery.find(name).is_ok();
+            let named = if known { entry.card.kebab } else { name };
+            let toml = case_file::write(&entry.card_of(case), case, named);
             streams.out.write_all(toml.as_bytes())?;
             Ok(DONE)
         }

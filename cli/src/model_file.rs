@@ -13,7 +13,7 @@ use std::path::Path;
 /// Whether a model's text is meant rather than its name.
 pub(crate) fn is_meant(name: &str) -> bool {
     let path = Path::new(name);
-    path.is_file() || path.extension().is_some_and(|end| end == "clebsch")
+    path.exists() || path.extension().is_some_and(|end| end == "clebsch")
 }
 
 /// The text of a model's file.

@@ -73,7 +73,7 @@ impl Plan {
             case,
             order,
             arguments: json!({
-                "model": entry.card.kebab,
+                "model": matches.get_one::<String>("model").map_or(entry.card.kebab, String::as_str),
                 "case": asked,
                 "steps": steps,
                 "h": h,

@@ -21,7 +21,7 @@ fn run(routine: &Routine<f64>, places: &mut Places<f64>) -> Result<Value<f64>, F
     let value = match routine.body.run(places) {
         Ok(value) => value,
         Err(Exit::Return(value)) => *value,
-        Err(Exit::Unfit(what)) => Value::failed(clebsch::StepCause::NotFinite { what }),
+        Err(Exit::Unfit(what)) => Value::failed(clebsch::StepCause::Unread { what }),
     };
     match value {
         Value::Failed(e) => Err(*e),

@@ -63,6 +63,22 @@ clebsch::model! {
     }
 }
 
+clebsch::model! {
+    /// Fractions that no binary number is, assumptions of every kind, and a field of nine components.
+    pub model Nine {
+        param k, c: Real;
+        assume k < 9;
+        assume c <= 1;
+        assume c >= -1;
+        assume 2*c == c + c;
+        field X: Vec<9>;
+        field y: Real;
+        let d = next(X) - X;
+        lagrangian = dot(d, d)/(2*h) + (next(y) - y)^2/(3*h)
+            - h*(k*dot(X, X)/3 + 0.1*y^2 + c*y^3/7 + log(3 + y^2));
+    }
+}
+
 fn case(h: f64, parameters: &[&[f64]], initial: &[&[f64]]) -> Case {
     let lists = |all: &[&[f64]]| all.iter().map(|list| list.to_vec()).collect();
     Case {
@@ -96,6 +112,23 @@ fn both(built: &Card, case: &Case) {
 }
 
 const ONE: [f64; 9] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+
+#[test]
+fn fractions_assumptions_and_long_fields() {
+    let place = [0.3, -0.2, 0.1, 0.7, 0.5, -0.4, 0.9, 0.8, -0.6];
+    let momentum = [0.1, 0.2, -0.3, 0.4, -0.5, 0.6, -0.7, 0.8, 0.9];
+    let initial: [&[f64]; 4] = [&place, &momentum, &[0.4], &[-0.2]];
+    both(&Nine::CARD, &case(0.05, &[&[1.3], &[0.3]], &initial));
+    // Each assumption refuses alike.
+    let read = clebsch_interpret::card(Nine::CARD.source).expect("is read");
+    for (k, c) in [(9.0, 0.3), (1.0, 1.5), (1.0, -1.5)] {
+        let wrong = case(0.05, &[&[k], &[c]], &initial);
+        assert_eq!(
+            compare(&Nine::CARD, &read, &wrong, Settings::step(0.05), 2),
+            0
+        );
+    }
+}
 
 #[test]
 fn motions_of_the_plane() {

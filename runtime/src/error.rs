@@ -351,6 +351,11 @@ pub enum StepCause {
         /// Its name.
         what: &'static str,
     },
+    /// A model that is read from its text needs an operation that only a built one has.
+    Unread {
+        /// What was met.
+        what: &'static str,
+    },
 }
 
 impl StepCause {
@@ -410,6 +415,11 @@ impl fmt::Display for StepCause {
                 f,
                 "`{what}` is NaN or infinite; reduce the step size or check the initial values"
             ),
+            Self::Unread { what } => write!(
+                f,
+                "a model that is read from its text does not make this step ({what}); put it into a crate by \
+                 `model! {{ ... }}`, which builds it"
+            ),
         }
     }
 }
@@ -424,7 +434,7 @@ impl std::error::Error for StepCause {
             Self::Singular(error) => Some(error),
             Self::Newton(error) => Some(error),
             Self::Contact(contact) => Some(contact),
-            Self::NotFinite { .. } => None,
+            Self::NotFinite { .. } | Self::Unread { .. } => None,
         }
     }
 }

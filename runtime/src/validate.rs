@@ -39,15 +39,29 @@ pub fn finite_entries<T: Real, const R: usize, const C: usize>(
     field: &'static str,
     matrix: &SMatrix<T, R, C>,
 ) -> Result<(), ParameterError> {
-    for row in 0..R {
-        for column in 0..C {
-            if let Some(entry) = matrix.get((row, column)).filter(|x| !x.is_finite()) {
+    finite_entries_of(field, [R, C], |row, column| {
+        matrix.get((row, column)).copied()
+    })
+}
+
+/// The same of a matrix whose size is known when it is read: rows, columns, and its entries.
+///
+/// # Errors
+/// Names the first entry, row by row, that is not finite.
+pub fn finite_entries_of<T: Real>(
+    field: &'static str,
+    [rows, columns]: [usize; 2],
+    entry: impl Fn(usize, usize) -> Option<T>,
+) -> Result<(), ParameterError> {
+    for row in 0..rows {
+        for column in 0..columns {
+            if let Some(entry) = entry(row, column).filter(|x| !x.is_finite()) {
                 return Err(ParameterError {
                     field,
                     problem: Problem::EntryNotFinite {
                         row,
                         column,
-                        value: offending(entry),
+                        value: offending(&entry),
                     },
                     remedy: "give finite numbers",
                 });

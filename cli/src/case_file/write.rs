@@ -2,13 +2,14 @@
 //! Takes a card and a case; gives the text, with comments on shape, frame and units.
 
 use crate::gallery::Case;
+use crate::plain::shown;
 use crate::verdict::DEFAULT_BOUND;
 use clebsch::card::{Card, Conserved, Field, Kind};
 use std::fmt::Write as _;
 
-/// The TOML text of `case`.
+/// The TOML text of `case`, of the model that is called `named` on the command line: its name, or a path.
 #[must_use]
-pub fn write(card: &Card, case: &Case) -> String {
+pub fn write(card: &Card, case: &Case, named: &str) -> String {
     let mut text = String::new();
     comment(
         &mut text,
@@ -16,7 +17,7 @@ pub fn write(card: &Card, case: &Case) -> String {
     );
     comment(
         &mut text,
-        &format!("  clebsch run {} --case THIS-FILE.toml", card.kebab),
+        &format!("  clebsch run {} --case THIS-FILE.toml", on_a_line(named)),
     );
     comment(
         &mut text,
@@ -38,6 +39,15 @@ pub fn write(card: &Card, case: &Case) -> String {
     table(&mut text, "initial", card.initial, &case.initial);
     bounds(&mut text, card, case);
     text
+}
+
+/// As it is typed: a path with spaces in quotes.
+fn on_a_line(named: &str) -> String {
+    let named = shown(named).to_string();
+    match named.contains(char::is_whitespace) {
+        true => format!("'{named}'"),
+        false => named,
+    }
 }
 
 fn table(text: &mut String, name: &str, fields: &[Field], values: &[Vec<f64>]) {

@@ -16,7 +16,7 @@ fn line_of(text: &str, key: &str) -> usize {
 
 /// The printed case with the value of `key`, which may span lines, replaced.
 fn with(key: &str, value: &str) -> String {
-    let text = case_file::write(&CARD, &case());
+    let text = case_file::write(&CARD, &case(), CARD.kebab);
     let start = text.find(&format!("\n{key} = ")).expect("the key is there") + 1;
     let rest = &text[start..];
     let end = if rest[key.len()..].starts_with(" = [\n") {

@@ -80,6 +80,10 @@ fn what_a_run_writes_is_the_same_as_of_the_built_model() {
         let bytes = |folder: &str| std::fs::read(format!("{folder}/{name}")).expect(name);
         assert!(bytes(&built) == bytes(&read), "{name}");
     }
+    // Two models may have one name: what was run is told by the path.
+    let told = std::fs::read_to_string(format!("{read}/run.json")).expect("run.json");
+    let told: serde_json::Value = serde_json::from_str(&told).expect("JSON");
+    assert_eq!(told["arguments"]["model"], serde_json::json!(file));
 }
 
 #[test]
@@ -90,6 +94,8 @@ fn a_model_outside_the_gallery_gives_a_case_that_runs_and_compares() {
     let case = on(&gallery, &["case", &file]);
     assert_eq!((case.code, case.err.as_str()), (0, ""));
     assert!(case.out.contains("model = \"beam\""), "{}", case.out);
+    let command = format!("clebsch run {file} --case THIS-FILE.toml");
+    assert!(case.out.contains(&command), "{}", case.out);
     let case = folder.write("beam.toml", &case.out);
     let run = on(&gallery, &["run", &file, "--case", &case, "--steps", "500"]);
     assert_eq!(run.code, 0, "{}", run.err);

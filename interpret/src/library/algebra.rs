@@ -341,6 +341,10 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         },
         ("magnitude", 1) => |a, _| Some(Value::Double(number(a.first()?)?.magnitude())),
         ("value", 1) => |a, _| Some(Value::Double(number(a.first()?)?.value())),
+        ("from_ratio", 2) => |a, _| match (a.first()?, a.get(1)?) {
+            (Value::Int(p), Value::Int(q)) => Some(Value::Real(T::from_ratio(*p, *q))),
+            _ => None,
+        },
         ("from_f64", 1) => |a, _| match a.first()? {
             Value::Double(x) => Some(Value::Real(T::from_f64(*x))),
             Value::Real(x) => Some(Value::Real(*x)),
@@ -383,6 +387,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             };
             Some(Value::of(Dense::from_fn(*rows, *cols, |_, _| x)))
         },
+        ("greatest", 1) => |a, _| Some(Value::Double(number(a.first()?)?.greatest())),
         ("least", 1) => |a, _| Some(Value::Double(number(a.first()?)?.least())),
         // Sizes: of the longer, of the shorter.
         ("rows_from", 2) => |a, sizes| {

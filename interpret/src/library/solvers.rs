@@ -447,12 +447,12 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             let Value::Real(number) = a.get(1)? else {
                 return None;
             };
-            of_shape!(m.rows, m.cols, R, C, {
-                Some(increment(
-                    (R, C),
-                    divided(&m.fixed::<R, C>(), *number, label),
-                ))
-            })
+            // As of a matrix of any shape: its entries times the inverse.
+            let inverse = divided(&SMatrix::<T, 1, 1>::new(T::one()), *number, label);
+            Some(Value::result(inverse.map(|x| {
+                let inverse = x.matrix()[(0, 0)];
+                Value::Element(Kept::Field, m.map(|entry| entry * inverse))
+            })))
         },
         ("StepCause::from", 1) => |a, _| match a.first()? {
             Value::Failed(e) => Some(Value::failed((**e).clone().cause())),

@@ -56,24 +56,8 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
                 return None;
             };
             let m = m.dense()?;
-            macro_rules! wide {
-                ($C:literal) => {
-                    of_size!(m.rows, N, {
-                        told(validate::finite_entries(name, &m.fixed::<N, $C>()))
-                    })
-                };
-            }
-            match m.cols {
-                1 => wide!(1),
-                2 => wide!(2),
-                3 => wide!(3),
-                4 => wide!(4),
-                5 => wide!(5),
-                6 => wide!(6),
-                7 => wide!(7),
-                8 => wide!(8),
-                _ => None,
-            }
+            let entry = |row, column| Some(m.at(row, column));
+            told(validate::finite_entries_of(name, [m.rows, m.cols], entry))
         },
         ("validate::symmetric", 2) => square!(validate::symmetric),
         ("validate::skew", 2) => square!(validate::skew),

@@ -94,6 +94,11 @@ impl<T: Lowered> Lower<'_, '_, T> {
                     }
                 };
             }
+            ["T", "from_ratio"] => {
+                let arguments = self.all(c.args.iter())?;
+                let call = self.native("from_ratio", arguments, sizes);
+                return call.ok_or_else(|| refuse(c));
+            }
             ["T", "zero"] => return Ok(Code::Constant(Value::Real(T::zero()))),
             ["T", "one"] => return Ok(Code::Constant(Value::Real(T::one()))),
             ["SMatrix" | "SVector", "zeros"] if sizes.is_empty() => {

@@ -143,6 +143,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
                 let found = all.into_iter().find(|m| format!("{m:?}") == *name);
                 Value::Method(found.ok_or_else(|| refuse(path))?)
             }
+            ["T", "EPSILON"] => Value::Double(T::EPSILON),
             [.., "Order", "Two"] => Value::Order(Order::Two),
             [.., "Domain", "Positive"] => Value::Domain(domain::Domain::Positive),
             [.., "Domain", "NotNegative"] => Value::Domain(domain::Domain::NotNegative),

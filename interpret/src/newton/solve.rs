@@ -299,7 +299,7 @@ impl Solve {
         let other =
             |h: f64, other: newton::Search<f64, Element<D>, V, D>| -> Result<(), StepError> {
                 let given = vec![Value::Real(h), search::held(other, sought)];
-                let untold = |what| Err(StepCause::NotFinite { what }.at_node(0));
+                let untold = |what| Err(StepCause::Unread { what }.at_node(0));
                 match self.settled.other.call(given, &mut places.borrow_mut()) {
                     Ok(Value::Failed(e)) => Err(e.step(0)),
                     Ok(_) => Ok(()),
