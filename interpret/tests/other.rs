@@ -66,16 +66,16 @@ clebsch::model! {
 clebsch::model! {
     /// Fractions that no binary number is, assumptions of every kind, and a field of nine components.
     pub model Nine {
-        param k, c: Real;
+        param k, c, e: Real;
         assume k < 9;
         assume c <= 1;
         assume c >= -1;
-        assume 2*c == c + c;
+        assume e == 2;
         field X: Vec<9>;
         field y: Real;
         let d = next(X) - X;
         lagrangian = dot(d, d)/(2*h) + (next(y) - y)^2/(3*h)
-            - h*(k*dot(X, X)/3 + 0.1*y^2 + c*y^3/7 + log(3 + y^2));
+            - h*(k*dot(X, X)/3 + 0.1*y^2 + c*y^3/7 + y^4/e + log(3 + y^2));
     }
 }
 
@@ -118,11 +118,19 @@ fn fractions_assumptions_and_long_fields() {
     let place = [0.3, -0.2, 0.1, 0.7, 0.5, -0.4, 0.9, 0.8, -0.6];
     let momentum = [0.1, 0.2, -0.3, 0.4, -0.5, 0.6, -0.7, 0.8, 0.9];
     let initial: [&[f64]; 4] = [&place, &momentum, &[0.4], &[-0.2]];
-    both(&Nine::CARD, &case(0.05, &[&[1.3], &[0.3]], &initial));
+    both(
+        &Nine::CARD,
+        &case(0.05, &[&[1.3], &[0.3], &[2.0]], &initial),
+    );
     // Each assumption refuses alike.
     let read = clebsch_interpret::card(Nine::CARD.source).expect("is read");
-    for (k, c) in [(9.0, 0.3), (1.0, 1.5), (1.0, -1.5)] {
-        let wrong = case(0.05, &[&[k], &[c]], &initial);
+    for (k, c, e) in [
+        (9.0, 0.3, 2.0),
+        (1.0, 1.5, 2.0),
+        (1.0, -1.5, 2.0),
+        (1.0, 0.3, 2.1),
+    ] {
+        let wrong = case(0.05, &[&[k], &[c], &[e]], &initial);
         assert_eq!(
             compare(&Nine::CARD, &read, &wrong, Settings::step(0.05), 2),
             0
