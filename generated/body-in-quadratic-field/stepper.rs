@@ -215,7 +215,7 @@ pub mod body_in_quadratic_field {
             let Λ = state.Λ.matrix();
             let Γ_reference = state.Γ;
             let Γ = Λ.tr_mul(&Γ_reference);
-            let kick = (K * Γ).cross(&Γ) * T::from_f64(0.5) * h;
+            let kick = (K * Γ).cross(&Γ) * (T::from_f64(0.5) * h);
             Edge::new(Λ.tr_mul(&state.momentum.0) - kick, state.momentum.0 - Λ * kick)
         }
         /// Says how far the step is beyond the bound, and which step could be solved.
@@ -433,7 +433,7 @@ pub mod body_in_quadratic_field {
             let Ω_before = before.Λ.body_velocity(&here.Λ).matrix();
             let Ω = here.Λ.body_velocity(&after.Λ).matrix();
             let t1 = h.powi(-1);
-            let t2 = -((K * Γ).cross(&Γ) * T::from_f64(0.5) * h);
+            let t2 = -((K * Γ).cross(&Γ) * (T::from_f64(0.5) * h));
             let parts: [SVector<T, 3>; 1] = [
                 axial_of_difference(&(J * Ω_before)) * t1 + t2
                     + axial_of_difference(&(J * Ω.transpose())) * t1 + t2,
@@ -468,7 +468,7 @@ pub mod body_in_quadratic_field {
                         size: length(
                                 &(momentum
                                     - (axial_of_difference(&(J * Ω_matrix)) * t1
-                                        - (K * Γ_next).cross(&Γ_next) * T::from_f64(0.5) * h)),
+                                        - (K * Γ_next).cross(&Γ_next) * (T::from_f64(0.5) * h))),
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()
@@ -550,7 +550,7 @@ pub mod body_in_quadratic_field {
             let Γ_next = Λ_next.tr_mul(&Γ_reference);
             T::from_f64(0.25) * Γ.dot(&(K * Γ))
                 + T::from_f64(0.25) * Γ_next.dot(&(K * Γ_next))
-                - h.powi(-2) * (J * less_identity(&Ω_matrix)).trace()
+                - (J * less_identity(&Ω_matrix)).trace() / (h * h)
         }
     }
     impl ::clebsch::integrate::Described for BodyInQuadraticField<f64> {
@@ -696,7 +696,7 @@ pub mod body_in_quadratic_field {
             for axis in 0..3 {
                 let ξ: SMatrix<T, 3, 3> = basis::<T>(axis);
                 let t1 = vee(&ξ);
-                let t2 = hat(&(t1 * T::from_f64(0.5) * J.trace())) * T::from_f64(0.5);
+                let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
                 let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
                 let parts: [SVector<T, 3>; 1] = [
                     axial_of_difference(&(t2 + t2 + t3 + t3)),

@@ -212,8 +212,8 @@ pub mod body_in_two_fields {
             let Λ = state.Λ.matrix();
             let Γ = Λ.tr_mul(&z);
             let B = Λ.tr_mul(&b);
-            let kick = gU.cross(&Γ) * T::from_f64(0.5) * h
-                - p.cross(&B) * T::from_f64(0.5) * h;
+            let kick = gU.cross(&Γ) * (T::from_f64(0.5) * h)
+                - p.cross(&B) * (T::from_f64(0.5) * h);
             Edge::new(Λ.tr_mul(&state.momentum.0) - kick, state.momentum.0 - Λ * kick)
         }
         /// Says how far the step is beyond the bound, and which step could be solved.
@@ -431,8 +431,8 @@ pub mod body_in_two_fields {
             let Ω_before = before.Λ.body_velocity(&here.Λ).matrix();
             let Ω = here.Λ.body_velocity(&after.Λ).matrix();
             let t1 = h.powi(-1);
-            let t2 = -(gU.cross(&Γ) * T::from_f64(0.5) * h);
-            let t3 = p.cross(&B) * T::from_f64(0.5) * h;
+            let t2 = -(gU.cross(&Γ) * (T::from_f64(0.5) * h));
+            let t3 = p.cross(&B) * (T::from_f64(0.5) * h);
             let parts: [SVector<T, 3>; 1] = [
                 axial_of_difference(&(J * Ω_before)) * t1 + t2 + t3
                     + axial_of_difference(&(J * Ω.transpose())) * t1 + t2 + t3,
@@ -467,8 +467,8 @@ pub mod body_in_two_fields {
                         size: length(
                                 &(momentum
                                     - (axial_of_difference(&(J * Ω_matrix)) * t1
-                                        - gU.cross(&Γ_next) * T::from_f64(0.5) * h
-                                        + p.cross(&B_next) * T::from_f64(0.5) * h)),
+                                        - gU.cross(&Γ_next) * (T::from_f64(0.5) * h)
+                                        + p.cross(&B_next) * (T::from_f64(0.5) * h))),
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()
@@ -556,7 +556,7 @@ pub mod body_in_two_fields {
             let B_next = Λ_next.tr_mul(&b);
             T::from_f64(0.5) * gU.dot(&Γ) + T::from_f64(0.5) * gU.dot(&Γ_next)
                 - T::from_f64(0.5) * p.dot(&B) - T::from_f64(0.5) * p.dot(&B_next)
-                - h.powi(-2) * (J * less_identity(&Ω_matrix)).trace()
+                - (J * less_identity(&Ω_matrix)).trace() / (h * h)
         }
     }
     impl ::clebsch::integrate::Described for BodyInTwoFields<f64> {
@@ -715,7 +715,7 @@ pub mod body_in_two_fields {
             for axis in 0..3 {
                 let ξ: SMatrix<T, 3, 3> = basis::<T>(axis);
                 let t1 = vee(&ξ);
-                let t2 = hat(&(t1 * T::from_f64(0.5) * J.trace())) * T::from_f64(0.5);
+                let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
                 let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
                 let parts: [SVector<T, 3>; 1] = [
                     axial_of_difference(&(t2 + t2 + t3 + t3)),

@@ -353,7 +353,7 @@ pub mod body_n {
         ) -> T {
             let BodyNParameters { C, .. } = self.parameters;
             let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
-            -(h.powi(-2) * (C * less_identity(&Ω_matrix.transpose())).trace())
+            -((C * less_identity(&Ω_matrix.transpose())).trace() / (h * h))
         }
     }
     impl<const N: usize> ::clebsch::integrate::Described for BodyN<N, f64> {

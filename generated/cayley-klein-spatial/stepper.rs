@@ -306,12 +306,12 @@ pub mod cayley_klein_spatial {
             let t4 = I * t3;
             let parts: [SVector<T, 3>; 1] = [
                 quaternion_imaginary(&(w_before * pure_quaternion(&(I_before * t2))))
-                    * T::from_f64(2.0) * t1 + t2 * T::from_f64(2.0) * t1 * c
-                    - quaternion_imaginary(&(w_before * w_before)) * t1 * c
-                    + t4.cross(&t3) * T::from_f64(4.0) * t1
+                    * (T::from_f64(2.0) * t1) + t2 * (T::from_f64(2.0) * t1 * c)
+                    - quaternion_imaginary(&(w_before * w_before)) * (t1 * c)
+                    + t4.cross(&t3) * (T::from_f64(4.0) * t1)
                     - quaternion_imaginary(&(w.tr_mul(&pure_quaternion(&t4))))
-                        * T::from_f64(2.0) * t1 - t3 * T::from_f64(2.0) * t1 * c
-                    + quaternion_imaginary(&(w * w)) * t1 * c,
+                        * (T::from_f64(2.0) * t1) - t3 * (T::from_f64(2.0) * t1 * c)
+                    + quaternion_imaginary(&(w * w)) * (t1 * c),
             ];
             {
                 let mut all = SVector::<T, 3>::zeros();
@@ -357,8 +357,8 @@ pub mod cayley_klein_spatial {
                                 &(momentum
                                     - (quaternion_imaginary(
                                         &(w_matrix * pure_quaternion(&(I * t2))),
-                                    ) * T::from_f64(2.0) * t1 + t2 * T::from_f64(2.0) * t1 * c
-                                        - t3 * t1 * c)),
+                                    ) * (T::from_f64(2.0) * t1)
+                                        + t2 * (T::from_f64(2.0) * t1 * c) - t3 * (t1 * c))),
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()

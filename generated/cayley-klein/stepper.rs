@@ -264,12 +264,12 @@ pub mod cayley_klein {
             let parts: [SVector<T, 3>; 1] = [
                 quaternion_imaginary(
                     &(W_before.tr_mul(&pure_quaternion(&(diagonal_times(&I, &t2))))),
-                ) * T::from_f64(2.0) * t1 + t2 * T::from_f64(2.0) * t1 * c
-                    - quaternion_imaginary(&(W_before * W_before)) * t1 * c
+                ) * (T::from_f64(2.0) * t1) + t2 * (T::from_f64(2.0) * t1 * c)
+                    - quaternion_imaginary(&(W_before * W_before)) * (t1 * c)
                     - quaternion_imaginary(
                         &(W * pure_quaternion(&(diagonal_times(&I, &t3)))),
-                    ) * T::from_f64(2.0) * t1 - t3 * T::from_f64(2.0) * t1 * c
-                    + quaternion_imaginary(&(W * W)) * t1 * c,
+                    ) * (T::from_f64(2.0) * t1) - t3 * (T::from_f64(2.0) * t1 * c)
+                    + quaternion_imaginary(&(W * W)) * (t1 * c),
             ];
             {
                 let mut all = SVector::<T, 3>::zeros();
@@ -312,8 +312,8 @@ pub mod cayley_klein {
                                     - (quaternion_imaginary(
                                         &(W_matrix
                                             .tr_mul(&pure_quaternion(&(diagonal_times(&I, &t2))))),
-                                    ) * T::from_f64(2.0) * t1 + t2 * T::from_f64(2.0) * t1 * c
-                                        - t3 * t1 * c)),
+                                    ) * (T::from_f64(2.0) * t1)
+                                        + t2 * (T::from_f64(2.0) * t1 * c) - t3 * (t1 * c))),
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()

@@ -122,11 +122,11 @@ pub mod charged_particle {
             let ChargedParticleParameters { m, q, B, E, .. } = self.parameters;
             let X = state.X.matrix();
             let ΔX = match left_sided(
-                &(SMatrix::<T, 3, 3>::identity() * m / h
-                    + hat(&B) * T::from_f64(0.5) * q),
+                &(SMatrix::<T, 3, 3>::identity() * (m / h)
+                    + hat(&B) * (T::from_f64(0.5) * q)),
                 &(state.momentum.0
-                    - (B.cross(&X) * T::from_f64(0.5) * q
-                        - E * T::from_f64(0.5) * h * q)),
+                    - (B.cross(&X) * (T::from_f64(0.5) * q)
+                        - E * (T::from_f64(0.5) * h * q))),
                 "m Id/h + ½ q hat(B)",
             ) {
                 Ok(solved) => solved,
@@ -137,7 +137,7 @@ pub mod charged_particle {
             let (momentum_next, momentum_rest) = added(
                 &state.momentum.0,
                 &state.momentum_rest,
-                &(E * h * q - B.cross(&ΔX_matrix) * T::from_f64(0.5) * q),
+                &(E * (h * q) - B.cross(&ΔX_matrix) * (T::from_f64(0.5) * q)),
             );
             if !(all_finite(&momentum_next)) {
                 return Err(
@@ -260,11 +260,11 @@ pub mod charged_particle {
             let ΔX_before = before.X.spatial_velocity(&here.X).matrix();
             let ΔX = here.X.spatial_velocity(&after.X).matrix();
             let t1 = h.powi(-1);
-            let t2 = E * T::from_f64(0.5) * h * q;
+            let t2 = E * (T::from_f64(0.5) * h * q);
             let parts: [SVector<T, 3>; 1] = [
-                ΔX_before * t1 * m + t2 + B.cross(&X_before) * T::from_f64(0.5) * q
-                    - ΔX * t1 * m + t2 - B.cross(&X) * T::from_f64(0.5) * q
-                    - B.cross(&ΔX) * T::from_f64(0.5) * q,
+                ΔX_before * (t1 * m) + t2 + B.cross(&X_before) * (T::from_f64(0.5) * q)
+                    - ΔX * (t1 * m) + t2 - B.cross(&X) * (T::from_f64(0.5) * q)
+                    - B.cross(&ΔX) * (T::from_f64(0.5) * q),
             ];
             {
                 let mut all = SVector::<T, 3>::zeros();
@@ -302,8 +302,8 @@ pub mod charged_particle {
                     Residual {
                         size: length(
                                 &(momentum
-                                    - (ΔX_matrix * t1 * m + E * T::from_f64(0.5) * h * q
-                                        + B.cross(&X) * T::from_f64(0.5) * q)),
+                                    - (ΔX_matrix * (t1 * m) + E * (T::from_f64(0.5) * h * q)
+                                        + B.cross(&X) * (T::from_f64(0.5) * q))),
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()
@@ -325,7 +325,7 @@ pub mod charged_particle {
             let ChargedParticleParameters { m, q, B, E, .. } = self.parameters;
             let X = state.X.matrix();
             let parts: [SVector<T, 3>; 1] = [
-                state.momentum().0 - (B * T::from_f64(0.5) * q).cross(&X),
+                state.momentum().0 - (B * (T::from_f64(0.5) * q)).cross(&X),
             ];
             let momentum = {
                 let mut all = SVector::<T, 3>::zeros();
@@ -337,7 +337,7 @@ pub mod charged_particle {
             let mut inertia = SMatrix::<T, 3, 3>::zeros();
             for axis in 0..(3 * 1) {
                 let ξ: SVector<T, 3> = array_basis::<T, 3, 1>(axis);
-                let t1 = ξ * T::from_f64(0.5) * m;
+                let t1 = ξ * (T::from_f64(0.5) * m);
                 let parts: [SVector<T, 3>; 1] = [t1 + t1];
                 inertia
                     .set_column(
@@ -367,7 +367,7 @@ pub mod charged_particle {
             let ChargedParticleParameters { q, B, E, .. } = self.parameters;
             let X = state.X.matrix();
             let p = state.momentum().0;
-            E.cross(&p) - E.cross(&X.cross(&(B * T::from_f64(0.5) * q)))
+            E.cross(&p) - E.cross(&X.cross(&(B * (T::from_f64(0.5) * q))))
         }
     }
     impl<T: Real> ChargedParticle<T> {
@@ -385,7 +385,7 @@ pub mod charged_particle {
                 .matrix();
             let X = before.X.matrix();
             let X_next = after.X.matrix();
-            T::from_f64(0.5) * h.powi(-2) * m * ΔX_matrix.dot(&ΔX_matrix)
+            T::from_f64(0.5) * m * ΔX_matrix.dot(&ΔX_matrix) / (h * h)
                 - T::from_f64(0.5) * q * E.dot(&X)
                 - T::from_f64(0.5) * q * E.dot(&X_next)
         }
@@ -445,7 +445,7 @@ pub mod charged_particle {
             let ChargedParticleParameters { q, B, E, .. } = self.parameters;
             let X = state.X.matrix();
             let p = state.momentum().0;
-            let t1 = E.cross(&X.cross(&(B * T::from_f64(0.5) * q)));
+            let t1 = E.cross(&X.cross(&(B * (T::from_f64(0.5) * q))));
             let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
             let out = put(
                 out,
@@ -517,7 +517,7 @@ pub mod charged_particle {
             let mut inertia = SMatrix::<T, 3, 3>::zeros();
             for axis in 0..(3 * 1) {
                 let ξ: SVector<T, 3> = array_basis::<T, 3, 1>(axis);
-                let t1 = ξ * T::from_f64(0.5) * m;
+                let t1 = ξ * (T::from_f64(0.5) * m);
                 let parts: [SVector<T, 3>; 1] = [t1 + t1];
                 inertia
                     .set_column(

@@ -245,9 +245,9 @@ pub mod coupled_bodies {
             let t2 = Ω2_matrix - SMatrix::<T, 3, 3>::identity();
             let t3 = Ω1_matrix - SMatrix::<T, 3, 3>::identity();
             let momentum_Λ1_next = state.momentum_Λ1.0
-                + Λ1 * ((R * (t2 * d2)).cross(&(t3 * d1)) * eps * t1);
+                + Λ1 * ((R * (t2 * d2)).cross(&(t3 * d1)) * (eps * t1));
             let momentum_Λ2_next = state.momentum_Λ2.0
-                + Λ2 * (-((t2 * d2).cross(&(R.tr_mul(&(t3 * d1)))) * eps * t1));
+                + Λ2 * (-((t2 * d2).cross(&(R.tr_mul(&(t3 * d1)))) * (eps * t1)));
             if !(all_finite(&momentum_Λ1_next) && all_finite(&momentum_Λ2_next)) {
                 return Err(
                     StepCause::NotFinite {
@@ -351,10 +351,11 @@ pub mod coupled_bodies {
             >(
                 &[
                     (axial_of_difference(&(Ω1 * J1)) * t1
-                        + (d1.cross(&t2) + (R * (Ω2 * d2)).cross(&d1)) * eps * t1)
+                        + (d1.cross(&t2) + (R * (Ω2 * d2)).cross(&d1)) * (eps * t1))
                         - momenta[0],
                     (axial_of_difference(&(Ω2 * J2)) * t1
-                        + R.tr_mul(&(Ω1 * d1 - d1).cross(&t2)) * eps * t1) - momenta[1],
+                        + R.tr_mul(&(Ω1 * d1 - d1).cross(&t2)) * (eps * t1))
+                        - momenta[1],
                 ],
             )
         }
@@ -382,10 +383,10 @@ pub mod coupled_bodies {
                 &[
                     [
                         (trace_complement(&t2)) * Ω1 * t1,
-                        crossed(&d1, &(R * crossing(&Ω2, &d2))) * eps * t1,
+                        crossed(&d1, &(R * crossing(&Ω2, &d2))) * (eps * t1),
                     ],
                     [
-                        R.tr_mul(&crossed(&(R * d2), &crossing(&Ω1, &d1))) * eps * t1,
+                        R.tr_mul(&crossed(&(R * d2), &crossing(&Ω1, &d1))) * (eps * t1),
                         (trace_complement(&t3)) * Ω2 * t1,
                     ],
                 ],
@@ -628,8 +629,8 @@ pub mod coupled_bodies {
                                     * ((Ω2_before - SMatrix::<T, 3, 3>::identity()) * d2))
                                     * d1.transpose() * eps) / h),
                         )),
-                ) + axial_of_difference(&(J1 * Ω1.transpose())) * t1 - t2 * t1 * eps
-                    + d1.cross(&(R * (Ω2 * d2))) * t1 * eps,
+                ) + axial_of_difference(&(J1 * Ω1.transpose())) * t1 - t2 * (t1 * eps)
+                    + d1.cross(&(R * (Ω2 * d2))) * (t1 * eps),
                 axial_of_difference(
                     &(Ω2_before
                         .tr_mul(
@@ -640,8 +641,8 @@ pub mod coupled_bodies {
                                     ) * d2.transpose() * eps) / h),
                         )),
                 ) + axial_of_difference(&(J2 * Ω2.transpose())) * t1
-                    - R.tr_mul(&(Ω1 * d1.cross(&(Ω1.tr_mul(&(R * d2)))))) * t1 * eps
-                    + R.tr_mul(&t2) * t1 * eps,
+                    - R.tr_mul(&(Ω1 * d1.cross(&(Ω1.tr_mul(&(R * d2)))))) * (t1 * eps)
+                    + R.tr_mul(&t2) * (t1 * eps),
             ];
             SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3])
         }
@@ -1024,20 +1025,20 @@ pub mod coupled_bodies {
                 let t1 = d1.dot(&(R * d2));
                 let t2 = vee(&ξ2);
                 let t3 = vee(&ξ1);
-                let t4 = hat(&(t3 * T::from_f64(0.5) * J1.trace())) * T::from_f64(0.5);
+                let t4 = hat(&(t3 * (T::from_f64(0.5) * J1.trace()))) * T::from_f64(0.5);
                 let t5 = -(hat(&(J1 * t3 * T::from_f64(0.5))) * T::from_f64(0.5));
-                let t6 = hat(&(t2 * T::from_f64(0.5) * J2.trace())) * T::from_f64(0.5);
+                let t6 = hat(&(t2 * (T::from_f64(0.5) * J2.trace()))) * T::from_f64(0.5);
                 let t7 = -(hat(&(J2 * t2 * T::from_f64(0.5))) * T::from_f64(0.5));
                 let parts: [SVector<T, 3>; 2] = [
                     axial_of_difference(
-                        &(hat(&(R * d2 * eps * d1.dot(&(R * t2)))) * T::from_f64(0.5)
-                            - hat(&(R * t2 * eps * t1)) * T::from_f64(0.5) + t4 + t4 + t5
-                            + t5),
+                        &(hat(&(R * d2 * (eps * d1.dot(&(R * t2))))) * T::from_f64(0.5)
+                            - hat(&(R * t2 * (eps * t1))) * T::from_f64(0.5) + t4 + t4
+                            + t5 + t5),
                     ),
                     axial_of_difference(
-                        &(hat(&(R.tr_mul(&d1) * eps * d2.dot(&(R.tr_mul(&t3)))))
+                        &(hat(&(R.tr_mul(&d1) * (eps * d2.dot(&(R.tr_mul(&t3))))))
                             * T::from_f64(0.5)
-                            - hat(&(R.tr_mul(&t3) * eps * t1)) * T::from_f64(0.5) + t6
+                            - hat(&(R.tr_mul(&t3) * (eps * t1))) * T::from_f64(0.5) + t6
                             + t6 + t7 + t7),
                     ),
                 ];
@@ -1053,20 +1054,20 @@ pub mod coupled_bodies {
                 let t1 = d1.dot(&(R * d2));
                 let t2 = vee(&ξ2);
                 let t3 = vee(&ξ1);
-                let t4 = hat(&(t3 * T::from_f64(0.5) * J1.trace())) * T::from_f64(0.5);
+                let t4 = hat(&(t3 * (T::from_f64(0.5) * J1.trace()))) * T::from_f64(0.5);
                 let t5 = -(hat(&(J1 * t3 * T::from_f64(0.5))) * T::from_f64(0.5));
-                let t6 = hat(&(t2 * T::from_f64(0.5) * J2.trace())) * T::from_f64(0.5);
+                let t6 = hat(&(t2 * (T::from_f64(0.5) * J2.trace()))) * T::from_f64(0.5);
                 let t7 = -(hat(&(J2 * t2 * T::from_f64(0.5))) * T::from_f64(0.5));
                 let parts: [SVector<T, 3>; 2] = [
                     axial_of_difference(
-                        &(hat(&(R * d2 * eps * d1.dot(&(R * t2)))) * T::from_f64(0.5)
-                            - hat(&(R * t2 * eps * t1)) * T::from_f64(0.5) + t4 + t4 + t5
-                            + t5),
+                        &(hat(&(R * d2 * (eps * d1.dot(&(R * t2))))) * T::from_f64(0.5)
+                            - hat(&(R * t2 * (eps * t1))) * T::from_f64(0.5) + t4 + t4
+                            + t5 + t5),
                     ),
                     axial_of_difference(
-                        &(hat(&(R.tr_mul(&d1) * eps * d2.dot(&(R.tr_mul(&t3)))))
+                        &(hat(&(R.tr_mul(&d1) * (eps * d2.dot(&(R.tr_mul(&t3))))))
                             * T::from_f64(0.5)
-                            - hat(&(R.tr_mul(&t3) * eps * t1)) * T::from_f64(0.5) + t6
+                            - hat(&(R.tr_mul(&t3) * (eps * t1))) * T::from_f64(0.5) + t6
                             + t6 + t7 + t7),
                     ),
                 ];

@@ -234,9 +234,9 @@ pub mod ellipsoid_convective {
             let Q = state.Q.matrix();
             let C = Q.tr_mul(&(C0 * Q));
             let G = match two_sided(
-                &(C / h),
+                &(C * (T::from_f64(1.0) / h)),
                 &(state.momentum.to_body(&state.Q).0
-                    - (C * (h * a + h * b * C.trace()) - C * C * h * b
+                    - (C * (h * a + h * b * C.trace()) - C * C * (h * b)
                         + SMatrix::<T, N, N>::identity()
                             * (h * c * determinant(&(C)) - T::from_f64(0.5) * h * d))),
                 &(I0),
@@ -259,14 +259,15 @@ pub mod ellipsoid_convective {
                             * ((G_matrix - SMatrix::<T, N, N>::identity())
                                 * (I0
                                     * (G_matrix.transpose() - SMatrix::<T, N, N>::identity())))
-                            / h + C * (t1 - h * b * C.trace()) + C * C * h * b
+                            * (T::from_f64(1.0) / h) + C * (t1 - h * b * C.trace())
+                            + C * C * (h * b)
                             + SMatrix::<T, N, N>::identity()
                                 * (t2 - h * c * determinant(&(C)))),
                     )
                 + Q_moved
                     .covector_to_space(
                         &(C_next * (t1 - h * b * C_next.trace())
-                            + C_next * C_next * h * b
+                            + C_next * C_next * (h * b)
                             + SMatrix::<T, N, N>::identity()
                                 * (t2 - h * c * determinant(&(C_next)))),
                     );
@@ -402,11 +403,11 @@ pub mod ellipsoid_convective {
             let G_before = before.Q.body_velocity(&here.Q).matrix();
             let G = here.Q.body_velocity(&after.Q).matrix();
             let t1 = h.powi(-1);
-            let t2 = -(C * h * a);
-            let t3 = C * C * h * b;
-            let t4 = -(C * h * b * C.trace());
-            let t5 = -(SMatrix::<T, N, N>::identity() * h * c * determinant(&(C)));
-            let t6 = SMatrix::<T, N, N>::identity() * T::from_f64(0.5) * h * d;
+            let t2 = -(C * (h * a));
+            let t3 = C * C * (h * b);
+            let t4 = -(C * (h * b * C.trace()));
+            let t5 = -(SMatrix::<T, N, N>::identity() * (h * c * determinant(&(C))));
+            let t6 = SMatrix::<T, N, N>::identity() * (T::from_f64(0.5) * h * d);
             let parts: [SMatrix<T, N, N>; 1] = [
                 G_before.tr_mul(&(C_before * (G_before * I0))) * t1
                     - G_before.tr_mul(&(C_before * I0)) * t1 + t2 + t3 + t4 + t5 + t6
@@ -457,11 +458,12 @@ pub mod ellipsoid_convective {
                         size: length(
                                 &(momentum
                                     - (G_matrix.tr_mul(&(C * (G_matrix * I0))) * t1
-                                        - G_matrix.tr_mul(&(C * I0)) * t1 - C_next * h * a
-                                        + C_next * C_next * h * b - C_next * h * b * C_next.trace()
-                                        - SMatrix::<T, N, N>::identity() * h * c * t2
-                                        + SMatrix::<T, N, N>::identity() * T::from_f64(0.5) * h
-                                            * d)),
+                                        - G_matrix.tr_mul(&(C * I0)) * t1 - C_next * (h * a)
+                                        + C_next * C_next * (h * b)
+                                        - C_next * (h * b * C_next.trace())
+                                        - SMatrix::<T, N, N>::identity() * (h * c * t2)
+                                        + SMatrix::<T, N, N>::identity()
+                                            * (T::from_f64(0.5) * h * d))),
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()

@@ -229,9 +229,9 @@ pub mod ellipsoid_spatial {
             let Q = state.Q.matrix();
             let S = Q * (I0 * Q.transpose());
             let g = match two_sided(
-                &(C0 / h),
+                &(C0 * (T::from_f64(1.0) / h)),
                 &(state.momentum.0
-                    - (S * (h * a + h * b * S.trace()) - S * S * h * b
+                    - (S * (h * a + h * b * S.trace()) - S * S * (h * b)
                         + SMatrix::<T, N, N>::identity()
                             * (h * c * determinant(&(S)) - T::from_f64(0.5) * h * d))),
                 &(S),
@@ -249,9 +249,9 @@ pub mod ellipsoid_spatial {
                 + C0
                     * ((g_matrix - SMatrix::<T, N, N>::identity())
                         * (S * (g_matrix.transpose() - SMatrix::<T, N, N>::identity())))
-                    / h + S * (t1 - h * b * S.trace())
+                    * (T::from_f64(1.0) / h) + S * (t1 - h * b * S.trace())
                 + S_next * (t1 - h * b * S_next.trace())
-                + (S * S + S_next * S_next) * h * b
+                + (S * S + S_next * S_next) * (h * b)
                 + SMatrix::<T, N, N>::identity()
                     * (h * d - h * c * determinant(&(S))
                         - h * c * determinant(&(S_next)));
@@ -386,11 +386,11 @@ pub mod ellipsoid_spatial {
             let g_before = before.Q.spatial_velocity(&here.Q).matrix();
             let g = here.Q.spatial_velocity(&after.Q).matrix();
             let t1 = h.powi(-1);
-            let t2 = -(S * h * a);
-            let t3 = S * S * h * b;
-            let t4 = -(S * h * b * S.trace());
-            let t5 = -(SMatrix::<T, N, N>::identity() * h * c * determinant(&(S)));
-            let t6 = SMatrix::<T, N, N>::identity() * T::from_f64(0.5) * h * d;
+            let t2 = -(S * (h * a));
+            let t3 = S * S * (h * b);
+            let t4 = -(S * (h * b * S.trace()));
+            let t5 = -(SMatrix::<T, N, N>::identity() * (h * c * determinant(&(S))));
+            let t6 = SMatrix::<T, N, N>::identity() * (T::from_f64(0.5) * h * d);
             let parts: [SMatrix<T, N, N>; 1] = [
                 C0 * (g_before * (S_before * g_before.transpose())) * t1
                     - C0 * (S_before * g_before.transpose()) * t1 + t2 + t3 + t4 + t5
@@ -440,11 +440,12 @@ pub mod ellipsoid_spatial {
                         size: length(
                                 &(momentum
                                     - (C0 * (g_matrix * (S * g_matrix.transpose())) * t1
-                                        - C0 * (S * g_matrix.transpose()) * t1 - S_next * h * a
-                                        + S_next * S_next * h * b - S_next * h * b * S_next.trace()
-                                        - SMatrix::<T, N, N>::identity() * h * c * t2
-                                        + SMatrix::<T, N, N>::identity() * T::from_f64(0.5) * h
-                                            * d)),
+                                        - C0 * (S * g_matrix.transpose()) * t1 - S_next * (h * a)
+                                        + S_next * S_next * (h * b)
+                                        - S_next * (h * b * S_next.trace())
+                                        - SMatrix::<T, N, N>::identity() * (h * c * t2)
+                                        + SMatrix::<T, N, N>::identity()
+                                            * (T::from_f64(0.5) * h * d))),
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()

@@ -444,7 +444,7 @@ pub mod free_body_spatial {
             let Λ = before.Λ.matrix();
             let J_reference = before.J;
             let J = Λ * (J_reference * Λ.transpose());
-            -(h.powi(-2) * (less_identity(&ω_matrix) * J).trace())
+            -((less_identity(&ω_matrix) * J).trace() / (h * h))
         }
     }
     impl ::clebsch::integrate::Described for FreeBodySpatial<f64> {
@@ -598,7 +598,7 @@ pub mod free_body_spatial {
             for axis in 0..3 {
                 let ξ: SMatrix<T, 3, 3> = basis::<T>(axis);
                 let t1 = vee(&ξ);
-                let t2 = hat(&(t1 * T::from_f64(0.5) * J.trace())) * T::from_f64(0.5);
+                let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
                 let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
                 let parts: [SVector<T, 3>; 1] = [
                     axial_of_difference(&(t2 + t2 + t3 + t3)),

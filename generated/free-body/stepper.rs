@@ -371,7 +371,7 @@ pub mod free_body {
         ) -> T {
             let FreeBodyParameters { J, .. } = self.parameters;
             let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
-            -(h.powi(-2) * (J * less_identity(&Ω_matrix)).trace())
+            -((J * less_identity(&Ω_matrix)).trace() / (h * h))
         }
     }
     impl ::clebsch::integrate::Described for FreeBody<f64> {
@@ -510,7 +510,7 @@ pub mod free_body {
             for axis in 0..3 {
                 let ξ: SMatrix<T, 3, 3> = basis::<T>(axis);
                 let t1 = vee(&ξ);
-                let t2 = hat(&(t1 * T::from_f64(0.5) * J.trace())) * T::from_f64(0.5);
+                let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
                 let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
                 let parts: [SVector<T, 3>; 1] = [
                     axial_of_difference(&(t2 + t2 + t3 + t3)),

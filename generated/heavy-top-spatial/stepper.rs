@@ -212,8 +212,8 @@ pub mod heavy_top_spatial {
             let χ_reference = state.χ;
             let χ_next = Λ_next * χ_reference;
             let space = edge.space();
-            let torque = (Λ_next.tr_mul(&z)).cross(&(χ_reference * h * w));
-            let kick = (z * h * w).cross(&χ_next);
+            let torque = (Λ_next.tr_mul(&z)).cross(&(χ_reference * (h * w)));
+            let kick = (z * (h * w)).cross(&χ_next);
             let momentum_next = space + kick * T::from_f64(0.5);
             let left = space + kick;
             let edge_next = Edge::new(Λ_next.tr_mul(&space) + torque, left);
@@ -230,7 +230,8 @@ pub mod heavy_top_spatial {
             let Λ = state.Λ.matrix();
             let χ_reference = state.χ;
             let χ = Λ * χ_reference;
-            let space = state.momentum.0 - (-(z.cross(&χ) * T::from_f64(0.5) * h * w));
+            let space = state.momentum.0
+                - (-(z.cross(&χ) * (T::from_f64(0.5) * h * w)));
             Edge::new(state.Λ.matrix().tr_mul(&space), space)
         }
         /// Says how far the step is beyond the bound, and which step could be solved.
@@ -469,7 +470,7 @@ pub mod heavy_top_spatial {
             let ω_before = before.Λ.spatial_velocity(&here.Λ).matrix();
             let ω = here.Λ.spatial_velocity(&after.Λ).matrix();
             let t1 = h.powi(-1);
-            let t2 = z.cross(&χ) * T::from_f64(0.5) * h * w;
+            let t2 = z.cross(&χ) * (T::from_f64(0.5) * h * w);
             let parts: [SVector<T, 3>; 1] = [
                 axial_of_difference(&(ω_before * J_before)) * t1 + t2
                     - axial_of_difference(&(ω * J)) * t1 + t2,
@@ -506,7 +507,7 @@ pub mod heavy_top_spatial {
                         size: length(
                                 &(momentum
                                     - (axial_of_difference(&(ω_matrix * J)) * t1
-                                        + z.cross(&χ_next) * T::from_f64(0.5) * h * w)),
+                                        + z.cross(&χ_next) * (T::from_f64(0.5) * h * w))),
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()
@@ -625,7 +626,7 @@ pub mod heavy_top_spatial {
             let χ_reference = before.χ;
             let χ_next = Λ_next * χ_reference;
             T::from_f64(0.5) * w * z.dot(&χ) + T::from_f64(0.5) * w * z.dot(&χ_next)
-                - h.powi(-2) * (less_identity(&ω_matrix) * J).trace()
+                - (less_identity(&ω_matrix) * J).trace() / (h * h)
         }
     }
     impl ::clebsch::integrate::Described for HeavyTopSpatial<f64> {
@@ -798,7 +799,7 @@ pub mod heavy_top_spatial {
             for axis in 0..3 {
                 let ξ: SMatrix<T, 3, 3> = basis::<T>(axis);
                 let t1 = vee(&ξ);
-                let t2 = hat(&(t1 * T::from_f64(0.5) * J.trace())) * T::from_f64(0.5);
+                let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
                 let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
                 let parts: [SVector<T, 3>; 1] = [
                     axial_of_difference(&(t2 + t2 + t3 + t3)),

@@ -202,7 +202,7 @@ pub mod heavy_top {
             let HeavyTopParameters { gU, z, .. } = self.parameters;
             let Λ = state.Λ.matrix();
             let Γ = Λ.tr_mul(&z);
-            let kick = gU.cross(&Γ) * T::from_f64(0.5) * h;
+            let kick = gU.cross(&Γ) * (T::from_f64(0.5) * h);
             Edge::new(Λ.tr_mul(&state.momentum.0) - kick, state.momentum.0 - Λ * kick)
         }
         /// Says how far the step is beyond the bound, and which step could be solved.
@@ -406,7 +406,7 @@ pub mod heavy_top {
             let Ω_before = before.Λ.body_velocity(&here.Λ).matrix();
             let Ω = here.Λ.body_velocity(&after.Λ).matrix();
             let t1 = h.powi(-1);
-            let t2 = -(gU.cross(&Γ) * T::from_f64(0.5) * h);
+            let t2 = -(gU.cross(&Γ) * (T::from_f64(0.5) * h));
             let parts: [SVector<T, 3>; 1] = [
                 axial_of_difference(&(J * Ω_before)) * t1 + t2
                     + axial_of_difference(&(J * Ω.transpose())) * t1 + t2,
@@ -439,7 +439,7 @@ pub mod heavy_top {
                         size: length(
                                 &(momentum
                                     - (axial_of_difference(&(J * Ω_matrix)) * t1
-                                        - gU.cross(&Γ_next) * T::from_f64(0.5) * h)),
+                                        - gU.cross(&Γ_next) * (T::from_f64(0.5) * h))),
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()
@@ -514,7 +514,7 @@ pub mod heavy_top {
             let Λ_next = after.Λ.matrix();
             let Γ_next = Λ_next.tr_mul(&z);
             T::from_f64(0.5) * gU.dot(&Γ) + T::from_f64(0.5) * gU.dot(&Γ_next)
-                - h.powi(-2) * (J * less_identity(&Ω_matrix)).trace()
+                - (J * less_identity(&Ω_matrix)).trace() / (h * h)
         }
     }
     impl ::clebsch::integrate::Described for HeavyTop<f64> {
@@ -662,7 +662,7 @@ pub mod heavy_top {
             for axis in 0..3 {
                 let ξ: SMatrix<T, 3, 3> = basis::<T>(axis);
                 let t1 = vee(&ξ);
-                let t2 = hat(&(t1 * T::from_f64(0.5) * J.trace())) * T::from_f64(0.5);
+                let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
                 let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
                 let parts: [SVector<T, 3>; 1] = [
                     axial_of_difference(&(t2 + t2 + t3 + t3)),

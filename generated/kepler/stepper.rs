@@ -116,7 +116,7 @@ pub mod kepler {
             let b1 = X.dot(&X);
             let ΔX = match divided(
                 &(state.momentum.0
-                    - (X * T::from_f64(0.5) * h * m * k * b1.powr(-1, 2) / b1)),
+                    - (X * (T::from_f64(0.5) * h * m * k / (b1 * b1.sqrt())))),
                 m / h,
                 "m/h",
             ) {
@@ -130,8 +130,8 @@ pub mod kepler {
             let (momentum_next, momentum_rest) = added(
                 &state.momentum.0,
                 &state.momentum_rest,
-                &((-(X * T::from_f64(0.5) * h * m * k * t1.powr(-1, 2) / t1))
-                    - X_next * T::from_f64(0.5) * h * m * k * t2.powr(-1, 2) / t2),
+                &((-(X * (T::from_f64(0.5) * h * m * k / (t1 * t1.sqrt()))))
+                    - X_next * (T::from_f64(0.5) * h * m * k / (t2 * t2.sqrt()))),
             );
             if !(all_finite(&momentum_next)) {
                 return Err(
@@ -257,9 +257,9 @@ pub mod kepler {
             let ΔX = here.X.spatial_velocity(&after.X).matrix();
             let t1 = h.powi(-1);
             let t2 = X.dot(&X);
-            let t3 = -(X * T::from_f64(0.5) * h * m * k * t2.powr(-1, 2) / t2);
+            let t3 = -(X * (T::from_f64(0.5) * h * m * k / (t2 * t2.sqrt())));
             let parts: [SVector<T, 3>; 1] = [
-                ΔX_before * t1 * m + t3 - ΔX * t1 * m + t3,
+                ΔX_before * (t1 * m) + t3 - ΔX * (t1 * m) + t3,
             ];
             {
                 let mut all = SVector::<T, 3>::zeros();
@@ -300,8 +300,8 @@ pub mod kepler {
                     Residual {
                         size: length(
                                 &(momentum
-                                    - (ΔX_matrix * t1 * m
-                                        - X_next * T::from_f64(0.5) * h * m * k * t3 * t4)),
+                                    - (ΔX_matrix * (t1 * m)
+                                        - X_next * (T::from_f64(0.5) * h * m * k * t3 * t4))),
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()
@@ -331,7 +331,7 @@ pub mod kepler {
             let mut inertia = SMatrix::<T, 3, 3>::zeros();
             for axis in 0..(3 * 1) {
                 let ξ: SVector<T, 3> = array_basis::<T, 3, 1>(axis);
-                let t1 = ξ * T::from_f64(0.5) * m;
+                let t1 = ξ * (T::from_f64(0.5) * m);
                 let parts: [SVector<T, 3>; 1] = [t1 + t1];
                 inertia
                     .set_column(
@@ -346,10 +346,7 @@ pub mod kepler {
                     );
             }
             let velocity = solve_leading_or_nan(&inertia, &momentum, 0 + (3 * 1));
-            (
-                momentum.dot(&velocity) * T::from_f64(0.5),
-                -(m * k * X.dot(&X).powr(-1, 2)),
-            )
+            (momentum.dot(&velocity) * T::from_f64(0.5), -(m * k / X.dot(&X).sqrt()))
         }
         /// The physical energy at this node.
         pub fn energy(&self, state: &KeplerState<T>) -> T {
@@ -378,9 +375,9 @@ pub mod kepler {
                 .matrix();
             let X = before.X.matrix();
             let X_next = after.X.matrix();
-            T::from_f64(0.5) * h.powi(-2) * m * ΔX_matrix.dot(&ΔX_matrix)
-                - T::from_f64(0.5) * m * k * X.dot(&X).powr(-1, 2)
-                - T::from_f64(0.5) * m * k * X_next.dot(&X_next).powr(-1, 2)
+            T::from_f64(0.5) * m * ΔX_matrix.dot(&ΔX_matrix) / (h * h)
+                - T::from_f64(0.5) * m * k / X.dot(&X).sqrt()
+                - T::from_f64(0.5) * m * k / X_next.dot(&X_next).sqrt()
         }
     }
     impl ::clebsch::integrate::Described for Kepler<f64> {
@@ -504,7 +501,7 @@ pub mod kepler {
             let mut inertia = SMatrix::<T, 3, 3>::zeros();
             for axis in 0..(3 * 1) {
                 let ξ: SVector<T, 3> = array_basis::<T, 3, 1>(axis);
-                let t1 = ξ * T::from_f64(0.5) * m;
+                let t1 = ξ * (T::from_f64(0.5) * m);
                 let parts: [SVector<T, 3>; 1] = [t1 + t1];
                 inertia
                     .set_column(

@@ -147,8 +147,8 @@ pub mod kirchhoff_body {
                 ];
                 let k1 = h.powi(-1);
                 let k2 = (rows_from::<T, 4, 3, 1>(&b, 0))
-                    .cross(&(rows_from::<T, 4, 3, 1>(&P, 0))) * T::from_f64(0.5) * h;
-                let k3 = rows_from::<T, 4, 3, 1>(&P, 0) * T::from_f64(0.5) * h * b[3];
+                    .cross(&(rows_from::<T, 4, 3, 1>(&P, 0))) * (T::from_f64(0.5) * h);
+                let k3 = rows_from::<T, 4, 3, 1>(&P, 0) * (T::from_f64(0.5) * h * b[3]);
                 let mut iteration = work.search.begin(state.node, []);
                 loop {
                     let trial = iteration.trial();
@@ -264,14 +264,14 @@ pub mod kirchhoff_body {
                                 3,
                                 1,
                             >(&t1.cross(&(rows_from::<T, 4, 3, 1>(&P, 0))), 0)
-                                * T::from_f64(0.5) * h))
+                                * (T::from_f64(0.5) * h)))
                                 - into_rows::<
                                     T,
                                     6,
                                     3,
                                     1,
-                                >(&rows_from::<T, 4, 3, 1>(&P, 0), 3) * T::from_f64(0.5) * h
-                                    * t2),
+                                >(&rows_from::<T, 4, 3, 1>(&P, 0), 3)
+                                    * (T::from_f64(0.5) * h * t2)),
                         );
                     leaving
                         + state
@@ -285,14 +285,14 @@ pub mod kirchhoff_body {
                                     3,
                                     1,
                                 >(&t1.cross(&(rows_from::<T, 4, 3, 1>(&P_next, 0))), 0)
-                                    * T::from_f64(0.5) * h))
+                                    * (T::from_f64(0.5) * h)))
                                     - into_rows::<
                                         T,
                                         6,
                                         3,
                                         1,
                                     >(&rows_from::<T, 4, 3, 1>(&P_next, 0), 3)
-                                        * T::from_f64(0.5) * h * t2),
+                                        * (T::from_f64(0.5) * h * t2)),
                             )
                 }),
             );
@@ -406,10 +406,10 @@ pub mod kirchhoff_body {
                                 + V_rot * J * T::from_f64(2.0)),
                         )) * t1
                         + (rows_from::<T, 4, 3, 1>(&b, 0))
-                            .cross(&(rows_from::<T, 4, 3, 1>(&P, 0))) * T::from_f64(0.5)
-                            * h) - momenta[0],
+                            .cross(&(rows_from::<T, 4, 3, 1>(&P, 0)))
+                            * (T::from_f64(0.5) * h)) - momenta[0],
                     ((V_rot * t5 + t3 + t4) * t1
-                        + rows_from::<T, 4, 3, 1>(&P, 0) * T::from_f64(0.5) * h * b[3])
+                        + rows_from::<T, 4, 3, 1>(&P, 0) * (T::from_f64(0.5) * h * b[3]))
                         - momenta[1],
                 ],
             )
@@ -459,7 +459,7 @@ pub mod kirchhoff_body {
                                 &(M * t3 * T::from_f64(0.25)
                                     + D.tr_mul(&vee(&V_rot)) * T::from_f64(0.5)),
                             )) * t1,
-                        t8 * (M * t8) * T::from_f64(0.25) * t1,
+                        t8 * (M * t8) * (T::from_f64(0.25) * t1),
                     ],
                 ],
             )
@@ -682,8 +682,8 @@ pub mod kirchhoff_body {
             let t5 = t3 * t4;
             let t6 = vee(&t2);
             let t7 = (rows_from::<T, 4, 3, 1>(&b, 0))
-                .cross(&(rows_from::<T, 4, 3, 1>(&P, 0))) * T::from_f64(0.5) * h;
-            let t8 = rows_from::<T, 4, 3, 1>(&P, 0) * T::from_f64(0.5) * h * b[3];
+                .cross(&(rows_from::<T, 4, 3, 1>(&P, 0))) * (T::from_f64(0.5) * h);
+            let t8 = rows_from::<T, 4, 3, 1>(&P, 0) * (T::from_f64(0.5) * h * b[3]);
             let t9 = motion_rotation(&V);
             let t10 = t9.transpose();
             let t11 = motion_translation(&V);
@@ -695,14 +695,14 @@ pub mod kirchhoff_body {
                     3,
                     1,
                 >(
-                    &((M * (t3 * t4)).cross(&t5) * T::from_f64(0.25) * t1
-                        + (M * t4).cross(&t5) * T::from_f64(0.25) * t1
-                        + (D.tr_mul(&t6)).cross(&t5) * T::from_f64(0.5) * t1
+                    &((M * (t3 * t4)).cross(&t5) * (T::from_f64(0.25) * t1)
+                        + (M * t4).cross(&t5) * (T::from_f64(0.25) * t1)
+                        + (D.tr_mul(&t6)).cross(&t5) * (T::from_f64(0.5) * t1)
                         + axial_of_difference(&(J * t2)) * t1
                         + axial_of_difference(&(crossing(&t3, &(D * (t3 * t4)))))
-                            * T::from_f64(0.25) * t1
+                            * (T::from_f64(0.25) * t1)
                         + axial_of_difference(&(crossing(&t3, &(D * t4))))
-                            * T::from_f64(0.25) * t1 - t7),
+                            * (T::from_f64(0.25) * t1) - t7),
                     0,
                 )
                     + into_rows::<
@@ -711,12 +711,12 @@ pub mod kirchhoff_body {
                         3,
                         1,
                     >(
-                        &(M * (t3 * t4) * T::from_f64(0.25) * t1
-                            + M * t4 * T::from_f64(0.25) * t1
-                            + D.tr_mul(&t6) * T::from_f64(0.5) * t1
-                            + t3 * (M * (t3 * t4)) * T::from_f64(0.25) * t1
-                            + t3 * (M * t4) * T::from_f64(0.25) * t1
-                            + t3 * D.tr_mul(&t6) * T::from_f64(0.5) * t1 - t8),
+                        &(M * (t3 * t4) * (T::from_f64(0.25) * t1)
+                            + M * t4 * (T::from_f64(0.25) * t1)
+                            + D.tr_mul(&t6) * (T::from_f64(0.5) * t1)
+                            + t3 * (M * (t3 * t4)) * (T::from_f64(0.25) * t1)
+                            + t3 * (M * t4) * (T::from_f64(0.25) * t1)
+                            + t3 * D.tr_mul(&t6) * (T::from_f64(0.5) * t1) - t8),
                         3,
                     )
                     - into_rows::<
@@ -726,13 +726,13 @@ pub mod kirchhoff_body {
                         1,
                     >(
                         &(axial_of_difference(&(crossing(&t9, &(D * (t10 * t11)))))
-                            * T::from_f64(0.25) * t1
-                            - (M * (t10 * t11)).cross(&t11) * T::from_f64(0.25) * t1
-                            - (M * t11).cross(&t11) * T::from_f64(0.25) * t1
-                            - (D.tr_mul(&t12)).cross(&t11) * T::from_f64(0.5) * t1
+                            * (T::from_f64(0.25) * t1)
+                            - (M * (t10 * t11)).cross(&t11) * (T::from_f64(0.25) * t1)
+                            - (M * t11).cross(&t11) * (T::from_f64(0.25) * t1)
+                            - (D.tr_mul(&t12)).cross(&t11) * (T::from_f64(0.5) * t1)
                             - axial_of_difference(&(J * t10)) * t1
                             + axial_of_difference(&(crossing(&t9, &(D * t11))))
-                                * T::from_f64(0.25) * t1 + t7),
+                                * (T::from_f64(0.25) * t1) + t7),
                         0,
                     )
                     - into_rows::<
@@ -741,12 +741,12 @@ pub mod kirchhoff_body {
                         3,
                         1,
                     >(
-                        &(M * (t10 * t11) * T::from_f64(0.25) * t1
-                            + M * t11 * T::from_f64(0.25) * t1
-                            + D.tr_mul(&t12) * T::from_f64(0.5) * t1
-                            + t9 * (M * (t10 * t11)) * T::from_f64(0.25) * t1
-                            + t9 * (M * t11) * T::from_f64(0.25) * t1
-                            + t9 * D.tr_mul(&t12) * T::from_f64(0.5) * t1 + t8),
+                        &(M * (t10 * t11) * (T::from_f64(0.25) * t1)
+                            + M * t11 * (T::from_f64(0.25) * t1)
+                            + D.tr_mul(&t12) * (T::from_f64(0.5) * t1)
+                            + t9 * (M * (t10 * t11)) * (T::from_f64(0.25) * t1)
+                            + t9 * (M * t11) * (T::from_f64(0.25) * t1)
+                            + t9 * D.tr_mul(&t12) * (T::from_f64(0.5) * t1) + t8),
                         3,
                     ),
             ];
@@ -803,17 +803,17 @@ pub mod kirchhoff_body {
                     Residual {
                         size: length(
                                 &(momentum
-                                    - ((M * (t3 * t4)).cross(&t5) * T::from_f64(0.25) * t1
-                                        + (M * t4).cross(&t5) * T::from_f64(0.25) * t1
-                                        + (D.tr_mul(&t6)).cross(&t5) * T::from_f64(0.5) * t1
+                                    - ((M * (t3 * t4)).cross(&t5) * (T::from_f64(0.25) * t1)
+                                        + (M * t4).cross(&t5) * (T::from_f64(0.25) * t1)
+                                        + (D.tr_mul(&t6)).cross(&t5) * (T::from_f64(0.5) * t1)
                                         + axial_of_difference(&(J * t2)) * t1
                                         + axial_of_difference(&(crossing(&t3, &(D * (t3 * t4)))))
-                                            * T::from_f64(0.25) * t1
+                                            * (T::from_f64(0.25) * t1)
                                         + axial_of_difference(&(crossing(&t3, &(D * t4))))
-                                            * T::from_f64(0.25) * t1
+                                            * (T::from_f64(0.25) * t1)
                                         - (rows_from::<T, 4, 3, 1>(&b, 0))
                                             .cross(&(rows_from::<T, 4, 3, 1>(&P_next, 0)))
-                                            * T::from_f64(0.5) * h)),
+                                            * (T::from_f64(0.5) * h))),
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()
@@ -849,14 +849,14 @@ pub mod kirchhoff_body {
                     Residual {
                         size: length(
                                 &(momentum
-                                    - (M * (t3 * t4) * T::from_f64(0.25) * t1
-                                        + M * t4 * T::from_f64(0.25) * t1
-                                        + D.tr_mul(&t6) * T::from_f64(0.5) * t1
-                                        + t3 * (M * (t3 * t4)) * T::from_f64(0.25) * t1
-                                        + t3 * (M * t4) * T::from_f64(0.25) * t1
-                                        + t3 * D.tr_mul(&t6) * T::from_f64(0.5) * t1
-                                        - rows_from::<T, 4, 3, 1>(&P_next, 0) * T::from_f64(0.5) * h
-                                            * b[3])),
+                                    - (M * (t3 * t4) * (T::from_f64(0.25) * t1)
+                                        + M * t4 * (T::from_f64(0.25) * t1)
+                                        + D.tr_mul(&t6) * (T::from_f64(0.5) * t1)
+                                        + t3 * (M * (t3 * t4)) * (T::from_f64(0.25) * t1)
+                                        + t3 * (M * t4) * (T::from_f64(0.25) * t1)
+                                        + t3 * D.tr_mul(&t6) * (T::from_f64(0.5) * t1)
+                                        - rows_from::<T, 4, 3, 1>(&P_next, 0)
+                                            * (T::from_f64(0.5) * h * b[3]))),
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()
@@ -891,7 +891,7 @@ pub mod kirchhoff_body {
             for axis in 0..6 {
                 let ξ: SVector<T, 6> = unit::<T, 6>(axis);
                 let t1 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ, 0), 0)
-                    * T::from_f64(0.5) * J.trace();
+                    * (T::from_f64(0.5) * J.trace());
                 let t2 = -(into_rows::<
                     T,
                     6,
@@ -1188,7 +1188,7 @@ pub mod kirchhoff_body {
             for axis in 0..6 {
                 let ξ: SVector<T, 6> = unit::<T, 6>(axis);
                 let t1 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ, 0), 0)
-                    * T::from_f64(0.5) * J.trace();
+                    * (T::from_f64(0.5) * J.trace());
                 let t2 = -(into_rows::<
                     T,
                     6,

@@ -242,7 +242,7 @@ pub mod mixed_four {
                 .factor_1
                 .rotation(
                     &((R.tr_mul(&state.momentum_R.0)
-                        - (p.cross(&(b1 - R.tr_mul(&X))) * T::from_f64(0.5) * h * k))
+                        - (p.cross(&(b1 - R.tr_mul(&X))) * (T::from_f64(0.5) * h * k)))
                         * h),
                     work.method,
                 )
@@ -260,9 +260,9 @@ pub mod mixed_four {
                 let s2 = motion_rotation(&G);
                 let s3 = s2.transpose();
                 let s4 = motion_translation(&G);
-                let k2 = s.cross(&(s3 * (s4 - X))) * T::from_f64(0.5) * h * k;
+                let k2 = s.cross(&(s3 * (s4 - X))) * (T::from_f64(0.5) * h * k);
                 let k3 = M * s1;
-                let k4 = s3 * (s4 - X + s2 * s) * T::from_f64(0.5) * h * k;
+                let k4 = s3 * (s4 - X + s2 * s) * (T::from_f64(0.5) * h * k);
                 let k5 = SMatrix::<T, 3, 3>::identity() * M;
                 let mut iteration = work.search_2.begin(state.node, []);
                 loop {
@@ -338,8 +338,8 @@ pub mod mixed_four {
                 .factor_3
                 .velocity(
                     &((state.momentum_q.to_body(&state.q).0
-                        - (-(relative_R_q.tr_mul(&p.cross(&b1)) * T::from_f64(0.5) * h
-                            * k))) * h),
+                        - (-(relative_R_q.tr_mul(&p.cross(&b1))
+                            * (T::from_f64(0.5) * h * k)))) * h),
                 )
             {
                 Ok(solved) => solved,
@@ -368,11 +368,11 @@ pub mod mixed_four {
                     if iteration
                         .assess({
                             let parts: [SVector<T, 3>; 1] = [
-                                (ΔX * T::from_f64(4.0) * h.powi(-3) * b * ΔX.dot(&ΔX)
-                                    + ΔX * m / h - g * T::from_f64(0.5) * h * m
-                                    - R * p * T::from_f64(0.5) * h * k + X * h * k
-                                    - motion_rotation(&G) * s * T::from_f64(0.5) * h * k
-                                    - motion_translation(&G) * T::from_f64(0.5) * h * k)
+                                (ΔX * (T::from_f64(4.0) * b * ΔX.dot(&ΔX) / h.powi(3))
+                                    + ΔX * (m / h) - g * (T::from_f64(0.5) * h * m)
+                                    - R * p * (T::from_f64(0.5) * h * k) + X * (h * k)
+                                    - motion_rotation(&G) * s * (T::from_f64(0.5) * h * k)
+                                    - motion_translation(&G) * (T::from_f64(0.5) * h * k))
                                     - momenta[0],
                             ];
                             {
@@ -392,10 +392,11 @@ pub mod mixed_four {
                                         let η4 = array_basis::<T, 3, 1>(axis);
                                         let t1 = h.powi(-3);
                                         let parts: [SVector<T, 3>; 1] = [
-                                            ΔX * T::from_f64(4.0) * t1 * b
-                                                * (η4.dot(&ΔX) + ΔX.dot(&η4))
-                                                + η4 * T::from_f64(4.0) * t1 * b * ΔX.dot(&ΔX)
-                                                + η4 * m / h,
+                                            ΔX
+                                                * (T::from_f64(4.0) * t1 * b
+                                                    * (η4.dot(&ΔX) + ΔX.dot(&η4)))
+                                                + η4 * (T::from_f64(4.0) * t1 * b * ΔX.dot(&ΔX))
+                                                + η4 * (m / h),
                                         ];
                                         matrix
                                             .set_column(
@@ -460,10 +461,10 @@ pub mod mixed_four {
             let t9 = motion_translation(&G_next);
             let t10 = t9 - X_next + t7 * s;
             let momentum_R_next = state.momentum_R.0
-                + R * (p.cross(&(R.tr_mul(&X) - t1)) * T::from_f64(0.5) * h * k)
+                + R * (p.cross(&(R.tr_mul(&X) - t1)) * (T::from_f64(0.5) * h * k))
                 + R_next
-                    * (p.cross(&(R_next.tr_mul(&X_next) - t2)) * T::from_f64(0.5) * h
-                        * k);
+                    * (p.cross(&(R_next.tr_mul(&X_next) - t2))
+                        * (T::from_f64(0.5) * h * k));
             let (momentum_G_next, momentum_G_rest) = added(
                 &state.momentum_G.0,
                 &state.momentum_rest_G,
@@ -472,15 +473,15 @@ pub mod mixed_four {
                         .G
                         .covector_turned(
                             &(((-(into_rows::<T, 6, 3, 1>(&s.cross(&(t4 * t6)), 0)))
-                                - into_rows::<T, 6, 3, 1>(&(t4 * t6), 3)) * T::from_f64(0.5)
-                                * h * k),
+                                - into_rows::<T, 6, 3, 1>(&(t4 * t6), 3))
+                                * (T::from_f64(0.5) * h * k)),
                         );
                     leaving
                         + G_moved
                             .covector_turned(
                                 &(((-(into_rows::<T, 6, 3, 1>(&s.cross(&(t8 * t10)), 0)))
                                     - into_rows::<T, 6, 3, 1>(&(t8 * t10), 3))
-                                    * T::from_f64(0.5) * h * k),
+                                    * (T::from_f64(0.5) * h * k)),
                             )
                 }),
             );
@@ -488,20 +489,21 @@ pub mod mixed_four {
                 + state
                     .q
                     .covector_to_space(
-                        &(relative_R_q.tr_mul(&p.cross(&t1)) * T::from_f64(0.5) * h * k),
+                        &(relative_R_q.tr_mul(&p.cross(&t1))
+                            * (T::from_f64(0.5) * h * k)),
                     )
                 + q_moved
                     .covector_to_space(
-                        &(relative_R_q_next.tr_mul(&p.cross(&t2)) * T::from_f64(0.5) * h
-                            * k),
+                        &(relative_R_q_next.tr_mul(&p.cross(&t2))
+                            * (T::from_f64(0.5) * h * k)),
                     );
             let (momentum_X_next, momentum_X_rest) = added(
                 &state.momentum_X.0,
                 &state.momentum_rest_X,
-                &(g * h * m
+                &(g * (h * m)
                     + ((R + R_next) * p * T::from_f64(0.5)
                         + (t3 + t7) * s * T::from_f64(0.5) - X - X_next
-                        + t5 * T::from_f64(0.5) + t9 * T::from_f64(0.5)) * h * k),
+                        + t5 * T::from_f64(0.5) + t9 * T::from_f64(0.5)) * (h * k)),
             );
             if !(all_finite(&momentum_R_next) && all_finite(&momentum_G_next)
                 && all_finite(&momentum_q_next) && all_finite(&momentum_X_next))
@@ -660,9 +662,10 @@ pub mod mixed_four {
             >(
                 &[
                     (axial_of_difference(&(W_rot * A)) * t1
-                        + s.cross(&(t3 * (t4 - X))) * T::from_f64(0.5) * h * k)
+                        + s.cross(&(t3 * (t4 - X))) * (T::from_f64(0.5) * h * k))
                         - momenta[0],
-                    (W_pos * M * t1 + t3 * (t4 - X + t2 * s) * T::from_f64(0.5) * h * k)
+                    (W_pos * (M * t1)
+                        + t3 * (t4 - X + t2 * s) * (T::from_f64(0.5) * h * k))
                         - momenta[1],
                 ],
             )
@@ -688,7 +691,7 @@ pub mod mixed_four {
             >(
                 &[
                     [(trace_complement(&t2)) * W_rot * t1, SMatrix::<T, 3, 3>::zeros()],
-                    [SMatrix::<T, 3, 3>::zeros(), W_rot * M * t1],
+                    [SMatrix::<T, 3, 3>::zeros(), W_rot * (M * t1)],
                 ],
             )
         }
@@ -907,10 +910,10 @@ pub mod mixed_four {
             let X = given.1.1.0;
             let ΔX = trial[0].matrix();
             let parts: [SVector<T, 3>; 1] = [
-                (ΔX * T::from_f64(4.0) * h.powi(-3) * b * ΔX.dot(&ΔX) + ΔX * m / h
-                    - g * T::from_f64(0.5) * h * m - R * p * T::from_f64(0.5) * h * k
-                    + X * h * k - motion_rotation(&G) * s * T::from_f64(0.5) * h * k
-                    - motion_translation(&G) * T::from_f64(0.5) * h * k) - momenta[0],
+                (ΔX * (T::from_f64(4.0) * b * ΔX.dot(&ΔX) / h.powi(3)) + ΔX * (m / h)
+                    - g * (T::from_f64(0.5) * h * m) - R * p * (T::from_f64(0.5) * h * k)
+                    + X * (h * k) - motion_rotation(&G) * s * (T::from_f64(0.5) * h * k)
+                    - motion_translation(&G) * (T::from_f64(0.5) * h * k)) - momenta[0],
             ];
             {
                 let mut all = SVector::<T, 3>::zeros();
@@ -936,8 +939,9 @@ pub mod mixed_four {
                 let η4 = array_basis::<T, 3, 1>(axis);
                 let t1 = h.powi(-3);
                 let parts: [SVector<T, 3>; 1] = [
-                    ΔX * T::from_f64(4.0) * t1 * b * (η4.dot(&ΔX) + ΔX.dot(&η4))
-                        + η4 * T::from_f64(4.0) * t1 * b * ΔX.dot(&ΔX) + η4 * m / h,
+                    ΔX * (T::from_f64(4.0) * t1 * b * (η4.dot(&ΔX) + ΔX.dot(&η4)))
+                        + η4 * (T::from_f64(4.0) * t1 * b * ΔX.dot(&ΔX))
+                        + η4 * (m / h),
                 ];
                 matrix
                     .set_column(
@@ -1212,22 +1216,22 @@ pub mod mixed_four {
             let ΔX_before = before.X.spatial_velocity(&here.X).matrix();
             let ΔX = here.X.spatial_velocity(&after.X).matrix();
             let t1 = h.powi(-1);
-            let t2 = p.cross(&(R.tr_mul(&X))) * T::from_f64(0.5) * h * k;
+            let t2 = p.cross(&(R.tr_mul(&X))) * (T::from_f64(0.5) * h * k);
             let t3 = p.cross(&(relative_R_q * e_));
-            let t4 = -(t3 * T::from_f64(0.5) * h * k);
+            let t4 = -(t3 * (T::from_f64(0.5) * h * k));
             let t5 = motion_rotation(&W_before);
             let t6 = motion_rotation(&G);
             let t7 = t6.transpose();
             let t8 = motion_translation(&G);
-            let t9 = s.cross(&(t7 * (t8 - X))) * T::from_f64(0.5) * h * k;
-            let t10 = t7 * (t8 + t6 * s - X) * T::from_f64(0.5) * h * k;
-            let t11 = relative_R_q.tr_mul(&t3) * T::from_f64(0.5) * h * k;
+            let t9 = s.cross(&(t7 * (t8 - X))) * (T::from_f64(0.5) * h * k);
+            let t10 = t7 * (t8 + t6 * s - X) * (T::from_f64(0.5) * h * k);
+            let t11 = relative_R_q.tr_mul(&t3) * (T::from_f64(0.5) * h * k);
             let t12 = h.powi(-3);
-            let t13 = g * T::from_f64(0.5) * h * m;
-            let t14 = R * p * T::from_f64(0.5) * h * k;
-            let t15 = -(X * h * k);
-            let t16 = t6 * s * T::from_f64(0.5) * h * k;
-            let t17 = t8 * T::from_f64(0.5) * h * k;
+            let t13 = g * (T::from_f64(0.5) * h * m);
+            let t14 = R * p * (T::from_f64(0.5) * h * k);
+            let t15 = -(X * (h * k));
+            let t16 = t6 * s * (T::from_f64(0.5) * h * k);
+            let t17 = t8 * (T::from_f64(0.5) * h * k);
             let parts: (SVector<T, 3>, SVector<T, 6>, SVector<T, 3>, SVector<T, 3>) = (
                 axial_of_difference(&(J * V_before)) * t1 + t2 + t4
                     + axial_of_difference(&(J * V.transpose())) * t1 + t2 + t4,
@@ -1237,7 +1241,7 @@ pub mod mixed_four {
                         6,
                         3,
                         1,
-                    >(&(t5.tr_mul(&motion_translation(&W_before)) * t1 * M - t10), 3)
+                    >(&(t5.tr_mul(&motion_translation(&W_before)) * (t1 * M) - t10), 3)
                     - into_rows::<
                         T,
                         6,
@@ -1254,7 +1258,7 @@ pub mod mixed_four {
                         6,
                         3,
                         1,
-                    >(&(motion_translation(&W) * t1 * M + t10), 3),
+                    >(&(motion_translation(&W) * (t1 * M) + t10), 3),
                 quaternion_imaginary(
                     &(Y_before
                         .tr_mul(
@@ -1262,16 +1266,16 @@ pub mod mixed_four {
                                 &(diagonal_times(&I, &quaternion_imaginary(&Y_before))),
                             ),
                         )),
-                ) * T::from_f64(2.0) * t1 + t11
+                ) * (T::from_f64(2.0) * t1) + t11
                     - quaternion_imaginary(
                         &(Y
                             * pure_quaternion(
                                 &(diagonal_times(&I, &quaternion_imaginary(&Y))),
                             )),
-                    ) * T::from_f64(2.0) * t1 + t11,
-                ΔX_before * T::from_f64(4.0) * t12 * b * ΔX_before.dot(&ΔX_before)
-                    + ΔX_before * t1 * m + t13 + t14 + t15 + t16 + t17
-                    - ΔX * T::from_f64(4.0) * t12 * b * ΔX.dot(&ΔX) - ΔX * t1 * m
+                    ) * (T::from_f64(2.0) * t1) + t11,
+                ΔX_before * (T::from_f64(4.0) * t12 * b * ΔX_before.dot(&ΔX_before))
+                    + ΔX_before * (t1 * m) + t13 + t14 + t15 + t16 + t17
+                    - ΔX * (T::from_f64(4.0) * t12 * b * ΔX.dot(&ΔX)) - ΔX * (t1 * m)
                     + t13 + t14 + t15 + t16 + t17,
             );
             {
@@ -1350,8 +1354,9 @@ pub mod mixed_four {
                         size: length(
                                 &(momentum
                                     - (axial_of_difference(&(J * V_matrix)) * t1
-                                        + p.cross(&(R_next.tr_mul(&X_next))) * T::from_f64(0.5) * h
-                                            * k - t2 * T::from_f64(0.5) * h * k)),
+                                        + p.cross(&(R_next.tr_mul(&X_next)))
+                                            * (T::from_f64(0.5) * h * k)
+                                        - t2 * (T::from_f64(0.5) * h * k))),
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()
@@ -1373,8 +1378,8 @@ pub mod mixed_four {
                         size: length(
                                 &(momentum
                                     - (axial_of_difference(&(A * t3)) * t1
-                                        - s.cross(&(t5 * (t6 - X_next))) * T::from_f64(0.5) * h
-                                            * k)),
+                                        - s.cross(&(t5 * (t6 - X_next)))
+                                            * (T::from_f64(0.5) * h * k))),
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()
@@ -1393,8 +1398,8 @@ pub mod mixed_four {
                     Residual {
                         size: length(
                                 &(momentum
-                                    - (t7 * t8 * t1 * M
-                                        - t5 * (t6 + t4 * s - X_next) * T::from_f64(0.5) * h * k)),
+                                    - (t7 * t8 * (t1 * M)
+                                        - t5 * (t6 + t4 * s - X_next) * (T::from_f64(0.5) * h * k))),
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()
@@ -1412,8 +1417,9 @@ pub mod mixed_four {
                                     - (quaternion_imaginary(
                                         &(Y_matrix
                                             .tr_mul(&pure_quaternion(&(diagonal_times(&I, &t9))))),
-                                    ) * T::from_f64(2.0) * t1
-                                        + relative_R_q_next.tr_mul(&t2) * T::from_f64(0.5) * h * k)),
+                                    ) * (T::from_f64(2.0) * t1)
+                                        + relative_R_q_next.tr_mul(&t2)
+                                            * (T::from_f64(0.5) * h * k))),
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()
@@ -1428,11 +1434,11 @@ pub mod mixed_four {
                     Residual {
                         size: length(
                                 &(momentum
-                                    - (ΔX_matrix * T::from_f64(4.0) * t10 * b * t11
-                                        + ΔX_matrix * t1 * m + g * T::from_f64(0.5) * h * m
-                                        + R_next * p * T::from_f64(0.5) * h * k - X_next * h * k
-                                        + t4 * s * T::from_f64(0.5) * h * k
-                                        + t6 * T::from_f64(0.5) * h * k)),
+                                    - (ΔX_matrix * (T::from_f64(4.0) * t10 * b * t11)
+                                        + ΔX_matrix * (t1 * m) + g * (T::from_f64(0.5) * h * m)
+                                        + R_next * p * (T::from_f64(0.5) * h * k) - X_next * (h * k)
+                                        + t4 * s * (T::from_f64(0.5) * h * k)
+                                        + t6 * (T::from_f64(0.5) * h * k))),
                             )
                             .magnitude(),
                         scale: length(&momentum).magnitude()
@@ -1764,12 +1770,12 @@ pub mod mixed_four {
                 let ξ3: SVector<T, 3> = SMatrix::zeros();
                 let ξ4: SVector<T, 3> = SMatrix::zeros();
                 let t1 = vee(&ξ1);
-                let t2 = hat(&(t1 * T::from_f64(0.5) * J.trace())) * T::from_f64(0.5);
+                let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
                 let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
                 let t4 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3)
-                    * T::from_f64(0.5) * M;
+                    * (T::from_f64(0.5) * M);
                 let t5 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
-                    * T::from_f64(0.5) * A.trace();
+                    * (T::from_f64(0.5) * A.trace());
                 let t6 = -(into_rows::<
                     T,
                     6,
@@ -1777,7 +1783,7 @@ pub mod mixed_four {
                     1,
                 >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0) * T::from_f64(0.5));
                 let t7 = diagonal_times(&I, &ξ3) * T::from_f64(0.5);
-                let t8 = ξ4 * T::from_f64(0.5) * m;
+                let t8 = ξ4 * (T::from_f64(0.5) * m);
                 let parts: (
                     SVector<T, 3>,
                     SVector<T, 6>,
@@ -1810,12 +1816,12 @@ pub mod mixed_four {
                 let ξ3: SVector<T, 3> = SMatrix::zeros();
                 let ξ4: SVector<T, 3> = SMatrix::zeros();
                 let t1 = vee(&ξ1);
-                let t2 = hat(&(t1 * T::from_f64(0.5) * J.trace())) * T::from_f64(0.5);
+                let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
                 let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
                 let t4 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3)
-                    * T::from_f64(0.5) * M;
+                    * (T::from_f64(0.5) * M);
                 let t5 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
-                    * T::from_f64(0.5) * A.trace();
+                    * (T::from_f64(0.5) * A.trace());
                 let t6 = -(into_rows::<
                     T,
                     6,
@@ -1823,7 +1829,7 @@ pub mod mixed_four {
                     1,
                 >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0) * T::from_f64(0.5));
                 let t7 = diagonal_times(&I, &ξ3) * T::from_f64(0.5);
-                let t8 = ξ4 * T::from_f64(0.5) * m;
+                let t8 = ξ4 * (T::from_f64(0.5) * m);
                 let parts: (
                     SVector<T, 3>,
                     SVector<T, 6>,
@@ -1856,12 +1862,12 @@ pub mod mixed_four {
                 let ξ3: SVector<T, 3> = unit::<T, 3>(axis);
                 let ξ4: SVector<T, 3> = SMatrix::zeros();
                 let t1 = vee(&ξ1);
-                let t2 = hat(&(t1 * T::from_f64(0.5) * J.trace())) * T::from_f64(0.5);
+                let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
                 let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
                 let t4 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3)
-                    * T::from_f64(0.5) * M;
+                    * (T::from_f64(0.5) * M);
                 let t5 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
-                    * T::from_f64(0.5) * A.trace();
+                    * (T::from_f64(0.5) * A.trace());
                 let t6 = -(into_rows::<
                     T,
                     6,
@@ -1869,7 +1875,7 @@ pub mod mixed_four {
                     1,
                 >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0) * T::from_f64(0.5));
                 let t7 = diagonal_times(&I, &ξ3) * T::from_f64(0.5);
-                let t8 = ξ4 * T::from_f64(0.5) * m;
+                let t8 = ξ4 * (T::from_f64(0.5) * m);
                 let parts: (
                     SVector<T, 3>,
                     SVector<T, 6>,
@@ -1902,12 +1908,12 @@ pub mod mixed_four {
                 let ξ3: SVector<T, 3> = SMatrix::zeros();
                 let ξ4: SVector<T, 3> = array_basis::<T, 3, 1>(axis);
                 let t1 = vee(&ξ1);
-                let t2 = hat(&(t1 * T::from_f64(0.5) * J.trace())) * T::from_f64(0.5);
+                let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
                 let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
                 let t4 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3)
-                    * T::from_f64(0.5) * M;
+                    * (T::from_f64(0.5) * M);
                 let t5 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
-                    * T::from_f64(0.5) * A.trace();
+                    * (T::from_f64(0.5) * A.trace());
                 let t6 = -(into_rows::<
                     T,
                     6,
@@ -1915,7 +1921,7 @@ pub mod mixed_four {
                     1,
                 >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0) * T::from_f64(0.5));
                 let t7 = diagonal_times(&I, &ξ3) * T::from_f64(0.5);
-                let t8 = ξ4 * T::from_f64(0.5) * m;
+                let t8 = ξ4 * (T::from_f64(0.5) * m);
                 let parts: (
                     SVector<T, 3>,
                     SVector<T, 6>,

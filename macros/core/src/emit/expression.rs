@@ -1,5 +1,4 @@
-//! Expressions and programs as Rust: one rule for each kind of node, products bracketed by cost,
-//! numbers exact. Matrices are nalgebra's, passed by value.
+//! Expressions and programs as Rust: one rule for each kind of node, numbers exact. Matrices are nalgebra's, passed by value.
 
 use super::names::variable;
 use super::sizes::size;
@@ -7,8 +6,8 @@ use crate::algebra::Rational;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr, Function, Letter, Map, Node, Part};
-use crate::schedule::{self, Bracketed, Program, associate};
-use proc_macro2::{Delimiter, Ident, Literal, TokenStream, TokenTree};
+use crate::schedule::{self, Program};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 /// Which local holds each letter.
@@ -249,7 +248,7 @@ impl Writer<'_> {
         quote!(&#tokens)
     }
 
-    fn function(&self, name: &str, a: &Expr) -> TokenStream {
+    pub(super) fn function(&self, name: &str, a: &Expr) -> TokenStream {
         let name = format_ident!("{name}");
         let a = self.by_reference(a);
         quote!(#name(#a))
@@ -262,7 +261,7 @@ impl Writer<'_> {
     }
 
     /// Whether this is a diagonal matrix by its declaration.
-    fn is_diagonal(&self, e: &Expr) -> bool {
+    pub(super) fn is_diagonal(&self, e: &Expr) -> bool {
         match e.node() {
             Node::Letter(at) => self.symbols.get(at.symbol).structure == Structure::Diagonal,
             _ => false,
@@ -385,160 +384,6 @@ impl Writer<'_> {
         let num = Literal::i64_unsuffixed(i64::try_from(q.numerator()).unwrap_or(0));
         let den = Literal::i64_unsuffixed(i64::try_from(q.denominator()).unwrap_or(0));
         quote!(#base.powr(#num, #den))
-    }
-
-    fn product(&self, factors: &[Expr]) -> TokenStream {
-        let (mut numbers, matrices): (Vec<Expr>, Vec<Expr>) =
-            factors.iter().cloned().partition(|f| f.shape().is_scalar());
-        // 2 vee(A) is the axial vector of A - A^T.
-        let doubled = match matrices.as_slice() {
-            [only] => match only.node() {
-                Node::Vee(a) => Some(a.clone()),
-                _ => None,
-            },
-            _ => None,
-        };
-        let coefficient = numbers
-            .iter()
-            .position(|n| matches!(n.node(), Node::Number(_)));
-        let chain = if let (Some(a), Some(i)) = (doubled, coefficient)
-            && let Node::Number(q) = numbers[i].node()
-            && let Some(half) = q.times(Rational::HALF)
-        {
-            numbers[i] = expr::number(half);
-            if half.is_one() {
-                numbers.remove(i);
-            }
-            Some(self.function("axial_of_difference", &a))
-        } else if matrices.is_empty() {
-            None
-        } else {
-            Some(self.chain(&matrices))
-        };
-        // Divisions by a number read better than negative powers.
-        let (below, above): (Vec<Expr>, Vec<Expr>) = numbers
-            .into_iter()
-            .partition(|n| matches!(n.node(), Node::Power(_, q) if q.as_integer() == Some(-1)));
-        let above = above.iter().map(|n| self.operand(n));
-        let mut parts: Vec<TokenStream> = chain.into_iter().chain(above).collect();
-        if parts.is_empty() {
-            parts.push(rational(Rational::ONE));
-        }
-        let mut out = TokenStream::new();
-        for (i, part) in parts.into_iter().enumerate() {
-            let times = (i > 0).then(|| quote!(*));
-            out.extend(quote!(#times #part));
-        }
-        for n in &below {
-            if let Node::Power(base, _) = n.node() {
-                let base = self.operand(base);
-                out.extend(quote!(/ #base));
-            }
-        }
-        out
-    }
-
-    fn chain(&self, factors: &[Expr]) -> TokenStream {
-        fn write(w: &Writer, b: &Bracketed, f: &[Expr]) -> (TokenStream, Shape, Option<Expr>) {
-            let number = |n: Dim| super::sizes::size(w.symbols, n);
-            match b {
-                Bracketed::Factor(i) => (w.operand(&f[*i]), f[*i].shape(), Some(f[*i].clone())),
-                Bracketed::Pair(a, b) => {
-                    let (x, left, x_expr) = write(w, a, f);
-                    let (y, right, y_expr) = write(w, b, f);
-                    let shape = Shape {
-                        rows: left.rows,
-                        cols: right.cols,
-                    };
-                    let transposed = x_expr.as_ref().and_then(|e| match e.node() {
-                        Node::Transpose(inner) => Some(w.operand(inner)),
-                        _ => None,
-                    });
-                    let (n, m) = (number(left.rows), number(right.cols));
-                    let three = |e: &Option<Expr>| match e.as_ref().map(Expr::node) {
-                        Some(Node::Hat(v)) => Some(w.operand(v)),
-                        _ => None,
-                    };
-                    let crossed = match (three(&x_expr), three(&y_expr)) {
-                        (Some(v), _) if right.is_vector() => Some(quote!(#v.cross(&#y))),
-                        (Some(v), _) if right.cols == Dim::Fixed(3) => {
-                            Some(quote!(crossed(&#v, &#y)))
-                        }
-                        (_, Some(v)) if left.rows == Dim::Fixed(3) => {
-                            Some(quote!(crossing(&#x, &#v)))
-                        }
-                        _ if x_expr.as_ref().is_some_and(|e| w.is_diagonal(e)) => {
-                            Some(quote!(diagonal_times(&#x, &#y)))
-                        }
-                        _ if y_expr.as_ref().is_some_and(|e| w.is_diagonal(e)) => {
-                            Some(quote!(times_diagonal(&#x, &#y)))
-                        }
-                        _ => None,
-                    };
-                    let constant = match (x_expr.as_ref(), y_expr.as_ref()) {
-                        (Some(e), _) if is_inclusion(e).is_some() => {
-                            is_inclusion(e).map(|(whole, at, taken)| {
-                                let (r, c) = (number(whole.rows), number(whole.cols));
-                                match taken {
-                                    true => quote!(rows_from::<T, #r, #c, #m>(&#y, #at)),
-                                    false => quote!(into_rows::<T, #r, #c, #m>(&#y, #at)),
-                                }
-                            })
-                        }
-                        (_, Some(e)) => is_inclusion(e).map(|(whole, at, put)| {
-                            let (r, c) = (number(whole.rows), number(whole.cols));
-                            match put {
-                                true => quote!(into_columns::<T, #r, #c, #n>(&#x, #at)),
-                                false => quote!(columns_from::<T, #r, #c, #n>(&#x, #at)),
-                            }
-                        }),
-                        _ => None,
-                    };
-                    let tokens = match transposed {
-                        _ if constant.is_some() => constant.unwrap_or_default(),
-                        _ if crossed.is_some() => crossed.unwrap_or_default(),
-                        // nalgebra multiplies by a number on the right.
-                        _ if left.is_scalar() => quote!((#y * #x)),
-                        // A row times a column, and A^T B without forming the transpose.
-                        Some(x) if shape.is_scalar() => quote!(#x.dot(&#y)),
-                        None if shape.is_scalar() => quote!(#x.transpose().dot(&#y)),
-                        Some(x) => quote!(#x.tr_mul(&#y)),
-                        None => quote!((#x * #y)),
-                    };
-                    (tokens, shape, None)
-                }
-            }
-        }
-        let (tokens, ..) = write(self, &associate(factors), factors);
-        match factors {
-            // A sum keeps its parentheses: numbers may stand behind it.
-            [_] => tokens,
-            _ => unwrapped(tokens),
-        }
-    }
-}
-
-/// The shape and the row of an inclusion, and whether it is transposed.
-fn is_inclusion(e: &Expr) -> Option<(Shape, Literal, bool)> {
-    let (e, transposed) = match e.node() {
-        Node::Transpose(inner) => (inner, true),
-        _ => (e, false),
-    };
-    match e.node() {
-        Node::Inclusion(whole, at) => {
-            let at = Literal::usize_unsuffixed(*at as usize);
-            Some((*whole, at, transposed))
-        }
-        _ => None,
-    }
-}
-
-/// Without parentheses around the whole.
-fn unwrapped(tokens: TokenStream) -> TokenStream {
-    let mut trees = tokens.clone().into_iter();
-    match (trees.next(), trees.next()) {
-        (Some(TokenTree::Group(g)), None) if g.delimiter() == Delimiter::Parenthesis => g.stream(),
-        _ => tokens,
     }
 }
 

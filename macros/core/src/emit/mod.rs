@@ -24,6 +24,7 @@ mod names;
 mod newton;
 mod notes;
 mod principal;
+mod product;
 mod quaternionic;
 mod residual;
 mod residual_of_step;
