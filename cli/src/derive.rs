@@ -10,7 +10,8 @@ use crate::model_file;
 use crate::plain::shown;
 use clap::ArgMatches;
 use clebsch_core::print::Format;
-use clebsch_core::{Derivation, derive_source, document, generated};
+use clebsch_core::syntax::ast::Model;
+use clebsch_core::{Derivation, derive_source, document, generated, lattice, pipeline};
 use std::io::Read;
 use std::path::Path;
 
@@ -117,8 +118,12 @@ fn derived(
     proofs: Proofs,
     width: Option<usize>,
 ) -> Result<(String, String), String> {
-    let derivation =
-        derive_source(source).map_err(|errors| format!("\n{}", errors.render(source, name)))?;
+    let told = |errors: clebsch_core::Errors| format!("\n{}", errors.render(source, name));
+    let model = pipeline::parse_source(source).map_err(told)?;
+    if lattice::has_labels(&model) {
+        return on_lattice(&model, source, name, format, proofs, width);
+    }
+    let derivation = pipeline::derive_model(&model).map_err(told)?;
     let warnings = derivation.render_warnings(source, name);
     let format = match format {
         "rust" | "rs" => return Ok((generated::rust(&derivation)?, warnings)),
@@ -143,6 +148,43 @@ fn derived(
         printed = fitted(&printed, width);
     }
     Ok((printed, warnings))
+}
+
+/// The same of a model with labels.
+fn on_lattice(
+    model: &Model,
+    source: &str,
+    name: &str,
+    format: &str,
+    proofs: Proofs,
+    width: Option<usize>,
+) -> Result<(String, String), String> {
+    let told = |errors: clebsch_core::Errors| format!("\n{}", errors.render(source, name));
+    let format = match format {
+        "rust" | "rs" => {
+            return Err(match lattice::not_emitted(model) {
+                Some(refused) => format!("\n{}", refused.render("error", source, name)),
+                None => String::new(),
+            });
+        }
+        "latex" | "tex" => Format::Latex,
+        "markdown" | "md" => Format::Markdown,
+        "json" => Format::Json,
+        _ => Format::Text,
+    };
+    let columns = width.unwrap_or(PAGE).min(PAGE);
+    let printed = document::printed_lattice(model, source, format, columns).map_err(told)?;
+    let mut text = printed.text;
+    if format == Format::Text && (proofs.explain || proofs.second) {
+        let shortest = pipeline::derive_model(model).map_err(told)?;
+        text.push_str(&format!("\n{}", explanation(&shortest, proofs)));
+    }
+    if let (Format::Text, Some(width)) = (format, width) {
+        text = fitted(&text, width);
+    }
+    let warnings = printed.warnings.iter();
+    let warnings = warnings.map(|w| w.diagnostic.render("warning", source, name));
+    Ok((text, warnings.collect()))
 }
 
 /// The proof by normal form, and what equality saturation makes of each of its steps.

@@ -3,7 +3,7 @@
 //! compiler too. To write messages anew: `TRYBUILD=overwrite cargo test --release --test refusals`.
 
 use clebsch_core::diagnostic::{Diagnostic, Place};
-use clebsch_core::{emit, pipeline};
+use clebsch_core::pipeline;
 use std::path::{Path, PathBuf};
 
 /// Where the faults are.
@@ -66,9 +66,10 @@ fn faults() -> Vec<PathBuf> {
 /// What the engine says of a file, as the compiler would print it; empty where it finds no fault.
 fn messages(file: &Path) -> String {
     let source = std::fs::read_to_string(file).unwrap();
-    let list: Vec<Diagnostic> = match pipeline::derive_source(&source) {
+    let model = pipeline::parse_source(&source);
+    let list: Vec<Diagnostic> = match model.and_then(|m| pipeline::emitted(&m)) {
         Err(errors) => errors.iter().cloned().collect(),
-        Ok(derived) => emit::refusal(&derived).into_iter().collect(),
+        Ok(_) => Vec::new(),
     };
     list.iter()
         .flat_map(|d| {

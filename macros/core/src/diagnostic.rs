@@ -154,6 +154,21 @@ impl Errors {
         self.list.iter()
     }
 
+    /// One mistake for each place, the first: copies of one statement repeat it.
+    #[must_use]
+    pub fn first_at_each_place(self) -> Errors {
+        let mut seen = Vec::new();
+        let mut out = Errors::new();
+        for d in self.list {
+            let at = format!("{:?} {:?}", d.place.first, d.place.last);
+            if !seen.contains(&at) {
+                seen.push(at);
+                out.push(d);
+            }
+        }
+        out
+    }
+
     /// Stops here if anything was wrong.
     pub fn propagate(self) -> Result<(), Errors> {
         if self.list.is_empty() {

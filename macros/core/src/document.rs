@@ -3,6 +3,8 @@
 //! document; the printers turn it into text, LaTeX, Markdown, MathML or JSON.
 
 mod compose;
+mod folded;
+mod lattice;
 mod motion;
 mod outlook;
 mod proof;
@@ -14,6 +16,7 @@ mod structure;
 pub mod thesis;
 
 pub use compose::document;
+pub use lattice::{Printed, default_choice, printed_lattice};
 pub use proof::proof;
 #[cfg(feature = "egraph")]
 pub use proof::second_proof;

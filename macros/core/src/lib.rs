@@ -13,6 +13,7 @@ pub mod expr;
 pub mod generated;
 pub mod groups;
 pub mod interpret;
+pub mod lattice;
 pub mod pipeline;
 #[cfg(feature = "pretty")]
 pub mod pretty;

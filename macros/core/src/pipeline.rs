@@ -4,31 +4,60 @@ use crate::check;
 use crate::derive::{self, Derivation};
 use crate::diagnostic::{Diagnostic, Errors, Place};
 use crate::emit;
+use crate::lattice::{self, Choice, Lattice, Unfolded};
 use crate::syntax;
+use crate::syntax::ast::Model;
 use proc_macro2::{TokenStream, TokenTree};
 
 /// Derives the model that the tokens state.
 pub fn derive_tokens(tokens: TokenStream) -> Result<Derivation, Errors> {
-    let model = syntax::parse(tokens)?;
-    let spec = check::check(&model)?;
-    derive::derive(spec)
+    derive_model(&syntax::parse(tokens)?)
 }
 
 /// Derives the model that a text states: the same, outside a compiler. The text is a bare
 /// `model NAME { ... }`, or Rust source that holds one `model! { ... }`.
 pub fn derive_source(source: &str) -> Result<Derivation, Errors> {
-    let model = syntax::parse(invocation(syntax::tokens(source)?)?)?;
-    let spec = check::check(&model)?;
-    derive::derive(spec)
+    derive_model(&parse_source(source)?)
+}
+
+/// The syntax tree of the model that a text states.
+pub fn parse_source(source: &str) -> Result<Model, Errors> {
+    syntax::parse(invocation(syntax::tokens(source)?)?)
+}
+
+/// Derives a model, one with labels on its shortest lattice that is told by the longer ones.
+pub fn derive_model(model: &Model) -> Result<Derivation, Errors> {
+    if lattice::has_labels(model) {
+        let line = Lattice::read(model)?;
+        let choice = representative(model, &line)?;
+        return derive_lattice(model, &line, &choice).map(|(_, d)| d);
+    }
+    derive::derive(check::check(model)?)
+}
+
+/// The lattice on which the middle site and each end have all their neighbours.
+pub fn representative(model: &Model, line: &Lattice) -> Result<Choice, Errors> {
+    let first = Choice::representative(line, 1);
+    let width = lattice::unfold(model, line, &first)?.width();
+    Ok(Choice::representative(line, width))
+}
+
+/// Derives a model with labels for so many sites and these end conditions.
+pub fn derive_lattice(
+    model: &Model,
+    line: &Lattice,
+    choice: &Choice,
+) -> Result<(Unfolded, Derivation), Errors> {
+    let unfolded = lattice::unfold(model, line, choice)?;
+    let spec = check::check_written_out(&unfolded.model)?;
+    let derived = derive::derive(spec).map_err(Errors::first_at_each_place)?;
+    Ok((unfolded, derived))
 }
 
 /// The Rust items of a model, or compile errors on its tokens and empty items of the same names,
 /// so that one mistake does not cause more.
 pub fn expand(tokens: TokenStream) -> TokenStream {
-    let derived = derive_tokens(tokens.clone()).and_then(|d| match emit::refusal(&d) {
-        Some(refused) => Err(refused.into()),
-        None => Ok(d),
-    });
+    let derived = syntax::parse(tokens.clone()).and_then(|model| emitted(&model));
     match derived {
         Ok(d) => {
             let mut items = emit::emit(&d, true);
@@ -36,6 +65,15 @@ pub fn expand(tokens: TokenStream) -> TokenStream {
             items
         }
         Err(errors) => emit::fallback(&tokens, &errors),
+    }
+}
+
+/// The derivation of a model that has a stepper.
+pub fn emitted(model: &Model) -> Result<Derivation, Errors> {
+    let d = derive_model(model)?;
+    match emit::refusal(&d).or_else(|| lattice::not_emitted(model)) {
+        Some(refused) => Err(refused.into()),
+        None => Ok(d),
     }
 }
 

@@ -211,7 +211,7 @@ impl Declared {
                     });
                 }
             }
-            Statement::Param { names, shape } => {
+            Statement::Param { names, shape, .. } => {
                 let Some((shape, structure)) = shapes::shape(&self.symbols, shape, errors) else {
                     // Later uses of the names must not be reported as unknown as well.
                     names.iter().for_each(|n| self.take(&n.text, n.place));
@@ -232,6 +232,7 @@ impl Declared {
                 name,
                 group,
                 velocity,
+                ..
             } => {
                 let Some(kind) = shapes::group(&self.symbols, group, errors) else {
                     for n in [name, velocity] {
@@ -260,7 +261,7 @@ impl Declared {
                     stated: false,
                 });
             }
-            Statement::Field { names, shape } => {
+            Statement::Field { names, shape, .. } => {
                 let Some(shape) = shapes::field(&self.symbols, shape, errors) else {
                     names.iter().for_each(|n| self.take(&n.text, n.place));
                     return;
@@ -314,6 +315,9 @@ impl Declared {
             | Statement::Let { .. }
             | Statement::Scale(_)
             | Statement::Node(..)
+            | Statement::Label { .. }
+            | Statement::Periodic(_)
+            | Statement::End { .. }
             | Statement::Lagrangian(_) => {}
         }
     }

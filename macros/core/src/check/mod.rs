@@ -15,7 +15,7 @@ mod tests;
 use crate::diagnostic::{Diagnostic, Errors};
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Letter, Shift};
-use crate::syntax::ast::{Model, NodeRule, Statement};
+use crate::syntax::ast::{Expression, Model, NodeRule, Statement};
 use crate::{schedule, work};
 pub(crate) use declare::is_rust_word;
 pub(crate) use members::name_of_function;
@@ -29,15 +29,37 @@ const LARGEST: u32 = 1_000;
 
 /// Checks a model. Work is counted: a model that takes more than any is given is refused.
 pub fn check(model: &Model) -> Result<Spec, Errors> {
+    counted(model, LARGEST)
+}
+
+/// Checks a lattice that is written out, which was bounded when it was. Of the same mistake in
+/// several copies the first is told.
+pub fn check_written_out(model: &Model) -> Result<Spec, Errors> {
+    counted(model, u32::MAX).map_err(Errors::first_at_each_place)
+}
+
+fn counted(model: &Model, largest: u32) -> Result<Spec, Errors> {
     let _count = work::Count::begin();
-    let checked = checked(model);
+    let checked = checked(model, largest);
     match work::exhausted() {
         true => Err(messages::too_much_work(model.name.place, work::excess()).into()),
         false => checked,
     }
 }
 
-fn checked(model: &Model) -> Result<Spec, Errors> {
+/// Reports definitions that lead back to themselves.
+pub fn circular_definitions(model: &Model, errors: &mut Errors) {
+    lets::circular(model, errors);
+}
+
+/// Expressions that are numbers, in the names of a model; those that are none are left out.
+pub fn numbers(model: &Model, list: &[&Expression]) -> Vec<Option<Expr>> {
+    let names = declare::declare(model, &mut Errors::new());
+    let elaborator = Elaborator::new(&names, Vec::new());
+    list.iter().map(|e| elaborator.number(e).ok()).collect()
+}
+
+fn checked(model: &Model, largest: u32) -> Result<Spec, Errors> {
     let mut errors = Errors::new();
     let mut declared = declare::declare(model, &mut errors);
     members::refuse(&declared, &mut errors);
@@ -59,8 +81,8 @@ fn checked(model: &Model) -> Result<Spec, Errors> {
         match statement {
             Statement::Let { name, .. } if circular.iter().any(|c| c.text == name.text) => {}
             Statement::Let { name, value } => match elaborator.any(value) {
-                Ok(e) if e.size() > LARGEST => {
-                    errors.push(messages::too_large(value.place, e.size(), LARGEST, true));
+                Ok(e) if e.size() > largest => {
+                    errors.push(messages::too_large(value.place, e.size(), largest, true));
                     elaborator.spoil(name);
                 }
                 Ok(e) => elaborator.bind(name, e, &mut errors),
@@ -126,9 +148,9 @@ fn checked(model: &Model) -> Result<Spec, Errors> {
             Statement::Node(rule, _) => node_rule = *rule,
             Statement::Lagrangian(value) => match elaborator.number(value) {
                 Ok(_) if typed.is_some() => errors.push(messages::second_lagrangian(value.place)),
-                Ok(e) if e.size() > LARGEST => {
+                Ok(e) if e.size() > largest => {
                     let lets = !lets.is_empty();
-                    errors.push(messages::too_large(value.place, e.size(), LARGEST, lets));
+                    errors.push(messages::too_large(value.place, e.size(), largest, lets));
                     typed = Some((expr::integer(0), value.place));
                 }
                 Ok(e) => {
@@ -147,7 +169,11 @@ fn checked(model: &Model) -> Result<Spec, Errors> {
             | Statement::Param { .. }
             | Statement::Group { .. }
             | Statement::Field { .. }
-            | Statement::Advected { .. } => {}
+            | Statement::Advected { .. }
+            // A lattice is written out before it is checked.
+            | Statement::Label { .. }
+            | Statement::Periodic(_)
+            | Statement::End { .. } => {}
         }
     }
     declared.require_constraints(&mut errors);
@@ -297,7 +323,10 @@ fn remarks(model: &Model, declared: &Declared) -> Vec<(Subject, Vec<String>)> {
             | Statement::Param { .. }
             | Statement::Group { .. }
             | Statement::Field { .. }
-            | Statement::Advected { .. } => None,
+            | Statement::Advected { .. }
+            | Statement::Label { .. }
+            | Statement::Periodic(_)
+            | Statement::End { .. } => None,
         };
         if let Some(subject) = subject.filter(|_| !docs.is_empty()) {
             out.push((subject, docs.clone()));

@@ -115,9 +115,62 @@ impl Comparison {
     }
 }
 
+/// Which sites of a label hold a quantity.
+#[derive(Clone, Debug)]
+pub enum Site {
+    /// The nodes of the line.
+    Nodes,
+    /// The segments between them.
+    Segments,
+    /// The members of a set, by its label.
+    Set(Name),
+}
+
+/// `at nodes`, `at segments`, `at a`.
+#[derive(Clone, Debug)]
+pub struct At {
+    /// The sites.
+    pub site: Site,
+    /// The word or the name.
+    pub place: Place,
+}
+
+/// One way to end a line: `pinned { φ = given; }`.
+#[derive(Clone, Debug)]
+pub struct Alternative {
+    /// Its name, by which a case chooses it.
+    pub name: Name,
+    /// Parameters of its own.
+    pub params: Vec<(Vec<Name>, Kindred)>,
+    /// Configurations that are given at this end.
+    pub given: Vec<Name>,
+    /// What it adds to the Lagrangian.
+    pub terms: Vec<Expression>,
+}
+
 /// A statement.
 #[derive(Clone, Debug)]
 pub enum Statement {
+    /// `label i in 0..N step s;`
+    Label {
+        /// The name of the index.
+        index: Name,
+        /// The name of the number of segments, or of sites of a ring or a set.
+        count: Name,
+        /// The name of the spacing.
+        step: Option<Name>,
+    },
+    /// `periodic;`
+    Periodic(Place),
+    /// `end i = 0 { free; pinned { φ = given; } }`
+    End {
+        /// The index of the line.
+        label: Name,
+        /// The end that is meant: `0`, or the name of the number of segments.
+        at: Name,
+        /// The alternatives, the first being the default.
+        alternatives: Vec<Alternative>,
+    },
     /// `dim n in A..=B;`
     Dim {
         /// Its name.
@@ -140,6 +193,8 @@ pub enum Statement {
         names: Vec<Name>,
         /// Their shape.
         shape: Kindred,
+        /// Where they live along a label.
+        at: Option<At>,
     },
     /// `assume CONDITION;`
     Assume {
@@ -158,6 +213,8 @@ pub enum Statement {
         name: Name,
         /// The group.
         group: Kindred,
+        /// Where it lives along a label.
+        at: Option<At>,
         /// Its velocity.
         velocity: Name,
     },
@@ -167,6 +224,10 @@ pub enum Statement {
         names: Vec<Name>,
         /// Their shape.
         shape: Kindred,
+        /// Where they live along a label.
+        at: Option<At>,
+        /// The parameter by which the value grows once around a ring.
+        offset: Option<Name>,
     },
     /// `advected Γ, S: SHAPE;`, `advected Γ: SHAPE = EXPR;`
     Advected {
@@ -174,6 +235,8 @@ pub enum Statement {
         names: Vec<Name>,
         /// Their shape.
         shape: Kindred,
+        /// Where they live along a label.
+        at: Option<At>,
         /// The definition.
         definition: Option<Expression>,
     },

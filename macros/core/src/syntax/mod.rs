@@ -4,6 +4,7 @@
 pub mod ast;
 mod delimiters;
 mod expression;
+mod label;
 mod statement;
 mod text;
 mod token;
@@ -31,6 +32,16 @@ pub const AVAILABLE: &str = "tr det log exp sqrt sin cos sinh cosh tanh abs sign
 pub fn parse(tokens: TokenStream) -> Result<Model, Errors> {
     let mut cursor = Cursor::new(tokens)?;
     statement::model(&mut cursor)
+}
+
+/// Parses a text that is one expression.
+pub fn expression(source: &str) -> Result<ast::Expression, Errors> {
+    let mut cursor = Cursor::new(tokens(source)?)?;
+    let parsed = expression::expression(&mut cursor)?;
+    match cursor.is_at_end() {
+        true => Ok(parsed),
+        false => Err(cursor.unexpected("the end of the expression").into()),
+    }
 }
 
 /// Longest text that is read, in bytes: a source that holds a model may hold other things too.

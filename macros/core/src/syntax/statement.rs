@@ -3,6 +3,7 @@
 
 use super::ast::{Comparison, Kindred, Model, Name, NodeRule, Size, Statement};
 use super::expression::expression;
+use super::label;
 use super::token::{Cursor, KEYWORDS, Token};
 use super::typeset::typeset;
 use crate::diagnostic::{Diagnostic, Errors, closest};
@@ -140,19 +141,22 @@ fn statement(c: &mut Cursor) -> Result<Statement, Diagnostic> {
         "let" => binding(c)?,
         "scale" => Statement::Scale(expression(c)?),
         "node" => node(c)?,
+        "label" => label::label(c)?,
+        "periodic" => Statement::Periodic(keyword.place),
+        "end" => return label::end(c),
         "lagrangian" => {
             c.punct('=')?;
             Statement::Lagrangian(expression(c)?)
         }
-        "label" | "grid" | "hold" | "given" | "mesh" | "linear" | "integrate" | "end" => {
+        "grid" | "hold" | "given" | "mesh" | "linear" | "integrate" => {
             return Err(Diagnostic::new(
                 keyword.place,
                 format!(
-                    "`{}` belongs to models of rods and fluids, which this version does not derive yet",
+                    "`{}` belongs to models of fluids and of held constraints, which this version does not derive yet",
                     keyword.text
                 ),
             )
-            .help("models with `group`, `field`, `advected`, `constraint` and `lagrangian` are derived"));
+            .help("models with `label`, `group`, `field`, `advected`, `constraint` and `lagrangian` are derived"));
         }
         other => {
             let mut e = Diagnostic::new(
@@ -197,7 +201,7 @@ fn time(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     Ok(Statement::Time { index, step })
 }
 
-fn names(c: &mut Cursor) -> Result<Vec<Name>, Diagnostic> {
+pub(super) fn names(c: &mut Cursor) -> Result<Vec<Name>, Diagnostic> {
     let mut list = vec![c.name("a name")?];
     while c.take_punct(',') {
         list.push(c.name("a name")?);
@@ -206,7 +210,7 @@ fn names(c: &mut Cursor) -> Result<Vec<Name>, Diagnostic> {
 }
 
 /// `Real`, `Vec<3>`, `SO<n>`, `Mat<3, 2>`.
-fn kindred(c: &mut Cursor) -> Result<Kindred, Diagnostic> {
+pub(super) fn kindred(c: &mut Cursor) -> Result<Kindred, Diagnostic> {
     let name = c.name("a shape such as Real, Vec<3> or Sym<3>")?;
     let mut sizes = Vec::new();
     if c.take_punct('<') {
@@ -223,12 +227,12 @@ fn kindred(c: &mut Cursor) -> Result<Kindred, Diagnostic> {
         c.punct('>')?;
     }
     let place = name.place.to(c.last_place());
-    if c.is_word("at") || c.is_word("on") {
+    if c.is_word("on") {
         return Err(Diagnostic::new(
             c.place(),
-            "label sets (`at ...`) belong to rods and fluids, which this version does not derive yet",
+            "domains (`on ...`) belong to fluids in the plane, which this version does not derive yet",
         )
-        .help("leave it out: without labels every quantity lives at the nodes in time"));
+        .help("leave it out, or take the fluid along a line: `field X: Real at nodes offset L;`"));
     }
     Ok(Kindred { name, sizes, place })
 }
@@ -238,7 +242,8 @@ fn param(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     c.punct(':')?;
     let shape = kindred(c)?;
     typeset(c, &mut names)?;
-    Ok(Statement::Param { names, shape })
+    let at = label::at(c)?;
+    Ok(Statement::Param { names, shape, at })
 }
 
 fn field(c: &mut Cursor) -> Result<Statement, Diagnostic> {
@@ -246,17 +251,12 @@ fn field(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     c.punct(':')?;
     let shape = kindred(c)?;
     typeset(c, &mut names)?;
+    let at = label::at(c)?;
+    let offset = match c.take_word("offset") {
+        true => Some(c.name("the name of the offset, by which the field grows around a ring")?),
+        false => None,
+    };
     let place = c.place();
-    if ["at", "offset", "on"]
-        .into_iter()
-        .any(|word| c.take_word(word))
-    {
-        return Err(Diagnostic::new(
-            place,
-            "fields on a label line belong to models of rods and fluids, which this version does not derive yet",
-        )
-        .help("a field without `at` is one configuration: `field X: Vec<3>;`"));
-    }
     if c.take_word("velocity") {
         return Err(Diagnostic::new(
             place,
@@ -264,7 +264,12 @@ fn field(c: &mut Cursor) -> Result<Statement, Diagnostic> {
         )
         .help("leave `velocity ...` out, and write the kinetic term with `next`, for example `m*dot(next(X) - X, next(X) - X)/(2*h)`"));
     }
-    Ok(Statement::Field { names, shape })
+    Ok(Statement::Field {
+        names,
+        shape,
+        at,
+        offset,
+    })
 }
 
 fn assume(c: &mut Cursor) -> Result<Statement, Diagnostic> {
@@ -305,6 +310,7 @@ fn group(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     c.punct(':')?;
     let group = kindred(c)?;
     typeset(c, std::slice::from_mut(&mut name))?;
+    let at = label::at(c)?;
     c.word("velocity")
         .map_err(|e| e.help("write for example `group Λ: SO<3> velocity Ω;`"))?;
     let mut velocity = c.name("the name of the discrete velocity")?;
@@ -312,6 +318,7 @@ fn group(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     Ok(Statement::Group {
         name,
         group,
+        at,
         velocity,
     })
 }
@@ -324,6 +331,7 @@ fn advected(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     c.punct(':')?;
     let shape = kindred(c)?;
     typeset(c, &mut names)?;
+    let at = label::at(c)?;
     let place = c.place();
     let definition = if c.take_punct('=') {
         Some(expression(c)?)
@@ -341,6 +349,7 @@ fn advected(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     Ok(Statement::Advected {
         names,
         shape,
+        at,
         definition,
     })
 }
@@ -352,7 +361,7 @@ fn constraint(c: &mut Cursor, keyword: &Name) -> Result<Statement, Diagnostic> {
     let name = c.name("the quantity that the constraint carries")?;
     if c.is_punct(',') {
         return Err(c.unexpected("`)`").help(
-            "constraints along labels belong to rods, which this version does not derive yet",
+            "a constraint carries a quantity in time; along a label write the neighbour out, for example `Λ^T*next(Λ, i)` in the Lagrangian",
         ));
     }
     c.delimiter(')')?;

@@ -13,7 +13,7 @@ const DEEPEST: usize = 100;
 pub(super) const LONGEST: usize = 10_000;
 
 /// Keywords that start a statement.
-pub const KEYWORDS: [&str; 19] = [
+pub const KEYWORDS: [&str; 21] = [
     "dim",
     "time",
     "label",
@@ -32,6 +32,8 @@ pub const KEYWORDS: [&str; 19] = [
     "scale",
     "node",
     "integrate",
+    "periodic",
+    "end",
     "lagrangian",
 ];
 

@@ -1,4 +1,4 @@
-//! A line of sites is not derived yet.
+//! Nodes belong to a label.
 use clebsch::model;
 
 model! {

@@ -1,0 +1,214 @@
+//! Letters of a lattice that is written out, seen from one site again: `q_3` and `q_4` become `q_{i}`
+//! and `q_{i+1}`, at an end `q_{N-1}` and `q_{N}`. All parts of a document share one table of them.
+
+use crate::check;
+use crate::derive::Derivation;
+use crate::expr::symbol::{SymbolId, Symbols};
+use crate::expr::{self, Expr, Letter, Shift};
+use crate::lattice::{Choice, Lattice, Unfolded};
+use crate::print::formula::Formula;
+use std::collections::BTreeMap;
+
+/// One choice of sites and ends, written out and derived.
+pub(super) struct Part {
+    pub choice: Choice,
+    pub unfolded: Unfolded,
+    pub d: Derivation,
+}
+
+/// From where indices are read.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum From {
+    /// From this site: `i`, `i+1`.
+    Site(usize),
+    /// From the first site: `0`, `1`.
+    First,
+    /// From the last node: `N`, `N-1`.
+    Last,
+}
+
+/// The letters of a document on a lattice.
+pub(super) struct Folded<'a> {
+    pub lattice: &'a Lattice,
+    pub symbols: Symbols,
+    known: BTreeMap<String, SymbolId>,
+}
+
+/// What a letter of a part is called in the model as stated, and its site.
+struct Origin {
+    name: String,
+    label: usize,
+    site: usize,
+}
+
+impl<'a> Folded<'a> {
+    /// With the letters of this part, whose functionals are those of all.
+    pub(super) fn new(lattice: &'a Lattice, part: &Part) -> Folded<'a> {
+        Folded {
+            lattice,
+            symbols: part.d.letters.symbols.clone(),
+            known: BTreeMap::new(),
+        }
+    }
+
+    /// An expression of a part in shared letters.
+    pub(super) fn expression(&mut self, part: &Part, e: &Expr, from: From) -> Expr {
+        let replaced: Vec<(Letter, Expr)> = expr::letters(e)
+            .into_iter()
+            .map(|l| {
+                let id = self.symbol(part, l.symbol, from);
+                (l, expr::letter(&self.symbols, id, l.shift))
+            })
+            .collect();
+        expr::substitute(&self.symbols, e, &replaced)
+    }
+
+    /// A letter of a part at an offset in time.
+    pub(super) fn letter(
+        &mut self,
+        part: &Part,
+        symbol: SymbolId,
+        shift: Shift,
+        from: From,
+    ) -> Formula {
+        let id = self.symbol(part, symbol, from);
+        Formula::Expr(expr::letter(&self.symbols, id, shift))
+    }
+
+    /// A derived expression, a term that is added in front.
+    pub(super) fn derived(&mut self, part: &Part, e: &Expr, from: From) -> Formula {
+        let e = self.expression(part, e, from);
+        Formula::Expr(expr::positive_first(&expr::collect(&self.symbols, &e)))
+    }
+
+    /// The index of a site as text.
+    pub(super) fn index(&self, part: &Part, label: usize, site: usize, from: From) -> String {
+        let Some(l) = self.lattice.labels.get(label) else {
+            return String::new();
+        };
+        let relative = |name: &str, origin: usize| match site.cmp(&origin) {
+            std::cmp::Ordering::Equal => name.to_owned(),
+            std::cmp::Ordering::Greater => format!("{name}+{}", site - origin),
+            std::cmp::Ordering::Less => format!("{name}-{}", origin - site),
+        };
+        match from {
+            _ if l.set => relative(&l.index.text, part_site(from)),
+            From::Site(origin) => relative(&l.index.text, origin),
+            From::First => site.to_string(),
+            From::Last => relative(&l.count.text, part.choice.count(label)),
+        }
+    }
+
+    fn symbol(&mut self, part: &Part, symbol: SymbolId, from: From) -> SymbolId {
+        let own = part.d.letters.symbols.get(symbol).clone();
+        let (name, typeset) = match origin(self.lattice, part, symbol) {
+            None => (own.name.clone(), own.typeset.clone()),
+            Some(at) => {
+                let index = self.index(part, at.label, at.site, from);
+                let stated = self.lattice.find(&at.name);
+                let latex = stated.and_then(|q| q.name.latex());
+                let latex = latex.map(|l| format!("{{{l}}}_{{{index}}}"));
+                (format!("{}_{{{index}}}", at.name), latex)
+            }
+        };
+        let key = format!("{name} {:?} {:?}", own.role, own.shape);
+        if let Some(id) = self.known.get(&key) {
+            return *id;
+        }
+        let id = self.symbols.add(&name, own.shape, own.structure, own.role);
+        self.symbols.describe(id, typeset, &own.docs);
+        self.known.insert(key, id);
+        id
+    }
+
+    /// Terms of the Lagrangian where they are shown.
+    pub(super) fn terms(&mut self, part: &Part) -> Vec<Option<Expr>> {
+        let shown: Vec<_> = part.unfolded.summands.iter().map(|s| &s.shown).collect();
+        let elaborated = check::numbers(&part.unfolded.model, &shown);
+        let each = part.unfolded.summands.iter().zip(elaborated);
+        each.map(|(s, e)| {
+            let from = match s.end {
+                None => From::Site(s.site),
+                Some((false, _)) => From::First,
+                Some((true, _)) => From::Last,
+            };
+            e.map(|e| self.checked(part, &e, from))
+        })
+        .collect()
+    }
+
+    /// An expression in the letters of the checked model, which come first in those of the derivation.
+    fn checked(&mut self, part: &Part, e: &Expr, from: From) -> Expr {
+        self.expression(part, e, from)
+    }
+}
+
+fn part_site(from: From) -> usize {
+    match from {
+        From::Site(site) => site,
+        From::First | From::Last => 0,
+    }
+}
+
+/// Where a letter comes from: a copy of a quantity, or what the derivation adds to one.
+fn origin(lattice: &Lattice, part: &Part, symbol: SymbolId) -> Option<Origin> {
+    let d = &part.d;
+    let name = &d.letters.symbols.get(symbol).name;
+    let of_copy = |name: &str, shown: String| {
+        let copy = part.unfolded.copy(name)?;
+        let label = lattice.find(&copy.of)?.label;
+        Some(Origin {
+            name: shown.replace("{}", &copy.of),
+            label,
+            site: copy.site,
+        })
+    };
+    if let Some(found) = of_copy(name, "{}".to_owned()) {
+        return Some(found);
+    }
+    if let Some((_, stated, last)) = part
+        .unfolded
+        .end_parameters
+        .iter()
+        .find(|(own, ..)| own == name)
+    {
+        let label = lattice.line?;
+        let site = if *last { part.choice.count(label) } else { 0 };
+        return Some(Origin {
+            name: stated.clone(),
+            label,
+            site,
+        });
+    }
+    for (i, c) in d.spec.configurations.iter().enumerate() {
+        let element = &d.letters.symbols.get(c.element).name;
+        if c.velocity == symbol {
+            return of_copy(element, "Δ{}".to_owned());
+        }
+        if d.letters.node_momentum.get(i) == Some(&symbol) {
+            let letter: String = name.chars().take_while(|c| !c.is_ascii_digit()).collect();
+            let copy = part.unfolded.copy(element)?;
+            return of_copy(element, format!("{letter}{}", number(part, &copy.of)));
+        }
+    }
+    None
+}
+
+/// The number of a configuration as stated, where there are several of one letter.
+fn number(part: &Part, of: &str) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    for c in &part.d.spec.configurations {
+        let element = &part.d.letters.symbols.get(c.element).name;
+        let stated = part
+            .unfolded
+            .copy(element)
+            .map_or(element.as_str(), |c| &c.of);
+        if !names.contains(&stated) {
+            names.push(stated);
+        }
+    }
+    match names.iter().position(|n| *n == of) {
+        Some(i) if names.len() > 1 => (i + 1).to_string(),
+        _ => String::new(),
+    }
+}

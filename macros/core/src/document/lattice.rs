@@ -1,0 +1,466 @@
+//! A model with labels as a paper section: its sites, the terms of its Lagrangian with their ranges,
+//! the equations of an interior site and of every end condition, what is conserved under which.
+
+mod ends;
+mod invariants;
+
+use super::folded::{Folded, From, Part};
+use crate::derive::warnings::Warning;
+use crate::diagnostic::Errors;
+use crate::expr::{self, Expr, Node, Shift};
+use crate::lattice::{Choice, Lattice, Range, Sites};
+use crate::pipeline;
+use crate::print::document::{Document, Inline, Section};
+use crate::print::formula::Formula;
+use crate::print::{Format, Style, expression, render};
+use crate::syntax::ast::Model;
+
+/// A derivation on a lattice, printed.
+pub struct Printed {
+    /// The text.
+    pub text: String,
+    /// What derives and is hardly meant.
+    pub warnings: Vec<Warning>,
+}
+
+/// The derivation of a model with labels in a format; `stated` is its text.
+///
+/// # Errors
+/// Mistakes of the statement, or a model that does not derive.
+pub fn printed_lattice(
+    model: &Model,
+    stated: &str,
+    format: Format,
+    columns: usize,
+) -> Result<Printed, Errors> {
+    let lattice = Lattice::read(model)?;
+    let parts = parts(model, &lattice)?;
+    let Some(first) = parts.first() else {
+        return Ok(Printed {
+            text: String::new(),
+            warnings: Vec::new(),
+        });
+    };
+    let mut folded = Folded::new(&lattice, first);
+    let mut doc = Document::titled(format!("{}: discrete equations of motion", model.name.text));
+    statement(model, stated, &mut doc);
+    let warnings = warnings(&parts, &mut doc);
+    sites(&lattice, &mut doc);
+    terms(&mut folded, first, &mut doc);
+    constraints(&mut folded, first, &mut doc);
+    interior(&mut folded, first, &mut doc);
+    ends::ends(&mut folded, &parts, &mut doc);
+    invariants::invariants(&mut folded, &parts, &mut doc);
+    certificate(&lattice, &parts, &mut doc);
+    let style = Style {
+        columns,
+        ..Style::new(&first.d.spec.time_index)
+    };
+    Ok(Printed {
+        text: render(&doc, &folded.symbols, &style, format),
+        warnings,
+    })
+}
+
+/// The choice that holds where a case makes none: a ring where `periodic` stands alone, else the
+/// first alternatives.
+pub fn default_choice(lattice: &Lattice, choice: Choice) -> Choice {
+    let ends = lattice.ends.iter().any(|e| !e.is_empty());
+    match lattice.periodic.is_some() && !ends {
+        true => choice.as_ring(lattice),
+        false => choice,
+    }
+}
+
+/// The default choice first, then the other kind of line, then each other end condition.
+fn parts(model: &Model, lattice: &Lattice) -> Result<Vec<Part>, Errors> {
+    let open = pipeline::representative(model, lattice)?;
+    let mut choices = vec![default_choice(lattice, open.clone())];
+    if lattice.periodic.is_some() {
+        choices.push(match choices.iter().any(|c| c.periodic) {
+            true => open.clone(),
+            false => open.clone().as_ring(lattice),
+        });
+    }
+    for last in [false, true] {
+        for name in lattice.alternatives(last).iter().skip(1) {
+            choices.extend(open.clone().with_end(lattice, last, name));
+        }
+    }
+    choices
+        .into_iter()
+        .map(|choice| {
+            let (unfolded, d) = pipeline::derive_lattice(model, lattice, &choice)?;
+            Ok(Part {
+                choice,
+                unfolded,
+                d,
+            })
+        })
+        .collect()
+}
+
+fn statement(model: &Model, stated: &str, doc: &mut Document) {
+    let section = doc.section("Model");
+    let docs: Vec<&str> = model.docs.iter().map(|l| l.trim()).collect();
+    let words = docs.join(" ");
+    if !words.trim().is_empty() {
+        section.text(words.trim());
+    }
+    // Remarks of the file are not part of the statement.
+    let bare = |l: &str| l.split("//").next().unwrap_or("").trim_end().to_owned();
+    let lines = stated
+        .lines()
+        .filter(|l| !l.trim_start().starts_with("//"))
+        .map(bare);
+    let text = lines.collect::<Vec<String>>().join("\n");
+    section.code(text.trim().to_owned());
+}
+
+fn warnings(parts: &[Part], doc: &mut Document) -> Vec<Warning> {
+    let mut out: Vec<Warning> = Vec::new();
+    for w in parts.iter().flat_map(|p| &p.d.warnings) {
+        let place = |w: &Warning| format!("{:?}", w.diagnostic.place);
+        if !out
+            .iter()
+            .any(|o| o.topic == w.topic && place(o) == place(w))
+        {
+            out.push(w.clone());
+        }
+    }
+    if !out.is_empty() {
+        doc.remarks = out.iter().map(Warning::remark).collect();
+        let items = out.iter().map(|w| {
+            let mut words = Inline::marked(&w.diagnostic.message);
+            words.push(".".into());
+            words
+        });
+        let items = items.collect();
+        doc.section("Warnings").list(items);
+    }
+    out
+}
+
+fn sites(lattice: &Lattice, doc: &mut Document) {
+    let section = doc.section("Sites");
+    for (i, l) in lattice.labels.iter().enumerate() {
+        let (index, count) = (&l.index.text, &l.count.text);
+        if l.set {
+            section.text(&format!(
+                "The label {index} counts a set of {count} sites, {index} = 0, ..., {count}-1, which have no neighbours."
+            ));
+            continue;
+        }
+        let spacing = l.step.as_ref();
+        let spacing = spacing.map_or_else(String::new, |s| format!("; the spacing is {}", s.text));
+        section.text(&format!(
+            "The label {index} counts a line of {count} segments: nodes {index} = 0, ..., {count} and segments {index} = 0, ..., {count}-1; segment {index} joins the nodes {index} and {index}+1{spacing}."
+        ));
+        if lattice.periodic.is_some() {
+            section.text(&format!(
+                "Closed to a ring it has {count} nodes and {count} segments, indices taken modulo {count}."
+            ));
+        }
+        for q in lattice.quantities.iter().filter(|q| q.label == i) {
+            if let Some(offset) = &q.offset {
+                section.text(&format!(
+                    "Once around the ring {} grows by {}: {}_{{{index}+{count}}} = {}_{{{index}}} + {}.",
+                    q.name.text, offset.text, q.name.text, q.name.text, offset.text
+                ));
+            }
+        }
+    }
+    let listed = |sites: Sites| {
+        let here = lattice.quantities.iter().filter(|q| q.sites == sites);
+        let names: Vec<&str> = here.map(|q| q.name.text.as_str()).collect();
+        names.join(", ")
+    };
+    let mut words = Vec::new();
+    for (sites, name) in [
+        (Sites::Nodes, "at nodes"),
+        (Sites::Segments, "at segments"),
+        (Sites::Members, "at the sites of a set"),
+    ] {
+        let list = listed(sites);
+        if !list.is_empty() {
+            words.push(format!("{name}: {list}"));
+        }
+    }
+    section.text(&format!(
+        "What differs from site to site: {}.",
+        words.join("; ")
+    ));
+}
+
+/// `N`, `N-1`.
+fn beyond(count: &str, by: isize) -> String {
+    match by {
+        0 => count.to_owned(),
+        n if n > 0 => format!("{count}+{n}"),
+        n => format!("{count}{n}"),
+    }
+}
+
+/// A term with its range.
+fn ranged(lattice: &Lattice, range: Option<Range>, of: Formula) -> Formula {
+    let label = range.and_then(|r| lattice.labels.get(r.label).map(|l| (r, l)));
+    match label {
+        None => of,
+        Some((range, l)) => Formula::SumOver {
+            index: l.index.text.clone(),
+            from: Some(range.from.to_string()),
+            to: Some(beyond(&l.count.text, range.to)),
+            of: Box::new(of),
+        },
+    }
+}
+
+fn terms(folded: &mut Folded, part: &Part, doc: &mut Document) {
+    let terms = folded.terms(part);
+    let scaled = part.d.spec.scale.is_some();
+    let ring = part.choice.periodic;
+    let mut shown = Vec::new();
+    for (s, e) in part.unfolded.summands.iter().zip(terms) {
+        let Some(e) = e.filter(|_| s.end.is_none()) else {
+            continue;
+        };
+        let e = expr::collect(&folded.symbols, &e);
+        shown.push(match e.node() {
+            Node::Neg(inner) => {
+                let inner = Formula::Expr(inner.clone());
+                Formula::neg(ranged(folded.lattice, s.range, inner))
+            }
+            _ => ranged(folded.lattice, s.range, Formula::Expr(e.clone())),
+        });
+    }
+    let section = doc.section("Discrete Lagrangian");
+    section.text(match (scaled, ring) {
+        (true, _) => "The Lagrangian as typed, of the step from a node to the next; each term is summed over the sites at which all its letters exist:",
+        (false, true) => "The discrete Lagrangian of the step from a node to the next on a ring:",
+        (false, false) => "The discrete Lagrangian of the step from a node to the next; each term is summed over the sites at which all its letters exist:",
+    });
+    let name = format!("ℓ_{}", part.d.spec.time_index);
+    let sum = match <[Formula; 1]>::try_from(shown) {
+        Ok([only]) => only,
+        Err(several) => Formula::Sum(several),
+    };
+    section.equation(Formula::defined(Formula::name(&name), sum));
+    if !part.d.action.nodal.is_zero() {
+        section.text("Terms of a node in time are split evenly between the two adjacent steps.");
+    }
+}
+
+fn constraints(folded: &mut Folded, part: &Part, doc: &mut Document) {
+    let section = doc.section("Constraints");
+    for stated in stated_configurations(part) {
+        let c = &part.d.spec.configurations[stated.shown];
+        let from = From::Site(stated.site);
+        let next = folded.letter(part, c.element, Shift::NEXT, from);
+        let update = folded.derived(part, &c.update, from);
+        section.equation(Formula::equal(next, update));
+    }
+    let mut told: Vec<String> = Vec::new();
+    for a in &part.d.spec.advected {
+        let name = &part.d.letters.symbols.get(a.quantity).name;
+        let copy = part.unfolded.copy(name);
+        let (of, site) = copy.map_or((name.clone(), 0), |c| (c.of.clone(), c.site));
+        let middle = middle(part, folded.lattice, &of);
+        if site != middle || told.contains(&of) {
+            continue;
+        }
+        told.push(of);
+        let from = From::Site(site);
+        let next = folded.letter(part, a.quantity, Shift::NEXT, from);
+        let update = folded.derived(part, &a.update, from);
+        let mut both = vec![Formula::equal(next, update)];
+        if let Some(definition) = &a.definition {
+            let here = folded.letter(part, a.quantity, Shift::HERE, from);
+            let definition = folded.derived(part, definition, from);
+            both.push(Formula::equal(here, definition));
+        }
+        section.equation(match <[Formula; 1]>::try_from(both) {
+            Ok([only]) => only,
+            Err(both) => Formula::List(both),
+        });
+    }
+}
+
+/// A configuration as stated, and its copies that move.
+pub(super) struct Stated {
+    /// Its name.
+    pub name: String,
+    /// Its label, where it has one.
+    pub label: Option<usize>,
+    /// Number of the configuration that is shown, the copy at the middle site.
+    pub shown: usize,
+    /// The middle site.
+    pub site: usize,
+    /// Numbers of the copies that move, with their sites, in order.
+    pub copies: Vec<(usize, usize)>,
+}
+
+/// The middle site of a quantity.
+fn middle(part: &Part, lattice: &Lattice, of: &str) -> usize {
+    let Some(q) = lattice.find(of) else {
+        return 0;
+    };
+    match q.sites {
+        Sites::Members => 0,
+        Sites::Nodes | Sites::Segments => part.choice.count(q.label) / 2,
+    }
+}
+
+/// The configurations as stated.
+pub(super) fn stated_configurations(part: &Part) -> Vec<Stated> {
+    let mut out: Vec<Stated> = Vec::new();
+    for (i, c) in part.d.spec.configurations.iter().enumerate() {
+        let element = &part.d.letters.symbols.get(c.element).name;
+        let copy = part.unfolded.copy(element);
+        let (name, site) = copy.map_or((element.clone(), 0), |c| (c.of.clone(), c.site));
+        match out.iter_mut().find(|s| s.name == name) {
+            Some(s) => s.copies.push((i, site)),
+            None => out.push(Stated {
+                label: None,
+                shown: i,
+                site,
+                copies: vec![(i, site)],
+                name,
+            }),
+        }
+    }
+    for s in &mut out {
+        let copy = part.unfolded.copies.iter().find(|c| c.of == s.name);
+        if copy.is_none() {
+            continue;
+        }
+        let label = part.choice.counts.len().min(1).saturating_sub(1);
+        s.label = Some(label);
+        let wanted = part.choice.count(label) / 2;
+        let nearest = s
+            .copies
+            .iter()
+            .min_by_key(|(_, site)| site.abs_diff(wanted));
+        if let Some((i, site)) = nearest {
+            (s.shown, s.site) = (*i, *site);
+        }
+    }
+    out
+}
+
+/// The two equations of a copy, seen from its site or an end.
+pub(super) fn equations(folded: &mut Folded, part: &Part, i: usize, from: From) -> Vec<Formula> {
+    let (Some(b), Some(mu)) = (
+        part.d.balances.get(i),
+        part.d.letters.node_momentum.get(i).copied(),
+    ) else {
+        return Vec::new();
+    };
+    let here = folded.letter(part, mu, Shift::HERE, from);
+    let next = folded.letter(part, mu, Shift::NEXT, from);
+    let outgoing = folded.derived(part, &b.outgoing, from);
+    let incoming = folded.derived(part, &b.incoming, from);
+    vec![
+        Formula::equal(here, outgoing),
+        Formula::equal(next, incoming),
+    ]
+}
+
+/// The equations of a copy as text: equal where the equations are.
+pub(super) fn reading(folded: &mut Folded, part: &Part, i: usize, site: usize) -> String {
+    let Some(b) = part.d.balances.get(i) else {
+        return String::new();
+    };
+    let style = Style::new(&part.d.spec.time_index);
+    let mut text = |e: &Expr| {
+        let e = folded.expression(part, e, From::Site(site));
+        let e = expr::collect(&folded.symbols, &e);
+        expression(&e, &folded.symbols, &style, Format::Text)
+    };
+    let (a, b) = (text(&b.outgoing), text(&b.incoming));
+    format!("{a} | {b}")
+}
+
+/// Copies whose equations read as those of the middle site, from the first to the last.
+pub(super) fn like_the_middle(folded: &mut Folded, part: &Part, s: &Stated) -> (usize, usize) {
+    let wanted = reading(folded, part, s.shown, s.site);
+    let at = s
+        .copies
+        .iter()
+        .position(|(i, _)| *i == s.shown)
+        .unwrap_or(0);
+    let (mut first, mut last) = (at, at);
+    while let Some((i, site)) = first.checked_sub(1).and_then(|f| s.copies.get(f)) {
+        if reading(folded, part, *i, *site) != wanted {
+            break;
+        }
+        first -= 1;
+    }
+    while let Some((i, site)) = s.copies.get(last + 1) {
+        if reading(folded, part, *i, *site) != wanted {
+            break;
+        }
+        last += 1;
+    }
+    (first, last)
+}
+
+fn interior(folded: &mut Folded, part: &Part, doc: &mut Document) {
+    let section = doc.section("Equations of a site");
+    section.text("By the momentum at the node in time: the first equation is solved for the velocity, the second gives the momentum at the next node.");
+    for s in stated_configurations(part) {
+        let c = &part.d.spec.configurations[s.shown];
+        let (first, last) = like_the_middle(folded, part, &s);
+        let words = format!(": {}", c.group.name(&|n| folded.symbols.dim_text(n)));
+        let element = folded.letter(part, c.element, Shift::HERE, From::Site(s.site));
+        let mut line: Vec<Inline> = vec![element.into(), words.into()];
+        line.extend(range_words(folded.lattice, part, &s, first, last));
+        line.push(".".into());
+        section.paragraph(line);
+        for equation in equations(folded, part, s.shown, From::Site(s.site)) {
+            section.equation(equation);
+        }
+    }
+}
+
+/// `, i = 1, ..., N-1`.
+fn range_words(
+    lattice: &Lattice,
+    part: &Part,
+    s: &Stated,
+    first: usize,
+    last: usize,
+) -> Vec<Inline> {
+    let Some(q) = lattice.find(&s.name) else {
+        return Vec::new();
+    };
+    let Some(l) = lattice.labels.get(q.label) else {
+        return Vec::new();
+    };
+    let (Some((_, a)), Some((_, b))) = (s.copies.get(first), s.copies.get(last)) else {
+        return Vec::new();
+    };
+    let count = part.choice.count(q.label);
+    let by = isize::try_from(*b).unwrap_or(0) - isize::try_from(count).unwrap_or(0);
+    let (i, n) = (&l.index.text, &l.count.text);
+    let ring = part.choice.periodic && lattice.line == Some(q.label);
+    vec![match (ring, l.set) {
+        (true, _) => format!(", {i} = 0, ..., {n}-1, indices modulo {n}").into(),
+        (_, true) => format!(", {i} = 0, ..., {n}-1").into(),
+        _ => format!(", {i} = {a}, ..., {}", beyond(n, by)).into(),
+    }]
+}
+
+fn certificate(lattice: &Lattice, parts: &[Part], doc: &mut Document) {
+    let section = doc.section("Certificate");
+    section.text("The equations above are those of short lattices, written out body by body, on which the sites shown have all their neighbours and every end has its own equation. Each identity of the derivation is proved there; a longer lattice repeats the equations of the interior.");
+    let items = parts.iter().map(|p| {
+        let words = format!("{}: {}", p.choice.words(lattice), p.d.certificate.summary());
+        vec![words.into()]
+    });
+    section.list(items.collect());
+}
+
+/// A paragraph of words.
+pub(super) fn say(section: &mut Section, words: String) {
+    section.paragraph([words.into()]);
+}

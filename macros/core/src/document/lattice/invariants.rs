@@ -1,0 +1,189 @@
+//! What is conserved on a lattice, for each way to close or hold it, totals written as sums over
+//! sites.
+
+use crate::derive::action::summands;
+use crate::derive::invariants::Invariant;
+use crate::document::folded::{Folded, From, Part};
+use crate::expr::{self, Expr, Node};
+use crate::lattice::Lattice;
+use crate::print::document::{Document, Inline};
+use crate::print::formula::Formula;
+use crate::print::{Format, Style, expression};
+
+/// The section on invariants.
+pub(super) fn invariants(folded: &mut Folded, parts: &[Part], doc: &mut Document) {
+    let section = doc.section("Invariants");
+    for part in parts {
+        let mut items: Vec<Vec<Inline>> = Vec::new();
+        for v in &part.d.invariants {
+            items.push(invariant(folded, part, v));
+        }
+        let words = heading(folded.lattice, part);
+        if items.is_empty() {
+            section.text(&format!("{words}: none was found among the candidates."));
+        } else {
+            section.text(&format!("{words}:"));
+            section.list(items);
+        }
+        let energy = part.d.discrete_energy();
+        section.text(&format!(
+            "The discrete energy of an edge is {}: {}.",
+            energy.0, energy.1
+        ));
+    }
+    section.text("Fluxes between neighbouring sites, whose differences are the changes of densities, are not sought.");
+    let reversible = parts.iter().all(|p| p.d.reversible);
+    section.text(match reversible {
+        true => "The scheme is symmetric under time reversal, of even order, and may be composed.",
+        false => "The scheme is not symmetric under time reversal: it is of first order and must not be composed.",
+    });
+}
+
+/// Which line is meant.
+fn heading(lattice: &Lattice, part: &Part) -> String {
+    if lattice.line.is_none() {
+        return "On a set of sites".to_owned();
+    }
+    if part.choice.periodic {
+        return "On a ring".to_owned();
+    }
+    let name = |last: bool| {
+        let names = lattice.alternatives(last);
+        let chosen = names.get(part.choice.ends[usize::from(last)]).cloned();
+        chosen.unwrap_or_default()
+    };
+    let (a, b) = (name(false), name(true));
+    match a == b {
+        true => format!("On a line with both ends {a}"),
+        false => format!("On a line with the first end {a} and the last one {b}"),
+    }
+}
+
+fn invariant(folded: &mut Folded, part: &Part, v: &Invariant) -> Vec<Inline> {
+    let mut line: Vec<Inline> = vec![format!("{}: ", plain(part, &v.name)).into()];
+    match &v.value {
+        Some(e) => line.push(total(folded, part, e).into()),
+        None => line.push("kinetic plus potential energy of the limit".into()),
+    }
+    let how = if v.exact { "exact" } else { "bounded" };
+    line.push(format!(" ({how}: {})", v.reason).into());
+    line
+}
+
+/// The name without the list of all copies.
+fn plain(part: &Part, name: &str) -> String {
+    let kept = name.split('_').scan(false, |_, word| Some(word));
+    let mut words: Vec<&str> = Vec::new();
+    let mut parts = kept.peekable();
+    while let Some(word) = parts.next() {
+        let site = parts.peek().is_some_and(|n| n.parse::<usize>().is_ok());
+        let spelt =
+            |c: &crate::lattice::Copied| crate::expr::symbol::ascii(&c.of) == word || c.of == word;
+        if site && part.unfolded.copies.iter().any(spelt) {
+            parts.next();
+            if !words.contains(&word) {
+                words.push(word);
+            }
+            continue;
+        }
+        words.push(word);
+    }
+    words.join(" ")
+}
+
+/// A total, terms of the same form collected to sums over sites.
+fn total(folded: &mut Folded, part: &Part, e: &Expr) -> Formula {
+    let pair = |a: Formula, b: Formula| (Box::new(a), Box::new(b));
+    match e.node() {
+        Node::Dot(a, b) => {
+            let (a, b) = pair(total(folded, part, a), total(folded, part, b));
+            Formula::Dot(a, b)
+        }
+        Node::Cross(a, b) => {
+            let (a, b) = pair(total(folded, part, a), total(folded, part, b));
+            Formula::Cross(a, b)
+        }
+        Node::Neg(a) => Formula::neg(total(folded, part, a)),
+        _ => summed(folded, part, e),
+    }
+}
+
+fn summed(folded: &mut Folded, part: &Part, e: &Expr) -> Formula {
+    let style = Style::new(&part.d.spec.time_index);
+    let mut forms: Vec<(String, Expr, Vec<usize>)> = Vec::new();
+    for term in terms(e) {
+        let site = sites(part, &term).into_iter().min();
+        let seen = folded.expression(part, &term, From::Site(site.unwrap_or(0)));
+        let text = expression(&seen, &folded.symbols, &style, Format::Text);
+        match forms
+            .iter_mut()
+            .find(|(t, ..)| *t == text && site.is_some())
+        {
+            Some((.., list)) => list.extend(site),
+            None => forms.push((text, term, site.into_iter().collect())),
+        }
+    }
+    let line = folded.lattice.line.unwrap_or(0);
+    let (index, count) = match folded.lattice.labels.get(line) {
+        Some(l) => (l.index.text.clone(), l.count.text.clone()),
+        None => return folded.derived(part, e, From::First),
+    };
+    let many = part.choice.count(line);
+    let mut out = Vec::new();
+    for (_, term, mut list) in forms {
+        list.sort_unstable();
+        let whole = list.windows(2).all(|w| w[0] + 1 == w[1]);
+        match (list.first(), list.last()) {
+            (Some(a), Some(b)) if list.len() > 2 && whole => {
+                let by = isize::try_from(*b).unwrap_or(0) - isize::try_from(many).unwrap_or(0);
+                let of = folded.derived(part, &term, From::Site(*a));
+                out.push(Formula::SumOver {
+                    index: index.clone(),
+                    from: Some(a.to_string()),
+                    to: Some(super::beyond(&count, by)),
+                    of: Box::new(of),
+                });
+            }
+            (Some(a), _) if list.len() == 1 => {
+                let from = if 2 * a > many {
+                    From::Last
+                } else {
+                    From::First
+                };
+                out.push(folded.derived(part, &term, from));
+            }
+            (None, _) => out.push(folded.derived(part, &term, From::First)),
+            _ => return folded.derived(part, e, From::First),
+        }
+    }
+    match <[Formula; 1]>::try_from(out) {
+        Ok([only]) => only,
+        Err(several) => Formula::Sum(several),
+    }
+}
+
+/// The terms of a sum, of numbers or vectors.
+fn terms(e: &Expr) -> Vec<Expr> {
+    match e.node() {
+        Node::Sum(list) => list.iter().flat_map(terms).collect(),
+        _ => summands(e),
+    }
+}
+
+/// The sites whose letters an expression holds.
+fn sites(part: &Part, e: &Expr) -> Vec<usize> {
+    let letters = expr::letters(e).into_iter();
+    letters
+        .filter_map(|l| {
+            let name = &part.d.letters.symbols.get(l.symbol).name;
+            if let Some(copy) = part.unfolded.copy(name) {
+                return Some(copy.site);
+            }
+            let own = part.d.letters.node_momentum.iter();
+            let i = own.clone().position(|m| *m == l.symbol)?;
+            let c = part.d.spec.configurations.get(i)?;
+            let element = &part.d.letters.symbols.get(c.element).name;
+            part.unfolded.copy(element).map(|c| c.site)
+        })
+        .collect()
+}

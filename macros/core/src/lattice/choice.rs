@@ -1,0 +1,220 @@
+//! What a case chooses of a lattice: how many sites, a line or a ring, how the ends are held.
+
+use super::declared::{Label, Lattice, Quantity, Sites};
+use core::fmt;
+
+/// The numbers of sites and the end conditions of one lattice.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Choice {
+    /// For each label: the number of segments of an open line, of sites of a ring or a set.
+    pub counts: Vec<usize>,
+    /// Whether the line is closed to a ring.
+    pub periodic: bool,
+    /// Which alternative holds at the first and at the last site.
+    pub ends: [usize; 2],
+}
+
+/// Why a choice cannot be made.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum Refusal {
+    /// The model has no such label.
+    Label {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: Vec<String>,
+    },
+    /// The model has no such end condition.
+    End {
+        /// What was asked for.
+        name: String,
+        /// Of which end.
+        last: bool,
+        /// What there is.
+        known: Vec<String>,
+    },
+    /// The line is not stated to be periodic.
+    NotPeriodic {
+        /// The line.
+        label: String,
+    },
+    /// Too few sites.
+    Few {
+        /// The label.
+        label: String,
+        /// How many were asked for.
+        found: usize,
+        /// How many it takes.
+        least: usize,
+    },
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Label { name, known } => write!(
+                f,
+                "the model has no label `{name}`; it has {}",
+                listed(known)
+            ),
+            Self::End { name, last, known } => write!(
+                f,
+                "the model has no end condition `{name}` at the {} site; it has {}",
+                if *last { "last" } else { "first" },
+                listed(known)
+            ),
+            Self::NotPeriodic { label } => write!(
+                f,
+                "the line `{label}` is not stated to be periodic: add `periodic;` to the model"
+            ),
+            Self::Few {
+                label,
+                found,
+                least,
+            } => write!(
+                f,
+                "the label `{label}` has {found} where at least {least} {} needed",
+                if *least == 1 { "is" } else { "are" }
+            ),
+        }
+    }
+}
+
+impl std::error::Error for Refusal {}
+
+fn listed(names: &[String]) -> String {
+    let quoted: Vec<String> = names.iter().map(|n| format!("`{n}`")).collect();
+    quoted.join(", ")
+}
+
+impl Choice {
+    /// The shortest lattice on which the middle site and each end have all the neighbours that their
+    /// equations hold: what is found there holds for every longer one. A ring has an odd number of
+    /// sites, so that its even and odd ones are not two lattices.
+    pub fn representative(lattice: &Lattice, reach: usize) -> Choice {
+        let count = |l: &Label| match l.set {
+            true => 2,
+            false => 2 * reach.max(1) + 2,
+        };
+        Choice {
+            counts: lattice.labels.iter().map(count).collect(),
+            periodic: false,
+            ends: [0, 0],
+        }
+    }
+
+    /// The ring of this choice, with an odd number of sites.
+    #[must_use]
+    pub fn as_ring(mut self, lattice: &Lattice) -> Choice {
+        self.periodic = true;
+        if let Some(count) = lattice.line.and_then(|i| self.counts.get_mut(i)) {
+            *count |= 1;
+        }
+        self
+    }
+
+    /// With so many segments or sites of a label.
+    ///
+    /// # Errors
+    /// There is no such label, or too few are asked for.
+    pub fn with_count(
+        mut self,
+        lattice: &Lattice,
+        label: &str,
+        count: usize,
+    ) -> Result<Choice, Refusal> {
+        let place = lattice.labels.iter().position(|l| l.index.text == label);
+        let Some(i) = place else {
+            return Err(Refusal::Label {
+                name: label.to_owned(),
+                known: lattice
+                    .labels
+                    .iter()
+                    .map(|l| l.index.text.clone())
+                    .collect(),
+            });
+        };
+        if count == 0 {
+            return Err(Refusal::Few {
+                label: label.to_owned(),
+                found: 0,
+                least: 1,
+            });
+        }
+        self.counts[i] = count;
+        Ok(self)
+    }
+
+    /// Closed to a ring.
+    ///
+    /// # Errors
+    /// The model does not say `periodic;`.
+    pub fn with_ring(mut self, lattice: &Lattice) -> Result<Choice, Refusal> {
+        if lattice.periodic.is_none() {
+            let line = lattice.line.and_then(|i| lattice.labels.get(i));
+            let label = line.map_or_else(String::new, |l| l.index.text.clone());
+            return Err(Refusal::NotPeriodic { label });
+        }
+        self.periodic = true;
+        Ok(self)
+    }
+
+    /// With this end condition at the first or the last site.
+    ///
+    /// # Errors
+    /// There is no such alternative.
+    pub fn with_end(
+        mut self,
+        lattice: &Lattice,
+        last: bool,
+        name: &str,
+    ) -> Result<Choice, Refusal> {
+        let known = lattice.alternatives(last);
+        match known.iter().position(|k| k == name) {
+            Some(i) => {
+                self.ends[usize::from(last)] = i;
+                self.periodic = false;
+                Ok(self)
+            }
+            None => Err(Refusal::End {
+                name: name.to_owned(),
+                last,
+                known,
+            }),
+        }
+    }
+
+    /// The number of a label.
+    pub fn count(&self, label: usize) -> usize {
+        self.counts.get(label).copied().unwrap_or(0)
+    }
+
+    /// How many sites a kind of sites of a label has.
+    pub fn sites(&self, lattice: &Lattice, label: usize, sites: Sites) -> usize {
+        let open = lattice.line == Some(label) && !self.periodic;
+        self.count(label) + usize::from(open && sites == Sites::Nodes)
+    }
+
+    /// How many sites a quantity has.
+    pub fn sites_of(&self, lattice: &Lattice, q: &Quantity) -> usize {
+        self.sites(lattice, q.label, q.sites)
+    }
+
+    /// How the choice reads: `i = 4, periodic`.
+    pub fn words(&self, lattice: &Lattice) -> String {
+        let counts = lattice.labels.iter().zip(&self.counts);
+        let mut words: Vec<String> = counts
+            .map(|(l, n)| format!("{} = {n}", l.count.text))
+            .collect();
+        if self.periodic {
+            words.push("periodic".to_owned());
+        } else if lattice.line.is_some() {
+            for last in [false, true] {
+                let names = lattice.alternatives(last);
+                let chosen = names.get(self.ends[usize::from(last)]);
+                words.extend(chosen.filter(|_| names.len() > 1).cloned());
+            }
+        }
+        words.join(", ")
+    }
+}

@@ -1,0 +1,424 @@
+//! What a model declares of its labels: lines and sets, what lives at their sites, how a line may
+//! end. Mistakes that can be seen before anything is written out are told here.
+
+use crate::diagnostic::{Diagnostic, Errors, Place, closest};
+use crate::syntax::ast::{Alternative, At, Kindred, Model, Name, Site, Statement};
+use std::collections::BTreeSet;
+
+/// The kinds of sites of a label.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub enum Sites {
+    /// Nodes of a line.
+    Nodes,
+    /// Segments of a line; segment i joins nodes i and i+1.
+    Segments,
+    /// Members of a set.
+    Members,
+}
+
+/// What lives at the sites.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Kind {
+    /// A constant of each site.
+    Parameter,
+    /// A configuration in a group, or a field.
+    Configuration,
+    /// The velocity of a configuration in a group.
+    Velocity,
+    /// An advected quantity.
+    Advected,
+}
+
+/// A label.
+#[derive(Clone, Debug)]
+pub struct Label {
+    /// Its index.
+    pub index: Name,
+    /// The name of its number of segments or sites.
+    pub count: Name,
+    /// The name of its spacing.
+    pub step: Option<Name>,
+    /// Whether it is a set, without neighbours.
+    pub set: bool,
+}
+
+/// A quantity that lives at the sites of a label.
+#[derive(Clone, Debug)]
+pub struct Quantity {
+    /// Its name.
+    pub name: Name,
+    /// Its label, by number.
+    pub label: usize,
+    /// At which of its sites.
+    pub sites: Sites,
+    /// What it is.
+    pub kind: Kind,
+    /// Its shape or group.
+    pub shape: Kindred,
+    /// By what it grows once around a ring.
+    pub offset: Option<Name>,
+}
+
+/// The labels of a model.
+#[derive(Clone, Debug, Default)]
+pub struct Lattice {
+    /// All labels.
+    pub labels: Vec<Label>,
+    /// The one that is a line.
+    pub line: Option<usize>,
+    /// Where the line is said to be periodic.
+    pub periodic: Option<Place>,
+    /// The end conditions at the first and at the last site; none: the natural ones.
+    pub ends: [Vec<Alternative>; 2],
+    /// What lives at sites.
+    pub quantities: Vec<Quantity>,
+    /// Names of numbers, at sites or not.
+    pub(super) numbers: BTreeSet<String>,
+    /// Names that move, at sites or not.
+    pub(super) moving: BTreeSet<String>,
+}
+
+/// The name of the end condition of a line for which none is stated.
+const NATURAL: &str = "free";
+
+impl Lattice {
+    /// The end conditions at the first or the last site, by name.
+    pub fn alternatives(&self, last: bool) -> Vec<String> {
+        let [first, at_last] = &self.ends;
+        let list = if last { at_last } else { first };
+        match list.is_empty() {
+            true => vec![NATURAL.to_owned()],
+            false => list.iter().map(|a| a.name.text.clone()).collect(),
+        }
+    }
+
+    /// The quantity of this name.
+    pub fn find(&self, name: &str) -> Option<&Quantity> {
+        self.quantities.iter().find(|q| q.name.text == name)
+    }
+
+    /// The line.
+    pub fn line_label(&self) -> Option<&Label> {
+        self.line.and_then(|i| self.labels.get(i))
+    }
+
+    /// Reads the declarations of a model.
+    pub fn read(model: &Model) -> Result<Lattice, Errors> {
+        let mut errors = Errors::new();
+        let mut out = Lattice::default();
+        out.labels(model, &mut errors);
+        out.names(model);
+        for statement in &model.statements {
+            out.statement(statement, &mut errors);
+        }
+        out.check_ends(&mut errors);
+        errors.propagate()?;
+        Ok(out)
+    }
+
+    fn labels(&mut self, model: &Model, errors: &mut Errors) {
+        let sets = model.statements.iter().filter_map(|s| match at_of(s) {
+            Some(At {
+                site: Site::Set(name),
+                ..
+            }) => Some(name.text.clone()),
+            _ => None,
+        });
+        let sets: BTreeSet<String> = sets.collect();
+        for statement in &model.statements {
+            let Statement::Label { index, count, step } = statement else {
+                continue;
+            };
+            let names = |l: &Label| [l.index.clone(), l.count.clone()];
+            let mut taken = self.labels.iter().flat_map(names);
+            if let Some(first) = taken.find(|n| n.text == index.text || n.text == count.text) {
+                let d = Diagnostic::new(
+                    index.place.to(count.place),
+                    format!("`{}` is declared twice", first.text),
+                );
+                errors.push(d.also(
+                    first.place,
+                    format!("`{}` is declared here first", first.text),
+                ));
+                continue;
+            }
+            if index.text == count.text {
+                let d = Diagnostic::new(count.place, "the index and its number have one name");
+                errors.push(d.help("write for example `label i in 0..N;`"));
+            }
+            let set = sets.contains(&index.text);
+            if !set && let Some(line) = self.line_label() {
+                let message = format!(
+                    "a model has one line of nodes and segments, and `{}` is one already",
+                    line.index.text
+                );
+                let d = Diagnostic::new(index.place, message).help(format!(
+                    "for a set of sites without neighbours write `at {}` where quantities are declared",
+                    index.text
+                ));
+                errors.push(d.also(line.index.place, "the line is declared here"));
+                continue;
+            }
+            if let (true, Some(step)) = (set, step) {
+                let d = Diagnostic::new(step.place, "a set of sites has no spacing");
+                errors.push(d.help("leave `step ...` out"));
+            }
+            if !set {
+                self.line = Some(self.labels.len());
+            }
+            self.labels.push(Label {
+                index: index.clone(),
+                count: count.clone(),
+                step: step.clone(),
+                set,
+            });
+        }
+    }
+
+    /// Names of numbers and of what moves.
+    fn names(&mut self, model: &Model) {
+        let mut time_step = "h".to_owned();
+        for statement in &model.statements {
+            match statement {
+                Statement::Time { step, .. } => time_step.clone_from(&step.text),
+                Statement::Label {
+                    step: Some(step), ..
+                } => {
+                    self.numbers.insert(step.text.clone());
+                }
+                Statement::Param { names, shape, .. } => self.shaped(names, shape),
+                Statement::Field {
+                    names,
+                    shape,
+                    offset,
+                    ..
+                } => {
+                    self.shaped(names, shape);
+                    self.shaped(offset.as_slice(), shape);
+                    self.moving.extend(names.iter().map(|n| n.text.clone()));
+                }
+                Statement::Advected { names, shape, .. } => {
+                    self.shaped(names, shape);
+                    self.moving.extend(names.iter().map(|n| n.text.clone()));
+                }
+                Statement::Group { name, velocity, .. } => {
+                    self.moving.insert(name.text.clone());
+                    self.moving.insert(velocity.text.clone());
+                }
+                Statement::End { alternatives, .. } => {
+                    for (names, shape) in alternatives.iter().flat_map(|a| &a.params) {
+                        self.shaped(names, shape);
+                    }
+                }
+                _ => {}
+            }
+        }
+        self.numbers.insert(time_step);
+    }
+
+    fn shaped(&mut self, names: &[Name], shape: &Kindred) {
+        if shape.name.text == "Real" {
+            self.numbers.extend(names.iter().map(|n| n.text.clone()));
+        }
+    }
+
+    fn statement(&mut self, statement: &Statement, errors: &mut Errors) {
+        match statement {
+            Statement::Param { names, shape, at } => {
+                self.quantities_at(names, shape, at.as_ref(), Kind::Parameter, errors);
+            }
+            Statement::Advected {
+                names, shape, at, ..
+            } => self.quantities_at(names, shape, at.as_ref(), Kind::Advected, errors),
+            Statement::Field {
+                names,
+                shape,
+                at,
+                offset,
+            } => {
+                let before = self.quantities.len();
+                self.quantities_at(names, shape, at.as_ref(), Kind::Configuration, errors);
+                let Some(offset) = offset else { return };
+                let added = self.quantities.iter_mut().skip(before);
+                let mut on_line = false;
+                for q in added.filter(|q| q.sites != Sites::Members) {
+                    q.offset = Some(offset.clone());
+                    on_line = true;
+                }
+                if !on_line {
+                    let d = Diagnostic::new(offset.place, "an offset belongs to a field on a line");
+                    errors.push(d.help("write for example `field X: Real at nodes offset L;`"));
+                }
+            }
+            Statement::Group {
+                name,
+                group,
+                at,
+                velocity,
+            } => {
+                let one = std::slice::from_ref;
+                self.quantities_at(one(name), group, at.as_ref(), Kind::Configuration, errors);
+                let mut again = Errors::new();
+                self.quantities_at(
+                    one(velocity),
+                    group,
+                    at.as_ref(),
+                    Kind::Velocity,
+                    &mut again,
+                );
+            }
+            Statement::Periodic(place) => {
+                if self.line.is_none() {
+                    let d = Diagnostic::new(*place, "there is no line that could be periodic");
+                    errors.push(d.help("declare one: `label i in 0..N;`"));
+                }
+                self.periodic = Some(*place);
+            }
+            Statement::End {
+                label,
+                at,
+                alternatives,
+            } => self.end(label, at, alternatives, errors),
+            _ => {}
+        }
+    }
+
+    fn quantities_at(
+        &mut self,
+        names: &[Name],
+        shape: &Kindred,
+        at: Option<&At>,
+        kind: Kind,
+        errors: &mut Errors,
+    ) {
+        let Some(at) = at else { return };
+        let (label, sites) = match &at.site {
+            Site::Nodes => (self.line, Sites::Nodes),
+            Site::Segments => (self.line, Sites::Segments),
+            Site::Set(name) => {
+                let own = |l: &Label| l.index.text == name.text;
+                (self.labels.iter().position(own), Sites::Members)
+            }
+        };
+        let Some(label) = label else {
+            errors.push(self.unknown_site(at));
+            return;
+        };
+        for name in names {
+            self.quantities.push(Quantity {
+                name: name.clone(),
+                label,
+                sites,
+                kind,
+                shape: shape.clone(),
+                offset: None,
+            });
+        }
+    }
+
+    fn unknown_site(&self, at: &At) -> Diagnostic {
+        let Site::Set(name) = &at.site else {
+            return Diagnostic::new(at.place, "the model has no line of nodes and segments")
+                .help("declare one: `label i in 0..N;`");
+        };
+        let d = Diagnostic::new(at.place, format!("`{}` is no label", name.text));
+        let known = self.labels.iter().map(|l| l.index.text.as_str());
+        let words = ["nodes", "segments"].into_iter();
+        match closest(&name.text, known.chain(words)) {
+            Some(near) => d.help(format!("did you mean `at {near}`?")),
+            None => d.help(format!(
+                "sites are `nodes` and `segments` of a line, or a set: `label {} in 0..N;`",
+                name.text
+            )),
+        }
+    }
+
+    fn end(&mut self, label: &Name, at: &Name, alternatives: &[Alternative], errors: &mut Errors) {
+        let Some(line) = self.line_label() else {
+            let d = Diagnostic::new(label.place, "there is no line that could have an end");
+            errors.push(d.help("declare one: `label i in 0..N;`"));
+            return;
+        };
+        if line.index.text != label.text {
+            let message = format!("the line is `{}`, not `{}`", line.index.text, label.text);
+            errors.push(Diagnostic::new(label.place, message));
+            return;
+        }
+        let last = match at.text.as_str() {
+            "0" => false,
+            n if n == line.count.text => true,
+            _ => {
+                let (i, n) = (&line.index.text, &line.count.text);
+                let d = Diagnostic::new(at.place, format!("the line ends at 0 and at {n}"));
+                errors.push(d.help(format!("write `end {i} = 0` or `end {i} = {n}`")));
+                return;
+            }
+        };
+        let mut names: Vec<&Name> = Vec::new();
+        for a in alternatives {
+            if let Some(first) = names.iter().find(|n| n.text == a.name.text) {
+                let message = format!("`{}` is declared twice at this end", a.name.text);
+                let d = Diagnostic::new(a.name.place, message);
+                errors.push(d.also(first.place, "it is declared here first"));
+            }
+            if a.name.text == "periodic" {
+                let d = Diagnostic::new(a.name.place, "a ring has no end");
+                errors.push(d.help("state `periodic;` beside the ends; the case chooses"));
+            }
+            names.push(&a.name);
+        }
+        let list = &mut self.ends[usize::from(last)];
+        if !list.is_empty() {
+            let message = "the alternatives of this end are stated twice";
+            errors.push(Diagnostic::new(at.place, message).help("list them in one `end` block"));
+            return;
+        }
+        if alternatives.is_empty() {
+            let d = Diagnostic::new(at.place, "this end has no alternative");
+            errors.push(
+                d.help("write `free;` for the natural end condition, or leave the block out"),
+            );
+        }
+        *list = alternatives.to_vec();
+    }
+
+    /// What is given at an end is a configuration there.
+    fn check_ends(&self, errors: &mut Errors) {
+        for alternative in self.ends.iter().flatten() {
+            for name in &alternative.given {
+                let kind = self.find(&name.text).map(|q| (q.kind, q.sites));
+                let message = match kind {
+                    Some((Kind::Configuration, Sites::Nodes | Sites::Segments)) => continue,
+                    Some((Kind::Velocity, _)) => format!(
+                        "`{}` is a velocity: give the configuration, whose velocity then rests",
+                        name.text
+                    ),
+                    Some((Kind::Advected, _)) => {
+                        format!("`{}` follows its configuration: give that one", name.text)
+                    }
+                    Some(_) => format!("`{}` is no configuration", name.text),
+                    None => format!("`{}` does not live on the line", name.text),
+                };
+                let known = self.quantities.iter();
+                let known = known.filter(|q| q.kind == Kind::Configuration);
+                let known: Vec<String> = known.map(|q| format!("`{}`", q.name.text)).collect();
+                let d = Diagnostic::new(name.place, message);
+                errors.push(match known.is_empty() {
+                    true => d,
+                    false => d.help(format!("configurations on the line: {}", known.join(", "))),
+                });
+            }
+        }
+    }
+}
+
+/// Where a statement puts what it declares.
+fn at_of(statement: &Statement) -> Option<&At> {
+    match statement {
+        Statement::Param { at, .. }
+        | Statement::Group { at, .. }
+        | Statement::Field { at, .. }
+        | Statement::Advected { at, .. } => at.as_ref(),
+        _ => None,
+    }
+}

@@ -1,0 +1,58 @@
+//! Label lattices: chains, rods, rings and sets of bodies from one statement. A model with labels is
+//! written out, for chosen numbers of sites and end conditions, as a model of as many bodies, which
+//! the rest of the engine takes like any other. What is printed for every number of sites is folded
+//! back from a short lattice, on which each equation already has all its neighbours.
+
+mod choice;
+mod declared;
+mod names;
+mod put;
+mod range;
+mod summands;
+#[cfg(test)]
+mod tests;
+mod unfold;
+pub mod value;
+
+pub use choice::{Choice, Refusal};
+pub use declared::{Kind, Label, Lattice, Quantity, Sites};
+pub use names::{Copied, copy_name};
+pub use range::Range;
+pub use unfold::{Summand, Unfolded, unfold};
+
+use crate::diagnostic::Diagnostic;
+use crate::syntax::ast::{Model, Statement};
+
+/// Whether a model is stated with labels.
+pub fn has_labels(model: &Model) -> bool {
+    model.statements.iter().any(|s| match s {
+        Statement::Label { .. } | Statement::Periodic(_) | Statement::End { .. } => true,
+        Statement::Param { at, .. }
+        | Statement::Group { at, .. }
+        | Statement::Field { at, .. }
+        | Statement::Advected { at, .. } => at.is_some(),
+        Statement::Dim { .. }
+        | Statement::Time { .. }
+        | Statement::Assume { .. }
+        | Statement::Constraint { .. }
+        | Statement::Let { .. }
+        | Statement::Scale(_)
+        | Statement::Node(..)
+        | Statement::Lagrangian(_) => false,
+    })
+}
+
+/// The refusal of a model with labels where one stepper is compiled for all numbers of sites.
+pub fn not_emitted(model: &Model) -> Option<Diagnostic> {
+    let place = model.statements.iter().find_map(|s| match s {
+        Statement::Label { index, .. } => Some(index.place),
+        _ => None,
+    })?;
+    let message =
+        "a model with labels is derived and run from its file; no stepper of it is compiled yet";
+    Some(
+        Diagnostic::new(place, message).help(
+            "put the text into a file: `clebsch derive FILE` prints its equations, `clebsch run FILE` runs it",
+        ),
+    )
+}

@@ -1,0 +1,190 @@
+//! Puts the copies of one site into an expression: every letter of the line becomes the copy at its
+//! own site, across the seam of a ring with the offset of its field, and what is given at an end
+//! stands still.
+
+use super::choice::Choice;
+use super::declared::{Lattice, Sites};
+use super::names::copy_name;
+use crate::algebra::Rational;
+use crate::diagnostic::Diagnostic;
+use crate::syntax::ast::{Expression, Kind};
+use std::collections::BTreeMap;
+
+/// What stands in the place of a copy that does not move.
+#[derive(Clone, Debug)]
+pub(super) enum Still {
+    /// A parameter of the same name.
+    Given,
+    /// The velocity of what is given.
+    Identity,
+    /// A definition by what is given.
+    Defined(Expression),
+}
+
+/// Copies that do not move, by name.
+pub(super) type Pinned = BTreeMap<String, Still>;
+
+/// Where an expression is put.
+pub(super) struct Put<'a> {
+    /// The lattice.
+    pub lattice: &'a Lattice,
+    /// Its sites and ends.
+    pub choice: &'a Choice,
+    /// What does not move.
+    pub pinned: &'a Pinned,
+    /// Names of an end condition, with those that they have in the model written out.
+    pub locals: &'a [(String, String)],
+    /// The index.
+    pub site: isize,
+    /// Whether the index is the last node, where a segment is the last one.
+    pub at_last: bool,
+}
+
+type Placed = Result<Expression, Box<Diagnostic>>;
+
+impl Put<'_> {
+    /// The expression at the site.
+    pub(super) fn put(&self, e: &Expression) -> Placed {
+        self.at(e, 0)
+    }
+
+    fn at(&self, e: &Expression, by: isize) -> Placed {
+        let one = |a: &Expression| self.at(a, by).map(Box::new);
+        let all = |list: &[Expression]| {
+            let each = list.iter().map(|a| self.at(a, by));
+            each.collect::<Result<Vec<Expression>, _>>()
+        };
+        let kind = match &e.kind {
+            Kind::Number(q) => Kind::Number(*q),
+            Kind::Name(n) => return self.name(n, e, by),
+            Kind::Sum(terms) => {
+                let each = terms.iter().map(|(minus, t)| Ok((*minus, self.at(t, by)?)));
+                Kind::Sum(each.collect::<Result<_, Box<Diagnostic>>>()?)
+            }
+            Kind::Product(list) => Kind::Product(all(list)?),
+            Kind::Quotient(a, b) => Kind::Quotient(one(a)?, one(b)?),
+            Kind::Neg(a) => Kind::Neg(one(a)?),
+            Kind::Transpose(a) => Kind::Transpose(one(a)?),
+            Kind::Power(a, q) => Kind::Power(one(a)?, *q),
+            Kind::Component(a, indices) => Kind::Component(one(a)?, indices.clone()),
+            Kind::Call(f, arguments) => match (f.text.as_str(), arguments.as_slice()) {
+                ("next", [inner, _]) => return self.at(inner, by + 1),
+                ("prev", [inner, _]) => return self.at(inner, by - 1),
+                ("sum", [inner, _]) => return self.at(inner, by),
+                ("next" | "prev", [inner]) => {
+                    let placed = self.at(inner, by)?;
+                    // What is given is the same at the next node in time.
+                    if self.moves(inner, &self.lattice.moving) && !self.is_moving(&placed) {
+                        return Ok(placed);
+                    }
+                    Kind::Call(f.clone(), vec![placed])
+                }
+                _ => Kind::Call(f.clone(), all(arguments)?),
+            },
+        };
+        Ok(Expression {
+            kind,
+            place: e.place,
+        })
+    }
+
+    fn name(&self, n: &str, e: &Expression, by: isize) -> Placed {
+        let place = e.place;
+        if let Some((_, own)) = self.locals.iter().find(|(local, _)| local == n) {
+            return Ok(named(own.clone(), e));
+        }
+        let Some(q) = self.lattice.find(n) else {
+            return Ok(e.clone());
+        };
+        let count = self.choice.sites_of(self.lattice, q);
+        let size = isize::try_from(count).unwrap_or(isize::MAX);
+        let last_segment = self.at_last && q.sites == Sites::Segments;
+        let mut at = self.site + by - isize::from(last_segment);
+        let ring = self.choice.periodic && self.lattice.line == Some(q.label);
+        let mut turns = 0;
+        if ring && size > 0 {
+            (turns, at) = (at.div_euclid(size), at.rem_euclid(size));
+        }
+        let Some(site) = usize::try_from(at).ok().filter(|s| *s < count) else {
+            let d = Diagnostic::new(place, format!("`{n}` does not exist at this site"));
+            return Err(Box::new(d.help(
+                "at the first site there is no `prev(x, i)`, and at the last one no `next(x, i)`",
+            )));
+        };
+        let copy = copy_name(n, site);
+        let value = match self.pinned.get(&copy) {
+            Some(Still::Identity) => named("Id".to_owned(), e),
+            Some(Still::Defined(by_given)) => by_given.clone(),
+            Some(Still::Given) | None => named(copy, e),
+        };
+        let Some(offset) = q.offset.as_ref().filter(|_| turns != 0) else {
+            return Ok(value);
+        };
+        let mut step = named(offset.text.clone(), e);
+        if turns.abs() > 1 {
+            let many = i128::try_from(turns.abs())
+                .ok()
+                .and_then(|t| Rational::new(t, 1));
+            let many = Expression {
+                kind: Kind::Number(many.unwrap_or(Rational::ONE)),
+                place,
+            };
+            step = Expression {
+                kind: Kind::Product(vec![many, step]),
+                place,
+            };
+        }
+        Ok(Expression {
+            kind: Kind::Sum(vec![(false, value), (turns < 0, step)]),
+            place,
+        })
+    }
+
+    /// Whether something in an expression that is written out moves.
+    pub(super) fn is_moving(&self, e: &Expression) -> bool {
+        let copy = |n: &str| {
+            let base = n.rsplit_once('_').map_or(n, |(base, _)| base);
+            let moves = self.lattice.moving.contains(base) && self.lattice.find(base).is_some();
+            moves && !self.pinned.contains_key(n)
+        };
+        let global = |n: &str| self.lattice.moving.contains(n) && self.lattice.find(n).is_none();
+        any_name(e, &|n| copy(n) || global(n))
+    }
+
+    fn moves(&self, e: &Expression, names: &std::collections::BTreeSet<String>) -> bool {
+        any_name(e, &|n| names.contains(n))
+    }
+}
+
+fn named(text: String, e: &Expression) -> Expression {
+    Expression {
+        kind: Kind::Name(text),
+        place: e.place,
+    }
+}
+
+/// Whether a name in the expression is such a one.
+pub(super) fn any_name(e: &Expression, is: &dyn Fn(&str) -> bool) -> bool {
+    match &e.kind {
+        Kind::Number(_) => false,
+        Kind::Name(n) => is(n),
+        Kind::Sum(terms) => terms.iter().any(|(_, t)| any_name(t, is)),
+        Kind::Product(list) | Kind::Call(_, list) => list.iter().any(|a| any_name(a, is)),
+        Kind::Quotient(a, b) => any_name(a, is) || any_name(b, is),
+        Kind::Neg(a) | Kind::Transpose(a) | Kind::Power(a, _) | Kind::Component(a, _) => {
+            any_name(a, is)
+        }
+    }
+}
+
+/// How many quantities, numbers and operations an expression has.
+pub(super) fn size(e: &Expression) -> usize {
+    let list = |l: &[Expression]| l.iter().map(size).sum::<usize>();
+    1 + match &e.kind {
+        Kind::Number(_) | Kind::Name(_) => 0,
+        Kind::Sum(terms) => terms.iter().map(|(_, t)| size(t)).sum(),
+        Kind::Product(l) | Kind::Call(_, l) => list(l),
+        Kind::Quotient(a, b) => size(a) + size(b),
+        Kind::Neg(a) | Kind::Transpose(a) | Kind::Power(a, _) | Kind::Component(a, _) => size(a),
+    }
+}

@@ -1,0 +1,218 @@
+//! The range of a term: the sites at which all its letters exist.
+
+use super::choice::Choice;
+use super::declared::{Lattice, Sites};
+use crate::diagnostic::{Diagnostic, Place};
+use crate::syntax::ast::{Expression, Kind};
+
+/// Where the letters of an expression stand, seen from its index.
+#[derive(Clone, Default, Debug)]
+pub(super) struct Reach {
+    /// The label, where there is one.
+    pub label: Option<usize>,
+    /// Kind of sites and offset of every letter, sorted, once.
+    pub letters: Vec<(Sites, isize)>,
+    /// The sites that the term is explicitly summed over.
+    pub over: Option<Sites>,
+}
+
+/// The indices of a term, for every number of sites: from `from` to `N + to`.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Range {
+    /// Its label.
+    pub label: usize,
+    /// The first index.
+    pub from: isize,
+    /// The last index, beyond the number of segments or sites.
+    pub to: isize,
+}
+
+impl Range {
+    /// The indices themselves, for this many.
+    pub fn indices(self, count: usize) -> impl Iterator<Item = isize> {
+        let count = isize::try_from(count).unwrap_or(isize::MAX);
+        self.from..=count.saturating_add(self.to)
+    }
+}
+
+/// Whether an expression holds letters of sites, and all of them are neighbours.
+pub(super) fn only_neighbours(lattice: &Lattice, e: &Expression) -> bool {
+    let found = reach(lattice, e);
+    found.is_ok_and(|r| !r.letters.is_empty() && r.letters.iter().all(|(_, o)| *o != 0))
+}
+
+/// Where the letters of an expression stand.
+pub(super) fn reach(lattice: &Lattice, e: &Expression) -> Result<Reach, Diagnostic> {
+    let mut found = Reach::default();
+    walk(lattice, e, 0, &mut found)?;
+    found.letters.sort_unstable();
+    found.letters.dedup();
+    Ok(found)
+}
+
+fn walk(lattice: &Lattice, e: &Expression, by: isize, found: &mut Reach) -> Result<(), Diagnostic> {
+    match &e.kind {
+        Kind::Number(_) => Ok(()),
+        Kind::Name(n) => match lattice.find(n) {
+            None => named(lattice, n, e.place),
+            Some(q) => {
+                if let Some(other) = found.label.filter(|l| *l != q.label) {
+                    return Err(mixed(lattice, other, q.label, e.place));
+                }
+                found.label = Some(q.label);
+                found.letters.push((q.sites, by));
+                Ok(())
+            }
+        },
+        Kind::Sum(terms) => terms
+            .iter()
+            .try_for_each(|(_, t)| walk(lattice, t, by, found)),
+        Kind::Product(list) => list.iter().try_for_each(|f| walk(lattice, f, by, found)),
+        Kind::Quotient(a, b) => {
+            walk(lattice, a, by, found)?;
+            walk(lattice, b, by, found)
+        }
+        Kind::Neg(a) | Kind::Transpose(a) | Kind::Power(a, _) | Kind::Component(a, _) => {
+            walk(lattice, a, by, found)
+        }
+        Kind::Call(f, arguments) => match (f.text.as_str(), arguments.as_slice()) {
+            ("next" | "prev", [inner, label]) => {
+                let step = if f.text == "next" { 1 } else { -1 };
+                neighbour(lattice, inner, label, e.place)?;
+                walk(lattice, inner, by + step, found)
+            }
+            ("sum", [inner, sites]) => {
+                let over = summed_over(sites)?;
+                if found.over.is_some() {
+                    let d = Diagnostic::new(e.place, "a sum over sites stands within another one");
+                    return Err(d.help("write one sum, over nodes or over segments"));
+                }
+                found.over = Some(over);
+                found.label = found.label.or(lattice.line);
+                walk(lattice, inner, by, found)
+            }
+            _ => arguments
+                .iter()
+                .try_for_each(|a| walk(lattice, a, by, found)),
+        },
+    }
+}
+
+/// An index is no quantity.
+fn named(lattice: &Lattice, name: &str, place: Place) -> Result<(), Diagnostic> {
+    let is = |l: &&super::Label| l.index.text == name || l.count.text == name;
+    match lattice.labels.iter().find(is) {
+        None => Ok(()),
+        Some(l) => Err(Diagnostic::new(
+            place,
+            format!("`{name}` counts sites and is no number of the model"),
+        )
+        .help(format!(
+            "what differs from site to site is a parameter: `param a: Real at nodes;`, and in the case `a = \"1 + {}/{}\"`",
+            l.index.text, l.count.text
+        ))),
+    }
+}
+
+fn mixed(lattice: &Lattice, a: usize, b: usize, place: Place) -> Diagnostic {
+    let name = |i: usize| lattice.labels.get(i).map_or("", |l| l.index.text.as_str());
+    let message = format!(
+        "this term holds sites of `{}` and of `{}`: which of them would meet is not said",
+        name(a),
+        name(b)
+    );
+    Diagnostic::new(place, message)
+        .help("terms of different labels are summed each over its own: write them as two terms")
+}
+
+/// `next(x, i)`: of something at the sites of a line.
+fn neighbour(
+    lattice: &Lattice,
+    inner: &Expression,
+    label: &Expression,
+    place: Place,
+) -> Result<(), Diagnostic> {
+    let line = lattice.line_label();
+    let line_name = line.map_or("", |l| l.index.text.as_str());
+    let Kind::Name(name) = &label.kind else {
+        let d = Diagnostic::new(label.place, "the second argument is the label of a line");
+        return Err(d.help(format!("write `next(x, {line_name})`")));
+    };
+    if name != line_name || line.is_none() {
+        let own = lattice.labels.iter().find(|l| l.index.text == *name);
+        let message = match own {
+            Some(_) => format!("`{name}` is a set of sites, which have no neighbours"),
+            None => format!("`{name}` is no label"),
+        };
+        let d = Diagnostic::new(label.place, message);
+        return Err(match line {
+            Some(l) => d.help(format!("the line is `{}`", l.index.text)),
+            None => d.help(
+                "declare a line: `label i in 0..N;`, and quantities `at nodes` or `at segments`",
+            ),
+        });
+    }
+    let held = reach(lattice, inner)?;
+    if held.letters.is_empty() {
+        let d = Diagnostic::new(place, "this is the same at every site: it has no neighbour");
+        return Err(d.help(format!(
+            "declare what differs from site to site `at nodes` or `at segments`, or leave `, {line_name}` out"
+        )));
+    }
+    Ok(())
+}
+
+/// `sum(expr, nodes)`.
+fn summed_over(sites: &Expression) -> Result<Sites, Diagnostic> {
+    match &sites.kind {
+        Kind::Name(n) if n == "nodes" => Ok(Sites::Nodes),
+        Kind::Name(n) if n == "segments" => Ok(Sites::Segments),
+        _ => Err(
+            Diagnostic::new(sites.place, "a sum goes over `nodes` or over `segments`")
+                .help("write `sum(expr, segments)`; the Lagrangian is summed over labels anyway"),
+        ),
+    }
+}
+
+impl Reach {
+    /// The range of a term on this lattice, `None` where it stands once.
+    pub(super) fn range(&self, lattice: &Lattice, choice: &Choice) -> Option<Range> {
+        let label = self.label?;
+        let whole = Range {
+            label,
+            from: 0,
+            to: -1,
+        };
+        if lattice.line != Some(label) || choice.periodic {
+            return Some(whole);
+        }
+        let last = |sites: Sites| match sites {
+            Sites::Nodes => 0,
+            Sites::Segments | Sites::Members => -1,
+        };
+        let has_nodes = self.letters.iter().any(|(s, _)| *s == Sites::Nodes);
+        let own = self.over.unwrap_or(match has_nodes {
+            true => Sites::Nodes,
+            false => Sites::Segments,
+        });
+        let mut range = Range {
+            label,
+            from: 0,
+            to: last(own),
+        };
+        for (sites, offset) in &self.letters {
+            range.from = range.from.max(-offset);
+            range.to = range.to.min(last(*sites) - offset);
+        }
+        Some(range)
+    }
+
+    /// How far apart its letters stand.
+    pub(super) fn width(&self) -> usize {
+        let offsets = || self.letters.iter().map(|(_, o)| *o);
+        match (offsets().min(), offsets().max()) {
+            (Some(a), Some(b)) => usize::try_from(b - a).unwrap_or(0),
+            _ => 0,
+        }
+    }
+}

@@ -1,0 +1,223 @@
+//! Lattices written out against models of several bodies typed by hand, and what is refused.
+
+use super::{Choice, Lattice};
+use crate::document;
+use crate::pipeline::{derive_lattice, derive_source, parse_source, representative};
+use crate::print::Format;
+
+const TOPS: &str = "model Tops {
+    label i in 0..N step s; periodic;
+    param J, C: Sym<3>; param g, z: Vec<3>;
+    group Λ: SO<3> at nodes velocity Ω; advected Γ: Vec<3> at nodes = Λ^T*z;
+    constraint next(Λ) = Λ*Ω; constraint next(Γ) = Ω^T*Γ;
+    lagrangian = -s*tr(J*Ω)/h - h*s*dot(g, Γ) + (h/s)*tr(C*Λ^T*next(Λ, i));
+}";
+
+const CHAIN: &str = "model Chain {
+    label i in 0..N; periodic;
+    param m: Real at nodes; param k: Real at segments; param w: Real;
+    field q: Real at nodes offset L;
+    let r = next(q, i) - q;
+    lagrangian = m*(next(q) - q)^2/(2*h) - h*(k*exp(-r) + w*r);
+    end i = 0 { free; pinned { q = given; } spring { param c, q0: Real; term -(h/2)*c*(q - q0)^2; } }
+    end i = N { free; pinned { q = given; } }
+}";
+
+fn chosen(source: &str, count: usize, ring: bool, ends: [&str; 2]) -> String {
+    let model = parse_source(source).unwrap();
+    let lattice = Lattice::read(&model).unwrap();
+    let mut choice = representative(&model, &lattice).unwrap();
+    choice = choice.with_count(&lattice, "i", count).unwrap();
+    choice = match ring {
+        true => choice.with_ring(&lattice).unwrap(),
+        false => {
+            let first = choice.with_end(&lattice, false, ends[0]).unwrap();
+            first.with_end(&lattice, true, ends[1]).unwrap()
+        }
+    };
+    let (_, d) = derive_lattice(&model, &lattice, &choice).unwrap();
+    document::printed(&d, Format::Text)
+}
+
+fn by_hand(source: &str) -> String {
+    document::printed(&derive_source(source).unwrap(), Format::Text)
+}
+
+/// Parameters are declared in another order, which is that of factors in the limit; what is derived
+/// before it is the same.
+fn same_equations(found: &str, hand: &str) {
+    let part = |text: &str| {
+        let after = text.split("Discrete Lagrangian").nth(1).unwrap();
+        after
+            .split("Limit of small steps")
+            .next()
+            .unwrap()
+            .to_owned()
+    };
+    let (found, hand) = (part(found), part(hand));
+    for (a, b) in found.lines().zip(hand.lines()) {
+        assert_eq!(a, b);
+    }
+    assert_eq!(found.lines().count(), hand.lines().count());
+}
+
+/// Tops in a row, with these pairs of neighbours.
+fn row_of_tops(count: usize, pairs: &[(usize, usize)]) -> String {
+    let mut text = "model Tops { param s: Real; param J, C: Sym<3>; param g, z: Vec<3>;".to_owned();
+    for j in 0..count {
+        text += &format!("group Λ_{j}: SO<3> velocity Ω_{j}; advected Γ_{j}: Vec<3> = Λ_{j}^T*z;");
+        text += &format!(
+            "constraint next(Λ_{j}) = Λ_{j}*Ω_{j}; constraint next(Γ_{j}) = Ω_{j}^T*Γ_{j};"
+        );
+    }
+    let mut terms: Vec<String> = Vec::new();
+    terms.extend((0..count).map(|j| format!("-s*tr(J*Ω_{j})/h")));
+    terms.extend((0..count).map(|j| format!("-h*s*dot(g, Γ_{j})")));
+    terms.extend(
+        pairs
+            .iter()
+            .map(|(a, b)| format!("+(h/s)*tr(C*Λ_{a}^T*Λ_{b})")),
+    );
+    text + "lagrangian = " + &terms.join(" ") + ";}"
+}
+
+#[test]
+fn rows_and_rings_of_tops_are_those_written_by_hand() {
+    for n in [1, 2, 3, 5, 12] {
+        let open: Vec<(usize, usize)> = (0..n).map(|j| (j, j + 1)).collect();
+        let ring: Vec<(usize, usize)> = (0..n).map(|j| (j, (j + 1) % n)).collect();
+        let found = chosen(TOPS, n, false, ["free", "free"]);
+        assert_eq!(found, by_hand(&row_of_tops(n + 1, &open)), "{n} segments");
+        let found = chosen(TOPS, n, true, ["free", "free"]);
+        assert_eq!(found, by_hand(&row_of_tops(n, &ring)), "ring of {n}");
+    }
+}
+
+#[test]
+fn ends_are_those_written_by_hand() {
+    let one = |held: &str, fields: &str, terms: &str| {
+        format!(
+            "model Chain {{ param m_0, m_1, m_2: Real; param k_0, k_1: Real; param w: Real; {held} {fields} lagrangian = {terms} \
+             - h*(k_0*exp(-(q_1 - q_0))) - h*(k_1*exp(-(q_2 - q_1))) - h*(w*(q_1 - q_0)) - h*(w*(q_2 - q_1)) "
+        )
+    };
+    let kinetic = |list: &[usize]| {
+        let each = list
+            .iter()
+            .map(|j| format!("m_{j}*(next(q_{j}) - q_{j})^2/(2*h)"));
+        each.collect::<Vec<_>>().join(" + ")
+    };
+    let fields = |list: &[usize]| {
+        let each = list.iter().map(|j| format!("field q_{j}: Real;"));
+        each.collect::<String>()
+    };
+    let cases = [
+        (["free", "free"], vec![0, 1, 2], "", ""),
+        (["pinned", "free"], vec![1, 2], "param q_0: Real;", ""),
+        (["pinned", "pinned"], vec![1], "param q_0, q_2: Real;", ""),
+        (
+            ["spring", "free"],
+            vec![0, 1, 2],
+            "param c_0, q0_0: Real;",
+            "-(h/2)*c_0*(q_0 - q0_0)^2",
+        ),
+    ];
+    for (ends, moving, held, term) in cases {
+        let hand = one(held, &fields(&moving), &kinetic(&moving)) + term + ";}";
+        let found = chosen(CHAIN, 2, false, ends);
+        same_equations(&found, &by_hand(&hand));
+    }
+}
+
+#[test]
+fn the_seam_of_a_ring_carries_the_offset() {
+    let found = chosen(CHAIN, 3, true, ["free", "free"]);
+    let hand = "model Chain { param m_0, m_1, m_2: Real; param k_0, k_1, k_2: Real; param w: Real;
+        field q_0, q_1, q_2: Real; param L: Real;
+        lagrangian = m_0*(next(q_0) - q_0)^2/(2*h) + m_1*(next(q_1) - q_1)^2/(2*h) + m_2*(next(q_2) - q_2)^2/(2*h)
+          - h*(k_0*exp(-(q_1 - q_0))) - h*(k_1*exp(-(q_2 - q_1))) - h*(k_2*exp(-(q_0 + L - q_2)))
+          - h*(w*(q_1 - q_0)) - h*(w*(q_2 - q_1)) - h*(w*(q_0 + L - q_2)); }";
+    same_equations(&found, &by_hand(hand));
+}
+
+/// The first message on a model whose middle part is this.
+fn refused(middle: &str) -> String {
+    let source = format!(
+        "model M {{ label i in 0..N; label a in 0..P; param u: Real at a; param m: Real; field q: Real at nodes; {middle} }}"
+    );
+    match parse_source(&source).and_then(|m| crate::pipeline::derive_model(&m)) {
+        Err(errors) => errors.to_string(),
+        Ok(_) => "derived".to_owned(),
+    }
+}
+
+#[test]
+fn mistakes_are_told_in_the_words_of_the_statement() {
+    let kinetic = "lagrangian = m*(next(q) - q)^2/(2*h)";
+    assert_eq!(refused(&format!("{kinetic};")), "derived");
+    let cases = [
+        (format!("{kinetic} - h*next(q, j)^2;"), "`j` is no label"),
+        (
+            format!("{kinetic} - h*next(u, a)^2;"),
+            "`a` is a set of sites",
+        ),
+        (
+            format!("{kinetic} - h*next(m, i)*q;"),
+            "the same at every site",
+        ),
+        (format!("{kinetic} - h*u*q;"), "sites of `a` and of `i`"),
+        (format!("{kinetic} - h*i*q;"), "counts sites"),
+        (
+            format!("{kinetic}; field X: Real at node;"),
+            "did you mean `at nodes`?",
+        ),
+        (
+            format!("{kinetic}; end i = 1 {{ free; }}"),
+            "ends at 0 and at N",
+        ),
+        (
+            format!("{kinetic}; end j = 0 {{ free; }}"),
+            "the line is `i`",
+        ),
+        (
+            format!("{kinetic}; end i = 0 {{ free; free; }}"),
+            "declared twice",
+        ),
+        (
+            format!("{kinetic}; end i = 0 {{ held {{ m = given; }} }}"),
+            "does not live on the line",
+        ),
+        (
+            format!("{kinetic}; end i = 0 {{ held {{ term prev(q, i); }} }}"),
+            "does not exist at this site",
+        ),
+        (
+            format!("{kinetic}; label l in 0..K; field X: Real at nodes;"),
+            "one line",
+        ),
+        (format!("{kinetic}; field X: Real offset L;"), "on a line"),
+        (format!("{kinetic}; scale q;"), "stands once"),
+    ];
+    for (middle, expected) in cases {
+        let found = refused(&middle);
+        assert!(found.contains(expected), "{middle}\n{found}");
+    }
+}
+
+#[test]
+fn a_choice_is_one_of_those_stated() {
+    let model = parse_source(CHAIN).unwrap();
+    let lattice = Lattice::read(&model).unwrap();
+    let choice = Choice::representative(&lattice, 1);
+    assert!(choice.clone().with_count(&lattice, "j", 3).is_err());
+    assert!(choice.clone().with_count(&lattice, "i", 0).is_err());
+    assert!(choice.clone().with_end(&lattice, true, "spring").is_err());
+    assert!(choice.with_end(&lattice, false, "spring").is_ok());
+    let model = parse_source(&CHAIN.replace("periodic;", "")).unwrap();
+    let lattice = Lattice::read(&model).unwrap();
+    assert!(
+        Choice::representative(&lattice, 1)
+            .with_ring(&lattice)
+            .is_err()
+    );
+}

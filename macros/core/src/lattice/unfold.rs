@@ -1,0 +1,688 @@
+//! A model with labels written out for chosen numbers of sites and end conditions: a model of as
+//! many bodies, each with a name of its own, whose Lagrangian is the sum over the sites that exist.
+
+use super::choice::Choice;
+use super::declared::{Kind as Role, Lattice, Quantity, Sites};
+use super::names::{Copied, copy, copy_name};
+use super::put::{Pinned, Put, Still, any_name, size};
+use super::range::{Range, reach};
+use super::summands::summands;
+use crate::check::circular_definitions;
+use crate::diagnostic::{Diagnostic, Errors, Place};
+use crate::syntax::ast::{Alternative, Expression, Kind, Kindred, Model, Name, Statement};
+use std::collections::BTreeMap;
+
+/// Largest Lagrangian that is written out, in quantities, numbers and operations.
+const LARGEST: usize = 60_000;
+
+/// One term of the Lagrangian as stated, definitions put in.
+#[derive(Clone, Debug)]
+pub struct Summand {
+    /// The term.
+    pub stated: Expression,
+    /// The sites that it is summed over; `None` where it stands once.
+    pub range: Option<Range>,
+    /// The end condition that it belongs to: whether of the last site, and which.
+    pub end: Option<(bool, usize)>,
+    /// How far apart its letters stand.
+    pub width: usize,
+    /// The term at the site where it is shown: the middle one of its range.
+    pub shown: Expression,
+    /// That site.
+    pub site: usize,
+}
+
+/// A model written out.
+#[derive(Clone, Debug)]
+pub struct Unfolded {
+    /// The model of as many bodies.
+    pub model: Model,
+    /// The names of all copies.
+    pub copies: Vec<Copied>,
+    /// Names of parameters of end conditions: in the model written out, as stated, whether of the last site.
+    pub end_parameters: Vec<(String, String, bool)>,
+    /// Names of the copies that are given at an end.
+    pub given: Vec<String>,
+    /// The terms of the Lagrangian.
+    pub summands: Vec<Summand>,
+}
+
+/// Writes a model out.
+///
+/// # Errors
+/// Mistakes of the statement, on its tokens.
+pub fn unfold(model: &Model, lattice: &Lattice, choice: &Choice) -> Result<Unfolded, Errors> {
+    let mut errors = Errors::new();
+    circular_definitions(model, &mut errors);
+    errors.propagate()?;
+    let lets = definitions(model)?;
+    let mut writer = Writer {
+        lattice,
+        choice,
+        lets: &lets,
+        pinned: Pinned::new(),
+        errors: Errors::new(),
+        out: Unfolded {
+            model: Model {
+                statements: Vec::new(),
+                remarks: Vec::new(),
+                ..model.clone()
+            },
+            copies: Vec::new(),
+            end_parameters: Vec::new(),
+            given: Vec::new(),
+            summands: Vec::new(),
+        },
+    };
+    writer.pin(model);
+    for (statement, docs) in model.statements.iter().zip(&model.remarks) {
+        writer.statement(model, statement, docs);
+    }
+    writer.errors.propagate()?;
+    Ok(writer.out)
+}
+
+/// What every `let` stands for, others put in.
+fn definitions(model: &Model) -> Result<BTreeMap<String, Expression>, Errors> {
+    let mut out = BTreeMap::new();
+    let stated: Vec<(&Name, &Expression)> = model
+        .statements
+        .iter()
+        .filter_map(|s| match s {
+            Statement::Let { name, value } => Some((name, value)),
+            _ => None,
+        })
+        .collect();
+    // None is circular: each round puts one more level in.
+    for _ in 0..=stated.len() {
+        for (name, value) in &stated {
+            let put = inlined(value, &out);
+            if size(&put) > LARGEST {
+                let message = format!("what `{}` stands for is too large", name.text);
+                let d = Diagnostic::new(name.place, message);
+                return Err(d
+                    .help("what a `let` stands for is counted wherever it is used")
+                    .into());
+            }
+            out.insert(name.text.clone(), put);
+        }
+        let left = |e: &Expression| any_name(e, &|n| out.contains_key(n));
+        if !out.values().any(left) {
+            break;
+        }
+    }
+    Ok(out)
+}
+
+/// With definitions in the place of their names.
+fn inlined(e: &Expression, lets: &BTreeMap<String, Expression>) -> Expression {
+    let one = |a: &Expression| Box::new(inlined(a, lets));
+    let all = |l: &[Expression]| l.iter().map(|a| inlined(a, lets)).collect();
+    let kind = match &e.kind {
+        Kind::Name(n) => match lets.get(n) {
+            Some(value) => value.kind.clone(),
+            None => e.kind.clone(),
+        },
+        Kind::Number(_) => e.kind.clone(),
+        Kind::Sum(terms) => Kind::Sum(terms.iter().map(|(m, t)| (*m, inlined(t, lets))).collect()),
+        Kind::Product(list) => Kind::Product(all(list)),
+        Kind::Quotient(a, b) => Kind::Quotient(one(a), one(b)),
+        Kind::Neg(a) => Kind::Neg(one(a)),
+        Kind::Transpose(a) => Kind::Transpose(one(a)),
+        Kind::Power(a, q) => Kind::Power(one(a), *q),
+        Kind::Component(a, indices) => Kind::Component(one(a), indices.clone()),
+        Kind::Call(f, list) => Kind::Call(f.clone(), all(list)),
+    };
+    Expression {
+        kind,
+        place: e.place,
+    }
+}
+
+struct Writer<'a> {
+    lattice: &'a Lattice,
+    choice: &'a Choice,
+    lets: &'a BTreeMap<String, Expression>,
+    pinned: Pinned,
+    errors: Errors,
+    out: Unfolded,
+}
+
+impl<'a> Writer<'a> {
+    fn put(&self, site: isize) -> Put<'_> {
+        Put {
+            lattice: self.lattice,
+            choice: self.choice,
+            pinned: &self.pinned,
+            locals: &[],
+            site,
+            at_last: false,
+        }
+    }
+
+    /// The end conditions that hold, with whether each is of the last site.
+    fn ends(&self) -> Vec<(bool, usize, &'a Alternative)> {
+        if self.choice.periodic || self.lattice.line.is_none() {
+            return Vec::new();
+        }
+        let each = [false, true].into_iter().filter_map(|last| {
+            let which = self.choice.ends[usize::from(last)];
+            let a = self.lattice.ends[usize::from(last)].get(which)?;
+            Some((last, which, a))
+        });
+        each.collect()
+    }
+
+    /// Finds what does not move.
+    fn pin(&mut self, model: &Model) {
+        for (last, _, alternative) in self.ends() {
+            for name in &alternative.given {
+                let Some(q) = self.lattice.find(&name.text) else {
+                    continue;
+                };
+                let count = self.choice.sites_of(self.lattice, q);
+                let site = if last { count.saturating_sub(1) } else { 0 };
+                let own = copy_name(&name.text, site);
+                self.out.given.push(own.clone());
+                self.pinned.insert(own, Still::Given);
+                if let Some(velocity) = velocity_of(model, &name.text) {
+                    let own = copy_name(&velocity.text, site);
+                    self.pinned.insert(own, Still::Identity);
+                }
+            }
+        }
+        // What follows a configuration that is given stands still with it.
+        for q in self.lattice.quantities.iter() {
+            if q.kind != Role::Advected || self.pinned.is_empty() {
+                continue;
+            }
+            let update = model.statements.iter().find_map(|s| match s {
+                Statement::Constraint { name, value, .. } if name.text == q.name.text => {
+                    Some(value)
+                }
+                _ => None,
+            });
+            let Some(update) = update.map(|u| inlined(u, self.lets)) else {
+                continue;
+            };
+            for site in 0..self.choice.sites_of(self.lattice, q) {
+                let at = isize::try_from(site).unwrap_or(isize::MAX);
+                let own = copy_name(&q.name.text, site);
+                let Ok(put) = self.put(at).put(&update) else {
+                    continue;
+                };
+                let others =
+                    |n: &str| n != own && self.put(at).is_moving(&name_expression(n, &put));
+                if any_name(&put, &others) {
+                    continue;
+                }
+                let definition = model.statements.iter().find_map(|s| match s {
+                    Statement::Advected {
+                        names,
+                        definition: Some(value),
+                        ..
+                    } if names.iter().any(|n| n.text == q.name.text) => Some(value),
+                    _ => None,
+                });
+                let still = match definition {
+                    Some(value) => match self.put(at).put(&inlined(value, self.lets)) {
+                        Ok(defined) => Still::Defined(defined),
+                        Err(d) => return self.errors.push(*d),
+                    },
+                    None => {
+                        self.out.given.push(own.clone());
+                        Still::Given
+                    }
+                };
+                self.pinned.insert(own, still);
+            }
+        }
+    }
+
+    fn push(&mut self, statement: Statement, docs: &[String]) {
+        self.out.model.statements.push(statement);
+        self.out.model.remarks.push(docs.to_vec());
+    }
+
+    fn copied(&mut self, q: &Quantity, site: usize) -> Name {
+        let name = copy(&q.name, site);
+        self.out.copies.push(Copied {
+            name: name.text.clone(),
+            of: q.name.text.clone(),
+            site,
+        });
+        name
+    }
+
+    fn statement(&mut self, model: &Model, statement: &Statement, docs: &[String]) {
+        match statement {
+            Statement::Label { step, .. } => {
+                if let Some(step) = step {
+                    self.declare_number(step, docs);
+                }
+            }
+            Statement::Periodic(_) | Statement::Let { .. } => {}
+            Statement::End { at, .. } => self.end_parameters(at),
+            Statement::Param { names, .. } | Statement::Advected { names, .. } => {
+                self.declared(statement, names, docs);
+            }
+            Statement::Field {
+                names,
+                offset,
+                shape,
+                ..
+            } => {
+                self.declared(statement, names, docs);
+                if let Some(offset) = offset {
+                    let used = |e: &Expression| any_name(e, &|n| n == offset.text);
+                    let assumed = model.statements.iter().any(|s| match s {
+                        Statement::Assume { left, right, .. } => used(left) || used(right),
+                        Statement::Lagrangian(e) | Statement::Scale(e) => used(e),
+                        _ => false,
+                    });
+                    if self.choice.periodic || assumed {
+                        self.declare(offset, shape);
+                    }
+                }
+            }
+            Statement::Group { name, velocity, .. } => match self.lattice.find(&name.text) {
+                None => self.push(statement.clone(), docs),
+                Some(q) => self.groups(q, velocity, docs),
+            },
+            Statement::Constraint { name, value, place } => {
+                let value = inlined(value, self.lets);
+                match self.lattice.find(&name.text) {
+                    None => {
+                        self.constant(&value);
+                        let (name, place) = (name.clone(), *place);
+                        self.push(Statement::Constraint { name, value, place }, docs);
+                    }
+                    Some(q) => self.constraints(q, name, &value, *place, docs),
+                }
+            }
+            Statement::Assume {
+                left,
+                relation,
+                right,
+                place,
+            } => {
+                let (left, right) = (inlined(left, self.lets), inlined(right, self.lets));
+                for put in self.both(&left, &right) {
+                    let (left, right) = put;
+                    let stated = Statement::Assume {
+                        left,
+                        relation: *relation,
+                        right,
+                        place: *place,
+                    };
+                    self.push(stated, docs);
+                }
+            }
+            Statement::Scale(value) => {
+                let value = inlined(value, self.lets);
+                self.constant(&value);
+                self.push(Statement::Scale(value), docs);
+            }
+            Statement::Lagrangian(value) => self.lagrangian(value, docs),
+            Statement::Dim { .. } | Statement::Time { .. } | Statement::Node(..) => {
+                self.push(statement.clone(), docs);
+            }
+        }
+    }
+
+    fn declare_number(&mut self, name: &Name, docs: &[String]) {
+        let shape = Kindred {
+            name: Name {
+                text: "Real".to_owned(),
+                place: name.place,
+                typeset: None,
+            },
+            sizes: Vec::new(),
+            place: name.place,
+        };
+        let names = vec![name.clone()];
+        let at = None;
+        self.push(Statement::Param { names, shape, at }, docs);
+    }
+
+    fn declare(&mut self, name: &Name, shape: &Kindred) {
+        let known = |s: &Statement| match s {
+            Statement::Param { names, .. } => names.iter().any(|n| n.text == name.text),
+            _ => false,
+        };
+        if self.out.model.statements.iter().any(known) {
+            return;
+        }
+        let (names, shape) = (vec![name.clone()], shape.clone());
+        self.push(
+            Statement::Param {
+                names,
+                shape,
+                at: None,
+            },
+            &[],
+        );
+    }
+
+    /// The parameters of the end condition that holds at this end.
+    fn end_parameters(&mut self, at: &Name) {
+        for (last, _, alternative) in self.ends() {
+            if last == (at.text == "0") {
+                continue;
+            }
+            for (names, shape) in &alternative.params {
+                for name in names {
+                    let site = self.last_site(last);
+                    let own = copy(name, site);
+                    self.out
+                        .end_parameters
+                        .push((own.text.clone(), name.text.clone(), last));
+                    self.declare(&own, shape);
+                }
+            }
+        }
+    }
+
+    /// The number of the first or the last node.
+    fn last_site(&self, last: bool) -> usize {
+        let line = self.lattice.line.unwrap_or(0);
+        if last { self.choice.count(line) } else { 0 }
+    }
+
+    /// Copies of parameters, fields and advected quantities.
+    fn declared(&mut self, statement: &Statement, names: &[Name], docs: &[String]) {
+        let first = names.first().and_then(|n| self.lattice.find(&n.text));
+        if first.is_none() {
+            if let Statement::Advected {
+                definition: Some(value),
+                ..
+            } = statement
+            {
+                self.constant(&inlined(value, self.lets));
+            }
+            return self.push(statement.clone(), docs);
+        }
+        for name in names {
+            let Some(q) = self.lattice.find(&name.text) else {
+                continue;
+            };
+            for site in 0..self.choice.sites_of(self.lattice, q) {
+                let own = copy_name(&q.name.text, site);
+                let one = match self.pinned.get(&own) {
+                    Some(Still::Given) => {
+                        let (names, shape) = (vec![self.copied(q, site)], q.shape.clone());
+                        Statement::Param {
+                            names,
+                            shape,
+                            at: None,
+                        }
+                    }
+                    Some(_) => continue,
+                    None => match self.copy_of(statement, q, site) {
+                        Some(one) => one,
+                        None => continue,
+                    },
+                };
+                self.push(one, docs);
+            }
+        }
+    }
+
+    fn copy_of(&mut self, statement: &Statement, q: &Quantity, site: usize) -> Option<Statement> {
+        let (names, shape) = (vec![self.copied(q, site)], q.shape.clone());
+        let at = None;
+        Some(match statement {
+            Statement::Param { .. } => Statement::Param { names, shape, at },
+            Statement::Field { .. } => Statement::Field {
+                names,
+                shape,
+                at,
+                offset: None,
+            },
+            Statement::Advected { definition, .. } => {
+                let index = isize::try_from(site).ok()?;
+                let definition = match definition {
+                    None => None,
+                    Some(value) => match self.put(index).put(&inlined(value, self.lets)) {
+                        Ok(e) => Some(e),
+                        Err(d) => {
+                            self.errors.push(*d);
+                            return None;
+                        }
+                    },
+                };
+                Statement::Advected {
+                    names,
+                    shape,
+                    at,
+                    definition,
+                }
+            }
+            _ => return None,
+        })
+    }
+
+    fn groups(&mut self, q: &Quantity, velocity: &Name, docs: &[String]) {
+        for site in 0..self.choice.sites_of(self.lattice, q) {
+            let name = self.copied(q, site);
+            if self.pinned.contains_key(&name.text) {
+                let (names, shape) = (vec![name], q.shape.clone());
+                let at = None;
+                self.push(Statement::Param { names, shape, at }, docs);
+                continue;
+            }
+            let own = copy(velocity, site);
+            self.out.copies.push(Copied {
+                name: own.text.clone(),
+                of: velocity.text.clone(),
+                site,
+            });
+            let stated = Statement::Group {
+                name,
+                group: q.shape.clone(),
+                at: None,
+                velocity: own,
+            };
+            self.push(stated, docs);
+        }
+    }
+
+    fn constraints(
+        &mut self,
+        q: &Quantity,
+        name: &Name,
+        value: &Expression,
+        place: Place,
+        docs: &[String],
+    ) {
+        for site in 0..self.choice.sites_of(self.lattice, q) {
+            let own = copy(name, site);
+            if self.pinned.contains_key(&own.text) {
+                continue;
+            }
+            let Ok(index) = isize::try_from(site) else {
+                continue;
+            };
+            match self.put(index).put(value) {
+                Ok(value) => {
+                    let stated = Statement::Constraint {
+                        name: own,
+                        value,
+                        place,
+                    };
+                    self.push(stated, docs);
+                }
+                Err(d) => return self.errors.push(*d),
+            }
+        }
+    }
+
+    /// What stands once holds no letter of a site.
+    fn constant(&mut self, e: &Expression) {
+        match reach(self.lattice, e) {
+            Err(d) => self.errors.push(d),
+            Ok(r) if !r.letters.is_empty() => {
+                let d = Diagnostic::new(
+                    e.place,
+                    "this stands once, and holds what differs from site to site",
+                );
+                self.errors.push(d.help(
+                    "declare what it belongs to at the same sites, for example `advected Γ: Vec<3> at nodes`",
+                ));
+            }
+            Ok(_) => {}
+        }
+    }
+
+    /// Both sides of an assumption, at every site where they differ.
+    fn both(&mut self, left: &Expression, right: &Expression) -> Vec<(Expression, Expression)> {
+        let whole = Expression {
+            kind: Kind::Sum(vec![(false, left.clone()), (true, right.clone())]),
+            place: left.place,
+        };
+        let range = match reach(self.lattice, &whole) {
+            Ok(r) => r.range(self.lattice, self.choice),
+            Err(d) => {
+                self.errors.push(d);
+                return Vec::new();
+            }
+        };
+        let Some(range) = range else {
+            return vec![(left.clone(), right.clone())];
+        };
+        let mut out = Vec::new();
+        for site in range.indices(self.choice.count(range.label)) {
+            let put = |e| self.put(site).put(e).ok();
+            out.extend(put(left).zip(put(right)));
+        }
+        out
+    }
+
+    fn lagrangian(&mut self, value: &Expression, docs: &[String]) {
+        let value = inlined(value, self.lets);
+        let mut terms: Vec<(bool, Expression)> = Vec::new();
+        let mut large = 0;
+        for stated in summands(self.lattice, &value) {
+            let found = match reach(self.lattice, &stated) {
+                Ok(found) => found,
+                Err(d) => {
+                    self.errors.push(d);
+                    continue;
+                }
+            };
+            let range = found.range(self.lattice, self.choice);
+            let sites: Vec<isize> = match range {
+                Some(r) => r.indices(self.choice.count(r.label)).collect(),
+                None => vec![0],
+            };
+            let mut copies = Vec::new();
+            for site in &sites {
+                match self.put(*site).put(&stated) {
+                    Ok(e) => copies.push(e),
+                    Err(d) => {
+                        self.errors.push(*d);
+                        break;
+                    }
+                }
+            }
+            large += copies.iter().map(size).sum::<usize>();
+            if large > LARGEST {
+                let words = self.choice.words(self.lattice);
+                let message = format!("this lattice is too large to be written out: {words}");
+                let d = Diagnostic::new(value.place, message);
+                self.errors.push(d.help(format!(
+                    "its Lagrangian may have {LARGEST} quantities, numbers and operations: take fewer sites"
+                )));
+                return;
+            }
+            let middle = sites.len() / 2;
+            if let (Some(shown), Some(site)) = (copies.get(middle), sites.get(middle)) {
+                self.out.summands.push(Summand {
+                    shown: shown.clone(),
+                    site: usize::try_from(*site).unwrap_or(0),
+                    stated,
+                    range,
+                    end: None,
+                    width: found.width(),
+                });
+            }
+            terms.extend(copies.into_iter().map(|e| (false, e)));
+        }
+        for (last, which, alternative) in self.ends() {
+            for stated in &alternative.terms {
+                let stated = inlined(stated, self.lets);
+                let site = self.last_site(last);
+                let locals = self.locals(last, alternative);
+                let put = Put {
+                    locals: &locals,
+                    at_last: last,
+                    ..self.put(isize::try_from(site).unwrap_or(0))
+                };
+                match (reach(self.lattice, &stated), put.put(&stated)) {
+                    (Ok(found), Ok(shown)) => {
+                        terms.push((false, shown.clone()));
+                        self.out.summands.push(Summand {
+                            stated,
+                            range: None,
+                            end: Some((last, which)),
+                            width: found.width(),
+                            shown,
+                            site,
+                        });
+                    }
+                    (Err(d), _) => self.errors.push(d),
+                    (_, Err(d)) => self.errors.push(*d),
+                }
+            }
+        }
+        let place = value.place;
+        let value = match <[(bool, Expression); 1]>::try_from(terms) {
+            Ok([(_, only)]) => only,
+            Err(terms) if terms.is_empty() => value,
+            Err(terms) => Expression {
+                kind: Kind::Sum(terms),
+                place,
+            },
+        };
+        self.push(Statement::Lagrangian(value), docs);
+    }
+
+    fn locals(&self, last: bool, alternative: &Alternative) -> Vec<(String, String)> {
+        let names = alternative.params.iter().flat_map(|(names, _)| names);
+        let site = self.last_site(last);
+        names
+            .map(|n| (n.text.clone(), copy_name(&n.text, site)))
+            .collect()
+    }
+}
+
+fn name_expression(n: &str, like: &Expression) -> Expression {
+    Expression {
+        kind: Kind::Name(n.to_owned()),
+        place: like.place,
+    }
+}
+
+fn velocity_of<'a>(model: &'a Model, element: &str) -> Option<&'a Name> {
+    model.statements.iter().find_map(|s| match s {
+        Statement::Group { name, velocity, .. } if name.text == element => Some(velocity),
+        _ => None,
+    })
+}
+
+impl Unfolded {
+    /// The farthest that letters of one term stand apart.
+    pub fn width(&self) -> usize {
+        self.summands.iter().map(|s| s.width).max().unwrap_or(0)
+    }
+
+    /// The copy of this name.
+    pub fn copy(&self, name: &str) -> Option<&Copied> {
+        self.copies.iter().find(|c| c.name == name)
+    }
+
+    /// Which sites a quantity has, seen from a choice: the sites of its kind.
+    pub fn is_segment(lattice: &Lattice, of: &str) -> bool {
+        lattice.find(of).is_some_and(|q| q.sites == Sites::Segments)
+    }
+}

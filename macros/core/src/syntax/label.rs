@@ -1,0 +1,124 @@
+//! Statements of label lines: `label`, `end` with its alternatives, and `at` behind a shape.
+
+use super::ast::{Alternative, At, Name, Site, Statement};
+use super::expression::expression;
+use super::statement::{kindred, names};
+use super::token::{Cursor, Token};
+use crate::diagnostic::Diagnostic;
+
+/// `i in 0..N step s`.
+pub(super) fn label(c: &mut Cursor) -> Result<Statement, Diagnostic> {
+    let remedy = "a label reads `label i in 0..N;` or, with its spacing, `label i in 0..N step s;`";
+    let index = c.name("the name of the label")?;
+    c.word("in").map_err(|e| e.help(remedy))?;
+    let place = c.place();
+    let zero = c.whole_number().map_err(|e| e.help(remedy))?;
+    if zero != 0 {
+        return Err(
+            Diagnostic::new(place, format!("a label is counted from 0, not from {zero}"))
+                .help(remedy),
+        );
+    }
+    for _ in 0..2 {
+        c.punct('.').map_err(|e| e.help(remedy))?;
+    }
+    if c.take_punct('=') || matches!(c.peek(), Some(Token::Number(_))) {
+        let d = c.unexpected("the name of the number of segments");
+        return Err(d.help("how many there are comes with the case: write `0..N`, and in the case `[labels]` with `i = 50`"));
+    }
+    let count = c
+        .name("the name of the number of segments")
+        .map_err(|e| e.help(remedy))?;
+    let step = match c.take_word("step") {
+        true => Some(c.name("the name of the spacing")?),
+        false => None,
+    };
+    Ok(Statement::Label { index, count, step })
+}
+
+/// `at nodes`, `at segments`, `at a`, if it comes next.
+pub(super) fn at(c: &mut Cursor) -> Result<Option<At>, Diagnostic> {
+    if !c.take_word("at") {
+        return Ok(None);
+    }
+    let name = c.name("`nodes`, `segments` or the label of a set")?;
+    let place = name.place;
+    let site = match name.text.as_str() {
+        "nodes" => Site::Nodes,
+        "segments" => Site::Segments,
+        _ => Site::Set(name),
+    };
+    Ok(Some(At { site, place }))
+}
+
+/// `i = 0 { ... }`, up to its brace: no `;` follows.
+pub(super) fn end(c: &mut Cursor) -> Result<Statement, Diagnostic> {
+    let remedy = "an end reads `end i = 0 { free; pinned { φ = given; } }`, and `end i = N { ... }` at the other one";
+    let label = c
+        .name("the label of the line")
+        .map_err(|e| e.help(remedy))?;
+    c.punct('=').map_err(|e| e.help(remedy))?;
+    let at = match c.peek() {
+        Some(Token::Number(text)) => {
+            let name = Name {
+                text: text.clone(),
+                place: c.place(),
+                typeset: None,
+            };
+            c.advance();
+            name
+        }
+        _ => c.name("`0` or the name of the number of segments")?,
+    };
+    c.delimiter('{').map_err(|e| e.help(remedy))?;
+    let mut alternatives = Vec::new();
+    while !c.take_delimiter('}') {
+        if c.is_at_end() {
+            return Err(c.unexpected("`}`"));
+        }
+        alternatives.push(alternative(c)?);
+    }
+    c.take_punct(';');
+    Ok(Statement::End {
+        label,
+        at,
+        alternatives,
+    })
+}
+
+/// `NAME;` or `NAME { ... }`.
+fn alternative(c: &mut Cursor) -> Result<Alternative, Diagnostic> {
+    let name = c.name("the name of an end condition, such as `free`")?;
+    let mut out = Alternative {
+        name,
+        params: Vec::new(),
+        given: Vec::new(),
+        terms: Vec::new(),
+    };
+    if c.take_punct(';') {
+        return Ok(out);
+    }
+    c.delimiter('{')?;
+    while !c.take_delimiter('}') {
+        let word = c.name("`param`, `term` or the name of what is given")?;
+        match word.text.as_str() {
+            "param" => {
+                let names = names(c)?;
+                c.punct(':')?;
+                out.params.push((names, kindred(c)?));
+            }
+            "term" => out.terms.push(expression(c)?),
+            _ => {
+                let remedy = "an end condition holds `param F: Vec<3>;`, `φ = given;` and `term h*dot(F, φ);`";
+                c.punct('=').map_err(|e| e.help(remedy))?;
+                c.word("given").map_err(|e| {
+                    e.help("what is given at an end is a value of the case: write `φ = given;`")
+                })?;
+                out.given.push(word);
+            }
+        }
+        c.punct(';')?;
+    }
+    c.take_punct(';');
+    Ok(out)
+}
