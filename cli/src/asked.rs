@@ -11,13 +11,14 @@ use std::path::Path;
 use toml::de::DeTable;
 
 /// The model that `run`, `compare` or `case` is to work on: one of the gallery, else that of a file, whose
-/// warnings are told to `err`.
+/// warnings are told to `err`. A `case` says how many sites a model with labels has.
 ///
 /// # Errors
 /// Usage: neither; a case file is told apart, and the message says what it is for.
 pub(crate) fn model<'a>(
     gallery: &'a Gallery,
     name: &str,
+    case: Option<&str>,
     err: &mut dyn Write,
 ) -> Result<Cow<'a, Entry>, Failure> {
     let unknown = match gallery.find(name) {
@@ -28,7 +29,7 @@ pub(crate) fn model<'a>(
         return Err(failure);
     }
     match model_file::is_meant(name) {
-        true => model_file::read(gallery, name, err).map(Cow::Owned),
+        true => model_file::read(gallery, name, case, err).map(Cow::Owned),
         false => Err(unknown),
     }
 }

@@ -123,7 +123,14 @@ fn dispatch(
         Some(("case", matches)) => {
             let text = |key: &str| matches.get_one::<String>(key).map(String::as_str);
             let name = text("model").unwrap_or_default();
-            let entry = asked::model(gallery, name, &mut streams.err)?;
+            let entry = asked::model(gallery, name, None, &mut streams.err)?;
+            if let Some(stated) = case_file::labels::Stated::read(entry.card.source)
+                && let Some(choice) = stated.default_choice()
+            {
+                let toml = case_file::write_lattice(&entry.card, &stated, &choice, name);
+                streams.out.write_all(toml.as_bytes())?;
+                return Ok(DONE);
+            }
             let case = gallery::case(&entry, text("case"))?;
             let known = gallery.find(name).is_ok();
             let named = if known { entry.card.kebab } else { name };

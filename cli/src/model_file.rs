@@ -1,11 +1,14 @@
 //! A model in a file: read, derived and executed without a build.
 //! Takes a path; gives the model with a case of sample values, to start one's own from.
 
+use crate::case_file;
+use crate::case_file::labels::{self, Stated};
 use crate::failure::Failure;
 use crate::gallery::{Case, Entry, Gallery};
 use crate::plain::shown;
 use crate::suggestion::did_you_mean;
 use clebsch::card::{Card, Field, Kind};
+use clebsch_core::lattice::Choice;
 use clebsch_interpret::Refused;
 use std::io::Write;
 use std::path::Path;
@@ -41,10 +44,23 @@ pub(crate) fn text(gallery: &Gallery, name: &str) -> Result<String, Failure> {
 ///
 /// # Errors
 /// Usage: the file cannot be read, its text does not derive, or the model needs a build.
-pub(crate) fn read(gallery: &Gallery, name: &str, err: &mut dyn Write) -> Result<Entry, Failure> {
+pub(crate) fn read(
+    gallery: &Gallery,
+    name: &str,
+    case: Option<&str>,
+    err: &mut dyn Write,
+) -> Result<Entry, Failure> {
     let text = text(gallery, name)?;
     let name = shown(name).to_string();
-    let read = clebsch_interpret::card_and_warnings(&text);
+    let stated = Stated::read(&text);
+    let choice = match &stated {
+        None => None,
+        Some(stated) => chosen(stated, case)?,
+    };
+    let read = match &choice {
+        None => clebsch_interpret::card_and_warnings(&text),
+        Some(choice) => clebsch_interpret::card_on_lattice(&text, choice),
+    };
     let (card, warnings) = read.map_err(|refused| match refused {
         Refused::Model(errors) => Failure::Usage(format!("\n{}", errors.render(&text, &name))),
         other => Failure::Usage(format!("{name}: {other}")),
@@ -57,10 +73,40 @@ pub(crate) fn read(gallery: &Gallery, name: &str, err: &mut dyn Write) -> Result
             warning.diagnostic.render("warning", &text, &name)
         );
     }
-    Ok(Entry {
-        card,
-        cases: vec![sample(&card, &name)],
-    })
+    let cases = match stated.zip(choice) {
+        None => vec![sample(&card, &name)],
+        Some((stated, choice)) => {
+            // Of a case with values of its own no sample is asked.
+            let sample = case_file::write_lattice(&card, &stated, &choice, &name);
+            sample_on_lattice(&sample, &stated, &card)
+                .into_iter()
+                .collect()
+        }
+    };
+    Ok(Entry { card, cases })
+}
+
+/// How many sites there are and how the line ends: as the case says, if one is given by a file.
+fn chosen(stated: &Stated, case: Option<&str>) -> Result<Option<Choice>, Failure> {
+    match case.filter(|c| Path::new(c).extension().is_some_and(|end| end == "toml")) {
+        None => Ok(stated.default_choice()),
+        Some(file) => {
+            let text = std::fs::read_to_string(file).map_err(|error| {
+                Failure::Usage(format!(
+                    "cannot read the case file {}: {error}",
+                    shown(file)
+                ))
+            })?;
+            labels::choice(file, &text, stated).map(Some)
+        }
+    }
+}
+
+/// The sample case of a model with labels.
+fn sample_on_lattice(text: &str, stated: &Stated, card: &Card) -> Result<Case, Failure> {
+    let out = labels::written_out("sample", text, stated, card)?;
+    let located = case_file::read_written_out("sample", &out.text, &out.lines, card)?;
+    Ok(located.case)
 }
 
 /// Values that are admissible for most models, and of no further meaning.
@@ -78,6 +124,12 @@ fn sample(card: &Card, file: &str) -> Case {
         initial: values(card.initial),
         bounds: Vec::new(),
     }
+}
+
+/// An entry of the sample value of a field without labels' expressions.
+pub(crate) fn sample_entry(field: &Field, i: usize, j: usize) -> f64 {
+    let all = of_field(field, false);
+    all.get(i * field.cols + j).copied().unwrap_or(0.0)
 }
 
 /// Sample values of a field; `turned` where momenta of square shape are skew.

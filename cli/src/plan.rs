@@ -1,6 +1,7 @@
 //! What is to be run: a case of the gallery or of a file, with the options that override it.
 //! Takes the matches of `clebsch run`; gives the plan, and places error messages in its file.
 
+use crate::case_file::labels::{self, Stated};
 use crate::case_file::{self, Located};
 use crate::failure::Failure;
 use crate::gallery::{self, Case, Entry};
@@ -178,7 +179,14 @@ fn read(file: &str, cards: &[Card]) -> Result<Located, Failure> {
     })?;
     let mut first = None;
     for card in cards {
-        match case_file::read(file, &text, card) {
+        let located = match Stated::read(card.source) {
+            None => case_file::read(file, &text, card),
+            Some(stated) => {
+                let out = labels::written_out(file, &text, &stated, card)?;
+                case_file::read_written_out(file, &out.text, &out.lines, card)
+            }
+        };
+        match located {
             Ok(located) => return Ok(located),
             Err(error) => first = first.or(Some(error)),
         }

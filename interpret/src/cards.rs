@@ -3,9 +3,10 @@
 
 use crate::Refused;
 use crate::opened::Opened;
-use clebsch::card::{Card, Open, OpenError, Settings, Trajectory};
+use clebsch::card::{Card, Invariant, Open, OpenError, Settings, Trajectory};
 use clebsch_core::derive::warnings::Warning;
-use clebsch_core::{Derivation, derive_source};
+use clebsch_core::lattice::{Choice, Lattice};
+use clebsch_core::{Derivation, derive_source, document, pipeline};
 use std::sync::{PoisonError, RwLock};
 
 /// What is open, by number; each stays for as long as the process, as its card may.
@@ -71,6 +72,39 @@ pub fn card_and_warnings(source: &str) -> Result<(Card, Vec<Warning>), Refused> 
     let card = match known(source, None) {
         Some(card) => card,
         None => opened_now(&d, source, None)?,
+    };
+    Ok((card, d.warnings))
+}
+
+/// The card of a model with labels, for so many sites and these ends, and what is hardly meant.
+///
+/// # Errors
+/// As [`card`].
+pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warning>), Refused> {
+    let model = pipeline::parse_source(source).map_err(Refused::Model)?;
+    let lattice = Lattice::read(&model).map_err(Refused::Model)?;
+    let derived = pipeline::derive_lattice(&model, &lattice, choice);
+    let (unfolded, d) = derived.map_err(Refused::Model)?;
+    // What is open is found by its text; here the choice is part of it.
+    let key = format!("{source}\n{choice:?}");
+    let card = match known(&key, None) {
+        Some(card) => card,
+        None => opened_now(&d, &key, None)?,
+    };
+    let words = document::card_words(&lattice, choice, unfolded, &d, card.solver);
+    let named = card.invariants.iter().zip(&words.invariants);
+    let invariants = named.map(|(own, (name, formula))| Invariant {
+        name: crate::text(name),
+        formula: crate::text(formula),
+        ..*own
+    });
+    let invariants: Vec<Invariant> = invariants.collect();
+    let card = Card {
+        source: crate::text(source),
+        summary: crate::text(&words.summary),
+        solver: crate::text(&words.solver),
+        invariants: Box::leak(invariants.into_boxed_slice()),
+        ..card
     };
     Ok((card, d.warnings))
 }

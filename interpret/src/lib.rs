@@ -16,7 +16,7 @@ mod program;
 mod running;
 mod value;
 
-pub use cards::{card, card_and_warnings};
+pub use cards::{card, card_and_warnings, card_on_lattice};
 
 use clebsch_core::Errors;
 use core::fmt;

@@ -22,13 +22,37 @@ pub struct Located {
 pub(super) struct File<'a> {
     pub name: &'a str,
     pub text: &'a str,
+    /// Of a text that was written out: the line of the file that each of its lines came from.
+    origin: Option<&'a [usize]>,
 }
 
-impl File<'_> {
+impl<'a> File<'a> {
+    /// A file as it is.
+    pub fn new(name: &'a str, text: &'a str) -> File<'a> {
+        File {
+            name,
+            text,
+            origin: None,
+        }
+    }
+
+    /// A text that was written out from a file.
+    pub fn written_out(name: &'a str, text: &'a str, origin: &'a [usize]) -> File<'a> {
+        File {
+            name,
+            text,
+            origin: Some(origin),
+        }
+    }
+
     /// Line, from 1, where `span` begins.
     pub fn line(&self, span: &Range<usize>) -> usize {
         let before = self.text.as_bytes().iter().take(span.start);
-        1 + before.filter(|&&byte| byte == b'\n').count()
+        let line = before.filter(|&&byte| byte == b'\n').count();
+        match self.origin.and_then(|lines| lines.get(line)) {
+            Some(own) => (*own).max(1),
+            None => 1 + line,
+        }
     }
 
     /// A usage failure at `span` (or for the file as a whole).

@@ -1,12 +1,18 @@
 //! Cases as TOML files: what `clebsch case` prints and `clebsch run --case FILE.toml` reads.
-//! Keys: `model`, `name`, `doc`, `h`, `steps`, tables `[parameters]`, `[initial]`, `[bounds]`.
+//! Keys: `model`, `name`, `doc`, `h`, `steps`, tables `[parameters]`, `[initial]`, `[bounds]`,
+//! and of models with labels `[labels]` and `[ends]`.
 
 mod inertia;
+pub(crate) mod labels;
+mod lattice;
 mod location;
 mod read;
+mod sites;
 mod value;
 mod write;
 
+pub(crate) use lattice::write_lattice;
 pub use location::Located;
 pub use read::read;
+pub(crate) use read::read_written_out;
 pub use write::write;

@@ -34,7 +34,24 @@ type Lines = BTreeMap<String, usize>;
 /// Usage: no TOML, another model, an unknown, missing, mistyped or misshapen value. The message
 /// names file, line and key.
 pub fn read(name: &str, text: &str, card: &Card) -> Result<Located, Failure> {
-    let file = File { name, text };
+    located(&File::new(name, text), card)
+}
+
+/// The same of a case that was written out from a file, whose lines are told.
+///
+/// # Errors
+/// As [`read`].
+pub(crate) fn read_written_out(
+    name: &str,
+    text: &str,
+    lines: &[usize],
+    card: &Card,
+) -> Result<Located, Failure> {
+    located(&File::written_out(name, text, lines), card)
+}
+
+fn located(file: &File<'_>, card: &Card) -> Result<Located, Failure> {
+    let (name, text) = (file.name, file.text);
     let document = DeTable::parse(text).map_err(|error| {
         file.wrong(
             error.span().as_ref(),
@@ -42,14 +59,14 @@ pub fn read(name: &str, text: &str, card: &Card) -> Result<Located, Failure> {
         )
     })?;
     let top = document.get_ref();
-    known_keys(&file, top, &KEYS, "at the top level", None)?;
+    known_keys(file, top, &KEYS, "at the top level", None)?;
     let model = required(
-        &file,
+        file,
         top,
         "model",
         &format!("the model's name, \"{}\"", card.kebab),
     )?;
-    let asked = string(&file, "model", model)?;
+    let asked = string(file, "model", model)?;
     if asked != card.kebab && asked != card.name {
         return Err(file.wrong(
             Some(&model.span()),
@@ -65,13 +82,13 @@ pub fn read(name: &str, text: &str, card: &Card) -> Result<Located, Failure> {
         lines.insert(key.get_ref().to_string(), file.line(&value.span()));
     }
     let case = Case {
-        name: optional_string(&file, top, "name")?.unwrap_or_else(|| stem(name)),
-        doc: optional_string(&file, top, "doc")?.unwrap_or_default(),
-        h: step_size(&file, required(&file, top, "h", "the step size")?)?,
-        steps: steps(&file, required(&file, top, "steps", "the number of steps")?)?,
-        parameters: fields(&file, top, "parameters", card.parameters, &mut lines)?,
-        initial: fields(&file, top, "initial", card.initial, &mut lines)?,
-        bounds: bounds(&file, top, card)?,
+        name: optional_string(file, top, "name")?.unwrap_or_else(|| stem(name)),
+        doc: optional_string(file, top, "doc")?.unwrap_or_default(),
+        h: step_size(file, required(file, top, "h", "the step size")?)?,
+        steps: steps(file, required(file, top, "steps", "the number of steps")?)?,
+        parameters: fields(file, top, "parameters", card.parameters, &mut lines)?,
+        initial: fields(file, top, "initial", card.initial, &mut lines)?,
+        bounds: bounds(file, top, card)?,
     };
     Ok(Located {
         case,

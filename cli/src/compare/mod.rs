@@ -53,7 +53,8 @@ pub fn compare(
     let model = matches
         .get_one::<String>("model")
         .map_or("", String::as_str);
-    let entry = asked::model(gallery, model, &mut streams.err)?;
+    let case = matches.get_one::<String>("case").map(String::as_str);
+    let entry = asked::model(gallery, model, case, &mut streams.err)?;
     let plan = Plan::new(&entry, matches)?;
     let card = &entry.card_of(&plan.case);
     let as_json = matches.get_flag("json");

@@ -16,7 +16,7 @@ mod structure;
 pub mod thesis;
 
 pub use compose::document;
-pub use lattice::{Printed, default_choice, printed_lattice};
+pub use lattice::{CardWords, Printed, card_words, default_choice, printed_lattice};
 pub use proof::proof;
 #[cfg(feature = "egraph")]
 pub use proof::second_proof;
@@ -83,21 +83,8 @@ pub fn summary(d: &Derivation) -> String {
         let name = &s.get(c.element).name;
         lines.push(format!("momentum of {name:<8} {}", show(&m.reduced)));
     }
-    let riccati = d.solve.riccati.iter().map(|r| match r {
-        Riccati::Exact(mv) => format!("exact, C = {}", show(&mv.factor)),
-        Riccati::Coupled(mv) => format!("coupled, C = {}", show(&mv.factor)),
-        Riccati::Quaternionic(q) => format!(
-            "none; in unit quaternions, A = {}, β = {}",
-            show(&q.edge.factor),
-            show(&q.real)
-        ),
-        Riccati::Linear(form) => format!(
-            "none; linear, L = {}, R = {}",
-            show(&form.left),
-            show(&form.right)
-        ),
-        Riccati::None(why) => format!("none: {why}"),
-    });
+    let riccati = d.solve.riccati.iter();
+    let riccati = riccati.map(|r| riccati_words(r, &mut |e| show(e)));
     lines.push(format!(
         "Riccati form         {}",
         riccati.collect::<Vec<_>>().join("; ")
@@ -114,4 +101,23 @@ pub fn summary(d: &Derivation) -> String {
     ));
     lines.push(format!("certificate          {}", d.certificate.summary()));
     lines.join("\n")
+}
+
+/// Which Riccati form a balance has.
+fn riccati_words(r: &Riccati, show: &mut dyn FnMut(&crate::expr::Expr) -> String) -> String {
+    match r {
+        Riccati::Exact(mv) => format!("exact, C = {}", show(&mv.factor)),
+        Riccati::Coupled(mv) => format!("coupled, C = {}", show(&mv.factor)),
+        Riccati::Quaternionic(q) => format!(
+            "none; in unit quaternions, A = {}, β = {}",
+            show(&q.edge.factor),
+            show(&q.real)
+        ),
+        Riccati::Linear(form) => format!(
+            "none; linear, L = {}, R = {}",
+            show(&form.left),
+            show(&form.right)
+        ),
+        Riccati::None(why) => format!("none: {why}"),
+    }
 }

@@ -1,6 +1,7 @@
 //! A model with labels as a paper section: its sites, the terms of its Lagrangian with their ranges,
 //! the equations of an interior site and of every end condition, what is conserved under which.
 
+mod card;
 mod ends;
 mod invariants;
 
@@ -14,6 +15,8 @@ use crate::print::document::{Document, Inline, Section};
 use crate::print::formula::Formula;
 use crate::print::{Format, Style, expression, render};
 use crate::syntax::ast::Model;
+
+pub use card::{CardWords, card_words};
 
 /// A derivation on a lattice, printed.
 pub struct Printed {

@@ -71,7 +71,7 @@ fn invariant(folded: &mut Folded, part: &Part, v: &Invariant) -> Vec<Inline> {
 }
 
 /// The name without the list of all copies.
-fn plain(part: &Part, name: &str) -> String {
+pub(super) fn plain(part: &Part, name: &str) -> String {
     let kept = name.split('_').scan(false, |_, word| Some(word));
     let mut words: Vec<&str> = Vec::new();
     let mut parts = kept.peekable();
@@ -92,7 +92,7 @@ fn plain(part: &Part, name: &str) -> String {
 }
 
 /// A total, terms of the same form collected to sums over sites.
-fn total(folded: &mut Folded, part: &Part, e: &Expr) -> Formula {
+pub(super) fn total(folded: &mut Folded, part: &Part, e: &Expr) -> Formula {
     let pair = |a: Formula, b: Formula| (Box::new(a), Box::new(b));
     match e.node() {
         Node::Dot(a, b) => {

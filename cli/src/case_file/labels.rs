@@ -1,0 +1,472 @@
+//! Cases of models with labels: how many sites, how the line ends, and site data as numbers,
+//! expressions in the label, or lists. Gives the same case with a key for every copy, which is read
+//! like any other, and the line that each of its lines came from.
+
+use super::inertia;
+use super::location::File;
+use super::sites::{self, Site};
+use super::value::expected;
+use crate::failure::Failure;
+use crate::plain::shown;
+use crate::suggestion::did_you_mean;
+use clebsch::card::{Card, Field, Kind};
+use clebsch_core::expr::symbol::ascii;
+use clebsch_core::lattice::{Choice, Lattice, Unfolded, unfold};
+use clebsch_core::syntax::ast::Model;
+use clebsch_core::{document, pipeline};
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Number of sites where no case says one.
+const SITES: usize = 8;
+
+/// A model with labels, as its file states it.
+pub(crate) struct Stated {
+    pub model: Model,
+    pub lattice: Lattice,
+}
+
+impl Stated {
+    /// Reads the text of a model; `None` where it has no labels or is no model.
+    pub(crate) fn read(source: &str) -> Option<Stated> {
+        let model = pipeline::parse_source(source).ok()?;
+        if !clebsch_core::lattice::has_labels(&model) {
+            return None;
+        }
+        let lattice = Lattice::read(&model).ok()?;
+        Some(Stated { model, lattice })
+    }
+
+    /// What holds where no case says otherwise.
+    pub(crate) fn default_choice(&self) -> Option<Choice> {
+        let shortest = pipeline::representative(&self.model, &self.lattice).ok()?;
+        let mut choice = document::default_choice(&self.lattice, shortest);
+        for count in &mut choice.counts {
+            *count = SITES;
+        }
+        Some(choice)
+    }
+
+    fn unfolded(&self, choice: &Choice) -> Option<Unfolded> {
+        unfold(&self.model, &self.lattice, choice).ok()
+    }
+}
+
+/// The choice that a case makes in its tables `[labels]` and `[ends]`.
+///
+/// # Errors
+/// Usage: no TOML, an unknown label or end condition, a number of sites that is none.
+pub(crate) fn choice(name: &str, text: &str, stated: &Stated) -> Result<Choice, Failure> {
+    let file = File::new(name, text);
+    let lattice = &stated.lattice;
+    let Some(mut choice) = stated.default_choice() else {
+        return Err(file.wrong(None, "the model's lattice cannot be written out"));
+    };
+    let document = DeTable::parse(text).map_err(|error| {
+        file.wrong(
+            error.span().as_ref(),
+            &format!("not TOML: {}", error.message()),
+        )
+    })?;
+    let top = document.get_ref();
+    let Some(labels) = table(&file, top, "labels")? else {
+        let keys: Vec<String> = lattice
+            .labels
+            .iter()
+            .map(|l| format!("{} = {SITES}", l.index.text))
+            .collect();
+        let message = format!(
+            "missing table [labels], how many sites there are: for example {}",
+            keys.join(", ")
+        );
+        return Err(file.wrong(None, &message));
+    };
+    for (key, value) in labels {
+        let asked = key.get_ref().as_ref();
+        let own = lattice
+            .labels
+            .iter()
+            .find(|l| l.index.text == asked || l.count.text == asked);
+        let label = own.map_or(asked, |l| l.index.text.as_str());
+        let count = match value.get_ref() {
+            DeValue::Integer(n) => usize::from_str_radix(n.as_str(), n.radix()).ok(),
+            _ => None,
+        };
+        let wrong =
+            |message: &str| file.wrong(Some(&value.span()), &format!("labels.{asked}: {message}"));
+        let count = count.ok_or_else(|| wrong("expected a whole number of sites, at least 1"))?;
+        choice = choice
+            .with_count(lattice, label, count)
+            .map_err(|refusal| wrong(&refusal.to_string()))?;
+    }
+    if let Some(missing) = lattice.labels.iter().find(|l| {
+        !labels.contains_key(l.index.text.as_str()) && !labels.contains_key(l.count.text.as_str())
+    }) {
+        let index = &missing.index.text;
+        let message = format!("missing key `labels.{index}`: how many sites there are");
+        return Err(file.wrong(None, &message));
+    }
+    if let Some(ends) = table(&file, top, "ends")? {
+        for (key, value) in ends {
+            choice = ended(&file, lattice, choice, key.get_ref().as_ref(), value)?;
+        }
+    }
+    Ok(choice)
+}
+
+/// `i = "periodic"`, `i = "pinned"` at both ends, or `i = ["clamped", "free"]`.
+fn ended(
+    file: &File<'_>,
+    lattice: &Lattice,
+    choice: Choice,
+    key: &str,
+    value: &Spanned<DeValue<'_>>,
+) -> Result<Choice, Failure> {
+    let wrong = |message: &str| {
+        file.wrong(
+            Some(&value.span()),
+            &format!("ends.{}: {message}", shown(key)),
+        )
+    };
+    let line = lattice.line_label().map(|l| l.index.text.as_str());
+    if line != Some(key) {
+        return Err(wrong(&match line {
+            Some(line) => format!("the line is `{line}`"),
+            None => "the model has no line that could have ends".to_owned(),
+        }));
+    }
+    let names: Option<Vec<&str>> = match value.get_ref() {
+        DeValue::String(name) => Some(vec![name.as_ref(), name.as_ref()]),
+        DeValue::Array(list) => list.iter().map(|v| v.get_ref().as_str()).collect(),
+        _ => None,
+    };
+    match names.as_deref() {
+        Some(["periodic", _]) => choice
+            .with_ring(lattice)
+            .map_err(|refusal| wrong(&refusal.to_string())),
+        Some([first, last]) => {
+            let choice = choice.with_end(lattice, false, first);
+            choice
+                .and_then(|c| c.with_end(lattice, true, last))
+                .map_err(|refusal| wrong(&refusal.to_string()))
+        }
+        _ => Err(wrong(
+            "expected \"periodic\", the name of an end condition, or two of them, [\"free\", \"free\"]",
+        )),
+    }
+}
+
+fn table<'a, 'i>(
+    file: &File<'_>,
+    top: &'a DeTable<'i>,
+    name: &str,
+) -> Result<Option<&'a DeTable<'i>>, Failure> {
+    let Some(value) = top.get(name) else {
+        return Ok(None);
+    };
+    match value.get_ref().as_table() {
+        Some(table) => Ok(Some(table)),
+        None => Err(file.wrong(
+            Some(&value.span()),
+            &format!("{name}: expected a table [{name}]"),
+        )),
+    }
+}
+
+/// A case with a key for every copy, and the line of the file that each of its lines came from.
+pub(crate) struct WrittenOut {
+    pub text: String,
+    pub lines: Vec<usize>,
+}
+
+impl WrittenOut {
+    fn push(&mut self, line: &str, from: usize) {
+        for part in line.split('\n') {
+            self.text.push_str(part);
+            self.text.push('\n');
+            self.lines.push(from);
+        }
+    }
+}
+
+/// Writes a case out for the card of its choice.
+///
+/// # Errors
+/// Usage: a missing or unknown key, site data that are none or of another length.
+pub(crate) fn written_out(
+    name: &str,
+    text: &str,
+    stated: &Stated,
+    card: &Card,
+) -> Result<WrittenOut, Failure> {
+    let choice = choice(name, text, stated)?;
+    let file = File::new(name, text);
+    let Some(unfolded) = stated.unfolded(&choice) else {
+        return Err(file.wrong(None, "the model's lattice cannot be written out"));
+    };
+    let document = DeTable::parse(text).map_err(|error| {
+        file.wrong(
+            error.span().as_ref(),
+            &format!("not TOML: {}", error.message()),
+        )
+    })?;
+    let top = document.get_ref();
+    let mut out = WrittenOut {
+        text: String::new(),
+        lines: Vec::new(),
+    };
+    let raw = |span: &Range<usize>| text.get(span.clone()).unwrap_or_default().to_owned();
+    const TABLES: [&str; 5] = ["labels", "ends", "parameters", "initial", "bounds"];
+    for (key, value) in top {
+        if !TABLES.contains(&key.get_ref().as_ref()) {
+            let line = format!("{} = {}", key_text(key.get_ref()), raw(&value.span()));
+            out.push(&line, file.line(&value.span()));
+        }
+    }
+    let parameters = table(&file, top, "parameters")?;
+    let initial = table(&file, top, "initial")?;
+    let writer = Writer {
+        file: &file,
+        stated,
+        choice: &choice,
+        unfolded: &unfolded,
+        numbers: sites::numbers(top, parameters),
+    };
+    writer.fields(&mut out, "parameters", card.parameters, parameters, initial)?;
+    writer.fields(&mut out, "initial", card.initial, initial, None)?;
+    if let Some(bounds) = table(&file, top, "bounds")? {
+        out.push("[bounds]", 0);
+        for (key, value) in bounds {
+            let line = format!("{} = {}", key_text(key.get_ref()), raw(&value.span()));
+            out.push(&line, file.line(&value.span()));
+        }
+    }
+    Ok(out)
+}
+
+fn key_text(key: &str) -> String {
+    let bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    match key.chars().all(bare) {
+        true => key.to_owned(),
+        false => format!("{key:?}"),
+    }
+}
+
+/// The key of a quantity whose copies are fields of a card, and the site of one of them.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(crate) struct Base {
+    pub key: String,
+    pub site: usize,
+    pub label: usize,
+    /// Whether it belongs to an end condition.
+    pub end: bool,
+    /// Whether it is a copy that is given at an end.
+    pub given: bool,
+}
+
+/// What a field of a card is a copy of.
+pub(crate) fn base(stated: &Stated, unfolded: &Unfolded, field: &Field) -> Option<Base> {
+    let (key, digits) = field.ascii.rsplit_once('_')?;
+    let site: usize = digits.parse().ok()?;
+    let end = unfolded.end_parameters.iter();
+    if let Some((own, _, _)) = end.clone().find(|(own, ..)| ascii(own) == field.ascii) {
+        let _ = own;
+        return Some(Base {
+            key: key.to_owned(),
+            site,
+            label: stated.lattice.line?,
+            end: true,
+            given: false,
+        });
+    }
+    let copy = unfolded.copies.iter().find(|c| {
+        let of = ascii(&c.of);
+        c.site == site && (key == of || key.strip_suffix(&of).is_some_and(|k| k.ends_with('_')))
+    })?;
+    Some(Base {
+        key: key.to_owned(),
+        site,
+        label: stated.lattice.find(&copy.of)?.label,
+        end: false,
+        given: unfolded.given.contains(&copy.name),
+    })
+}
+
+struct Writer<'a> {
+    file: &'a File<'a>,
+    stated: &'a Stated,
+    choice: &'a Choice,
+    unfolded: &'a Unfolded,
+    numbers: Vec<(String, f64)>,
+}
+
+type Table<'a, 'i> = Option<&'a DeTable<'i>>;
+
+impl Writer<'_> {
+    /// One table; of what is given at an end, values may stand among the initial ones (`others`).
+    fn fields(
+        &self,
+        out: &mut WrittenOut,
+        name: &str,
+        fields: &[Field],
+        values: Table<'_, '_>,
+        others: Table<'_, '_>,
+    ) -> Result<(), Failure> {
+        out.push(&format!("[{name}]"), 0);
+        let mut used: Vec<String> = Vec::new();
+        for field in fields {
+            let base = base(self.stated, self.unfolded, field);
+            let mut found = None;
+            for (own, site) in self.keys(field, base.as_ref(), fields) {
+                let value = values.and_then(|t| t.get(own.as_str()));
+                let given = base.as_ref().is_some_and(|b| b.given);
+                let other = others.filter(|_| given).and_then(|t| t.get(own.as_str()));
+                used.push(own.clone());
+                if let Some(value) = value.or(other) {
+                    found = Some((own, site, value));
+                    break;
+                }
+            }
+            let Some((own, site, value)) = found else {
+                if let Some(base) = &base {
+                    return Err(self.missing(name, field, base));
+                }
+                continue;
+            };
+            let line = self.file.line(&value.span());
+            let text = match (&base, site) {
+                (Some(base), true) => self.at_site(field, base, fields, value),
+                _ => sites::plain(value.get_ref(), &|n| self.number(n, None)),
+            };
+            let text = text.map_err(|message| {
+                let key = format!("{name}.{}: {message}", shown(&own));
+                self.file.wrong(Some(&value.span()), &key)
+            })?;
+            // The inertia of a copy stands under the key of its own.
+            let inertial = inertia::key(field, fields);
+            let written = match (
+                &inertial,
+                own.starts_with('I') && field.ascii.starts_with('J'),
+            ) {
+                (Some(key), true) => key.as_str(),
+                _ => field.ascii,
+            };
+            out.push(&format!("{written} = {text}"), line);
+        }
+        self.unknown(name, values, &used)
+    }
+
+    /// The keys under which a field may stand, and whether each is that of all sites.
+    fn keys(&self, field: &Field, base: Option<&Base>, fields: &[Field]) -> Vec<(String, bool)> {
+        let mut keys = vec![(field.ascii.to_owned(), false)];
+        keys.extend(inertia::key(field, fields).map(|k| (k, false)));
+        if let Some(base) = base {
+            let count = self.choice.count(base.label);
+            if base.site == count
+                && let Some(l) = self.stated.lattice.labels.get(base.label)
+            {
+                keys.push((format!("{}_{}", base.key, l.count.text), false));
+            }
+            keys.push((base.key.clone(), true));
+            if field.kind == Kind::SecondMoments
+                && let Some(rest) = base.key.strip_prefix('J')
+            {
+                keys.push((format!("I{rest}"), true));
+            }
+        }
+        keys
+    }
+
+    fn number(&self, name: &str, site: Option<&Base>) -> Option<f64> {
+        let labels = &self.stated.lattice.labels;
+        if let Some(i) = labels.iter().position(|l| l.count.text == name) {
+            #[allow(clippy::cast_precision_loss)]
+            return Some(self.choice.count(i) as f64);
+        }
+        if let Some(base) = site
+            && let Some(l) = labels.get(base.label)
+            && l.index.text == name
+        {
+            #[allow(clippy::cast_precision_loss)]
+            return Some(base.site as f64);
+        }
+        let known = self.numbers.iter().find(|(n, _)| n == name);
+        known.map(|(_, value)| *value)
+    }
+
+    /// The value of a copy.
+    fn at_site(
+        &self,
+        field: &Field,
+        base: &Base,
+        fields: &[Field],
+        value: &Spanned<DeValue<'_>>,
+    ) -> Result<String, String> {
+        let same = |f: &&Field| {
+            crate::case_file::labels::base(self.stated, self.unfolded, f)
+                .is_some_and(|b| b.key == base.key)
+        };
+        let own = fields.iter().filter(same);
+        let own: Vec<usize> = own
+            .filter_map(|f| {
+                crate::case_file::labels::base(self.stated, self.unfolded, f).map(|b| b.site)
+            })
+            .collect();
+        // What is given at an end counts among the sites of a list.
+        let given = self
+            .unfolded
+            .copies
+            .iter()
+            .filter(|c| ascii(&c.of) == base.key && self.unfolded.given.contains(&c.name));
+        let mut all: Vec<usize> = own.into_iter().chain(given.map(|c| c.site)).collect();
+        all.sort_unstable();
+        all.dedup();
+        let place = all.iter().position(|s| *s == base.site).unwrap_or(0);
+        let at = Site {
+            field,
+            place,
+            count: if base.end { 1 } else { all.len() },
+        };
+        sites::at(&at, value.get_ref(), &|n| self.number(n, Some(base)))
+    }
+
+    fn missing(&self, table: &str, field: &Field, base: &Base) -> Failure {
+        let label = self.stated.lattice.labels.get(base.label);
+        let index = label.map_or("i", |l| l.index.text.as_str());
+        let what = expected(field);
+        let message = match base.end {
+            true => format!(
+                "missing key `{table}.{}`: {what}, of the end condition at site {}",
+                base.key, base.site
+            ),
+            false => format!(
+                "missing key `{table}.{}` for site {index} = {}: {what}, with numbers or expressions in {index} for all sites, or a list of such for each",
+                base.key, base.site
+            ),
+        };
+        self.file.wrong(None, &message)
+    }
+
+    fn unknown(&self, name: &str, values: Table<'_, '_>, used: &[String]) -> Result<(), Failure> {
+        for (key, value) in values.into_iter().flatten() {
+            let asked = key.get_ref().as_ref();
+            if used.iter().any(|u| u == asked) {
+                continue;
+            }
+            // Of a configuration whose every copy is given nothing is initial, and of an alternative
+            // that is not chosen nothing is asked.
+            let of_given = self.unfolded.copies.iter().any(|c| ascii(&c.of) == asked);
+            if name == "initial" && of_given {
+                continue;
+            }
+            let hint = did_you_mean(asked, used.iter().map(String::as_str));
+            let _ = value;
+            return Err(self.file.wrong(
+                Some(&key.span()),
+                &format!("unknown key `{}` in [{name}]{hint}", shown(asked)),
+            ));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,151 @@
+//! The sample case of a model with labels: a key for each quantity as stated, expressions in the label.
+//! Takes a card and the choice it was made for; gives the text of a case file.
+
+use super::labels::{Base, Stated, base};
+use crate::plain::shown;
+use clebsch::card::{Card, Field, Kind};
+use clebsch_core::expr::symbol::ascii;
+use clebsch_core::lattice::{Choice, unfold};
+use std::fmt::Write as _;
+
+/// The text of the sample case.
+pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named: &str) -> String {
+    let lattice = &stated.lattice;
+    let named = shown(named).to_string();
+    let mut text = format!(
+        "# A case of the model {}; run it with\n#   clebsch run {named} --case THIS-FILE.toml\n\
+         # Units: any consistent system. The model fixes none; time is in the unit of h.\n\
+         # Site data: a number for all sites, a text with an expression in the label, in its number and in the\n\
+         # numbers below, or a list with an element for each site.\n\
+         model = \"{}\"\nname = \"sample\"\ndoc = \"sample values, to start a case of your own from\"\n\
+         h = 0.01     # time step, positive\nsteps = 1000     # number of steps, at least 1\n\n[labels]\n",
+        card.kebab, card.kebab
+    );
+    for (i, l) in lattice.labels.iter().enumerate() {
+        let what = match l.set {
+            true => "number of sites",
+            false if lattice.periodic.is_some() => "number of segments, of a ring also of nodes",
+            false => "number of segments, one less than nodes",
+        };
+        let _ = writeln!(text, "{} = {}     # {what}", l.index.text, choice.count(i));
+    }
+    ends(&mut text, stated, choice);
+    let Ok(unfolded) = unfold(&stated.model, lattice, choice) else {
+        return text;
+    };
+    for (table, fields) in [("parameters", card.parameters), ("initial", card.initial)] {
+        let _ = writeln!(text, "\n[{table}]");
+        let mut told: Vec<String> = Vec::new();
+        for field in fields {
+            let base = base(stated, &unfolded, field);
+            let key = base.as_ref().map_or(field.ascii, |b| b.key.as_str());
+            // What is given at an end has its value among those of all sites.
+            if told.iter().any(|t| t == key) || base.as_ref().is_some_and(|b| b.given) {
+                continue;
+            }
+            told.push(key.to_owned());
+            let _ = writeln!(
+                text,
+                "{key} = {}",
+                sample(stated, field, base.as_ref(), table)
+            );
+        }
+    }
+    text
+}
+
+/// How the line may end.
+fn ends(text: &mut String, stated: &Stated, choice: &Choice) {
+    let lattice = &stated.lattice;
+    let Some(line) = lattice.line_label() else {
+        return;
+    };
+    let [first, last] = [false, true].map(|end| lattice.alternatives(end));
+    let several = first.len() > 1 || last.len() > 1;
+    if !several && lattice.periodic.is_none() {
+        return;
+    }
+    let chosen = |names: &[String], end: usize| {
+        let name = names.get(choice.ends[end]).cloned();
+        name.unwrap_or_default()
+    };
+    let value = match choice.periodic {
+        true => "\"periodic\"".to_owned(),
+        false => format!("[\"{}\", \"{}\"]", chosen(&first, 0), chosen(&last, 1)),
+    };
+    let ring = match lattice.periodic.is_some() {
+        true => "\"periodic\", or ",
+        false => "",
+    };
+    let _ = writeln!(
+        text,
+        "\n[ends]\n{} = {value}     # {ring}the first end ({}) and the last one ({})",
+        line.index.text,
+        first.join(", "),
+        last.join(", ")
+    );
+}
+
+/// A sample value, as TOML.
+fn sample(stated: &Stated, field: &Field, base: Option<&Base>, table: &str) -> String {
+    let (rows, cols) = (field.rows, field.cols);
+    let lattice = &stated.lattice;
+    let labels = &lattice.labels;
+    let of_offset = |name: &str| {
+        let mut offsets = lattice.quantities.iter().filter_map(|q| q.offset.as_ref());
+        offsets.any(|o| ascii(&o.text) == name)
+    };
+    if base.is_none() && of_offset(field.ascii) {
+        let count = lattice.line_label().map_or("N", |l| l.count.text.as_str());
+        return along(rows, &format!("\"{count}\""));
+    }
+    let place = base.filter(|b| table == "initial" && !b.end);
+    if let Some(place) = place {
+        let label = labels.get(place.label);
+        let (i, n) = label.map_or(("i", "N"), |l| {
+            (l.index.text.as_str(), l.count.text.as_str())
+        });
+        let along_line = label
+            .and_then(|l| l.step.as_ref())
+            .map_or_else(|| format!("\"{i}\""), |s| format!("\"{}*{i}\"", s.text));
+        let has_offset = lattice
+            .quantities
+            .iter()
+            .any(|q| ascii(&q.name.text) == place.key && q.offset.is_some());
+        match field.kind {
+            Kind::Scalar if has_offset => return format!("\"{i} + 0.1*sin(2*pi*{i}/{n})\""),
+            Kind::Scalar => return format!("\"0.1*sin(2*pi*{i}/{n})\""),
+            Kind::Vector => return along(rows, &along_line),
+            Kind::BodyMomentum | Kind::SpatialMomentum | Kind::FieldMomentum
+                if rows * cols == 1 =>
+            {
+                return "0.0".to_owned();
+            }
+            _ => {}
+        }
+    }
+    let number = |i: usize, j: usize| crate::model_file::sample_entry(field, i, j);
+    if rows * cols == 1 {
+        return format!("{:?}", number(0, 0));
+    }
+    let row = |i: usize| {
+        let each: Vec<String> = (0..cols).map(|j| format!("{:?}", number(i, j))).collect();
+        each.join(", ")
+    };
+    match cols {
+        1 => format!("[{}]", (0..rows).map(row).collect::<Vec<_>>().join(", ")),
+        _ => {
+            let rows: Vec<String> = (0..rows).map(|i| format!("[{}]", row(i))).collect();
+            format!("[{}]", rows.join(", "))
+        }
+    }
+}
+
+/// A vector along its last axis.
+fn along(rows: usize, last: &str) -> String {
+    if rows == 1 {
+        return last.to_owned();
+    }
+    let zeros = vec!["0.0"; rows - 1].join(", ");
+    format!("[{zeros}, {last}]")
+}

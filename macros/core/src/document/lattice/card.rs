@@ -1,0 +1,148 @@
+//! What is said of a model with labels where it runs: its action, momenta and invariants with sums
+//! over sites in the place of lists of copies.
+
+use super::invariants::{plain, total};
+use super::{ranged, stated_configurations};
+use crate::derive::Derivation;
+use crate::document::folded::{Folded, From, Part};
+use crate::document::riccati_words;
+use crate::expr::{self, Expr, Node};
+use crate::lattice::{Choice, Lattice, Unfolded};
+use crate::print::formula::Formula;
+use crate::print::{Format, Style, expression, formula};
+
+/// Words on a lattice that runs.
+pub struct CardWords {
+    /// What was derived, in a few lines.
+    pub summary: String,
+    /// How the velocities are found.
+    pub solver: String,
+    /// Name and formula of each invariant, in the order of the derivation.
+    pub invariants: Vec<(String, String)>,
+}
+
+/// The words of a derived lattice; `solver` is how its copies are solved.
+pub fn card_words(
+    lattice: &Lattice,
+    choice: &Choice,
+    unfolded: Unfolded,
+    d: &Derivation,
+    solver: &str,
+) -> CardWords {
+    let part = Part {
+        choice: choice.clone(),
+        unfolded,
+        d: d.clone(),
+    };
+    let mut folded = Folded::new(lattice, &part);
+    let style = Style::new(&d.spec.time_index);
+    let mut lines = vec![format!("lattice              {}", choice.words(lattice))];
+    let terms = terms(&mut folded, &part);
+    let text = |folded: &Folded, f: &Formula| formula(f, &folded.symbols, &style, Format::Text);
+    lines.push(format!("Lagrangian           {}", text(&folded, &terms)));
+    for s in stated_configurations(&part) {
+        let from = From::Site(s.site);
+        let Some(m) = d.momenta.get(s.shown) else {
+            continue;
+        };
+        let reduced = folded.derived(&part, &m.reduced, from);
+        lines.push(format!(
+            "momentum of {:<8} {}",
+            s.name,
+            text(&folded, &reduced)
+        ));
+        if let Some(r) = d.solve.riccati.get(s.shown) {
+            let mut show = |e: &Expr| {
+                let e = folded.expression(&part, e, from);
+                let e = expr::collect(&folded.symbols, &e);
+                expression(&e, &folded.symbols, &style, Format::Text)
+            };
+            let words = without_sites(&part, &riccati_words(r, &mut show));
+            lines.push(format!("Riccati form         {words}"));
+        }
+    }
+    let mut invariants: Vec<(String, String)> = Vec::new();
+    for v in &d.invariants {
+        let name = plain(&part, &v.name).replace(' ', "_");
+        let mut own = name.clone();
+        let mut count = 1;
+        while invariants.iter().any(|(taken, _)| *taken == own) {
+            count += 1;
+            own = format!("{name}_{count}");
+        }
+        let formula = match &v.value {
+            Some(e) => {
+                let f = total(&mut folded, &part, e);
+                text(&folded, &f)
+            }
+            None => "kinetic plus potential energy of the limit".to_owned(),
+        };
+        invariants.push((own, formula));
+    }
+    let names: Vec<&str> = invariants.iter().map(|(name, _)| name.as_str()).collect();
+    lines.push(format!("invariants           {}", names.join(", ")));
+    lines.push(format!(
+        "time reversal        {}",
+        match d.reversible {
+            true => "symmetric: second order",
+            false => "not symmetric: first order",
+        }
+    ));
+    lines.push(format!("certificate          {}", d.certificate.summary()));
+    CardWords {
+        summary: lines.join("\n"),
+        solver: without_sites(&part, solver),
+        invariants,
+    }
+}
+
+fn terms(folded: &mut Folded, part: &Part) -> Formula {
+    let all = folded.terms(part).into_iter().zip(&part.unfolded.summands);
+    let all: Vec<_> = all.filter_map(|(e, s)| Some((e?, s.range))).collect();
+    let each = all.into_iter().map(|(e, range)| {
+        let e = expr::collect(&folded.symbols, &e);
+        match e.node() {
+            Node::Neg(inner) => {
+                let inner = Formula::Expr(inner.clone());
+                Formula::neg(ranged(folded.lattice, range, inner))
+            }
+            _ => ranged(folded.lattice, range, Formula::Expr(e.clone())),
+        }
+    });
+    match <[Formula; 1]>::try_from(each.collect::<Vec<_>>()) {
+        Ok([only]) => only,
+        Err(several) => Formula::Sum(several),
+    }
+}
+
+/// A list of copies, `Ω_0; Ω_1; Ω_2`, as one of its kind, `Ω_i`.
+fn without_sites(part: &Part, text: &str) -> String {
+    let mut out: Vec<String> = Vec::new();
+    for piece in text.split("; ") {
+        let words: Vec<String> = piece.split(' ').map(|w| word(part, w)).collect();
+        let piece = words.join(" ");
+        // The last of a list goes on with a word on all of them.
+        let stem = piece.split(',').next().unwrap_or("").to_owned();
+        match out.last_mut() {
+            Some(last) if *last == stem || last.ends_with(&format!(": {stem}")) => {
+                let rest = piece.get(stem.len()..).unwrap_or("");
+                last.push_str(rest);
+            }
+            _ => out.push(piece),
+        }
+    }
+    out.join("; ")
+}
+
+fn word(part: &Part, word: &str) -> String {
+    let bare = word.trim_end_matches([',', ';', ':']);
+    let tail = word.get(bare.len()..).unwrap_or("");
+    let name = bare.trim_start_matches('Δ');
+    match part.unfolded.copy(name) {
+        None => word.to_owned(),
+        Some(copy) => {
+            let mark = if bare.len() > name.len() { "Δ" } else { "" };
+            format!("{mark}{}_i{tail}", copy.of)
+        }
+    }
+}
