@@ -48,6 +48,21 @@ impl Stated {
         Some(choice)
     }
 
+    /// Whether a key belongs to an end condition or a ring that is not chosen: a case keeps it.
+    fn of_other_ends(&self, key: &str) -> bool {
+        let ends = self.lattice.ends.iter().flatten();
+        let mut names = ends
+            .flat_map(|a| &a.params)
+            .flat_map(|(names, _)| names.iter().map(|n| ascii(&n.text)));
+        let bare = key.rsplit_once('_').map_or(key, |(base, _)| base);
+        let mut offsets = self
+            .lattice
+            .quantities
+            .iter()
+            .filter_map(|q| q.offset.as_ref());
+        names.any(|n| n == key || n == bare) || offsets.any(|o| ascii(&o.text) == key)
+    }
+
     fn unfolded(&self, choice: &Choice) -> Option<Unfolded> {
         unfold(&self.model, &self.lattice, choice).ok()
     }
@@ -457,7 +472,8 @@ impl Writer<'_> {
             // Of a configuration whose every copy is given nothing is initial, and of an alternative
             // that is not chosen nothing is asked.
             let of_given = self.unfolded.copies.iter().any(|c| ascii(&c.of) == asked);
-            if name == "initial" && of_given {
+            let of_other_ends = self.stated.of_other_ends(asked);
+            if (name == "initial" && of_given) || (name == "parameters" && of_other_ends) {
                 continue;
             }
             let hint = did_you_mean(asked, used.iter().map(String::as_str));

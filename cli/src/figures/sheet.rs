@@ -236,6 +236,7 @@ pub(super) fn panel(caption: &str, y_label: &str, lines: Vec<Line<'_>>) -> Panel
         })
         .collect();
     Panel {
+        map: None,
         caption: caption.to_owned(),
         y_label: y_label.to_owned(),
         y: Axis::around(&curves),
@@ -265,6 +266,7 @@ pub(super) fn magnitudes(caption: &str, y_label: &str, lines: Vec<Line<'_>>) -> 
         })
         .collect();
     Panel {
+        map: None,
         caption: caption.to_owned(),
         y_label: y_label.to_owned(),
         y: Axis::decades(&curves),

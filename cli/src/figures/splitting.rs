@@ -79,6 +79,7 @@ pub(super) fn energy_against_step(gallery: &Gallery) -> Result<String, Failure> 
             stroke: crate::plots::curve::Stroke::shared_bound(),
         });
         Panel {
+            map: None,
             caption: caption.to_owned(),
             y_label: y_label.to_owned(),
             y: Axis::decades(&curves),
@@ -206,6 +207,7 @@ pub(super) fn time_against_steps(gallery: &Gallery) -> Result<String, Failure> {
         x: Axis::logarithmic(&places),
         x_label: "number of steps N".to_owned(),
         panels: vec![Panel {
+            map: None,
             caption: "time of computation, attitude included".to_owned(),
             y_label: "seconds".to_owned(),
             y: Axis::decades(&curves),

@@ -5,6 +5,7 @@ mod csv;
 mod names;
 mod npz;
 mod run_json;
+pub(crate) mod sites;
 mod staging;
 mod standing;
 

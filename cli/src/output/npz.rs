@@ -3,9 +3,11 @@
 //! PKWARE APPNOTE 6.3 (sections 4.3.7, 4.3.12, 4.3.16). Every member is dated 1980-01-01.
 
 use super::names;
+use super::sites::{AtSites, at_sites};
 use crate::record::{Record, Table};
 use clebsch::card::Card;
 use std::io::{self, Write};
+use std::ops::Range;
 
 /// A named array whose first index is the sample.
 pub(super) struct Array<'a> {
@@ -23,6 +25,13 @@ enum Entries<'a> {
         from: usize,
         width: usize,
     },
+    /// Columns of a table, one range for each site.
+    Sites {
+        table: &'a Table,
+        columns: Vec<Range<usize>>,
+    },
+    /// The numbers of the sites.
+    Numbers(Vec<u64>),
 }
 
 /// All arrays of a record: `node`, `time`, the observables, the invariants.
@@ -59,8 +68,14 @@ pub(super) fn arrays<'a>(card: &Card, record: &'a Record) -> Vec<Array<'a>> {
             entries,
         });
     };
+    let at_sites = at_sites(card);
     let mut from = 0;
     for field in card.observables {
+        let of_a_site = |q: &AtSites<'_>| q.members.iter().any(|(_, c)| c.start == from);
+        if at_sites.iter().any(of_a_site) {
+            from += field.count();
+            continue;
+        }
         let name = field.ascii.to_owned();
         push(name, field.rows, field.cols, &record.observables, &mut from);
     }
@@ -69,6 +84,34 @@ pub(super) fn arrays<'a>(card: &Card, record: &'a Record) -> Vec<Array<'a>> {
         let name = names::invariant(invariant);
         push(name, invariant.rows, 1, &record.invariants, &mut from);
     }
+    for q in at_sites {
+        let (rows, cols) = (q.field.rows, q.field.cols);
+        let mut shape = vec![samples, q.members.len()];
+        shape.extend((rows * cols > 1).then_some(rows));
+        shape.extend((cols > 1).then_some(cols));
+        let whole = q
+            .members
+            .iter()
+            .enumerate()
+            .all(|(i, (site, _))| i == *site);
+        if !whole {
+            // Some site has its value given.
+            let numbers = q.members.iter().map(|(site, _)| *site as u64);
+            arrays.push(Array {
+                name: format!("sites_of_{}", q.key),
+                shape: vec![q.members.len()],
+                entries: Entries::Numbers(numbers.collect()),
+            });
+        }
+        arrays.push(Array {
+            name: q.key,
+            shape,
+            entries: Entries::Sites {
+                table: &record.observables,
+                columns: q.members.into_iter().map(|(_, c)| c).collect(),
+            },
+        });
+    }
     arrays
 }
 
@@ -76,8 +119,8 @@ impl Array<'_> {
     /// The npy header: magic, version 1.0, dictionary padded so that the data are 64-byte aligned.
     fn header(&self) -> Vec<u8> {
         let kind = match self.entries {
-            Entries::Nodes(_) => "<u8",
-            Entries::Times(_) | Entries::Columns { .. } => "<f8",
+            Entries::Nodes(_) | Entries::Numbers(_) => "<u8",
+            Entries::Times(_) | Entries::Columns { .. } | Entries::Sites { .. } => "<f8",
         };
         // A tuple of one needs its comma; more may have it.
         let shape: String = self.shape.iter().map(|n| format!("{n}, ")).collect();
@@ -101,11 +144,18 @@ impl Array<'_> {
 
     /// Shows the data, eight bytes at a time.
     fn each(&self, mut show: impl FnMut(&[u8]) -> io::Result<()>) -> io::Result<()> {
-        match self.entries {
+        match &self.entries {
+            Entries::Numbers(list) => list.iter().try_for_each(|n| show(&n.to_le_bytes())),
+            Entries::Sites { table, columns } => table.rows().try_for_each(|row| {
+                let cells = columns
+                    .iter()
+                    .flat_map(|c| row.get(c.clone()).into_iter().flatten());
+                cells.into_iter().try_for_each(|x| show(&x.to_le_bytes()))
+            }),
             Entries::Nodes(nodes) => nodes.iter().try_for_each(|node| show(&node.to_le_bytes())),
             Entries::Times(times) => times.iter().try_for_each(|time| show(&time.to_le_bytes())),
             Entries::Columns { table, from, width } => table.rows().try_for_each(|row| {
-                let columns = row.iter().skip(from).take(width);
+                let columns = row.iter().skip(*from).take(*width);
                 columns.into_iter().try_for_each(|x| show(&x.to_le_bytes()))
             }),
         }

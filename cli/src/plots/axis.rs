@@ -53,6 +53,16 @@ impl Axis {
         }
     }
 
+    /// From `low` to `high` with ticks at whole numbers only: sites.
+    pub fn whole(low: f64, high: f64, count: u32) -> Self {
+        let mut axis = Self::linear(low, high, count);
+        axis.ticks.retain(|(at, _)| (at - at.round()).abs() < 1e-9);
+        for (at, label) in &mut axis.ticks {
+            *label = format!("{:.0}", at.round() + 0.0);
+        }
+        axis
+    }
+
     /// Around the values of `curves`, with a margin. Values that agree to six digits are drawn as a
     /// flat line, not as rounding noise.
     pub fn around(curves: &[Curve]) -> Self {

@@ -96,6 +96,7 @@ fn panel<'a>(
         })
         .collect();
     Panel {
+        map: None,
         caption: caption.to_owned(),
         y_label: y_label.to_owned(),
         y: Axis::decades(&curves),

@@ -3,6 +3,7 @@
 
 use super::axis::Axis;
 use super::curve::{Curve, Marks, Stroke};
+use super::map::Map;
 use plotters::coord::Shift;
 use plotters::prelude::{
     ChartBuilder, Circle, Color, DashedLineSeries, DrawingArea, IntoDrawingArea, LineSeries,
@@ -47,11 +48,13 @@ pub struct Panel {
     pub y: Axis,
     /// What is drawn, the last on top.
     pub curves: Vec<Curve>,
+    /// Colours over time and sites, below the curves.
+    pub map: Option<Map>,
     /// Height in pixels, caption included.
     pub height: u32,
 }
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 impl Figure {
     /// The figure as SVG.
@@ -141,6 +144,9 @@ impl Panel {
             .x_desc(x_described)
             .y_desc(y_label)
             .draw()?;
+        if let Some(map) = &self.map {
+            map.draw(&mut chart)?;
+        }
         for curve in &self.curves {
             let points = curve
                 .points
@@ -165,6 +171,9 @@ impl Panel {
 
     /// Room for the longest text of the legend, at 7.3 pixels a letter: as wide as the widest of the usual fonts.
     fn legend_width(&self) -> u32 {
+        if self.map.is_some() {
+            return 100;
+        }
         let notes = self.curves.iter().filter_map(|curve| curve.note.as_ref());
         let texts = self.curves.iter().map(|curve| &curve.label).chain(notes);
         let letters = texts.map(|text| text.chars().count()).max().unwrap_or(0);
@@ -173,6 +182,9 @@ impl Panel {
     }
 
     fn legend(&self, area: &Area<'_>) -> Result<(), Box<dyn std::error::Error>> {
+        if let Some(map) = &self.map {
+            return map.legend(area);
+        }
         let mut y = 28;
         for curve in self.curves.iter().filter(|curve| !curve.label.is_empty()) {
             sample(area, curve.stroke, y)?;
@@ -229,7 +241,7 @@ fn sample(area: &Area<'_>, stroke: Stroke, y: i32) -> Result<(), Box<dyn std::er
     Ok(())
 }
 
-fn text(
+pub(super) fn text(
     area: &Area<'_>,
     words: &str,
     size: u32,
@@ -256,6 +268,6 @@ fn line(color: RGBColor, quarters: u32) -> ShapeStyle {
     color.stroke_width(quarters * FINE / 4)
 }
 
-const fn fine(pixels: u32) -> u32 {
+pub(super) const fn fine(pixels: u32) -> u32 {
     pixels * FINE
 }

@@ -5,7 +5,9 @@ pub mod axis;
 mod comparison;
 pub mod curve;
 pub mod figure;
+pub mod map;
 pub(crate) mod reduce;
+mod sites;
 mod window;
 
 pub(crate) use comparison::comparison;
@@ -109,6 +111,7 @@ pub(crate) fn invariants(run: &Finished<'_>, record: &Record) -> Plot {
         y_label: "|I(t) − I(0)| / scale".to_owned(),
         y: Axis::decades(&curves),
         curves,
+        map: None,
         // Room for the legend, two lines an entry.
         height: 380.max(50 + 37 * u32::try_from(run.outcomes.len()).unwrap_or(0)),
     };
@@ -161,6 +164,9 @@ fn observables(
     what: &str,
     wanted: impl Fn(&Field, bool) -> bool,
 ) -> Plot {
+    if let Some(maps) = sites::maps(run, samples, what, &wanted) {
+        return maps;
+    }
     let mut from = 0;
     let all = run.card.observables;
     let placed = all.iter().enumerate().map(|(index, field)| {
@@ -205,6 +211,7 @@ fn panel(field: &Field, columns: Range<usize>, shown: Window<'_>) -> Panel {
         // As high as its legend, if that is long: the entries of a large matrix.
         height: 230.max(45 + 17 * u32::try_from(curves.len()).unwrap_or(0)),
         curves,
+        map: None,
     }
 }
 
