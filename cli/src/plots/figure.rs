@@ -72,7 +72,12 @@ impl Figure {
         // The view box keeps the fine coordinates; the size on the page is the plain one.
         let fine = format!("width=\"{}\" height=\"{}\"", WIDTH * FINE, height * FINE);
         let plain = format!("width=\"{WIDTH}\" height=\"{height}\"");
-        Ok(svg.replacen(&fine, &plain, 1))
+        let svg = svg.replacen(&fine, &plain, 1);
+        Ok(match self.panels.iter().any(|panel| panel.map.is_some()) {
+            // Cells that meet leave no line between them.
+            true => svg.replacen("<svg ", "<svg shape-rendering=\"crispEdges\" ", 1),
+            false => svg,
+        })
     }
 
     fn draw(&self, root: &Area<'_>) -> Result<(), Box<dyn std::error::Error>> {

@@ -89,7 +89,10 @@ impl Map {
         for step in 0..STEPS {
             let part = 1.0 - f64::from(step) / f64::from(STEPS - 1);
             let y = TOP + TALL * step;
-            let corners = [(6 * unit, y * unit), (20 * unit, (TOP + TALL * STEPS) * unit)];
+            let corners = [
+                (6 * unit, y * unit),
+                (20 * unit, (TOP + TALL * STEPS) * unit),
+            ];
             area.draw(&Rectangle::new(corners, color(part).filled()))?;
         }
         for (part, y) in [

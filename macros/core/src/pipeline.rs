@@ -7,6 +7,7 @@ use crate::emit;
 use crate::lattice::{self, Choice, Lattice, Unfolded};
 use crate::syntax;
 use crate::syntax::ast::Model;
+use crate::work;
 use proc_macro2::{TokenStream, TokenTree};
 
 /// Derives the model that the tokens state.
@@ -42,6 +43,12 @@ pub fn representative(model: &Model, line: &Lattice) -> Result<Choice, Errors> {
     Ok(Choice::representative(line, width))
 }
 
+/// How many times the work of an ordinary model a lattice is given: as many as it has copies, the work
+/// of each growing with their number.
+fn room(unfolded: &Unfolded) -> u64 {
+    (unfolded.copies.len() as u64 / 8).max(1)
+}
+
 /// Derives a model with labels for so many sites and these end conditions.
 pub fn derive_lattice(
     model: &Model,
@@ -49,6 +56,7 @@ pub fn derive_lattice(
     choice: &Choice,
 ) -> Result<(Unfolded, Derivation), Errors> {
     let unfolded = lattice::unfold(model, line, choice)?;
+    let _room = work::room(room(&unfolded));
     let spec = check::check_written_out(&unfolded.model)?;
     let derived = derive::derive(spec).map_err(Errors::first_at_each_place)?;
     Ok((unfolded, derived))

@@ -33,8 +33,44 @@ thread_local! {
     static BOUNDED: Cell<bool> = const { Cell::new(false) };
     static MADE: Cell<u64> = const { Cell::new(0) };
     static TAKEN: Cell<u64> = const { Cell::new(0) };
+    /// How many times the work of an ordinary model is given: a lattice that is written out has the
+    /// bodies of many.
+    static ROOM: Cell<u64> = const { Cell::new(1) };
     /// Nodes of the expression that was too large to make; 0 where none was.
     static ASKED: Cell<u32> = const { Cell::new(0) };
+}
+
+/// More work than an ordinary model is given, until it is dropped.
+pub(crate) struct Room {
+    before: u64,
+}
+
+/// Gives so many times the work of an ordinary model.
+pub(crate) fn room(times: u64) -> Room {
+    Room {
+        before: ROOM.replace(times.max(1)),
+    }
+}
+
+impl Drop for Room {
+    fn drop(&mut self) {
+        ROOM.set(self.before);
+    }
+}
+
+/// How many times the work of an ordinary model the derivation at hand is given.
+pub(crate) fn times() -> u64 {
+    ROOM.get()
+}
+
+/// Most nodes of expressions that the derivation at hand makes.
+fn nodes() -> u64 {
+    NODES.saturating_mul(ROOM.get())
+}
+
+/// Most products of numbers that the search for invariants of the derivation at hand takes.
+pub(crate) fn products() -> u64 {
+    PRODUCTS.saturating_mul(ROOM.get())
 }
 
 /// The work of this thread from `begin` on, bounded until it is dropped.
@@ -72,7 +108,7 @@ impl Drop for Count {
 
 /// Whether more nodes were asked for than a derivation is given: what was made since is void.
 pub(crate) fn exhausted() -> bool {
-    BOUNDED.get() && MADE.get() > NODES
+    BOUNDED.get() && MADE.get() > nodes()
 }
 
 /// Books a node of an expression of this size; `false` when there is none left.
@@ -97,10 +133,12 @@ pub(crate) fn excess() -> Option<String> {
             "an expression of its derivation has {asked} nodes, and at most {LARGEST} are taken"
         )),
         (true, _) => Some(format!(
-            "its derivation makes more than {NODES} nodes of expressions, the most that is given"
+            "its derivation makes more than {} nodes of expressions, the most that is given",
+            nodes()
         )),
         (_, true) => Some(format!(
-            "its derivation takes more than {PRODUCTS} products of numbers, the most that is given"
+            "its derivation takes more than {} products of numbers, the most that is given",
+            products()
         )),
         _ => None,
     }
@@ -114,5 +152,5 @@ pub(crate) fn take(products: usize) -> bool {
 
 /// Whether the search for invariants was cut short.
 pub(crate) fn cut_short() -> bool {
-    BOUNDED.get() && TAKEN.get() > PRODUCTS
+    BOUNDED.get() && TAKEN.get() > products()
 }

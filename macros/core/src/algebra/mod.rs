@@ -34,11 +34,24 @@ use std::collections::HashMap;
 /// thousand; the bound keeps any input of 10 kB below two seconds.
 const WORK_LIMIT: u64 = 450_000;
 
+/// The same of the model at hand: a lattice that is written out is given more.
+fn work_limit() -> u64 {
+    WORK_LIMIT.saturating_mul(crate::work::times())
+}
+
 /// Nodes evaluated at exact points for one model; beyond it only normal forms decide.
 const EVALUATION_LIMIT: u64 = 300_000;
 
 /// Largest number of terms kept; beyond that the work is refused too.
 const TERM_LIMIT: usize = 4_000;
+
+fn evaluation_limit() -> u64 {
+    EVALUATION_LIMIT.saturating_mul(crate::work::times())
+}
+
+fn term_limit() -> usize {
+    TERM_LIMIT.saturating_mul(usize::try_from(crate::work::times()).unwrap_or(1))
+}
 
 /// Longest word kept.
 const WORD_LIMIT: usize = 64;
@@ -145,7 +158,7 @@ impl<'a> Algebra<'a> {
 
     /// Whether an expression was too large to normalise; every answer since is void.
     pub fn exhausted(&self) -> bool {
-        self.work.get() > WORK_LIMIT || crate::work::exhausted()
+        self.work.get() > work_limit() || crate::work::exhausted()
     }
 
     /// How it is known that the expression vanishes identically, if it does. Nothing when it does
@@ -171,10 +184,10 @@ impl<'a> Algebra<'a> {
     fn vanishes_at_points(&self, e: &Expr) -> bool {
         let spent = self.evaluated.get().saturating_add(u64::from(e.size()));
         self.evaluated.set(spent);
-        if spent > EVALUATION_LIMIT {
+        if spent > evaluation_limit() {
             self.note(Excess::Evaluated(spent));
         }
-        spent <= EVALUATION_LIMIT && exact::vanishes(self.symbols, e)
+        spent <= evaluation_limit() && exact::vanishes(self.symbols, e)
     }
 
     /// Whether the expression vanishes identically.
@@ -217,7 +230,10 @@ impl<'a> Algebra<'a> {
         let spent = self.work.get();
         Some(match self.excess.get() {
             Some(Excess::Terms(n)) => {
-                format!("a normal form has {n} terms, and at most {TERM_LIMIT} are taken")
+                format!(
+                    "a normal form has {n} terms, and at most {} are taken",
+                    term_limit()
+                )
             }
             Some(Excess::Word(n)) => format!(
                 "a product in its normal form has {n} factors, and at most {WORD_LIMIT} are taken"
@@ -226,11 +242,13 @@ impl<'a> Algebra<'a> {
                 "a coefficient of its normal form is no fraction of whole numbers below 2^127"
                     .to_owned()
             }
-            _ if spent > WORK_LIMIT => format!(
-                "its normal forms take {spent} products of terms, and at most {WORK_LIMIT} are taken"
+            _ if spent > work_limit() => format!(
+                "its normal forms take {spent} products of terms, and at most {} are taken",
+                work_limit()
             ),
             Some(Excess::Evaluated(n)) => format!(
-                "its identities have {n} nodes to be evaluated, and at most {EVALUATION_LIMIT} are"
+                "its identities have {n} nodes to be evaluated, and at most {} are",
+                evaluation_limit()
             ),
             None => return None,
         })

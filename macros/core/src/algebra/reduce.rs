@@ -5,7 +5,7 @@ use super::factor::{Factor, Word};
 use super::monomial::{self, Atom, Monomial};
 use super::poly::{Poly, Term};
 use super::rational::Rational;
-use super::{Algebra, Excess, TERM_LIMIT, WORD_LIMIT};
+use super::{Algebra, Excess, WORD_LIMIT, term_limit};
 use crate::expr::shape::{Dim, Shape};
 
 impl Algebra<'_> {
@@ -42,7 +42,7 @@ impl Algebra<'_> {
         if coefficient.is_zero() || !self.spend(1 + word.len() / 4) {
             return;
         }
-        if word.len() > WORD_LIMIT || out.terms.len() > TERM_LIMIT {
+        if word.len() > WORD_LIMIT || out.terms.len() > term_limit() {
             self.note(match word.len() > WORD_LIMIT {
                 true => Excess::Word(word.len()),
                 false => Excess::Terms(out.terms.len()),

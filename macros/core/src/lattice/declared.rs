@@ -112,6 +112,7 @@ impl Lattice {
             out.statement(statement, &mut errors);
         }
         out.check_ends(&mut errors);
+        out.check_names(model, &mut errors);
         errors.propagate()?;
         Ok(out)
     }
@@ -380,6 +381,38 @@ impl Lattice {
             );
         }
         *list = alternatives.to_vec();
+    }
+
+    /// Parameters of end conditions, indices and numbers of sites have names of their own.
+    fn check_names(&self, model: &Model, errors: &mut Errors) {
+        let declared = |s: &Statement| -> Vec<Name> {
+            match s {
+                Statement::Param { names, .. } | Statement::Advected { names, .. } => names.clone(),
+                Statement::Field { names, offset, .. } => {
+                    names.iter().chain(offset).cloned().collect()
+                }
+                Statement::Group { name, velocity, .. } => vec![name.clone(), velocity.clone()],
+                Statement::Let { name, .. } | Statement::Dim { name, .. } => vec![name.clone()],
+                Statement::Label {
+                    step: Some(step), ..
+                } => vec![step.clone()],
+                _ => Vec::new(),
+            }
+        };
+        let known: Vec<Name> = model.statements.iter().flat_map(declared).collect();
+        let ends = self.ends.iter().flatten();
+        let own = ends.flat_map(|a| &a.params).flat_map(|(names, _)| names);
+        let labels = self.labels.iter().flat_map(|l| [&l.index, &l.count]);
+        for name in own.chain(labels) {
+            if let Some(first) = known.iter().find(|k| k.text == name.text) {
+                let message = format!("`{}` is declared twice", name.text);
+                let d = Diagnostic::new(name.place, message);
+                errors.push(d.also(
+                    first.place,
+                    format!("`{}` is declared here as well", name.text),
+                ));
+            }
+        }
     }
 
     /// What is given at an end is a configuration there.

@@ -197,6 +197,14 @@ fn mistakes_are_told_in_the_words_of_the_statement() {
         ),
         (format!("{kinetic}; field X: Real offset L;"), "on a line"),
         (format!("{kinetic}; scale q;"), "stands once"),
+        (
+            format!("{kinetic}; end i = 0 {{ held {{ param m: Real; term m*q; }} }}"),
+            "`m` is declared twice",
+        ),
+        (
+            format!("{kinetic}; field N: Real at nodes;"),
+            "`N` is declared twice",
+        ),
     ];
     for (middle, expected) in cases {
         let found = refused(&middle);

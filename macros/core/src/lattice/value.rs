@@ -4,8 +4,8 @@ use crate::syntax;
 use crate::syntax::ast::{Expression, Kind};
 
 /// Functions that site data may hold.
-const FUNCTIONS: [&str; 11] = [
-    "sin", "cos", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh", "abs", "sign",
+const FUNCTIONS: [&str; 12] = [
+    "sin", "cos", "tan", "atan", "exp", "log", "sqrt", "sinh", "cosh", "tanh", "abs", "sign",
 ];
 
 /// An expression that was read.
@@ -75,6 +75,7 @@ fn value(e: &Expression, of: &dyn Fn(&str) -> Option<f64>) -> Result<f64, String
                 "sin" => x.sin(),
                 "cos" => x.cos(),
                 "tan" => x.tan(),
+                "atan" => x.atan(),
                 "exp" => x.exp(),
                 "log" => x.ln(),
                 "sqrt" => x.sqrt(),

@@ -195,7 +195,7 @@ pub fn invariants(x: &Inputs) -> (Vec<Invariant>, Integrability) {
             Some(why) => Known::NotSought(why),
             None if work::cut_short() => Known::NotSought(format!(
                 "the search took more than {} products of numbers",
-                work::PRODUCTS
+                work::products()
             )),
             None => Known::Counted(casimirs.counts),
         },

@@ -1,0 +1,267 @@
+//! Lattices that run from their files: closed forms, orders, copies of a lone body, and steps equal to
+//! those of the same bodies typed by hand and compiled.
+
+#![allow(missing_docs)]
+
+mod side_by_side;
+
+use clebsch::card::{Card, Settings, Trajectory};
+use clebsch_core::lattice::{Choice, Lattice};
+use clebsch_core::pipeline;
+use clebsch_models::Case;
+use side_by_side::compare;
+
+const TODA: &str = include_str!("../../models/lattices/toda-chain.clebsch");
+const TOPS: &str = include_str!("../../models/lattices/coupled-tops.clebsch");
+const SINE_GORDON: &str = include_str!("../../models/lattices/sine-gordon.clebsch");
+
+clebsch::model! {
+    pub model Three {
+        param m: Real;
+        param a: Real;
+        param b: Real;
+        field q_0, q_1, q_2: Real;
+        param L: Real;
+        lagrangian = m*(next(q_0) - q_0)^2/(2*h) + m*(next(q_1) - q_1)^2/(2*h) + m*(next(q_2) - q_2)^2/(2*h)
+            - h*((a/b)*exp(-b*(q_1 - q_0))) - h*((a/b)*exp(-b*(q_2 - q_1))) - h*((a/b)*exp(-b*(q_0 + L - q_2)))
+            - h*(a*(q_1 - q_0)) - h*(a*(q_2 - q_1)) - h*(a*(q_0 + L - q_2));
+    }
+}
+
+fn card(source: &str, count: usize, ring: bool, ends: [&str; 2]) -> Card {
+    let model = pipeline::parse_source(source).unwrap();
+    let lattice = Lattice::read(&model).unwrap();
+    let choice = Choice::representative(&lattice, 1);
+    let choice = choice.with_count(&lattice, "i", count).unwrap();
+    let choice = match ring {
+        true => choice.with_ring(&lattice).unwrap(),
+        false => {
+            let first = choice.with_end(&lattice, false, ends[0]).unwrap();
+            first.with_end(&lattice, true, ends[1]).unwrap()
+        }
+    };
+    clebsch_interpret::card_on_lattice(source, &choice)
+        .expect("is read")
+        .0
+}
+
+/// The values of fields in the order of the card, by the name of the quantity and the site.
+fn values(
+    fields: &[clebsch::card::Field],
+    of: &dyn Fn(&str, Option<usize>) -> Vec<f64>,
+) -> Vec<Vec<f64>> {
+    let each = fields.iter().map(|f| {
+        let split = f.ascii.rsplit_once('_');
+        match split.and_then(|(base, site)| Some((base, site.parse::<usize>().ok()?))) {
+            Some((base, site)) => of(base, Some(site)),
+            None => of(f.ascii, None),
+        }
+    });
+    each.collect()
+}
+
+fn observed(t: &dyn Trajectory, name: &str) -> Vec<f64> {
+    let card = t.card();
+    let mut all = vec![0.0; card.observable_count()];
+    t.observe(&mut all);
+    let mut from = 0;
+    for f in card.observables {
+        if f.ascii == name {
+            return all[from..from + f.count()].to_vec();
+        }
+        from += f.count();
+    }
+    panic!("{name} is no observable");
+}
+
+#[test]
+fn a_ring_steps_as_the_same_points_typed_by_hand_and_compiled() {
+    let read = card(TODA, 3, true, ["free", "free"]);
+    let names =
+        |fields: &[clebsch::card::Field]| -> Vec<&str> { fields.iter().map(|f| f.ascii).collect() };
+    let mut given = names(Three::CARD.parameters);
+    let mut found = names(read.parameters);
+    given.sort_unstable();
+    found.sort_unstable();
+    assert_eq!(given, found);
+    let value = |name: &str, site: Option<usize>| {
+        let j = site.unwrap_or(0) as f64;
+        vec![match name {
+            "m" => 1.3,
+            "a" => 0.8,
+            "b" => 1.1,
+            "L" => 4.0,
+            "q" => 1.2 * j + 0.1 * j * j,
+            _ => 0.3 - 0.2 * j,
+        }]
+    };
+    // The parameter of the offset is declared with the field, after the others in both.
+    assert_eq!(names(Three::CARD.initial), names(read.initial));
+    let case = |card: &Card| Case {
+        name: "here".to_owned(),
+        doc: String::new(),
+        h: 0.05,
+        steps: 400,
+        parameters: values(card.parameters, &value),
+        initial: values(card.initial, &value),
+        bounds: Vec::new(),
+    };
+    assert_eq!(case(&Three::CARD).parameters, case(&read).parameters);
+    for order in [2, 4] {
+        let settings = Settings::step(0.05).of_order(order);
+        let made = compare(&Three::CARD, &read, &case(&read), settings, 400);
+        assert_eq!(made, 400);
+    }
+}
+
+/// A soliton of Toda's chain with parameter κ, its place a function of site and time.
+fn soliton(kappa: f64, site: f64, time: f64) -> (f64, f64) {
+    let beta = kappa.sinh();
+    let phase = |n: f64| 2.0 * (kappa * n - beta * time);
+    let q = phase(site - 1.0).exp().ln_1p() - phase(site).exp().ln_1p();
+    let part = |n: f64| 1.0 / (1.0 + (-phase(n)).exp());
+    let p = 2.0 * beta * (part(site) - part(site - 1.0));
+    (q, p)
+}
+
+/// The largest error of a soliton on a ring after a time.
+fn soliton_error(h: f64, steps: u64) -> f64 {
+    let count = 40;
+    let read = card(TODA, count, true, ["free", "free"]);
+    let (kappa, middle) = (1.0, 16.0);
+    let value = |name: &str, site: Option<usize>| {
+        let (q, p) = soliton(kappa, site.unwrap_or(0) as f64 - middle, 0.0);
+        vec![match name {
+            "m" | "a" | "b" => 1.0,
+            "L" => -2.0 * kappa,
+            "q" => q,
+            _ => p,
+        }]
+    };
+    let (parameters, initial) = (
+        values(read.parameters, &value),
+        values(read.initial, &value),
+    );
+    let mut t = (read.open)(&parameters, &initial, Settings::step(h)).expect("starts");
+    let mut before = vec![0.0; read.invariant_count()];
+    t.invariants(&mut before);
+    for _ in 0..steps {
+        t.step().expect("steps");
+    }
+    let mut after = vec![0.0; read.invariant_count()];
+    t.invariants(&mut after);
+    // The energy swings with h squared; the momentum keeps its rounding.
+    assert!(
+        (after[0] - before[0]).abs() < 0.2 * h * h,
+        "{before:?} {after:?}"
+    );
+    assert!((after[1] - before[1]).abs() < 1e-13, "{before:?} {after:?}");
+    let time = h * steps as f64;
+    let errors = (0..count).map(|j| {
+        let (q, _) = soliton(kappa, j as f64 - middle, time);
+        (observed(&*t, &format!("q_{j}"))[0] - q).abs()
+    });
+    errors.fold(0.0, f64::max)
+}
+
+#[test]
+fn a_soliton_keeps_its_form_with_order_two() {
+    let errors: Vec<f64> = [(0.04, 125), (0.02, 250), (0.01, 500)]
+        .into_iter()
+        .map(|(h, steps)| soliton_error(h, steps))
+        .collect();
+    for pair in errors.windows(2) {
+        let order = (pair[0] / pair[1]).log2();
+        // The next term of the error is smaller by h squared.
+        assert!(
+            (order - 2.0).abs() < 0.01,
+            "order {order}, errors {errors:?}"
+        );
+    }
+}
+
+/// A mode of small swings: sites, ends, and whether nodes or bellies of it lie at the ends.
+fn mode_error(ends: [&str; 2], shape: &dyn Fn(f64) -> f64) -> f64 {
+    let (count, s, k, h) = (12, 0.5, 0.7, 0.1);
+    let wave = std::f64::consts::PI / count as f64;
+    let turn = 4.0 * (wave / 2.0).sin().powi(2) / (s * s) + k;
+    let omega = 2.0 / h * (h * turn.sqrt() / 2.0).asin();
+    let size = 1e-7;
+    let read = card(SINE_GORDON, count, false, ends);
+    let value = |name: &str, site: Option<usize>| {
+        let j = site.unwrap_or(0);
+        vec![match name {
+            "s" => s,
+            "k" => k,
+            "w" if j == 0 || j == count => s / 2.0,
+            "w" => s,
+            "u" => size * shape(wave * j as f64),
+            _ => 0.0,
+        }]
+    };
+    let (parameters, initial) = (
+        values(read.parameters, &value),
+        values(read.initial, &value),
+    );
+    let mut t = (read.open)(&parameters, &initial, Settings::step(h)).expect("starts");
+    let steps = 300;
+    for _ in 0..steps {
+        t.step().expect("steps");
+    }
+    let swing = (omega * h * f64::from(steps)).cos();
+    let errors = read.observables.iter().filter_map(|f| {
+        let site: f64 = f.ascii.strip_prefix("u_")?.parse().ok()?;
+        let exact = size * shape(wave * site) * swing;
+        Some((observed(&*t, f.ascii)[0] - exact).abs() / size)
+    });
+    errors.fold(0.0, f64::max)
+}
+
+#[test]
+fn small_swings_between_pinned_and_free_ends_are_those_of_the_discrete_dispersion_relation() {
+    // The cubic term of the sine is 1e-14 of the linear one, and adds up over thirty radians.
+    assert!(mode_error(["pinned", "pinned"], &f64::sin) < 1e-12);
+    assert!(mode_error(["free", "free"], &f64::cos) < 1e-12);
+    // Another end has another mode.
+    assert!(mode_error(["free", "pinned"], &f64::cos) > 0.1);
+}
+
+#[test]
+fn tops_in_phase_with_free_ends_are_one_top() {
+    let lone = clebsch_models::gallery()
+        .into_iter()
+        .find(|e| e.card.kebab == "heavy-top")
+        .expect("is in the gallery")
+        .card;
+    let attitude = clebsch::groups::Rotation::exp(&clebsch::nalgebra::Vector3::new(0.1, 0.6, 0.0));
+    let matrix: Vec<f64> = attitude.matrix().transpose().iter().copied().collect();
+    let value = |name: &str, _: Option<usize>| match name {
+        "s" => vec![1.0],
+        "J" => vec![0.5, 0.0, 0.0, 0.0, 0.7, 0.0, 0.0, 0.0, 1.5],
+        "C" => vec![0.4, 0.0, 0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 0.2],
+        "gU" | "z" => vec![0.0, 0.0, 1.0],
+        n if n.starts_with("Lambda") => matrix.clone(),
+        _ => vec![0.1, 0.0, 1.0],
+    };
+    for count in [1, 4] {
+        let read = card(TOPS, count, false, ["free", "free"]);
+        let settings = Settings::step(0.05);
+        let start = |c: &Card| {
+            let (p, i) = (values(c.parameters, &value), values(c.initial, &value));
+            (c.open)(&p, &i, settings).expect("starts")
+        };
+        let (mut one, mut row) = (start(&lone), start(&read));
+        for _ in 0..200 {
+            one.step().expect("steps");
+            row.step().expect("steps");
+        }
+        let wanted = observed(&*one, "body_momentum");
+        for j in 0..=count {
+            let found = observed(&*row, &format!("body_momentum_Lambda_{j}"));
+            for (a, b) in wanted.iter().zip(&found) {
+                // The moments of the neighbours vanish up to the rounding of C.
+                assert!((a - b).abs() < 1e-13, "{count} {j}: {wanted:?} {found:?}");
+            }
+        }
+    }
+}
