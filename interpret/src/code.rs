@@ -166,8 +166,7 @@ pub enum Code<T: Real> {
 
 type Evaluated<T> = Result<Value<T>, Exit<T>>;
 
-const WRONG: &str =
-    "an operation with a matrix of more than eight rows or columns, or of another shape";
+const WRONG: &str = "an operation on values whose shapes do not fit, or that it does not take";
 
 /// What a missing value ends in.
 pub fn unfit<T: Real, V>(value: Option<V>) -> Result<V, Exit<T>> {

@@ -5,7 +5,6 @@
 mod cards;
 mod code;
 mod constants;
-mod dense;
 mod failure;
 mod library;
 mod lower;

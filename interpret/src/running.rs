@@ -12,7 +12,7 @@ use clebsch::integrate::{
     uncompensated,
 };
 use clebsch::kinetic::KineticWarning;
-use clebsch::{StartError, StepError, validate};
+use clebsch::{ParameterError, StartError, StepError, validate};
 use std::cell::RefCell;
 use std::sync::Arc;
 
@@ -212,8 +212,8 @@ fn collected(
 
 /// A value of a field, read as its type asks.
 fn one(read: Read, field: &'static Field, list: &Vec<f64>) -> Result<Value<f64>, OpenError> {
-    use crate::dense::Dense;
-    use crate::library::of_size;
+    use clebsch::groups::{invertible_map, nearest_rotation};
+    use clebsch::linalg::Dense;
     let (name, rows, cols) = (field.name, field.rows, field.cols);
     let given = Some(list);
     let matrix = || {
@@ -227,6 +227,7 @@ fn one(read: Read, field: &'static Field, list: &Vec<f64>) -> Result<Value<f64>,
         let entry = |i: usize, j: usize| list.get(i * cols + j).copied().unwrap_or(f64::NAN);
         Ok(Dense::from_fn(rows, cols, entry))
     };
+    let initial = |e: ParameterError| OpenError::Start(StartError::Initial(e));
     let wide = || OpenError::Count {
         field: name,
         expected: 64,
@@ -243,16 +244,16 @@ fn one(read: Read, field: &'static Field, list: &Vec<f64>) -> Result<Value<f64>,
             "UnitQuaternion" => Value::Quaternion(e::quaternion_of(name, given)?),
             "RigidMotion" => Value::Motion(Box::new(e::motion_of(name, given)?)),
             "PlaneMotion" => Value::Plane(Box::new(e::plane_motion_of(name, given)?)),
-            "Orthogonal" => of_size!(rows, N, {
-                let g = e::orthogonal_of::<N>(name, given)?;
-                Some(Value::Element(Kept::Orthogonal, Dense::of(&g.matrix())))
-            })
-            .ok_or_else(wide)?,
-            "Linear" => of_size!(rows, N, {
-                let g = e::linear_of::<N>(name, given)?;
-                Some(Value::Element(Kept::Linear, Dense::of(&g.matrix())))
-            })
-            .ok_or_else(wide)?,
+            "Orthogonal" => {
+                let nearest = nearest_rotation(&matrix()?);
+                let nearest = nearest.map_err(|e| initial(e.in_field(name)))?;
+                Value::Element(Kept::Orthogonal, nearest)
+            }
+            "Linear" => {
+                let given = matrix()?;
+                invertible_map(&given).map_err(|e| initial(e.in_field(name)))?;
+                Value::Element(Kept::Linear, given)
+            }
             "Additive" => Value::Element(Kept::Field, matrix()?),
             "BodyMomentum" | "BodyMomentumMatrix" | "BodyImpulse" | "BodyPlaneImpulse" => {
                 momentum(Frame::Body)?

@@ -1,6 +1,5 @@
 //! What an expression of a step may be: numbers, matrices, group elements, momenta, prepared solvers.
 
-use crate::dense::Dense;
 use crate::failure::Failure;
 use clebsch::Real;
 use clebsch::domain;
@@ -9,6 +8,7 @@ use clebsch::emitted::{
     Rotation, TurnedRotation, UnitQuaternion,
 };
 use clebsch::kinetic::KineticWarning;
+use clebsch::linalg::Dense;
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 

@@ -4,7 +4,7 @@
 mod segment;
 
 use crate::groups::{Additive, Group, Linear};
-use crate::linalg::{determinant, singular_ratio};
+use crate::linalg::{Dense, determinant, singular_ratio_of};
 use crate::said::Plain;
 use crate::scalar::Real;
 use crate::solvers::largest_step::search_of;
@@ -206,7 +206,36 @@ pub fn invertible<T: Real, const N: usize>(
     if squares(&away).greatest() < NEAR && margin.least() > 0.0 {
         return Ok(());
     }
-    closely(configuration, &v, &end, h)
+    closely(configuration, &Dense::of(&v), &Dense::of(&end), h)
+}
+
+/// The same of maps whose size is known when a model is read, given by their matrices.
+///
+/// # Errors
+/// [`Contact`] of the first lane that does not.
+pub fn invertible_of<T: Real>(
+    configuration: &'static str,
+    before: &Dense<T>,
+    after: &Dense<T>,
+    h: T,
+) -> Result<(), Contact> {
+    let n = after.rows;
+    let (det, size) = (after.determinant(), after.squares());
+    let exponent = i32::try_from(n).unwrap_or(i32::MAX);
+    let least = T::from_f64(LEAST_RATIO * LEAST_RATIO) * size.powi(exponent);
+    let margin = det * det - least;
+    let (moved, others) = (after.minus(before).squares(), (n - 1) as f64);
+    let cofactors = (size * T::from_f64(1.0 / others)).powi(exponent - 1) * T::from_f64(n as f64);
+    let near = det * det * T::from_f64(NEAR) - moved * cofactors;
+    if near.least() > 0.0 && margin.least() > 0.0 {
+        return Ok(());
+    }
+    let back = before.small_inverse();
+    let v = back.unwrap_or_else(|| Dense::unknown(n, n)).times(after);
+    if v.minus_one().squares().greatest() < NEAR && margin.least() > 0.0 {
+        return Ok(());
+    }
+    closely(configuration, &v, after, h)
 }
 
 /// The same of a field whose values are square matrices, where a model takes its inverse or the logarithm
@@ -228,19 +257,23 @@ pub fn field_invertible<T: Real, const N: usize>(
 /// The same lane by lane, by the eigenvalues of the velocity and the singular values of the end.
 #[cold]
 #[inline(never)]
-fn closely<T: Real, const N: usize>(
+fn closely<T: Real>(
     configuration: &'static str,
-    velocity: &SMatrix<T, N, N>,
-    end: &SMatrix<T, N, N>,
+    velocity: &Dense<T>,
+    end: &Dense<T>,
     h: T,
 ) -> Result<(), Contact> {
     for lane in 0..T::LANES {
-        let of = |a: &SMatrix<T, N, N>| a.map(|x| x.lane(lane));
+        let of = |a: &Dense<T>| Dense {
+            rows: a.rows,
+            cols: a.cols,
+            data: a.data.iter().map(|x| x.lane(lane)).collect::<Vec<f64>>(),
+        };
         if let Some(share) = segment::contact(&of(velocity)) {
             let met = Met::Singular { configuration };
             return Err(Contact::new(met, Some(share), h, lane));
         }
-        let ratio = singular_ratio(&of(end));
+        let ratio = singular_ratio_of(of(end).columns());
         // NaN is refused too.
         let enough = ratio >= LEAST_RATIO;
         if !enough {

@@ -70,9 +70,14 @@ pub fn spectrum<const N: usize>(coefficients: SMatrix<f64, N, N>) -> impl Iterat
 
 /// Scales of [`spectrum`]: the lengths of `M` and `S` to the degree of each coefficient.
 pub fn spectrum_scales<const N: usize>(m: f64, s: f64) -> impl Iterator<Item = f64> {
+    spectrum_scales_of(N, m, s)
+}
+
+/// The same for a size that is known when a model is read.
+pub fn spectrum_scales_of(n: usize, m: f64, s: f64) -> impl Iterator<Item = f64> {
     let power = |x: f64, n: usize| (0..n).fold(1.0, |p, _| p * x);
-    crate::linalg::even_degrees(N)
-        .map(move |(row, i)| power(m, row + 1) * power(s, N.saturating_sub(row + 1 + i)))
+    crate::linalg::even_degrees(n)
+        .map(move |(row, i)| power(m, row + 1) * power(s, n.saturating_sub(row + 1 + i)))
 }
 
 /// `D A` of a diagonal matrix.
@@ -155,18 +160,25 @@ pub fn solve_leading_or_nan<T: Real, const N: usize>(
 #[must_use]
 pub fn skew_basis<T: Real, const N: usize>(index: usize) -> SMatrix<T, N, N> {
     let mut basis = SMatrix::zeros();
-    let (mut i, mut rest) = (0, index);
-    // Row i has N - 1 - i entries right of the diagonal.
-    while i + 1 < N && rest >= N - 1 - i {
-        rest -= N - 1 - i;
-        i += 1;
-    }
-    let j = i + 1 + rest;
-    if j < N {
+    if let Some((i, j)) = skew_place(N, index) {
         basis[(i, j)] = -T::one();
         basis[(j, i)] = T::one();
     }
     basis
+}
+
+/// The row and the column of this index, where there are so many.
+#[inline]
+#[must_use]
+pub fn skew_place(n: usize, index: usize) -> Option<(usize, usize)> {
+    let (mut i, mut rest) = (0, index);
+    // Row i has n - 1 - i entries right of the diagonal.
+    while i + 1 < n && rest >= n - 1 - i {
+        rest -= n - 1 - i;
+        i += 1;
+    }
+    let j = i + 1 + rest;
+    (j < n).then_some((i, j))
 }
 
 /// The matrix unit with this index, row by row: a basis of the Lie algebra of GL(n).

@@ -30,12 +30,17 @@ impl KineticWarning {
     /// energy in the velocities at the identity. Nothing where it is positive definite.
     #[must_use]
     pub fn of<const N: usize>(form: &SMatrix<f64, N, N>, count: usize) -> Option<Self> {
-        let n = count.min(N);
+        Self::of_entries(count.min(N), &|i, j| form[(i, j)])
+    }
+
+    /// The same of the entries of a matrix of `n` rows.
+    #[must_use]
+    pub fn of_entries(n: usize, form: &dyn Fn(usize, usize) -> f64) -> Option<Self> {
         // Velocities have units of their own: each is measured by its own energy, or, where that
         // vanishes, by the largest of its couplings.
         let size = |i: usize| {
-            let own = form[(i, i)].abs();
-            let row = largest((0..n).map(|j| form[(i, j)]));
+            let own = form(i, i).abs();
+            let row = largest((0..n).map(|j| form(i, j)));
             match own > ROUNDING * row {
                 true => own.sqrt(),
                 false if row > 0.0 => row.sqrt(),
@@ -46,7 +51,7 @@ impl KineticWarning {
         let mut a = vec![vec![0.0; n]; n];
         for (i, row) in a.iter_mut().enumerate() {
             for (j, entry) in row.iter_mut().enumerate() {
-                *entry = 0.5 * (form[(i, j)] + form[(j, i)]) / (sizes[i] * sizes[j]);
+                *entry = 0.5 * (form(i, j) + form(j, i)) / (sizes[i] * sizes[j]);
             }
         }
         if a.iter().flatten().any(|x| !x.is_finite()) {

@@ -3,7 +3,7 @@
 
 use crate::domain::{Domain, Function};
 use crate::linalg::{
-    Homogeneous, determinant, inverse, left_multiplication, quaternion_imaginary, quaternion_real,
+    Dense, Homogeneous, left_multiplication, quaternion_imaginary, quaternion_real,
 };
 use crate::scalar::largest;
 use crate::{ParameterError, Problem, Real};
@@ -88,15 +88,25 @@ pub fn symmetric<T: Real, const N: usize>(
     field: &'static str,
     matrix: &SMatrix<T, N, N>,
 ) -> Result<(), ParameterError> {
-    mirrored_difference(matrix).map_err(|(row, column, upper, lower)| ParameterError {
-        field,
-        problem: Problem::NotSymmetric {
-            row,
-            column,
-            upper,
-            lower,
-        },
-        remedy: "give the same number on both sides of the diagonal",
+    symmetric_of(field, &Dense::of(matrix))
+}
+
+/// The same of a matrix whose size is known when it is read.
+///
+/// # Errors
+/// As [`symmetric`].
+pub fn symmetric_of<T: Real>(field: &'static str, matrix: &Dense<T>) -> Result<(), ParameterError> {
+    mirrored(matrix, |upper, lower| upper - lower, 1).map_err(|(row, column, upper, lower)| {
+        ParameterError {
+            field,
+            problem: Problem::NotSymmetric {
+                row,
+                column,
+                upper,
+                lower,
+            },
+            remedy: "give the same number on both sides of the diagonal",
+        }
     })
 }
 
@@ -108,6 +118,14 @@ pub fn skew<T: Real, const N: usize>(
     field: &'static str,
     matrix: &SMatrix<T, N, N>,
 ) -> Result<(), ParameterError> {
+    skew_of(field, &Dense::of(matrix))
+}
+
+/// The same of a matrix whose size is known when it is read.
+///
+/// # Errors
+/// As [`skew`].
+pub fn skew_of<T: Real>(field: &'static str, matrix: &Dense<T>) -> Result<(), ParameterError> {
     mirrored(matrix, |upper, lower| upper + lower, 0).map_err(|(row, column, upper, lower)| {
         ParameterError {
             field,
@@ -130,11 +148,17 @@ pub fn diagonal<T: Real, const N: usize>(
     field: &'static str,
     matrix: &SMatrix<T, N, N>,
 ) -> Result<(), ParameterError> {
-    for row in 0..N {
-        for column in 0..N {
-            let Some(entry) = matrix.get((row, column)) else {
-                continue;
-            };
+    diagonal_of(field, &Dense::of(matrix))
+}
+
+/// The same of a matrix whose size is known when it is read.
+///
+/// # Errors
+/// As [`diagonal`].
+pub fn diagonal_of<T: Real>(field: &'static str, matrix: &Dense<T>) -> Result<(), ParameterError> {
+    for row in 0..matrix.rows {
+        for column in 0..matrix.cols {
+            let entry = matrix.at(row, column);
             if row != column && !entry.is_zero() {
                 return Err(ParameterError {
                     field,
@@ -159,9 +183,20 @@ pub fn orthogonal<T: Real, const N: usize>(
     field: &'static str,
     matrix: &SMatrix<T, N, N>,
 ) -> Result<(), ParameterError> {
-    let defect = matrix.tr_mul(matrix) - SMatrix::identity();
-    let deviation = largest(defect.iter().map(|x| x.magnitude()));
-    let determinant = determinant(matrix);
+    orthogonal_of(field, &Dense::of(matrix))
+}
+
+/// The same of a matrix whose size is known when it is read.
+///
+/// # Errors
+/// As [`orthogonal`].
+pub fn orthogonal_of<T: Real>(
+    field: &'static str,
+    matrix: &Dense<T>,
+) -> Result<(), ParameterError> {
+    let defect = matrix.tr_mul(matrix).minus_one();
+    let deviation = largest(defect.data.iter().map(|x| x.magnitude()));
+    let determinant = matrix.determinant();
     // Entries of a rotation are at most 1. Written so that NaN is refused.
     if deviation <= ROUNDINGS * T::EPSILON && determinant.least() > 0.0 {
         return Ok(());
@@ -249,7 +284,18 @@ pub fn invertible<T: Real, const N: usize>(
     field: &'static str,
     matrix: &SMatrix<T, N, N>,
 ) -> Result<(), ParameterError> {
-    match inverse(matrix) {
+    invertible_of(field, &Dense::of(matrix))
+}
+
+/// The same of a matrix whose size is known when it is read.
+///
+/// # Errors
+/// As [`invertible`].
+pub fn invertible_of<T: Real>(
+    field: &'static str,
+    matrix: &Dense<T>,
+) -> Result<(), ParameterError> {
+    match matrix.inverse() {
         Some(_) => Ok(()),
         None => Err(ParameterError {
             field,
@@ -356,24 +402,20 @@ pub fn defined<T: Real>(
 pub(crate) fn mirrored_difference<T: Real, const N: usize>(
     matrix: &SMatrix<T, N, N>,
 ) -> Result<(), (usize, usize, f64, f64)> {
-    mirrored(matrix, |upper, lower| upper - lower, 1)
+    mirrored(&Dense::of(matrix), |upper, lower| upper - lower, 1)
 }
 
 /// Compares entries across the diagonal, the first `offset` diagonals above it left out.
-fn mirrored<T: Real, const N: usize>(
-    matrix: &SMatrix<T, N, N>,
+fn mirrored<T: Real>(
+    matrix: &Dense<T>,
     defect: impl Fn(T, T) -> T,
     offset: usize,
 ) -> Result<(), (usize, usize, f64, f64)> {
-    let size = largest(matrix.iter().map(|x| x.magnitude()));
+    let size = largest(matrix.data.iter().map(|x| x.magnitude()));
     let allowed = ROUNDINGS * T::EPSILON * size;
-    for row in 0..N {
-        for column in row + offset..N {
-            let (Some(&upper), Some(&lower)) =
-                (matrix.get((row, column)), matrix.get((column, row)))
-            else {
-                continue;
-            };
+    for row in 0..matrix.rows {
+        for column in row + offset..matrix.rows {
+            let (upper, lower) = (matrix.at(row, column), matrix.at(column, row));
             // Written so that NaN is refused.
             let agree = defect(upper, lower).magnitude() <= allowed;
             if !agree {

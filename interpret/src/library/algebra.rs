@@ -1,13 +1,12 @@
 //! Arithmetic, matrices and the functions of one number.
 
-use super::of_size;
 use crate::code::{Native, Operator};
-use crate::dense::Dense;
 use crate::value::{Kept, Value};
 use clebsch::Real;
 use clebsch::emitted as e;
 use clebsch::linalg;
-use nalgebra::{Matrix3, Matrix4, SMatrix, SVector};
+use clebsch::linalg::Dense;
+use nalgebra::{Matrix3, Matrix4, SVector};
 
 /// An operator on two values.
 #[inline]
@@ -174,17 +173,11 @@ of_number!(sqrt, exp, ln, sin, cos, sinh, cosh, tanh, sign, abs);
 
 /// A function of square matrices that gives one.
 macro_rules! square_to_square {
-    ($f:path) => {
+    ($f:expr) => {
         |a, _| {
             let a = a.first()?.dense()?;
-            if a.rows != a.cols {
-                return None;
-            }
-            of_size!(
-                a.rows,
-                N,
-                Some(Value::of(Dense::of(&$f(&a.fixed::<N, N>()))))
-            )
+            let f: fn(&Dense<T>) -> Dense<T> = $f;
+            (a.rows == a.cols).then(|| Value::of(f(&a)))
         }
     };
 }
@@ -214,19 +207,12 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         },
         ("diagonal", 1) => |a, _| {
             let a = a.first()?.dense()?;
-            of_size!(
-                a.rows,
-                N,
-                Some(Value::of(Dense::of(&e::diagonal(&a.fixed::<N, 1>()))))
-            )
+            let entry = |i, j| if i == j { a.at(i, 0) } else { T::zero() };
+            Some(Value::of(Dense::from_fn(a.rows, a.rows, entry)))
         },
         ("diagonal_of", 1) => |a, _| {
             let a = a.first()?.dense()?;
-            of_size!(
-                a.rows,
-                N,
-                Some(Value::of(Dense::of(&e::diagonal_of(&a.fixed::<N, N>()))))
-            )
+            Some(Value::of(Dense::from_fn(a.rows, 1, |i, _| a.at(i, i))))
         },
         ("powi", 2) => |a, _| match a.get(1)? {
             Value::Int(n) => Some(Value::Real(
@@ -260,25 +246,28 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         ("trace_complement", 1) => {
             |a, _| Some(Value::Matrix(linalg::trace_complement(square(a.first()?)?)))
         }
-        ("symmetric_part", 1) => square_to_square!(e::symmetric_part),
-        ("skew_part", 1) => square_to_square!(e::skew_part),
-        ("diagonal_part", 1) => square_to_square!(e::diagonal_part),
-        ("inverse_or_nan", 1) => square_to_square!(e::inverse_or_nan),
-        ("less_identity", 1) => square_to_square!(linalg::less_identity),
+        ("symmetric_part", 1) => {
+            square_to_square!(|a| a.plus(&a.transpose()).scaled(T::from_f64(0.5)))
+        }
+        ("skew_part", 1) => square_to_square!(|a| a.minus(&a.transpose()).scaled(T::from_f64(0.5))),
+        ("diagonal_part", 1) => square_to_square!(|a| {
+            Dense::from_fn(a.rows, a.cols, |i, j| match i == j {
+                true => a.at(i, i),
+                false => T::zero(),
+            })
+        }),
+        ("inverse_or_nan", 1) => square_to_square!(|a| a
+            .inverse()
+            .unwrap_or_else(|| Dense::unknown(a.rows, a.cols))),
+        ("less_identity", 1) => square_to_square!(Dense::less_identity),
         ("determinant", 1) => |a, _| {
             let a = a.first()?.dense()?;
-            of_size!(
-                a.rows,
-                N,
-                Some(Value::Real(linalg::determinant(&a.fixed::<N, N>())))
-            )
+            (a.rows == a.cols).then(|| Value::Real(a.determinant()))
         },
         ("solve_or_nan", 2) => |a, _| {
             let (m, b) = (a.first()?.dense()?, a.get(1)?.dense()?);
-            of_size!(m.rows, N, {
-                let x = e::solve_or_nan(&m.fixed::<N, N>(), &b.fixed::<N, 1>());
-                Some(Value::of(Dense::of(&x)))
-            })
+            let x = (m.rows == m.cols && m.rows == b.rows).then(|| m.solved(&b))?;
+            Some(Value::of(x.unwrap_or_else(|| Dense::unknown(b.rows, 1))))
         },
         ("solve_leading_or_nan", 3) => leading,
         ("motion_rotation", 1) => |a, _| match a.first()? {
@@ -431,11 +420,13 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         ("basis", 1) => |a, _| Some(Value::Matrix(e::basis(a.first()?.count()?))),
         ("skew_basis", 1) => |a, sizes| {
             let index = a.first()?.count()?;
-            of_size!(
-                *sizes.first()?,
-                N,
-                Some(Value::of(Dense::of(&e::skew_basis::<T, N>(index))))
-            )
+            let n = *sizes.first()?;
+            let mut basis = Dense::zeros(n, n);
+            if let Some((i, j)) = e::skew_place(n, index) {
+                basis.set(i, j, -T::one());
+                basis.set(j, i, T::one());
+            }
+            Some(Value::of(basis))
         },
         ("matrix_basis", 1) => |a, sizes| {
             let (at, n, one) = (a.first()?.count()?, *sizes.first()?, T::one());
@@ -479,35 +470,24 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         ("is_ok", 1) => |a, _| Some(Value::Bool(!matches!(a.first()?, Value::Failed(_)))),
         ("pencil_coefficients", 2) => |a, _| {
             let (m, s) = (a.first()?.dense()?, a.get(1)?.dense()?);
-            of_size!(m.rows, N, {
-                let all = linalg::pencil_coefficients(&m.fixed::<N, N>(), &s.fixed::<N, N>());
-                Some(Value::of(Dense::of(&all)))
-            })
+            m.fits(&s).then(|| Value::of(m.pencil_coefficients(&s)))
         },
         ("skew_coordinates", 1) => |a, _| {
             let m = a.first()?.dense()?;
-            of_size!(m.rows, N, {
-                let m = m.fixed::<N, N>();
-                Some(Value::List(
-                    linalg::skew_coordinates(&m).map(Value::Real).collect(),
-                ))
-            })
+            let all = m.skew_coordinates().into_iter();
+            Some(Value::List(all.map(Value::Real).collect()))
         },
         ("spectrum", 1) => |a, _| {
             let all = a.first()?.dense()?;
-            let at = even_degrees(all.rows);
-            Some(Value::List(
-                at.map(|(i, j)| Value::Real(all.at(i, j))).collect(),
-            ))
+            let all = all.spectrum().into_iter();
+            Some(Value::List(all.map(Value::Real).collect()))
         },
         ("spectrum_scales", 2) => |a, sizes| {
             let (m, s) = (number(a.first()?)?.value(), number(a.get(1)?)?.value());
-            of_size!(*sizes.first()?, N, {
-                let all = e::spectrum_scales::<N>(m, s);
-                Some(Value::List(
-                    all.map(|x| Value::Real(T::from_f64(x))).collect(),
-                ))
-            })
+            let all = e::spectrum_scales_of(*sizes.first()?, m, s);
+            Some(Value::List(
+                all.map(|x| Value::Real(T::from_f64(x))).collect(),
+            ))
         },
         ("even_count", 1) => |a, _| Some(Value::Int(e::even_count(a.first()?.count()?) as i64)),
         (name, 1) => return function(name),
@@ -515,28 +495,10 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
     })
 }
 
-/// The solution of the leading equations. Sizes beyond those of matrices are filled up: what is
-/// filled takes no part.
+/// The solution of the leading equations; the others are zero.
 fn leading<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
     let [m, b, size] = a else { return None };
     let (m, b, size) = (m.dense()?, b.dense()?, size.count()?);
-    fn of<T: Real, const N: usize>(m: &Dense<T>, b: &Dense<T>, size: usize) -> Value<T> {
-        let (m, c): (SMatrix<T, N, N>, SVector<T, N>) = (m.fixed(), b.fixed());
-        let x = Dense::of(&e::solve_leading_or_nan(&m, &c, size));
-        Value::of(Dense::from_fn(b.rows, 1, |i, _| x.at(i, 0)))
-    }
-    Some(match m.rows {
-        0..=3 => of::<T, 3>(&m, &b, size),
-        4..=6 => of::<T, 6>(&m, &b, size),
-        7..=16 => of::<T, 16>(&m, &b, size),
-        17..=64 => of::<T, 64>(&m, &b, size),
-        _ => return None,
-    })
-}
-
-/// Which coefficients of a pencil do not vanish.
-fn even_degrees(n: usize) -> impl Iterator<Item = (usize, usize)> {
-    (2..=n)
-        .step_by(2)
-        .flat_map(move |j| (0..=n - j).map(move |i| (j - 1, i)))
+    let x = m.leading_solved(&b, size);
+    Some(Value::of(x.unwrap_or_else(|| Dense::unknown(b.rows, 1))))
 }

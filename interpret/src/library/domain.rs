@@ -1,14 +1,11 @@
 //! Where functions are defined, and what a step leaves of its equations.
 
-use super::groups::linear;
-use super::of_size;
 use crate::code::Native;
 use crate::value::{Kept, Value};
 use clebsch::Real;
 use clebsch::domain;
 use clebsch::emitted::Residual;
 use clebsch::kinetic::KineticWarning;
-use nalgebra::SMatrix;
 
 fn invertible<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
     let [
@@ -20,11 +17,8 @@ fn invertible<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
     else {
         return None;
     };
-    of_size!(before.rows, N, {
-        let (from, to) = (linear::<T, N>(before), linear::<T, N>(after));
-        let met = domain::invertible(name, &from, &to, *h);
-        Some(Value::result(met.map(|()| Value::Unit)))
-    })
+    let met = domain::invertible_of(name, before, after, *h);
+    Some(Value::result(met.map(|()| Value::Unit)))
 }
 
 /// An argument at two places of a step.
@@ -64,20 +58,8 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         },
         ("KineticWarning::of", 2) => |a, _| {
             let (form, count) = (a.first()?.dense()?, a.get(1)?.count()?);
-            fn of<const N: usize>(
-                entry: impl Fn(usize, usize) -> f64,
-                n: usize,
-            ) -> Option<KineticWarning> {
-                KineticWarning::of(&SMatrix::<f64, N, N>::from_fn(entry), n)
-            }
             let entry = |i, j| form.at(i, j).value();
-            let warning = match form.rows {
-                0..=3 => of::<3>(entry, count),
-                4..=6 => of::<6>(entry, count),
-                7..=16 => of::<16>(entry, count),
-                17..=64 => of::<64>(entry, count),
-                _ => return None,
-            };
+            let warning = KineticWarning::of_entries(count.min(form.rows), &entry);
             Some(warning.map_or(Value::None, Value::Warning))
         },
         ("is_invertible", 1) => |a, _| match a.first()? {

@@ -1,51 +1,58 @@
 //! Group elements: products, velocities, matrices, places.
 
-use super::of_size;
 use crate::code::Native;
-use crate::dense::Dense;
 use crate::value::{Kept, Value};
-use clebsch::emitted::{Additive, Group, Linear, Orthogonal, Placed, added};
-use clebsch::{OfScalars, Real};
+use clebsch::Real;
+use clebsch::emitted::{Additive, Group, Placed, added};
+use clebsch::linalg::Dense;
 use nalgebra::SMatrix;
 
-/// The element of a group with this matrix: its numbers are put in, none is computed anew.
-pub(super) fn orthogonal<T: Real, const N: usize>(a: &Dense<T>) -> Orthogonal<N, T> {
-    let mut all = a.data.iter();
-    Orthogonal::<N, T>::identity().over(&mut |x| all.next().copied().unwrap_or(x))
+/// The product of two rotations by their matrices, orthogonal to rounding.
+pub(crate) fn turned<T: Real>(a: &Dense<T>, b: &Dense<T>) -> Dense<T> {
+    a.product(b).orthonormalised()
 }
 
-/// The same of an invertible map.
-pub(super) fn linear<T: Real, const N: usize>(a: &Dense<T>) -> Linear<N, T> {
-    let mut all = a.data.iter();
-    Linear::<N, T>::identity().over(&mut |x| all.next().copied().unwrap_or(x))
+/// The inverse of an invertible map; all NaN where a step has made the matrix singular.
+pub(crate) fn linear_inverse<T: Real>(a: &Dense<T>) -> Dense<T> {
+    a.small_inverse()
+        .unwrap_or_else(|| Dense::unknown(a.rows, a.cols))
 }
 
-/// What two elements kept as matrices give, for each group.
-macro_rules! of_both {
-    ($a:expr, $b:expr, $f:expr) => {
-        match ($a, $b) {
-            (Value::Element(Kept::Orthogonal, a), Value::Element(_, b)) => {
-                of_size!(a.rows, N, {
-                    let f = $f;
-                    let g = f(orthogonal::<T, N>(a), orthogonal::<T, N>(b));
-                    Some(Value::Element(Kept::Orthogonal, Dense::of(&g.matrix())))
-                })
-            }
-            (Value::Element(Kept::Linear, a), Value::Element(_, b)) => {
-                of_size!(a.rows, N, {
-                    let f = $f;
-                    let g = f(linear::<T, N>(a), linear::<T, N>(b));
-                    Some(Value::Element(Kept::Linear, Dense::of(&g.matrix())))
-                })
-            }
-            _ => None,
+/// The inverse of an element kept as its matrix.
+pub(crate) fn inverse_kept<T: Real>(kept: Kept, a: &Dense<T>) -> Dense<T> {
+    match kept {
+        Kept::Orthogonal => a.transpose(),
+        Kept::Linear => linear_inverse(a),
+        Kept::Field => a.map(|x| -x),
+    }
+}
+
+/// The product of two elements kept as their matrices.
+pub(crate) fn composed_kept<T: Real>(kept: Kept, a: &Dense<T>, b: &Dense<T>) -> Dense<T> {
+    match kept {
+        Kept::Orthogonal => turned(a, b),
+        Kept::Linear => a.times(b),
+        Kept::Field => a.plus(b),
+    }
+}
+
+/// What two elements of rotations or maps give.
+fn of_both<T: Real>(
+    a: &Value<T>,
+    b: &Value<T>,
+    f: impl Fn(Kept, &Dense<T>, &Dense<T>) -> Dense<T>,
+) -> Option<Value<T>> {
+    match (a, b) {
+        (Value::Element(kept, a), Value::Element(_, b)) if *kept != Kept::Field && a.fits(b) => {
+            Some(Value::Element(*kept, f(*kept, a, b)))
         }
-    };
+        _ => None,
+    }
 }
 
 /// The product of two elements kept as matrices.
 pub(super) fn composed<T: Real>(a: &Value<T>, b: &Value<T>) -> Option<Value<T>> {
-    of_both!(a, b, |a, b| a * b)
+    of_both(a, b, composed_kept)
 }
 
 fn velocity<T: Real>(a: &Value<T>, b: &Value<T>) -> Option<Value<T>> {
@@ -55,7 +62,11 @@ fn velocity<T: Real>(a: &Value<T>, b: &Value<T>) -> Option<Value<T>> {
         (Value::Motion(a), Value::Motion(b)) => Value::Motion(Box::new(a.body_velocity(b))),
         (Value::Plane(a), Value::Plane(b)) => Value::Plane(Box::new(a.body_velocity(b))),
         (Value::Element(Kept::Field, a), Value::Element(_, b)) => column_wise(a, b)?,
-        _ => return of_both!(a, b, |a, b| Group::<T>::body_velocity(&a, &b)),
+        _ => {
+            return of_both(a, b, |kept, a, b| {
+                composed_kept(kept, &inverse_kept(kept, a), b)
+            });
+        }
     })
 }
 
@@ -70,7 +81,11 @@ fn spatial_velocity<T: Real>(a: &Value<T>, b: &Value<T>) -> Option<Value<T>> {
             let each = one.iter().zip(&two).map(|(a, b)| a.spatial_velocity(b));
             field(a, each.map(|v| v.matrix()[0]).collect())
         }
-        _ => return of_both!(a, b, |a, b| Group::<T>::spatial_velocity(&a, &b)),
+        _ => {
+            return of_both(a, b, |kept, a, b| {
+                composed_kept(kept, b, &inverse_kept(kept, a))
+            });
+        }
     })
 }
 
@@ -171,7 +186,7 @@ fn inverse<T: Real>(a: &Value<T>) -> Option<Value<T>> {
         Value::Quaternion(q) => Value::Quaternion(q.inverse()),
         Value::Motion(g) => Value::Motion(Box::new(g.inverse())),
         Value::Plane(g) => Value::Plane(Box::new(g.inverse())),
-        Value::Element(..) => return of_both!(a, a, |a, _| Group::<T>::inverse(&a)),
+        Value::Element(..) => return of_both(a, a, |kept, a, _| inverse_kept(kept, a)),
         _ => return None,
     })
 }

@@ -2,7 +2,7 @@
 
 mod algebra;
 mod domain;
-mod groups;
+pub(crate) mod groups;
 mod momenta;
 mod solvers;
 mod special;
@@ -82,45 +82,3 @@ pub fn kernel<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
 pub fn special<T: Real>(name: &str) -> Option<Special<T>> {
     special::special(name)
 }
-
-/// The body for each size that static matrices are compiled for.
-macro_rules! of_size {
-    ($n:expr, $N:ident, $body:expr) => {
-        match $n {
-            1 => {
-                const $N: usize = 1;
-                $body
-            }
-            2 => {
-                const $N: usize = 2;
-                $body
-            }
-            3 => {
-                const $N: usize = 3;
-                $body
-            }
-            4 => {
-                const $N: usize = 4;
-                $body
-            }
-            5 => {
-                const $N: usize = 5;
-                $body
-            }
-            6 => {
-                const $N: usize = 6;
-                $body
-            }
-            7 => {
-                const $N: usize = 7;
-                $body
-            }
-            8 => {
-                const $N: usize = 8;
-                $body
-            }
-            _ => None,
-        }
-    };
-}
-pub(crate) use of_size;

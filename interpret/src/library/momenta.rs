@@ -1,38 +1,36 @@
 //! Momenta between the frames of body and space.
 
-use super::groups::{linear, orthogonal};
-use super::of_size;
+use super::groups::linear_inverse;
 use crate::code::Native;
-use crate::dense::Dense;
 use crate::value::{Frame, Kept, Value};
 use clebsch::emitted::{AboutBody, BodyMomentum, Coadjoint, SpatialMomentum};
+use clebsch::linalg::Dense;
 use clebsch::{
     BodyImpulse, BodyPlaneImpulse, CarriedImpulse, CarriedPlaneImpulse, Real, SpatialImpulse,
     SpatialPlaneImpulse,
 };
 use nalgebra::Vector3;
 
-/// A covector between the frames by an element kept as its matrix.
-macro_rules! by_matrix {
-    ($element:expr, $covector:expr, $method:ident) => {
-        match $element {
-            Value::Element(Kept::Orthogonal, g) => of_size!(g.rows, N, {
-                let m = orthogonal::<T, N>(g).$method(&$covector.fixed::<N, N>());
-                Some(Dense::of(&m))
-            }),
-            Value::Element(Kept::Linear, g) => of_size!(g.rows, N, {
-                let m = linear::<T, N>(g).$method(&$covector.fixed::<N, N>());
-                Some(Dense::of(&m))
-            }),
-            Value::Element(Kept::Field, _) => Some($covector.clone()),
-            _ => None,
-        }
+/// A covector between the frames by an element kept as its matrix: to space, or to the body.
+fn by_matrix<T: Real>(element: &Value<T>, covector: &Dense<T>, to_space: bool) -> Option<Dense<T>> {
+    let Value::Element(kept, g) = element else {
+        return None;
     };
+    if *kept != Kept::Field && !g.fits(covector) {
+        return None;
+    }
+    Some(match (kept, to_space) {
+        (Kept::Orthogonal, true) => g.times(covector).times(&g.transpose()),
+        (Kept::Orthogonal, false) => g.tr_mul(&covector.times(g)),
+        (Kept::Linear, true) => linear_inverse(g).tr_mul(covector).times(&g.transpose()),
+        (Kept::Linear, false) => g.tr_mul(covector).times(&linear_inverse(g).transpose()),
+        (Kept::Field, _) => covector.clone(),
+    })
 }
 
 /// A covector between the frames by any element.
 macro_rules! covector {
-    ($method:ident) => {
+    ($method:ident, $to_space:literal) => {
         |a, _| {
             let (element, covector) = (a.first()?, a.get(1)?);
             match (element, covector) {
@@ -44,7 +42,7 @@ macro_rules! covector {
                 }
                 _ => {
                     let all = covector.dense()?;
-                    by_matrix!(element, all, $method).map(Value::of)
+                    by_matrix(element, &all, $to_space).map(Value::of)
                 }
             }
         }
@@ -87,7 +85,7 @@ fn to_space<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
         }
         _ => {
             let all = components(momentum)?;
-            let there = by_matrix!(element, all, covector_to_space)?;
+            let there = by_matrix(element, &all, true)?;
             Value::momentum(Frame::Spatial, &Value::of(there))?
         }
     })
@@ -116,7 +114,7 @@ fn to_body<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
         }
         _ => {
             let all = components(momentum)?;
-            let there = by_matrix!(element, all, covector_to_body)?;
+            let there = by_matrix(element, &all, false)?;
             Value::momentum(Frame::Body, &Value::of(there))?
         }
     })
@@ -180,8 +178,8 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         ("to_space", 2) => to_space,
         ("to_body", 2) => to_body,
         ("carried", 2) => carried,
-        ("covector_to_space", 2) => covector!(covector_to_space),
-        ("covector_to_body", 2) => covector!(covector_to_body),
+        ("covector_to_space", 2) => covector!(covector_to_space, true),
+        ("covector_to_body", 2) => covector!(covector_to_body, false),
         ("covector_turned", 2) => turned!(covector_turned),
         ("covector_turned_back", 2) => turned!(covector_turned_back),
         ("gained_along", 3) => gained,

@@ -1,15 +1,14 @@
 //! The solvers of steps, and what is prepared for them.
 
 use super::momenta::three;
-use super::of_size;
 use crate::code::Native;
-use crate::dense::Dense;
 use crate::failure::Failure;
 use crate::value::{Frame, Kept, Value};
 use clebsch::emitted::{
-    Edge, Free, LeftFactor, Poinsot, QuaternionBody, divided, left_sided, reach_of, right_sided,
-    rotation_at, two_sided, two_sided_increment,
+    Edge, Free, LeftFactor, Poinsot, QuaternionBody, divided, reach_of, rotation_at,
 };
+use clebsch::linalg::Dense;
+use clebsch::solvers::two_sided::SingularFactor;
 use clebsch::{Real, StepCause};
 use nalgebra::{SMatrix, Vector3};
 use std::sync::Arc;
@@ -115,142 +114,32 @@ fn text<T: Real>(a: &Value<T>) -> Option<&'static str> {
     }
 }
 
-fn increment<T: Real, const R: usize, const C: usize>(
-    shape: (usize, usize),
-    solved: Result<clebsch::Additive<R, C, T>, clebsch::solvers::two_sided::SingularFactor>,
-) -> Value<T> {
-    let cut = |a: SMatrix<T, R, C>| Dense::from_fn(shape.0, shape.1, |i, j| a[(i, j)]);
-    Value::result(solved.map(|x| Value::Element(Kept::Field, cut(x.matrix()))))
+/// The solution of a linear equation, or which factor has no inverse.
+fn increment<T: Real>(solved: Option<Dense<T>>, factor: &'static str) -> Value<T> {
+    match solved {
+        Some(x) => Value::Element(Kept::Field, x),
+        None => Value::failed(SingularFactor { factor }),
+    }
 }
 
-/// The linear equations of fields, for every shape of up to four rows and columns, and of square and
-/// column shapes beyond.
-macro_rules! of_shape {
-    ($rows:expr, $cols:expr, $R:ident, $C:ident, $body:expr) => {
-        match ($rows, $cols) {
-            (1, 1) => {
-                const $R: usize = 1;
-                const $C: usize = 1;
-                $body
-            }
-            (1, 2) => {
-                const $R: usize = 1;
-                const $C: usize = 2;
-                $body
-            }
-            (1, 3) => {
-                const $R: usize = 1;
-                const $C: usize = 3;
-                $body
-            }
-            (1, 4) => {
-                const $R: usize = 1;
-                const $C: usize = 4;
-                $body
-            }
-            (2, 1) => {
-                const $R: usize = 2;
-                const $C: usize = 1;
-                $body
-            }
-            (2, 2) => {
-                const $R: usize = 2;
-                const $C: usize = 2;
-                $body
-            }
-            (2, 3) => {
-                const $R: usize = 2;
-                const $C: usize = 3;
-                $body
-            }
-            (2, 4) => {
-                const $R: usize = 2;
-                const $C: usize = 4;
-                $body
-            }
-            (3, 1) => {
-                const $R: usize = 3;
-                const $C: usize = 1;
-                $body
-            }
-            (3, 2) => {
-                const $R: usize = 3;
-                const $C: usize = 2;
-                $body
-            }
-            (3, 3) => {
-                const $R: usize = 3;
-                const $C: usize = 3;
-                $body
-            }
-            (3, 4) => {
-                const $R: usize = 3;
-                const $C: usize = 4;
-                $body
-            }
-            (4, 1) => {
-                const $R: usize = 4;
-                const $C: usize = 1;
-                $body
-            }
-            (4, 2) => {
-                const $R: usize = 4;
-                const $C: usize = 2;
-                $body
-            }
-            (4, 3) => {
-                const $R: usize = 4;
-                const $C: usize = 3;
-                $body
-            }
-            (4, 4) => {
-                const $R: usize = 4;
-                const $C: usize = 4;
-                $body
-            }
-            (5, 1) => {
-                const $R: usize = 5;
-                const $C: usize = 1;
-                $body
-            }
-            (6, 1) => {
-                const $R: usize = 6;
-                const $C: usize = 1;
-                $body
-            }
-            (7, 1) => {
-                const $R: usize = 7;
-                const $C: usize = 1;
-                $body
-            }
-            (8, 1) => {
-                const $R: usize = 8;
-                const $C: usize = 1;
-                $body
-            }
-            (5, 5) => {
-                const $R: usize = 5;
-                const $C: usize = 5;
-                $body
-            }
-            (6, 6) => {
-                const $R: usize = 6;
-                const $C: usize = 6;
-                $body
-            }
-            (7, 7) => {
-                const $R: usize = 7;
-                const $C: usize = 7;
-                $body
-            }
-            (8, 8) => {
-                const $R: usize = 8;
-                const $C: usize = 8;
-                $body
-            }
-            _ => None,
-        }
+/// The solution of `left X right = known`, or which factor has no inverse.
+fn between<T: Real>(a: &[&Value<T>]) -> Option<Result<Dense<T>, SingularFactor>> {
+    let [left, known, right, label] = a else {
+        return None;
     };
+    let (l, m, r) = (left.dense()?, known.dense()?, right.dense()?);
+    let [first, second] = names(label)?;
+    if l.cols != m.rows || m.cols != r.rows {
+        return None;
+    }
+    let Some(half) = l.small_solve(&m) else {
+        return Some(Err(SingularFactor { factor: first }));
+    };
+    let whole = r.transpose().small_solve(&half.transpose());
+    Some(match whole {
+        Some(x) => Ok(x.transpose()),
+        None => Err(SingularFactor { factor: second }),
+    })
 }
 
 /// The names of two factors, kept for good: they stand in errors.
@@ -350,12 +239,15 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         },
         ("reach_of", 2) => |a, _| {
             let (c, v) = (a.first()?.dense()?, a.get(1)?.dense()?);
-            of_size!(c.rows, N, {
-                Some(Value::Double(reach_of(
-                    &c.fixed::<N, N>(),
-                    &v.fixed::<N, N>(),
-                )))
-            })
+            macro_rules! of {
+                ($($n:literal)*) => {
+                    match c.rows {
+                        $($n => reach_of::<T, $n>(&c.fixed(), &v.fixed()),)*
+                        _ => return None,
+                    }
+                };
+            }
+            Some(Value::Double(of!(2 3 4 5 6 7 8)))
         },
         ("rotation_at", 3) => |a, _| match a {
             [Value::Matrix(c), Value::Vector(v), Value::Method(method)] => Some(Value::result(
@@ -397,50 +289,26 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             )))
         },
         ("two_sided", 4) => |a, _| {
-            let [left, known, right, label] = a else {
-                return None;
-            };
-            let (l, m, r, label) = (left.dense()?, known.dense()?, right.dense()?, names(label)?);
-            of_size!(m.rows, N, {
-                let solved = two_sided(
-                    &l.fixed::<N, N>(),
-                    &m.fixed::<N, N>(),
-                    &r.fixed::<N, N>(),
-                    &label,
-                );
-                Some(Value::result(solved.map(|g| {
-                    Value::Element(Kept::Linear, Dense::of(&g.matrix()))
-                })))
-            })
+            let solved = between(a)?;
+            Some(Value::result(solved.map(|x| {
+                let one = Dense::identity(x.rows, x.cols);
+                Value::Element(Kept::Linear, one.plus(&x))
+            })))
         },
         ("two_sided_increment", 4) => |a, _| {
-            let [left, known, right, label] = a else {
-                return None;
-            };
-            let (l, m, r, label) = (left.dense()?, known.dense()?, right.dense()?, names(label)?);
-            of_shape!(m.rows, m.cols, R, C, {
-                let solved = two_sided_increment(
-                    &l.fixed::<R, R>(),
-                    &m.fixed::<R, C>(),
-                    &r.fixed::<C, C>(),
-                    &label,
-                );
-                Some(increment((R, C), solved))
-            })
+            let solved = between(a)?;
+            Some(Value::result(
+                solved.map(|x| Value::Element(Kept::Field, x)),
+            ))
         },
         ("left_sided", 3) => |a, _| {
             let (l, m, label) = (a.first()?.dense()?, a.get(1)?.dense()?, text(a.get(2)?)?);
-            of_shape!(m.rows, m.cols, R, C, {
-                let solved = left_sided(&l.fixed::<R, R>(), &m.fixed::<R, C>(), label);
-                Some(increment((R, C), solved))
-            })
+            (l.cols == m.rows).then(|| increment(l.small_solve(&m), label))
         },
         ("right_sided", 3) => |a, _| {
             let (m, r, label) = (a.first()?.dense()?, a.get(1)?.dense()?, text(a.get(2)?)?);
-            of_shape!(m.rows, m.cols, R, C, {
-                let solved = right_sided(&m.fixed::<R, C>(), &r.fixed::<C, C>(), label);
-                Some(increment((R, C), solved))
-            })
+            let solved = || r.transpose().small_solve(&m.transpose());
+            (m.cols == r.rows).then(|| increment(solved().map(|x| x.transpose()), label))
         },
         ("divided", 3) => |a, _| {
             let (m, label) = (a.first()?.dense()?, text(a.get(2)?)?);
@@ -489,13 +357,14 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             _ => None,
         },
         ("alike", 2) => |a, _| match (a.first()?, a.get(1)?) {
-            (Value::Search(search), Value::Search(like)) => {
-                Some(Value::Search(search.alike(like)?))
-            }
+            (Value::Search(search), Value::Search(like)) => Some(Value::Search(search.alike(like))),
             _ => None,
         },
         // What says whether a step is only tried.
-        ("tries", 1) => |a, _| Some((*a.first()?).clone()),
+        ("tries", 1) => |a, _| match a.first()? {
+            Value::Search(search) => Some(Value::Bool(search.tries())),
+            other => Some((*other).clone()),
+        },
         ("ok", 1) => |a, _| match a.first()? {
             Value::Failed(_) => Some(Value::None),
             other => Some((*other).clone()),

@@ -2,9 +2,9 @@
 
 use super::algebra::numbers;
 use crate::code::{Code, Exit, Places, Special, unfit};
-use crate::dense::Dense;
 use crate::failure::Failure;
 use crate::value::{Frame, Value};
+use clebsch::linalg::Dense;
 use clebsch::{Real, SpatialMomentum};
 use nalgebra::Vector3;
 use std::cell::RefCell;
@@ -69,10 +69,7 @@ fn put_skew<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
         return Err(missing());
     };
     let m = unfit(value.dense())?;
-    let list = crate::library::of_size!(m.rows, N, {
-        Some(clebsch::linalg::skew_coordinates(&m.fixed::<N, N>()).collect::<Vec<T>>())
-    });
-    let list = unfit(list)?;
+    let list = m.skew_coordinates();
     put_numbers(places, rest, list)
 }
 

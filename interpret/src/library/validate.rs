@@ -1,7 +1,6 @@
 //! What is asked of parameters and initial values.
 
 use super::algebra::numbers;
-use super::of_size;
 use crate::code::Native;
 use crate::value::Value;
 use clebsch::{ParameterError, Real, validate};
@@ -19,7 +18,7 @@ macro_rules! square {
                 return None;
             };
             let m = m.dense()?;
-            of_size!(m.rows, N, told($f(name, &m.fixed::<N, N>())))
+            (m.rows == m.cols).then(|| told($f(name, &m)))?
         }
     };
 }
@@ -59,11 +58,11 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             let entry = |row, column| Some(m.at(row, column));
             told(validate::finite_entries_of(name, [m.rows, m.cols], entry))
         },
-        ("validate::symmetric", 2) => square!(validate::symmetric),
-        ("validate::skew", 2) => square!(validate::skew),
-        ("validate::diagonal", 2) => square!(validate::diagonal),
-        ("validate::orthogonal", 2) => square!(validate::orthogonal),
-        ("validate::invertible", 2) => square!(validate::invertible),
+        ("validate::symmetric", 2) => square!(validate::symmetric_of),
+        ("validate::skew", 2) => square!(validate::skew_of),
+        ("validate::diagonal", 2) => square!(validate::diagonal_of),
+        ("validate::orthogonal", 2) => square!(validate::orthogonal_of),
+        ("validate::invertible", 2) => square!(validate::invertible_of),
         ("validate::unit_quaternion", 2) => |a, _| {
             let [Value::Text(name), m] = a else {
                 return None;

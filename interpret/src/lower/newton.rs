@@ -5,9 +5,10 @@ use super::{Binding, Lower, Lowered, Shared, refuse};
 use crate::Refused;
 use crate::code::{Code, Native, Routine};
 use crate::library;
-use crate::newton::{Bound, Kept, Kind, Purpose, Settled, Shape, Solve, Sought, are_kept, begun};
+use crate::newton::{Bound, Held, Kept, Kind, Settled, Shape, Solve, Sought};
 use crate::program::type_name;
 use crate::value::Value;
+use clebsch::solvers::newton::Purpose;
 use quote::ToTokens;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -101,7 +102,8 @@ impl<T: Lowered> Lower<'_, '_, T> {
             return Ok(None);
         };
         let sought = self.sought(ty)?;
-        Ok(begun(sought, purpose).map(|held| Code::Constant(Value::Search(held))))
+        let held = Held::begun(sought, purpose);
+        Ok(Some(Code::Constant(Value::Search(held))))
     }
 
     /// What a search of a declared type is for.
@@ -113,23 +115,16 @@ impl<T: Lowered> Lower<'_, '_, T> {
         let unknowns =
             |what: &str| Refused::Construct(format!("{what} in {}", ty.to_token_stream()));
         let kinds = self.kinds(elements).ok_or_else(|| unknowns("a group"))?;
-        let shape = Shape { kinds };
-        let dimension = shape.dimension().ok_or_else(|| unknowns("a size"))?;
         let mut kept = Vec::new();
         self.node(node, &mut kept)
             .ok_or_else(|| unknowns("a value"))?;
-        let sought = Sought {
-            shape,
-            node: kept,
-            dimension,
-        };
-        let kept_here = are_kept(&sought.node);
+        let capacity = capacity(ty).ok_or_else(|| unknowns("a size"))?;
         // Searches keep what they are for as long as they live; a model has a few.
-        let sought: &'static Sought = Box::leak(Box::new(sought));
-        match kept_here && begun(sought, Purpose::Run).is_some() {
-            true => Ok(sought),
-            false => Err(unknowns("more unknowns")),
-        }
+        Ok(Box::leak(Box::new(Sought {
+            shape: Shape::new(kinds),
+            node: kept,
+            capacity,
+        })))
     }
 
     /// The groups of a bundle: `[G; n]` or `(G, F)`.
@@ -199,6 +194,40 @@ fn arguments(ty: &syn::Type) -> Option<Vec<syn::Type>> {
         _ => None,
     });
     Some(types.collect())
+}
+
+/// The number of coordinates that a search has places for.
+fn capacity(ty: &syn::Type) -> Option<usize> {
+    let syn::Type::Path(p) = ty else {
+        return None;
+    };
+    let syn::PathArguments::AngleBracketed(list) = &p.path.segments.last()?.arguments else {
+        return None;
+    };
+    list.args.iter().find_map(|a| match a {
+        syn::GenericArgument::Const(syn::Expr::Lit(lit)) => match &lit.lit {
+            syn::Lit::Int(n) => n.base10_parse().ok(),
+            _ => None,
+        },
+        _ => None,
+    })
+}
+
+/// The number with which a type is named somewhere in code.
+fn number_of(tokens: &impl ToTokens, name: &str) -> Option<usize> {
+    fn flat(stream: proc_macro2::TokenStream, out: &mut Vec<String>) {
+        for t in stream {
+            match t {
+                proc_macro2::TokenTree::Group(g) => flat(g.stream(), out),
+                other => out.push(other.to_string()),
+            }
+        }
+    }
+    let mut all = Vec::new();
+    flat(tokens.to_token_stream(), &mut all);
+    let after = all.iter().skip_while(|t| *t != name).skip(1);
+    let mut after = after.skip_while(|t| [":", "<"].contains(&t.as_str()));
+    after.next()?.parse().ok()
 }
 
 /// A function by itself: residual or tangent.
@@ -326,6 +355,8 @@ impl<'a> Lower<'a, '_, f64> {
             function: function("tangent_at", &principal).ok_or_else(unknown)?,
             velocities: Some((at_trial, &trial_name)),
         };
+        let proof = program.function(&own, &principal).ok_or_else(unknown)?;
+        let width = number_of(&proof.block, "Enclosure").ok_or_else(unknown)?;
         let mut bounds = self.shared.over::<Bound>();
         let rounded_at = residual_at.lowered(&mut bounds, &own)?;
         let bounded_at = tangent_at.lowered(&mut bounds, &own)?;
@@ -346,6 +377,7 @@ impl<'a> Lower<'a, '_, f64> {
             rounded_at,
             tangent_at: tangent_at.lowered(self.shared, &own)?,
             bounded_at,
+            width,
         })
     }
 

@@ -1,138 +1,170 @@
-//! Numbers in bounds as the scalar of equations that were read: those of the runtime, whose operations are
-//! called rather than written out wherever they occur, for they follow 36 variables each.
+//! Numbers in bounds as the scalar of equations that were read: those of the runtime, with as many variables
+//! as the velocities at work take. How a number moves with them stands in a table of the thread; most numbers
+//! do not move at all.
 
-use clebsch::Real;
-use clebsch::solvers::newton::Enclosure;
-use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
-use num_traits::{One, Zero};
-
-/// As many variables as any velocities take that are searched for: three for each coordinate.
-pub const VARIABLES: usize = 36;
+use clebsch::solvers::newton::{Affine, Bounded, swing_of};
+use std::cell::RefCell;
 
 /// A number in bounds.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bound(pub Enclosure<VARIABLES>);
+pub type Bound = Bounded<Along>;
 
-impl Bound {
-    /// One number.
-    pub fn exactly(x: f64) -> Self {
-        Bound(Enclosure::exactly(x))
-    }
+/// How a number moves with the variables: a row of the table, the first of them not at all.
+#[derive(Clone, Copy, Debug)]
+pub struct Along(u32);
 
-    /// A number that was rounded once.
-    pub fn rounded(x: f64) -> Self {
-        Bound(Enclosure::rounded(x))
+struct Table {
+    width: usize,
+    numbers: Vec<f64>,
+}
+
+thread_local! {
+    static TABLE: RefCell<Table> = const {
+        RefCell::new(Table {
+            width: 0,
+            numbers: Vec::new(),
+        })
+    };
+}
+
+/// While it lives, numbers of this thread may move; none of them is kept longer.
+pub struct Variables;
+
+impl Variables {
+    /// So many variables.
+    pub fn at_work(width: usize) -> Self {
+        TABLE.with_borrow_mut(|table| table.width = width);
+        Variables
     }
 }
 
-macro_rules! operations {
-    ($($Trait:ident $function:ident $Assigned:ident $assigned:ident $operator:tt),+) => {$(
-        impl $Trait for Bound {
-            type Output = Self;
+impl Drop for Variables {
+    fn drop(&mut self) {
+        TABLE.with_borrow_mut(|table| {
+            table.width = 0;
+            table.numbers.clear();
+        });
+    }
+}
 
-            #[inline(never)]
-            fn $function(self, other: Self) -> Self {
-                Bound(self.0 $operator other.0)
-            }
+impl Table {
+    fn row(&self, Along(row): Along) -> &[f64] {
+        let end = row as usize * self.width;
+        let from = end.checked_sub(self.width);
+        from.and_then(|from| self.numbers.get(from..end))
+            .unwrap_or(&[])
+    }
+
+    /// A new row of these numbers.
+    fn add(&mut self, number: impl Fn(&Self, usize) -> f64) -> Along {
+        for k in 0..self.width {
+            let x = number(self, k);
+            self.numbers.push(x);
         }
+        let rows = self.numbers.len().checked_div(self.width).unwrap_or(0);
+        Along(u32::try_from(rows).unwrap_or(0))
+    }
 
-        impl $Assigned for Bound {
-            fn $assigned(&mut self, other: Self) {
-                *self = *self $operator other;
-            }
+    /// A new row made of two others, number by number.
+    fn both(&mut self, a: Along, b: Along, number: impl Fn(f64, f64) -> f64) -> Along {
+        let start = |Along(row): Along| (row as usize * self.width).checked_sub(self.width);
+        let (Some(a), Some(b)) = (start(a), start(b)) else {
+            return Along(0);
+        };
+        self.numbers.reserve(self.width);
+        for k in 0..self.width {
+            let (Some(x), Some(y)) = (self.numbers.get(a + k), self.numbers.get(b + k)) else {
+                return Along(0);
+            };
+            let z = number(*x, *y);
+            self.numbers.push(z);
         }
-    )+};
-}
-operations!(
-    Add add AddAssign add_assign +,
-    Sub sub SubAssign sub_assign -,
-    Mul mul MulAssign mul_assign *,
-    Div div DivAssign div_assign /
-);
-
-impl Neg for Bound {
-    type Output = Self;
-
-    #[inline(never)]
-    fn neg(self) -> Self {
-        Bound(-self.0)
+        let rows = self.numbers.len().checked_div(self.width).unwrap_or(0);
+        Along(u32::try_from(rows).unwrap_or(0))
     }
 }
 
-impl Zero for Bound {
-    fn zero() -> Self {
-        Bound(Enclosure::zero())
-    }
-
-    fn is_zero(&self) -> bool {
-        self.0.is_zero()
-    }
-}
-
-impl One for Bound {
-    fn one() -> Self {
-        Bound(Enclosure::one())
-    }
-}
-
-macro_rules! functions {
-    ($($name:ident)+) => {$(
-        #[inline(never)]
-        fn $name(self) -> Self {
-            Bound(self.0.$name())
+impl Along {
+    /// As these variables of its own, the first of them counted from `first` on.
+    pub fn placed(own: &[f64], first: usize) -> Self {
+        if own.iter().all(|x| *x == 0.0) {
+            return Along(0);
         }
-    )+};
+        let at = |k: usize| k.checked_sub(first).and_then(|k| own.get(k)).copied();
+        TABLE.with_borrow_mut(|table| table.add(|_, k| at(k).unwrap_or(0.0)))
+    }
 }
 
-macro_rules! sizes {
-    ($($name:ident)+) => {$(
-        #[inline(never)]
-        fn $name(self) -> f64 {
-            self.0.$name()
+impl PartialEq for Along {
+    fn eq(&self, other: &Self) -> bool {
+        if (self.0, other.0) == (0, 0) {
+            return true;
         }
-    )+};
+        TABLE.with_borrow(|table| {
+            let at = |row: &[f64], k: usize| row.get(k).copied().unwrap_or(0.0);
+            let (a, b) = (table.row(*self), table.row(*other));
+            (0..table.width).all(|k| at(a, k) == at(b, k))
+        })
+    }
 }
 
-impl Real for Bound {
-    type One = Self;
-    const EPSILON: f64 = <Enclosure<VARIABLES> as Real>::EPSILON;
-    const ORDER: u32 = <Enclosure<VARIABLES> as Real>::ORDER;
-
-    functions!(sqrt exp ln sin cos sinh cosh tanh sign abs);
-    sizes!(value magnitude least greatest);
-
-    fn one_of(&self, _: usize) -> Self {
-        *self
+impl Affine for Along {
+    fn none() -> Self {
+        Along(0)
     }
 
-    fn set_lane(&mut self, _: usize, one: Self) {
-        *self = one;
-    }
-
-    fn from_f64(x: f64) -> Self {
-        Self::exactly(x)
-    }
-
-    fn from_ratio(num: i64, den: i64) -> Self {
-        Bound(Enclosure::from_ratio(num, den))
-    }
-
-    #[inline(never)]
-    fn where_positive(self, then: Self) -> Self {
-        Bound(self.0.where_positive(then.0))
-    }
-
-    #[inline(never)]
-    fn powi(self, exponent: i32) -> Self {
-        Bound(self.0.powi(exponent))
+    fn variable(radius: f64, index: usize) -> Option<Self> {
+        TABLE.with_borrow_mut(|table| {
+            let own = |k: usize| if k == index { radius } else { 0.0 };
+            (index < table.width).then(|| table.add(|_, k| own(k)))
+        })
     }
 
     #[inline(never)]
-    fn powr(self, num: i64, den: i64) -> Self {
-        Bound(self.0.powr(num, den))
+    fn along(&self, index: usize) -> f64 {
+        TABLE.with_borrow(|table| table.row(*self).get(index).copied().unwrap_or(0.0))
     }
 
-    fn is_finite(self) -> bool {
-        self.0.is_finite()
+    #[inline(never)]
+    fn plus(self, other: Self) -> Self {
+        match (self.0, other.0) {
+            (_, 0) => self,
+            (0, _) => other,
+            _ => TABLE.with_borrow_mut(|table| table.both(self, other, |x, y| x + y)),
+        }
+    }
+
+    #[inline(never)]
+    fn opposite(self) -> Self {
+        match self.0 {
+            0 => self,
+            _ => TABLE.with_borrow_mut(|table| table.both(self, self, |x, _| -x)),
+        }
+    }
+
+    #[inline(never)]
+    fn times(self, factor: f64) -> Self {
+        match self.0 {
+            0 => self,
+            _ => TABLE.with_borrow_mut(|table| table.both(self, self, |x, _| x * factor)),
+        }
+    }
+
+    #[inline(never)]
+    fn weighted(self, factor: f64, other: Self, other_factor: f64) -> Self {
+        match (self.0, other.0) {
+            (_, 0) => self.times(factor),
+            (0, _) => other.times(other_factor),
+            _ => TABLE.with_borrow_mut(|table| {
+                table.both(self, other, |x, y| x * factor + y * other_factor)
+            }),
+        }
+    }
+
+    #[inline(never)]
+    fn swing(&self) -> f64 {
+        match self.0 {
+            0 => 0.0,
+            _ => TABLE.with_borrow(|table| swing_of(table.row(*self))),
+        }
     }
 }

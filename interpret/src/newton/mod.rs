@@ -1,9 +1,8 @@
-//! Newton's method for equations that were read: the solver of the runtime on groups of any kind, with
-//! residual and tangent run as operations; the proof that a root is the principal one by the same
+//! Newton's method for equations that were read: the solver of the runtime on groups of any kind and size,
+//! with residual and tangent run as operations; the proof that a root is the principal one by the same
 //! operations over numbers in bounds.
 
 mod bound;
-mod element;
 mod node;
 mod region;
 mod search;
@@ -11,8 +10,8 @@ mod shape;
 mod solve;
 
 pub use bound::Bound;
-pub use node::{Kept, are_kept};
-pub use search::{Held, Purpose, Sought, begun, remember};
+pub use node::Kept;
+pub use search::{Held, Sought, remember};
 pub use shape::{Kind, Shape};
 pub use solve::{Settled, Solve};
 
@@ -24,7 +23,7 @@ pub fn over<T: Real, U: Real>(
     value: &Value<T>,
     change: &mut impl FnMut(T) -> U,
 ) -> Option<Value<U>> {
-    use crate::dense::Dense;
+    use clebsch::linalg::Dense;
     let dense = |a: &Dense<T>, change: &mut dyn FnMut(T) -> U| Dense {
         rows: a.rows,
         cols: a.cols,

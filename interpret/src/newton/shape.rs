@@ -1,10 +1,15 @@
-//! Which groups a search for velocities is in. The solver asks a type for what belongs to a group, such as
-//! its coordinates; here one type serves all groups, and the answer stands in the shape at work.
+//! Which groups a search for velocities is in, and what they do: the runtime's own groups where these are
+//! types, matrices in plain loops where their sizes are known when a model is read.
 
-use super::bound::VARIABLES;
-use clebsch::groups::{Coordinate, Group};
-use clebsch::solvers::newton::{Enclosure, Region};
-use std::cell::Cell;
+use super::bound::Bound;
+use super::region;
+use crate::library::groups::{composed_kept, inverse_kept};
+use crate::value::{Kept, Value};
+use clebsch::Group;
+use clebsch::groups::{Coordinate, Part};
+use clebsch::linalg::Dense;
+use clebsch::solvers::newton::{Chart, Parts};
+use clebsch::{PlaneMotion, RigidMotion, Rotation, UnitQuaternion};
 
 /// A group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,193 +30,386 @@ pub enum Kind {
     Field(usize, usize),
 }
 
-/// The body for the group of a kind, `$G` over numbers and `$R` in bounds; the value of `$other` for
-/// groups that are not compiled.
-macro_rules! of_kind {
-    ($kind:expr, $G:ident, $R:ident, $K:ident, $body:expr, $other:expr) => {{
-        use clebsch::emitted::{
-            Additive, Linear, Orthogonal, PlaneMotion, RigidMotion, Rotation, UnitQuaternion,
-        };
-        use clebsch::solvers::newton as bounds;
+/// The body for the group of a kind, where that is a type.
+macro_rules! of_type {
+    ($kind:expr, $G:ident, $body:expr, $other:expr) => {{
         macro_rules! with {
-            ($g:ty, $r:ty) => {{
-                #[allow(dead_code)]
+            ($g:ty) => {{
                 type $G = $g;
-                #[allow(dead_code)]
-                type $R<const $K: usize> = $r;
                 $body
             }};
         }
-        macro_rules! field {
-            ($rows:literal, $cols:literal) => {
-                with!(Additive<$rows, $cols, f64>, bounds::AdditiveRegion<$rows, $cols, $K>)
-            };
-        }
-        use $crate::newton::shape::Kind;
         match $kind {
-            Kind::Rotation => with!(Rotation<f64>, bounds::RotationRegion<$K>),
-            Kind::Quaternion => with!(UnitQuaternion<f64>, bounds::QuaternionRegion<$K>),
-            Kind::Motion => with!(RigidMotion<f64>, bounds::MotionRegion<$K>),
-            Kind::Plane => with!(PlaneMotion<f64>, bounds::PlaneMotionRegion<$K>),
-            Kind::Linear(1) => with!(Linear<1, f64>, bounds::LinearRegion<1, $K>),
-            Kind::Linear(2) => with!(Linear<2, f64>, bounds::LinearRegion<2, $K>),
-            Kind::Linear(3) => with!(Linear<3, f64>, bounds::LinearRegion<3, $K>),
-            Kind::Orthogonal(3) => with!(Orthogonal<3, f64>, bounds::OrthogonalRegion<3, $K>),
-            Kind::Orthogonal(4) => with!(Orthogonal<4, f64>, bounds::OrthogonalRegion<4, $K>),
-            Kind::Orthogonal(5) => with!(Orthogonal<5, f64>, bounds::OrthogonalRegion<5, $K>),
-            Kind::Field(1, 1) => field!(1, 1),
-            Kind::Field(2, 1) => field!(2, 1),
-            Kind::Field(3, 1) => field!(3, 1),
-            Kind::Field(4, 1) => field!(4, 1),
-            Kind::Field(5, 1) => field!(5, 1),
-            Kind::Field(6, 1) => field!(6, 1),
-            Kind::Field(7, 1) => field!(7, 1),
-            Kind::Field(8, 1) => field!(8, 1),
-            Kind::Field(2, 2) => field!(2, 2),
-            Kind::Field(2, 3) => field!(2, 3),
-            Kind::Field(3, 2) => field!(3, 2),
-            Kind::Field(3, 3) => field!(3, 3),
+            Kind::Rotation => with!(Rotation<f64>),
+            Kind::Quaternion => with!(UnitQuaternion<f64>),
+            Kind::Motion => with!(RigidMotion<f64>),
+            Kind::Plane => with!(PlaneMotion<f64>),
             _ => $other,
         }
     }};
 }
-pub(super) use of_kind;
 
-impl Kind {
-    /// How many coordinates; nothing where the group is not compiled.
-    pub fn dimension(self) -> Option<usize> {
-        of_kind!(self, G, R, K, Some(<G as Group<f64>>::DIMENSION), None)
-    }
-
-    /// How many parts these have.
-    pub fn parts(self) -> usize {
-        of_kind!(self, G, R, K, <G as Group<f64>>::PARTS, 1)
-    }
-
-    /// What a coordinate stands for.
-    pub fn coordinate(self, index: usize) -> Option<Coordinate> {
-        of_kind!(
-            self,
-            G,
-            R,
-            K,
-            Some(<G as Group<f64>>::coordinate(index)),
-            None
-        )
-    }
-
-    /// The part that a coordinate belongs to.
-    pub fn part_of(self, index: usize) -> usize {
-        of_kind!(self, G, R, K, <G as Group<f64>>::part_of(index), 0)
-    }
-
-    /// Whether the coordinates of a part are pure numbers.
-    pub fn is_pure(self, part: usize) -> bool {
-        of_kind!(self, G, R, K, <G as Group<f64>>::is_pure(part), true)
-    }
-
-    /// The derivative of its chart, entry by entry.
-    pub fn chart_tangent(
-        self,
-        radii: &[f64],
-        first: usize,
-        mut put: &mut dyn FnMut(usize, usize, Enclosure<VARIABLES>),
-    ) {
-        of_kind!(
-            self,
-            G,
-            R,
-            K,
-            R::<VARIABLES>::chart_tangent(radii, first, &mut put),
-            ()
-        );
-    }
-
-    /// How many variables a region of it takes.
-    pub fn variables(self) -> usize {
-        of_kind!(self, G, R, K, <R<0> as Region<0>>::VARIABLES, 0)
-    }
-}
-
-/// The groups of the velocities that are found together.
-#[derive(Debug, PartialEq, Eq)]
-pub struct Shape {
-    /// One after the other.
-    pub kinds: Vec<Kind>,
-}
-
-thread_local! {
-    static AT_WORK: Cell<Option<&'static Shape>> = const { Cell::new(None) };
-}
-
-/// While it lives, its shape is the one at work in this thread.
-pub struct AtWork {
-    before: Option<&'static Shape>,
-}
-
-impl Drop for AtWork {
-    fn drop(&mut self) {
-        AT_WORK.set(self.before);
-    }
-}
-
-impl Shape {
-    /// Puts it to work.
-    pub fn at_work(&'static self) -> AtWork {
-        AtWork {
-            before: AT_WORK.replace(Some(self)),
-        }
-    }
-
-    /// How many coordinates all have together.
-    pub fn dimension(&self) -> Option<usize> {
-        self.kinds.iter().map(|k| k.dimension()).sum()
-    }
-}
-
-/// The groups at work.
-pub fn kinds() -> &'static [Kind] {
-    AT_WORK.get().map_or(&[], |shape| shape.kinds.as_slice())
-}
-
-/// The factor to which a coordinate belongs, and its index there.
-pub fn factor_of(index: usize) -> Option<(usize, Kind, usize)> {
-    let mut rest = index;
-    for (i, kind) in kinds().iter().enumerate() {
-        let own = kind.dimension()?;
-        if rest < own {
-            return Some((i, *kind, rest));
-        }
-        rest -= own;
-    }
-    None
-}
-
-/// The factor to which a part belongs, and its index there.
-pub fn factor_of_part(part: usize) -> Option<(Kind, usize)> {
-    let mut rest = part;
-    for kind in kinds() {
-        if rest < kind.parts() {
-            return Some((*kind, rest));
-        }
-        rest -= kind.parts();
-    }
-    None
-}
-
-/// The body for each number of coordinates that searches are compiled for.
-macro_rules! of_dimension {
-    ($n:expr, $D:ident, $body:expr) => {
-        of_dimension!($n, $D, $body, 1 2 3 4 6 9)
-    };
-    ($n:expr, $D:ident, $body:expr, $($d:literal)*) => {
-        match $n {
-            $($d => {
-                const $D: usize = $d;
-                $body
-            })*
+/// The element of an element that is a type, and what is made of it.
+macro_rules! of_element {
+    ($value:expr, $g:ident => $body:expr, ($kept:ident, $a:ident) => $other:expr) => {
+        match $value {
+            Value::Rotation($g) => Some($body),
+            Value::Quaternion($g) => Some($body),
+            Value::Motion(boxed) => {
+                let $g = &**boxed;
+                Some($body)
+            }
+            Value::Plane(boxed) => {
+                let $g = &**boxed;
+                Some($body)
+            }
+            Value::Element($kept, $a) => Some($other),
             _ => None,
         }
     };
 }
-pub(super) use of_dimension;
+/// An element as a value.
+trait Told {
+    fn told(self) -> Value<f64>;
+}
+impl Told for Rotation<f64> {
+    fn told(self) -> Value<f64> {
+        Value::Rotation(self)
+    }
+}
+impl Told for UnitQuaternion<f64> {
+    fn told(self) -> Value<f64> {
+        Value::Quaternion(self)
+    }
+}
+impl Told for RigidMotion<f64> {
+    fn told(self) -> Value<f64> {
+        Value::Motion(Box::new(self))
+    }
+}
+impl Told for PlaneMotion<f64> {
+    fn told(self) -> Value<f64> {
+        Value::Plane(Box::new(self))
+    }
+}
+
+impl Kind {
+    /// How many coordinates.
+    pub fn dimension(self) -> usize {
+        match self {
+            Kind::Linear(n) => n * n,
+            Kind::Orthogonal(n) => n * n.saturating_sub(1) / 2,
+            Kind::Field(rows, cols) => rows * cols,
+            _ => of_type!(self, G, <G as Group<f64>>::DIMENSION, 0),
+        }
+    }
+
+    /// How many parts these have.
+    pub fn parts(self) -> usize {
+        of_type!(self, G, <G as Group<f64>>::PARTS, 1)
+    }
+
+    fn coordinate(self, index: usize) -> Coordinate {
+        match self {
+            Kind::Linear(n) => Coordinate::of(Part::entry(index, n)),
+            Kind::Orthogonal(n) => Coordinate::of(Part::of_pair(index, n)),
+            Kind::Field(_, cols) => Coordinate::of(Part::entry(index, cols)),
+            _ => of_type!(
+                self,
+                G,
+                <G as Group<f64>>::coordinate(index),
+                Coordinate::of(Part::axis(index))
+            ),
+        }
+    }
+
+    fn part_of(self, index: usize) -> usize {
+        of_type!(self, G, <G as Group<f64>>::part_of(index), 0)
+    }
+
+    fn is_pure(self, part: usize) -> bool {
+        let other = !matches!(self, Kind::Field(..));
+        of_type!(self, G, <G as Group<f64>>::is_pure(part), other)
+    }
+
+    /// How many variables a region of it takes.
+    pub fn variables(self) -> usize {
+        match self {
+            Kind::Rotation | Kind::Plane => 9,
+            Kind::Quaternion => 6,
+            Kind::Motion => 12,
+            _ => 3 * self.dimension().div_ceil(3),
+        }
+    }
+
+    fn identity(self) -> Value<f64> {
+        match self {
+            Kind::Linear(n) => Value::Element(Kept::Linear, Dense::identity(n, n)),
+            Kind::Orthogonal(n) => Value::Element(Kept::Orthogonal, Dense::identity(n, n)),
+            Kind::Field(rows, cols) => Value::Element(Kept::Field, Dense::zeros(rows, cols)),
+            _ => of_type!(self, G, <G as Group<f64>>::identity().told(), Value::None),
+        }
+    }
+}
+
+/// An element kept as its matrix, moved by coordinates.
+fn retracted(kept: Kept, a: &Dense<f64>, xi: &[f64]) -> Dense<f64> {
+    let x = |i: usize, j: usize| xi.get(a.cols * i + j).copied().unwrap_or(0.0);
+    match kept {
+        Kept::Linear => a.plus(&a.times(&Dense::from_fn(a.rows, a.cols, x))),
+        Kept::Field => a.plus(&Dense::from_fn(a.rows, a.cols, x)),
+        Kept::Orthogonal => {
+            let half = Dense::skew_from(a.rows, xi).scaled(0.5);
+            let one = Dense::identity(a.rows, a.rows);
+            match one.minus(&half).solved(&one) {
+                Some(inverse) => a
+                    .times(&inverse.plus(&inverse).minus(&one))
+                    .orthonormalised(),
+                None => Dense::unknown(a.rows, a.cols),
+            }
+        }
+    }
+}
+
+fn retract(g: &Value<f64>, xi: &[f64]) -> Option<Value<f64>> {
+    of_element!(
+        g,
+        g => Group::retract(g, xi).told(),
+        (kept, a) => Value::Element(*kept, retracted(*kept, a, xi))
+    )
+}
+
+fn retract_from_left(kind: Kind, g: &Value<f64>, xi: &[f64]) -> Option<Value<f64>> {
+    let from = kind.identity();
+    of_element!(
+        g,
+        g => Group::retract_from_left(g, xi).told(),
+        (kept, a) => match retract(&from, xi)? {
+            Value::Element(_, moved) => Value::Element(*kept, composed_kept(*kept, &moved, a)),
+            _ => return None,
+        }
+    )
+}
+
+fn between(from: &Value<f64>, to: &Value<f64>) -> Option<Value<f64>> {
+    fn of<G: Group<f64>>(from: &G, to: &G) -> G {
+        from.inverse().compose(to)
+    }
+    Some(match (from, to) {
+        (Value::Rotation(a), Value::Rotation(b)) => of(a, b).told(),
+        (Value::Quaternion(a), Value::Quaternion(b)) => of(a, b).told(),
+        (Value::Motion(a), Value::Motion(b)) => of(&**a, b).told(),
+        (Value::Plane(a), Value::Plane(b)) => of(&**a, b).told(),
+        (Value::Element(kept, a), Value::Element(_, b)) => {
+            Value::Element(*kept, composed_kept(*kept, &inverse_kept(*kept, a), b))
+        }
+        _ => return None,
+    })
+}
+
+fn extents(g: &Value<f64>, out: &mut [f64]) -> Option<()> {
+    of_element!(
+        g,
+        g => g.extents(out),
+        (kept, a) => if let Some(first) = out.first_mut() {
+            *first = match kept {
+                Kept::Linear => a.minus_one().squares().sqrt(),
+                Kept::Field => a.squares().sqrt(),
+                Kept::Orthogonal => {
+                    let eighth = a.minus_one().squares() * 0.125;
+                    let square = eighth * 4.0 / (1.0 - eighth);
+                    if eighth < 1.0 { square.sqrt() } else { f64::INFINITY }
+                }
+            };
+        }
+    )
+}
+
+fn is_within(g: &Value<f64>, reach: &[f64]) -> Option<bool> {
+    of_element!(
+        g,
+        g => g.is_within(reach),
+        (kept, a) => {
+            let reach = reach.first().copied().unwrap_or(0.0);
+            match kept {
+                Kept::Linear => a.minus_one().squares() - reach * reach <= 0.0,
+                Kept::Field => a.squares() - reach * reach <= 0.0,
+                Kept::Orthogonal => {
+                    let eighth = a.minus_one().squares() * 0.125;
+                    eighth * 4.0 - (1.0 - eighth) * (reach * reach) <= 0.0
+                }
+            }
+        }
+    )
+}
+
+fn combined(kind: Kind, weights: &[f64], past: &[&Value<f64>]) -> Value<f64> {
+    macro_rules! of {
+        ($kind:ident, $g:ident => $element:expr) => {{
+            let one = |i: usize| match past.get(i) {
+                Some(Value::$kind($g)) => $element,
+                _ => Group::<f64>::identity(),
+            };
+            Group::combined(weights, one).told()
+        }};
+    }
+    let first = || past.first().map_or(Value::None, |x| (*x).clone());
+    match kind {
+        Kind::Rotation => of!(Rotation, g => *g),
+        Kind::Quaternion => of!(Quaternion, g => *g),
+        Kind::Motion => of!(Motion, g => **g),
+        Kind::Plane => of!(Plane, g => **g),
+        Kind::Orthogonal(_) => first(),
+        Kind::Linear(_) | Kind::Field(..) => {
+            let Some(Value::Element(kept, a)) = past.first() else {
+                return first();
+            };
+            let mut sum = Dense::zeros(a.rows, a.cols);
+            for (weight, x) in weights.iter().zip(past) {
+                if let Value::Element(_, x) = x {
+                    sum = sum.plus(&x.scaled(*weight));
+                }
+            }
+            Value::Element(*kept, sum)
+        }
+    }
+}
+
+/// The groups of the velocities that are found together.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shape {
+    /// One after the other.
+    kinds: Vec<Kind>,
+    parts: Parts,
+}
+
+impl Shape {
+    /// Of these groups.
+    pub fn new(kinds: Vec<Kind>) -> Self {
+        let mut parts = Parts {
+            of: Vec::new(),
+            pure: Vec::new(),
+        };
+        for kind in &kinds {
+            let before = parts.pure.len();
+            let own = (0..kind.dimension()).map(|i| before + kind.part_of(i));
+            parts.of.extend(own);
+            parts
+                .pure
+                .extend((0..kind.parts()).map(|i| kind.is_pure(i)));
+        }
+        Shape { kinds, parts }
+    }
+
+    /// Each group with a list of its own lengths and the first variable of its region.
+    fn each<'a>(&'a self, radii: &'a [f64]) -> impl Iterator<Item = (Kind, &'a [f64], usize)> {
+        let (mut part, mut next) = (0, 0);
+        self.kinds.iter().map(move |kind| {
+            let own = radii.get(part..).unwrap_or(&[]);
+            let first = next;
+            part += kind.parts();
+            next += kind.variables();
+            (*kind, own, first)
+        })
+    }
+
+    /// All velocities near these, as emitted code has them.
+    pub fn around(&self, centre: &[Value<f64>], radii: &[f64], width: usize) -> Value<Bound> {
+        let all = self.each(radii).zip(centre);
+        let all = all.map(|((_, own, first), g)| region::around(g, own, first, width));
+        Value::List(all.collect())
+    }
+
+    /// The derivative of the charts, entry by entry.
+    pub fn chart_tangent(
+        &self,
+        radii: &[f64],
+        width: usize,
+        put: &mut dyn FnMut(usize, usize, Bound),
+    ) {
+        let mut at = 0;
+        for (kind, own, first) in self.each(radii) {
+            region::chart_tangent(kind, own, first, width, &mut |i, j, x| {
+                put(at + i, at + j, x);
+            });
+            at += kind.dimension();
+        }
+    }
+
+    /// The coordinates of each factor.
+    fn split<'a>(&'a self, xi: &'a [f64]) -> impl Iterator<Item = (Kind, &'a [f64])> {
+        let mut rest = xi;
+        self.kinds.iter().map(move |kind| {
+            let (own, others) = rest.split_at(kind.dimension().min(rest.len()));
+            rest = others;
+            (*kind, own)
+        })
+    }
+}
+
+impl Chart for Shape {
+    type Element = Vec<Value<f64>>;
+
+    fn parts(&self) -> &Parts {
+        &self.parts
+    }
+
+    fn coordinate(&self, index: usize) -> Coordinate {
+        let mut rest = index;
+        for (i, kind) in self.kinds.iter().enumerate() {
+            if rest < kind.dimension() {
+                return kind.coordinate(rest).in_factor(i);
+            }
+            rest -= kind.dimension();
+        }
+        Coordinate::of(Part::axis(index))
+    }
+
+    fn identity(&self) -> Vec<Value<f64>> {
+        self.kinds.iter().map(|kind| kind.identity()).collect()
+    }
+
+    fn retract(&self, at: &Vec<Value<f64>>, xi: &[f64]) -> Vec<Value<f64>> {
+        let each = at.iter().zip(self.split(xi));
+        each.map(|(g, (_, own))| retract(g, own).unwrap_or(Value::None))
+            .collect()
+    }
+
+    fn retract_from_left(&self, at: &Vec<Value<f64>>, xi: &[f64]) -> Vec<Value<f64>> {
+        let each = at.iter().zip(self.split(xi));
+        each.map(|(g, (kind, own))| retract_from_left(kind, g, own).unwrap_or(Value::None))
+            .collect()
+    }
+
+    fn combined(&self, weights: &[f64], past: &[Vec<Value<f64>>]) -> Vec<Value<f64>> {
+        let each = self.kinds.iter().enumerate();
+        each.map(|(k, kind)| {
+            let own: Vec<&Value<f64>> = past.iter().filter_map(|all| all.get(k)).collect();
+            combined(*kind, weights, &own)
+        })
+        .collect()
+    }
+
+    fn between(&self, from: &Vec<Value<f64>>, to: &Vec<Value<f64>>) -> Vec<Value<f64>> {
+        let pairs = from.iter().zip(to);
+        pairs
+            .map(|(g, next)| between(g, next).unwrap_or(Value::None))
+            .collect()
+    }
+
+    fn extents(&self, of: &Vec<Value<f64>>, out: &mut [f64]) {
+        let mut rest = out;
+        for (kind, g) in self.kinds.iter().zip(of) {
+            let (own, others) = rest.split_at_mut(kind.parts().min(rest.len()));
+            let _ = extents(g, own);
+            rest = others;
+        }
+    }
+
+    fn is_within(&self, of: &Vec<Value<f64>>, reach: &[f64]) -> bool {
+        let all = self.each(reach).zip(of);
+        all.fold(true, |all, ((_, own, _), g)| {
+            all & is_within(g, own).unwrap_or(false)
+        })
+    }
+}

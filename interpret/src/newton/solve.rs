@@ -1,21 +1,21 @@
 //! The equations of a step as operations, and the loop that solves them: the calls that emitted code makes,
 //! in the same order.
 
-use super::bound::{Bound, VARIABLES};
-use super::element::{self, Element};
-use super::node::Asked;
+use super::bound::{Bound, Variables};
+use super::node;
 use super::over;
-use super::region::Regions;
-use super::search::{self, Sought};
+use super::search::{self, Held, Sought};
+use super::shape::Shape;
 use crate::code::{Code, Exit, Iterate, Places, Routine, unfit};
 use crate::failure::Failure;
 use crate::value::Value;
 use clebsch::Real;
 use clebsch::emitted::{StepCause, StepError};
+use clebsch::linalg::Dense;
 use clebsch::solvers::newton::{
-    self, Anchor, Enclosure, Fold, Newton, NewtonError, Progress, Solved, Verdict, trace,
+    self, AnyNewton, Chart, Enclosed, Lane, NewtonError, NodeList, Progress, Purpose, Solved,
+    Spread,
 };
-use nalgebra::{SMatrix, SVector};
 
 /// A function over numbers in bounds.
 pub type Bounded = Routine<Bound>;
@@ -67,6 +67,8 @@ pub struct Solve {
     pub tangent_at: Routine<f64>,
     /// The same over numbers in bounds.
     pub bounded_at: Bounded,
+    /// With how many variables they move.
+    pub width: usize,
 }
 
 impl Iterate<f64> for Solve {
@@ -79,7 +81,7 @@ impl Iterate<f64> for Solve {
             Value::Search(held) => held,
             _ => return unfit(None),
         };
-        let solved = held.0.solve(self, node as u64, &values, places);
+        let solved = held.solve(self, node as u64, &values, places);
         *unfit(self.search.place_mut(places))? = Value::Search(held);
         solved
     }
@@ -96,43 +98,63 @@ fn run<T: Real>(routine: &Routine<T>, given: Vec<Value<T>>) -> Option<Value<T>> 
     }
 }
 
-type At<'a, V, const D: usize> = Newton<'a, f64, Element<D>, V, D>;
-type Found<const D: usize> = Result<Solved<Element<D>>, Exit<f64>>;
+/// The velocities of all groups.
+type Element = Vec<Value<f64>>;
+
+/// The entries of a vector of so many coordinates.
+fn vector(value: &Value<f64>, size: usize) -> Option<Vec<f64>> {
+    if let Value::Real(x) = value {
+        return (size == 1).then(|| vec![*x]);
+    }
+    let mut a = value.dense()?;
+    a.data.truncate(size);
+    (a.data.len() == size && a.cols == 1).then_some(a.data)
+}
+
+/// The leading rows and columns of a matrix.
+fn matrix<T: Real>(value: &Value<T>, size: usize) -> Option<Dense<T>> {
+    let a = value.dense()?;
+    match (
+        a.rows == size && a.cols == size,
+        a.rows >= size && a.cols >= size,
+    ) {
+        (true, _) => Some(a),
+        (_, true) => Some(Dense::from_fn(size, size, |i, j| a.at(i, j))),
+        _ => None,
+    }
+}
 
 /// Iterates to the solution.
-pub fn by<V: Asked + 'static, const D: usize>(
-    iteration: &mut At<'_, V, D>,
+pub fn by(
+    iteration: &mut AnyNewton<'_, Shape>,
     with: &Solve,
     sought: &'static Sought,
     places: &mut Places<f64>,
-) -> Found<D> {
+) -> Result<Solved<Element>, Exit<f64>> {
+    let size = sought.shape.parts().dimension();
     loop {
-        let trial = iteration.trial();
-        *unfit(places.get_mut(with.trial))? = trial.value();
+        let trial = Value::List(iteration.trial().clone());
         if iteration.wants_scale() {
-            let rounding = with.rounding::<D>(&trial, places)?;
-            iteration.set_scale(|_| rounding);
+            let rounding = with.rounding(&trial, size, places)?;
+            iteration.set_scale(&rounding);
         }
+        *unfit(places.get_mut(with.trial))? = trial;
         for code in &with.at_trial {
             code.run(places)?;
         }
         let residual = with.residual.run(places)?;
-        if iteration.assess(unfit(element::vector(&residual))?) {
+        if iteration.assess(unfit(vector(&residual, size))?) {
             let tangent = with.tangent.run(places)?;
-            let tangent: SMatrix<f64, D, D> = unfit(element::matrix(&tangent))?;
+            let tangent = unfit(matrix(&tangent, size))?;
             match &with.unit {
                 Some(unit) => match unit.run(places)? {
-                    Value::Real(h) => iteration.set_tangent_times(&tangent, h),
+                    Value::Real(h) => iteration.set_tangent_times(tangent, h),
                     _ => return unfit(None),
                 },
-                None => iteration.set_tangent(&tangent),
+                None => iteration.set_tangent_times(tangent, 1.0),
             }
         }
-        let progress = match with.from_left {
-            true => iteration.correct_from_left(),
-            false => iteration.correct(),
-        };
-        match progress {
+        match iteration.correct(with.from_left) {
             Progress::Continue => {}
             Progress::Solved(solved)
                 if with.is_convex(places)? || iteration.is_principal(&solved.element) =>
@@ -167,125 +189,127 @@ impl Solve {
     }
 
     /// Bounds of the rounding of the residual.
-    fn rounding<const D: usize>(
+    fn rounding(
         &self,
-        trial: &Element<D>,
+        trial: &Value<f64>,
+        size: usize,
         places: &mut Places<f64>,
-    ) -> Result<SVector<f64, D>, Exit<f64>> {
+    ) -> Result<Vec<f64>, Exit<f64>> {
         let known = self.known(places)?;
         let exactly = &mut Bound::exactly;
         let mut given = Vec::with_capacity(self.rounded_at.places);
         for value in &known {
             given.push(unfit(over(value, exactly))?);
         }
-        given.push(unfit(over(&trial.value(), &mut Bound::rounded))?);
+        given.push(unfit(over(trial, &mut Bound::rounded))?);
         let residual = unfit(run(&self.rounded_at, given))?;
-        let rest = unfit(over(&residual, &mut |x: Bound| x.0.rest()))?;
-        unfit(element::vector(&rest))
+        let rest = unfit(over(&residual, &mut |x: Bound| x.rest()))?;
+        unfit(vector(&rest, size))
     }
 
     /// The solution to be taken where the one found is not known to be principal, or none was found.
     /// None where the iteration begins again, at the principal root.
     #[cold]
-    fn settle<V: Asked + 'static, const D: usize>(
+    fn settle(
         &self,
-        iteration: &mut At<'_, V, D>,
-        ended: Progress<Element<D>>,
+        iteration: &mut AnyNewton<'_, Shape>,
+        ended: Progress<Element>,
         sought: &'static Sought,
         places: &mut Places<f64>,
-    ) -> Result<Option<Solved<Element<D>>>, Exit<f64>> {
+    ) -> Result<Option<Solved<Element>>, Exit<f64>> {
         let failed = match ended {
             Progress::Continue => return Ok(None),
             Progress::Solved(solved) => Ok(solved),
             Progress::Failed(e) => Err(e),
         };
-        let asked = failed.as_ref().ok().map(|solved| solved.element);
-        let values = iteration.values();
+        let values = iteration.values().clone();
         let known = self.known(places)?;
-        let certificate = iteration.certificate();
-        let traced = self.principal(&known, &values, certificate, asked.as_ref());
-        let e = match (traced, failed) {
-            (Ok(None), Ok(solved)) => return Ok(Some(solved)),
-            (Ok(Some(root)), _) if iteration.restart(root) => return Ok(None),
+        let asked = failed.as_ref().ok().map(|solved| &solved.element);
+        let settled = self.principal(&known, &values, sought, |equations| {
+            iteration.settle(equations, asked)
+        });
+        let e = match (settled, failed) {
+            (Ok(newton::Settled::Principal), Ok(solved)) => return Ok(Some(solved)),
+            (Ok(newton::Settled::Again), _) => return Ok(None),
             (Ok(_), Err(e)) => e,
             (Ok(_), Ok(_)) => iteration.unpolished(),
             (Err(fold), failed) => {
-                if let (Some((at, tries, look)), Ok(solved)) = (&self.settled.contact, &failed) {
+                let (solved, failed) = match failed {
+                    Ok(solved) => (Some(solved), None),
+                    Err(e) => (None, Some(e)),
+                };
+                if let (Some((at, tries, look)), Some(solved)) = (&self.settled.contact, solved) {
                     *unfit(places.get_mut(*at))? = search::told(solved);
                     *unfit(places.get_mut(*tries))? = Value::Bool(iteration.tries());
                     if let Value::Failed(e) = look.run(places)? {
                         return Err(Exit::Return(Box::new(Value::Failed(e))));
                     }
                 }
-                iteration.folded(fold, failed.err())
+                iteration.folded(fold, failed)
             }
         };
-        let e = self.refused::<V, D>(e, sought, places)?;
+        let e = self.refused(e, sought, places)?;
         Err(Failure::from(StepCause::from(e)).into())
     }
 
-    /// Finds the principal root, or shows that the solution is.
-    fn principal<V: Asked, const D: usize>(
+    /// The equations of the step, with everything at its node held fixed.
+    fn principal<R>(
         &self,
         known: &[Value<f64>; 4],
-        values: &V,
-        certificate: &mut newton::Certificate<V, D>,
-        solution: Option<&Element<D>>,
-    ) -> Result<Option<Anchor<Element<D>, D>>, Fold> {
+        values: &NodeList,
+        sought: &'static Sought,
+        then: impl FnOnce(&Lane<Shape>) -> R,
+    ) -> R {
         let [parameters, step, given, momenta] = known;
+        let (shape, kept) = (&sought.shape, sought.node.as_slice());
+        let (size, width) = (shape.parts().dimension(), self.width);
         let exactly = &mut Bound::exactly;
         let bounds = (over(parameters, exactly), over(step, exactly));
-        let near = V::given::<f64>(&values.over(&mut |x: f64| x));
-        let residual = |trial: &Element<D>| {
+        let near = node::given(values, kept, None, |[x, _]| x);
+        let residual = |trial: &Element| {
             let all = [parameters, step, given, momenta];
             let mut all: Vec<Value<f64>> = all.map(Value::clone).to_vec();
-            all.push(trial.value());
+            all.push(Value::List(trial.clone()));
             let found = run(&self.residual_at, all);
-            found
-                .and_then(|v| element::vector(&v))
-                .unwrap_or_else(|| SMatrix::repeat(f64::NAN))
+            let found = found.and_then(|v| vector(&v, size));
+            found.unwrap_or_else(|| vec![f64::NAN; size])
         };
-        let tangent = |trial: &Element<D>| {
+        let tangent = |trial: &Element| {
             let mut all: Vec<Value<f64>> = [parameters, step].map(Value::clone).to_vec();
-            all.extend([near.clone(), trial.value()]);
+            all.extend([near.clone(), Value::List(trial.clone())]);
             let found = run(&self.tangent_at, all);
-            found
-                .and_then(|v| element::matrix(&v))
-                .unwrap_or_else(|| SMatrix::repeat(f64::NAN))
+            let found = found.and_then(|v| matrix(&v, size));
+            found.unwrap_or_else(|| Dense::unknown(size, size))
         };
-        let unknown = || SMatrix::repeat(Enclosure::around(f64::NAN, f64::NAN));
-        let enclosed = |spread: newton::Spread, trial: &Regions<D>| {
-            let (Some(parameters), Some(step)) = &bounds else {
-                return unknown();
+        let enclosed = |spread: Spread, centre: &Element, radii: &[f64]| {
+            let _variables = Variables::at_work(width);
+            let found = || {
+                let (Some(parameters), Some(step)) = (&bounds.0, &bounds.1) else {
+                    return None;
+                };
+                let bound = |[middle, radius]: [f64; 2]| Bound::around(middle, radius);
+                let values = node::given(values, kept, Some(spread), bound);
+                let trial = shape.around(centre, radii, width);
+                let all = vec![parameters.clone(), step.clone(), values, trial];
+                run(&self.bounded_at, all).and_then(|v| matrix(&v, size))
             };
-            let values = V::given(&values.enclosed::<VARIABLES>(0, spread));
-            let Some(values) = over(&values, &mut Bound) else {
-                return unknown();
-            };
-            let all = vec![parameters.clone(), step.clone(), values, trial.value()];
-            let found = run(&self.bounded_at, all);
-            let found = found.and_then(|v| element::matrix::<Bound, D>(&v));
-            found.map_or_else(unknown, |m| m.map(|x| x.0))
+            let unknown = Bound::around(f64::NAN, f64::NAN);
+            let tangent = found().unwrap_or_else(|| Dense::repeat(size, size, unknown));
+            let mut enclosed = Enclosed::new(width, size, |i, j| tangent.at(i, j));
+            shape.chart_tangent(radii, width, &mut |i, j, x| enclosed.put(i, j, &x));
+            enclosed
         };
-        let equations = newton::Equations {
+        then(&Lane {
+            chart: shape,
             residual: &residual,
             tangent: &tangent,
             enclosed: &enclosed,
-        };
-        let first = solution
-            .copied()
-            .unwrap_or_else(clebsch::groups::Group::<f64>::identity);
-        let mut verdict = Verdict::<Element<D>, D>::about(first);
-        let care = certificate.care();
-        if let Some(root) = verdict.add(trace(&equations, solution, care)?) {
-            *verdict.root_mut() = root;
-        }
-        Ok(verdict.close(certificate, values))
+        })
     }
 
     /// Says which equation is worst, and which step could be solved.
     #[cold]
-    fn refused<V: Asked + 'static, const D: usize>(
+    fn refused(
         &self,
         e: NewtonError,
         sought: &'static Sought,
@@ -296,17 +320,21 @@ impl Solve {
             _ => return unfit(None),
         };
         let places = std::cell::RefCell::new(places);
-        let other =
-            |h: f64, other: newton::Search<f64, Element<D>, V, D>| -> Result<(), StepError> {
-                let given = vec![Value::Real(h), search::held(other, sought)];
-                let untold = |what| Err(StepCause::Unread { what }.at_node(0));
-                match self.settled.other.call(given, &mut places.borrow_mut()) {
-                    Ok(Value::Failed(e)) => Err(e.step(0)),
-                    Ok(_) => Ok(()),
-                    Err(Exit::Return(_)) => untold("step"),
-                    Err(Exit::Unfit(what)) => untold(what),
-                }
+        let other = |h: f64, offers: bool| -> Result<(), StepError> {
+            let purpose = match offers {
+                true => Purpose::Offer,
+                false => Purpose::Trial,
             };
-        Ok(e.explained(h, self.settled.configurations, other))
+            let search = Value::Search(Held::begun(sought, purpose));
+            let untold = |what| Err(StepCause::Unread { what }.at_node(0));
+            let given = vec![Value::Real(h), search];
+            match self.settled.other.call(given, &mut places.borrow_mut()) {
+                Ok(Value::Failed(e)) => Err(e.step(0)),
+                Ok(_) => Ok(()),
+                Err(Exit::Return(_)) => untold("step"),
+                Err(Exit::Unfit(what)) => untold(what),
+            }
+        };
+        Ok(e.explained_by(h, self.settled.configurations, &other))
     }
 }

@@ -5,8 +5,7 @@
 //! the elementary symmetric functions of the eigenvalues, each over its binomial coefficient. Where
 //! they are positive the polynomial is; halving the interval finds the first place where it is not.
 
-use crate::linalg::determinant;
-use nalgebra::SMatrix;
+use crate::linalg::Dense;
 
 /// One more than the largest size of a map.
 const MOST: usize = 9;
@@ -24,13 +23,14 @@ const SHARPER: f64 = 1e-6;
 
 /// The first `s` from 0 to 1 at which the determinant is zero, or negative to rounding; also where
 /// it only touches zero.
-pub(super) fn contact<const N: usize>(velocity: &SMatrix<f64, N, N>) -> Option<f64> {
+pub(super) fn contact(velocity: &Dense<f64>) -> Option<f64> {
+    let n = velocity.rows;
     let mut coefficients = [0.0; MOST];
-    let coefficients = coefficients.get_mut(..=N)?;
+    let coefficients = coefficients.get_mut(..=n)?;
     let mut binomial = 1.0;
     for (k, c) in coefficients.iter_mut().enumerate() {
         *c = symmetric(velocity, k) / binomial;
-        binomial *= (N - k) as f64 / (k + 1) as f64;
+        binomial *= (n - k) as f64 / (k + 1) as f64;
     }
     // Sums of positive numbers lose nothing, however small.
     if coefficients.iter().all(|c| *c > 0.0) {
@@ -47,20 +47,20 @@ pub(super) fn contact<const N: usize>(velocity: &SMatrix<f64, N, N>) -> Option<f
 }
 
 /// The sum of the principal minors of `k` rows.
-fn symmetric<const N: usize>(a: &SMatrix<f64, N, N>, k: usize) -> f64 {
-    let mut sum = 0.0;
-    for rows in 0u32..1 << N {
+fn symmetric(a: &Dense<f64>, k: usize) -> f64 {
+    let (n, mut sum) = (a.rows, 0.0);
+    for rows in 0u32..1 << n {
         if rows.count_ones() as usize != k {
             continue;
         }
         let taken = |i: usize| rows >> i & 1 == 1;
         // The other rows are those of the identity.
-        let minor = SMatrix::<f64, N, N>::from_fn(|i, j| match (taken(i) && taken(j), i == j) {
-            (true, _) => a[(i, j)],
+        let minor = Dense::from_fn(n, n, |i, j| match (taken(i) && taken(j), i == j) {
+            (true, _) => a.at(i, j),
             (false, true) => 1.0,
             (false, false) => 0.0,
         });
-        sum += determinant(&minor);
+        sum += minor.determinant();
     }
     sum
 }
@@ -90,8 +90,12 @@ fn first(coefficients: &[f64], zero: f64, from: f64, to: f64, halved: u32) -> Op
 
 #[cfg(test)]
 mod tests {
-    use super::contact;
+    use crate::linalg::Dense;
     use nalgebra::{Matrix2, Matrix3, Rotation3, SMatrix, Vector3};
+
+    fn contact<const N: usize>(velocity: &SMatrix<f64, N, N>) -> Option<f64> {
+        super::contact(&Dense::of(velocity))
+    }
 
     fn diagonal(a: f64, b: f64, c: f64) -> Matrix3<f64> {
         // Between other axes, not orthogonal ones.

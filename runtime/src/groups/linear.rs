@@ -4,7 +4,7 @@
 use super::{Coadjoint, Coordinate, Group, Part};
 use crate::Real;
 use crate::domain::LEAST_RATIO;
-use crate::linalg::{inverse, singular_ratio, small_inverse};
+use crate::linalg::{Dense, inverse, singular_ratio_of, small_inverse};
 use crate::scalar::of_scalars;
 use core::fmt;
 use nalgebra::SMatrix;
@@ -56,14 +56,7 @@ impl<const N: usize, T: Real> Linear<N, T> {
     /// # Errors
     /// [`NotInvertible`] when it has no inverse or is not finite.
     pub fn from_matrix(a: &SMatrix<T, N, N>) -> Result<Self, NotInvertible> {
-        if !a.iter().all(|x| x.is_finite()) {
-            return Err(NotInvertible::NotFinite);
-        }
-        let far = |lane| singular_ratio(&a.map(|x| x.lane(lane))) >= LEAST_RATIO;
-        match inverse(a) {
-            Some(_) if (0..T::LANES).all(far) => Ok(Self { matrix: *a }),
-            _ => Err(NotInvertible::Singular),
-        }
+        invertible_map(&Dense::of(a)).map(|()| Self { matrix: *a })
     }
 
     /// The map that a step has found; what makes of it a singular one is refused after the step.
@@ -86,6 +79,27 @@ impl<const N: usize, T: Real> Linear<N, T> {
             matrix: small_inverse(&self.matrix)
                 .unwrap_or_else(|| SMatrix::repeat(T::from_f64(f64::NAN))),
         }
+    }
+}
+
+/// Whether a matrix is one of [`Linear::from_matrix`], of any size.
+///
+/// # Errors
+/// As there.
+pub fn invertible_map<T: Real>(a: &Dense<T>) -> Result<(), NotInvertible> {
+    if !a.is_finite() {
+        return Err(NotInvertible::NotFinite);
+    }
+    let far = |lane| {
+        let mut columns = a.columns().into_iter();
+        let own = columns
+            .by_ref()
+            .map(|c| c.iter().map(|x| x.lane(lane)).collect());
+        singular_ratio_of(own.collect()) >= LEAST_RATIO
+    };
+    match a.inverse() {
+        Some(_) if (0..T::LANES).all(far) => Ok(()),
+        _ => Err(NotInvertible::Singular),
     }
 }
 

@@ -16,9 +16,9 @@ mod turned;
 
 pub use additive::{Additive, FieldMomentum};
 pub use coordinate::{Coordinate, Part};
-pub use linear::{Linear, NotInvertible};
+pub use linear::{Linear, NotInvertible, invertible_map};
 pub use matrix_momentum::{BodyMomentumMatrix, SpatialMomentumMatrix};
-pub use orthogonal::Orthogonal;
+pub use orthogonal::{Orthogonal, nearest_rotation};
 pub use placed::{AboutBody, Placed, added};
 pub use se2::{BodyPlaneImpulse, CarriedPlaneImpulse, PlaneMotion, SpatialPlaneImpulse};
 pub use se3::{BodyImpulse, CarriedImpulse, NotARigidMotion, RigidMotion, SpatialImpulse};

@@ -4,7 +4,7 @@
 
 use super::{Coadjoint, Coordinate, Group, NotARotation, Part};
 use crate::Real;
-use crate::linalg::{determinant, orthonormalised, product, skew_from, solve_many};
+use crate::linalg::{Dense, orthonormalised, product, skew_from, solve_many};
 use crate::scalar::{largest, of_scalars};
 use nalgebra::SMatrix;
 
@@ -41,23 +41,10 @@ impl<const N: usize, T: Real> Orthogonal<N, T> {
     /// [`NotARotation`] when an entry of `A^T A - 1` exceeds 1e-9, the determinant is negative or
     /// an entry is not finite; within that the matrix is replaced by a nearby rotation.
     pub fn from_matrix(a: &SMatrix<T, N, N>) -> Result<Self, NotARotation> {
-        if !a.iter().all(|x| x.is_finite()) {
-            return Err(NotARotation::NotFinite);
-        }
-        let defect = defect(a);
-        // Written so that NaN is refused: products of finite entries may overflow.
-        let near = defect <= ALLOWED_DEFECT;
-        if !near {
-            return Err(NotARotation::NotOrthogonal { defect });
-        }
-        if determinant(a).least() < 0.0 {
-            return Err(NotARotation::Reflection);
-        }
-        let mut nearest = *a;
-        for _ in 0..STEPS_FROM_INPUT {
-            nearest = orthonormalised(&nearest);
-        }
-        Ok(Self { matrix: nearest })
+        let nearest = nearest_rotation(&Dense::of(a))?;
+        Ok(Self {
+            matrix: nearest.fixed(),
+        })
     }
 
     /// A matrix that the caller knows to be a rotation up to rounding: it is made orthogonal to
@@ -96,11 +83,35 @@ impl<const N: usize, T: Real> Orthogonal<N, T> {
     }
 }
 
+/// The matrix of [`Orthogonal::from_matrix`], of any size.
+///
+/// # Errors
+/// As there.
+pub fn nearest_rotation<T: Real>(a: &Dense<T>) -> Result<Dense<T>, NotARotation> {
+    if !a.is_finite() {
+        return Err(NotARotation::NotFinite);
+    }
+    let defect = defect(a);
+    // Written so that NaN is refused: products of finite entries may overflow.
+    let near = defect <= ALLOWED_DEFECT;
+    if !near {
+        return Err(NotARotation::NotOrthogonal { defect });
+    }
+    if a.determinant().least() < 0.0 {
+        return Err(NotARotation::Reflection);
+    }
+    let mut nearest = a.clone();
+    for _ in 0..STEPS_FROM_INPUT {
+        nearest = nearest.orthonormalised();
+    }
+    Ok(nearest)
+}
+
 /// The largest entry of `A^T A - 1` in absolute value, over the real parts of all lanes.
-fn defect<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> f64 {
-    let gram = a.tr_mul(a) - SMatrix::identity();
-    gram.iter()
-        .fold(0.0, |worst: f64, x| worst.max(x.greatest()).max(-x.least()))
+fn defect<T: Real>(a: &Dense<T>) -> f64 {
+    let gram = a.tr_mul(a).minus_one();
+    let entries = gram.data.iter();
+    entries.fold(0.0, |worst: f64, x| worst.max(x.greatest()).max(-x.least()))
 }
 
 impl<const N: usize, T: Real> core::ops::Mul for Orthogonal<N, T> {

@@ -12,7 +12,9 @@ const WELL: f64 = 50.0;
 
 /// The inverse by cofactors; none where the matrix is not well-conditioned in every lane.
 #[inline(always)]
-fn by_cofactors<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> Option<SMatrix<T, N, N>> {
+pub(super) fn by_cofactors<T: Real, const N: usize>(
+    a: &SMatrix<T, N, N>,
+) -> Option<SMatrix<T, N, N>> {
     let at = |i: usize, j: usize| a.data.0[j][i];
     let mut adjugate = SMatrix::<T, N, N>::zeros();
     let det = match N {

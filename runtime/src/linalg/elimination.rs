@@ -152,7 +152,7 @@ fn eliminate_leading<T: Real, const N: usize, const M: usize>(
 /// The smallest absolute real part over the lanes: a pivot is as good as its worst lane. NaN
 /// weighs nothing.
 #[inline(always)]
-fn weight<T: Real>(x: T) -> f64 {
+pub(super) fn weight<T: Real>(x: T) -> f64 {
     (x.where_positive(x) - (-x).where_positive(x)).least()
 }
 

@@ -2,7 +2,7 @@
 //! Takes a square matrix; gives solutions. Blocks of three without exchange of rows where they go
 //! in, elimination with pivots where they do not.
 
-use super::{balance, inverse_leading, solve_leading};
+use super::{Dense, balance, inverse_leading, solve_leading};
 use crate::Real;
 use nalgebra::{SMatrix, SVector};
 
@@ -230,6 +230,102 @@ fn substitute<T: Real, const D: usize>(a: &[[T; D]; D], mut x: [T; D]) -> [T; D]
         }
     }
     x
+}
+
+/// The same of a matrix whose size is known when a model is read, over plain numbers.
+#[derive(Clone, Debug)]
+pub struct DenseFactors {
+    /// As [`Factors`] has them.
+    columns: Dense<f64>,
+    in_blocks: bool,
+    blocks: bool,
+}
+
+impl DenseFactors {
+    /// Factors of nothing: they solve no equation. Blocks of three may go in or not.
+    #[must_use]
+    pub fn none(size: usize, in_blocks: bool) -> Self {
+        Self {
+            columns: Dense::zeros(size, size),
+            in_blocks: in_blocks && size.is_multiple_of(3) && size <= 9,
+            blocks: false,
+        }
+    }
+
+    /// Factors a matrix.
+    pub fn set(&mut self, matrix: Dense<f64>) {
+        let n = matrix.rows;
+        self.blocks = false;
+        if self.in_blocks {
+            self.columns = matrix.clone();
+            self.blocks = match n {
+                3 => Self::factored::<3>(&mut self.columns),
+                6 => Self::factored::<6>(&mut self.columns),
+                _ => Self::factored::<9>(&mut self.columns),
+            };
+        }
+        if !self.blocks {
+            self.columns = matrix;
+        }
+    }
+
+    fn factored<const D: usize>(matrix: &mut Dense<f64>) -> bool {
+        let mut columns = matrix.fixed::<D, D>();
+        let done = factor(&mut columns.data.0);
+        *matrix = Dense::of(&columns);
+        done
+    }
+
+    /// The solution of `A x = b`; `None` where there is no usable pivot.
+    #[must_use]
+    pub fn solve(&self, b: &[f64]) -> Option<Vec<f64>> {
+        fn substituted<const D: usize>(columns: &Dense<f64>, b: &[f64]) -> Vec<f64> {
+            let right = core::array::from_fn(|i| b.get(i).copied().unwrap_or(0.0));
+            substitute(&columns.fixed::<D, D>().data.0, right).to_vec()
+        }
+        match (self.blocks, self.columns.rows) {
+            (true, 3) => Some(substituted::<3>(&self.columns, b)),
+            (true, 6) => Some(substituted::<6>(&self.columns, b)),
+            (true, _) => Some(substituted::<9>(&self.columns, b)),
+            (false, _) => self.columns.balanced_solution(b),
+        }
+    }
+
+    /// Bounds of the spectral norms of the inverse, part by part: see [`Factors::inverse_bounds`].
+    #[must_use]
+    pub fn inverse_bounds(&self, parts: usize, part_of: impl Fn(usize) -> usize) -> Dense<f64> {
+        fn of<const D: usize>(
+            columns: &Dense<f64>,
+            part_of: &dyn Fn(usize) -> usize,
+        ) -> Vec<Vec<f64>> {
+            let factors = Factors::<f64, D> {
+                columns: columns.fixed::<D, D>().data.0,
+                size: D,
+                blocks: true,
+            };
+            let bounds = factors.by_blocks(part_of);
+            bounds.iter().map(|row| row.to_vec()).collect()
+        }
+        if self.blocks {
+            let all = match self.columns.rows {
+                3 => of::<3>(&self.columns, &part_of),
+                6 => of::<6>(&self.columns, &part_of),
+                _ => of::<9>(&self.columns, &part_of),
+            };
+            return Dense::from_fn(parts, parts, |a, b| all[a][b]);
+        }
+        let Some(inverse) = self.columns.balanced_inverse() else {
+            return Dense::unknown(parts, parts);
+        };
+        let mut squares = Dense::zeros(parts, parts);
+        for i in 0..inverse.rows {
+            for j in 0..inverse.cols {
+                let (a, b) = (part_of(i), part_of(j));
+                squares.set(a, b, squares.at(a, b) + size(inverse.at(i, j)).powi(2));
+            }
+        }
+        squares.map(f64::sqrt)
+    }
 }
 
 #[cfg(test)]

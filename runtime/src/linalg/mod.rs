@@ -1,8 +1,10 @@
 //! Small dense linear algebra for any [`Real`](crate::Real): hat and vee, determinants, inverses,
 //! linear solves, eigenvalues of a symmetric 3x3 matrix, coefficients of pencils.
-//! Takes and gives nalgebra matrices of fixed size; nothing allocates.
+//! Takes and gives nalgebra matrices of fixed size; nothing allocates but [`Dense`], whose size is known when
+//! a model is read.
 
 mod cofactors;
+mod dense;
 mod eigenvalues;
 mod elimination;
 mod factors;
@@ -17,11 +19,12 @@ mod singular_values;
 mod skew;
 
 pub use cofactors::{small_inverse, small_solve};
+pub use dense::Dense;
 pub use eigenvalues::symmetric_eigenvalues;
 pub use elimination::{
     balance, determinant, inverse, inverse_leading, solve, solve_leading, solve_many,
 };
-pub use factors::Factors;
+pub use factors::{DenseFactors, Factors};
 pub use frame::principal_frame;
 pub use inclusion::{columns_from, inclusion, into_columns, into_rows, rows_from};
 pub use motion::{Coordinates, Homogeneous, motion_rotation, motion_translation, twist};
@@ -32,7 +35,7 @@ pub use quaternion::{
     quaternion_rotation,
 };
 pub use rest::less_identity;
-pub use singular_values::singular_ratio;
+pub use singular_values::{singular_ratio, singular_ratio_of};
 pub use skew::{
     axial_of_difference, crossed, crossing, hat, skew_coordinates, skew_from, trace_complement, vee,
 };

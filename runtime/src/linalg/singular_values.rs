@@ -8,7 +8,11 @@ use nalgebra::SMatrix;
 /// By one-sided Jacobi rotations, which find small singular values to their own rounding where the
 /// eigenvalues of `A^T A` would lose all below `1e-8` of the largest.
 pub fn singular_ratio<const N: usize>(a: &SMatrix<f64, N, N>) -> f64 {
-    let mut columns = a.data.0;
+    singular_ratio_of(a.data.0.iter().map(|column| column.to_vec()).collect())
+}
+
+/// The same of the columns of a matrix.
+pub fn singular_ratio_of(mut columns: Vec<Vec<f64>>) -> f64 {
     if !columns.iter().flatten().all(|x| x.is_finite()) {
         return f64::NAN;
     }
@@ -21,13 +25,14 @@ pub fn singular_ratio<const N: usize>(a: &SMatrix<f64, N, N>) -> f64 {
         return 0.0;
     }
     columns.iter_mut().flatten().for_each(|x| *x /= largest);
-    let dot = |x: &[f64; N], y: &[f64; N]| -> f64 { x.iter().zip(y).map(|(x, y)| x * y).sum() };
+    let dot = |x: &[f64], y: &[f64]| -> f64 { x.iter().zip(y).map(|(x, y)| x * y).sum() };
     // Convergence is quadratic; five sweeps do for such sizes.
     for _ in 0..30 {
         let mut turned = false;
-        for p in 0..N {
-            for q in p + 1..N {
-                let (x, y) = (columns[p], columns[q]);
+        let count = columns.len();
+        for p in 0..count {
+            for q in p + 1..count {
+                let (x, y) = (columns[p].clone(), columns[q].clone());
                 let (xx, yy, xy) = (dot(&x, &x), dot(&y, &y), dot(&x, &y));
                 if xy.abs() <= f64::EPSILON * (xx * yy).sqrt() {
                     continue;

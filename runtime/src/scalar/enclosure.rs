@@ -6,6 +6,99 @@ use super::Real;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 use num_traits::{One, Zero};
 
+/// How a number in bounds moves with the variables: one number for each of them.
+///
+/// An array where their number is known to the compiler; elsewhere whatever stands for one.
+pub trait Affine: Copy + PartialEq + core::fmt::Debug + Send + Sync + 'static {
+    /// Not at all.
+    fn none() -> Self;
+
+    /// By as much as `radius` with the variable of this index; nothing where there is no such variable.
+    fn variable(radius: f64, index: usize) -> Option<Self>;
+
+    /// How far with one variable.
+    fn along(&self, index: usize) -> f64;
+
+    /// Both.
+    fn plus(self, other: Self) -> Self;
+
+    /// The opposite.
+    fn opposite(self) -> Self;
+
+    /// So many times as far.
+    fn times(self, factor: f64) -> Self;
+
+    /// Each a number of times, and both.
+    fn weighted(self, factor: f64, other: Self, other_factor: f64) -> Self;
+
+    /// How far in all: the variables come by threes, each a vector no longer than 1.
+    fn swing(&self) -> f64;
+}
+
+/// The sum of the lengths of the vectors of three.
+#[inline(always)]
+#[must_use]
+pub fn swing_of(along: &[f64]) -> f64 {
+    let lengths = along.chunks(3).map(|three| {
+        let square = three.iter().fold(0.0, |sum, x| sum + x * x);
+        square.sqrt()
+    });
+    lengths.sum()
+}
+
+impl<const K: usize> Affine for [f64; K] {
+    #[inline(always)]
+    fn none() -> Self {
+        [0.0; K]
+    }
+
+    #[inline(always)]
+    fn variable(radius: f64, index: usize) -> Option<Self> {
+        let mut along = [0.0; K];
+        *along.get_mut(index)? = radius;
+        Some(along)
+    }
+
+    #[inline(always)]
+    fn along(&self, index: usize) -> f64 {
+        self.get(index).copied().unwrap_or(0.0)
+    }
+
+    #[inline(always)]
+    fn plus(mut self, other: Self) -> Self {
+        for (x, y) in self.iter_mut().zip(other) {
+            *x += y;
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn opposite(self) -> Self {
+        self.map(|x| -x)
+    }
+
+    #[inline(always)]
+    fn times(mut self, factor: f64) -> Self {
+        for x in &mut self {
+            *x *= factor;
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn weighted(mut self, factor: f64, other: Self, other_factor: f64) -> Self {
+        for (x, y) in self.iter_mut().zip(&other) {
+            *x = *x * factor + y * other_factor;
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn swing(&self) -> f64 {
+        swing_of(self)
+    }
+}
+
 /// All numbers `middle + s + sum_k linear_k e_k + r` with `|s| <= still`, `|r| <= rest`: affine in
 /// `K` variables that several numbers share, the remainder bounded (affine arithmetic; Comba and
 /// Stolfi 1993). The variables come by threes, 0 to 2, 3 to 5, ..., each a vector no longer than 1,
@@ -17,24 +110,27 @@ use num_traits::{One, Zero};
 /// Every operation adds its own rounding to the remainder, so that with arguments that do not move
 /// the remainder is a running error bound (Wilkinson).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Enclosure<const K: usize> {
+pub struct Bounded<L> {
     middle: f64,
-    linear: [f64; K],
+    linear: L,
     still: f64,
     rest: f64,
 }
 
-/// The relative error of one rounded operation.
-const UNIT: f64 = f64::EPSILON / 2.0;
+/// Numbers in bounds that share `K` variables.
+pub type Enclosure<const K: usize> = Bounded<[f64; K]>;
 
-impl<const K: usize> Enclosure<K> {
+/// The relative error of one rounded operation.
+pub(crate) const UNIT: f64 = f64::EPSILON / 2.0;
+
+impl<L: Affine> Bounded<L> {
     /// One number.
     #[inline]
     #[must_use]
-    pub const fn exactly(middle: f64) -> Self {
+    pub fn exactly(middle: f64) -> Self {
         Self {
             middle,
-            linear: [0.0; K],
+            linear: L::none(),
             still: 0.0,
             rest: 0.0,
         }
@@ -67,11 +163,23 @@ impl<const K: usize> Enclosure<K> {
     #[must_use]
     pub fn variable(radius: f64, index: usize) -> Self {
         let mut x = Self::exactly(0.0);
-        match x.linear.get_mut(index) {
-            Some(own) => *own = radius,
+        match L::variable(radius, index) {
+            Some(own) => x.linear = own,
             None => x.rest = radius.abs(),
         }
         x
+    }
+
+    /// The same number, its variables kept in another way.
+    #[inline]
+    #[must_use]
+    pub fn over<M: Affine>(&self, linear: M) -> Bounded<M> {
+        Bounded {
+            middle: self.middle,
+            linear,
+            still: self.still,
+            rest: self.rest,
+        }
     }
 
     /// The centre.
@@ -81,11 +189,18 @@ impl<const K: usize> Enclosure<K> {
         self.middle
     }
 
+    /// How the number moves with the variables.
+    #[inline]
+    #[must_use]
+    pub fn linear(&self) -> &L {
+        &self.linear
+    }
+
     /// How far the number moves with a variable.
     #[inline]
     #[must_use]
     pub fn along(&self, index: usize) -> f64 {
-        self.linear.get(index).copied().unwrap_or(0.0)
+        self.linear.along(index)
     }
 
     /// The bound of what is not known where the variables vanish.
@@ -117,65 +232,16 @@ impl<const K: usize> Enclosure<K> {
     #[must_use]
     pub fn times(mut self, factor: f64) -> Self {
         self.middle *= factor;
-        for x in &mut self.linear {
-            *x *= factor;
-        }
+        self.linear = self.linear.times(factor);
         self.still *= factor.abs();
         self.rest = self.rest * factor.abs() + UNIT * self.middle.abs();
         self
     }
 
-    /// Adds the number times an exact one.
-    #[inline(always)]
-    pub fn add_times(&mut self, x: &Self, factor: f64) {
-        let term = x.middle * factor;
-        self.middle += term;
-        for (sum, x) in self.linear.iter_mut().zip(&x.linear) {
-            *sum += x * factor;
-        }
-        let size = factor.abs();
-        self.still += x.still * size;
-        self.rest += x.rest * size + UNIT * (term.abs() + self.middle.abs());
-    }
-
-    /// Adds the product of two numbers of which it is known how far the variables move them, see
-    /// [`moved`](Self::moved).
-    #[inline(always)]
-    pub fn add_product(&mut self, [x, y]: [&Self; 2], [x_moved, y_moved]: [f64; 2]) {
-        let (a, b) = (x.middle, y.middle);
-        self.middle += a * b;
-        for (sum, (x, y)) in self.linear.iter_mut().zip(x.linear.iter().zip(&y.linear)) {
-            *sum += x * b + y * a;
-        }
-        let [still, rest] = x.spread_of_product(y, [x_moved, y_moved]);
-        self.still += still;
-        self.rest += rest + UNIT * self.middle.abs();
-    }
-
-    /// What a product adds to what is not known, and to the remainder.
-    #[inline(always)]
-    fn spread_of_product(&self, other: &Self, [moved, other_moved]: [f64; 2]) -> [f64; 2] {
-        let (a, b) = (self.middle.abs(), other.middle.abs());
-        let (size, other_size) = (a + self.still, b + other.still);
-        [
-            a * other.still + self.still * other_size,
-            a * other.rest
-                + b * self.rest
-                + self.still * other_moved
-                + other.still * moved
-                + moved * other_moved
-                + UNIT * size * other_size,
-        ]
-    }
-
     /// How far the affine part moves.
     #[inline(always)]
     fn swing(&self) -> f64 {
-        let lengths = self.linear.chunks(3).map(|three| {
-            let square = three.iter().fold(0.0, |sum, x| sum + x * x);
-            square.sqrt()
-        });
-        lengths.sum()
+        self.linear.swing()
     }
 
     /// How far the variables move it.
@@ -209,7 +275,7 @@ impl<const K: usize> Enclosure<K> {
         let moved = self.moved();
         Self {
             middle: value,
-            linear: self.linear.map(|x| x * slope),
+            linear: self.linear.times(slope),
             still: (slope.abs() + 0.5 * bend * self.still) * self.still,
             rest: self.rest * slope.abs()
                 + bend * (self.still + 0.5 * moved) * moved
@@ -218,34 +284,52 @@ impl<const K: usize> Enclosure<K> {
     }
 }
 
-impl<const K: usize> Add for Enclosure<K> {
+/// What a product of two numbers adds to what is not known, and to the remainder: of each its middle, what
+/// is not known of it, its remainder and how far the variables move it.
+#[inline(always)]
+pub(crate) fn spread_of_product(
+    [a, still, rest, moved]: [f64; 4],
+    [b, other_still, other_rest, other_moved]: [f64; 4],
+) -> [f64; 2] {
+    let (a, b) = (a.abs(), b.abs());
+    let (size, other_size) = (a + still, b + other_still);
+    [
+        a * other_still + still * other_size,
+        a * other_rest
+            + b * rest
+            + still * other_moved
+            + other_still * moved
+            + moved * other_moved
+            + UNIT * size * other_size,
+    ]
+}
+
+impl<L: Affine> Add for Bounded<L> {
     type Output = Self;
     #[inline]
     fn add(mut self, other: Self) -> Self {
         self.middle += other.middle;
-        for (x, y) in self.linear.iter_mut().zip(other.linear) {
-            *x += y;
-        }
+        self.linear = self.linear.plus(other.linear);
         self.still += other.still;
         self.rest += other.rest + UNIT * self.middle.abs();
         self
     }
 }
 
-impl<const K: usize> Neg for Enclosure<K> {
+impl<L: Affine> Neg for Bounded<L> {
     type Output = Self;
     #[inline]
     fn neg(self) -> Self {
         Self {
             middle: -self.middle,
-            linear: self.linear.map(|x| -x),
+            linear: self.linear.opposite(),
             still: self.still,
             rest: self.rest,
         }
     }
 }
 
-impl<const K: usize> Sub for Enclosure<K> {
+impl<L: Affine> Sub for Bounded<L> {
     type Output = Self;
     #[inline]
     fn sub(self, other: Self) -> Self {
@@ -253,16 +337,16 @@ impl<const K: usize> Sub for Enclosure<K> {
     }
 }
 
-impl<const K: usize> Mul for Enclosure<K> {
+impl<L: Affine> Mul for Bounded<L> {
     type Output = Self;
     #[inline]
     fn mul(self, other: Self) -> Self {
         let (a, b) = (self.middle, other.middle);
-        let mut linear = self.linear;
-        for (x, y) in linear.iter_mut().zip(&other.linear) {
-            *x = *x * b + y * a;
-        }
-        let [still, rest] = self.spread_of_product(&other, [self.moved(), other.moved()]);
+        let linear = self.linear.weighted(b, other.linear, a);
+        let [still, rest] = spread_of_product(
+            [a, self.still, self.rest, self.moved()],
+            [b, other.still, other.rest, other.moved()],
+        );
         Self {
             middle: a * b,
             linear,
@@ -272,7 +356,7 @@ impl<const K: usize> Mul for Enclosure<K> {
     }
 }
 
-impl<const K: usize> Div for Enclosure<K> {
+impl<L: Affine> Div for Bounded<L> {
     type Output = Self;
     #[inline]
     fn div(self, other: Self) -> Self {
@@ -291,7 +375,7 @@ impl<const K: usize> Div for Enclosure<K> {
 
 macro_rules! assigned {
     ($($Trait:ident $function:ident $operator:tt),+) => {$(
-        impl<const K: usize> $Trait for Enclosure<K> {
+        impl<L: Affine> $Trait for Bounded<L> {
             #[inline]
             fn $function(&mut self, other: Self) {
                 *self = *self $operator other;
@@ -302,7 +386,7 @@ macro_rules! assigned {
 
 assigned!(AddAssign add_assign +, SubAssign sub_assign -, MulAssign mul_assign *, DivAssign div_assign /);
 
-impl<const K: usize> Zero for Enclosure<K> {
+impl<L: Affine> Zero for Bounded<L> {
     #[inline]
     fn zero() -> Self {
         Self::exactly(0.0)
@@ -314,14 +398,14 @@ impl<const K: usize> Zero for Enclosure<K> {
     }
 }
 
-impl<const K: usize> One for Enclosure<K> {
+impl<L: Affine> One for Bounded<L> {
     #[inline]
     fn one() -> Self {
         Self::exactly(1.0)
     }
 }
 
-impl<const K: usize> Real for Enclosure<K> {
+impl<L: Affine> Real for Bounded<L> {
     type One = Self;
     const EPSILON: f64 = UNIT;
     /// Shortcuts of plain numbers are not taken.

@@ -12,7 +12,8 @@ mod over;
 
 pub use double_double::DoubleDouble;
 pub use dual::Dual;
-pub use enclosure::Enclosure;
+pub use enclosure::{Affine, Bounded, Enclosure, swing_of};
+pub(crate) use enclosure::{UNIT, spread_of_product};
 pub use lanes::Lanes;
 pub use largest::{larger, largest};
 pub use one::InLanes;

@@ -2,8 +2,10 @@
 //! Takes a guess or the solutions before, the residual and its tangent; gives a converged element
 //! or an error.
 
+mod any_size;
 mod bounds;
 mod certificate;
+mod curve;
 mod failure;
 mod lasting;
 mod node;
@@ -11,12 +13,14 @@ mod principal;
 mod region;
 mod stage;
 
-pub use crate::scalar::Enclosure;
+pub use crate::scalar::{Affine, Bounded, Enclosure, swing_of};
+pub use any_size::{AnyNewton, AnySearch, NodeList, NodeValue, Settled};
 pub use bounds::{
     AdditiveRegion, LinearRegion, MotionRegion, OrthogonalRegion, PlaneMotionRegion,
     QuaternionRegion, Region, RotationRegion,
 };
-pub use certificate::{Anchor, Certificate, Numbers, Verdict};
+pub use certificate::{Anchor, Certificate, Numbers, Purpose, Verdict};
+pub use curve::{Bounds, Chart, Enclosed, Lane, Parts};
 pub use failure::{NewtonError, NewtonFailure};
 pub use node::{NodeValues, Spread, Turn};
 pub use principal::{Care, Equations, Fold, Traced, trace};

@@ -8,19 +8,19 @@ use crate::linalg::Factors;
 use crate::scalar::{OfScalars, Real};
 
 /// Steps without a proof that lasts, after which one is looked for again.
-const PATIENCE: u32 = 16;
+pub(super) const PATIENCE: u32 = 16;
 
 /// What a factored tangent serves for: nodes as near to its own as this part of their values. The
 /// root that it leads to is near the one foreseen: another is only met with new tangents.
-const DRIFT: f64 = 0.25;
+pub(super) const DRIFT: f64 = 0.25;
 
 /// Steps for which a proof made at one node serves where the tangent is another at every node.
-const LASTS: u32 = 65536;
+pub(super) const LASTS: u32 = 65536;
 
 /// By how much the inverse of a later tangent may be larger than that at the proof, and what two
 /// parts may have in common besides, as a share of what each has by itself.
-const LARGER: f64 = 1.5;
-const COMMON: f64 = 0.2;
+pub(super) const LARGER: f64 = 1.5;
+pub(super) const COMMON: f64 = 0.2;
 
 /// Velocities that are principal roots: those whose coordinates do not exceed `reach`, part by
 /// part. Where the tangent is the same at every node, that is proved once for all steps.
@@ -50,7 +50,7 @@ pub struct Certificate<V, const D: usize> {
 
 /// What steps are made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Purpose {
+pub enum Purpose {
     /// To go on from there.
     Run,
     /// To offer this one instead of one refused.

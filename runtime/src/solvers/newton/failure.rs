@@ -65,11 +65,12 @@ impl NewtonError {
     /// The failure at this residual.
     #[cold]
     #[inline(never)]
-    pub(super) fn of<T: Real, G: Group<T>>(
+    pub(super) fn of<T: Real>(
         failure: NewtonFailure,
         iterations: usize,
         residual: &[T],
         weights: &[T],
+        coordinate: &dyn Fn(usize) -> Coordinate,
     ) -> Self {
         let (mut size, mut index, mut lane) = (0.0, 0, 0);
         let (mut worst, mut weight) = (0.0, f64::NAN);
@@ -89,7 +90,7 @@ impl NewtonError {
             tolerance: super::CONVERGED_ROUNDINGS * T::EPSILON / weight,
             h: None,
             largest_step: None,
-            worst: G::coordinate(index),
+            worst: coordinate(index),
             lane: u8::try_from(lane).unwrap_or(u8::MAX),
             configurations: &NO_NAMES,
             tried: false,
@@ -99,7 +100,7 @@ impl NewtonError {
     /// No principal root.
     #[cold]
     #[inline(never)]
-    pub(super) fn at_fold<T: Real, G: Group<T>>(fold: Fold) -> Self {
+    pub(super) fn at_fold(fold: Fold, worst: Coordinate) -> Self {
         Self {
             failure: NewtonFailure::Fold {
                 share: fold.share as f32,
@@ -109,7 +110,7 @@ impl NewtonError {
             tolerance: 0.0,
             h: None,
             largest_step: None,
-            worst: G::coordinate(fold.fastest),
+            worst,
             lane: u8::try_from(fold.lane).unwrap_or(u8::MAX),
             configurations: &NO_NAMES,
             tried: false,
@@ -134,11 +135,27 @@ impl NewtonError {
         configurations: &'static &'static [&'static str],
         step: impl Fn(T, Search<T, G, V, D>) -> Result<(), StepError>,
     ) -> Self {
+        self.explained_by(h, configurations, &|h, offers| match offers {
+            true => step(h, Search::to_offer()),
+            false => step(h, Search::to_try()),
+        })
+    }
+
+    /// The same, where `step` is told whether its step is to be offered.
+    #[cold]
+    #[inline(never)]
+    #[must_use]
+    pub fn explained_by<T: Real>(
+        self,
+        h: T,
+        configurations: &'static &'static [&'static str],
+        step: &dyn Fn(T, bool) -> Result<(), StepError>,
+    ) -> Self {
         if self.tried {
             return self;
         }
         let nearest = Cell::new(self);
-        let tried = |share: f64, search| match step(h * T::from_f64(share), search) {
+        let tried = |share: f64, offers| match step(h * T::from_f64(share), offers) {
             Ok(()) => Some(0.0),
             Err(StepError {
                 cause: StepCause::Newton(e),
@@ -149,9 +166,7 @@ impl NewtonError {
             }
             Err(_) => None,
         };
-        let share = confirmed_step(&|share| tried(share, Search::to_try()), &|share| {
-            tried(share, Search::to_offer())
-        });
+        let share = confirmed_step(&|share| tried(share, false), &|share| tried(share, true));
         let NewtonError { worst, lane, .. } = match share > 0.0 && share < 1.0 {
             true => nearest.get(),
             false => self,
@@ -255,11 +270,12 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_,
         let residual = self.residual.as_slice().get(..looked_at).unwrap_or(&[]);
         Progress::Failed(NewtonError {
             tried: self.search.tries(),
-            ..NewtonError::of::<T, G>(
+            ..NewtonError::of(
                 failure,
                 iterations,
                 residual,
                 self.search.weights.as_slice(),
+                &G::coordinate,
             )
         })
     }
@@ -272,11 +288,12 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_,
         let residual = self.residual.as_slice().get(..looked_at).unwrap_or(&[]);
         NewtonError {
             tried: self.search.tries(),
-            ..NewtonError::of::<T, G>(
+            ..NewtonError::of(
                 NewtonFailure::NotConverged,
                 self.iteration,
                 residual,
                 self.search.weights.as_slice(),
+                &G::coordinate,
             )
         }
     }
@@ -290,7 +307,7 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_,
             Some(e) if fold.share == 0.0 => e,
             _ => NewtonError {
                 tried: self.search.tries(),
-                ..NewtonError::at_fold::<T, G>(fold)
+                ..NewtonError::at_fold(fold, G::coordinate(fold.fastest))
             },
         }
     }

@@ -15,11 +15,13 @@
 //! bounds are too poor for a proof of that, the curve is followed in short stages without one.
 
 use super::bounds::Region;
+use super::curve::{Chart, Curve, Lane, Met, Parts, Point, in_lane_of};
 use super::lasting::lasting;
 use super::node::Spread;
-use super::stage::{MARGIN, Stage, fits, lengths};
+use super::stage::{MARGIN, Stage, fits};
 use crate::groups::Group;
 use crate::scalar::{Enclosure, largest};
+use core::fmt::Debug;
 use nalgebra::{SMatrix, SVector};
 
 /// Stages on the way; each leaves at most two thirds of what is left before a fold.
@@ -106,8 +108,16 @@ impl Fold {
     }
 }
 
-/// The equations of one lane. What follows the curve is compiled once for each group, not for every
-/// model and scalar.
+/// What was found out on a curve.
+#[derive(Clone, Debug)]
+pub(super) enum Found<G = Point> {
+    /// As [`Traced::Principal`].
+    Principal { reach: Vec<f64>, spread: Spread },
+    /// As [`Traced::Elsewhere`].
+    Elsewhere { root: G, reach: Vec<f64> },
+}
+
+/// The equations of one lane, of a group that is a type.
 pub struct Equations<'a, G, E, const D: usize, const K: usize> {
     /// The residual `T(Ω) - m`.
     pub residual: &'a dyn Fn(&G) -> SVector<f64, D>,
@@ -129,58 +139,100 @@ pub fn trace<G, E, const D: usize, const K: usize>(
     care: Care,
 ) -> Result<Traced<G, D>, Fold>
 where
-    G: Group<f64>,
+    G: Group<f64> + Debug,
     E: Region<K, Centre = G>,
 {
-    let rest = G::identity();
-    let at_rest = (equations.residual)(&rest);
-    let Some(stage) = Stage::at(equations, rest, at_rest) else {
+    let all = |list: &[f64]| core::array::from_fn(|b| list.get(b).copied().unwrap_or(0.0));
+    in_lane_of(equations, |sized| {
+        Ok(match trace_lane(sized, solution, care)? {
+            Found::Principal { reach, spread } => Traced::Principal {
+                reach: all(&reach),
+                spread,
+            },
+            Found::Elsewhere { root, reach } => Traced::Elsewhere {
+                root,
+                reach: all(&reach),
+            },
+        })
+    })
+}
+
+/// The same for a group that a value describes.
+#[cold]
+pub(super) fn trace_lane<C: Chart>(
+    equations: &Lane<C>,
+    solution: Option<&C::Element>,
+    care: Care,
+) -> Result<Found<C::Element>, Fold> {
+    let met = Met::new(equations);
+    let solution = solution.map(|found| met.keep(found.clone()));
+    Ok(match traced(&met, solution, care)? {
+        Found::Principal { reach, spread } => Found::Principal { reach, spread },
+        Found::Elsewhere { root, reach } => Found::Elsewhere {
+            root: met.get(root),
+            reach,
+        },
+    })
+}
+
+fn traced(curve: &dyn Curve, solution: Option<Point>, care: Care) -> Result<Found, Fold> {
+    let rest = curve.rest();
+    let at_rest = curve.residual(rest);
+    let Some(stage) = Stage::at(curve, rest, at_rest) else {
         return Err(Fold::at(0.0, 0));
     };
-    let units = stage.units();
-    let whole = stage.toward(&SVector::zeros());
+    let units = stage.units(curve.parts());
+    let whole = stage.toward(&nowhere(curve));
     if !whole.iter().all(|x| x.is_finite()) {
         return Err(Fold::at(0.0, 0));
     }
-    let lengths = lengths::<G, D>(&whole);
+    let lengths = curve.parts().lengths(&whole);
     if let (Some(found), true) = (solution, care.lasting) {
-        let mut own = [0.0; D];
-        found.extents(&mut own);
-        let wanted = core::array::from_fn(|b| own[b].max(lengths[b]).max(0.01 * units[b]));
-        if let Some(proved) = lasting(equations, &stage, &wanted, care.everywhere) {
+        let own = curve.extents(None, found);
+        let wanted = own.iter().zip(&lengths).zip(&units);
+        let wanted: Vec<f64> = wanted
+            .map(|((own, length), unit)| own.max(*length).max(0.01 * unit))
+            .collect();
+        if let Some(proved) = lasting(curve, &stage, &wanted, care.everywhere) {
             return Ok(proved);
         }
     }
     // What cannot be followed without a proof is not followed with one, a hundred times more slowly.
-    let mut found = follow(equations, stage, solution, false);
+    let mut found = follow(curve, stage.clone(), solution, false);
     if found.is_ok() && care.proved {
-        found = follow(equations, stage, solution, true);
+        found = follow(curve, stage.clone(), solution, true);
     }
     // That there is no proof does not mean that there is a fold.
-    found.or_else(|_| closely(equations, stage, solution))
+    found.or_else(|_| closely(curve, stage, solution))
+}
+
+/// Residuals that vanish.
+fn nowhere(curve: &dyn Curve) -> Vec<f64> {
+    vec![0.0; curve.parts().dimension()]
+}
+
+fn times(x: &[f64], factor: f64) -> Vec<f64> {
+    x.iter().map(|x| x * factor).collect()
 }
 
 /// Follows the curve stage by stage from rest, each stage proved or foreseen from its end.
-fn follow<G, E, const D: usize, const K: usize>(
-    equations: &Equations<G, E, D, K>,
-    rest: Stage<G, D>,
-    solution: Option<&G>,
+fn follow(
+    curve: &dyn Curve,
+    rest: Stage,
+    solution: Option<Point>,
     proved: bool,
-) -> Result<Traced<G, D>, Fold>
-where
-    G: Group<f64>,
-    E: Region<K, Centre = G>,
-{
-    let at_rest = rest.residual;
-    let units = rest.units();
-    let fold = |share: f64, way: &SVector<f64, D>| Fold::at(share, fastest::<G, D>(way, &units));
+) -> Result<Found, Fold> {
+    let parts = curve.parts();
+    let at_rest = rest.residual.clone();
+    let units = rest.units(parts);
+    let fold = |share: f64, way: &[f64]| Fold::at(share, fastest(parts, way, &units));
     let mut stage = rest;
-    let mut whole = stage.toward(&SVector::zeros());
-    let lengths = lengths::<G, D>(&whole);
+    let mut whole = stage.toward(&nowhere(curve));
+    let lengths = parts.lengths(&whole);
     let (mut share, mut length) = (0.0, 1.0_f64);
     // What the velocity moves by on the way, in every direction a little.
     let mut course = course(&lengths, &units, 1.0);
-    let mut radii = [0.0; D];
+    let mut radii = vec![0.0; parts.count()];
     let most_stages = if proved { MOST_PROOFS } else { MOST_STAGES };
     for _ in 0..most_stages {
         if share >= 1.0 {
@@ -196,13 +248,13 @@ where
                 return Err(fold(share, &whole));
             }
             let end = if length >= left { 1.0 } else { share + length };
-            let goal = at_rest * (1.0 - end);
+            let goal = times(&at_rest, 1.0 - end);
             let toward = stage.toward(&goal);
-            let own = self::lengths::<G, D>(&toward);
-            radii = course.map(|x| MARGIN * length * x);
+            let own = parts.lengths(&toward);
+            radii = course.iter().map(|x| MARGIN * length * x).collect();
             let (moved, strain) = match proved {
-                true => stage.move_within::<E, K>(equations, &radii, &own),
-                false => stage.move_foreseen(equations, &toward, &radii, &own),
+                true => stage.move_within(curve, &radii, &own),
+                false => stage.move_foreseen(curve, &toward, &radii, &own),
             };
             // Lengths are in proportion to strains.
             let longer = match strain.is_nan() {
@@ -210,11 +262,11 @@ where
                 false => (AIM / strain).min(LONGER),
             };
             next_length = longer * length;
-            let inner = radii.map(|r| INNER * r);
-            let enough = moved.is_some_and(|y| fits::<G, D>(&y, &inner));
+            let inner: Vec<f64> = radii.iter().map(|r| INNER * r).collect();
+            let enough = moved.as_ref().is_some_and(|y| fits(y, &inner));
             if enough {
                 accepted = stage
-                    .solve(equations, &toward, &goal, &radii)
+                    .solve(curve, &toward, &goal, &radii)
                     .map(|next| (next, end));
             } else if let Some(y) = moved {
                 course = reshaped(&course, &y, &own);
@@ -227,14 +279,14 @@ where
             return Err(fold(share, &whole));
         };
         if end >= 1.0 {
-            return Ok(verdict(next, &radii, solution));
+            return Ok(verdict(curve, next, &radii, solution));
         }
         share = end;
         length = next_length;
-        let left = (equations.residual)(&next);
-        stage = Stage::at(equations, next, left).ok_or_else(|| fold(share, &whole))?;
-        whole = stage.toward(&SVector::zeros());
-        course = self::course(&self::lengths::<G, D>(&whole), &units, 1.0 / (1.0 - share));
+        let left = curve.residual(next);
+        stage = Stage::at(curve, next, left).ok_or_else(|| fold(share, &whole))?;
+        whole = stage.toward(&nowhere(curve));
+        course = self::course(&parts.lengths(&whole), &units, 1.0 / (1.0 - share));
     }
     Err(fold(share, &whole))
 }
@@ -245,32 +297,26 @@ const SHORT: f64 = 0.5;
 /// Follows the curve in short stages where a proof fails: bounds over a region are poor where the
 /// coordinates are ill conditioned, as at nearly singular elements of GL(n). The tangent is looked
 /// at in the middle and at the end of each stage, its root is solved for; not a proof.
-fn closely<G, E, const D: usize, const K: usize>(
-    equations: &Equations<G, E, D, K>,
-    rest: Stage<G, D>,
-    solution: Option<&G>,
-) -> Result<Traced<G, D>, Fold>
-where
-    G: Group<f64>,
-{
-    let (at_rest, units) = (rest.residual, rest.units());
+fn closely(curve: &dyn Curve, rest: Stage, solution: Option<Point>) -> Result<Found, Fold> {
+    let parts = curve.parts();
+    let (at_rest, units) = (rest.residual.clone(), rest.units(parts));
     let (mut stage, mut share, mut length) = (rest, 0.0, 1.0_f64);
     for _ in 0..MOST_STAGES {
         let left = 1.0 - share;
         length = length.min(left);
         let end = if length >= left { 1.0 } else { share + length };
-        let goal = at_rest * (1.0 - end);
+        let goal = times(&at_rest, 1.0 - end);
         let toward = stage.toward(&goal);
-        let fold = || Fold::at(share, fastest::<G, D>(&toward, &units));
+        let fold = || Fold::at(share, fastest(parts, &toward, &units));
         if length < SHORTEST {
             return Err(fold());
         }
-        let radii = course(&lengths::<G, D>(&toward), &units, 1.0);
-        let strains = [0.5, 1.0].map(|part| stage.strain_at(equations, &(toward * part)));
+        let radii = course(&parts.lengths(&toward), &units, 1.0);
+        let strains = [0.5, 1.0].map(|part| stage.strain_at(curve, &times(&toward, part)));
         let strain = largest(strains.map(|x| x.largest(&radii)));
-        let within = radii.map(|r| 2.0 * r);
+        let within = times(&radii, 2.0);
         let next = match strain <= SHORT {
-            true => stage.solve(equations, &toward, &goal, &within),
+            true => stage.solve(curve, &toward, &goal, &within),
             false => None,
         };
         let [most, least] = SHORTER;
@@ -283,26 +329,28 @@ where
             continue;
         };
         if end >= 1.0 {
-            return Ok(verdict(next, &radii, solution));
+            return Ok(verdict(curve, next, &radii, solution));
         }
-        let residual = (equations.residual)(&next);
-        stage = Stage::at(equations, next, residual).ok_or_else(fold)?;
+        let residual = curve.residual(next);
+        stage = Stage::at(curve, next, residual).ok_or_else(fold)?;
         share = end;
         length *= longer;
     }
     Err(Fold::at(
         share,
-        fastest::<G, D>(&stage.toward(&SVector::zeros()), &units),
+        fastest(parts, &stage.toward(&nowhere(curve)), &units),
     ))
 }
 
 /// How far each part moves per way to the momenta, at least a little in every direction.
-fn course<const D: usize>(lengths: &[f64; D], units: &[f64; D], rate: f64) -> [f64; D] {
+fn course(lengths: &[f64], units: &[f64], rate: f64) -> Vec<f64> {
     let shares = lengths.iter().zip(units).map(|(x, u)| x / u);
     let most = shares.filter(|x| x.is_finite()).fold(LITTLE, f64::max);
     // A body may go many times its own size in a step, and need not turn for that.
     let most = most.min(1.0);
-    core::array::from_fn(|b| rate * lengths[b].max(0.05 * most * units[b]))
+    let each = lengths.iter().zip(units);
+    each.map(|(length, unit)| rate * length.max(0.05 * most * unit))
+        .collect()
 }
 
 /// By how much a part of a region is widened at once.
@@ -310,38 +358,39 @@ const WIDER: f64 = 5.0;
 
 /// The course, wider in the parts that move more than foreseen, compared with the one that moves
 /// furthest.
-fn reshaped<const D: usize>(course: &[f64; D], moved: &[f64; D], own: &[f64; D]) -> [f64; D] {
+fn reshaped(course: &[f64], moved: &[f64], own: &[f64]) -> Vec<f64> {
     let share = |b: usize| own[b] / course[b];
     let rate = |b: usize| moved[b] / course[b];
-    let most = (0..D).fold(0, |most, b| if share(b) > share(most) { b } else { most });
-    core::array::from_fn(|b| match rate(b) / rate(most) {
+    let parts = 0..course.len();
+    let most = parts
+        .clone()
+        .fold(0, |most, b| if share(b) > share(most) { b } else { most });
+    let wide = |b: usize| match rate(b) / rate(most) {
         wider if wider > 1.0 => course[b] * wider.min(WIDER),
         // Also where nothing is known.
         _ => course[b],
-    })
+    };
+    parts.map(wide).collect()
 }
 
 /// The coordinate that moves most.
-fn fastest<G: Group<f64>, const D: usize>(x: &SVector<f64, D>, units: &[f64; D]) -> usize {
-    let share = |k: usize| x[k].abs() / units.get(G::part_of(k)).copied().unwrap_or(1.0);
-    (0..G::DIMENSION.min(D))
+fn fastest(parts: &Parts, x: &[f64], units: &[f64]) -> usize {
+    let size = |k: usize| x.get(k).copied().unwrap_or(0.0).abs();
+    let share = |k: usize| size(k) / units.get(parts.part_of(k)).copied().unwrap_or(1.0);
+    (0..parts.dimension())
         .max_by(|i, j| share(*i).total_cmp(&share(*j)))
         .unwrap_or(0)
 }
 
 /// Whether the solution is the root in the region around it.
-fn verdict<G: Group<f64>, const D: usize>(
-    root: G,
-    radii: &[f64; D],
-    solution: Option<&G>,
-) -> Traced<G, D> {
+fn verdict(curve: &dyn Curve, root: Point, radii: &[f64], solution: Option<Point>) -> Found {
     // The region is that around the beginning of the last stage, of which the root is off the edge.
-    let reach = radii.map(|r| 1e-3 * r);
+    let reach: Vec<f64> = radii.iter().map(|r| 1e-3 * r).collect();
     match solution {
-        Some(found) if root.inverse().compose(found).is_within(&reach) => Traced::Principal {
-            reach: [0.0; D],
+        Some(found) if curve.is_within(root, found, &reach) => Found::Principal {
+            reach: vec![0.0; reach.len()],
             spread: Spread::HERE,
         },
-        _ => Traced::Elsewhere { root, reach },
+        _ => Found::Elsewhere { root, reach },
     }
 }

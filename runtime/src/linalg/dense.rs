@@ -1,0 +1,592 @@
+//! Matrices whose size is known when a model is read, in plain loops. Every operation takes the steps of the
+//! one on matrices of a static size, in the same order, so that results agree to the last bit.
+//! Takes and gives lists of entries; allocates.
+
+use super::elimination::weight;
+use super::{balance, even_degrees};
+use crate::Real;
+use nalgebra::SMatrix;
+
+/// A matrix, column after column.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dense<T> {
+    /// Rows.
+    pub rows: usize,
+    /// Columns.
+    pub cols: usize,
+    /// The entries, column after column.
+    pub data: Vec<T>,
+}
+
+impl<T: Real> Dense<T> {
+    /// The matrix with these entries.
+    pub fn from_fn(rows: usize, cols: usize, entry: impl Fn(usize, usize) -> T) -> Self {
+        let mut data = Vec::with_capacity(rows * cols);
+        for j in 0..cols {
+            data.extend((0..rows).map(|i| entry(i, j)));
+        }
+        Dense { rows, cols, data }
+    }
+
+    /// All zeros.
+    pub fn zeros(rows: usize, cols: usize) -> Self {
+        Self::from_fn(rows, cols, |_, _| T::zero())
+    }
+
+    /// Ones on the diagonal.
+    pub fn identity(rows: usize, cols: usize) -> Self {
+        Self::from_fn(rows, cols, |i, j| if i == j { T::one() } else { T::zero() })
+    }
+
+    /// A static matrix.
+    pub fn of<const R: usize, const C: usize>(a: &SMatrix<T, R, C>) -> Self {
+        Dense {
+            rows: R,
+            cols: C,
+            data: a.as_slice().to_vec(),
+        }
+    }
+
+    /// An entry; zero outside.
+    #[inline]
+    pub fn at(&self, i: usize, j: usize) -> T {
+        match i < self.rows && j < self.cols {
+            true => self.data.get(j * self.rows + i).copied(),
+            false => None,
+        }
+        .unwrap_or_else(T::zero)
+    }
+
+    /// As a static matrix, cut or filled with zeros.
+    #[inline]
+    pub fn fixed<const R: usize, const C: usize>(&self) -> SMatrix<T, R, C> {
+        SMatrix::from_fn(|i, j| self.at(i, j))
+    }
+
+    /// Whether both have the same size.
+    pub fn fits(&self, other: &Self) -> bool {
+        (self.rows, self.cols) == (other.rows, other.cols)
+    }
+
+    /// Entry by entry.
+    #[inline]
+    pub fn map(&self, f: impl Fn(T) -> T) -> Self {
+        Dense {
+            rows: self.rows,
+            cols: self.cols,
+            data: self.data.iter().map(|x| f(*x)).collect(),
+        }
+    }
+
+    /// Entry by entry of two of the same size.
+    #[inline]
+    pub fn zip(&self, other: &Self, f: impl Fn(T, T) -> T) -> Self {
+        Dense {
+            rows: self.rows,
+            cols: self.cols,
+            data: (self.data.iter().zip(&other.data))
+                .map(|(x, y)| f(*x, *y))
+                .collect(),
+        }
+    }
+
+    /// The transpose.
+    pub fn transpose(&self) -> Self {
+        Self::from_fn(self.cols, self.rows, |i, j| self.at(j, i))
+    }
+
+    /// The sum of the diagonal.
+    pub fn trace(&self) -> T {
+        let mut sum = T::zero();
+        for i in 0..self.rows {
+            sum += self.at(i, i);
+        }
+        sum
+    }
+
+    /// The product: columns of the first, weighted, one after the other.
+    pub fn times(&self, other: &Self) -> Self {
+        let (rows, cols, one) = (self.rows, other.cols, T::one());
+        let mut data: Vec<T> = Vec::with_capacity(rows * cols);
+        for j in 0..cols {
+            let start = data.len();
+            let weight = other.at(0, j);
+            data.extend((0..rows).map(|i| one * self.at(i, 0) * weight));
+            for k in 1..self.cols {
+                let weight = other.at(k, j);
+                for i in 0..rows {
+                    if let Some(y) = data.get_mut(start + i) {
+                        *y = one * self.at(i, k) * weight + one * *y;
+                    }
+                }
+            }
+        }
+        Dense { rows, cols, data }
+    }
+
+    /// The transpose times another.
+    pub fn tr_mul(&self, other: &Self) -> Self {
+        Self::from_fn(self.cols, other.cols, |i, j| {
+            dot_columns(self.column(i), other.column(j))
+        })
+    }
+
+    /// Where an entry stands.
+    #[inline]
+    fn place(&mut self, i: usize, j: usize) -> Option<&mut T> {
+        match i < self.rows && j < self.cols {
+            true => self.data.get_mut(j * self.rows + i),
+            false => None,
+        }
+    }
+
+    /// Puts an entry; nothing happens outside.
+    #[inline]
+    pub fn set(&mut self, i: usize, j: usize, x: T) {
+        if let Some(place) = self.place(i, j) {
+            *place = x;
+        }
+    }
+
+    /// A column of numbers.
+    pub fn column_of(data: Vec<T>) -> Self {
+        Dense {
+            rows: data.len(),
+            cols: 1,
+            data,
+        }
+    }
+
+    /// The same number everywhere.
+    pub fn repeat(rows: usize, cols: usize, x: T) -> Self {
+        Self::from_fn(rows, cols, |_, _| x)
+    }
+
+    /// All NaN.
+    pub fn unknown(rows: usize, cols: usize) -> Self {
+        Self::repeat(rows, cols, T::from_f64(f64::NAN))
+    }
+
+    /// The sum.
+    pub fn plus(&self, other: &Self) -> Self {
+        self.zip(other, |x, y| x + y)
+    }
+
+    /// The difference.
+    pub fn minus(&self, other: &Self) -> Self {
+        self.zip(other, |x, y| x - y)
+    }
+
+    /// The difference to the identity.
+    pub fn minus_one(&self) -> Self {
+        self.minus(&Self::identity(self.rows, self.cols))
+    }
+
+    /// Every entry times a number.
+    pub fn scaled(&self, factor: T) -> Self {
+        self.map(|x| x * factor)
+    }
+
+    /// The sum of the squares of all entries.
+    pub fn squares(&self) -> T {
+        self.data.iter().fold(T::zero(), |sum, x| sum + *x * *x)
+    }
+
+    /// Whether every entry is finite.
+    pub fn is_finite(&self) -> bool {
+        self.data.iter().all(|x| x.is_finite())
+    }
+
+    /// The columns, one after the other.
+    pub fn columns(&self) -> Vec<Vec<T>> {
+        (0..self.cols).map(|j| self.column(j).to_vec()).collect()
+    }
+
+    fn column(&self, j: usize) -> &[T] {
+        let from = j * self.rows;
+        self.data.get(from..from + self.rows).unwrap_or_default()
+    }
+
+    /// The sum of the products of entries.
+    pub fn dot(&self, other: &Self) -> T {
+        if self.cols == 1 {
+            return dot_columns(self.column(0), other.column(0));
+        }
+        let columns = 0..self.cols;
+        columns.fold(T::zero(), |sum, j| {
+            dot_long(sum, self.column(j), other.column(j))
+        })
+    }
+}
+
+/// Systems of linear equations.
+impl<T: Real> Dense<T> {
+    /// Solves for several right sides at once and gives the determinant along, of the leading `size` rows
+    /// and columns; as `eliminate_leading` of static sizes.
+    fn eliminated(&self, right: &Self, size: usize) -> Option<(Self, T)> {
+        let (mut a, mut x) = (self.clone(), right.clone());
+        let size = size.min(self.rows).min(self.cols);
+        let mut det = T::one();
+        for k in 0..size {
+            let mut pivot = k;
+            let mut best = weight(a.at(k, k));
+            for i in k + 1..size {
+                let candidate = weight(a.at(i, k));
+                if candidate > best {
+                    best = candidate;
+                    pivot = i;
+                }
+            }
+            // Also refuses NaN.
+            if !(best > 0.0 && best.is_finite()) {
+                return None;
+            }
+            if pivot != k {
+                a.swap_rows(k, pivot);
+                x.swap_rows(k, pivot);
+                det = -det;
+            }
+            det *= a.at(k, k);
+            let reciprocal = T::one() / a.at(k, k);
+            let factors: Vec<T> = (k + 1..size).map(|i| a.at(i, k) * reciprocal).collect();
+            a.take(k, &factors, k + 1..size);
+            x.take(k, &factors, 0..x.cols);
+        }
+        for j in 0..x.cols {
+            for k in (0..size).rev() {
+                let mut sum = x.at(k, j);
+                for i in k + 1..size {
+                    sum -= a.at(k, i) * x.at(i, j);
+                }
+                x.set(k, j, sum / a.at(k, k));
+            }
+        }
+        Some((x, det))
+    }
+
+    fn swap_rows(&mut self, i: usize, k: usize) {
+        for column in self.data.chunks_mut(self.rows.max(1)) {
+            column.swap(i, k);
+        }
+    }
+
+    /// Takes row `k` times a factor from each row below it.
+    fn take(&mut self, k: usize, factors: &[T], columns: core::ops::Range<usize>) {
+        for j in columns {
+            let above = self.at(k, j);
+            let from = j * self.rows + k + 1;
+            let below = self.data.iter_mut().skip(from).zip(factors);
+            for (x, factor) in below {
+                *x -= *factor * above;
+            }
+        }
+    }
+
+    /// The determinant; zero where no pivot is found.
+    pub fn determinant(&self) -> T {
+        let at = |i: usize, j: usize| self.at(i, j);
+        match self.rows {
+            0 => T::one(),
+            1 => at(0, 0),
+            2 => at(0, 0) * at(1, 1) - at(0, 1) * at(1, 0),
+            3 => {
+                at(0, 0) * (at(1, 1) * at(2, 2) - at(1, 2) * at(2, 1))
+                    + at(0, 1) * (at(1, 2) * at(2, 0) - at(1, 0) * at(2, 2))
+                    + at(0, 2) * (at(1, 0) * at(2, 1) - at(1, 1) * at(2, 0))
+            }
+            n => self
+                .eliminated(&Self::zeros(n, 0), n)
+                .map_or_else(T::zero, |(_, det)| det),
+        }
+    }
+
+    /// The inverse, or `None` for a matrix without a usable pivot.
+    pub fn inverse(&self) -> Option<Self> {
+        self.solved(&Self::identity(self.rows, self.rows))
+    }
+
+    /// The solution of `A X = B`, or `None` as for the inverse.
+    pub fn solved(&self, right: &Self) -> Option<Self> {
+        self.eliminated(right, self.rows).map(|(x, _)| x)
+    }
+
+    /// The solution of the leading `size` equations in as many unknowns; the others are zero.
+    pub fn leading_solved(&self, right: &Self, size: usize) -> Option<Self> {
+        let (x, _) = self.eliminated(right, size)?;
+        Some(Self::from_fn(x.rows, x.cols, |i, j| match i < size {
+            true => x.at(i, j),
+            false => T::zero(),
+        }))
+    }
+
+    /// The inverse of a matrix whose rows and columns are brought to one size first, by powers of two.
+    pub fn balanced_inverse(&self) -> Option<Self> {
+        let n = self.rows;
+        let scale: Vec<T> = (0..n).map(|i| balance(self.at(i, i))).collect();
+        let scaled = |a: &Self| {
+            let mut out = a.clone();
+            for (column, s) in out.data.chunks_mut(n.max(1)).zip(&scale) {
+                for (x, r) in column.iter_mut().zip(&scale) {
+                    *x = *x * *r * *s;
+                }
+            }
+            out
+        };
+        let inverse = scaled(self).inverse()?;
+        Some(scaled(&inverse))
+    }
+
+    /// The solution of `A x = b`, rows and columns brought to one size first.
+    pub fn balanced_solution(&self, b: &[T]) -> Option<Vec<T>> {
+        let n = self.rows;
+        let scale: Vec<T> = (0..n).map(|i| balance(self.at(i, i))).collect();
+        let at = |i: usize| scale.get(i).copied().unwrap_or_else(T::one);
+        let scaled = Self::from_fn(n, n, |i, j| self.at(i, j) * at(i) * at(j));
+        let right = b.iter().zip(&scale).map(|(x, s)| *x * *s).collect();
+        let x = scaled.solved(&Self::column_of(right))?;
+        Some(x.data.iter().zip(&scale).map(|(x, s)| *x * *s).collect())
+    }
+
+    /// The inverse, by cofactors where these are as good: as
+    /// [`small_inverse`](super::small_inverse).
+    pub fn small_inverse(&self) -> Option<Self> {
+        match self.rows {
+            2 => super::small_inverse(&self.fixed::<2, 2>()).map(|x| Self::of(&x)),
+            3 => super::small_inverse(&self.fixed::<3, 3>()).map(|x| Self::of(&x)),
+            _ => self.inverse(),
+        }
+    }
+
+    /// The solution of `A X = B`: as [`small_solve`](super::small_solve).
+    pub fn small_solve(&self, right: &Self) -> Option<Self> {
+        let by_cofactors = match self.rows {
+            2 => super::cofactors::by_cofactors(&self.fixed::<2, 2>()).map(|x| Self::of(&x)),
+            3 => super::cofactors::by_cofactors(&self.fixed::<3, 3>()).map(|x| Self::of(&x)),
+            _ => None,
+        };
+        match by_cofactors {
+            Some(x) => Some(x.times(right)),
+            None => self.solved(right),
+        }
+    }
+}
+
+/// What groups of matrices need.
+impl<T: Real> Dense<T> {
+    /// The product as that of group elements: summed from zero, entry by entry.
+    pub fn product(&self, other: &Self) -> Self {
+        let mut c = Self::zeros(self.rows, other.cols);
+        for j in 0..other.cols {
+            for k in 0..self.cols {
+                let x = other.at(k, j);
+                for i in 0..self.rows {
+                    if let Some(c) = c.place(i, j) {
+                        *c += self.at(i, k) * x;
+                    }
+                }
+            }
+        }
+        c
+    }
+
+    /// One Newton step towards the nearest orthogonal matrix.
+    pub fn orthonormalised(&self) -> Self {
+        let excess = self.transpose().product(self).minus_one();
+        self.minus(&self.product(&excess).scaled(T::from_f64(0.5)))
+    }
+
+    /// The skew matrix of its coordinates: for `i < j`, row by row, `-x` at (i, j) and `+x` at (j, i).
+    pub fn skew_from(n: usize, coordinates: &[T]) -> Self {
+        let mut skew = Self::zeros(n, n);
+        let mut rest = coordinates.iter();
+        for i in 0..n {
+            for j in i + 1..n {
+                if let Some(x) = rest.next() {
+                    skew.set(i, j, -*x);
+                    skew.set(j, i, *x);
+                }
+            }
+        }
+        skew
+    }
+
+    /// The coordinates of a skew matrix.
+    pub fn skew_coordinates(&self) -> Vec<T> {
+        let n = self.rows;
+        let pairs = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
+        pairs.map(|(i, j)| self.at(j, i)).collect()
+    }
+
+    /// `A - 1` of a matrix whose columns have length 1: as [`less_identity`](super::less_identity).
+    pub fn less_identity(&self) -> Self {
+        let mut out = self.clone();
+        for i in 0..self.rows {
+            let moved = self.at(i, i) - T::one();
+            let others = (0..self.rows).filter(|k| *k != i).map(|k| self.at(k, i));
+            let square = others.fold(moved * moved, |sum, x| sum + x * x);
+            out.set(i, i, square * T::from_f64(-0.5));
+        }
+        out
+    }
+
+    /// Coefficients of `det(ν + M + λ S)`: as [`pencil_coefficients`](super::pencil_coefficients).
+    pub fn pencil_coefficients(&self, s: &Self) -> Self {
+        let n = self.rows;
+        let mut out = Self::zeros(n, n);
+        let mut parts = vec![Self::zeros(n, n); n];
+        if let Some(first) = parts.first_mut() {
+            *first = Self::identity(n, n);
+        }
+        for k in 1..=n {
+            let sign = if k % 2 == 0 { T::one() } else { -T::one() };
+            for j in (0..=k).rev() {
+                let own = parts
+                    .get(j)
+                    .map_or_else(|| Self::zeros(n, n), |p| s.times(p));
+                let product = match j.checked_sub(1).and_then(|i| parts.get(i)) {
+                    Some(below) => own.plus(&self.times(below)),
+                    None => own,
+                };
+                let c = -product.trace() / T::from_f64(k as f64);
+                if j > 0 {
+                    out.set(j - 1, n - k, sign * c);
+                }
+                if let Some(part) = parts.get_mut(j) {
+                    *part = product.plus(&Self::identity(n, n).scaled(c));
+                }
+            }
+        }
+        out
+    }
+
+    /// The coefficients of a pencil that do not vanish.
+    pub fn spectrum(&self) -> Vec<T> {
+        let at = even_degrees(self.rows);
+        at.map(|(i, j)| self.at(i, j)).collect()
+    }
+}
+
+/// Short columns have an order of their own.
+fn dot_columns<T: Real>(a: &[T], b: &[T]) -> T {
+    match (a, b) {
+        ([a0, a1], [b0, b1]) => *a0 * *b0 + *a1 * *b1,
+        ([a0, a1, a2], [b0, b1, b2]) => *a0 * *b0 + *a1 * *b1 + *a2 * *b2,
+        ([a0, a1, a2, a3], [b0, b1, b2, b3]) => {
+            let (mut a, mut b) = (*a0 * *b0, *a1 * *b1);
+            a += *a2 * *b2;
+            b += *a3 * *b3;
+            a + b
+        }
+        _ => dot_long(T::zero(), a, b),
+    }
+}
+
+/// Eight sums side by side, then the rest.
+fn dot_long<T: Real>(mut sum: T, a: &[T], b: &[T]) -> T {
+    let mut parts = [T::zero(); 8];
+    let (long, rest) = (a.chunks_exact(8), a.len() - a.len() % 8);
+    for (x, y) in long.zip(b.chunks_exact(8)) {
+        for (part, (x, y)) in parts.iter_mut().zip(x.iter().zip(y)) {
+            *part += *x * *y;
+        }
+    }
+    let [p0, p1, p2, p3, p4, p5, p6, p7] = parts;
+    sum += p0 + p4;
+    sum += p1 + p5;
+    sum += p2 + p6;
+    sum += p3 + p7;
+    for (x, y) in a.iter().zip(b).skip(rest) {
+        sum += *x * *y;
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Dense;
+    use crate::linalg;
+    use nalgebra::SMatrix;
+
+    fn compare<const R: usize, const K: usize, const C: usize>() {
+        let entry = |seed: usize| {
+            move |i: usize, j: usize| ((7 * i + 13 * j + 29 * seed) as f64 * 0.731).sin() * 1.7
+        };
+        let a = SMatrix::<f64, R, K>::from_fn(entry(1));
+        let b = SMatrix::<f64, K, C>::from_fn(entry(2));
+        let c = SMatrix::<f64, R, K>::from_fn(entry(3));
+        let (da, db, dc) = (Dense::of(&a), Dense::of(&b), Dense::of(&c));
+        assert_eq!(da.times(&db), Dense::of(&(a * b)));
+        assert_eq!(da.tr_mul(&dc), Dense::of(&a.tr_mul(&c)));
+        assert_eq!(da.dot(&dc), a.dot(&c));
+        assert_eq!(da.transpose(), Dense::of(&a.transpose()));
+    }
+
+    #[test]
+    fn products_agree_with_static_ones_to_the_last_bit() {
+        compare::<1, 1, 1>();
+        compare::<2, 2, 1>();
+        compare::<2, 3, 4>();
+        compare::<4, 4, 4>();
+        compare::<5, 1, 1>();
+        compare::<6, 6, 6>();
+        compare::<8, 8, 8>();
+        compare::<9, 2, 5>();
+        compare::<28, 1, 3>();
+    }
+
+    fn systems<const N: usize>() {
+        let entry = |seed: usize| {
+            move |i: usize, j: usize| {
+                ((5 * i + 11 * j + 17 * seed + i * j) as f64 * 0.613).sin()
+                    + if i == j { 0.4 } else { 0.0 }
+            }
+        };
+        let a = SMatrix::<f64, N, N>::from_fn(entry(1));
+        let b = SMatrix::<f64, N, 3>::from_fn(entry(2));
+        let s = SMatrix::<f64, N, N>::from_fn(entry(3));
+        let (da, db, ds) = (Dense::of(&a), Dense::of(&b), Dense::of(&s));
+        let of = |x: Option<SMatrix<f64, N, N>>| x.map(|x| Dense::of(&x));
+        assert_eq!(da.determinant(), linalg::determinant(&a));
+        assert_eq!(da.inverse(), of(linalg::inverse(&a)));
+        assert_eq!(da.small_inverse(), of(linalg::small_inverse(&a)));
+        let many = linalg::solve_many(&a, &b).map(|x| Dense::of(&x));
+        assert_eq!(da.solved(&db), many);
+        let small = linalg::small_solve(&a, &b).map(|x| Dense::of(&x));
+        assert_eq!(da.small_solve(&db), small);
+        assert_eq!(da.product(&ds), Dense::of(&linalg::product(&a, &s)));
+        let near = linalg::orthonormalised(&(SMatrix::identity() + a * 0.01));
+        let one = Dense::identity(N, N).plus(&da.scaled(0.01));
+        assert_eq!(one.orthonormalised(), Dense::of(&near));
+        assert_eq!(da.less_identity(), Dense::of(&linalg::less_identity(&a)));
+        let pencil = linalg::pencil_coefficients(&a, &s);
+        assert_eq!(da.pencil_coefficients(&ds), Dense::of(&pencil));
+        let skew = da.skew_coordinates();
+        assert_eq!(skew, linalg::skew_coordinates(&a).collect::<Vec<_>>());
+        let matrix = linalg::skew_from::<f64, N>(&skew);
+        assert_eq!(Dense::skew_from(N, &skew), Dense::of(&matrix));
+    }
+
+    #[test]
+    fn systems_agree_with_static_ones_to_the_last_bit() {
+        systems::<1>();
+        systems::<2>();
+        systems::<3>();
+        systems::<4>();
+        systems::<5>();
+        systems::<8>();
+        systems::<13>();
+    }
+
+    #[test]
+    fn large_systems_are_solved() {
+        let n = 64;
+        let entry = |i: usize, j: usize| ((7 * i + 3 * j) % 61) as f64 / 61.0;
+        let a = Dense::from_fn(n, n, |i, j| entry(i, j) + if i == j { 9.0 } else { 0.0 });
+        let b = Dense::from_fn(n, 1, |i, _| i as f64 - 30.0);
+        for x in [a.solved(&b), a.leading_solved(&b, n)] {
+            let left = a.times(&x.expect("regular")).minus(&b);
+            assert!(left.squares().sqrt() < 1e-12);
+        }
+        assert!(Dense::<f64>::zeros(n, n).solved(&b).is_none());
+    }
+}

@@ -1,0 +1,548 @@
+//! The same method for equations whose group and number of unknowns are known when a model is read, over
+//! plain numbers: what stands in arrays elsewhere stands in lists here. Every decision and every operation
+//! is that of [`Search`](super::Search) and [`Newton`](super::Newton), so that solutions agree to the last
+//! bit.
+//! Takes a chart of the group, residuals and tangents; gives a converged element or an error.
+
+use super::curve::{Chart, Lane, Parts};
+use super::node::Spread;
+use super::principal::{Care, Fold, Found, trace_lane};
+use super::{
+    BOUND_ROUNDINGS, CONVERGED_ROUNDINGS, FORESIGHT, LAST_ATTEMPT, LATE, LEAST_SHARE,
+    MOST_ITERATIONS, NewtonError, NewtonFailure, OLDEST_SCALE, OLDEST_TANGENT, POLISHED_ROUNDINGS,
+    Progress, REMEMBERED, STAGNATED_ROUNDINGS, Solved, WORTH_KEEPING,
+};
+use crate::linalg::{Dense, DenseFactors};
+use crate::scalar::Real;
+use crate::solvers::newton::certificate::{COMMON, DRIFT, LARGER, LASTS, PATIENCE, Purpose};
+use core::fmt::Debug;
+
+/// The rounding of plain numbers.
+const UNIT: f64 = <f64 as Real>::EPSILON;
+
+/// Values at a node that the tangent depends on, as [`NodeValues`](super::NodeValues).
+#[derive(Clone, Debug, PartialEq)]
+pub struct NodeList {
+    /// One after the other.
+    pub values: Vec<NodeValue>,
+}
+
+/// One of them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NodeValue {
+    /// Its entries.
+    pub numbers: Vec<f64>,
+    /// Whether they are between -1 and 1.
+    pub turn: bool,
+}
+
+impl NodeValue {
+    /// The middle and the radius of each entry over all nodes as near as that.
+    pub fn enclosed(&self, spread: Spread) -> impl Iterator<Item = [f64; 2]> {
+        let turned = self.turn && spread.turned;
+        let radius = spread.share * crate::scalar::largest(self.numbers.iter().copied());
+        self.numbers.iter().map(move |x| match turned {
+            true => [0.0, 1.0],
+            false => [*x, radius],
+        })
+    }
+
+    fn is_near(&self, other: &Self, spread: Spread) -> bool {
+        if self.turn && spread.turned {
+            return true;
+        }
+        let (mut most, mut off) = (0.0, 0.0);
+        for (x, y) in self.numbers.iter().zip(&other.numbers) {
+            let (size, change) = (y.abs(), (x - y).abs());
+            most = if size > most { size } else { most };
+            // NaN must not hide.
+            off = if change <= off { off } else { change };
+        }
+        off <= spread.share * most
+    }
+}
+
+impl NodeList {
+    fn any(&self) -> bool {
+        !self.values.is_empty()
+    }
+
+    fn is_near(&self, others: &Self, spread: Spread) -> bool {
+        let mut near = true;
+        for (own, other) in self.values.iter().zip(&others.values) {
+            near &= own.is_near(other, spread);
+        }
+        near
+    }
+}
+
+/// Velocities that are principal roots: see [`Certificate`](super::Certificate).
+#[derive(Clone, Debug)]
+struct Certificate {
+    reach: Vec<f64>,
+    node: Option<NodeList>,
+    spread: Spread,
+    inverse: Dense<f64>,
+    factored: Option<NodeList>,
+    bounded: bool,
+    stale: bool,
+    left: u32,
+    misses: u32,
+    purpose: Purpose,
+}
+
+impl Certificate {
+    fn none(purpose: Purpose) -> Self {
+        Self {
+            reach: Vec::new(),
+            node: None,
+            spread: Spread::HERE,
+            inverse: Dense::zeros(0, 0),
+            factored: None,
+            bounded: false,
+            stale: false,
+            left: 0,
+            misses: 0,
+            purpose,
+        }
+    }
+
+    fn holds<C: Chart>(&self, chart: &C, velocity: &C::Element, values: &NodeList) -> bool {
+        let Some(node) = &self.node else {
+            return false;
+        };
+        let everywhere = !values.any();
+        chart.is_within(velocity, &self.reach)
+            && (everywhere || self.bounded && self.left > 0 && values.is_near(node, self.spread))
+    }
+
+    fn wants_tangent(&mut self, values: &NodeList) -> bool {
+        let served = |at: &NodeList| self.bounded && values.is_near(at, Spread::drifted(DRIFT));
+        self.stale =
+            values.any() && self.node.is_some() && !self.factored.as_ref().is_some_and(served);
+        self.stale
+    }
+
+    fn ask(&mut self, parts: &Parts, factors: &DenseFactors, values: &NodeList) {
+        if !values.any() {
+            return;
+        }
+        let now = factors.inverse_bounds(parts.count(), |i| parts.part_of(i));
+        self.inverse = Dense::from_fn(now.rows, now.cols, |a, b| {
+            LARGER * now.at(a, b) + COMMON * (now.at(a, a) * now.at(b, b)).sqrt()
+        });
+        self.left = 0;
+    }
+
+    fn note<C: Chart>(
+        &mut self,
+        chart: &C,
+        factors: &DenseFactors,
+        trial: &C::Element,
+        values: &NodeList,
+    ) {
+        if !values.any() || !self.stale {
+            return;
+        }
+        let parts = chart.parts();
+        let found = factors.inverse_bounds(parts.count(), |i| parts.part_of(i));
+        let mut bounded = chart.is_within(trial, &self.reach);
+        for (x, most) in found.data.iter().zip(&self.inverse.data) {
+            // NaN is not bounded.
+            bounded &= x <= most;
+        }
+        self.factored = Some(values.clone());
+        self.bounded = bounded;
+    }
+
+    fn care(&self, values: &NodeList) -> Care {
+        Care {
+            lasting: self.purpose == Purpose::Run && self.misses.is_multiple_of(PATIENCE),
+            everywhere: !values.any(),
+            proved: self.purpose != Purpose::Trial,
+        }
+    }
+
+    /// Renews it after a proof that the solution is the principal root.
+    fn close(&mut self, reach: Vec<f64>, spread: Spread, values: &NodeList) {
+        let lasts = reach.first().is_some_and(|x| *x > 0.0);
+        if !lasts {
+            self.misses = self.misses.wrapping_add(1);
+            return;
+        }
+        let spread = Spread {
+            turned: true,
+            share: f64::INFINITY,
+        }
+        .and(spread);
+        *self = Self {
+            reach,
+            node: Some(values.clone()),
+            spread,
+            inverse: self.inverse.clone(),
+            factored: Some(values.clone()),
+            bounded: true,
+            stale: self.stale,
+            left: LASTS,
+            misses: 0,
+            purpose: self.purpose,
+        };
+    }
+}
+
+/// A solution to be polished, in the only place where it may be.
+#[derive(Clone, Debug)]
+struct Anchor<G> {
+    root: G,
+    reach: Vec<f64>,
+}
+
+/// The search for one velocity after the other: see [`Search`](super::Search).
+#[derive(Clone, Debug)]
+pub struct AnySearch<C: Chart> {
+    /// The last solutions, the newest first.
+    past: Vec<C::Element>,
+    next: u64,
+    weights: Vec<f64>,
+    weighed: u32,
+    certificate: Certificate,
+    factors: DenseFactors,
+    unit: f64,
+    age: u32,
+}
+
+impl<C: Chart> AnySearch<C> {
+    /// Nothing known: the first guess is the neutral element. Blocks of three are factored without exchange
+    /// of rows only where `in_blocks`: where a static size is that of the equations.
+    #[must_use]
+    pub fn new(dimension: usize, in_blocks: bool, purpose: Purpose) -> Self {
+        Self {
+            past: Vec::new(),
+            next: 0,
+            weights: vec![0.0; dimension],
+            weighed: OLDEST_SCALE,
+            certificate: Certificate::none(purpose),
+            factors: DenseFactors::none(dimension, in_blocks),
+            unit: 1.0,
+            age: OLDEST_TANGENT,
+        }
+    }
+
+    /// What its steps are made for.
+    #[must_use]
+    pub fn purpose(&self) -> Purpose {
+        self.certificate.purpose
+    }
+
+    /// Begins the solution of the step that leaves `node`: see [`Search::begin`](super::Search::begin).
+    pub fn begin<'a>(&'a mut self, chart: &'a C, node: u64, values: NodeList) -> AnyNewton<'a, C> {
+        if node != self.next {
+            self.past.clear();
+            self.age = OLDEST_TANGENT;
+            self.weighed = OLDEST_SCALE;
+        }
+        if self.certificate.wants_tangent(&values) {
+            self.age = OLDEST_TANGENT;
+        }
+        let foreseen = self.past.len() > 1;
+        let (trial, attempt) = match foreseen {
+            true => (self.foreseen(chart), 0),
+            false => (self.start(chart, 1), 1),
+        };
+        if !foreseen {
+            self.weighed = OLDEST_SCALE;
+        }
+        let dimension = self.weights.len();
+        AnyNewton {
+            search: self,
+            chart,
+            values,
+            trial,
+            attempt,
+            anchor: None,
+            residual: vec![0.0; dimension],
+            size: f64::NAN,
+            previous: f64::INFINITY,
+            iteration: 0,
+        }
+    }
+
+    fn start(&self, chart: &C, attempt: u32) -> C::Element {
+        match (attempt, self.past.first()) {
+            (1, Some(newest)) => newest.clone(),
+            _ => chart.identity(),
+        }
+    }
+
+    fn foreseen(&self, chart: &C) -> C::Element {
+        let weights: &[f64] = match self.past.len() {
+            0 | 1 => return self.start(chart, 1),
+            2 => &[2.0, -1.0],
+            3 => &[3.0, -3.0, 1.0],
+            4 => &[4.0, -6.0, 4.0, -1.0],
+            5 => &[5.0, -10.0, 10.0, -5.0, 1.0],
+            _ => &[6.0, -15.0, 20.0, -15.0, 6.0, -1.0],
+        };
+        chart.combined(weights, &self.past)
+    }
+
+    /// Remembers the solution of the step that began at `node`.
+    pub fn remember(&mut self, node: u64, solution: C::Element) {
+        self.past.truncate(REMEMBERED - 1);
+        self.past.insert(0, solution);
+        self.next = node + 1;
+        self.age = self.age.saturating_add(1);
+        self.weighed = self.weighed.saturating_add(1);
+        self.certificate.left = self.certificate.left.saturating_sub(1);
+    }
+}
+
+/// Newton's method at work: see [`Newton`](super::Newton).
+#[derive(Debug)]
+pub struct AnyNewton<'a, C: Chart> {
+    search: &'a mut AnySearch<C>,
+    chart: &'a C,
+    values: NodeList,
+    trial: C::Element,
+    attempt: u32,
+    anchor: Option<Anchor<C::Element>>,
+    residual: Vec<f64>,
+    size: f64,
+    previous: f64,
+    iteration: usize,
+}
+
+impl<C: Chart> AnyNewton<'_, C> {
+    /// The element at which the equations are wanted.
+    #[must_use]
+    pub fn trial(&self) -> &C::Element {
+        &self.trial
+    }
+
+    /// The values at the node that the tangent depends on.
+    #[must_use]
+    pub fn values(&self) -> &NodeList {
+        &self.values
+    }
+
+    /// Whether no step follows.
+    #[must_use]
+    pub fn tries(&self) -> bool {
+        self.search.certificate.purpose != Purpose::Run
+    }
+
+    /// Whether the sizes of the terms are not known, or too old.
+    #[must_use]
+    pub fn wants_scale(&self) -> bool {
+        self.search.weighed >= OLDEST_SCALE || self.attempt > 0
+    }
+
+    /// The sizes of the terms at the trial: `rounding` bounds the rounding of each residual.
+    pub fn set_scale(&mut self, rounding: &[f64]) {
+        let unit = BOUND_ROUNDINGS * f64::EPSILON / 2.0;
+        let mut scales: Vec<f64> = rounding.iter().map(|x| x / unit).collect();
+        let parts = self.chart.parts();
+        for i in 0..scales.len() {
+            // An equation without terms is measured by the others of its kind.
+            let part = parts.own(parts.part_of(i));
+            let most = part.fold(0.0, |most: f64, k| most.max(scales[k]));
+            scales[i] = scales[i].max(LEAST_SHARE * most);
+        }
+        for (weight, scale) in self.search.weights.iter_mut().zip(&scales) {
+            *weight = (1.0 / scale).min(f64::MAX);
+        }
+        self.search.weighed = 0;
+    }
+
+    /// Whether the solution found is the principal root.
+    #[must_use]
+    pub fn is_principal(&self, solution: &C::Element) -> bool {
+        let certificate = &self.search.certificate;
+        certificate.holds(self.chart, solution, &self.values)
+            || self.anchor.as_ref().is_some_and(|anchor| {
+                let from = self.chart.between(&anchor.root, solution);
+                self.chart.is_within(&from, &anchor.reach)
+            })
+    }
+
+    /// Looks whether the solution, or else which element, is the principal root. None where it is, or where
+    /// no other can be polished; else the iteration has begun again there.
+    ///
+    /// # Errors
+    /// [`Fold`] where there is no principal root.
+    #[cold]
+    pub fn settle(
+        &mut self,
+        equations: &Lane<C>,
+        solution: Option<&C::Element>,
+    ) -> Result<Settled, Fold> {
+        let certificate = &mut self.search.certificate;
+        certificate.ask(self.chart.parts(), &self.search.factors, &self.values);
+        let care = certificate.care(&self.values);
+        match trace_lane(equations, solution, care)? {
+            Found::Principal { reach, spread } => {
+                certificate.close(reach, spread, &self.values);
+                Ok(Settled::Principal)
+            }
+            Found::Elsewhere { root, reach } => {
+                certificate.misses = certificate.misses.wrapping_add(1);
+                if self.anchor.is_some() {
+                    return Ok(Settled::Unpolished);
+                }
+                self.attempt = LAST_ATTEMPT;
+                self.begin_at(root.clone());
+                self.anchor = Some(Anchor { root, reach });
+                Ok(Settled::Again)
+            }
+        }
+    }
+
+    fn begin_at(&mut self, trial: C::Element) {
+        self.trial = trial;
+        self.search.weighed = OLDEST_SCALE;
+        self.search.age = OLDEST_TANGENT;
+        self.previous = f64::INFINITY;
+        self.iteration = 0;
+    }
+
+    /// Takes the residual at the trial; says whether the tangent there is wanted.
+    pub fn assess(&mut self, residual: Vec<f64>) -> bool {
+        let (mut sum, mut largest) = (0.0, 0.0);
+        for (x, weight) in residual.iter().zip(&self.search.weights) {
+            let x = x * weight;
+            sum += x;
+            largest = if x.abs() > largest { x.abs() } else { largest };
+        }
+        // Comparisons pass over NaN, a sum does not.
+        self.size = largest + 0.0 * f64::abs(sum);
+        self.residual = residual;
+        if self.iteration > 0 {
+            return self.size > WORTH_KEEPING * self.previous && !self.polished();
+        }
+        // What is foreseen to rounding needs no more than the tangent of a step before.
+        !(self.size <= CONVERGED_ROUNDINGS * UNIT && self.search.age < OLDEST_TANGENT)
+    }
+
+    fn polished(&self) -> bool {
+        self.iteration > 0 && self.size <= POLISHED_ROUNDINGS * UNIT
+    }
+
+    /// Takes the tangent at the trial times `unit`, the same number at every step.
+    pub fn set_tangent_times(&mut self, tangent: Dense<f64>, unit: f64) {
+        let search = &mut *self.search;
+        search.unit = unit;
+        search.factors.set(tangent);
+        let (factors, trial) = (&search.factors, &self.trial);
+        (search.certificate).note(self.chart, factors, trial, &self.values);
+        search.age = 0;
+    }
+
+    /// Moves the trial by Newton's correction, or ends.
+    pub fn correct(&mut self, from_left: bool) -> Progress<C::Element> {
+        if self.polished() {
+            return self.solved(self.iteration);
+        }
+        let size = self.size;
+        // What is left after the next correction, if it does as well as the last.
+        let foreseen = FORESIGHT * size * (size / self.previous);
+        let unit = UNIT;
+        let done = size <= CONVERGED_ROUNDINGS * unit
+            || (size <= STAGNATED_ROUNDINGS * unit && size >= 0.5 * self.previous)
+            || (self.iteration > 0 && foreseen <= POLISHED_ROUNDINGS * unit);
+        let right: Vec<f64> = (self.residual.iter())
+            .map(|x| x * self.search.unit)
+            .collect();
+        let Some(correction) = self.search.factors.solve(&right) else {
+            return self.failed();
+        };
+        let step: Vec<f64> = correction.iter().map(|x| -x).collect();
+        self.trial = match from_left {
+            true => self.chart.retract_from_left(&self.trial, &step),
+            false => self.chart.retract(&self.trial, &step),
+        };
+        if done {
+            return self.solved(self.iteration + 1);
+        }
+        self.previous = size;
+        self.iteration += 1;
+        if self.iteration == LATE {
+            self.search.weighed = OLDEST_SCALE;
+        }
+        if self.iteration == MOST_ITERATIONS || !size.is_finite() {
+            return self.failed();
+        }
+        Progress::Continue
+    }
+
+    fn solved(&self, iterations: usize) -> Progress<C::Element> {
+        Progress::Solved(Solved {
+            element: self.trial.clone(),
+            iterations,
+            residual: self.size,
+        })
+    }
+
+    #[cold]
+    fn failed(&mut self) -> Progress<C::Element> {
+        // Without a past, every attempt would be the first.
+        if self.attempt < LAST_ATTEMPT && !self.search.past.is_empty() {
+            self.attempt += 1;
+            let trial = self.search.start(self.chart, self.attempt);
+            self.begin_at(trial);
+            return Progress::Continue;
+        }
+        let (failure, iterations) = if !self.size.is_finite() {
+            (NewtonFailure::NotFinite, self.iteration.saturating_sub(1))
+        } else if self.iteration == MOST_ITERATIONS {
+            (NewtonFailure::NotConverged, MOST_ITERATIONS)
+        } else {
+            (NewtonFailure::SingularTangent, self.iteration)
+        };
+        Progress::Failed(self.error(failure, iterations))
+    }
+
+    fn error(&self, failure: NewtonFailure, iterations: usize) -> NewtonError {
+        NewtonError {
+            tried: self.tries(),
+            ..NewtonError::of(
+                failure,
+                iterations,
+                &self.residual,
+                &self.search.weights,
+                &|i| self.chart.coordinate(i),
+            )
+        }
+    }
+
+    /// The principal root was found, but is no root to rounding.
+    #[cold]
+    #[must_use]
+    pub fn unpolished(&self) -> NewtonError {
+        self.error(NewtonFailure::NotConverged, self.iteration)
+    }
+
+    /// There is no principal root; `failure` says why another way failed before.
+    #[cold]
+    #[must_use]
+    pub fn folded(&self, fold: Fold, failure: Option<NewtonError>) -> NewtonError {
+        match failure {
+            // Nothing was followed.
+            Some(e) if fold.share == 0.0 => e,
+            _ => NewtonError {
+                tried: self.tries(),
+                ..NewtonError::at_fold(fold, self.chart.coordinate(fold.fastest))
+            },
+        }
+    }
+}
+
+/// What was found out about a solution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Settled {
+    /// It is the principal root.
+    Principal,
+    /// The principal root is another: the iteration has begun again there.
+    Again,
+    /// The principal root is another, from which the iteration has come here.
+    Unpolished,
+}
