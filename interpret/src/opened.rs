@@ -108,7 +108,7 @@ impl Opened {
     /// # Errors
     /// [`Refused`] for what is no model, and for models that need a build.
     pub fn read(d: &Derivation, source: &str, sizes: Option<&[usize]>) -> Result<Self, Refused> {
-        if let Some(refused) = emit::refusal(d) {
+        if let Some(refused) = emit::refusal_of_read(d) {
             return Err(Refused::Model(refused.into()));
         }
         let name = d.spec.name.clone();

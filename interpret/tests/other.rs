@@ -79,6 +79,45 @@ clebsch::model! {
     }
 }
 
+clebsch::model! {
+    /// Five coordinates found together, not by a linear system.
+    pub model Five {
+        param m, b, k: Real;
+        field X: Vec<5>;
+        let d = next(X) - X;
+        lagrangian = m*dot(d, d)/(2*h) + (b/h^3)*dot(d, d)^2 - (h/2)*k*dot(X, X);
+    }
+}
+
+clebsch::model! {
+    /// A rotation of four dimensions and a field of four, ten coordinates found together: each pulls at the
+    /// other's velocity.
+    pub model Ten {
+        param J: Sym<4>;
+        param m, c, k: Real;
+        param a, g: Vec<4>;
+        group R: SO<4> velocity W;
+        field x: Vec<4>;
+        constraint next(R) = R*W;
+        let d = next(x) - x;
+        let y = d + c*(next(R)*a - R*a);
+        lagrangian = -tr(J*W)/h + m*dot(d, d)/(2*h) + m*dot(y, y)/(2*h) - (h/2)*k*dot(x, x) + h*dot(g, x);
+    }
+}
+
+clebsch::model! {
+    /// Twelve coordinates by one linear system, three bodies that share their kinetic energy.
+    pub model Twelve {
+        param m, c, k: Real;
+        field x, y, z: Vec<4>;
+        let u = next(x) - x;
+        let v = next(y) - y;
+        let w = next(z) - z;
+        lagrangian = m*(dot(u, u) + dot(v, v) + dot(w, w))/(2*h) + c*(dot(u, v) + dot(v, w))/h
+            - (h/2)*k*(dot(x, x) + dot(y, y) + dot(z, z)) + h*log(4 + dot(x, y));
+    }
+}
+
 fn case(h: f64, parameters: &[&[f64]], initial: &[&[f64]]) -> Case {
     let lists = |all: &[&[f64]]| all.iter().map(|list| list.to_vec()).collect();
     Case {
@@ -181,4 +220,101 @@ fn different_groups_together() {
     ];
     let initial: [&[f64]; 4] = [&ONE, &[0.1, 0.5, 0.2], &[0.1, 0.0, 0.2], &[0.3, 0.1, 0.0]];
     both(&Hanging::CARD, &case(0.05, &parameters, &initial));
+}
+
+#[test]
+fn five_coordinates_together() {
+    let parameters: [&[f64]; 3] = [&[1.0], &[0.3], &[2.0]];
+    let (place, momentum) = ([1.0, 0.2, -0.4, 0.3, 0.6], [0.1, 0.9, -0.2, 0.5, -0.3]);
+    both(&Five::CARD, &case(0.05, &parameters, &[&place, &momentum]));
+}
+
+#[test]
+fn ten_coordinates_together() {
+    let inertia = [
+        0.5, 0.1, 0.0, 0.0, 0.1, 0.7, 0.0, 0.1, 0.0, 0.0, 0.9, 0.0, 0.0, 0.1, 0.0, 0.6,
+    ];
+    let one: Vec<f64> = (0..16).map(|i| f64::from(u8::from(i % 5 == 0))).collect();
+    let momentum = [
+        0.0, -0.1, -0.2, 0.1, 0.1, 0.0, -0.3, -0.2, 0.2, 0.3, 0.0, 0.1, -0.1, 0.2, -0.1, 0.0,
+    ];
+    let parameters: [&[f64]; 6] = [
+        &inertia,
+        &[2.0],
+        &[0.3],
+        &[3.0],
+        &[0.3, 0.0, 0.4, 0.1],
+        &[0.0, 0.0, -1.0, 0.2],
+    ];
+    let initial: [&[f64]; 4] = [
+        &one,
+        &momentum,
+        &[0.1, 0.0, 0.2, -0.1],
+        &[0.3, 0.1, 0.0, 0.2],
+    ];
+    both(&Ten::CARD, &case(0.05, &parameters, &initial));
+}
+
+#[test]
+fn twelve_coordinates_by_one_linear_system() {
+    let parameters: [&[f64]; 3] = [&[1.5], &[0.4], &[2.0]];
+    let initial: [&[f64]; 6] = [
+        &[0.1, 0.5, 0.2, 0.3],
+        &[0.3, 0.1, 0.0, -0.2],
+        &[-0.1, 0.2, 0.4, 0.0],
+        &[0.2, -0.1, 0.3, 0.1],
+        &[0.0, 0.3, -0.2, 0.5],
+        &[0.1, 0.0, 0.2, 0.4],
+    ];
+    both(&Twelve::CARD, &case(0.05, &parameters, &initial));
+}
+
+/// A chain of points whose velocities all stand in one another's equations; quartic where `b` is a term.
+fn chain(count: usize, quartic: bool) -> String {
+    let each = |f: &dyn Fn(usize) -> String, join: &str| -> String {
+        (0..count).map(f).collect::<Vec<_>>().join(join)
+    };
+    let term = |i: usize| match quartic {
+        true => format!("m*dot(d{i}, d{i})/(2*h) + (b/h^3)*dot(d{i}, d{i})^2"),
+        false => format!("m*dot(d{i}, d{i})/(2*h) - h*b*dot(x{i}, x{i})^2"),
+    };
+    let joint = |i: usize| format!("dot(d{i}, d{})", i + 1);
+    let joints: Vec<String> = (0..count - 1).map(joint).collect();
+    format!(
+        "model Chain {{ param m, b, c, k: Real; {} {} lagrangian = {} + (c/h)*({}) - (h/2)*k*({}); }}",
+        each(&|i| format!("field x{i}: Vec<3>;"), " "),
+        each(&|i| format!("let d{i} = next(x{i}) - x{i};"), " "),
+        each(&term, " + "),
+        joints.join(" + "),
+        each(&|i| format!("dot(x{i}, x{i})"), " + "),
+    )
+}
+
+#[test]
+fn sixty_coordinates_together() {
+    for quartic in [false, true] {
+        let count = 20;
+        let card = clebsch_interpret::card(&chain(count, quartic)).expect("is read");
+        let initial: Vec<Vec<f64>> = (0..2 * count)
+            .map(|i| {
+                (0..3)
+                    .map(|j| (1.3 * i as f64 + 0.7 * f64::from(j)).sin())
+                    .collect()
+            })
+            .collect();
+        let parameters = [1.0, 0.01, 0.2, 1.5].map(|x| vec![x]);
+        let mut t = (card.open)(&parameters, &initial, Settings::step(0.05)).expect("starts");
+        let mut energy = vec![0.0; card.invariant_count()];
+        t.invariants(&mut energy);
+        let first = energy[0];
+        for _ in 0..20 {
+            t.step().expect("can be made");
+            assert!(t.residual().expect("a plain step") < 1e-12);
+        }
+        t.invariants(&mut energy);
+        assert!(
+            (energy[0] - first).abs() < 1e-2 * first.abs(),
+            "{first} {energy:?}"
+        );
+    }
 }

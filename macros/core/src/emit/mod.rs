@@ -46,19 +46,53 @@ use names::Names;
 use proc_macro2::{Ident, TokenStream, TokenTree};
 use quote::{format_ident, quote};
 
-/// Coordinates of the largest Lie algebras whose tangents are kept as dense work arrays: SO(8).
+/// Coordinates of the largest Lie algebras of groups: SO(8).
 const MOST_COORDINATES: u64 = 28;
 
-/// Bodies of different groups whose velocities are solved together.
-const MOST_DIFFERENT: usize = 3;
+/// What a stepper solves together, at most.
+struct Most {
+    /// Coordinates whose tangents are kept as dense work arrays.
+    coordinates: u64,
+    /// Bodies of different groups.
+    different: usize,
+    /// What becomes of the stepper.
+    made: &'static str,
+}
+
+/// Where the stepper is compiled: arrays of these sizes stand on the stack, products of groups are types.
+const BUILT: Most = Most {
+    coordinates: MOST_COORDINATES,
+    different: 3,
+    made: "emits",
+};
+
+/// Where it is read and executed: a step takes the cube of the number of coordinates.
+const READ: Most = Most {
+    coordinates: 256,
+    different: 256,
+    made: "runs",
+};
 
 /// Most sizes for which one model is compiled and described.
 const MOST_SIZES: u64 = 32;
 
 /// Why no stepper is emitted for this model, if so.
 pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
+    refused(d, &BUILT)
+}
+
+/// Why none is read from its text and executed, if so.
+pub fn refusal_of_read(d: &Derivation) -> Option<Diagnostic> {
+    refused(d, &READ)
+}
+
+fn refused(d: &Derivation, most: &Most) -> Option<Diagnostic> {
     for (i, c) in d.spec.configurations.iter().enumerate() {
-        if element::most_coordinates(d, i) > MOST_COORDINATES {
+        let admitted = match element::family(c) {
+            element::Family::Field(_) => most.coordinates,
+            _ => MOST_COORDINATES,
+        };
+        if element::most_coordinates(d, i) > admitted {
             return Some(
                 Diagnostic::new(
                     c.group_place,
@@ -83,14 +117,19 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
             .help("narrow the ranges of `dim`, or write numbers in their place"),
         );
     }
-    if let Some(refused) = too_many_together(d) {
+    if let Some(refused) = too_many_together(d, most) {
         return Some(refused);
     }
     names::refusal(d)
 }
 
 /// The refusal of a block that is too large for a dense tangent, or of more groups than a product has.
-fn too_many_together(d: &Derivation) -> Option<Diagnostic> {
+fn too_many_together(d: &Derivation, most: &Most) -> Option<Diagnostic> {
+    let Most {
+        coordinates: admitted,
+        different,
+        made,
+    } = *most;
     let everything: Vec<usize> = (0..d.spec.configurations.len()).collect();
     let together: Vec<&[usize]> = match d.solve.method {
         Method::Newton => vec![&everything],
@@ -114,8 +153,7 @@ fn too_many_together(d: &Derivation) -> Option<Diagnostic> {
             .sum()
     };
     let refused = together.into_iter().find(|members| {
-        coordinates(members) > MOST_COORDINATES
-            || members.len() > MOST_DIFFERENT && !families(members)
+        coordinates(members) > admitted || members.len() > different && !families(members)
     })?;
     let name = |i: &usize| {
         let velocity = d.spec.configurations[*i].velocity;
@@ -123,9 +161,9 @@ fn too_many_together(d: &Derivation) -> Option<Diagnostic> {
     };
     let names: Vec<String> = refused.iter().map(name).collect();
     let message = format!(
-        "{} stand in one another's equations and would be solved together: this version emits \
-         steppers for at most {MOST_DIFFERENT} such bodies of different groups, and for at most \
-         {MOST_COORDINATES} coordinates",
+        "{} stand in one another's equations and would be solved together: this version {made} \
+         steppers for at most {different} such bodies of different groups, and for at most \
+         {admitted} coordinates",
         names.join(", ")
     );
     Some(
