@@ -6,6 +6,7 @@ mod common;
 mod comparisons;
 mod exit_codes;
 mod figures;
+mod lattices;
 mod model_files;
 mod names;
 mod npz;

@@ -1,0 +1,160 @@
+//! Models with labels on the command line: derived, run from cases with site data, wrong cases told by
+//! line and site.
+
+use crate::common::{Folder, clebsch};
+
+/// The model files that the project ships, each with its case.
+const SHIPPED: [&str; 4] = ["coupled-tops", "elastic-rod", "sine-gordon", "toda-chain"];
+
+fn shipped(file: &str) -> String {
+    format!("{}/../models/lattices/{file}", env!("CARGO_MANIFEST_DIR"))
+}
+
+fn text(file: &str) -> String {
+    std::fs::read_to_string(shipped(file)).expect("is shipped")
+}
+
+#[test]
+fn every_model_is_derived_and_runs_its_case() {
+    for name in SHIPPED {
+        let (model, case) = (
+            shipped(&format!("{name}.clebsch")),
+            shipped(&format!("{name}.toml")),
+        );
+        for format in ["text", "latex", "markdown", "json"] {
+            let done = clebsch(&["derive", &model, "--format", format]);
+            assert_eq!(done.code, 0, "{name} {format}: {}", done.err);
+            assert!(done.out.contains("Invariants"), "{name} {format}");
+        }
+        let done = clebsch(&["run", &model, "--case", &case, "--steps", "200"]);
+        assert_eq!(done.code, 0, "{name}: {}{}", done.out, done.err);
+        assert!(
+            done.out.contains("lattice              N = "),
+            "{}",
+            done.out
+        );
+        // The case that is printed for it reads back, and so does that of every other end.
+        let folder = Folder::new(&format!("lattices-{name}"));
+        let sample = clebsch(&["case", &model]);
+        assert_eq!(sample.code, 0, "{}", sample.err);
+        let own = folder.write("own.toml", &sample.out);
+        let done = clebsch(&["run", &model, "--case", &own, "--steps", "20"]);
+        assert_eq!(
+            done.code, 0,
+            "{name}: {}{}\n{}",
+            done.out, done.err, sample.out
+        );
+        let same = clebsch(&["run", &model, "--steps", "20"]);
+        assert_eq!((done.out, done.err), (same.out, same.err), "{name}");
+    }
+}
+
+#[test]
+fn ranges_and_ends_are_printed() {
+    let rod = clebsch(&["derive", &shipped("elastic-rod.clebsch")]).out;
+    for part in [
+        "∑_{i=0}^{N-2} h tr(B Λ_{i,k}ᵀ Λ_{i+1,k})/s",
+        "End i = 0: clamped",
+        "End i = N: load",
+        "i = 1, ..., N-2.",
+        "∑_{i=0}^{N-1} Λ_{i,k} μ_{2,i,k}",
+        "Fluxes between neighbouring sites",
+    ] {
+        assert!(rod.contains(part), "{part}\n{rod}");
+    }
+    let toda = clebsch(&["derive", &shipped("toda-chain.clebsch")]).out;
+    for part in [
+        "q_{i+N} = q_{i} + L",
+        "indices modulo N",
+        "∑_{i=0}^{N-1} p_{i,k}",
+    ] {
+        assert!(toda.contains(part), "{part}\n{toda}");
+    }
+}
+
+#[test]
+fn a_wrong_case_is_told_by_line_and_site() {
+    let folder = Folder::new("lattices-wrong");
+    let model = shipped("toda-chain.clebsch");
+    let case = text("toda-chain.toml");
+    let changes = [
+        ("i = 32\n", "i = 0\n", ":10: labels.i"),
+        ("i = 32\n", "j = 32\n", "the model has no label `j`"),
+        (
+            "\"periodic\"",
+            "\"held\"",
+            ":13: ends.i: the model has no end condition `held`",
+        ),
+        (
+            "m = 1.0",
+            "m = \"x\"",
+            ":16: parameters.m: \"x\": `x` has no value here",
+        ),
+        (
+            "m = 1.0",
+            "mass = 1.0",
+            "unknown key `mass` in [parameters]",
+        ),
+        (
+            "q = \"log",
+            "q = [1.0, 2.0] #",
+            ":22: initial.q: a list has a value for each of the 32 sites, and this one has 2",
+        ),
+        ("q = \"log", "q = \"sqrt(5.5 - i)\" #", "initial.q_6: NaN"),
+        ("q = \"log", "q = \"1/(i - 7)\" #", ":22: initial.q_7: inf"),
+        (
+            "momentum_q =",
+            "# momentum_q =",
+            "missing key `initial.momentum_q`",
+        ),
+    ];
+    for (from, to, expected) in changes {
+        let wrong = case.replacen(from, to, 1);
+        assert_ne!(wrong, case, "{from}");
+        let file = folder.write("wrong.toml", &wrong);
+        let done = clebsch(&["run", &model, "--case", &file]);
+        assert_eq!(done.code, 2, "{to}: {}{}", done.out, done.err);
+        assert!(done.err.contains(expected), "{to}: {}", done.err);
+    }
+    let file = folder.write("none.toml", &case.replace("[labels]\ni = 32\n", ""));
+    let done = clebsch(&["run", &model, "--case", &file]);
+    assert!(done.err.contains("missing table [labels]"), "{}", done.err);
+}
+
+#[test]
+fn lists_and_expressions_say_the_same() {
+    let folder = Folder::new("lattices-lists");
+    let model = shipped("toda-chain.clebsch");
+    let base = text("toda-chain.toml").replace("i = 32", "i = 3");
+    let (head, _) = base.split_once("[initial]").expect("has values");
+    let by_list =
+        format!("{head}[initial]\nq = [0.0, 0.5, \"2/4 + 0.5\"]\nmomentum_q = [0.1, 0.2, 0.3]\n");
+    let by_text = format!("{head}[initial]\nq = \"i/2\"\nmomentum_q = \"(i + 1)/10\"\n");
+    let run = |text: &str| {
+        let file = folder.write("case.toml", text);
+        clebsch(&["run", &model, "--case", &file, "--steps", "50"])
+    };
+    let (a, b) = (run(&by_list), run(&by_text));
+    assert_eq!(a.code, 0, "{}", a.err);
+    // 3/10 of the expression and 0.3 of the list are one number here.
+    assert_eq!(a.out, b.out);
+}
+
+#[test]
+fn arrays_are_by_sample_site_and_component_and_plots_are_maps() {
+    let folder = Folder::new("lattices-written");
+    let out = folder.path("out");
+    let (model, case) = (shipped("elastic-rod.clebsch"), shipped("elastic-rod.toml"));
+    let done = clebsch(&[
+        "run", &model, "--case", &case, "--steps", "10", "--out", &out,
+    ]);
+    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
+    let npz = std::fs::read(format!("{out}/trajectory.npz")).expect("is written");
+    let has = |shape: &str| npz.windows(shape.len()).any(|w| w == shape.as_bytes());
+    // The first of the 17 nodes is clamped; segments are 16.
+    for shape in ["(11, 16, 3,)", "(11, 16, 3, 3,)", "sites_of_phi.npy"] {
+        assert!(has(shape), "{shape}");
+    }
+    let map = std::fs::read_to_string(format!("{out}/fields.svg")).expect("is written");
+    assert!(map.contains("site i") && map.contains("change since the start"));
+}
