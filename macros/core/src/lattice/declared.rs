@@ -76,6 +76,8 @@ pub struct Lattice {
     pub(super) numbers: BTreeSet<String>,
     /// Names that move, at sites or not.
     pub(super) moving: BTreeSet<String>,
+    /// Every name that is declared.
+    pub(super) declared: BTreeSet<String>,
 }
 
 /// The name of the end condition of a line for which none is stated.
@@ -384,7 +386,7 @@ impl Lattice {
     }
 
     /// Parameters of end conditions, indices and numbers of sites have names of their own.
-    fn check_names(&self, model: &Model, errors: &mut Errors) {
+    fn check_names(&mut self, model: &Model, errors: &mut Errors) {
         let declared = |s: &Statement| -> Vec<Name> {
             match s {
                 Statement::Param { names, .. } | Statement::Advected { names, .. } => names.clone(),
@@ -400,6 +402,7 @@ impl Lattice {
             }
         };
         let known: Vec<Name> = model.statements.iter().flat_map(declared).collect();
+        self.declared = known.iter().map(|n| n.text.clone()).collect();
         let ends = self.ends.iter().flatten();
         let own = ends.flat_map(|a| &a.params).flat_map(|(names, _)| names);
         let labels = self.labels.iter().flat_map(|l| [&l.index, &l.count]);

@@ -94,7 +94,15 @@ impl Put<'_> {
             return Ok(named(own.clone(), e));
         }
         let Some(q) = self.lattice.find(n) else {
-            return Ok(e.clone());
+            return match self.is_name_of_a_copy(n) {
+                // It is a name in the model written out, and none in the one that is stated.
+                true => Err(Box::new(
+                    Diagnostic::new(place, format!("`{n}` is not declared")).help(
+                        "a quantity is named as it is declared, and stands at the site of the term",
+                    ),
+                )),
+                false => Ok(e.clone()),
+            };
         };
         let count = self.choice.sites_of(self.lattice, q);
         let size = isize::try_from(count).unwrap_or(isize::MAX);
@@ -138,6 +146,15 @@ impl Put<'_> {
             kind: Kind::Sum(vec![(false, value), (turns < 0, step)]),
             place,
         })
+    }
+
+    /// Whether a name that is not declared is that of a copy.
+    fn is_name_of_a_copy(&self, n: &str) -> bool {
+        let split = n.rsplit_once('_');
+        let copied = split.is_some_and(|(base, site)| {
+            site.parse::<usize>().is_ok() && self.lattice.declared.contains(base)
+        });
+        copied && !self.lattice.declared.contains(n)
     }
 
     /// Whether something in an expression that is written out moves.

@@ -35,10 +35,16 @@ impl Range {
     }
 }
 
-/// Whether an expression holds letters of sites, and all of them are neighbours.
-pub(super) fn only_neighbours(lattice: &Lattice, e: &Expression) -> bool {
-    let found = reach(lattice, e);
-    found.is_ok_and(|r| !r.letters.is_empty() && r.letters.iter().all(|(_, o)| *o != 0))
+/// Whether an expression holds letters of one neighbour only, all on one side at one distance: alone it
+/// would be a term of that site, and beside others it is part of a difference.
+pub(super) fn of_one_neighbour(lattice: &Lattice, e: &Expression) -> bool {
+    let Ok(found) = reach(lattice, e) else {
+        return false;
+    };
+    match found.letters.first() {
+        Some((_, offset)) => *offset != 0 && found.letters.iter().all(|(_, o)| o == offset),
+        None => false,
+    }
 }
 
 /// Where the letters of an expression stand.

@@ -1,9 +1,9 @@
 //! The summands of a Lagrangian as they were typed. Numbers before a sum are multiplied into it and
 //! nothing else is expanded, so that `(next(q, i) - q)^2` stays one term of a segment. Below the top,
-//! a sum with a term that holds only neighbours is a difference and stays whole as well.
+//! a sum with a term of one neighbour alone, as in `next(q, i) - q`, is a difference and stays whole as well.
 
 use super::declared::Lattice;
-use super::range::only_neighbours;
+use super::range::of_one_neighbour;
 use crate::syntax::ast::{Expression, Kind};
 
 /// The summands of an expression, each with its sign and its factors.
@@ -14,7 +14,7 @@ pub(super) fn summands(lattice: &Lattice, e: &Expression) -> Vec<Expression> {
 fn split(lattice: &Lattice, e: &Expression, top: bool) -> Vec<Expression> {
     match &e.kind {
         Kind::Sum(terms) => {
-            if !top && terms.iter().any(|(_, t)| only_neighbours(lattice, t)) {
+            if !top && terms.iter().any(|(_, t)| of_one_neighbour(lattice, t)) {
                 return vec![e.clone()];
             }
             let parts = terms.iter().flat_map(|(minus, t)| {

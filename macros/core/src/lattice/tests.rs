@@ -197,6 +197,7 @@ fn mistakes_are_told_in_the_words_of_the_statement() {
         ),
         (format!("{kinetic}; field X: Real offset L;"), "on a line"),
         (format!("{kinetic}; scale q;"), "stands once"),
+        (format!("{kinetic} - h*q_1*q;"), "`q_1` is not declared"),
         (
             format!("{kinetic}; end i = 0 {{ held {{ param m: Real; term m*q; }} }}"),
             "`m` is declared twice",
