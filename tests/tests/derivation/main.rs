@@ -17,6 +17,7 @@ mod expansion;
 mod generated_fresh;
 mod invariants;
 mod latex;
+mod lattices;
 mod mutation;
 mod oracle_bridge;
 mod oracle_groups;

@@ -1,0 +1,102 @@
+//! Bodies in a row whose kinetic energy joins the velocities of neighbours.
+
+use super::compare::{agrees, changes_are_seen};
+use super::sum::{Bodies, Kind, Sum, Typed, around, fixed, number, turn};
+use super::{FREE, derived};
+use clebsch_oracle::oracle::dual::Number;
+use clebsch_oracle::oracle::points::{Given, Source};
+use clebsch_oracle::oracle::square::{Square, dot};
+
+const TEXT: &str = "model CoupledBodyChain {
+    label i in 0..N; param J: Sym<3>; param d: Vec<3>; param eps: Real;
+    group Λ: SO<3> at nodes velocity Ω; constraint next(Λ) = Λ*Ω;
+    lagrangian = -tr(J*Ω)/h - (eps/h)*dot((Ω - Id)*d, Λ^T*next(Λ, i)*(next(Ω, i) - Id)*d);
+}";
+
+struct Chain {
+    segments: usize,
+    bodies: Bodies,
+    elements: Vec<usize>,
+    j: Square<f64, 3>,
+    d: [f64; 3],
+    eps: f64,
+    h: f64,
+}
+
+impl Chain {
+    fn of(segments: usize, source: &mut Source) -> Self {
+        let mut bodies = Bodies::default();
+        let elements = (0..=segments).map(|i| bodies.add("Λ", Some(i), Kind::Rotation));
+        Chain {
+            elements: elements.collect(),
+            segments,
+            bodies,
+            j: source.positive(),
+            d: source.vector(),
+            eps: source.between(0.3, 0.7),
+            h: source.between(0.2, 1.0),
+        }
+    }
+}
+
+impl Typed for Chain {
+    fn bodies(&self) -> &Bodies {
+        &self.bodies
+    }
+
+    fn draw(&self, source: &mut Source) -> Vec<f64> {
+        let each = self.elements.iter();
+        each.flat_map(|_| source.orthogonal::<3>().0.concat())
+            .collect()
+    }
+
+    fn parameters(&self) -> Vec<Given> {
+        vec![
+            Given::scalar("h", self.h),
+            Given::scalar("eps", self.eps),
+            Given::square("J", 0, &self.j),
+            Given::column("d", 0, &self.d),
+        ]
+    }
+
+    fn action<T: Number>(&self, tail: &[T], head: &[T], sum: &mut Sum<T>) {
+        let body = |x: &[T], i: isize| turn(x, self.elements[around(i, self.segments + 1)]);
+        let j = Square::constant(&self.j);
+        for i in sum.over("kinetic", 0, self.segments + 1) {
+            let velocity = body(tail, i).transpose() * body(head, i);
+            sum.edge((j * velocity).trace() * number(-1.0 / self.h));
+        }
+        for i in sum.over("joint", 0, self.segments) {
+            let swept = |i: isize| {
+                let velocity = body(tail, i).transpose() * body(head, i);
+                (velocity - Square::identity()).apply(&fixed(&self.d))
+            };
+            let relative = body(tail, i).transpose() * body(tail, i + 1);
+            let joined = dot(&swept(i), &relative.apply(&swept(i + 1)));
+            sum.edge(joined * number(-self.eps / self.h));
+        }
+    }
+}
+
+fn check(segments: usize) {
+    let mut source = Source::seeded(segments as u64);
+    let d = derived(TEXT, &[("i", segments)], FREE);
+    let chain = Chain::of(segments, &mut source);
+    agrees(&d, &chain, &mut source);
+    if segments <= 12 {
+        let (changes, constant) = changes_are_seen(&d, &chain, &mut source);
+        assert_eq!(constant, 0, "of {changes}");
+    }
+}
+
+#[test]
+fn bodies_in_a_row() {
+    for segments in [1, 2, 3, 5, 12] {
+        check(segments);
+    }
+}
+
+#[test]
+fn bodies_in_a_long_row() {
+    check(50);
+}

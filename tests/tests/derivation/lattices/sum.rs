@@ -1,0 +1,142 @@
+//! Sums over sites: each summand under the name of its sum, and at most one of them changed.
+
+use super::change::Change;
+use clebsch_oracle::oracle::dual::Number;
+use clebsch_oracle::oracle::points::Given;
+use clebsch_oracle::oracle::square::Square;
+use std::array::from_fn;
+
+/// What a configuration at a site is.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Kind {
+    Rotation,
+    Vector(usize),
+    Number,
+}
+
+impl Kind {
+    pub(super) fn entries(self) -> usize {
+        match self {
+            Kind::Rotation => 9,
+            Kind::Vector(n) => n,
+            Kind::Number => 1,
+        }
+    }
+}
+
+/// A configuration at a site: the name of its copy, and where its entries begin.
+#[derive(Clone, Debug)]
+pub(super) struct Body {
+    pub(super) name: String,
+    pub(super) kind: Kind,
+    pub(super) at: usize,
+}
+
+/// All configurations, one after the other.
+#[derive(Clone, Default, Debug)]
+pub(super) struct Bodies(pub(super) Vec<Body>);
+
+impl Bodies {
+    /// One more; where its entries begin.
+    pub(super) fn add(&mut self, name: &str, site: Option<usize>, kind: Kind) -> usize {
+        let at = self.entries();
+        let name = match site {
+            Some(site) => format!("{name}_{site}"),
+            None => name.to_owned(),
+        };
+        self.0.push(Body { name, kind, at });
+        at
+    }
+
+    pub(super) fn entries(&self) -> usize {
+        self.0.last().map_or(0, |b| b.at + b.kind.entries())
+    }
+}
+
+/// A model with the action of one step typed by hand.
+pub(super) trait Typed {
+    fn bodies(&self) -> &Bodies;
+
+    /// Random configurations.
+    fn draw(&self, source: &mut clebsch_oracle::oracle::points::Source) -> Vec<f64>;
+
+    /// Values of parameters and of the step.
+    fn parameters(&self) -> Vec<Given>;
+
+    /// Values of what is advected, at this time level.
+    fn advected(&self, _shift: i8, _x: &[f64]) -> Vec<Given> {
+        Vec::new()
+    }
+
+    /// The summands of the action of one step.
+    fn action<T: Number>(&self, tail: &[T], head: &[T], sum: &mut Sum<T>);
+}
+
+/// The summands of an action.
+pub(super) struct Sum<T> {
+    pub(super) summands: Vec<T>,
+    /// Names of the sums, in order.
+    pub(super) sums: Vec<&'static str>,
+    change: Change,
+}
+
+impl<T: Number> Sum<T> {
+    pub(super) fn new(change: Change) -> Self {
+        Sum {
+            summands: Vec::new(),
+            sums: Vec::new(),
+            change,
+        }
+    }
+
+    /// The sites from `from` on, before `to`, of the sum of this name.
+    pub(super) fn over(&mut self, sum: &'static str, from: usize, to: usize) -> Vec<isize> {
+        let number = |n: usize| isize::try_from(n).unwrap();
+        let (mut from, mut to) = (number(from), number(to));
+        if let Change::Range(which, first, last) = self.change
+            && which == self.sums.len()
+        {
+            from += first;
+            to += last;
+        }
+        self.sums.push(sum);
+        (from..to).collect()
+    }
+
+    /// A summand over the edge in time.
+    pub(super) fn edge(&mut self, value: T) {
+        let flipped = self.change == Change::Sign(self.summands.len());
+        self.summands.push(if flipped { -value } else { value });
+    }
+
+    /// A summand at a node in time: half of it at either end of the edge.
+    pub(super) fn node(&mut self, at_tail: T, at_head: T) {
+        self.edge((at_tail + at_head) * T::constant(0.5));
+    }
+}
+
+/// The site in a list of `count`, once around a ring or more. On a line it is the site itself, except
+/// where the range of a sum is changed.
+pub(super) fn around(site: isize, count: usize) -> usize {
+    usize::try_from(site.rem_euclid(isize::try_from(count).unwrap())).unwrap()
+}
+
+pub(super) fn number<T: Number>(value: f64) -> T {
+    T::constant(value)
+}
+
+pub(super) fn turn<T: Number>(x: &[T], at: usize) -> Square<T, 3> {
+    Square::from_entries(|i, j| x[at + 3 * i + j])
+}
+
+pub(super) fn column<T: Number, const N: usize>(x: &[T], at: usize) -> [T; N] {
+    from_fn(|i| x[at + i])
+}
+
+pub(super) fn fixed<T: Number, const N: usize>(v: &[f64; N]) -> [T; N] {
+    from_fn(|i| T::constant(v[i]))
+}
+
+pub(super) fn minus<T: Number, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N] {
+    from_fn(|i| a[i] - b[i])
+}
