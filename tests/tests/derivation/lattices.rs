@@ -7,9 +7,12 @@
 // Loops over sites read as the sums they were typed from.
 #![allow(clippy::needless_range_loop)]
 
+mod beam;
 mod body_chain;
 mod change;
 mod compare;
+mod held;
+mod hoop;
 mod rod;
 mod scalars;
 mod sets;

@@ -27,6 +27,11 @@ fn directions(body: &Body, x: &[f64]) -> Vec<Vec<f64>> {
             let moved = rotations().into_iter();
             moved.map(|d| (here * d).0.concat()).collect()
         }
+        Kind::Spatial => {
+            let here = turn(x, body.at);
+            let moved = rotations().into_iter();
+            moved.map(|d| (d * here).0.concat()).collect()
+        }
         Kind::Vector(_) | Kind::Number => {
             let n = body.kind.entries();
             let unit = |i: usize| (0..n).map(|j| f64::from(u8::from(i == j))).collect();
@@ -98,7 +103,7 @@ fn set(values: &mut Assignment, given: &[Given]) {
 
 fn configuration(body: &Body, shift: i8, x: &[f64]) -> Given {
     let (rows, cols) = match body.kind {
-        Kind::Rotation => (3, 3),
+        Kind::Rotation | Kind::Spatial => (3, 3),
         Kind::Vector(n) => (n, 1),
         Kind::Number => (1, 1),
     };
@@ -111,30 +116,52 @@ fn configuration(body: &Body, shift: i8, x: &[f64]) -> Given {
     }
 }
 
-/// What the derivation says of the same: numbers in the order of the typed configurations.
-fn found(d: &Derivation, model: &impl Typed, nodes: &[Vec<f64>; 3]) -> [Vec<f64>; 3] {
-    let s = &d.letters.symbols;
-    let order = order(d, model);
+/// Values of all names at three nodes.
+fn values(model: &impl Typed, nodes: &[Vec<f64>; 3]) -> Assignment {
     let mut values = Assignment::new();
     set(&mut values, &model.parameters());
     for (shift, x) in (-1..=1).zip(nodes) {
         let each = model.bodies().0.iter();
         let each: Vec<Given> = each.map(|b| configuration(b, shift, x)).collect();
         set(&mut values, &each);
-    }
-    let residual = d.residual(&values).unwrap_or_else(|e| panic!("{e}"));
-    // On the step from the middle node.
-    for (shift, x) in (0..=1).zip(&nodes[1..]) {
         set(&mut values, &model.advected(shift, x));
     }
+    values
+}
+
+/// A residual, which comes in the order of the derivation, in that of the typed configurations.
+fn ordered(residual: &[f64], order: &[usize], model: &impl Typed) -> Vec<f64> {
+    let sizes = order.iter().zip(&model.bodies().0);
+    let sizes: Vec<(usize, usize)> = sizes.map(|(i, b)| (*i, b.kind.directions())).collect();
+    let begin = |i: usize| -> usize {
+        let before = sizes.iter().filter(|(j, _)| *j < i);
+        before.map(|(_, n)| n).sum()
+    };
+    let each = sizes.iter();
+    let each = each.flat_map(|(i, n)| residual[begin(*i)..begin(*i) + n].to_vec());
+    each.collect()
+}
+
+/// What the derivation says of the same: numbers in the order of the typed configurations.
+fn found(d: &Derivation, model: &impl Typed, nodes: &[Vec<f64>; 3]) -> [Vec<f64>; 3] {
+    let s = &d.letters.symbols;
+    let order = order(d, model);
+    let mut values = values(model, nodes);
+    let residual = d.residual(&values).unwrap_or_else(|e| panic!("{e}"));
+    // On the step from the middle node.
     for (body, i) in model.bodies().0.iter().zip(&order) {
         let velocity = s.get(d.spec.configurations[*i].velocity);
         let mut given = configuration(body, 0, &nodes[1]);
         velocity.name.clone_into(&mut given.name);
         given.data = match body.kind {
-            Kind::Rotation => {
+            Kind::Rotation | Kind::Spatial => {
                 let [here, after] = [&nodes[1], &nodes[2]].map(|x| turn(x, body.at));
-                (here.transpose() * after).0.concat()
+                let back = here.transpose();
+                let velocity = match body.kind {
+                    Kind::Spatial => after * back,
+                    _ => back * after,
+                };
+                velocity.0.concat()
             }
             Kind::Vector(_) | Kind::Number => {
                 let pairs = nodes[2][body.at..].iter().zip(&nodes[1][body.at..]);
@@ -151,32 +178,7 @@ fn found(d: &Derivation, model: &impl Typed, nodes: &[Vec<f64>; 3]) -> [Vec<f64>
     };
     let start = momenta(&|i| d.balances[i].outgoing.clone());
     let end = momenta(&|i| d.balances[i].incoming.clone());
-    // The residual comes in the order of the derivation.
-    let sizes = order.iter().zip(&model.bodies().0);
-    let sizes = sizes.map(|(i, b)| {
-        (
-            *i,
-            if b.kind == Kind::Rotation {
-                3
-            } else {
-                b.kind.entries()
-            },
-        )
-    });
-    let mut sizes: Vec<(usize, usize)> = sizes.collect();
-    let unsorted = sizes.clone();
-    sizes.sort_unstable();
-    let begin = |i: usize| {
-        sizes
-            .iter()
-            .take_while(|(j, _)| *j < i)
-            .map(|(_, n)| n)
-            .sum::<usize>()
-    };
-    let residual = unsorted
-        .iter()
-        .flat_map(|(i, n)| residual[begin(*i)..begin(*i) + n].to_vec());
-    [start, end, residual.collect()]
+    [start, end, ordered(&residual, &order, model)]
 }
 
 /// For each typed configuration its number in the derivation, which has no others.
@@ -215,11 +217,7 @@ fn disagreement(wanted: &Variation, found: &[f64]) -> (f64, usize) {
 fn site(model: &impl Typed, component: usize) -> String {
     let mut left = component;
     for b in &model.bodies().0 {
-        let n = if b.kind == Kind::Rotation {
-            3
-        } else {
-            b.kind.entries()
-        };
+        let n = b.kind.directions();
         if left < n {
             return format!("component {} at {}", left + 1, b.name);
         }
@@ -292,4 +290,26 @@ pub(super) fn changes_are_seen(
         constant += usize::from(!moves);
     }
     (all, constant)
+}
+
+/// Every summand of the derived residual is seen: left out or with the other sign it disagrees with the
+/// typed action at one of a few random points. What describes those that do not.
+pub(super) fn unseen(d: &Derivation, model: &impl Typed, source: &mut Source) -> Vec<String> {
+    let points: Vec<(Assignment, Variation)> = (0..3)
+        .map(|_| {
+            let nodes = [(); 3].map(|()| model.draw(source));
+            let [_, _, residual] = typed(model, &nodes, Change::None);
+            (values(model, &nodes), residual)
+        })
+        .collect();
+    let order = order(d, model);
+    let mutants = d.mutations();
+    assert!(mutants.len() > d.spec.configurations.len());
+    let alive = mutants.iter().filter(|m| {
+        points.iter().all(|(values, wanted)| {
+            let found = m.residual(values);
+            found.is_ok_and(|r| disagreement(wanted, &ordered(&r, &order, model)).0 <= AGREEMENT)
+        })
+    });
+    alive.map(|m| m.describe()).collect()
 }

@@ -1,7 +1,7 @@
 //! Lines of numbers: the Toda chain with an offset around the ring, and a chain of pendulums (sine-Gordon)
 //! with free and held ends.
 
-use super::compare::{agrees, changes_are_seen};
+use super::compare::{agrees, changes_are_seen, unseen};
 use super::sum::{Bodies, Kind, Sum, Typed, around, number};
 use super::{Ends, FREE, derived};
 use clebsch_oracle::oracle::dual::Number;
@@ -188,6 +188,10 @@ fn toda(segments: usize, ends: Ends) {
     let d = derived(TODA, &[("i", segments)], ends);
     let chain = Toda::of(segments, ends, &mut source);
     agrees(&d, &chain, &mut source);
+    if segments == 3 {
+        let left = unseen(&d, &chain, &mut source);
+        assert!(left.is_empty(), "{left:?}");
+    }
     let (changes, constant) = changes_are_seen(&d, &chain, &mut source);
     // The only site of a ring keeps its distance from itself.
     let alone = ends == Ends::Ring && segments == 1;
@@ -207,6 +211,10 @@ fn pendulums(segments: usize, ends: Ends) {
     let d = derived(PENDULUMS, &[("i", segments)], ends);
     let line = Pendulums::of(segments, ends, &mut source);
     agrees(&d, &line, &mut source);
+    if segments == 3 {
+        let left = unseen(&d, &line, &mut source);
+        assert!(left.is_empty(), "{left:?}");
+    }
     let (changes, constant) = changes_are_seen(&d, &line, &mut source);
     if ends != Ends::Ring {
         // For each angle that is held: two signs, two summands left out, two put twice. Where both are, the

@@ -1,6 +1,6 @@
 //! A set of particles without neighbours beside a line of numbers, both tied to one body.
 
-use super::compare::{agrees, changes_are_seen};
+use super::compare::{agrees, changes_are_seen, unseen};
 use super::sum::{Bodies, Kind, Sum, Typed, around, column, fixed, minus, number, turn};
 use super::{Ends, FREE, derived};
 use clebsch_oracle::oracle::dual::Number;
@@ -139,6 +139,10 @@ fn check(particles: usize, segments: usize, ends: Ends) {
     let d = derived(TEXT, &[("a", particles), ("i", segments)], ends);
     let cloud = Cloud::of(particles, segments, ends, &mut source);
     agrees(&d, &cloud, &mut source);
+    if segments == 3 {
+        let left = unseen(&d, &cloud, &mut source);
+        assert!(left.is_empty(), "{left:?}");
+    }
     let (changes, constant) = changes_are_seen(&d, &cloud, &mut source);
     assert_eq!(constant, 0, "of {changes}");
 }

@@ -1,7 +1,7 @@
 //! Particles of shallow water in a channel that closes on itself: depths by the second neighbours, an
 //! offset around the ring, and a term linear in velocities.
 
-use super::compare::{agrees, changes_are_seen};
+use super::compare::{agrees, changes_are_seen, unseen};
 use super::sum::{Bodies, Kind, Sum, Typed, around, number};
 use super::{Ends, FREE, derived};
 use clebsch_oracle::oracle::dual::Number;
@@ -121,6 +121,10 @@ fn check(segments: usize, ends: Ends) {
     let d = derived(TEXT, &[("i", segments)], ends);
     let water = Water::of(segments, ends, &mut source);
     agrees(&d, &water, &mut source);
+    if segments == 3 {
+        let left = unseen(&d, &water, &mut source);
+        assert!(left.is_empty(), "{left:?}");
+    }
     let (changes, constant) = changes_are_seen(&d, &water, &mut source);
     // On a ring of one or two both neighbours are one particle, a fixed distance apart.
     let few = ends == Ends::Ring && segments <= 2;
@@ -129,14 +133,23 @@ fn check(segments: usize, ends: Ends) {
 
 #[test]
 fn shallow_water_in_a_ring() {
-    for segments in std::env::var("SW").map_or(vec![1, 2, 3, 5], |s| s.split(',').map(|x| x.parse().unwrap()).collect()) {
+    for segments in [1, 2, 3, 5, 9] {
         check(segments, Ends::Ring);
     }
 }
 
 #[test]
 fn shallow_water_on_a_line() {
-    for segments in std::env::var("SW").map_or(vec![2, 3, 5], |s| s.split(',').map(|x| x.parse().unwrap()).collect()) {
+    for segments in [2, 3, 5, 8] {
+        check(segments, FREE);
+    }
+}
+
+#[test]
+#[ignore = "the search for momenta that change by a total difference makes more than a derivation is given"]
+fn more_shallow_water() {
+    for segments in [12, 50] {
+        check(segments, Ends::Ring);
         check(segments, FREE);
     }
 }

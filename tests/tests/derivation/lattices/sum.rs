@@ -10,14 +10,26 @@ use std::array::from_fn;
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Kind {
     Rotation,
+    /// A rotation whose velocity is seen from space.
+    Spatial,
     Vector(usize),
     Number,
 }
 
 impl Kind {
+    /// How many entries it has.
     pub(super) fn entries(self) -> usize {
         match self {
-            Kind::Rotation => 9,
+            Kind::Rotation | Kind::Spatial => 9,
+            Kind::Vector(n) => n,
+            Kind::Number => 1,
+        }
+    }
+
+    /// In how many directions it varies.
+    pub(super) fn directions(self) -> usize {
+        match self {
+            Kind::Rotation | Kind::Spatial => 3,
             Kind::Vector(n) => n,
             Kind::Number => 1,
         }

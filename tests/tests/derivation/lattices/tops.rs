@@ -1,6 +1,6 @@
 //! Tops in a row, joined by elastic torques: a line and a ring.
 
-use super::compare::{agrees, changes_are_seen};
+use super::compare::{agrees, changes_are_seen, unseen};
 use super::sum::{Bodies, Kind, Sum, Typed, around, fixed, number, turn};
 use super::{Ends, FREE, derived};
 use clebsch_oracle::oracle::dual::Number;
@@ -104,6 +104,10 @@ fn check(segments: usize, ends: Ends) {
     let d = derived(TEXT, &[("i", segments)], ends);
     let tops = Tops::of(segments, ends, &mut source);
     agrees(&d, &tops, &mut source);
+    if segments == 3 {
+        let left = unseen(&d, &tops, &mut source);
+        assert!(left.is_empty(), "{left:?}");
+    }
     if segments <= 12 {
         let (changes, constant) = changes_are_seen(&d, &tops, &mut source);
         // A ring of one top turns with its neighbour: itself.

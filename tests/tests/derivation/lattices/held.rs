@@ -1,0 +1,205 @@
+//! Tops in a row whose first or last one is held: its velocity rests, and what it carries stands still,
+//! by its definition or by a value of its own. Neighbours are joined by velocities, by the elements and by
+//! what they carry.
+
+use super::compare::{agrees, changes_are_seen, unseen};
+use super::sum::{Bodies, Kind, Sum, Typed, around, fixed, number, turn};
+use super::{Ends, derived};
+use clebsch_oracle::oracle::dual::Number;
+use clebsch_oracle::oracle::points::{Given, Source};
+use clebsch_oracle::oracle::square::{Square, cross, dot};
+
+const TEXT: &str = "model HeldTops {
+    label i in 0..N step s; periodic;
+    param J: Sym<3> at nodes; param C: Mat<3> at segments; param g, d, z: Vec<3>; param eps: Real;
+    group Λ: SO<3> at nodes velocity Ω; advected Γ: Vec<3> at nodes = Λ^T*z; advected b: Vec<3> at nodes;
+    constraint next(Λ) = Λ*Ω; constraint next(Γ) = Ω^T*Γ; constraint next(b) = Ω^T*b;
+    lagrangian = -s*tr(J*Ω)/h - h*s*dot(g, Γ + cross(b, d)) + (h/s)*tr(C*Λ^T*next(Λ, i))
+        - (eps/h)*dot((Ω - Id)*d, (next(Ω, i) - Id)*d) + h*dot(b, next(Γ, i));
+    end i = 0 { held { Λ = given; } free; }
+    end i = N { free; held { Λ = given; } }
+}";
+
+struct Tops {
+    segments: usize,
+    bodies: Bodies,
+    tops: Vec<Result<usize, Square<f64, 3>>>,
+    /// What is carried, at the identity.
+    carried: Vec<[f64; 3]>,
+    j: Vec<Square<f64, 3>>,
+    c: Vec<Square<f64, 3>>,
+    g: [f64; 3],
+    d: [f64; 3],
+    z: [f64; 3],
+    eps: f64,
+    h: f64,
+    s: f64,
+}
+
+impl Tops {
+    fn of(segments: usize, ends: Ends, source: &mut Source) -> Self {
+        let count = ends.nodes(segments);
+        let mut bodies = Bodies::default();
+        let mut tops = Vec::new();
+        for i in 0..count {
+            let first = i == 0 && ends.is_at(false, "held");
+            let last = i == segments && ends.is_at(true, "held");
+            tops.push(match first || last {
+                true => Err(source.orthogonal()),
+                false => Ok(bodies.add("Λ", Some(i), Kind::Rotation)),
+            });
+        }
+        Tops {
+            segments,
+            bodies,
+            tops,
+            carried: (0..count).map(|_| source.vector()).collect(),
+            j: (0..count).map(|_| source.positive()).collect(),
+            c: (0..segments).map(|_| source.matrix()).collect(),
+            g: source.vector(),
+            d: source.vector(),
+            z: source.vector(),
+            eps: source.between(0.3, 0.7),
+            h: source.between(0.2, 1.0),
+            s: source.between(0.3, 1.5),
+        }
+    }
+
+    fn top<T: Number>(&self, x: &[T], i: isize) -> Square<T, 3> {
+        match &self.tops[around(i, self.tops.len())] {
+            Ok(at) => turn(x, *at),
+            Err(held) => Square::constant(held),
+        }
+    }
+}
+
+impl Typed for Tops {
+    fn bodies(&self) -> &Bodies {
+        &self.bodies
+    }
+
+    fn draw(&self, source: &mut Source) -> Vec<f64> {
+        let each = self.bodies.0.iter();
+        each.flat_map(|_| source.orthogonal::<3>().0.concat())
+            .collect()
+    }
+
+    fn parameters(&self) -> Vec<Given> {
+        let mut all = vec![
+            Given::scalar("h", self.h),
+            Given::scalar("s", self.s),
+            Given::scalar("eps", self.eps),
+            Given::column("g", 0, &self.g),
+            Given::column("d", 0, &self.d),
+            Given::column("z", 0, &self.z),
+        ];
+        for (i, top) in self.tops.iter().enumerate() {
+            all.push(Given::square(&format!("J_{i}"), 0, &self.j[i]));
+            if let Err(held) = top {
+                let b = held.transpose().apply(&self.carried[i]);
+                all.push(Given::square(&format!("Λ_{i}"), 0, held));
+                all.push(Given::column(&format!("b_{i}"), 0, &b));
+            }
+        }
+        for i in 0..self.segments {
+            all.push(Given::square(&format!("C_{i}"), 0, &self.c[i]));
+        }
+        all
+    }
+
+    fn advected(&self, shift: i8, x: &[f64]) -> Vec<Given> {
+        let mut all = Vec::new();
+        for (i, top) in self.tops.iter().enumerate() {
+            if let Ok(at) = top {
+                let seen = |v: &[f64; 3]| turn(x, *at).transpose().apply(v);
+                all.push(Given::column(&format!("Γ_{i}"), shift, &seen(&self.z)));
+                all.push(Given::column(
+                    &format!("b_{i}"),
+                    shift,
+                    &seen(&self.carried[i]),
+                ));
+            }
+        }
+        all
+    }
+
+    fn action<T: Number>(&self, tail: &[T], head: &[T], sum: &mut Sum<T>) {
+        let (h, s) = (self.h, self.s);
+        let count = self.tops.len();
+        let velocity = |i: isize| self.top(tail, i).transpose() * self.top(head, i);
+        let gamma = |x: &[T], i: isize| self.top(x, i).transpose().apply(&fixed(&self.z));
+        let b = |x: &[T], i: isize| {
+            let carried = fixed(&self.carried[around(i, count)]);
+            self.top(x, i).transpose().apply(&carried)
+        };
+        for i in sum.over("kinetic", 0, count) {
+            let j = Square::constant(&self.j[around(i, count)]);
+            sum.edge((j * velocity(i)).trace() * number(-s / h));
+        }
+        for i in sum.over("weight", 0, count) {
+            let at = |x: &[T]| dot(&fixed(&self.g), &gamma(x, i)) * number(-h * s);
+            sum.node(at(tail), at(head));
+        }
+        for i in sum.over("field", 0, count) {
+            let at = |x: &[T]| {
+                let product = cross(&b(x, i), &fixed(&self.d));
+                dot(&fixed(&self.g), &product) * number(-h * s)
+            };
+            sum.node(at(tail), at(head));
+        }
+        for i in sum.over("torque", 0, self.segments) {
+            let c = Square::constant(&self.c[around(i, self.segments)]);
+            let at = |x: &[T]| {
+                (c * self.top(x, i).transpose() * self.top(x, i + 1)).trace() * number(h / s)
+            };
+            sum.node(at(tail), at(head));
+        }
+        for i in sum.over("joint", 0, self.segments) {
+            let swept = |i: isize| (velocity(i) - Square::identity()).apply(&fixed(&self.d));
+            sum.edge(dot(&swept(i), &swept(i + 1)) * number(-self.eps / h));
+        }
+        for i in sum.over("carried", 0, self.segments) {
+            let at = |x: &[T]| dot(&b(x, i), &gamma(x, i + 1)) * number(h);
+            sum.node(at(tail), at(head));
+        }
+    }
+}
+
+fn check(segments: usize, ends: Ends) {
+    let mut source = Source::seeded(segments as u64);
+    let d = derived(TEXT, &[("i", segments)], ends);
+    let tops = Tops::of(segments, ends, &mut source);
+    agrees(&d, &tops, &mut source);
+    if segments == 3 {
+        let left = unseen(&d, &tops, &mut source);
+        assert!(left.is_empty(), "{left:?}");
+    }
+    if segments <= 12 {
+        changes_are_seen(&d, &tops, &mut source);
+    }
+}
+
+#[test]
+fn held_tops() {
+    for segments in [2, 3, 5, 12] {
+        for first in ["held", "free"] {
+            for last in ["free", "held"] {
+                check(segments, Ends::Open(first, last));
+            }
+        }
+    }
+    check(1, Ends::Open("held", "free"));
+    check(1, Ends::Open("free", "held"));
+}
+
+#[test]
+fn tops_that_carry_in_a_ring() {
+    for segments in [1, 2, 3, 5, 12] {
+        check(segments, Ends::Ring);
+    }
+}
+
+#[test]
+fn held_tops_in_a_long_row() {
+    check(50, Ends::Open("held", "held"));
+}

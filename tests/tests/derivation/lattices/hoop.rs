@@ -1,0 +1,185 @@
+//! A rod that closes to a ring, its frames turned in space, its places with an offset around the ring; and
+//! nodes that see the frames of both segments that they join.
+
+use super::compare::{agrees, changes_are_seen, unseen};
+use super::sum::{Bodies, Kind, Sum, Typed, around, column, fixed, minus, number, turn};
+use super::{Ends, FREE, derived};
+use clebsch_oracle::oracle::dual::Number;
+use clebsch_oracle::oracle::points::{Given, Source};
+use clebsch_oracle::oracle::square::{Square, dot};
+use std::array::from_fn;
+
+const TEXT: &str = "model Hoop {
+    label i in 0..N step s; periodic;
+    param m: Real at nodes; param I0, Cs: Sym<3> at segments; param C0: Mat<3>; param g: Vec<3>;
+    field φ: Vec<3> at nodes offset A; group Λ: SO<3> at segments velocity ω; constraint next(Λ) = ω*Λ;
+    let F = Λ^T*(next(φ, i) - φ)/s - E3;
+    lagrangian = m*dot(next(φ) - φ, next(φ) - φ)/(2*h) - s*tr(I0*Λ^T*ω*Λ)/h - (h*s/2)*dot(F, Cs*F)
+        + (h/s)*tr(C0*Λ^T*next(Λ, i)) + h*m*dot(g, prev(Λ, i)*E1 + Λ*E2) - h*dot(φ, prev(Λ, i)*g);
+}";
+
+struct Hoop {
+    segments: usize,
+    ring: bool,
+    bodies: Bodies,
+    places: Vec<usize>,
+    frames: Vec<usize>,
+    m: Vec<f64>,
+    i0: Vec<Square<f64, 3>>,
+    cs: Vec<Square<f64, 3>>,
+    c0: Square<f64, 3>,
+    g: [f64; 3],
+    once_around: [f64; 3],
+    h: f64,
+    s: f64,
+}
+
+impl Hoop {
+    fn of(segments: usize, ends: Ends, source: &mut Source) -> Self {
+        let mut bodies = Bodies::default();
+        let nodes = ends.nodes(segments);
+        let places = (0..nodes).map(|j| bodies.add("φ", Some(j), Kind::Vector(3)));
+        let places = places.collect();
+        let frames = (0..segments).map(|j| bodies.add("Λ", Some(j), Kind::Spatial));
+        let frames = frames.collect();
+        Hoop {
+            segments,
+            ring: ends == Ends::Ring,
+            bodies,
+            places,
+            frames,
+            m: (0..nodes).map(|_| source.between(0.5, 1.5)).collect(),
+            i0: (0..segments).map(|_| source.positive()).collect(),
+            cs: (0..segments).map(|_| source.positive()).collect(),
+            c0: source.matrix(),
+            g: source.vector(),
+            once_around: source.vector(),
+            h: source.between(0.2, 1.0),
+            s: source.between(0.3, 1.5),
+        }
+    }
+
+    fn place<T: Number>(&self, x: &[T], i: isize) -> [T; 3] {
+        let count = self.places.len();
+        let here: [T; 3] = column(x, self.places[around(i, count)]);
+        let turns = if self.ring {
+            i.div_euclid(count as isize)
+        } else {
+            0
+        };
+        from_fn(|c| here[c] + number(turns as f64 * self.once_around[c]))
+    }
+
+    fn frame<T: Number>(&self, x: &[T], i: isize) -> Square<T, 3> {
+        turn(x, self.frames[around(i, self.segments)])
+    }
+}
+
+impl Typed for Hoop {
+    fn bodies(&self) -> &Bodies {
+        &self.bodies
+    }
+
+    fn draw(&self, source: &mut Source) -> Vec<f64> {
+        let each = self.bodies.0.iter().flat_map(|b| match b.kind {
+            Kind::Spatial => source.orthogonal::<3>().0.concat(),
+            _ => source.vector::<3>().to_vec(),
+        });
+        each.collect()
+    }
+
+    fn parameters(&self) -> Vec<Given> {
+        let mut all = vec![
+            Given::scalar("h", self.h),
+            Given::scalar("s", self.s),
+            Given::square("C0", 0, &self.c0),
+            Given::column("g", 0, &self.g),
+            Given::column("A", 0, &self.once_around),
+        ];
+        for (j, m) in self.m.iter().enumerate() {
+            all.push(Given::scalar(&format!("m_{j}"), *m));
+        }
+        for j in 0..self.segments {
+            all.push(Given::square(&format!("I0_{j}"), 0, &self.i0[j]));
+            all.push(Given::square(&format!("Cs_{j}"), 0, &self.cs[j]));
+        }
+        all
+    }
+
+    fn action<T: Number>(&self, tail: &[T], head: &[T], sum: &mut Sum<T>) {
+        let (n, h, s) = (self.segments, self.h, self.s);
+        let nodes = self.places.len();
+        let c0 = Square::constant(&self.c0);
+        for i in sum.over("inertia of places", 0, nodes) {
+            let moved = minus(&self.place(head, i), &self.place(tail, i));
+            sum.edge(dot(&moved, &moved) * number(self.m[around(i, nodes)] / (2.0 * h)));
+        }
+        for i in sum.over("inertia of frames", 0, n) {
+            let inertia = Square::constant(&self.i0[around(i, n)]);
+            let turned = self.frame(tail, i).transpose() * self.frame(head, i);
+            sum.edge((inertia * turned).trace() * number(-s / h));
+        }
+        for i in sum.over("strain", 0, n) {
+            let stiffness = Square::constant(&self.cs[around(i, n)]);
+            let at = |x: &[T]| {
+                let along = minus(&self.place(x, i + 1), &self.place(x, i));
+                let strain = self.frame(x, i).transpose().apply(&along);
+                let strain = minus(&strain.map(|c| c / number(s)), &fixed(&[0.0, 0.0, 1.0]));
+                dot(&strain, &stiffness.apply(&strain)) * number(-h * s / 2.0)
+            };
+            sum.node(at(tail), at(head));
+        }
+        // On a line the first and the last node join only one segment.
+        let (inner, last) = if self.ring { (0, n) } else { (1, n) };
+        for i in sum.over("bending", 0, if self.ring { n } else { n - 1 }) {
+            let at = |x: &[T]| {
+                (c0 * self.frame(x, i).transpose() * self.frame(x, i + 1)).trace() * number(h / s)
+            };
+            sum.node(at(tail), at(head));
+        }
+        for i in sum.over("both segments", inner, last) {
+            let at = |x: &[T]| {
+                let before = self.frame(x, i - 1).apply(&fixed(&[1.0, 0.0, 0.0]));
+                let after = self.frame(x, i).apply(&fixed(&[0.0, 1.0, 0.0]));
+                let both = from_fn(|c| before[c] + after[c]);
+                dot(&fixed(&self.g), &both) * number(h * self.m[around(i, nodes)])
+            };
+            sum.node(at(tail), at(head));
+        }
+        for i in sum.over("segment before", inner, nodes) {
+            let at = |x: &[T]| {
+                let pull = self.frame(x, i - 1).apply(&fixed(&self.g));
+                dot(&self.place(x, i), &pull) * number(-h)
+            };
+            sum.node(at(tail), at(head));
+        }
+    }
+}
+
+fn check(segments: usize, ends: Ends) {
+    let mut source = Source::seeded(segments as u64);
+    let d = derived(TEXT, &[("i", segments)], ends);
+    let hoop = Hoop::of(segments, ends, &mut source);
+    agrees(&d, &hoop, &mut source);
+    if segments == 3 {
+        let left = unseen(&d, &hoop, &mut source);
+        assert!(left.is_empty(), "{left:?}");
+    }
+    if segments <= 12 {
+        changes_are_seen(&d, &hoop, &mut source);
+    }
+}
+
+#[test]
+fn hoops() {
+    for segments in [1, 2, 3, 5, 12, 50] {
+        check(segments, Ends::Ring);
+    }
+}
+
+#[test]
+fn hoops_cut_open() {
+    for segments in [1, 2, 3, 5, 12, 50] {
+        check(segments, FREE);
+    }
+}
