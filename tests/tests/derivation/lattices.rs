@@ -13,6 +13,7 @@ mod change;
 mod compare;
 mod held;
 mod hoop;
+mod meant;
 mod rod;
 mod scalars;
 mod sets;
@@ -23,6 +24,7 @@ mod tops;
 use clebsch_core::Derivation;
 use clebsch_core::lattice::Lattice;
 use clebsch_core::pipeline::{derive_lattice, parse_source, representative};
+use clebsch_oracle::oracle::points::asked_for;
 use std::time::Instant;
 
 /// Agreement asked of each component, relative to the largest summand of the variation of its own site.
@@ -59,6 +61,12 @@ impl Ends {
 
 /// The natural ends of a line for which no other is stated.
 const FREE: Ends = Ends::Open("free", "free");
+
+/// Whether the typed action of so many segments is changed term by term: on longer lines by
+/// `LATTICE_CHANGES=12`, which takes minutes.
+fn is_changed(segments: usize) -> bool {
+    segments as u64 <= asked_for("LATTICE_CHANGES", 5)
+}
 
 /// Derives the model for so many sites of each label.
 fn derived(text: &str, counts: &[(&str, usize)], ends: Ends) -> Derivation {

@@ -4,7 +4,7 @@
 
 use super::compare::{agrees, changes_are_seen, unseen};
 use super::sum::{Bodies, Kind, Sum, Typed, around, number};
-use super::{Ends, derived};
+use super::{Ends, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::points::{Given, Source};
 
@@ -201,7 +201,9 @@ fn check(segments: usize, ends: Ends) {
         let left = unseen(&d, &beam, &mut source);
         assert!(left.is_empty(), "{left:?}");
     }
-    changes_are_seen(&d, &beam, &mut source);
+    if is_changed(segments) {
+        changes_are_seen(&d, &beam, &mut source);
+    }
 }
 
 #[test]
@@ -227,7 +229,7 @@ fn beams_in_a_ring() {
 
 #[test]
 fn long_beams() {
-    // From about 45 on its derivation is larger than any is given.
+    // Of 50 segments the derivation is larger than any is given.
     check(40, Ends::Open("spring", "spring"));
     check(40, Ends::Ring);
 }

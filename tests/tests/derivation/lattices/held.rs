@@ -4,7 +4,7 @@
 
 use super::compare::{agrees, changes_are_seen, unseen};
 use super::sum::{Bodies, Kind, Sum, Typed, around, fixed, number, turn};
-use super::{Ends, derived};
+use super::{Ends, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::points::{Given, Source};
 use clebsch_oracle::oracle::square::{Square, cross, dot};
@@ -174,7 +174,7 @@ fn check(segments: usize, ends: Ends) {
         let left = unseen(&d, &tops, &mut source);
         assert!(left.is_empty(), "{left:?}");
     }
-    if segments <= 12 {
+    if is_changed(segments) {
         changes_are_seen(&d, &tops, &mut source);
     }
 }

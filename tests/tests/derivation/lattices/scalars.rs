@@ -3,7 +3,7 @@
 
 use super::compare::{agrees, changes_are_seen, unseen};
 use super::sum::{Bodies, Kind, Sum, Typed, around, number};
-use super::{Ends, FREE, derived};
+use super::{Ends, FREE, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::points::{Given, Source};
 
@@ -192,6 +192,9 @@ fn toda(segments: usize, ends: Ends) {
         let left = unseen(&d, &chain, &mut source);
         assert!(left.is_empty(), "{left:?}");
     }
+    if !is_changed(segments) {
+        return;
+    }
     let (changes, constant) = changes_are_seen(&d, &chain, &mut source);
     // The only site of a ring keeps its distance from itself.
     let alone = ends == Ends::Ring && segments == 1;
@@ -214,6 +217,9 @@ fn pendulums(segments: usize, ends: Ends) {
     if segments == 3 {
         let left = unseen(&d, &line, &mut source);
         assert!(left.is_empty(), "{left:?}");
+    }
+    if !is_changed(segments) {
+        return;
     }
     let (changes, constant) = changes_are_seen(&d, &line, &mut source);
     if ends != Ends::Ring {

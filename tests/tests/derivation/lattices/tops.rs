@@ -2,7 +2,7 @@
 
 use super::compare::{agrees, changes_are_seen, unseen};
 use super::sum::{Bodies, Kind, Sum, Typed, around, fixed, number, turn};
-use super::{Ends, FREE, derived};
+use super::{Ends, FREE, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::points::{Given, Source};
 use clebsch_oracle::oracle::square::{Square, dot};
@@ -108,7 +108,7 @@ fn check(segments: usize, ends: Ends) {
         let left = unseen(&d, &tops, &mut source);
         assert!(left.is_empty(), "{left:?}");
     }
-    if segments <= 12 {
+    if is_changed(segments) {
         let (changes, constant) = changes_are_seen(&d, &tops, &mut source);
         // A ring of one top turns with its neighbour: itself.
         let alone = ends == Ends::Ring && segments == 1;
