@@ -2,7 +2,8 @@
 //! two steps along the line, segments before and after a node, sums over stated sites, products of
 //! neighbours' velocities, and ends that hold a neighbour. Rings shorter than the terms are wide.
 
-use super::compare::{agrees, changes_are_seen, unseen};
+use super::change::{changes_are_seen, unseen};
+use super::compare::agrees;
 use super::sum::{Bodies, Kind, Sum, Typed, around, number};
 use super::{Ends, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;

@@ -1,6 +1,7 @@
 //! Bodies in a row whose kinetic energy joins the velocities of neighbours.
 
-use super::compare::{agrees, changes_are_seen, unseen};
+use super::change::{changes_are_seen, unseen};
+use super::compare::agrees;
 use super::sum::{Bodies, Kind, Sum, Typed, around, fixed, number, turn};
 use super::{FREE, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;

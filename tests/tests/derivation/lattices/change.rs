@@ -1,4 +1,11 @@
-//! Changes of a typed action that a comparison must see.
+//! Changes that a comparison must see: of one sign or one range in the typed action, and of one summand in
+//! the derived residual.
+
+use super::AGREEMENT;
+use super::compare::{Variation, WHAT, disagreement, found, order, ordered, typed, values};
+use super::sum::{Sum, Typed};
+use clebsch_core::{Assignment, Derivation};
+use clebsch_oracle::oracle::points::Source;
 
 /// What is changed.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -11,4 +18,70 @@ pub(super) enum Change {
 }
 
 /// Every change of the range of one sum at one of its ends by one site.
-pub(super) const ENDS_MOVED: [(isize, isize); 4] = [(1, 0), (-1, 0), (0, 1), (0, -1)];
+const ENDS_MOVED: [(isize, isize); 4] = [(1, 0), (-1, 0), (0, 1), (0, -1)];
+
+/// How many summands vary; the largest slope of one that does not is rounding.
+fn varying(v: &Variation) -> usize {
+    let largest = v.largest.iter().copied().fold(0.0, f64::max);
+    let moves = v.largest.iter().filter(|x| **x > AGREEMENT * largest);
+    moves.count()
+}
+
+/// Every change of one sign or of one range by one site is seen, wherever it moves the action. How many
+/// changes there are, and how many of them only move what is constant.
+pub(super) fn changes_are_seen(
+    d: &Derivation,
+    model: &impl Typed,
+    source: &mut Source,
+) -> (usize, usize) {
+    let nodes = [(); 3].map(|()| model.draw(source));
+    let found = found(d, model, &nodes);
+    let mut sum = Sum::new(Change::None);
+    model.action(&nodes[1], &nodes[2], &mut sum);
+    let whole = typed(model, &nodes, Change::None);
+    let largest = whole[2].largest.iter().copied().fold(0.0, f64::max);
+    let signs = (0..sum.summands.len()).map(Change::Sign);
+    let ranges = (0..sum.sums.len()).flat_map(|i| ENDS_MOVED.map(|(a, b)| Change::Range(i, a, b)));
+    let (mut all, mut constant) = (0, 0);
+    for change in signs.chain(ranges) {
+        all += 1;
+        let changed = typed(model, &nodes, change);
+        let moves = match change {
+            Change::Sign(i) => whole[2].largest[i] > AGREEMENT * largest,
+            _ => varying(&whole[2]) != varying(&changed[2]),
+        };
+        for ((wanted, found), what) in changed.iter().zip(&found).zip(WHAT) {
+            let apart = disagreement(wanted, found).0;
+            assert_eq!(
+                apart > AGREEMENT,
+                moves,
+                "{}: {change:?} puts the {what} {apart:e} apart",
+                d.spec.name
+            );
+        }
+        constant += usize::from(!moves);
+    }
+    (all, constant)
+}
+
+/// Every summand of the derived residual is seen: left out or with the other sign it disagrees with the
+/// typed action at one of a few random points. What describes those that do not.
+pub(super) fn unseen(d: &Derivation, model: &impl Typed, source: &mut Source) -> Vec<String> {
+    let points: Vec<(Assignment, Variation)> = (0..3)
+        .map(|_| {
+            let nodes = [(); 3].map(|()| model.draw(source));
+            let [_, _, residual] = typed(model, &nodes, Change::None);
+            (values(model, &nodes), residual)
+        })
+        .collect();
+    let order = order(d, model);
+    let mutants = d.mutations();
+    assert!(mutants.len() > d.spec.configurations.len());
+    let alive = mutants.iter().filter(|m| {
+        points.iter().all(|(values, wanted)| {
+            let found = m.residual(values);
+            found.is_ok_and(|r| disagreement(wanted, &ordered(&r, &order, model)).0 <= AGREEMENT)
+        })
+    });
+    alive.map(|m| m.describe()).collect()
+}

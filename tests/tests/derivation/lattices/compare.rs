@@ -1,7 +1,7 @@
 //! The derivation and the typed action at random fields: momenta at both ends of a step, and residual.
 
 use super::AGREEMENT;
-use super::change::{Change, ENDS_MOVED};
+use super::change::Change;
 use super::sum::{Body, Kind, Sum, Typed, turn};
 use clebsch_core::expr::Expr;
 use clebsch_core::interpret::evaluate;
@@ -11,12 +11,12 @@ use clebsch_oracle::oracle::dual::{Dual, Number};
 use clebsch_oracle::oracle::points::{Given, Source};
 
 /// The variation of an action at the configurations of one node: a component for each direction.
-struct Variation {
+pub(super) struct Variation {
     derivative: Vec<f64>,
     /// The largest summand in the variation of the site that a component belongs to.
     scale: Vec<f64>,
     /// The largest slope of each summand.
-    largest: Vec<f64>,
+    pub(super) largest: Vec<f64>,
 }
 
 /// The directions in which a configuration varies, each as the change of its entries.
@@ -80,7 +80,7 @@ fn still(x: &[f64]) -> Vec<Dual> {
 }
 
 /// The momentum at the start of a step, at its end, and the residual at the node between two steps.
-fn typed(model: &impl Typed, nodes: &[Vec<f64>; 3], change: Change) -> [Variation; 3] {
+pub(super) fn typed(model: &impl Typed, nodes: &[Vec<f64>; 3], change: Change) -> [Variation; 3] {
     let [before, here, after] = nodes.each_ref().map(|x| still(x));
     let mut start = vary(model, &nodes[1], |x| summands(model, x, &after, change));
     for p in &mut start.derivative {
@@ -117,7 +117,7 @@ fn configuration(body: &Body, shift: i8, x: &[f64]) -> Given {
 }
 
 /// Values of all names at three nodes.
-fn values(model: &impl Typed, nodes: &[Vec<f64>; 3]) -> Assignment {
+pub(super) fn values(model: &impl Typed, nodes: &[Vec<f64>; 3]) -> Assignment {
     let mut values = Assignment::new();
     set(&mut values, &model.parameters());
     for (shift, x) in (-1..=1).zip(nodes) {
@@ -130,7 +130,7 @@ fn values(model: &impl Typed, nodes: &[Vec<f64>; 3]) -> Assignment {
 }
 
 /// A residual, which comes in the order of the derivation, in that of the typed configurations.
-fn ordered(residual: &[f64], order: &[usize], model: &impl Typed) -> Vec<f64> {
+pub(super) fn ordered(residual: &[f64], order: &[usize], model: &impl Typed) -> Vec<f64> {
     let sizes = order.iter().zip(&model.bodies().0);
     let sizes: Vec<(usize, usize)> = sizes.map(|(i, b)| (*i, b.kind.directions())).collect();
     let begin = |i: usize| -> usize {
@@ -143,7 +143,7 @@ fn ordered(residual: &[f64], order: &[usize], model: &impl Typed) -> Vec<f64> {
 }
 
 /// What the derivation says of the same: numbers in the order of the typed configurations.
-fn found(d: &Derivation, model: &impl Typed, nodes: &[Vec<f64>; 3]) -> [Vec<f64>; 3] {
+pub(super) fn found(d: &Derivation, model: &impl Typed, nodes: &[Vec<f64>; 3]) -> [Vec<f64>; 3] {
     let s = &d.letters.symbols;
     let order = order(d, model);
     let mut values = values(model, nodes);
@@ -182,7 +182,7 @@ fn found(d: &Derivation, model: &impl Typed, nodes: &[Vec<f64>; 3]) -> [Vec<f64>
 }
 
 /// For each typed configuration its number in the derivation, which has no others.
-fn order(d: &Derivation, model: &impl Typed) -> Vec<usize> {
+pub(super) fn order(d: &Derivation, model: &impl Typed) -> Vec<usize> {
     let s = &d.letters.symbols;
     let names: Vec<&str> = d
         .spec
@@ -198,7 +198,7 @@ fn order(d: &Derivation, model: &impl Typed) -> Vec<usize> {
 }
 
 /// The largest difference of a component, and which one it is; infinite for anything that is not finite.
-fn disagreement(wanted: &Variation, found: &[f64]) -> (f64, usize) {
+pub(super) fn disagreement(wanted: &Variation, found: &[f64]) -> (f64, usize) {
     assert_eq!(wanted.derivative.len(), found.len());
     let mut worst = (0.0f64, 0);
     for (i, (a, b)) in wanted.derivative.iter().zip(found).enumerate() {
@@ -226,7 +226,8 @@ fn site(model: &impl Typed, component: usize) -> String {
     "no site".to_owned()
 }
 
-const WHAT: [&str; 3] = ["momentum at the start", "momentum at the end", "residual"];
+/// What is compared.
+pub(super) const WHAT: [&str; 3] = ["momentum at the start", "momentum at the end", "residual"];
 
 /// The derivation agrees with the typed action at random fields.
 pub(super) fn agrees(d: &Derivation, model: &impl Typed, source: &mut Source) {
@@ -246,70 +247,4 @@ pub(super) fn agrees(d: &Derivation, model: &impl Typed, source: &mut Source) {
             );
         }
     }
-}
-
-/// How many summands vary; the largest slope of one that does not is rounding.
-fn varying(v: &Variation) -> usize {
-    let largest = v.largest.iter().copied().fold(0.0, f64::max);
-    let moves = v.largest.iter().filter(|x| **x > AGREEMENT * largest);
-    moves.count()
-}
-
-/// Every change of one sign or of one range by one site is seen, wherever it moves the action. How many
-/// changes there are, and how many of them only move what is constant.
-pub(super) fn changes_are_seen(
-    d: &Derivation,
-    model: &impl Typed,
-    source: &mut Source,
-) -> (usize, usize) {
-    let nodes = [(); 3].map(|()| model.draw(source));
-    let found = found(d, model, &nodes);
-    let mut sum = Sum::new(Change::None);
-    model.action(&nodes[1], &nodes[2], &mut sum);
-    let whole = typed(model, &nodes, Change::None);
-    let largest = whole[2].largest.iter().copied().fold(0.0, f64::max);
-    let signs = (0..sum.summands.len()).map(Change::Sign);
-    let ranges = (0..sum.sums.len()).flat_map(|i| ENDS_MOVED.map(|(a, b)| Change::Range(i, a, b)));
-    let (mut all, mut constant) = (0, 0);
-    for change in signs.chain(ranges) {
-        all += 1;
-        let changed = typed(model, &nodes, change);
-        let moves = match change {
-            Change::Sign(i) => whole[2].largest[i] > AGREEMENT * largest,
-            _ => varying(&whole[2]) != varying(&changed[2]),
-        };
-        for ((wanted, found), what) in changed.iter().zip(&found).zip(WHAT) {
-            let apart = disagreement(wanted, found).0;
-            assert_eq!(
-                apart > AGREEMENT,
-                moves,
-                "{}: {change:?} puts the {what} {apart:e} apart",
-                d.spec.name
-            );
-        }
-        constant += usize::from(!moves);
-    }
-    (all, constant)
-}
-
-/// Every summand of the derived residual is seen: left out or with the other sign it disagrees with the
-/// typed action at one of a few random points. What describes those that do not.
-pub(super) fn unseen(d: &Derivation, model: &impl Typed, source: &mut Source) -> Vec<String> {
-    let points: Vec<(Assignment, Variation)> = (0..3)
-        .map(|_| {
-            let nodes = [(); 3].map(|()| model.draw(source));
-            let [_, _, residual] = typed(model, &nodes, Change::None);
-            (values(model, &nodes), residual)
-        })
-        .collect();
-    let order = order(d, model);
-    let mutants = d.mutations();
-    assert!(mutants.len() > d.spec.configurations.len());
-    let alive = mutants.iter().filter(|m| {
-        points.iter().all(|(values, wanted)| {
-            let found = m.residual(values);
-            found.is_ok_and(|r| disagreement(wanted, &ordered(&r, &order, model)).0 <= AGREEMENT)
-        })
-    });
-    alive.map(|m| m.describe()).collect()
 }

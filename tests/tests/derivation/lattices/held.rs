@@ -2,7 +2,8 @@
 //! by its definition or by a value of its own. Neighbours are joined by velocities, by the elements and by
 //! what they carry.
 
-use super::compare::{agrees, changes_are_seen, unseen};
+use super::change::{changes_are_seen, unseen};
+use super::compare::agrees;
 use super::sum::{Bodies, Kind, Sum, Typed, around, fixed, number, turn};
 use super::{Ends, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;

@@ -1,7 +1,8 @@
 //! A rod that closes to a ring, its frames turned in space, its places with an offset around the ring; and
 //! nodes that see the frames of both segments that they join.
 
-use super::compare::{agrees, changes_are_seen, unseen};
+use super::change::{changes_are_seen, unseen};
+use super::compare::agrees;
 use super::sum::{Bodies, Kind, Sum, Typed, around, column, fixed, minus, number, turn};
 use super::{Ends, FREE, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;

@@ -1,6 +1,7 @@
 //! The geometrically exact rod: places at nodes, frames at segments, and every pair of its ends.
 
-use super::compare::{agrees, changes_are_seen, unseen};
+use super::change::{changes_are_seen, unseen};
+use super::compare::agrees;
 use super::sum::{Bodies, Kind, Sum, Typed, around, column, fixed, minus, number, turn};
 use super::{Ends, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;

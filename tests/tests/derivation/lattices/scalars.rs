@@ -1,7 +1,8 @@
 //! Lines of numbers: the Toda chain with an offset around the ring, and a chain of pendulums (sine-Gordon)
 //! with free and held ends.
 
-use super::compare::{agrees, changes_are_seen, unseen};
+use super::change::{changes_are_seen, unseen};
+use super::compare::agrees;
 use super::sum::{Bodies, Kind, Sum, Typed, around, number};
 use super::{Ends, FREE, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;

@@ -1,6 +1,7 @@
 //! A set of particles without neighbours beside a line of numbers, both tied to one body.
 
-use super::compare::{agrees, changes_are_seen, unseen};
+use super::change::{changes_are_seen, unseen};
+use super::compare::agrees;
 use super::sum::{Bodies, Kind, Sum, Typed, around, column, fixed, minus, number, turn};
 use super::{Ends, FREE, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;

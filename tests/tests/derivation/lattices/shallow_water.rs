@@ -1,7 +1,8 @@
 //! Particles of shallow water in a channel that closes on itself: depths by the second neighbours, an
 //! offset around the ring, and a term linear in velocities.
 
-use super::compare::{agrees, changes_are_seen, unseen};
+use super::change::{changes_are_seen, unseen};
+use super::compare::agrees;
 use super::sum::{Bodies, Kind, Sum, Typed, around, number};
 use super::{Ends, FREE, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;

@@ -1,6 +1,7 @@
 //! Tops in a row, joined by elastic torques: a line and a ring.
 
-use super::compare::{agrees, changes_are_seen, unseen};
+use super::change::{changes_are_seen, unseen};
+use super::compare::agrees;
 use super::sum::{Bodies, Kind, Sum, Typed, around, fixed, number, turn};
 use super::{Ends, FREE, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;
