@@ -6,6 +6,7 @@ use super::compare::{Variation, WHAT, disagreement, found, order, ordered, typed
 use super::sum::{Sum, Typed};
 use clebsch_core::{Assignment, Derivation};
 use clebsch_oracle::oracle::points::Source;
+use clebsch_oracle::physics::measure::worse;
 
 /// What is changed.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -22,7 +23,7 @@ const ENDS_MOVED: [(isize, isize); 4] = [(1, 0), (-1, 0), (0, 1), (0, -1)];
 
 /// How many summands vary; the largest slope of one that does not is rounding.
 fn varying(v: &Variation) -> usize {
-    let largest = v.largest.iter().copied().fold(0.0, f64::max);
+    let largest = v.largest.iter().copied().fold(0.0, worse);
     let moves = v.largest.iter().filter(|x| **x > AGREEMENT * largest);
     moves.count()
 }
@@ -39,7 +40,7 @@ pub(super) fn changes_are_seen(
     let mut sum = Sum::new(Change::None);
     model.action(&nodes[1], &nodes[2], &mut sum);
     let whole = typed(model, &nodes, Change::None);
-    let largest = whole[2].largest.iter().copied().fold(0.0, f64::max);
+    let largest = whole[2].largest.iter().copied().fold(0.0, worse);
     let signs = (0..sum.summands.len()).map(Change::Sign);
     let ranges = (0..sum.sums.len()).flat_map(|i| ENDS_MOVED.map(|(a, b)| Change::Range(i, a, b)));
     let (mut all, mut constant) = (0, 0);

@@ -9,6 +9,7 @@ use clebsch_core::{Assignment, Derivation};
 use clebsch_oracle::oracle::action::rotations;
 use clebsch_oracle::oracle::dual::{Dual, Number};
 use clebsch_oracle::oracle::points::{Given, Source};
+use clebsch_oracle::physics::measure::worse;
 
 /// The variation of an action at the configurations of one node: a component for each direction.
 pub(super) struct Variation {
@@ -60,8 +61,8 @@ fn vary(model: &impl Typed, x: &[f64], action: impl Fn(&[Dual]) -> Vec<Dual>) ->
             out.derivative.push(slopes.iter().sum());
             out.largest.resize(slopes.len(), 0.0);
             for (seen, slope) in out.largest.iter_mut().zip(&slopes) {
-                *seen = seen.max(slope.abs());
-                largest = largest.max(slope.abs());
+                *seen = worse(*seen, slope.abs());
+                largest = worse(largest, slope.abs());
             }
         }
         out.scale.extend(all.iter().map(|_| largest));
