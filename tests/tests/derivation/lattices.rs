@@ -63,7 +63,7 @@ impl Ends {
 const FREE: Ends = Ends::Open("free", "free");
 
 /// Whether the typed action of so many segments is changed term by term: on longer lines by
-/// `LATTICE_CHANGES=12`, which takes minutes.
+/// `LATTICE_CHANGES=12`, which takes a minute.
 fn is_changed(segments: usize) -> bool {
     segments as u64 <= asked_for("LATTICE_CHANGES", 5)
 }
