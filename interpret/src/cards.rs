@@ -91,6 +91,8 @@ pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warni
         Some(card) => card,
         None => opened_now(&d, &key, None)?,
     };
+    let mut warnings = unfolded.warnings.clone();
+    warnings.extend(d.warnings.iter().cloned());
     let words = document::card_words(&lattice, choice, unfolded, &d, card.solver);
     let named = card.invariants.iter().zip(&words.invariants);
     let invariants = named.map(|(own, (name, formula))| Invariant {
@@ -106,7 +108,7 @@ pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warni
         invariants: Box::leak(invariants.into_boxed_slice()),
         ..card
     };
-    Ok((card, d.warnings))
+    Ok((card, warnings))
 }
 
 /// The card at given sizes.

@@ -122,13 +122,17 @@ fn statement(model: &Model, stated: &str, doc: &mut Document) {
 
 fn warnings(parts: &[Part], doc: &mut Document) -> Vec<Warning> {
     let mut out: Vec<Warning> = Vec::new();
-    for w in parts.iter().flat_map(|p| &p.d.warnings) {
+    let all = |p: &'_ Part| -> Vec<Warning> {
+        let stated = p.unfolded.warnings.iter();
+        stated.chain(&p.d.warnings).cloned().collect()
+    };
+    for w in parts.iter().flat_map(all) {
         let place = |w: &Warning| format!("{:?}", w.diagnostic.place);
         if !out
             .iter()
-            .any(|o| o.topic == w.topic && place(o) == place(w))
+            .any(|o| o.topic == w.topic && place(o) == place(&w))
         {
-            out.push(w.clone());
+            out.push(w);
         }
     }
     if !out.is_empty() {

@@ -17,8 +17,9 @@ fn split(lattice: &Lattice, e: &Expression, top: bool) -> Vec<Expression> {
             if !top && terms.iter().any(|(_, t)| of_one_neighbour(lattice, t)) {
                 return vec![e.clone()];
             }
+            // A bracket among the terms, or a definition, is below the top.
             let parts = terms.iter().flat_map(|(minus, t)| {
-                let parts = split(lattice, t, top).into_iter();
+                let parts = split(lattice, t, false).into_iter();
                 parts.map(move |p| if *minus { negated(p) } else { p })
             });
             parts.collect()

@@ -230,3 +230,30 @@ fn a_choice_is_one_of_those_stated() {
             .is_err()
     );
 }
+
+#[test]
+fn a_term_of_one_neighbour_is_warned_of_and_a_difference_is_not() {
+    let warned = |term: &str| {
+        let source = format!(
+            "model M {{ label i in 0..N; param a: Real; field q: Real at nodes; let r = next(q, i) - q; lagrangian = (next(q) - q)^2/(2*h) {term}; }}"
+        );
+        let model = parse_source(&source).unwrap();
+        let lattice = Lattice::read(&model).unwrap();
+        let choice = representative(&model, &lattice).unwrap();
+        super::unfold(&model, &lattice, &choice)
+            .unwrap()
+            .warnings
+            .len()
+    };
+    for (term, count) in [
+        ("- h*a*next(q, i)", 1),
+        ("- h*a*(next(q, i) - q)", 0),
+        ("- h*a*r", 0),
+        ("- r", 0),
+        ("- h*a*next(q, i)*prev(q, i)", 0),
+        ("- h*(a*q^2/2 + next(q, i)*prev(q, i))", 0),
+        ("- h*sum(a*next(q, i), segments)", 0),
+    ] {
+        assert_eq!(warned(term), count, "{term}");
+    }
+}

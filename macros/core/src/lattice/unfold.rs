@@ -5,9 +5,10 @@ use super::choice::Choice;
 use super::declared::{Kind as Role, Lattice, Quantity, Sites};
 use super::names::{Copied, copy, copy_name};
 use super::put::{Pinned, Put, Still, any_name, size};
-use super::range::{Range, reach};
+use super::range::{Range, of_one_neighbour, reach};
 use super::summands::summands;
 use crate::check::circular_definitions;
+use crate::derive::warnings::{Topic, Warning};
 use crate::diagnostic::{Diagnostic, Errors, Place};
 use crate::syntax::ast::{Alternative, Expression, Kind, Kindred, Model, Name, Statement};
 use std::collections::BTreeMap;
@@ -45,6 +46,8 @@ pub struct Unfolded {
     pub given: Vec<String>,
     /// The terms of the Lagrangian.
     pub summands: Vec<Summand>,
+    /// Terms that are hardly meant.
+    pub warnings: Vec<Warning>,
 }
 
 /// Writes a model out.
@@ -72,6 +75,7 @@ pub fn unfold(model: &Model, lattice: &Lattice, choice: &Choice) -> Result<Unfol
             end_parameters: Vec::new(),
             given: Vec::new(),
             summands: Vec::new(),
+            warnings: Vec::new(),
         },
     };
     writer.pin(model);
@@ -377,7 +381,9 @@ impl<'a> Writer<'a> {
                     self.out
                         .end_parameters
                         .push((own.text.clone(), name.text.clone(), last));
-                    self.declare(&own, shape);
+                    let (names, shape) = (vec![own], shape.clone());
+                    let at = None;
+                    self.push(Statement::Param { names, shape, at }, &[]);
                 }
             }
         }
@@ -570,6 +576,9 @@ impl<'a> Writer<'a> {
                     continue;
                 }
             };
+            if found.over.is_none() && of_one_neighbour(self.lattice, &stated) {
+                self.out.warnings.push(one_neighbour(&stated));
+            }
             let range = found.range(self.lattice, self.choice);
             let sites: Vec<isize> = match range {
                 Some(r) => r.indices(self.choice.count(r.label)).collect(),
@@ -654,6 +663,15 @@ impl<'a> Writer<'a> {
             .map(|n| (n.text.clone(), copy_name(&n.text, site)))
             .collect()
     }
+}
+
+/// The sum of such a term starts or ends a site later than that of the same term at the site itself.
+fn one_neighbour(stated: &Expression) -> Warning {
+    let message = "this term holds a neighbour and not the site itself: it is summed over the sites that have this neighbour, all but the one at the end";
+    let d = Diagnostic::new(stated.place, message).help(
+        "write it at the site itself, or in one bracket with what it is compared with, as in `a*(next(q, i) - q)`",
+    );
+    Warning::new(Topic::OneNeighbour, d)
 }
 
 fn name_expression(n: &str, like: &Expression) -> Expression {

@@ -6,22 +6,43 @@ use super::motions::Motion;
 use super::noether::{Term, combined};
 use super::passage::Passage;
 use super::{Inputs, here};
+use crate::check::spec::Configuration;
 use crate::derive::action::summands;
 use crate::derive::balance::shorter;
 use crate::expr::shape::Shape;
-use crate::expr::symbol::Role;
+use crate::expr::shape::Structure;
+use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
+
+/// What the direction of a motion is.
+type Kind = (Shape, Structure);
 
 /// Largest derivative that is taken.
 const LARGEST: u32 = 5_000;
 
 /// What the momentum of a combination of motions must be lessened by, constants left out.
 pub(super) fn difference(x: &Inputs, passages: &[Passage], terms: &[Term]) -> Option<Expr> {
-    let s = &x.letters.symbols;
+    // One table with a direction of each kind: copying it for every term is most of the work of a lattice.
+    let mut symbols = x.letters.symbols.clone();
+    let mut kinds: Vec<(Kind, Letter)> = Vec::new();
+    for kind in terms.iter().map(|t| t.motion.direction()) {
+        if !kinds.iter().any(|(known, _)| *known == kind) {
+            let name = symbols.fresh_name("v");
+            let direction = here(symbols.add(&name, kind.0, kind.1, Role::Variation));
+            kinds.push((kind, direction));
+        }
+    }
+    let s = &symbols;
+    let of = |m: &Motion, term: &Expr| {
+        let kind = m.direction();
+        let known = kinds.iter().find(|(k, _)| *k == kind);
+        known.map(|(_, direction)| of_term(x, s, *direction, m, term))
+    };
     let mut parts = Vec::new();
     let mut shape = Shape::SCALAR;
     for term in summands(&x.action.total) {
-        let change = combined(x, terms, |m| of_term(x, m, &term));
+        let nothing = || expr::zero(Shape::SCALAR);
+        let change = combined(x, terms, |m| of(m, &term).unwrap_or_else(nothing));
         shape = change.shape();
         if change.size() > LARGEST {
             return None;
@@ -47,12 +68,7 @@ pub(super) fn difference(x: &Inputs, passages: &[Passage], terms: &[Term]) -> Op
 
 /// The change of a term of the action along a motion, over a step from the identity to the node: a
 /// covector, paired with the direction of the motion.
-fn of_term(x: &Inputs, m: &Motion, term: &Expr) -> Expr {
-    let mut s = x.letters.symbols.clone();
-    let (shape, structure) = m.direction();
-    let name = s.fresh_name("v");
-    let direction = here(s.add(&name, shape, structure, Role::Variation));
-    let s = &s;
+fn of_term(x: &Inputs, s: &Symbols, direction: Letter, m: &Motion, term: &Expr) -> Expr {
     let v = expr::here(s, direction.symbol);
     let c = &x.spec.configurations[m.configuration];
     let next = |l: Letter| Letter {
@@ -62,6 +78,16 @@ fn of_term(x: &Inputs, m: &Motion, term: &Expr) -> Expr {
         },
         ..l
     };
+    let held = expr::letters(term);
+    let variation = &x.variations[m.configuration];
+    let (starts, ends) = (variation.on_outgoing(), variation.on_incoming());
+    let is_moved = starts.iter().any(|(l, _)| held.contains(l))
+        || ends.iter().any(|(l, _)| held.contains(&next(*l)));
+    if !is_moved {
+        // Most terms of a lattice hold other bodies.
+        let nothing = expr::zero(Shape::SCALAR);
+        return m.covector(s, expr::gradient(s, &nothing, direction));
+    }
     let xi = here(x.letters.variation[m.configuration]);
     let g = expr::here(s, c.element);
     let at_end = expr::shift_time(s, &g, Shift::NEXT.time);
@@ -69,15 +95,14 @@ fn of_term(x: &Inputs, m: &Motion, term: &Expr) -> Expr {
         let moved = m.variation(x, s, g, &v);
         expr::substitute(s, e, &[(xi, moved)])
     };
-    let variation = &x.variations[m.configuration];
-    let start: Vec<(Letter, Expr)> = variation
-        .on_outgoing()
+    let start: Vec<(Letter, Expr)> = starts
         .iter()
+        .filter(|(l, _)| held.contains(l))
         .map(|(l, e)| (*l, along(&g, e)))
         .collect();
-    let end: Vec<(Letter, Expr)> = variation
-        .on_incoming()
+    let end: Vec<(Letter, Expr)> = ends
         .iter()
+        .filter(|(l, _)| held.contains(&next(*l)))
         .map(|(l, e)| {
             (
                 next(*l),
@@ -89,18 +114,20 @@ fn of_term(x: &Inputs, m: &Motion, term: &Expr) -> Expr {
         expr::directional(s, term, &start),
         expr::directional(s, term, &end),
     );
+    let held = expr::letters(&change);
+    let holds = |id| held.iter().any(|l| l.symbol == id);
+    let is_held = |c: &&Configuration| holds(c.element) || holds(c.velocity);
     let mut from_identity: Vec<(Letter, Expr)> = Vec::new();
-    for c in &x.spec.configurations {
+    for c in x.spec.configurations.iter().filter(is_held) {
         let g = expr::here(s, c.element);
         let one = c.group.identity();
         from_identity.push((here(c.element), one));
         from_identity.push((next(here(c.element)), g.clone()));
         from_identity.push((here(c.velocity), g));
     }
-    let elements: Vec<(Letter, Expr)> = from_identity
-        .iter()
-        .filter(|(l, _)| x.spec.configurations.iter().any(|c| *l == here(c.element)))
-        .cloned()
+    let identities = x.spec.configurations.iter();
+    let elements: Vec<(Letter, Expr)> = identities
+        .map(|c| (here(c.element), c.group.identity()))
         .collect();
     let backwards: Vec<(Letter, Expr)> = x
         .spec
@@ -113,7 +140,7 @@ fn of_term(x: &Inputs, m: &Motion, term: &Expr) -> Expr {
             )
         })
         .collect();
-    for a in &x.spec.advected {
+    for a in x.spec.advected.iter().filter(|a| holds(a.quantity)) {
         let q = here(a.quantity);
         let reference = match &a.definition {
             Some(d) => expr::substitute(s, d, &elements),

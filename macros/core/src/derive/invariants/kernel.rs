@@ -196,7 +196,9 @@ impl<'a> Kernel<'a> {
         let own: Vec<&Motion> = motions.iter().filter(|m| !m.spanned).collect();
         let base = start(x, roots, x.assumed, attempt)?;
         let width: usize = own.iter().map(|m| coordinates(&base, m)).sum();
-        if width > WIDEST || work(x, &base).saturating_mul(2 * (width + MORE)) > WORK {
+        let times = usize::try_from(crate::work::times()).unwrap_or(1);
+        let most = WORK.saturating_mul(times.min(2));
+        if width > WIDEST * times || work(x, &base).saturating_mul(2 * (width + MORE)) > most {
             return None;
         }
         let steps = chain(x, roots, &base, width + MORE)?;

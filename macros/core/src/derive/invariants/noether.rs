@@ -24,6 +24,11 @@ const FEW: usize = 4;
 /// Most single numbers that are combined.
 const NUMBERS: usize = 48;
 
+/// The same of the model at hand: a lattice that is written out has more.
+fn numbers() -> usize {
+    NUMBERS.saturating_mul(usize::try_from(crate::work::times()).unwrap_or(1))
+}
+
 /// Sets of configurations that the action couples, in order of declaration.
 pub(super) fn components(x: &Inputs) -> Vec<Vec<usize>> {
     let count = x.spec.configurations.len();
@@ -266,7 +271,7 @@ impl<'a, 's> Search<'a, 's> {
         let mut terms: Vec<Vec<Term>> = Vec::new();
         for reading in self.readings.iter().filter(|r| r.is_number()) {
             for column in self.columns(reading.sort).into_iter().flatten() {
-                if column.iter().any(|m| m.spanned) || terms.len() >= NUMBERS {
+                if column.iter().any(|m| m.spanned) || terms.len() >= numbers() {
                     continue;
                 }
                 let term = |motion| Term {

@@ -50,6 +50,8 @@ pub enum Topic {
     NotSmooth,
     /// An assumption that every choice of the parameters meets, or none.
     Assumption,
+    /// A term of a lattice that holds one neighbour and not the site itself.
+    OneNeighbour,
 }
 
 impl Topic {
@@ -64,6 +66,7 @@ impl Topic {
             Topic::ConstantTerm => "constant-term",
             Topic::NotSmooth => "not-smooth",
             Topic::Assumption => "assumption",
+            Topic::OneNeighbour => "one-neighbour",
         }
     }
 }
