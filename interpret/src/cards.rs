@@ -2,11 +2,13 @@
 //! each open model has a number, and each number a function.
 
 use crate::Refused;
-use crate::opened::Opened;
+use crate::opened::{Opened, Text};
 use clebsch::card::{Card, Invariant, Open, OpenError, Settings, Trajectory};
 use clebsch_core::derive::warnings::Warning;
 use clebsch_core::lattice::{Choice, Lattice};
-use clebsch_core::{Derivation, derive_source, document, pipeline};
+use clebsch_core::{document, pipeline};
+use std::cell::RefCell;
+use std::rc::Rc;
 use std::sync::{PoisonError, RwLock};
 
 /// What is open, by number; each stays for as long as the process, as its card may.
@@ -68,12 +70,12 @@ pub fn card(source: &str) -> Result<Card, Refused> {
 /// # Errors
 /// As [`card`].
 pub fn card_and_warnings(source: &str) -> Result<(Card, Vec<Warning>), Refused> {
-    let d = derive_source(source).map_err(Refused::Model)?;
+    let text = derived(source)?;
     let card = match known(source, None) {
         Some(card) => card,
-        None => opened_now(&d, source, None)?,
+        None => opened_now(&text, source, None)?,
     };
-    Ok((card, d.warnings))
+    Ok((card, text.derivation.warnings.clone()))
 }
 
 /// The card of a model with labels, for so many sites and these ends, and what is hardly meant.
@@ -87,13 +89,15 @@ pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warni
     let (unfolded, d) = derived.map_err(Refused::Model)?;
     // What is open is found by its text; here the choice is part of it.
     let key = format!("{source}\n{choice:?}");
+    let text = Text::of_derivation(d)?;
     let card = match known(&key, None) {
         Some(card) => card,
-        None => opened_now(&d, &key, None)?,
+        None => opened_now(&text, &key, None)?,
     };
+    let d = &text.derivation;
     let mut warnings = unfolded.warnings.clone();
     warnings.extend(d.warnings.iter().cloned());
-    let words = document::card_words(&lattice, choice, unfolded, &d, card.solver);
+    let words = document::card_words(&lattice, choice, unfolded, d, card.solver);
     let named = card.invariants.iter().zip(&words.invariants);
     let invariants = named.map(|(own, (name, formula))| Invariant {
         name: crate::text(name),
@@ -116,8 +120,29 @@ fn at_sizes(source: &str, sizes: Option<&[usize]>) -> Result<Card, Refused> {
     if let Some(card) = known(source, sizes) {
         return Ok(card);
     }
-    let d = derive_source(source).map_err(Refused::Model)?;
-    opened_now(&d, source, sizes)
+    opened_now(&*derived(source)?, source, sizes)
+}
+
+thread_local! {
+    /// The texts that this thread has derived: other sizes of a model are of the same program.
+    static DERIVED: RefCell<Vec<(String, Rc<Text>)>> = const { RefCell::new(Vec::new()) };
+}
+
+/// What is made of a text, once for all sizes.
+fn derived(source: &str) -> Result<Rc<Text>, Refused> {
+    let known = DERIVED.with_borrow(|all| {
+        let found = all.iter().find(|(text, _)| text == source);
+        found.map(|(_, made)| made.clone())
+    });
+    if let Some(known) = known {
+        return Ok(known);
+    }
+    let made = Rc::new(Text::of(source)?);
+    DERIVED.with_borrow_mut(|all| {
+        all.truncate(FUNCTIONS.len() - 1);
+        all.insert(0, (source.to_owned(), made.clone()));
+    });
+    Ok(made)
 }
 
 /// The card of a model that is open.
@@ -128,8 +153,8 @@ fn known(source: &str, sizes: Option<&[usize]>) -> Option<Card> {
     found.and_then(|m| m.card)
 }
 
-fn opened_now(d: &Derivation, source: &str, sizes: Option<&[usize]>) -> Result<Card, Refused> {
-    let mut model = Opened::read(d, source, sizes)?;
+fn opened_now(text: &Text, source: &str, sizes: Option<&[usize]>) -> Result<Card, Refused> {
+    let mut model = Opened::read(text, source, sizes)?;
     let mut list = OPEN.write().unwrap_or_else(PoisonError::into_inner);
     let most = FUNCTIONS.len();
     let (open, sized) = *FUNCTIONS.get(list.len()).ok_or(Refused::TooMany { most })?;

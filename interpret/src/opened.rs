@@ -1,13 +1,13 @@
 //! A model read from its text: the operations of everything that a trajectory asks for.
 
+use crate::Refused;
 use crate::code::{Places, Routine};
 use crate::constants::Constants;
 use crate::lower::{Shared, entry};
 use crate::program::{Program, type_name};
 use crate::value::{Layout, Value};
-use crate::{Refused, text};
 use clebsch::card::{Card, OpenError};
-use clebsch_core::{Derivation, emit};
+use clebsch_core::{Derivation, derive_source, emit};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -94,6 +94,39 @@ pub struct Opened {
     pub places: usize,
 }
 
+/// A text derived, and the program that is emitted for it: the same for all sizes.
+pub struct Text {
+    /// The derivation.
+    pub derivation: Derivation,
+    /// The emitted items.
+    pub program: Program,
+}
+
+impl Text {
+    /// Derives a text.
+    ///
+    /// # Errors
+    /// [`Refused`] for what is no model, or has no stepper.
+    pub fn of(source: &str) -> Result<Self, Refused> {
+        Self::of_derivation(derive_source(source).map_err(Refused::Model)?)
+    }
+
+    /// The program of what is derived.
+    ///
+    /// # Errors
+    /// [`Refused`] for what has no stepper.
+    pub fn of_derivation(derivation: Derivation) -> Result<Self, Refused> {
+        if let Some(refused) = emit::refusal_of_read(&derivation) {
+            return Err(Refused::Model(refused.into()));
+        }
+        let program = Program::read(emit::emit(&derivation, false))?;
+        Ok(Text {
+            derivation,
+            program,
+        })
+    }
+}
+
 fn never(
     _: &[Vec<f64>],
     _: &[Vec<f64>],
@@ -106,17 +139,17 @@ impl Opened {
     /// Reads a derived model, at given sizes or those that are taken where none are named.
     ///
     /// # Errors
-    /// [`Refused`] for what is no model, and for models that need a build.
-    pub fn read(d: &Derivation, source: &str, sizes: Option<&[usize]>) -> Result<Self, Refused> {
-        if let Some(refused) = emit::refusal_of_read(d) {
-            return Err(Refused::Model(refused.into()));
-        }
+    /// [`Refused`] for models that need a build.
+    pub fn read(text: &Text, source: &str, sizes: Option<&[usize]>) -> Result<Self, Refused> {
+        let Text {
+            derivation: d,
+            program,
+        } = text;
         let name = d.spec.name.clone();
-        let program = Program::read(emit::emit(d, false))?;
-        let (values, chosen, is_default) = chosen_sizes(&program, &name, sizes)?;
-        let constants = Constants::new(&program, &name, &values);
+        let (values, chosen, is_default) = chosen_sizes(program, &name, sizes)?;
+        let constants = Constants::new(program, &name, &values);
         let card = constants.card(never, |_| None)?;
-        let mut shared = Shared::new(&program, values.clone());
+        let mut shared = Shared::new(program, values.clone());
         let functions = functions(&mut shared, &name).map_err(|refused| match refused {
             // What is not known yet belongs to a method that is not.
             Refused::Construct(what) if has_newton(d) => Refused::Method {
@@ -142,9 +175,9 @@ impl Opened {
         let places = all.into_iter().flatten().map(|r| r.places).max();
         let parameters = given(&mut shared, &format!("{name}Parameters"))?;
         let initial = given(&mut shared, &format!("{name}Initial"))?;
-        let node = shared.name(&node_name(&program, &name));
+        let node = shared.name(&node_name(program, &name));
         Ok(Opened {
-            source: text(source),
+            source: crate::text(source),
             sizes: chosen,
             is_default,
             card: Some(card),
@@ -215,7 +248,7 @@ fn given(shared: &mut Shared<'_, f64>, name: &str) -> Result<(Arc<Layout>, Vec<R
         match type_name(ty).unwrap_or_default().as_str() {
             "T" | "f64" => Read::Number,
             "SMatrix" | "SVector" => Read::Matrix,
-            other => Read::Of(text(other)),
+            other => Read::Of(crate::text(other)),
         }
     });
     Ok((layout, reads.collect()))

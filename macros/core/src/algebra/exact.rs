@@ -44,6 +44,7 @@ impl Matrix {
         Matrix::from_fn(n, n, |i, j| u64::from(i == j))
     }
 
+    #[inline(always)]
     pub(crate) fn at(&self, i: usize, j: usize) -> u64 {
         self.data.get(i * self.cols + j).copied().unwrap_or(0)
     }

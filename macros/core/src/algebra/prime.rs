@@ -5,6 +5,7 @@ use super::rational::Rational;
 
 pub(super) const PRIME: u64 = (1 << 61) - 1;
 
+#[inline(always)]
 pub(crate) fn add(a: u64, b: u64) -> u64 {
     let sum = a + b;
     if sum >= PRIME { sum - PRIME } else { sum }
@@ -14,6 +15,7 @@ pub(crate) fn negate(a: u64) -> u64 {
     if a == 0 { 0 } else { PRIME - a }
 }
 
+#[inline(always)]
 pub(crate) fn mul(a: u64, b: u64) -> u64 {
     let wide = u128::from(a) * u128::from(b);
     // 2^61 is 1 modulo the prime: the high part is added to the low one.
