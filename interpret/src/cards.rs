@@ -40,7 +40,7 @@ fn sized_at<const I: usize>(sizes: &[usize]) -> Option<Card> {
     let model = opened(I)?;
     let source = model.source;
     match model.sizes == sizes {
-        true => model.card,
+        true => Some(model.card),
         false => at_sizes(source, Some(sizes)).ok(),
     }
 }
@@ -150,7 +150,7 @@ fn known(source: &str, sizes: Option<&[usize]>) -> Option<Card> {
     let list = OPEN.read().unwrap_or_else(PoisonError::into_inner);
     let same = |m: &Opened| sizes.map_or(m.is_default, |sizes| m.sizes == sizes);
     let found = list.iter().find(|m| m.source == source && same(m));
-    found.and_then(|m| m.card)
+    found.map(|m| m.card)
 }
 
 fn opened_now(text: &Text, source: &str, sizes: Option<&[usize]>) -> Result<Card, Refused> {
@@ -158,12 +158,8 @@ fn opened_now(text: &Text, source: &str, sizes: Option<&[usize]>) -> Result<Card
     let mut list = OPEN.write().unwrap_or_else(PoisonError::into_inner);
     let most = FUNCTIONS.len();
     let (open, sized) = *FUNCTIONS.get(list.len()).ok_or(Refused::TooMany { most })?;
-    let card = Card {
-        open,
-        sized,
-        ..model.card.ok_or(Refused::TooMany { most })?
-    };
-    model.card = Some(card);
+    (model.card.open, model.card.sized) = (open, sized);
+    let card = model.card;
     list.push(Box::leak(Box::new(model)));
     Ok(card)
 }

@@ -81,7 +81,7 @@ pub struct Opened {
     /// Whether those are the ones taken where none are named.
     pub is_default: bool,
     /// The card; its functions are those of the number that the model gets.
-    pub card: Option<Card>,
+    pub card: Card,
     /// The functions.
     pub functions: Functions,
     /// The struct of the parameters.
@@ -180,7 +180,7 @@ impl Opened {
             source: crate::text(source),
             sizes: chosen,
             is_default,
-            card: Some(card),
+            card,
             functions,
             parameters,
             initial,

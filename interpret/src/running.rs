@@ -7,10 +7,7 @@ use crate::packed::Packed;
 use crate::value::{Frame, Kept, Layout, Struct, Value};
 use clebsch::card::{Card, Field, OpenError, Settings, Trajectory, chosen_solver};
 use clebsch::emitted as e;
-use clebsch::integrate::{
-    Composition, CompositionOrder, Residual, Reversible, Stepper, preprocessing_order,
-    uncompensated,
-};
+use clebsch::integrate::{Composition, Offer, Residual, Reversible, Stepper, Way, counted};
 use clebsch::kinetic::KineticWarning;
 use clebsch::{ParameterError, StartError, StepError, validate};
 use std::cell::RefCell;
@@ -52,23 +49,8 @@ impl Opened {
         initial: &[Vec<f64>],
         settings: Settings,
     ) -> Result<Box<dyn Trajectory>, OpenError> {
-        let card = self
-            .card
-            .as_ref()
-            .ok_or(OpenError::Solver { offered: &[] })?;
-        let f = &self.functions;
-        for (field, expected, found) in [
-            ("parameters", card.parameters.len(), parameters.len()),
-            ("initial values", card.initial.len(), initial.len()),
-        ] {
-            if expected != found {
-                return Err(OpenError::Count {
-                    field,
-                    expected,
-                    found,
-                });
-            }
-        }
+        let (card, f) = (&self.card, &self.functions);
+        counted(card, parameters, initial)?;
         let mut places = self.places(Value::Unit);
         let given = collected(&self.parameters, card.parameters, parameters)?;
         put(&mut places, at::GIVEN, given);
@@ -94,7 +76,7 @@ impl Opened {
             .map_err(|e| e.beside(kinetic))?;
         Ok(Box::new(Running {
             opened: self,
-            card: self.card.as_ref().map_or(card, |c| c),
+            card,
             places: RefCell::new(places),
             spare: Value::Unit,
             steps,
@@ -118,36 +100,25 @@ impl Opened {
             let model = run(with_solver, places).map_err(Failure::open)?;
             put(places, at::MODEL, model);
         }
-        if card.preprocessed {
-            let order = preprocessing_order(settings, card.orders)?;
-            validate::positive_step(settings.h)?;
-            self.prepare(places, settings.h, Value::Order(order))?;
-            if let Some(compensated) = f.compensated.as_ref().filter(|_| settings.compensated)
-                && order != e::Order::Two
-            {
-                let work = run(compensated, places).map_err(Failure::open)?;
-                put(places, at::WORK, work);
-            }
-            return Ok(match order {
-                e::Order::Two => Steps::Plain,
-                _ => Steps::Modified,
-            });
-        }
-        let composed = settings.order.and_then(CompositionOrder::of_number);
-        let Some(order) = composed.filter(|_| card.reversible) else {
-            if let Some(asked) = settings.order.filter(|o| card.orders.first() != Some(o)) {
-                return Err(OpenError::Order {
-                    asked,
-                    offered: card.orders,
+        let way = Way::of(Offer::of(card), settings, card.orders)?;
+        let order = match way {
+            Way::Composed(order) => order,
+            Way::Plain | Way::Modified(..) => {
+                let choice = match card.preprocessed {
+                    true => Value::Order(way.moments()),
+                    false => self.usual(),
+                };
+                self.prepare(places, settings.h, choice)?;
+                if let (Way::Modified(_, true), Some(compensated)) = (way, &f.compensated) {
+                    let work = run(compensated, places).map_err(Failure::open)?;
+                    put(places, at::WORK, work);
+                }
+                return Ok(match way {
+                    Way::Modified(..) => Steps::Modified,
+                    _ => Steps::Plain,
                 });
             }
-            uncompensated(settings, card.orders)?;
-            validate::positive_step(settings.h)?;
-            self.prepare(places, settings.h, self.usual())?;
-            return Ok(Steps::Plain);
         };
-        uncompensated(settings, card.orders)?;
-        validate::positive_step(settings.h)?;
         let of = |at: usize| places.get(at).cloned().unwrap_or(Value::Unit);
         let model = Model {
             opened: self,

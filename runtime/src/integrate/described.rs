@@ -1,7 +1,7 @@
 //! One trajectory of any model, its type hidden: what lists of numbers start, and what a card names.
 //! Takes what an emitted model says of itself; gives what the command line and the tests run.
 
-use super::{Model, Steps};
+use super::{Model, Steps, counted};
 use crate::StepError;
 use crate::card::{Card, OpenError, Settings, Trajectory};
 use crate::kinetic::KineticWarning;
@@ -71,18 +71,7 @@ pub fn open<M: Described>(
     settings: Settings,
 ) -> Result<Box<dyn Trajectory>, OpenError> {
     let card = M::card();
-    for (field, expected, found) in [
-        ("parameters", card.parameters.len(), parameters.len()),
-        ("initial values", card.initial.len(), initial.len()),
-    ] {
-        if expected != found {
-            return Err(OpenError::Count {
-                field,
-                expected,
-                found,
-            });
-        }
-    }
+    counted(card, parameters, initial)?;
     let (model, initial) = M::read(parameters, initial)?;
     let state = model.begin(initial)?;
     // Judged before the first step is tried: it may be why that is refused.

@@ -13,6 +13,7 @@ mod side_by_side;
 mod stepper;
 mod steps;
 mod stop;
+mod way;
 
 pub use composition::{Composition, CompositionOrder};
 pub use described::{Described, only_size, open};
@@ -23,5 +24,6 @@ pub use residual::Residual;
 pub use run::{LargestResidual, Observer, Summary, run, run_until_stopped};
 pub use side_by_side::{Moving, SideBySide, advance_side_by_side};
 pub use stepper::{Reversible, Stepper};
-pub use steps::{Steps, preprocessing_order, uncompensated};
+pub use steps::Steps;
 pub use stop::{NotFinite, RunError, Watched};
+pub use way::{Offer, Way, counted};

@@ -1,44 +1,10 @@
 //! The steps of one trajectory, plain or composed, chosen when it is started.
 //! Takes a model, a state and the settings; advances the state.
 
-use super::{Composition, CompositionOrder, Model, Reversible, Stepper};
+use super::{Composition, Model, Offer, Reversible, Stepper, Way};
+use crate::StepError;
 use crate::card::{OpenError, Settings};
 use crate::solvers::moser_veselov::Order;
-use crate::{StepError, validate};
-
-/// The order of modified moments that the settings ask for; an error where there is none, or it is to be
-/// compensated and cannot be.
-///
-/// # Errors
-/// [`OpenError::Order`] and [`OpenError::Compensation`].
-pub fn preprocessing_order(settings: Settings, orders: &'static [u32]) -> Result<Order, OpenError> {
-    let asked = settings.order.unwrap_or(2);
-    let order = Order::of_number(asked).ok_or(OpenError::Order {
-        asked,
-        offered: orders,
-    })?;
-    if settings.compensated && !Settings::COMPENSATED.contains(&asked) {
-        return Err(OpenError::Compensation {
-            order: asked,
-            preprocessed: true,
-        });
-    }
-    Ok(order)
-}
-
-/// Plain and composed steps are not compensated.
-///
-/// # Errors
-/// [`OpenError::Compensation`] where that is asked for.
-pub fn uncompensated(settings: Settings, orders: &'static [u32]) -> Result<(), OpenError> {
-    match settings.compensated {
-        false => Ok(()),
-        true => Err(OpenError::Compensation {
-            order: settings.order.or(orders.first().copied()).unwrap_or(2),
-            preprocessed: false,
-        }),
-    }
-}
 
 /// What makes the steps of one trajectory.
 #[derive(Clone, Debug)]
@@ -62,14 +28,7 @@ impl<S: Stepper<Scalar = f64>> Steps<S> {
         settings: Settings,
         orders: &'static [u32],
     ) -> Result<Self, OpenError> {
-        if let Some(asked) = settings.order.filter(|o| orders.first() != Some(o)) {
-            return Err(OpenError::Order {
-                asked,
-                offered: orders,
-            });
-        }
-        uncompensated(settings, orders)?;
-        validate::positive_step(settings.h)?;
+        Way::of(Offer::Plain, settings, orders)?;
         Ok(Self::Plain(model.workspace(state, settings.h)?))
     }
 
@@ -113,13 +72,12 @@ impl<S: Model<Scalar = f64, Choice = Order>> Steps<S> {
         settings: Settings,
         orders: &'static [u32],
     ) -> Result<Self, OpenError> {
-        let order = preprocessing_order(settings, orders)?;
-        validate::positive_step(settings.h)?;
-        let work = model.prepare(state, settings.h, order)?;
-        Ok(match (order, settings.compensated) {
-            (Order::Two, _) => Self::Plain(work),
-            (_, true) => Self::Modified(S::compensated(work)),
-            (_, false) => Self::Modified(work),
+        let way = Way::of(Offer::Modified, settings, orders)?;
+        let work = model.prepare(state, settings.h, way.moments())?;
+        Ok(match way {
+            Way::Modified(_, true) => Self::Modified(S::compensated(work)),
+            Way::Modified(_, false) => Self::Modified(work),
+            Way::Plain | Way::Composed(_) => Self::Plain(work),
         })
     }
 }
@@ -135,13 +93,11 @@ impl<S: Reversible<Scalar = f64>> Steps<S> {
         settings: Settings,
         orders: &'static [u32],
     ) -> Result<Self, OpenError> {
-        let composed = settings.order.and_then(CompositionOrder::of_number);
-        let Some(order) = composed else {
-            return Self::plain(model, state, settings, orders);
-        };
-        uncompensated(settings, orders)?;
-        validate::positive_step(settings.h)?;
-        let composition = Composition::start(model, state, settings.h, order)?;
-        Ok(Self::Composed(composition))
+        Ok(match Way::of(Offer::Composed, settings, orders)? {
+            Way::Composed(order) => {
+                Self::Composed(Composition::start(model, state, settings.h, order)?)
+            }
+            Way::Plain | Way::Modified(..) => Self::Plain(model.workspace(state, settings.h)?),
+        })
     }
 }

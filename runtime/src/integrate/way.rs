@@ -1,0 +1,138 @@
+//! How the steps of a trajectory are made, decided from the settings and what a model offers; the same for
+//! models that are built and those that are read.
+//! Takes the settings; gives the way, or the error that says what is offered.
+
+use super::CompositionOrder;
+use crate::card::{Card, OpenError, Settings};
+use crate::solvers::moser_veselov::Order;
+use crate::validate;
+
+/// Which steps a model has besides its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Offer {
+    /// None.
+    Plain,
+    /// Its own with modified moments.
+    Modified,
+    /// Several of its own composed.
+    Composed,
+}
+
+impl Offer {
+    /// That of a model with this card.
+    #[must_use]
+    pub fn of(card: &Card) -> Self {
+        match (card.preprocessed, card.reversible) {
+            (true, _) => Self::Modified,
+            (false, true) => Self::Composed,
+            (false, false) => Self::Plain,
+        }
+    }
+}
+
+/// How steps are made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Way {
+    /// One step of the model each.
+    Plain,
+    /// One step of the model each, with moments modified for this order, compensated or not.
+    Modified(Order, bool),
+    /// Several of the model, to this order.
+    Composed(CompositionOrder),
+}
+
+impl Way {
+    /// The one that the settings ask for, of a model with these orders.
+    ///
+    /// # Errors
+    /// [`OpenError`] for an order that is not offered, a compensation where there is none, or a step that is
+    /// not positive.
+    pub fn of(offer: Offer, settings: Settings, orders: &'static [u32]) -> Result<Self, OpenError> {
+        let composed = settings.order.and_then(CompositionOrder::of_number);
+        let way = match (offer, composed) {
+            (Offer::Modified, _) => {
+                let order = modified(settings, orders)?;
+                match order {
+                    Order::Two => Self::Plain,
+                    _ => Self::Modified(order, settings.compensated),
+                }
+            }
+            (Offer::Composed, Some(order)) => {
+                uncompensated(settings, orders)?;
+                Self::Composed(order)
+            }
+            _ => {
+                if let Some(asked) = settings.order.filter(|o| orders.first() != Some(o)) {
+                    return Err(OpenError::Order {
+                        asked,
+                        offered: orders,
+                    });
+                }
+                uncompensated(settings, orders)?;
+                Self::Plain
+            }
+        };
+        validate::positive_step(settings.h)?;
+        Ok(way)
+    }
+
+    /// The order of the moments.
+    #[must_use]
+    pub fn moments(self) -> Order {
+        match self {
+            Self::Modified(order, _) => order,
+            Self::Plain | Self::Composed(_) => Order::Two,
+        }
+    }
+}
+
+/// The order of modified moments that is asked for.
+fn modified(settings: Settings, orders: &'static [u32]) -> Result<Order, OpenError> {
+    let asked = settings.order.unwrap_or(2);
+    let order = Order::of_number(asked).ok_or(OpenError::Order {
+        asked,
+        offered: orders,
+    })?;
+    match settings.compensated && !Settings::COMPENSATED.contains(&asked) {
+        true => Err(OpenError::Compensation {
+            order: asked,
+            preprocessed: true,
+        }),
+        false => Ok(order),
+    }
+}
+
+/// Plain and composed steps are not compensated.
+fn uncompensated(settings: Settings, orders: &'static [u32]) -> Result<(), OpenError> {
+    match settings.compensated {
+        false => Ok(()),
+        true => Err(OpenError::Compensation {
+            order: settings.order.or(orders.first().copied()).unwrap_or(2),
+            preprocessed: false,
+        }),
+    }
+}
+
+/// Whether there are as many values as a card has fields.
+///
+/// # Errors
+/// [`OpenError::Count`] where there are not.
+pub fn counted(
+    card: &Card,
+    parameters: &[Vec<f64>],
+    initial: &[Vec<f64>],
+) -> Result<(), OpenError> {
+    for (field, expected, found) in [
+        ("parameters", card.parameters.len(), parameters.len()),
+        ("initial values", card.initial.len(), initial.len()),
+    ] {
+        if expected != found {
+            return Err(OpenError::Count {
+                field,
+                expected,
+                found,
+            });
+        }
+    }
+    Ok(())
+}
