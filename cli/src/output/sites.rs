@@ -19,6 +19,8 @@ pub(crate) struct AtSites<'a> {
     pub field: &'a Field,
     /// Whether a momentum of its own shape stands behind it: it is a field.
     pub moves: bool,
+    /// Whether it grows once around a ring.
+    pub grows: bool,
     /// The sites with their columns.
     pub members: Vec<(usize, Range<usize>)>,
 }
@@ -59,6 +61,7 @@ pub(crate) fn at_sites(card: &Card) -> Vec<AtSites<'_>> {
                     index: label.map_or_else(String::new, |l| l.index.text.clone()),
                     field,
                     moves: behind.is_some_and(|f| f.kind == clebsch::card::Kind::FieldMomentum),
+                    grows: own.offset.is_some(),
                     members: vec![(site, columns)],
                 });
             }

@@ -61,7 +61,7 @@ fn panel(q: &AtSites<'_>, component: usize, record: &Record) -> Panel {
         Kind::BodyMomentum | Kind::SpatialMomentum | Kind::FieldMomentum
     );
     // Of a place what is seen is how far it has moved.
-    let change = q.moves && !momentum;
+    let change = q.moves && !momentum && (q.grows || q.field.count() > 1);
     let rows = q
         .members
         .iter()
