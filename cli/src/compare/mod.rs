@@ -35,7 +35,9 @@ const FILES: [&str; 3] = ["comparison.csv", "comparison.json", "comparison.svg"]
 pub(crate) struct Comparison {
     /// What the errors are measured against, and how good it is known to be.
     pub reference: String,
-    /// The generated stepper first, the reference last.
+    /// How the model's own stepper came about.
+    pub made: Made,
+    /// The model's own stepper first, the reference last.
     pub scores: Vec<Score>,
 }
 
@@ -62,7 +64,11 @@ pub fn compare(
     let staging = target
         .map(|target| Staging::new(target, matches.get_flag("force"), &FILES))
         .transpose()?;
-    let done = against_all(card, &plan, streams.progress)?;
+    let made = match gallery.find(model).is_ok() {
+        true => Made::Built,
+        false => Made::Read,
+    };
+    let done = against_all(card, &plan, made, streams.progress)?;
     let mut object = comparison_json(card, &plan, &done);
     let stopped = done.scores.first().and_then(|own| own.stopped.clone());
     let code = if stopped.is_some() { FAILED } else { DONE };
@@ -101,11 +107,35 @@ pub fn compare(
     Ok(code)
 }
 
+/// How the stepper of a model came about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Made {
+    /// It was generated as Rust and compiled.
+    Built,
+    /// It was read from a file and is executed.
+    Read,
+}
+
+impl Made {
+    /// What tables and files call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Built => "generated",
+            Self::Read => "interpreted",
+        }
+    }
+}
+
 /// Compares everything there is for the model.
 ///
 /// # Errors
-/// Those of the generated stepper.
-pub(crate) fn against_all(card: &Card, plan: &Plan, progress: bool) -> Result<Comparison, Failure> {
+/// Those of the model's own stepper.
+pub(crate) fn against_all(
+    card: &Card,
+    plan: &Plan,
+    made: Made,
+    progress: bool,
+) -> Result<Comparison, Failure> {
     // Other methods are written for the equations of the gallery, which another model of that name has not.
     let shipped = clebsch_models::find(card.kebab);
     let offers = match shipped.is_some_and(|e| e.card.fingerprint == card.fingerprint) {
@@ -150,7 +180,10 @@ pub(crate) fn against_all(card: &Card, plan: &Plan, progress: bool) -> Result<Co
                     None => failure,
                     Some((_, why)) => Failure::Failed(why.clone()),
                 })?;
-            let doc = "the generated stepper with steps h to h/8, extrapolated";
+            let doc = format!(
+                "the {} stepper with steps h to h/8, extrapolated",
+                made.name()
+            );
             let why = if others.is_empty() {
                 "no equations of this model were written by hand"
             } else {
@@ -160,7 +193,7 @@ pub(crate) fn against_all(card: &Card, plan: &Plan, progress: bool) -> Result<Co
                 "extrapolated: {why}; {doc}: it measures the step, not the equations; \
                  its last term is {accuracy:.0e}"
             );
-            (course, said, ("extrapolated", doc.to_owned(), None))
+            (course, said, ("extrapolated", doc, None))
         }
     };
     let score = |name: &str, doc: String, role, nanoseconds, course: Course| Score {
@@ -175,7 +208,7 @@ pub(crate) fn against_all(card: &Card, plan: &Plan, progress: bool) -> Result<Co
     let order = plan.order.unwrap_or(card.order);
     let doc = format!("the stepper derived from the model, order {order}");
     let time = clock::generated(card, plan);
-    let mut scores = vec![score("generated", doc, None, time, own)];
+    let mut scores = vec![score(made.name(), doc, None, time, own)];
     for &higher in card.orders.iter().filter(|higher| **higher > order) {
         let mut plan = plan.clone();
         plan.order = Some(higher);
@@ -187,7 +220,7 @@ pub(crate) fn against_all(card: &Card, plan: &Plan, progress: bool) -> Result<Co
             card.method_of_order(higher, plan.compensated)
         );
         scores.push(score(
-            &format!("generated-{higher}"),
+            &format!("{}-{higher}", made.name()),
             doc,
             None,
             time,
@@ -205,7 +238,7 @@ pub(crate) fn against_all(card: &Card, plan: &Plan, progress: bool) -> Result<Co
         let course = course_or_why(card, &plan);
         let time = clock::generated(card, &plan);
         let doc = format!("the same, solved by {name}");
-        let name = format!("generated-{name}");
+        let name = format!("{}-{name}", made.name());
         scores.push(score(&name, doc, None, time, course));
     }
     for (offer, course) in others {
@@ -218,6 +251,7 @@ pub(crate) fn against_all(card: &Card, plan: &Plan, progress: bool) -> Result<Co
     scores.push(score(name, doc, Some(Role::Reference), time, course));
     Ok(Comparison {
         reference: said,
+        made,
         scores,
     })
 }
@@ -287,7 +321,7 @@ fn comparison_json(card: &Card, plan: &Plan, done: &Comparison) -> Value {
         "every": plan.every,
         "arguments": plan.arguments,
         "reference": done.reference,
-        "methods": done.scores.iter().map(Score::json).collect::<Vec<_>>(),
+        "methods": done.scores.iter().map(|score| score.json(done.made)).collect::<Vec<_>>(),
     })
 }
 

@@ -130,7 +130,7 @@ pub(crate) fn drifts(card: &Card, record: &Record, scales: &[f64]) -> Vec<Curve>
 
 impl Score {
     /// The score for files and `--json`.
-    pub fn json(&self) -> Value {
+    pub fn json(&self, made: super::Made) -> Value {
         let curves = |curves: &[Curve]| -> Value {
             let pairs = curves.iter().map(|curve| {
                 let value = json!({"worst": curve.worst(), "last": curve.last()});
@@ -142,7 +142,7 @@ impl Score {
             "name": self.name,
             "doc": self.doc,
             "role": match self.role {
-                None => "generated",
+                None => made.name(),
                 Some(Role::Reference) => "reference",
                 Some(Role::ByHand) => "by hand",
                 Some(Role::Published) => "published",

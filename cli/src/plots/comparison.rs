@@ -32,9 +32,10 @@ pub(crate) fn comparison(card: &Card, plan: &Plan, done: &Comparison) -> Result<
             others
                 .enumerate()
                 .filter_map(|(stroke, score)| Some((stroke, score, score.errors.get(index)?))),
-            panels.is_empty(),
+            &|_| index == 0,
         ));
     }
+    let errors = !first.errors.is_empty();
     for (index, curve) in first.drifts.iter().enumerate() {
         panels.push(panel(
             &format!("drift of {}", curve.name),
@@ -43,7 +44,8 @@ pub(crate) fn comparison(card: &Card, plan: &Plan, done: &Comparison) -> Result<
                 .iter()
                 .enumerate()
                 .filter_map(|(stroke, score)| Some((stroke, score, score.drifts.get(index)?))),
-            panels.is_empty(),
+            // The reference has no curve among the errors.
+            &|score| index == 0 && (!errors || score.role == Some(Role::Reference)),
         ));
     }
     let figure = Figure {
@@ -72,23 +74,22 @@ fn panel<'a>(
     caption: &str,
     y_label: &str,
     entries: impl Iterator<Item = Entry<'a>>,
-    legend: bool,
+    legend: &dyn Fn(&Score) -> bool,
 ) -> Panel {
     let logarithm = |(time, value): (f64, f64)| (time, value.max(FLOOR).log10());
     let curves: Vec<Curve> = entries
         .map(|(stroke, score, curve)| Curve {
-            // One legend for all panels.
-            label: if legend {
-                score.name.to_owned()
-            } else {
-                String::new()
+            // One entry for all panels.
+            label: match legend(score) {
+                true => score.name.to_owned(),
+                false => String::new(),
             },
             note: None,
             points: reduce::envelope(&curve.points)
                 .into_iter()
                 .map(logarithm)
                 .collect(),
-            // It lies on the generated one: dashed, so that both are seen.
+            // It lies on the derived one: dashed, so that both are seen.
             stroke: match score.role {
                 Some(Role::ByHand) => Stroke::number(stroke).dashed(),
                 _ => Stroke::number(stroke),
@@ -100,10 +101,13 @@ fn panel<'a>(
         caption: caption.to_owned(),
         y_label: y_label.to_owned(),
         y: Axis::decades(&curves),
-        height: if legend {
-            230.max(50 + 17 * u32::try_from(curves.len()).unwrap_or(0))
-        } else {
-            210
+        height: match curves
+            .iter()
+            .filter(|curve| !curve.label.is_empty())
+            .count()
+        {
+            0 => 210,
+            entries => 230.max(50 + 17 * u32::try_from(entries).unwrap_or(0)),
         },
         curves,
     }

@@ -247,9 +247,10 @@ fn caption(field: &Field) -> String {
     }
 }
 
-/// The place of a component: `₂`, of a matrix `₂₁`.
+/// The place of a component: `₂`, of a matrix `₂₁`; a number has none.
 fn place(field: &Field, component: usize) -> String {
     match field.cols {
+        _ if field.count() == 1 => String::new(),
         0 | 1 => subscript(component + 1),
         cols => subscript(component / cols + 1) + &subscript(component % cols + 1),
     }

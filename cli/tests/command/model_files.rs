@@ -173,3 +173,78 @@ fn a_warning_of_the_derivation_is_told() {
     let run = on(&gallery, &["run", &file, "--steps", "10"]);
     assert_eq!((run.code, run.err), (0, derived.err));
 }
+
+#[test]
+fn a_comparison_of_a_file_says_what_it_measures_against() {
+    let folder = Folder::new("model-files-compared");
+    let gallery = Gallery::shipped();
+    let file = folder.write("beam.clebsch", OTHER);
+    let out = folder.path("out");
+    let done = on(
+        &gallery,
+        &["compare", &file, "--steps", "40", "--out", &out],
+    );
+    assert_eq!(done.code, 0, "{}", done.err);
+    let said =
+        "no equations of this model were written by hand; the interpreted stepper with steps";
+    assert!(done.out.contains(said), "{}", done.out);
+    assert!(done.out.contains("\ninterpreted "), "{}", done.out);
+    let read = |name: &str| std::fs::read_to_string(format!("{out}/{name}")).expect(name);
+    for text in [
+        done.out.clone(),
+        read("comparison.json"),
+        read("comparison.svg"),
+    ] {
+        assert!(!text.contains("generated"), "{text}");
+    }
+    // Every curve has its legend, once.
+    let svg = read("comparison.svg");
+    let entries = svg.lines().filter(|line| line.trim() == "extrapolated");
+    assert_eq!(entries.count(), 1, "{svg}");
+}
+
+#[test]
+fn numbers_are_drawn_by_their_names() {
+    let folder = Folder::new("model-files-numbers");
+    let gallery = Gallery::shipped();
+    let text = "model Pair { param k: Real; field a: Real; field b: Vec<2>; let u = next(a) - a; \
+        let v = next(b) - b; lagrangian = (u*u + dot(v, v))/(2*h) - (h/2)*k*(a*a + dot(b, b)); }";
+    let file = folder.write("pair.clebsch", text);
+    let out = folder.path("out");
+    let done = on(&gallery, &["run", &file, "--steps", "40", "--out", &out]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let plots = std::fs::read_dir(&out).expect("results");
+    let plots = plots.filter_map(|entry| {
+        let path = entry.ok()?.path();
+        let drawn = path.extension().is_some_and(|end| end == "svg");
+        drawn.then(|| std::fs::read_to_string(path).expect("a plot"))
+    });
+    let all = plots.collect::<String>();
+    assert!(all.contains("b₁") && all.contains("b₂"), "{all}");
+    assert!(!all.contains("a₁"), "{all}");
+}
+
+#[test]
+fn a_long_line_is_quoted_around_the_mistake() {
+    let folder = Folder::new("model-files-long");
+    let gallery = Gallery::shipped();
+    let terms: Vec<String> = (0..200).map(|i| format!("k*dot(x, x)/{}", i + 2)).collect();
+    let text = |end: &str| {
+        format!(
+            "model Long {{ param k: Real; field x: Vec<3>; let d = next(x) - x; lagrangian = \
+             dot(d, d)/(2*h) - h*({} + {end}); }}",
+            terms.join(" + ")
+        )
+    };
+    let file = folder.write("long.clebsch", &text("k*dot(y, x)"));
+    let done = on(&gallery, &["run", &file]);
+    assert_eq!(done.code, 2, "{}", done.err);
+    let lines: Vec<&str> = done.err.lines().collect();
+    let quoted = lines.iter().position(|line| line.starts_with("1 | ..."));
+    let quoted = quoted.unwrap_or_else(|| panic!("{}", done.err));
+    let (line, marks) = (lines[quoted], lines[quoted + 1]);
+    assert!(line.chars().count() < 230, "{line}");
+    // The mark stands under the name that is not known.
+    let at = marks.chars().position(|c| c == '^').expect("a mark");
+    assert_eq!(line.chars().nth(at), Some('y'), "{line}\n{marks}");
+}

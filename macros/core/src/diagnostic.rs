@@ -229,6 +229,10 @@ fn compile_error(place: Place, text: &str) -> TokenStream {
     head
 }
 
+/// How much of a line is quoted, in letters.
+#[cfg(feature = "locations")]
+const LONGEST: usize = 200;
+
 #[cfg(feature = "locations")]
 fn snippet(source: &str, file: &str, place: Place) -> String {
     let (start, end) = (place.first.start(), place.last.end());
@@ -247,17 +251,31 @@ fn snippet(source: &str, file: &str, place: Place) -> String {
             .saturating_sub(start.column)
             .max(1)
     };
+    // Of a very long line what stands around the place; it may be a whole model.
+    let length = line_text.chars().count();
+    let (from, shown) = match length > LONGEST {
+        true => {
+            let before = LONGEST.saturating_sub(width.min(LONGEST)) / 2;
+            let from = start.column.saturating_sub(before).min(length - LONGEST);
+            (from, LONGEST)
+        }
+        false => (0, length),
+    };
+    let before = if from > 0 { "..." } else { "" };
+    let behind = if from + shown < length { "..." } else { "" };
+    let part: String = line_text.chars().skip(from).take(shown).collect();
+    let column = start.column.saturating_sub(from);
+    let carets = width.min(shown.saturating_sub(column)).max(1);
     // Tabs are kept so that the caret stands under its token.
-    let lead: String = line_text
-        .chars()
-        .take(start.column)
+    let lead: String = (before.chars().chain(part.chars()))
+        .take(before.len() + column)
         .map(|c| if c == '\t' { '\t' } else { ' ' })
         .collect();
     format!(
-        "{pad}--> {file}:{}:{}\n{pad} |\n{number} | {line_text}\n{pad} | {lead}{}\n",
+        "{pad}--> {file}:{}:{}\n{pad} |\n{number} | {before}{part}{behind}\n{pad} | {lead}{}\n",
         start.line,
         start.column + 1,
-        "^".repeat(width)
+        "^".repeat(carets)
     )
 }
 
