@@ -2,6 +2,7 @@
 //! Takes a run, finished or stopped in the middle; gives the names of the files. Nothing in them depends on the time of day.
 
 mod csv;
+mod interrupted;
 mod names;
 mod npz;
 mod run_json;

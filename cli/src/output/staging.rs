@@ -7,9 +7,10 @@
 //! folder is made only if it is not there ([`fs::create_dir`]), and renamed only over an empty one. So
 //! of any number of runs into one folder one takes the name, and each of the others keeps its results.
 //!
-//! A run holds a lock on its hidden folder, which the system takes back however the run ends. The next run
-//! into the same place removes what runs that were killed left behind.
+//! A run that is interrupted removes its hidden folder. It holds a lock on it, which the system takes back however
+//! the run ends; the next run into the same place removes what runs that were killed left behind.
 
+use super::interrupted;
 use super::standing::{self, Standing};
 use crate::failure::Failure;
 use crate::plain::{Shown, shown};
@@ -64,6 +65,7 @@ impl Staging {
         staging.make().map_err(|error| {
             Failure::io(&format!("cannot make the folder {}", shown(target)), &error)
         })?;
+        interrupted::begin(&staging.hidden, &staging.created);
         Ok(staging)
     }
 
@@ -183,7 +185,7 @@ impl Staging {
     /// where.
     pub fn commit(mut self) -> Result<(), Failure> {
         // From here on the results are complete: whatever happens, they are not removed.
-        self.committed = true;
+        self.complete();
         let target = shown(&self.target);
         let earlier = match self.set_aside() {
             Ok(earlier) => earlier,
@@ -223,8 +225,14 @@ impl Staging {
             let target = shown(&self.target);
             return self.commit().map(|()| target);
         }
-        self.committed = true;
+        self.complete();
         Ok(self.beside(&self.hidden))
+    }
+
+    /// From here on the results are not removed.
+    fn complete(&mut self) {
+        self.committed = true;
+        interrupted::end(&self.hidden);
     }
 
     /// Moves what is to be replaced aside, if it is still what it was at the start. Gives where to, or
@@ -326,12 +334,7 @@ impl Drop for Staging {
         if self.committed {
             return;
         }
-        // Nothing can be done about errors here; the failure that led here is the one reported.
-        if !self.hidden.as_os_str().is_empty() {
-            let _ = fs::remove_dir_all(&self.hidden);
-        }
-        for parent in &self.created {
-            let _ = fs::remove_dir(parent);
-        }
+        interrupted::end(&self.hidden);
+        interrupted::remove(&self.hidden, &self.created);
     }
 }

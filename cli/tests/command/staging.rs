@@ -423,3 +423,40 @@ fn what_a_killed_run_left_behind_is_removed_by_the_next() {
         ]
     );
 }
+
+/// A run of the program itself that is sent a signal while it computes.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_leaves_nothing() {
+    use std::os::unix::process::ExitStatusExt;
+    use std::process::{Command, Stdio};
+    use std::time::{Duration, Instant};
+    for (signal, number) in [("-INT", 2), ("-TERM", 15)] {
+        let folder = Folder::new(&format!("interrupted{signal}"));
+        let out = folder.path("new/out");
+        let mut program = Command::new(env!("CARGO_BIN_EXE_clebsch"))
+            .args(["run", "heavy-top", "--steps", "2000000000"])
+            .args(["--every", "1000000", "--out", &out])
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("starts");
+        let hidden = || {
+            let list = fs::read_dir(folder.path("new"));
+            list.is_ok_and(|mut list| list.next().is_some())
+        };
+        let begun = Instant::now();
+        while !hidden() && begun.elapsed() < Duration::from_secs(20) {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        assert!(hidden(), "nothing was begun");
+        // The folder stands a moment before the signal is waited for.
+        std::thread::sleep(Duration::from_millis(300));
+        let id = program.id().to_string();
+        let sent = Command::new("kill").args([signal, &id]).status();
+        assert!(sent.expect("kill").success());
+        let status = program.wait().expect("ends");
+        assert_eq!(status.signal(), Some(number), "{status:?}");
+        assert!(folder.names().is_empty(), "{:?}", folder.names());
+    }
+}
