@@ -161,7 +161,7 @@ fn soliton_error(h: f64, steps: u64) -> f64 {
         let (q, _) = soliton(kappa, j as f64 - middle, time);
         (observed(&*t, &format!("q_{j}"))[0] - q).abs()
     });
-    errors.fold(0.0, f64::max)
+    clebsch::scalar::largest(errors)
 }
 
 #[test]
@@ -214,7 +214,7 @@ fn mode_error(ends: [&str; 2], shape: &dyn Fn(f64) -> f64) -> f64 {
         let exact = size * shape(wave * site) * swing;
         Some((observed(&*t, f.ascii)[0] - exact).abs() / size)
     });
-    errors.fold(0.0, f64::max)
+    clebsch::scalar::largest(errors)
 }
 
 #[test]

@@ -4,7 +4,7 @@
 mod segment;
 
 use crate::groups::{Additive, Group, Linear};
-use crate::linalg::{Dense, determinant, singular_ratio_of};
+use crate::linalg::{Dense, determinant, singular_ratio, singular_ratio_of};
 use crate::said::Plain;
 use crate::scalar::Real;
 use crate::solvers::largest_step::search_of;
@@ -206,7 +206,12 @@ pub fn invertible<T: Real, const N: usize>(
     if squares(&away).greatest() < NEAR && margin.least() > 0.0 {
         return Ok(());
     }
-    closely(configuration, &Dense::of(&v), &Dense::of(&end), h)
+    let lane_of = |lane: usize| {
+        let of = move |a: &SMatrix<T, N, N>| a.map(|x| x.lane(lane));
+        let share = segment::contact(&of(&v));
+        (share, move || singular_ratio(&of(&end)))
+    };
+    closely(configuration, h, T::LANES, lane_of)
 }
 
 /// The same of maps whose size is known when a model is read, given by their matrices.
@@ -235,7 +240,16 @@ pub fn invertible_of<T: Real>(
     if v.minus_one().squares().greatest() < NEAR && margin.least() > 0.0 {
         return Ok(());
     }
-    closely(configuration, &v, after, h)
+    let lane_of = |lane: usize| {
+        let of = move |a: &Dense<T>| Dense {
+            rows: a.rows,
+            cols: a.cols,
+            data: a.data.iter().map(|x| x.lane(lane)).collect::<Vec<f64>>(),
+        };
+        let share = segment::contact_of(&of(&v));
+        (share, move || singular_ratio_of(of(after).columns()))
+    };
+    closely(configuration, h, T::LANES, lane_of)
 }
 
 /// The same of a field whose values are square matrices, where a model takes its inverse or the logarithm
@@ -257,23 +271,19 @@ pub fn field_invertible<T: Real, const N: usize>(
 /// The same lane by lane, by the eigenvalues of the velocity and the singular values of the end.
 #[cold]
 #[inline(never)]
-fn closely<T: Real>(
+fn closely<T: Real, R: Fn() -> f64>(
     configuration: &'static str,
-    velocity: &Dense<T>,
-    end: &Dense<T>,
     h: T,
+    lanes: usize,
+    lane_of: impl Fn(usize) -> (Option<f64>, R),
 ) -> Result<(), Contact> {
-    for lane in 0..T::LANES {
-        let of = |a: &Dense<T>| Dense {
-            rows: a.rows,
-            cols: a.cols,
-            data: a.data.iter().map(|x| x.lane(lane)).collect::<Vec<f64>>(),
-        };
-        if let Some(share) = segment::contact(&of(velocity)) {
+    for lane in 0..lanes {
+        let (share, ratio) = lane_of(lane);
+        if let Some(share) = share {
             let met = Met::Singular { configuration };
             return Err(Contact::new(met, Some(share), h, lane));
         }
-        let ratio = singular_ratio_of(of(end).columns());
+        let ratio = ratio();
         // NaN is refused too.
         let enough = ratio >= LEAST_RATIO;
         if !enough {

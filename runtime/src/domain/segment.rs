@@ -5,7 +5,8 @@
 //! the elementary symmetric functions of the eigenvalues, each over its binomial coefficient. Where
 //! they are positive the polynomial is; halving the interval finds the first place where it is not.
 
-use crate::linalg::Dense;
+use crate::linalg::{Dense, determinant};
+use nalgebra::SMatrix;
 
 /// One more than the largest size of a map.
 const MOST: usize = 9;
@@ -23,13 +24,22 @@ const SHARPER: f64 = 1e-6;
 
 /// The first `s` from 0 to 1 at which the determinant is zero, or negative to rounding; also where
 /// it only touches zero.
-pub(super) fn contact(velocity: &Dense<f64>) -> Option<f64> {
-    let n = velocity.rows;
+pub(super) fn contact<const N: usize>(velocity: &SMatrix<f64, N, N>) -> Option<f64> {
+    by_minors(N, |k| symmetric(velocity, k))
+}
+
+/// The same of a matrix whose size is known when a model is read.
+pub(super) fn contact_of(velocity: &Dense<f64>) -> Option<f64> {
+    by_minors(velocity.rows, |k| symmetric_of(velocity, k))
+}
+
+/// The same by the sums of the principal minors of `k` rows.
+fn by_minors(n: usize, symmetric: impl Fn(usize) -> f64) -> Option<f64> {
     let mut coefficients = [0.0; MOST];
     let coefficients = coefficients.get_mut(..=n)?;
     let mut binomial = 1.0;
     for (k, c) in coefficients.iter_mut().enumerate() {
-        *c = symmetric(velocity, k) / binomial;
+        *c = symmetric(k) / binomial;
         binomial *= (n - k) as f64 / (k + 1) as f64;
     }
     // Sums of positive numbers lose nothing, however small.
@@ -47,7 +57,26 @@ pub(super) fn contact(velocity: &Dense<f64>) -> Option<f64> {
 }
 
 /// The sum of the principal minors of `k` rows.
-fn symmetric(a: &Dense<f64>, k: usize) -> f64 {
+fn symmetric<const N: usize>(a: &SMatrix<f64, N, N>, k: usize) -> f64 {
+    let mut sum = 0.0;
+    for rows in 0u32..1 << N {
+        if rows.count_ones() as usize != k {
+            continue;
+        }
+        let taken = |i: usize| rows >> i & 1 == 1;
+        // The other rows are those of the identity.
+        let minor = SMatrix::<f64, N, N>::from_fn(|i, j| match (taken(i) && taken(j), i == j) {
+            (true, _) => a[(i, j)],
+            (false, true) => 1.0,
+            (false, false) => 0.0,
+        });
+        sum += determinant(&minor);
+    }
+    sum
+}
+
+/// The same of a matrix whose size is known when a model is read.
+fn symmetric_of(a: &Dense<f64>, k: usize) -> f64 {
     let (n, mut sum) = (a.rows, 0.0);
     for rows in 0u32..1 << n {
         if rows.count_ones() as usize != k {
@@ -94,7 +123,9 @@ mod tests {
     use nalgebra::{Matrix2, Matrix3, Rotation3, SMatrix, Vector3};
 
     fn contact<const N: usize>(velocity: &SMatrix<f64, N, N>) -> Option<f64> {
-        super::contact(&Dense::of(velocity))
+        let found = super::contact(velocity);
+        assert_eq!(found, super::contact_of(&Dense::of(velocity)));
+        found
     }
 
     fn diagonal(a: f64, b: f64, c: f64) -> Matrix3<f64> {

@@ -8,23 +8,26 @@ use nalgebra::SMatrix;
 /// By one-sided Jacobi rotations, which find small singular values to their own rounding where the
 /// eigenvalues of `A^T A` would lose all below `1e-8` of the largest.
 pub fn singular_ratio<const N: usize>(a: &SMatrix<f64, N, N>) -> f64 {
-    singular_ratio_of(a.data.0.iter().map(|column| column.to_vec()).collect())
+    ratio(&mut a.data.0.clone())
 }
 
 /// The same of the columns of a matrix.
 pub fn singular_ratio_of(mut columns: Vec<Vec<f64>>) -> f64 {
-    if !columns.iter().flatten().all(|x| x.is_finite()) {
+    ratio(&mut columns)
+}
+
+fn ratio<C: AsRef<[f64]> + AsMut<[f64]> + Clone>(columns: &mut [C]) -> f64 {
+    let entries = || columns.iter().flat_map(|c| c.as_ref());
+    if !entries().all(|x| x.is_finite()) {
         return f64::NAN;
     }
     // A scale of one keeps squares from overflowing.
-    let largest = columns
-        .iter()
-        .flatten()
-        .fold(0.0, |m: f64, x| m.max(x.abs()));
+    let largest = entries().fold(0.0, |m: f64, x| m.max(x.abs()));
     if largest == 0.0 {
         return 0.0;
     }
-    columns.iter_mut().flatten().for_each(|x| *x /= largest);
+    let all = columns.iter_mut().flat_map(|c| c.as_mut());
+    all.for_each(|x| *x /= largest);
     let dot = |x: &[f64], y: &[f64]| -> f64 { x.iter().zip(y).map(|(x, y)| x * y).sum() };
     // Convergence is quadratic; five sweeps do for such sizes.
     for _ in 0..30 {
@@ -33,7 +36,8 @@ pub fn singular_ratio_of(mut columns: Vec<Vec<f64>>) -> f64 {
         for p in 0..count {
             for q in p + 1..count {
                 let (x, y) = (columns[p].clone(), columns[q].clone());
-                let (xx, yy, xy) = (dot(&x, &x), dot(&y, &y), dot(&x, &y));
+                let (x, y) = (x.as_ref(), y.as_ref());
+                let (xx, yy, xy) = (dot(x, x), dot(y, y), dot(x, y));
                 if xy.abs() <= f64::EPSILON * (xx * yy).sqrt() {
                     continue;
                 }
@@ -42,10 +46,10 @@ pub fn singular_ratio_of(mut columns: Vec<Vec<f64>>) -> f64 {
                 let tangent = slope.signum() / (slope.abs() + slope.hypot(1.0));
                 let cosine = 1.0 / tangent.hypot(1.0);
                 let sine = tangent * cosine;
-                for (u, (x, y)) in columns[p].iter_mut().zip(x.iter().zip(&y)) {
+                for (u, (x, y)) in columns[p].as_mut().iter_mut().zip(x.iter().zip(y)) {
                     *u = cosine * x - sine * y;
                 }
-                for (v, (x, y)) in columns[q].iter_mut().zip(x.iter().zip(&y)) {
+                for (v, (x, y)) in columns[q].as_mut().iter_mut().zip(x.iter().zip(y)) {
                     *v = sine * x + cosine * y;
                 }
             }
@@ -54,7 +58,7 @@ pub fn singular_ratio_of(mut columns: Vec<Vec<f64>>) -> f64 {
             break;
         }
     }
-    let lengths = columns.iter().map(|c| dot(c, c).sqrt());
+    let lengths = columns.iter().map(|c| dot(c.as_ref(), c.as_ref()).sqrt());
     let (least, most) = lengths.fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), x| {
         (a.min(x), b.max(x))
     });

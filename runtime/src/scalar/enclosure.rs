@@ -117,6 +117,36 @@ pub struct Bounded<L> {
     rest: f64,
 }
 
+impl<const K: usize> Bounded<[f64; K]> {
+    /// Adds a number times an exact one.
+    #[inline(always)]
+    pub(crate) fn add_times(&mut self, x: &Self, factor: f64) {
+        let term = x.middle * factor;
+        self.middle += term;
+        for (sum, x) in self.linear.iter_mut().zip(&x.linear) {
+            *sum += x * factor;
+        }
+        let size = factor.abs();
+        self.still += x.still * size;
+        self.rest += x.rest * size + UNIT * (term.abs() + self.middle.abs());
+    }
+
+    /// Adds the product of two numbers of which it is known how far the variables move them, see
+    /// [`moved`](Self::moved).
+    #[inline(always)]
+    pub(crate) fn add_product(&mut self, [x, y]: [&Self; 2], [x_moved, y_moved]: [f64; 2]) {
+        let (a, b) = (x.middle, y.middle);
+        self.middle += a * b;
+        for (sum, (x, y)) in self.linear.iter_mut().zip(x.linear.iter().zip(&y.linear)) {
+            *sum += x * b + y * a;
+        }
+        let [still, rest] =
+            spread_of_product([a, x.still, x.rest, x_moved], [b, y.still, y.rest, y_moved]);
+        self.still += still;
+        self.rest += rest + UNIT * self.middle.abs();
+    }
+}
+
 /// Numbers in bounds that share `K` variables.
 pub type Enclosure<const K: usize> = Bounded<[f64; K]>;
 

@@ -5,7 +5,6 @@
 mod any_size;
 mod bounds;
 mod certificate;
-mod curve;
 mod failure;
 mod lasting;
 mod node;
@@ -14,13 +13,14 @@ mod region;
 mod stage;
 
 pub use crate::scalar::{Affine, Bounded, Enclosure, swing_of};
-pub use any_size::{AnyNewton, AnySearch, NodeList, NodeValue, Settled};
+pub use any_size::{
+    AnyNewton, AnySearch, Bounds, Chart, Enclosed, Lane, NodeList, NodeValue, Parts, Settled,
+};
 pub use bounds::{
     AdditiveRegion, LinearRegion, MotionRegion, OrthogonalRegion, PlaneMotionRegion,
     QuaternionRegion, Region, RotationRegion,
 };
 pub use certificate::{Anchor, Certificate, Numbers, Purpose, Verdict};
-pub use curve::{Bounds, Chart, Enclosed, Lane, Parts};
 pub use failure::{NewtonError, NewtonFailure};
 pub use node::{NodeValues, Spread, Turn};
 pub use principal::{Care, Equations, Fold, Traced, trace};

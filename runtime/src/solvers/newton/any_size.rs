@@ -4,9 +4,16 @@
 //! bit.
 //! Takes a chart of the group, residuals and tangents; gives a converged element or an error.
 
-use super::curve::{Chart, Lane, Parts};
+mod curve;
+mod lasting;
+mod principal;
+mod region;
+mod stage;
+
+pub use curve::{Bounds, Chart, Enclosed, Lane, Parts};
+
 use super::node::Spread;
-use super::principal::{Care, Fold, Found, trace_lane};
+use super::principal::{Care, Fold};
 use super::{
     BOUND_ROUNDINGS, CONVERGED_ROUNDINGS, FORESIGHT, LAST_ATTEMPT, LATE, LEAST_SHARE,
     MOST_ITERATIONS, NewtonError, NewtonFailure, OLDEST_SCALE, OLDEST_TANGENT, POLISHED_ROUNDINGS,
@@ -16,6 +23,7 @@ use crate::linalg::{Dense, DenseFactors};
 use crate::scalar::Real;
 use crate::solvers::newton::certificate::{COMMON, DRIFT, LARGER, LASTS, PATIENCE, Purpose};
 use core::fmt::Debug;
+use principal::{Found, trace_lane};
 
 /// The rounding of plain numbers.
 const UNIT: f64 = <f64 as Real>::EPSILON;

@@ -2,52 +2,52 @@
 //! root.
 //! Takes the equations and the beginning of the curve; gives the lengths.
 
-use super::curve::Curve;
+use super::bounds::Region;
 use super::node::Spread;
-use super::principal::Found;
+use super::principal::{Equations, Traced};
 use super::region::Strain;
 use super::stage::{Stage, fits};
+use crate::groups::Group;
 
 /// How much larger than the velocity at hand the regions are.
 const TIMES: [f64; 5] = [1.5, 1.8, 2.4, 4.0, 8.0];
 
 /// Looks for the largest reach of at least `wanted`.
-pub(super) fn lasting(
-    curve: &dyn Curve,
-    rest: &Stage,
-    wanted: &[f64],
+pub(super) fn lasting<G, E, const D: usize, const K: usize>(
+    equations: &Equations<G, E, D, K>,
+    rest: &Stage<G, D>,
+    wanted: &[f64; D],
     everywhere: bool,
-) -> Option<Found> {
-    let times_all = |x: &[f64], times: f64| -> Vec<f64> { x.iter().map(|x| times * x).collect() };
-    let centre = curve.rest();
-    let strain = |radii: &[f64]| {
-        let tangent = curve.enclosed(Spread::HERE, centre, radii);
-        Strain::over(curve.parts(), rest.inverse(), &tangent)
+) -> Option<Traced<G, D>>
+where
+    G: Group<f64>,
+    E: Region<K, Centre = G>,
+{
+    let strain = |radii: &[f64; D]| {
+        let region = E::around(&G::identity(), radii, 0);
+        let tangent = (equations.enclosed)(Spread::HERE, &region);
+        Strain::over::<E, K>(rest.inverse(), &tangent, radii)
     };
-    let mut best: Option<Vec<f64>> = None;
+    let mut best: Option<[f64; D]> = None;
     for times in TIMES {
-        let radii = times_all(wanted, times);
+        let radii = wanted.map(|x| times * x);
         let whole = strain(&radii);
-        let half = strain(&times_all(&radii, 0.5));
+        let half = strain(&radii.map(|r| 0.5 * r));
         // Regular in the whole region: also where the velocity does not come.
         let away = whole.spread(&radii).map(|_| &whole);
         let next = away.and_then(|whole| {
             let back = everywhere.then_some(whole);
-            reach(&whole.mean(&half), back, &radii)
+            reach(&whole.mean(&half), back, &radii, G::PARTS.min(D))
         });
         // Larger as long as the reach grows.
-        let worse = match (&next, &best) {
-            (None, _) => true,
-            (Some(_), None) => false,
-            (Some(n), Some(b)) => b[0] >= n[0],
-        };
-        if worse && best.as_ref().is_some_and(|reach| fits(wanted, reach)) {
+        let worse = next.is_none_or(|n| best.is_some_and(|b| b[0] >= n[0]));
+        if worse && best.is_some_and(|reach| fits::<G, D>(wanted, &reach)) {
             break;
         }
         best = if worse { best } else { next };
     }
-    let reach = best.filter(|reach| fits(wanted, reach))?;
-    Some(Found::Principal {
+    let reach = best.filter(|reach| fits::<G, D>(wanted, reach))?;
+    Some(Traced::Principal {
         reach,
         spread: Spread::TURNED,
     })
@@ -62,14 +62,19 @@ pub(super) fn lasting(
 /// `(1 - τ) (1 - back)^-1 |x|`: no farther from rest than the smaller of the first and of `|c|` with
 /// the second, which is largest where both are the same. A region that serves at other nodes keeps
 /// the margin that this would take.
-fn reach(mean: &Strain, back: Option<&Strain>, radii: &[f64]) -> Option<Vec<f64>> {
+fn reach<const D: usize>(
+    mean: &Strain<D>,
+    back: Option<&Strain<D>>,
+    radii: &[f64; D],
+    parts: usize,
+) -> Option<[f64; D]> {
     let pulled = mean.pull(radii);
     let away = mean.spread(&pulled)?;
     let back = match back {
-        Some(strain) => strain.spread(&pulled)?.into_iter().map(Some).collect(),
-        None => vec![None; radii.len()],
+        Some(strain) => strain.spread(&pulled)?.map(Some),
+        None => [None; D],
     };
-    let triples = radii.iter().zip(away).zip(back);
+    let triples = radii.iter().zip(away).zip(back).take(parts);
     let share = triples.fold(1.0, |least: f64, ((r, away), back)| {
         let farthest = match back {
             Some(back) => away * (r + back) / (away + back),
@@ -77,5 +82,5 @@ fn reach(mean: &Strain, back: Option<&Strain>, radii: &[f64]) -> Option<Vec<f64>
         };
         least.min(r / farthest)
     });
-    (share > 0.0).then(|| radii.iter().map(|r| share * r).collect())
+    (share > 0.0).then(|| radii.map(|r| share * r))
 }

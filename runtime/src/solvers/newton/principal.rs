@@ -15,20 +15,18 @@
 //! bounds are too poor for a proof of that, the curve is followed in short stages without one.
 
 use super::bounds::Region;
-use super::curve::{Chart, Curve, Lane, Met, Parts, Point, in_lane_of};
 use super::lasting::lasting;
 use super::node::Spread;
-use super::stage::{MARGIN, Stage, fits};
+use super::stage::{MARGIN, Stage, fits, lengths};
 use crate::groups::Group;
 use crate::scalar::{Enclosure, largest};
-use core::fmt::Debug;
 use nalgebra::{SMatrix, SVector};
 
 /// Stages on the way; each leaves at most two thirds of what is left before a fold.
-const MOST_STAGES: usize = 1000;
+pub(super) const MOST_STAGES: usize = 1000;
 
 /// Stages that are proved: bounds so poor that more are needed take seconds.
-const MOST_PROOFS: usize = 64;
+pub(super) const MOST_PROOFS: usize = 64;
 
 /// What a step is worth that is looked at.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,22 +42,22 @@ pub struct Care {
 
 /// The shortest stage tried, as a part of the way: a root so close to a fold is not taken. Rounding
 /// decides there.
-const SHORTEST: f64 = 1e-9;
+pub(super) const SHORTEST: f64 = 1e-9;
 
 /// The strain aimed at over a stage: up to a fold each stage then leaves the same part of the way.
-const AIM: f64 = 0.65;
+pub(super) const AIM: f64 = 0.65;
 
 /// By how much one stage may be longer than the last.
-const LONGER: f64 = 4.0;
+pub(super) const LONGER: f64 = 4.0;
 
 /// What is left of a stage that was not accepted, at most and at least.
-const SHORTER: [f64; 2] = [0.8, 0.2];
+pub(super) const SHORTER: [f64; 2] = [0.8, 0.2];
 
 /// Where nothing moves, regions have this size.
-const LITTLE: f64 = 1e-6;
+pub(super) const LITTLE: f64 = 1e-6;
 
 /// The root of a stage stays off the edge of its region.
-const INNER: f64 = 0.99;
+pub(super) const INNER: f64 = 0.99;
 
 /// What was found out about a solution of one lane.
 #[derive(Clone, Copy, Debug)]
@@ -93,7 +91,7 @@ pub struct Fold {
 }
 
 impl Fold {
-    fn at(share: f64, fastest: usize) -> Self {
+    pub(super) fn at(share: f64, fastest: usize) -> Self {
         Self {
             share,
             fastest,
@@ -108,16 +106,8 @@ impl Fold {
     }
 }
 
-/// What was found out on a curve.
-#[derive(Clone, Debug)]
-pub(super) enum Found<G = Point> {
-    /// As [`Traced::Principal`].
-    Principal { reach: Vec<f64>, spread: Spread },
-    /// As [`Traced::Elsewhere`].
-    Elsewhere { root: G, reach: Vec<f64> },
-}
-
-/// The equations of one lane, of a group that is a type.
+/// The equations of one lane. What follows the curve is compiled once for each group, not for every
+/// model and scalar.
 pub struct Equations<'a, G, E, const D: usize, const K: usize> {
     /// The residual `T(Ω) - m`.
     pub residual: &'a dyn Fn(&G) -> SVector<f64, D>,
@@ -139,100 +129,58 @@ pub fn trace<G, E, const D: usize, const K: usize>(
     care: Care,
 ) -> Result<Traced<G, D>, Fold>
 where
-    G: Group<f64> + Debug,
+    G: Group<f64>,
     E: Region<K, Centre = G>,
 {
-    let all = |list: &[f64]| core::array::from_fn(|b| list.get(b).copied().unwrap_or(0.0));
-    in_lane_of(equations, |sized| {
-        Ok(match trace_lane(sized, solution, care)? {
-            Found::Principal { reach, spread } => Traced::Principal {
-                reach: all(&reach),
-                spread,
-            },
-            Found::Elsewhere { root, reach } => Traced::Elsewhere {
-                root,
-                reach: all(&reach),
-            },
-        })
-    })
-}
-
-/// The same for a group that a value describes.
-#[cold]
-pub(super) fn trace_lane<C: Chart>(
-    equations: &Lane<C>,
-    solution: Option<&C::Element>,
-    care: Care,
-) -> Result<Found<C::Element>, Fold> {
-    let met = Met::new(equations);
-    let solution = solution.map(|found| met.keep(found.clone()));
-    Ok(match traced(&met, solution, care)? {
-        Found::Principal { reach, spread } => Found::Principal { reach, spread },
-        Found::Elsewhere { root, reach } => Found::Elsewhere {
-            root: met.get(root),
-            reach,
-        },
-    })
-}
-
-fn traced(curve: &dyn Curve, solution: Option<Point>, care: Care) -> Result<Found, Fold> {
-    let rest = curve.rest();
-    let at_rest = curve.residual(rest);
-    let Some(stage) = Stage::at(curve, rest, at_rest) else {
+    let rest = G::identity();
+    let at_rest = (equations.residual)(&rest);
+    let Some(stage) = Stage::at(equations, rest, at_rest) else {
         return Err(Fold::at(0.0, 0));
     };
-    let units = stage.units(curve.parts());
-    let whole = stage.toward(&nowhere(curve));
+    let units = stage.units();
+    let whole = stage.toward(&SVector::zeros());
     if !whole.iter().all(|x| x.is_finite()) {
         return Err(Fold::at(0.0, 0));
     }
-    let lengths = curve.parts().lengths(&whole);
+    let lengths = lengths::<G, D>(&whole);
     if let (Some(found), true) = (solution, care.lasting) {
-        let own = curve.extents(None, found);
-        let wanted = own.iter().zip(&lengths).zip(&units);
-        let wanted: Vec<f64> = wanted
-            .map(|((own, length), unit)| own.max(*length).max(0.01 * unit))
-            .collect();
-        if let Some(proved) = lasting(curve, &stage, &wanted, care.everywhere) {
+        let mut own = [0.0; D];
+        found.extents(&mut own);
+        let wanted = core::array::from_fn(|b| own[b].max(lengths[b]).max(0.01 * units[b]));
+        if let Some(proved) = lasting(equations, &stage, &wanted, care.everywhere) {
             return Ok(proved);
         }
     }
     // What cannot be followed without a proof is not followed with one, a hundred times more slowly.
-    let mut found = follow(curve, stage.clone(), solution, false);
+    let mut found = follow(equations, stage, solution, false);
     if found.is_ok() && care.proved {
-        found = follow(curve, stage.clone(), solution, true);
+        found = follow(equations, stage, solution, true);
     }
     // That there is no proof does not mean that there is a fold.
-    found.or_else(|_| closely(curve, stage, solution))
-}
-
-/// Residuals that vanish.
-fn nowhere(curve: &dyn Curve) -> Vec<f64> {
-    vec![0.0; curve.parts().dimension()]
-}
-
-fn times(x: &[f64], factor: f64) -> Vec<f64> {
-    x.iter().map(|x| x * factor).collect()
+    found.or_else(|_| closely(equations, stage, solution))
 }
 
 /// Follows the curve stage by stage from rest, each stage proved or foreseen from its end.
-fn follow(
-    curve: &dyn Curve,
-    rest: Stage,
-    solution: Option<Point>,
+fn follow<G, E, const D: usize, const K: usize>(
+    equations: &Equations<G, E, D, K>,
+    rest: Stage<G, D>,
+    solution: Option<&G>,
     proved: bool,
-) -> Result<Found, Fold> {
-    let parts = curve.parts();
-    let at_rest = rest.residual.clone();
-    let units = rest.units(parts);
-    let fold = |share: f64, way: &[f64]| Fold::at(share, fastest(parts, way, &units));
+) -> Result<Traced<G, D>, Fold>
+where
+    G: Group<f64>,
+    E: Region<K, Centre = G>,
+{
+    let at_rest = rest.residual;
+    let units = rest.units();
+    let fold = |share: f64, way: &SVector<f64, D>| Fold::at(share, fastest::<G, D>(way, &units));
     let mut stage = rest;
-    let mut whole = stage.toward(&nowhere(curve));
-    let lengths = parts.lengths(&whole);
+    let mut whole = stage.toward(&SVector::zeros());
+    let lengths = lengths::<G, D>(&whole);
     let (mut share, mut length) = (0.0, 1.0_f64);
     // What the velocity moves by on the way, in every direction a little.
     let mut course = course(&lengths, &units, 1.0);
-    let mut radii = vec![0.0; parts.count()];
+    let mut radii = [0.0; D];
     let most_stages = if proved { MOST_PROOFS } else { MOST_STAGES };
     for _ in 0..most_stages {
         if share >= 1.0 {
@@ -248,13 +196,13 @@ fn follow(
                 return Err(fold(share, &whole));
             }
             let end = if length >= left { 1.0 } else { share + length };
-            let goal = times(&at_rest, 1.0 - end);
+            let goal = at_rest * (1.0 - end);
             let toward = stage.toward(&goal);
-            let own = parts.lengths(&toward);
-            radii = course.iter().map(|x| MARGIN * length * x).collect();
+            let own = self::lengths::<G, D>(&toward);
+            radii = course.map(|x| MARGIN * length * x);
             let (moved, strain) = match proved {
-                true => stage.move_within(curve, &radii, &own),
-                false => stage.move_foreseen(curve, &toward, &radii, &own),
+                true => stage.move_within::<E, K>(equations, &radii, &own),
+                false => stage.move_foreseen(equations, &toward, &radii, &own),
             };
             // Lengths are in proportion to strains.
             let longer = match strain.is_nan() {
@@ -262,11 +210,11 @@ fn follow(
                 false => (AIM / strain).min(LONGER),
             };
             next_length = longer * length;
-            let inner: Vec<f64> = radii.iter().map(|r| INNER * r).collect();
-            let enough = moved.as_ref().is_some_and(|y| fits(y, &inner));
+            let inner = radii.map(|r| INNER * r);
+            let enough = moved.is_some_and(|y| fits::<G, D>(&y, &inner));
             if enough {
                 accepted = stage
-                    .solve(curve, &toward, &goal, &radii)
+                    .solve(equations, &toward, &goal, &radii)
                     .map(|next| (next, end));
             } else if let Some(y) = moved {
                 course = reshaped(&course, &y, &own);
@@ -279,14 +227,14 @@ fn follow(
             return Err(fold(share, &whole));
         };
         if end >= 1.0 {
-            return Ok(verdict(curve, next, &radii, solution));
+            return Ok(verdict(next, &radii, solution));
         }
         share = end;
         length = next_length;
-        let left = curve.residual(next);
-        stage = Stage::at(curve, next, left).ok_or_else(|| fold(share, &whole))?;
-        whole = stage.toward(&nowhere(curve));
-        course = self::course(&parts.lengths(&whole), &units, 1.0 / (1.0 - share));
+        let left = (equations.residual)(&next);
+        stage = Stage::at(equations, next, left).ok_or_else(|| fold(share, &whole))?;
+        whole = stage.toward(&SVector::zeros());
+        course = self::course(&self::lengths::<G, D>(&whole), &units, 1.0 / (1.0 - share));
     }
     Err(fold(share, &whole))
 }
@@ -297,26 +245,32 @@ const SHORT: f64 = 0.5;
 /// Follows the curve in short stages where a proof fails: bounds over a region are poor where the
 /// coordinates are ill conditioned, as at nearly singular elements of GL(n). The tangent is looked
 /// at in the middle and at the end of each stage, its root is solved for; not a proof.
-fn closely(curve: &dyn Curve, rest: Stage, solution: Option<Point>) -> Result<Found, Fold> {
-    let parts = curve.parts();
-    let (at_rest, units) = (rest.residual.clone(), rest.units(parts));
+fn closely<G, E, const D: usize, const K: usize>(
+    equations: &Equations<G, E, D, K>,
+    rest: Stage<G, D>,
+    solution: Option<&G>,
+) -> Result<Traced<G, D>, Fold>
+where
+    G: Group<f64>,
+{
+    let (at_rest, units) = (rest.residual, rest.units());
     let (mut stage, mut share, mut length) = (rest, 0.0, 1.0_f64);
     for _ in 0..MOST_STAGES {
         let left = 1.0 - share;
         length = length.min(left);
         let end = if length >= left { 1.0 } else { share + length };
-        let goal = times(&at_rest, 1.0 - end);
+        let goal = at_rest * (1.0 - end);
         let toward = stage.toward(&goal);
-        let fold = || Fold::at(share, fastest(parts, &toward, &units));
+        let fold = || Fold::at(share, fastest::<G, D>(&toward, &units));
         if length < SHORTEST {
             return Err(fold());
         }
-        let radii = course(&parts.lengths(&toward), &units, 1.0);
-        let strains = [0.5, 1.0].map(|part| stage.strain_at(curve, &times(&toward, part)));
+        let radii = course(&lengths::<G, D>(&toward), &units, 1.0);
+        let strains = [0.5, 1.0].map(|part| stage.strain_at(equations, &(toward * part)));
         let strain = largest(strains.map(|x| x.largest(&radii)));
-        let within = times(&radii, 2.0);
+        let within = radii.map(|r| 2.0 * r);
         let next = match strain <= SHORT {
-            true => stage.solve(curve, &toward, &goal, &within),
+            true => stage.solve(equations, &toward, &goal, &within),
             false => None,
         };
         let [most, least] = SHORTER;
@@ -329,28 +283,26 @@ fn closely(curve: &dyn Curve, rest: Stage, solution: Option<Point>) -> Result<Fo
             continue;
         };
         if end >= 1.0 {
-            return Ok(verdict(curve, next, &radii, solution));
+            return Ok(verdict(next, &radii, solution));
         }
-        let residual = curve.residual(next);
-        stage = Stage::at(curve, next, residual).ok_or_else(fold)?;
+        let residual = (equations.residual)(&next);
+        stage = Stage::at(equations, next, residual).ok_or_else(fold)?;
         share = end;
         length *= longer;
     }
     Err(Fold::at(
         share,
-        fastest(parts, &stage.toward(&nowhere(curve)), &units),
+        fastest::<G, D>(&stage.toward(&SVector::zeros()), &units),
     ))
 }
 
 /// How far each part moves per way to the momenta, at least a little in every direction.
-fn course(lengths: &[f64], units: &[f64], rate: f64) -> Vec<f64> {
+fn course<const D: usize>(lengths: &[f64; D], units: &[f64; D], rate: f64) -> [f64; D] {
     let shares = lengths.iter().zip(units).map(|(x, u)| x / u);
     let most = shares.filter(|x| x.is_finite()).fold(LITTLE, f64::max);
     // A body may go many times its own size in a step, and need not turn for that.
     let most = most.min(1.0);
-    let each = lengths.iter().zip(units);
-    each.map(|(length, unit)| rate * length.max(0.05 * most * unit))
-        .collect()
+    core::array::from_fn(|b| rate * lengths[b].max(0.05 * most * units[b]))
 }
 
 /// By how much a part of a region is widened at once.
@@ -358,39 +310,38 @@ const WIDER: f64 = 5.0;
 
 /// The course, wider in the parts that move more than foreseen, compared with the one that moves
 /// furthest.
-fn reshaped(course: &[f64], moved: &[f64], own: &[f64]) -> Vec<f64> {
+fn reshaped<const D: usize>(course: &[f64; D], moved: &[f64; D], own: &[f64; D]) -> [f64; D] {
     let share = |b: usize| own[b] / course[b];
     let rate = |b: usize| moved[b] / course[b];
-    let parts = 0..course.len();
-    let most = parts
-        .clone()
-        .fold(0, |most, b| if share(b) > share(most) { b } else { most });
-    let wide = |b: usize| match rate(b) / rate(most) {
+    let most = (0..D).fold(0, |most, b| if share(b) > share(most) { b } else { most });
+    core::array::from_fn(|b| match rate(b) / rate(most) {
         wider if wider > 1.0 => course[b] * wider.min(WIDER),
         // Also where nothing is known.
         _ => course[b],
-    };
-    parts.map(wide).collect()
+    })
 }
 
 /// The coordinate that moves most.
-fn fastest(parts: &Parts, x: &[f64], units: &[f64]) -> usize {
-    let size = |k: usize| x.get(k).copied().unwrap_or(0.0).abs();
-    let share = |k: usize| size(k) / units.get(parts.part_of(k)).copied().unwrap_or(1.0);
-    (0..parts.dimension())
+fn fastest<G: Group<f64>, const D: usize>(x: &SVector<f64, D>, units: &[f64; D]) -> usize {
+    let share = |k: usize| x[k].abs() / units.get(G::part_of(k)).copied().unwrap_or(1.0);
+    (0..G::DIMENSION.min(D))
         .max_by(|i, j| share(*i).total_cmp(&share(*j)))
         .unwrap_or(0)
 }
 
 /// Whether the solution is the root in the region around it.
-fn verdict(curve: &dyn Curve, root: Point, radii: &[f64], solution: Option<Point>) -> Found {
+fn verdict<G: Group<f64>, const D: usize>(
+    root: G,
+    radii: &[f64; D],
+    solution: Option<&G>,
+) -> Traced<G, D> {
     // The region is that around the beginning of the last stage, of which the root is off the edge.
-    let reach: Vec<f64> = radii.iter().map(|r| 1e-3 * r).collect();
+    let reach = radii.map(|r| 1e-3 * r);
     match solution {
-        Some(found) if curve.is_within(root, found, &reach) => Found::Principal {
-            reach: vec![0.0; reach.len()],
+        Some(found) if root.inverse().compose(found).is_within(&reach) => Traced::Principal {
+            reach: [0.0; D],
             spread: Spread::HERE,
         },
-        _ => Found::Elsewhere { root, reach },
+        _ => Traced::Elsewhere { root, reach },
     }
 }

@@ -2,16 +2,12 @@
 //! any number of unknowns. What follows it is compiled once, not for every group and size.
 //! Takes a chart of a group and the equations; gives residuals, tangents and bounds of them.
 
-use super::bounds::Region;
-use super::node::Spread;
-use super::principal::Equations;
-use crate::groups::{Coordinate, Group};
+use crate::groups::Coordinate;
 use crate::linalg::Dense;
 use crate::scalar::{Affine, Bounded, UNIT, spread_of_product, swing_of};
+use crate::solvers::newton::node::Spread;
 use core::cell::RefCell;
 use core::fmt::Debug;
-use core::marker::PhantomData;
-use nalgebra::SMatrix;
 
 /// The coordinates of a velocity and the parts that they belong to.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -89,66 +85,6 @@ pub trait Chart {
 
     /// See [`Group::is_within`].
     fn is_within(&self, of: &Self::Element, reach: &[f64]) -> bool;
-}
-
-/// A group that is a type.
-pub(super) struct Static<G> {
-    parts: Parts,
-    group: PhantomData<G>,
-}
-
-impl<G: Group<f64>> Static<G> {
-    pub(super) fn new() -> Self {
-        Self {
-            parts: Parts {
-                of: (0..G::DIMENSION).map(G::part_of).collect(),
-                pure: (0..G::PARTS).map(G::is_pure).collect(),
-            },
-            group: PhantomData,
-        }
-    }
-}
-
-impl<G: Group<f64> + Debug> Chart for Static<G> {
-    type Element = G;
-
-    fn parts(&self) -> &Parts {
-        &self.parts
-    }
-
-    fn coordinate(&self, index: usize) -> Coordinate {
-        G::coordinate(index)
-    }
-
-    fn identity(&self) -> G {
-        G::identity()
-    }
-
-    fn retract(&self, at: &G, xi: &[f64]) -> G {
-        at.retract(xi)
-    }
-
-    fn retract_from_left(&self, at: &G, xi: &[f64]) -> G {
-        at.retract_from_left(xi)
-    }
-
-    fn combined(&self, weights: &[f64], past: &[G]) -> G {
-        G::combined(weights, |i| {
-            past.get(i).copied().unwrap_or_else(G::identity)
-        })
-    }
-
-    fn between(&self, from: &G, to: &G) -> G {
-        from.inverse().compose(to)
-    }
-
-    fn extents(&self, of: &G, out: &mut [f64]) {
-        of.extents(out);
-    }
-
-    fn is_within(&self, of: &G, reach: &[f64]) -> bool {
-        of.is_within(reach)
-    }
 }
 
 /// The tangent of the equations at all elements of a region, and the derivative of the chart there: numbers
@@ -395,31 +331,4 @@ impl<C: Chart> Curve for Met<'_, '_, C> {
     fn enclosed(&self, spread: Spread, centre: Point, radii: &[f64]) -> Enclosed {
         (self.equations.enclosed)(spread, &self.get(centre), radii)
     }
-}
-
-/// The leading coordinates of equations of a static size.
-pub(super) fn in_lane_of<G, E, const D: usize, const K: usize, R>(
-    equations: &Equations<G, E, D, K>,
-    then: impl FnOnce(&Lane<Static<G>>) -> R,
-) -> R
-where
-    G: Group<f64> + Debug,
-    E: Region<K, Centre = G>,
-{
-    let n = G::DIMENSION.min(D);
-    let leading = |m: SMatrix<f64, D, D>| Dense::from_fn(n, n, |i, j| m[(i, j)]);
-    then(&Lane {
-        chart: &Static::new(),
-        residual: &|at| {
-            let all = (equations.residual)(at);
-            all.iter().take(n).copied().collect()
-        },
-        tangent: &|at| leading((equations.tangent)(at)),
-        enclosed: &|spread, centre, radii| {
-            let tangent = (equations.enclosed)(spread, &E::around(centre, radii, 0));
-            let mut enclosed = Enclosed::new(K, n, |i, j| tangent[(i, j)]);
-            E::chart_tangent(radii, 0, &mut |i, j, x| enclosed.put(i, j, &x));
-            enclosed
-        },
-    })
 }
