@@ -95,8 +95,7 @@ pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warni
         None => opened_now(&text, &key, None)?,
     };
     let d = &text.derivation;
-    let mut warnings = unfolded.warnings.clone();
-    warnings.extend(d.warnings.iter().cloned());
+    let warnings = unfolded.told(choice, &d.warnings);
     let words = document::card_words(&lattice, choice, unfolded, d, card.solver);
     let named = card.invariants.iter().zip(&words.invariants);
     let invariants = named.map(|(own, (name, formula))| Invariant {

@@ -9,10 +9,10 @@ use super::value::expected;
 use crate::failure::Failure;
 use crate::plain::shown;
 use crate::suggestion::did_you_mean;
-use clebsch::card::{Card, Field, Kind};
+use clebsch::card::{Card, Field, Kind as FieldKind};
 use clebsch_core::expr::symbol::ascii;
-use clebsch_core::lattice::{Choice, Lattice, Unfolded, unfold};
-use clebsch_core::syntax::ast::Model;
+use clebsch_core::lattice::{Choice, Copied, Kind, Lattice, Unfolded, unfold};
+use clebsch_core::syntax::ast::{Model, Statement};
 use clebsch_core::{document, pipeline};
 use std::ops::Range;
 use toml::Spanned;
@@ -278,10 +278,35 @@ pub(crate) struct Base {
     pub end: bool,
     /// Whether it is a copy that is given at an end.
     pub given: bool,
+    /// The name in ASCII of the quantity that it is, or whose momentum it is.
+    pub of: String,
+    /// Whether it is a momentum of that.
+    pub is_momentum: bool,
+}
+
+impl Base {
+    fn is_copy(&self, copy: &Copied) -> bool {
+        ascii(&copy.of) == self.of
+    }
 }
 
 /// What a field of a card is a copy of.
 pub(crate) fn base(stated: &Stated, unfolded: &Unfolded, field: &Field) -> Option<Base> {
+    if let Some(only) = the_only_one(stated, unfolded)
+        && ["momentum", "body_momentum", "spatial_momentum"].contains(&field.ascii)
+    {
+        // Of a single configuration the momentum is named without it.
+        let of = ascii(&only.of);
+        return Some(Base {
+            key: format!("{}_{of}", field.ascii),
+            site: only.site,
+            label: stated.lattice.find(&only.of)?.label,
+            end: false,
+            given: false,
+            of,
+            is_momentum: true,
+        });
+    }
     let (key, digits) = field.ascii.rsplit_once('_')?;
     let site: usize = digits.parse().ok()?;
     let end = unfolded.end_parameters.iter();
@@ -293,6 +318,8 @@ pub(crate) fn base(stated: &Stated, unfolded: &Unfolded, field: &Field) -> Optio
             label: stated.lattice.line?,
             end: true,
             given: false,
+            of: key.to_owned(),
+            is_momentum: false,
         });
     }
     let copy = unfolded.copies.iter().find(|c| {
@@ -305,7 +332,27 @@ pub(crate) fn base(stated: &Stated, unfolded: &Unfolded, field: &Field) -> Optio
         label: stated.lattice.find(&copy.of)?.label,
         end: false,
         given: unfolded.given.contains(&copy.name),
+        of: ascii(&copy.of),
+        is_momentum: key != ascii(&copy.of),
     })
+}
+
+/// The configuration of a lattice on which nothing else moves.
+fn the_only_one<'a>(stated: &Stated, unfolded: &'a Unfolded) -> Option<&'a Copied> {
+    let moves = |c: &&Copied| {
+        let own = stated.lattice.find(&c.of);
+        own.is_some_and(|q| q.kind == Kind::Configuration) && !unfolded.given.contains(&c.name)
+    };
+    let whole = unfolded
+        .model
+        .statements
+        .iter()
+        .filter(|s| matches!(s, Statement::Field { .. } | Statement::Group { .. }));
+    let mut moving = unfolded.copies.iter().filter(moves);
+    match (moving.next(), moving.next(), whole.count()) {
+        (Some(only), None, 1) => Some(only),
+        _ => None,
+    }
 }
 
 struct Writer<'a> {
@@ -351,7 +398,7 @@ impl Writer<'_> {
             };
             let line = self.file.line(&value.span());
             let text = match (&base, site) {
-                (Some(base), true) => self.at_site(field, base, fields, value),
+                (Some(base), true) => self.at_site(field, base, value),
                 _ => sites::plain(value.get_ref(), &|n| self.number(n, None)),
             };
             let text = text.map_err(|message| {
@@ -384,7 +431,7 @@ impl Writer<'_> {
                 keys.push((format!("{}_{}", base.key, l.count.text), false));
             }
             keys.push((base.key.clone(), true));
-            if field.kind == Kind::SecondMoments
+            if field.kind == FieldKind::SecondMoments
                 && let Some(rest) = base.key.strip_prefix('J')
             {
                 keys.push((format!("I{rest}"), true));
@@ -415,33 +462,31 @@ impl Writer<'_> {
         &self,
         field: &Field,
         base: &Base,
-        fields: &[Field],
         value: &Spanned<DeValue<'_>>,
     ) -> Result<String, String> {
-        let same = |f: &&Field| {
-            crate::case_file::labels::base(self.stated, self.unfolded, f)
-                .is_some_and(|b| b.key == base.key)
-        };
-        let own = fields.iter().filter(same);
-        let own: Vec<usize> = own
-            .filter_map(|f| {
-                crate::case_file::labels::base(self.stated, self.unfolded, f).map(|b| b.site)
-            })
+        // Momenta have no value where their configuration is given; a list may leave these sites out.
+        let copies = self.unfolded.copies.iter();
+        let own = copies.filter(|c| base.is_copy(c));
+        let mut all: Vec<(usize, bool)> = own
+            .map(|c| (c.site, self.unfolded.given.contains(&c.name)))
             .collect();
-        // What is given at an end counts among the sites of a list.
-        let given = self
-            .unfolded
-            .copies
-            .iter()
-            .filter(|c| ascii(&c.of) == base.key && self.unfolded.given.contains(&c.name));
-        let mut all: Vec<usize> = own.into_iter().chain(given.map(|c| c.site)).collect();
         all.sort_unstable();
         all.dedup();
-        let place = all.iter().position(|s| *s == base.site).unwrap_or(0);
+        let left = all
+            .iter()
+            .filter(|(_, given)| !given)
+            .map(|(site, _)| *site);
+        let left: Vec<usize> = left.collect();
+        let place = |list: &[usize]| list.iter().position(|s| *s == base.site).unwrap_or(0);
+        let every: Vec<usize> = all.iter().map(|(site, _)| *site).collect();
         let at = Site {
             field,
-            place,
-            count: if base.end { 1 } else { all.len() },
+            place: place(&every),
+            count: if base.end { 1 } else { every.len() },
+            moving: match base.is_momentum {
+                true => Some((place(&left), left.len())),
+                false => None,
+            },
         };
         sites::at(&at, value.get_ref(), &|n| self.number(n, Some(base)))
     }

@@ -14,6 +14,8 @@ pub(super) struct Site<'a> {
     pub place: usize,
     /// How many sites there are.
     pub count: usize,
+    /// The same among the sites that move, where a list may leave the others out.
+    pub moving: Option<(usize, usize)>,
 }
 
 type Numbers<'a> = dyn Fn(&str) -> Option<f64> + 'a;
@@ -71,14 +73,19 @@ pub(super) fn at(site: &Site<'_>, value: &DeValue<'_>, of: &Numbers<'_>) -> Resu
     if !is_list_of_sites(site.field, value) {
         return plain(value, of);
     }
-    if list.len() != site.count {
+    let place = match site.moving {
+        Some((place, count)) if list.len() == count => place,
+        _ => site.place,
+    };
+    let fits = list.len() == site.count || site.moving.is_some_and(|(_, n)| list.len() == n);
+    if !fits {
         return Err(format!(
             "a list has a value for each of the {} sites, and this one has {}",
             site.count,
             list.len()
         ));
     }
-    match list.get(site.place) {
+    match list.get(place) {
         Some(one) => plain(one.get_ref(), of),
         None => plain(value, of),
     }

@@ -158,3 +158,68 @@ fn arrays_are_by_sample_site_and_component_and_plots_are_maps() {
     let map = std::fs::read_to_string(format!("{out}/fields.svg")).expect("is written");
     assert!(map.contains("site i") && map.contains("change since the start"));
 }
+
+#[test]
+fn lists_hold_what_is_given_at_an_end_too() {
+    let folder = Folder::new("lattices-given");
+    let model = shipped("sine-gordon.clebsch");
+    let case = text("sine-gordon.toml");
+    let (head, _) = case.split_once("[initial]").expect("has values");
+    let head = head.replace("i = 80", "i = 3");
+    let run = |values: &str| {
+        let file = folder.write("case.toml", &format!("{head}[initial]\n{values}\n"));
+        clebsch(&["run", &model, "--case", &file, "--steps", "5"])
+    };
+    let by_list = run("u = [0.0, 0.1, 0.2, 0.3]\nmomentum_u = [0.0, 0.1, 0.2, 0.0]");
+    assert_eq!(
+        (by_list.code, by_list.err.as_str()),
+        (0, ""),
+        "{}",
+        by_list.out
+    );
+    // What is given has no momentum.
+    let moving = run("u = [0.0, 0.1, 0.2, 0.3]\nmomentum_u = [0.1, 0.2]");
+    assert_eq!(by_list.out, moving.out);
+    let by_text = run("u = \"i/10\"\nmomentum_u = [0.0, 0.1, 0.2, 0.0]");
+    assert_eq!(by_text.code, 0, "{}", by_text.err);
+    let short = run("u = [0.0, 0.1, 0.2]\nmomentum_u = 0.0");
+    assert!(
+        short
+            .err
+            .contains("for each of the 4 sites, and this one has 3"),
+        "{}",
+        short.err
+    );
+    // One that moves, none that does, and more than are taken.
+    let one = |from: &str, to: &str, expected: &str| {
+        let text = text("toda-chain.toml")
+            .replace("i = 32", from)
+            .replace("\"periodic\"", to);
+        let file = folder.write("one.toml", &text);
+        let done = clebsch(&[
+            "run",
+            &shipped("toda-chain.clebsch"),
+            "--case",
+            &file,
+            "--steps",
+            "5",
+        ]);
+        assert!(
+            (done.out.clone() + &done.err).contains(expected),
+            "{}{}",
+            done.out,
+            done.err
+        );
+        done.code
+    };
+    assert_eq!(one("i = 1", "\"periodic\"", "N = 1, periodic"), 0);
+    assert_eq!(
+        one("i = 1000000", "\"periodic\"", "too large to be written out"),
+        2
+    );
+    let none = head.replace("i = 3", "i = 1") + "[initial]\nu = 0.1\nmomentum_u = 0.0\n";
+    let file = folder.write("none.toml", &none);
+    let done = clebsch(&["run", &model, "--case", &file]);
+    assert_eq!(done.code, 2);
+    assert!(done.err.contains("nothing moves"), "{}", done.err);
+}

@@ -122,16 +122,13 @@ fn statement(model: &Model, stated: &str, doc: &mut Document) {
 
 fn warnings(parts: &[Part], doc: &mut Document) -> Vec<Warning> {
     let mut out: Vec<Warning> = Vec::new();
-    let all = |p: &'_ Part| -> Vec<Warning> {
-        let stated = p.unfolded.warnings.iter();
-        stated.chain(&p.d.warnings).cloned().collect()
-    };
-    for w in parts.iter().flat_map(all) {
+    for w in parts
+        .iter()
+        .flat_map(|p| p.unfolded.told(&p.choice, &p.d.warnings))
+    {
         let place = |w: &Warning| format!("{:?}", w.diagnostic.place);
-        if !out
-            .iter()
-            .any(|o| o.topic == w.topic && place(o) == place(&w))
-        {
+        let known = |o: &Warning| o.topic == w.topic && place(o) == place(&w);
+        if !out.iter().any(known) {
             out.push(w);
         }
     }

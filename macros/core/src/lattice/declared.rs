@@ -248,7 +248,8 @@ impl Lattice {
                     q.offset = Some(offset.clone());
                     on_line = true;
                 }
-                if !on_line {
+                let known = at.as_ref().is_none_or(|at| self.knows(at));
+                if !on_line && known {
                     let d = Diagnostic::new(offset.place, "an offset belongs to a field on a line");
                     errors.push(d.help("write for example `field X: Real at nodes offset L;`"));
                 }
@@ -274,6 +275,10 @@ impl Lattice {
                 if self.line.is_none() {
                     let d = Diagnostic::new(*place, "there is no line that could be periodic");
                     errors.push(d.help("declare one: `label i in 0..N;`"));
+                }
+                if let Some(first) = self.periodic {
+                    let d = Diagnostic::new(*place, "`periodic` is stated twice");
+                    errors.push(d.also(first, "it is stated here first"));
                 }
                 self.periodic = Some(*place);
             }
@@ -316,6 +321,14 @@ impl Lattice {
                 shape: shape.clone(),
                 offset: None,
             });
+        }
+    }
+
+    /// Whether there are such sites.
+    fn knows(&self, at: &At) -> bool {
+        match &at.site {
+            Site::Nodes | Site::Segments => self.line.is_some(),
+            Site::Set(name) => self.labels.iter().any(|l| l.index.text == name.text),
         }
     }
 

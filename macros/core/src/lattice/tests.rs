@@ -197,6 +197,11 @@ fn mistakes_are_told_in_the_words_of_the_statement() {
         ),
         (format!("{kinetic}; field X: Real offset L;"), "on a line"),
         (format!("{kinetic}; scale q;"), "stands once"),
+        (
+            format!("{kinetic}; end i = 0 {{ q = given; }}"),
+            "an end condition has a name",
+        ),
+        (format!("{kinetic}; periodic; periodic;"), "stated twice"),
         (format!("{kinetic} - h*q_1*q;"), "`q_1` is not declared"),
         (
             format!("{kinetic}; end i = 0 {{ held {{ param m: Real; term m*q; }} }}"),
@@ -211,6 +216,38 @@ fn mistakes_are_told_in_the_words_of_the_statement() {
         let found = refused(&middle);
         assert!(found.contains(expected), "{middle}\n{found}");
     }
+}
+
+#[test]
+fn a_mistake_in_an_end_block_is_the_only_one_told() {
+    for end in [
+        "end i = 0 { q = given; }",
+        "end i = 0 { pinned { q = gven; } free; }",
+        "end i = 0 { free; held { term ; } }",
+    ] {
+        let source = format!(
+            "model M {{ label i in 0..N; param m: Real; field q: Real at nodes; {end} lagrangian = m*(next(q) - q)^2/(2*h); }}"
+        );
+        let errors = parse_source(&source).unwrap_err();
+        assert_eq!(errors.iter().count(), 1, "{end}\n{errors}");
+    }
+}
+
+#[test]
+fn what_is_too_large_or_does_not_move_is_refused() {
+    let refused = |source: &str, count: usize, ends: [&str; 2]| {
+        let model = parse_source(source).unwrap();
+        let lattice = Lattice::read(&model).unwrap();
+        let choice = Choice::representative(&lattice, 1);
+        let choice = choice.with_count(&lattice, "i", count).unwrap();
+        let choice = choice.with_end(&lattice, false, ends[0]).unwrap();
+        let choice = choice.with_end(&lattice, true, ends[1]).unwrap();
+        super::unfold(&model, &lattice, &choice)
+            .unwrap_err()
+            .to_string()
+    };
+    assert!(refused(CHAIN, 1_000_000, ["free", "free"]).contains("too large"));
+    assert!(refused(CHAIN, 1, ["pinned", "pinned"]).contains("nothing moves"));
 }
 
 #[test]

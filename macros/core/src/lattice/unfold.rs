@@ -16,6 +16,9 @@ use std::collections::BTreeMap;
 /// Largest Lagrangian that is written out, in quantities, numbers and operations.
 const LARGEST: usize = 60_000;
 
+/// Most copies of quantities that are written out.
+const MOST_COPIES: usize = 20_000;
+
 /// One term of the Lagrangian as stated, definitions put in.
 #[derive(Clone, Debug)]
 pub struct Summand {
@@ -58,6 +61,20 @@ pub fn unfold(model: &Model, lattice: &Lattice, choice: &Choice) -> Result<Unfol
     let mut errors = Errors::new();
     circular_definitions(model, &mut errors);
     errors.propagate()?;
+    let copies = lattice
+        .quantities
+        .iter()
+        .map(|q| choice.sites_of(lattice, q));
+    let copies = copies.fold(0, usize::saturating_add);
+    if copies > MOST_COPIES {
+        let message = format!(
+            "this lattice is too large to be written out: with {} it has {copies} quantities at sites, and at most {MOST_COPIES} are taken",
+            choice.words(lattice)
+        );
+        return Err(Diagnostic::new(model.name.place, message)
+            .help("take fewer sites")
+            .into());
+    }
     let lets = definitions(model)?;
     let mut writer = Writer {
         lattice,
@@ -82,7 +99,20 @@ pub fn unfold(model: &Model, lattice: &Lattice, choice: &Choice) -> Result<Unfol
     for (statement, docs) in model.statements.iter().zip(&model.remarks) {
         writer.statement(model, statement, docs);
     }
-    writer.errors.propagate()?;
+    let moves = |s: &Statement| matches!(s, Statement::Group { .. } | Statement::Field { .. });
+    let nothing_left = !writer.out.model.statements.iter().any(moves);
+    if nothing_left && model.statements.iter().any(moves) {
+        let words = choice.words(lattice);
+        let message = format!("every configuration is given ({words}): nothing moves");
+        let d = Diagnostic::new(model.name.place, message);
+        writer
+            .errors
+            .push(d.help("take more sites, or another end condition"));
+    }
+    writer
+        .errors
+        .propagate()
+        .map_err(Errors::first_at_each_place)?;
     Ok(writer.out)
 }
 
@@ -278,6 +308,9 @@ impl<'a> Writer<'a> {
             } => {
                 self.declared(statement, names, docs);
                 if let Some(offset) = offset {
+                    if self.lattice.periodic.is_none() {
+                        self.out.warnings.push(without_a_ring(offset));
+                    }
                     let used = |e: &Expression| any_name(e, &|n| n == offset.text);
                     let assumed = model.statements.iter().any(|s| match s {
                         Statement::Assume { left, right, .. } => used(left) || used(right),
@@ -674,6 +707,19 @@ fn one_neighbour(stated: &Expression) -> Warning {
     Warning::new(Topic::OneNeighbour, d)
 }
 
+/// An offset acts across the seam of a ring only.
+fn without_a_ring(offset: &Name) -> Warning {
+    let message = format!(
+        "`{}` is what a field grows by around a ring, and the line is not said to be periodic",
+        offset.text
+    );
+    let d = Diagnostic::new(offset.place, message);
+    Warning::new(
+        Topic::UnusedParameter,
+        d.help("add `periodic;`, or leave the offset out"),
+    )
+}
+
 fn name_expression(n: &str, like: &Expression) -> Expression {
     Expression {
         kind: Kind::Name(n.to_owned()),
@@ -692,6 +738,44 @@ impl Unfolded {
     /// The farthest that letters of one term stand apart.
     pub fn width(&self) -> usize {
         self.summands.iter().map(|s| s.width).max().unwrap_or(0)
+    }
+
+    /// What is hardly meant, in the words of the statement: of terms first, then what the derivation
+    /// finds. Of a line that is held or short, what is unused or constant there may be neither on others.
+    pub fn told(&self, choice: &Choice, found: &[Warning]) -> Vec<Warning> {
+        let shortest = 2 * self.width() + 2;
+        let short = choice.counts.iter().all(|n| *n < shortest);
+        let partial = short || !self.given.is_empty();
+        let mut out: Vec<Warning> = Vec::new();
+        for w in self.warnings.iter().chain(found) {
+            let of_this_choice = matches!(w.topic, Topic::UnusedParameter | Topic::ConstantTerm);
+            let place = |w: &Warning| format!("{:?}", w.diagnostic.place);
+            let known = |o: &Warning| o.topic == w.topic && place(o) == place(w);
+            let stated = self.warnings.iter().any(known);
+            if partial && of_this_choice && !stated || out.iter().any(known) {
+                continue;
+            }
+            let mut d = w.diagnostic.clone();
+            d.message = self.without_sites(&d.message);
+            d.help = d.help.iter().map(|h| self.without_sites(h)).collect();
+            out.push(Warning::new(w.topic, d));
+        }
+        out
+    }
+
+    /// A text with the names of quantities in the place of those of copies.
+    fn without_sites(&self, text: &str) -> String {
+        let is_part = |c: char| c.is_alphanumeric() || c == '_';
+        let mut out = String::new();
+        let mut rest = text;
+        while let Some(c) = rest.chars().next() {
+            let end = rest.find(|c| !is_part(c)).unwrap_or(rest.len());
+            let end = if end == 0 { c.len_utf8() } else { end };
+            let (word, left) = rest.split_at(end);
+            out.push_str(self.copy(word).map_or(word, |c| c.of.as_str()));
+            rest = left;
+        }
+        out
     }
 
     /// The copy of this name.

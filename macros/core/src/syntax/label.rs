@@ -71,12 +71,20 @@ pub(super) fn end(c: &mut Cursor) -> Result<Statement, Diagnostic> {
         _ => c.name("`0` or the name of the number of segments")?,
     };
     c.delimiter('{').map_err(|e| e.help(remedy))?;
+    let close = c.closing_brace();
     let mut alternatives = Vec::new();
     while !c.take_delimiter('}') {
         if c.is_at_end() {
             return Err(c.unexpected("`}`"));
         }
-        alternatives.push(alternative(c)?);
+        match alternative(c) {
+            Ok(one) => alternatives.push(one),
+            Err(error) => {
+                // Statements go on behind the block.
+                c.go_past(close);
+                return Err(error);
+            }
+        }
     }
     c.take_punct(';');
     Ok(Statement::End {
@@ -97,6 +105,13 @@ fn alternative(c: &mut Cursor) -> Result<Alternative, Diagnostic> {
     };
     if c.take_punct(';') {
         return Ok(out);
+    }
+    if c.is_punct('=') {
+        let d = c.unexpected("`;` or `{` behind the name of an end condition");
+        let given = &out.name.text;
+        return Err(d.help(format!(
+            "an end condition has a name: write for example `pinned {{ {given} = given; }}`"
+        )));
     }
     c.delimiter('{')?;
     while !c.take_delimiter('}') {

@@ -27,6 +27,7 @@ pub fn model(c: &mut Cursor) -> Result<Model, Errors> {
         if c.take_punct(';') {
             continue;
         }
+        let start = c.position();
         match attributes(c).and_then(|docs| Ok((docs, statement(c)?))) {
             Ok((docs, stated)) => {
                 remarks.push(docs);
@@ -34,7 +35,10 @@ pub fn model(c: &mut Cursor) -> Result<Model, Errors> {
             }
             Err(e) => {
                 errors.push(e);
-                skip_statement(c);
+                // A block that was left behind has no `;` to skip to.
+                if c.position() == start || !c.follows_block() {
+                    skip_statement(c);
+                }
             }
         }
     }

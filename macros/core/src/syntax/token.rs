@@ -220,6 +220,38 @@ impl Cursor {
         self.at += 1;
     }
 
+    /// How many tokens are read.
+    pub fn position(&self) -> usize {
+        self.at
+    }
+
+    /// Where the brace stands that closes the block whose inside comes next.
+    pub fn closing_brace(&self) -> usize {
+        let mut depth = 0_u32;
+        let mut at = self.at;
+        while let Some((token, _)) = self.tokens.get(at) {
+            match token {
+                Token::Open(_) => depth += 1,
+                Token::Close(_) if depth == 0 => break,
+                Token::Close(_) => depth -= 1,
+                _ => {}
+            }
+            at += 1;
+        }
+        at
+    }
+
+    /// Steps over all tokens up to this place, and the one there.
+    pub fn go_past(&mut self, place: usize) {
+        self.at = self.at.max(place.saturating_add(1));
+    }
+
+    /// Whether the token just read closes a block.
+    pub fn follows_block(&self) -> bool {
+        let before = self.at.checked_sub(1).and_then(|i| self.tokens.get(i));
+        matches!(before, Some((Token::Close('}'), _)))
+    }
+
     /// Whether all tokens are read.
     pub fn is_at_end(&self) -> bool {
         self.at >= self.tokens.len()
