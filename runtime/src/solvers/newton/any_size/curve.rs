@@ -54,7 +54,7 @@ impl Parts {
     }
 }
 
-/// A group by what a value says of it, as [`Group`] says it by a type.
+/// A group by what a value says of it, as [`Group`](crate::groups::Group) says it by a type.
 pub trait Chart {
     /// Its elements.
     type Element: Clone + Debug;
@@ -68,22 +68,22 @@ pub trait Chart {
     /// The neutral element.
     fn identity(&self) -> Self::Element;
 
-    /// See [`Group::retract`].
+    /// See [`Group::retract`](crate::groups::Group::retract).
     fn retract(&self, at: &Self::Element, xi: &[f64]) -> Self::Element;
 
-    /// See [`Group::retract_from_left`].
+    /// See [`Group::retract_from_left`](crate::groups::Group::retract_from_left).
     fn retract_from_left(&self, at: &Self::Element, xi: &[f64]) -> Self::Element;
 
-    /// See [`Group::combined`].
+    /// See [`Group::combined`](crate::groups::Group::combined).
     fn combined(&self, weights: &[f64], past: &[Self::Element]) -> Self::Element;
 
     /// `from^-1 . to`.
     fn between(&self, from: &Self::Element, to: &Self::Element) -> Self::Element;
 
-    /// See [`Group::extents`].
+    /// See [`Group::extents`](crate::groups::Group::extents).
     fn extents(&self, of: &Self::Element, out: &mut [f64]);
 
-    /// See [`Group::is_within`].
+    /// See [`Group::is_within`](crate::groups::Group::is_within).
     fn is_within(&self, of: &Self::Element, reach: &[f64]) -> bool;
 }
 
