@@ -1,17 +1,23 @@
 //! A model with labels written out for chosen numbers of sites and end conditions: a model of as
 //! many bodies, each with a name of its own, whose Lagrangian is the sum over the sites that exist.
 
+mod definitions;
+mod lagrangian;
+mod pinned;
+mod warned;
+
 use super::choice::Choice;
-use super::declared::{Kind as Role, Lattice, Quantity, Sites};
+use super::declared::{Lattice, Quantity, Sites};
 use super::names::{Copied, copy, copy_name};
-use super::put::{Pinned, Put, Still, any_name, size};
-use super::range::{Range, of_one_neighbour, reach};
-use super::summands::summands;
+use super::put::{Pinned, Put, Still, any_name};
+use super::range::{Range, reach};
 use crate::check::circular_definitions;
-use crate::derive::warnings::{Topic, Warning};
+use crate::derive::warnings::Warning;
 use crate::diagnostic::{Diagnostic, Errors, Place};
 use crate::syntax::ast::{Alternative, Expression, Kind, Kindred, Model, Name, Statement};
+use definitions::{definitions, inlined};
 use std::collections::BTreeMap;
+use warned::without_a_ring;
 
 /// Largest Lagrangian that is written out, in quantities, numbers and operations.
 const LARGEST: usize = 60_000;
@@ -116,63 +122,6 @@ pub fn unfold(model: &Model, lattice: &Lattice, choice: &Choice) -> Result<Unfol
     Ok(writer.out)
 }
 
-/// What every `let` stands for, others put in.
-fn definitions(model: &Model) -> Result<BTreeMap<String, Expression>, Errors> {
-    let mut out = BTreeMap::new();
-    let stated: Vec<(&Name, &Expression)> = model
-        .statements
-        .iter()
-        .filter_map(|s| match s {
-            Statement::Let { name, value } => Some((name, value)),
-            _ => None,
-        })
-        .collect();
-    // None is circular: each round puts one more level in.
-    for _ in 0..=stated.len() {
-        for (name, value) in &stated {
-            let put = inlined(value, &out);
-            if size(&put) > LARGEST {
-                let message = format!("what `{}` stands for is too large", name.text);
-                let d = Diagnostic::new(name.place, message);
-                return Err(d
-                    .help("what a `let` stands for is counted wherever it is used")
-                    .into());
-            }
-            out.insert(name.text.clone(), put);
-        }
-        let left = |e: &Expression| any_name(e, &|n| out.contains_key(n));
-        if !out.values().any(left) {
-            break;
-        }
-    }
-    Ok(out)
-}
-
-/// With definitions in the place of their names.
-fn inlined(e: &Expression, lets: &BTreeMap<String, Expression>) -> Expression {
-    let one = |a: &Expression| Box::new(inlined(a, lets));
-    let all = |l: &[Expression]| l.iter().map(|a| inlined(a, lets)).collect();
-    let kind = match &e.kind {
-        Kind::Name(n) => match lets.get(n) {
-            Some(value) => value.kind.clone(),
-            None => e.kind.clone(),
-        },
-        Kind::Number(_) => e.kind.clone(),
-        Kind::Sum(terms) => Kind::Sum(terms.iter().map(|(m, t)| (*m, inlined(t, lets))).collect()),
-        Kind::Product(list) => Kind::Product(all(list)),
-        Kind::Quotient(a, b) => Kind::Quotient(one(a), one(b)),
-        Kind::Neg(a) => Kind::Neg(one(a)),
-        Kind::Transpose(a) => Kind::Transpose(one(a)),
-        Kind::Power(a, q) => Kind::Power(one(a), *q),
-        Kind::Component(a, indices) => Kind::Component(one(a), indices.clone()),
-        Kind::Call(f, list) => Kind::Call(f.clone(), all(list)),
-    };
-    Expression {
-        kind,
-        place: e.place,
-    }
-}
-
 struct Writer<'a> {
     lattice: &'a Lattice,
     choice: &'a Choice,
@@ -205,72 +154,6 @@ impl<'a> Writer<'a> {
             Some((last, which, a))
         });
         each.collect()
-    }
-
-    /// Finds what does not move.
-    fn pin(&mut self, model: &Model) {
-        for (last, _, alternative) in self.ends() {
-            for name in &alternative.given {
-                let Some(q) = self.lattice.find(&name.text) else {
-                    continue;
-                };
-                let count = self.choice.sites_of(self.lattice, q);
-                let site = if last { count.saturating_sub(1) } else { 0 };
-                let own = copy_name(&name.text, site);
-                self.out.given.push(own.clone());
-                self.pinned.insert(own, Still::Given);
-                if let Some(velocity) = velocity_of(model, &name.text) {
-                    let own = copy_name(&velocity.text, site);
-                    self.pinned.insert(own, Still::Identity);
-                }
-            }
-        }
-        // What follows a configuration that is given stands still with it.
-        for q in self.lattice.quantities.iter() {
-            if q.kind != Role::Advected || self.pinned.is_empty() {
-                continue;
-            }
-            let update = model.statements.iter().find_map(|s| match s {
-                Statement::Constraint { name, value, .. } if name.text == q.name.text => {
-                    Some(value)
-                }
-                _ => None,
-            });
-            let Some(update) = update.map(|u| inlined(u, self.lets)) else {
-                continue;
-            };
-            for site in 0..self.choice.sites_of(self.lattice, q) {
-                let at = isize::try_from(site).unwrap_or(isize::MAX);
-                let own = copy_name(&q.name.text, site);
-                let Ok(put) = self.put(at).put(&update) else {
-                    continue;
-                };
-                let others =
-                    |n: &str| n != own && self.put(at).is_moving(&name_expression(n, &put));
-                if any_name(&put, &others) {
-                    continue;
-                }
-                let definition = model.statements.iter().find_map(|s| match s {
-                    Statement::Advected {
-                        names,
-                        definition: Some(value),
-                        ..
-                    } if names.iter().any(|n| n.text == q.name.text) => Some(value),
-                    _ => None,
-                });
-                let still = match definition {
-                    Some(value) => match self.put(at).put(&inlined(value, self.lets)) {
-                        Ok(defined) => Still::Defined(defined),
-                        Err(d) => return self.errors.push(*d),
-                    },
-                    None => {
-                        self.out.given.push(own.clone());
-                        Still::Given
-                    }
-                };
-                self.pinned.insert(own, still);
-            }
-        }
     }
 
     fn push(&mut self, statement: Statement, docs: &[String]) {
@@ -596,135 +479,6 @@ impl<'a> Writer<'a> {
         }
         out
     }
-
-    fn lagrangian(&mut self, value: &Expression, docs: &[String]) {
-        let value = inlined(value, self.lets);
-        let mut terms: Vec<(bool, Expression)> = Vec::new();
-        let mut large = 0;
-        for stated in summands(self.lattice, &value) {
-            let found = match reach(self.lattice, &stated) {
-                Ok(found) => found,
-                Err(d) => {
-                    self.errors.push(d);
-                    continue;
-                }
-            };
-            if found.over.is_none() && of_one_neighbour(self.lattice, &stated) {
-                self.out.warnings.push(one_neighbour(&stated));
-            }
-            let range = found.range(self.lattice, self.choice);
-            let sites: Vec<isize> = match range {
-                Some(r) => r.indices(self.choice.count(r.label)).collect(),
-                None => vec![0],
-            };
-            let mut copies = Vec::new();
-            for site in &sites {
-                match self.put(*site).put(&stated) {
-                    Ok(e) => copies.push(e),
-                    Err(d) => {
-                        self.errors.push(*d);
-                        break;
-                    }
-                }
-            }
-            large += copies.iter().map(size).sum::<usize>();
-            if large > LARGEST {
-                let words = self.choice.words(self.lattice);
-                let message = format!("this lattice is too large to be written out: {words}");
-                let d = Diagnostic::new(value.place, message);
-                self.errors.push(d.help(format!(
-                    "its Lagrangian may have {LARGEST} quantities, numbers and operations: take fewer sites"
-                )));
-                return;
-            }
-            let middle = sites.len() / 2;
-            if let (Some(shown), Some(site)) = (copies.get(middle), sites.get(middle)) {
-                self.out.summands.push(Summand {
-                    shown: shown.clone(),
-                    site: usize::try_from(*site).unwrap_or(0),
-                    stated,
-                    range,
-                    end: None,
-                    width: found.width(),
-                });
-            }
-            terms.extend(copies.into_iter().map(|e| (false, e)));
-        }
-        for (last, which, alternative) in self.ends() {
-            for stated in &alternative.terms {
-                let stated = inlined(stated, self.lets);
-                let site = self.last_site(last);
-                let locals = self.locals(last, alternative);
-                let put = Put {
-                    locals: &locals,
-                    at_last: last,
-                    ..self.put(isize::try_from(site).unwrap_or(0))
-                };
-                match (reach(self.lattice, &stated), put.put(&stated)) {
-                    (Ok(found), Ok(shown)) => {
-                        terms.push((false, shown.clone()));
-                        self.out.summands.push(Summand {
-                            stated,
-                            range: None,
-                            end: Some((last, which)),
-                            width: found.width(),
-                            shown,
-                            site,
-                        });
-                    }
-                    (Err(d), _) => self.errors.push(d),
-                    (_, Err(d)) => self.errors.push(*d),
-                }
-            }
-        }
-        let place = value.place;
-        let value = match <[(bool, Expression); 1]>::try_from(terms) {
-            Ok([(_, only)]) => only,
-            Err(terms) if terms.is_empty() => value,
-            Err(terms) => Expression {
-                kind: Kind::Sum(terms),
-                place,
-            },
-        };
-        self.push(Statement::Lagrangian(value), docs);
-    }
-
-    fn locals(&self, last: bool, alternative: &Alternative) -> Vec<(String, String)> {
-        let names = alternative.params.iter().flat_map(|(names, _)| names);
-        let site = self.last_site(last);
-        names
-            .map(|n| (n.text.clone(), copy_name(&n.text, site)))
-            .collect()
-    }
-}
-
-/// The sum of such a term starts or ends a site later than that of the same term at the site itself.
-fn one_neighbour(stated: &Expression) -> Warning {
-    let message = "this term holds a neighbour and not the site itself: it is summed over the sites that have this neighbour, all but the one at the end";
-    let d = Diagnostic::new(stated.place, message).help(
-        "write it at the site itself, or in one bracket with what it is compared with, as in `a*(next(q, i) - q)`",
-    );
-    Warning::new(Topic::OneNeighbour, d)
-}
-
-/// An offset acts across the seam of a ring only.
-fn without_a_ring(offset: &Name) -> Warning {
-    let message = format!(
-        "`{}` is what a field grows by around a ring, and the line is not said to be periodic",
-        offset.text
-    );
-    let d = Diagnostic::new(offset.place, message);
-    Warning::new(
-        Topic::UnusedParameter,
-        d.help("add `periodic;`, or leave the offset out"),
-    )
-}
-
-fn name_expression(n: &str, like: &Expression) -> Expression {
-    Expression {
-        kind: Kind::Name(n.to_owned()),
-        place: like.place,
-    }
 }
 
 fn velocity_of<'a>(model: &'a Model, element: &str) -> Option<&'a Name> {
@@ -738,44 +492,6 @@ impl Unfolded {
     /// The farthest that letters of one term stand apart.
     pub fn width(&self) -> usize {
         self.summands.iter().map(|s| s.width).max().unwrap_or(0)
-    }
-
-    /// What is hardly meant, in the words of the statement: of terms first, then what the derivation
-    /// finds. Of a line that is held or short, what is unused or constant there may be neither on others.
-    pub fn told(&self, choice: &Choice, found: &[Warning]) -> Vec<Warning> {
-        let shortest = 2 * self.width() + 2;
-        let short = choice.counts.iter().all(|n| *n < shortest);
-        let partial = short || !self.given.is_empty();
-        let mut out: Vec<Warning> = Vec::new();
-        for w in self.warnings.iter().chain(found) {
-            let of_this_choice = matches!(w.topic, Topic::UnusedParameter | Topic::ConstantTerm);
-            let place = |w: &Warning| format!("{:?}", w.diagnostic.place);
-            let known = |o: &Warning| o.topic == w.topic && place(o) == place(w);
-            let stated = self.warnings.iter().any(known);
-            if partial && of_this_choice && !stated || out.iter().any(known) {
-                continue;
-            }
-            let mut d = w.diagnostic.clone();
-            d.message = self.without_sites(&d.message);
-            d.help = d.help.iter().map(|h| self.without_sites(h)).collect();
-            out.push(Warning::new(w.topic, d));
-        }
-        out
-    }
-
-    /// A text with the names of quantities in the place of those of copies.
-    fn without_sites(&self, text: &str) -> String {
-        let is_part = |c: char| c.is_alphanumeric() || c == '_';
-        let mut out = String::new();
-        let mut rest = text;
-        while let Some(c) = rest.chars().next() {
-            let end = rest.find(|c| !is_part(c)).unwrap_or(rest.len());
-            let end = if end == 0 { c.len_utf8() } else { end };
-            let (word, left) = rest.split_at(end);
-            out.push_str(self.copy(word).map_or(word, |c| c.of.as_str()));
-            rest = left;
-        }
-        out
     }
 
     /// The copy of this name.

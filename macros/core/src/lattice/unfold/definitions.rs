@@ -1,0 +1,64 @@
+//! What every `let` stands for, put in where its name stands: supports are decided on whole terms.
+
+use super::LARGEST;
+use crate::diagnostic::{Diagnostic, Errors};
+use crate::lattice::put::{any_name, size};
+use crate::syntax::ast::{Expression, Kind, Model, Name, Statement};
+use std::collections::BTreeMap;
+
+/// What every `let` stands for, others put in.
+pub(super) fn definitions(model: &Model) -> Result<BTreeMap<String, Expression>, Errors> {
+    let mut out = BTreeMap::new();
+    let stated: Vec<(&Name, &Expression)> = model
+        .statements
+        .iter()
+        .filter_map(|s| match s {
+            Statement::Let { name, value } => Some((name, value)),
+            _ => None,
+        })
+        .collect();
+    // None is circular: each round puts one more level in.
+    for _ in 0..=stated.len() {
+        for (name, value) in &stated {
+            let put = inlined(value, &out);
+            if size(&put) > LARGEST {
+                let message = format!("what `{}` stands for is too large", name.text);
+                let d = Diagnostic::new(name.place, message);
+                return Err(d
+                    .help("what a `let` stands for is counted wherever it is used")
+                    .into());
+            }
+            out.insert(name.text.clone(), put);
+        }
+        let left = |e: &Expression| any_name(e, &|n| out.contains_key(n));
+        if !out.values().any(left) {
+            break;
+        }
+    }
+    Ok(out)
+}
+
+/// With definitions in the place of their names.
+pub(super) fn inlined(e: &Expression, lets: &BTreeMap<String, Expression>) -> Expression {
+    let one = |a: &Expression| Box::new(inlined(a, lets));
+    let all = |l: &[Expression]| l.iter().map(|a| inlined(a, lets)).collect();
+    let kind = match &e.kind {
+        Kind::Name(n) => match lets.get(n) {
+            Some(value) => value.kind.clone(),
+            None => e.kind.clone(),
+        },
+        Kind::Number(_) => e.kind.clone(),
+        Kind::Sum(terms) => Kind::Sum(terms.iter().map(|(m, t)| (*m, inlined(t, lets))).collect()),
+        Kind::Product(list) => Kind::Product(all(list)),
+        Kind::Quotient(a, b) => Kind::Quotient(one(a), one(b)),
+        Kind::Neg(a) => Kind::Neg(one(a)),
+        Kind::Transpose(a) => Kind::Transpose(one(a)),
+        Kind::Power(a, q) => Kind::Power(one(a), *q),
+        Kind::Component(a, indices) => Kind::Component(one(a), indices.clone()),
+        Kind::Call(f, list) => Kind::Call(f.clone(), all(list)),
+    };
+    Expression {
+        kind,
+        place: e.place,
+    }
+}
