@@ -46,7 +46,7 @@ pub fn representative(model: &Model, line: &Lattice) -> Result<Choice, Errors> {
 /// How many times the work of an ordinary model a lattice is given: as many as it has copies, the work
 /// of each growing with their number.
 fn room(unfolded: &Unfolded) -> u64 {
-    (unfolded.copies.len() as u64 / 8).max(1)
+    (unfolded.copies.len() as u64 / 4).max(4)
 }
 
 /// Derives a model with labels for so many sites and these end conditions.

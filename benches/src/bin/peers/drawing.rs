@@ -59,6 +59,7 @@ pub fn svg(measured: &[Measured]) -> Result<String, String> {
         .collect();
     let x = Axis::decades_around(curves.iter().flat_map(|c| &c.points).map(|point| point.0));
     let panel = Panel {
+        map: None,
         caption: "error at the end: momentum (relative) or attitude (radians), the larger"
             .to_owned(),
         y_label: "error".to_owned(),
