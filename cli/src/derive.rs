@@ -162,10 +162,9 @@ fn on_lattice(
     let told = |errors: clebsch_core::Errors| format!("\n{}", errors.render(source, name));
     let format = match format {
         "rust" | "rs" => {
-            return Err(match lattice::not_emitted(model) {
-                Some(refused) => format!("\n{}", refused.render("error", source, name)),
-                None => String::new(),
-            });
+            let items = pipeline::emitted_line(model, source).map_err(told)?;
+            let text = clebsch_core::pretty::pretty(items)?;
+            return Ok((text, String::new()));
         }
         "latex" | "tex" => Format::Latex,
         "markdown" | "md" => Format::Markdown,

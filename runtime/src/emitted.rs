@@ -23,6 +23,7 @@ pub use crate::linalg::{
     pencil_coefficients, pure_quaternion, quaternion_imaginary, quaternion_real,
     quaternion_rotation, rows_from, skew_coordinates, solve, trace_complement, twist, vee,
 };
+pub use crate::line::{self, LineError};
 pub use crate::scalar::{InLanes, OfScalars as _, Real};
 pub use crate::solvers::Method;
 pub use crate::solvers::left_factor::{

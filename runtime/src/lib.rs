@@ -19,6 +19,7 @@ pub mod groups;
 pub mod integrate;
 pub mod kinetic;
 pub mod linalg;
+pub mod line;
 mod said;
 pub mod scalar;
 pub mod solvers;

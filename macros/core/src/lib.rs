@@ -14,6 +14,7 @@ pub mod generated;
 pub mod groups;
 pub mod interpret;
 pub mod lattice;
+pub mod line;
 pub mod pipeline;
 #[cfg(feature = "pretty")]
 pub mod pretty;

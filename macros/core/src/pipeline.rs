@@ -5,6 +5,7 @@ use crate::derive::{self, Derivation};
 use crate::diagnostic::{Diagnostic, Errors, Place};
 use crate::emit;
 use crate::lattice::{self, Choice, Lattice, Unfolded};
+use crate::line::{self, Line};
 use crate::syntax;
 use crate::syntax::ast::Model;
 use crate::work;
@@ -65,9 +66,16 @@ pub fn derive_lattice(
 /// The Rust items of a model, or compile errors on its tokens and empty items of the same names,
 /// so that one mistake does not cause more.
 pub fn expand(tokens: TokenStream) -> TokenStream {
-    let derived = syntax::parse(tokens.clone()).and_then(|model| emitted(&model));
+    let text = tokens.to_string();
+    let derived = syntax::parse(tokens.clone()).and_then(|model| {
+        Ok(match lattice::has_labels(&model) {
+            true => Emitted::Line(emitted_line(&model, &text)?),
+            false => Emitted::Body(Box::new(emitted(&model)?)),
+        })
+    });
     match derived {
-        Ok(d) => {
+        Ok(Emitted::Line(items)) => items,
+        Ok(Emitted::Body(d)) => {
             let mut items = emit::emit(&d, true);
             items.extend(emit::notes(&d));
             items
@@ -76,10 +84,33 @@ pub fn expand(tokens: TokenStream) -> TokenStream {
     }
 }
 
+/// What `model!` expands to.
+enum Emitted {
+    /// The items of a model with labels.
+    Line(TokenStream),
+    /// The derivation of a model of bodies.
+    Body(Box<Derivation>),
+}
+
+/// The items of a model with labels, for every number of sites.
+///
+/// # Errors
+/// Mistakes of the model; that no such stepper is compiled, and why.
+pub fn emitted_line(model: &Model, source: &str) -> Result<TokenStream, Errors> {
+    match Line::of(model) {
+        Ok(line) => match emit::refusal_of_line(&line) {
+            None => Ok(emit::emit_line(&line, source)),
+            Some(why) => Err(lattice::not_emitted(model, &why).into()),
+        },
+        Err(line::Refused::Model(errors)) => Err(errors),
+        Err(line::Refused::Form(why)) => Err(lattice::not_emitted(model, &why).into()),
+    }
+}
+
 /// The derivation of a model that has a stepper.
 pub fn emitted(model: &Model) -> Result<Derivation, Errors> {
     let d = derive_model(model)?;
-    match emit::refusal(&d).or_else(|| lattice::not_emitted(model)) {
+    match emit::refusal(&d) {
         Some(refused) => Err(refused.into()),
         None => Ok(d),
     }

@@ -196,6 +196,7 @@ impl<'a> Elaborator<'a> {
                 let first = || args.first().and_then(|a| self.hint(a));
                 match name.text.as_str() {
                     "im" | "vee" | "cross" => Some(Shape::vector(Dim::Fixed(3))),
+                    "perp" => Some(Shape::vector(Dim::Fixed(2))),
                     "hat" => Some(Shape::square(Dim::Fixed(3))),
                     "pos" => first().map(|s| Shape::vector(expr::within(s.rows))),
                     "rot" => first().map(|s| Shape::square(expr::within(s.rows))),

@@ -390,7 +390,7 @@ fn refusal(
 }
 
 /// The solution of a linear balance, with the values of its factors. Those of a field may be numbers.
-fn linear_solution(
+pub(super) fn linear_solution(
     d: &Derivation,
     i: usize,
     form: &Explicit,

@@ -193,6 +193,43 @@ fn guard(d: &Derivation, domain: Domain, function: Named, argument: &Expr, all: 
     }
 }
 
+/// What a function asks of its argument, as tokens.
+pub(super) struct Tested {
+    /// The domain, as the runtime names it.
+    pub domain: TokenStream,
+    /// The function.
+    pub function: TokenStream,
+    /// The function and its argument in words.
+    pub call: TokenStream,
+    /// The argument in words.
+    pub text: String,
+    /// The argument.
+    pub argument: Expr,
+    /// Whether it is made of parameters alone.
+    pub constant: bool,
+}
+
+/// What some expressions of a model ask of what stands at a node, and of parameters; none where they ask
+/// something of velocities.
+pub(super) fn tested(d: &Derivation, list: &[Expr]) -> Option<Vec<Tested>> {
+    let mut all = Vec::new();
+    list.iter().for_each(|e| collect(d, e, &mut all));
+    all.retain(|g| !is_square(&g.argument));
+    all.iter()
+        .map(|g| {
+            let admitted = matches!(g.place, Place::Node | Place::Parameters);
+            admitted.then(|| Tested {
+                domain: g.domain.tokens(),
+                function: g.function.tokens(),
+                call: g.call(d),
+                text: text(d, &g.argument),
+                argument: g.argument.clone(),
+                constant: g.place == Place::Parameters,
+            })
+        })
+        .collect()
+}
+
 /// Whether a step must be tested.
 pub(super) fn is_guarded(d: &Derivation) -> bool {
     let linear = |c| matches!(family(c), Family::Linear(_));

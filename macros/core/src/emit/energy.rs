@@ -98,6 +98,31 @@ fn in_parts(d: &Derivation, names: &Names, limit: &Limit, parts: &[Vec<usize>]) 
     both(d, body)
 }
 
+/// Twice the kinetic energy in the local `twice`, at momenta that are given by tokens, and the potential.
+pub(super) fn inverted_parts(
+    d: &Derivation,
+    bindings: &Bindings,
+    limit: &Limit,
+    momenta: &[TokenStream],
+) -> (TokenStream, TokenStream) {
+    let mut part = d.clone();
+    let each = parts(d, limit).into_iter().map(|members| {
+        part_of(&mut part, d, &members);
+        let own = members.iter().map(|i| momenta[*i].clone()).collect();
+        let inverted = match element::only_rotations(&part) {
+            true => rotations(&part, bindings, limit, own),
+            false => matrices(&part, bindings, limit, own),
+        };
+        quote!({ #inverted momentum.dot(&velocity) })
+    });
+    let kinetic: Vec<TokenStream> = each.collect();
+    let twice = quote! {
+        let mut twice = T::zero();
+        #(twice += #kinetic;)*
+    };
+    (twice, potential(d, bindings, limit))
+}
+
 fn potential(d: &Derivation, bindings: &Bindings, limit: &Limit) -> TokenStream {
     let writer = Writer {
         symbols: &d.letters.symbols,

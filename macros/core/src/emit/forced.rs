@@ -523,6 +523,11 @@ fn seen_from_body(
     )
 }
 
+/// Twice an expression, with the numbers as [`prescaled`] puts them.
+pub(super) fn doubled(s: &Symbols, e: &Expr) -> Expr {
+    prescaled(s, &expr::scale(Rational::integer(2), e.clone()), &[])
+}
+
 /// The same expression with its numbers multiplied into the constant factor of a vector product
 /// rather than into the product: they need not wait for the new node. `references` are constant
 /// quantities too.

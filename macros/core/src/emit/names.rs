@@ -335,7 +335,7 @@ pub fn per_configuration(d: &Derivation, base: &str, i: usize) -> Ident {
 
 /// The module of a model: its name in lower case, away from words of Rust (`model Loop`) and from
 /// crates whose names the user's code may need (`model Core`).
-fn module(model: &str) -> String {
+pub(super) fn module(model: &str) -> String {
     let mut name = snake(model);
     let crates = [
         "alloc",

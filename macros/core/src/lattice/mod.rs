@@ -19,6 +19,7 @@ pub use declared::{Kind, Label, Lattice, Quantity, Sites};
 pub use names::{Copied, copy_name};
 pub use range::Range;
 pub use unfold::{Summand, Unfolded, unfold};
+pub(crate) use unfold::{definitions, inlined};
 
 use crate::diagnostic::Diagnostic;
 use crate::syntax::ast::{Model, Statement};
@@ -42,17 +43,14 @@ pub fn has_labels(model: &Model) -> bool {
     })
 }
 
-/// The refusal of a model with labels where one stepper is compiled for all numbers of sites.
-pub fn not_emitted(model: &Model) -> Option<Diagnostic> {
-    let place = model.statements.iter().find_map(|s| match s {
+/// The refusal of a model with labels of which no stepper for every number of sites is compiled, and why.
+pub fn not_emitted(model: &Model, why: &str) -> Diagnostic {
+    let label = model.statements.iter().find_map(|s| match s {
         Statement::Label { index, .. } => Some(index.place),
         _ => None,
-    })?;
-    let message =
-        "a model with labels is derived and run from its file; no stepper of it is compiled yet";
-    Some(
-        Diagnostic::new(place, message).help(
-            "put the text into a file: `clebsch derive FILE` prints its equations, `clebsch run FILE` runs it",
-        ),
+    });
+    let message = format!("no stepper for every number of sites is compiled: {why}");
+    Diagnostic::new(label.unwrap_or(model.name.place), message).help(
+        "put the text into a file: `clebsch derive FILE` prints its equations, `clebsch run FILE` runs it",
     )
 }

@@ -15,7 +15,7 @@ use crate::check::circular_definitions;
 use crate::derive::warnings::Warning;
 use crate::diagnostic::{Diagnostic, Errors, Place};
 use crate::syntax::ast::{Alternative, Expression, Kind, Kindred, Model, Name, Statement};
-use definitions::{definitions, inlined};
+pub(crate) use definitions::{definitions, inlined};
 use std::collections::BTreeMap;
 use warned::without_a_ring;
 
@@ -36,6 +36,8 @@ pub struct Summand {
     pub end: Option<(bool, usize)>,
     /// How far apart its letters stand.
     pub width: usize,
+    /// Kind of sites and offset of its letters, seen from its index.
+    pub letters: Vec<(Sites, isize)>,
     /// The term at the site where it is shown: the middle one of its range.
     pub shown: Expression,
     /// That site.

@@ -26,7 +26,7 @@ pub const FUNCTIONS: [&str; 33] = [
 pub const HIDEABLE: [&str; 3] = ["quat", "rot", "pos"];
 
 /// The functions that models of this version can use, as a message lists them.
-pub const AVAILABLE: &str = "tr det log exp sqrt sin cos sinh cosh tanh abs sign inv sym skew diag hat vee dot cross re im quat rot pos I1 I2 next";
+pub const AVAILABLE: &str = "tr det log exp sqrt sin cos sinh cosh tanh abs sign inv sym skew diag hat vee dot cross perp re im quat rot pos I1 I2 next";
 
 /// Parses one model: `[pub] model NAME { ... }`, documentation before it.
 pub fn parse(tokens: TokenStream) -> Result<Model, Errors> {

@@ -187,6 +187,17 @@ impl Elaborator<'_> {
                     _ => expr::pure(a),
                 })
             }
+            "perp" => {
+                let plane = Shape::vector(Dim::Fixed(2));
+                let a = argument(Some(plane))?;
+                if a.shape() != plane {
+                    let what = shape_text(symbols, a.shape());
+                    let message = format!("`perp` turns a vector of the plane, and this is {what}");
+                    let d = Diagnostic::new(first.place, message);
+                    return fail(d.help("perp(x) = (-x[2], x[1]), of a `Vec<2>`"));
+                }
+                Ok(expr::mul(expr::quarter_turn(symbols), a))
+            }
             "vee" => {
                 let a = argument(Some(Shape::square(Dim::Fixed(3))))?;
                 if a.shape() != Shape::square(Dim::Fixed(3)) {

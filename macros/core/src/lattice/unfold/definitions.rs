@@ -7,7 +7,7 @@ use crate::syntax::ast::{Expression, Kind, Model, Name, Statement};
 use std::collections::BTreeMap;
 
 /// What every `let` stands for, others put in.
-pub(super) fn definitions(model: &Model) -> Result<BTreeMap<String, Expression>, Errors> {
+pub(crate) fn definitions(model: &Model) -> Result<BTreeMap<String, Expression>, Errors> {
     let mut out = BTreeMap::new();
     let stated: Vec<(&Name, &Expression)> = model
         .statements
@@ -39,7 +39,7 @@ pub(super) fn definitions(model: &Model) -> Result<BTreeMap<String, Expression>,
 }
 
 /// With definitions in the place of their names.
-pub(super) fn inlined(e: &Expression, lets: &BTreeMap<String, Expression>) -> Expression {
+pub(crate) fn inlined(e: &Expression, lets: &BTreeMap<String, Expression>) -> Expression {
     let one = |a: &Expression| Box::new(inlined(a, lets));
     let all = |l: &[Expression]| l.iter().map(|a| inlined(a, lets)).collect();
     let kind = match &e.kind {

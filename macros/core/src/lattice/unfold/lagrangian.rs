@@ -60,6 +60,7 @@ impl Writer<'_> {
                     range,
                     end: None,
                     width: found.width(),
+                    letters: found.letters.clone(),
                 });
             }
             terms.extend(copies.into_iter().map(|e| (false, e)));
@@ -82,6 +83,7 @@ impl Writer<'_> {
                             range: None,
                             end: Some((last, which)),
                             width: found.width(),
+                            letters: found.letters.clone(),
                             shown,
                             site,
                         });

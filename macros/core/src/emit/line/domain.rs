@@ -1,0 +1,186 @@
+//! What a step along a line must not leave: the domains of functions, at every site and in every term of
+//! neighbours.
+
+use super::locals::{Places, defined, step};
+use super::pulls::{known, range_of};
+use super::{Lines, number};
+use crate::derive::Derivation;
+use crate::emit::domain::{Tested, tested};
+use crate::emit::expression::program;
+use crate::expr::Expr;
+use crate::line::Line;
+use crate::schedule;
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
+
+/// What the terms of one loop ask.
+struct Asked {
+    tests: Vec<Tested>,
+    /// `let (first, last)`.
+    range: TokenStream,
+    /// The quantity that an error names.
+    quantity: String,
+    /// Locals and values of the arguments.
+    body: (TokenStream, Vec<TokenStream>),
+}
+
+/// Why no loop over sites tests what the model asks, if so.
+pub(in crate::emit) fn refusal(line: &Line) -> Option<String> {
+    let lone = line.lone.iter().map(|x| asked_of(&x.d, &lone_terms(&x.d)));
+    let part = &line.representative.d;
+    let pulls = line
+        .pulls
+        .iter()
+        .map(|p| asked_of(part, std::slice::from_ref(&p.terms)));
+    let mut all = lone.chain(pulls);
+    let refused = all.any(|found| found.is_none());
+    refused.then(|| "a function of velocities has a domain".to_owned())
+}
+
+fn lone_terms(d: &Derivation) -> Vec<Expr> {
+    let definitions = d.spec.advected.iter().filter_map(|a| a.definition.clone());
+    let terms = [d.action.edge.clone(), d.action.nodal.clone()];
+    terms
+        .into_iter()
+        .chain(definitions)
+        .map(|e| defined(d, &e))
+        .collect()
+}
+
+fn asked_of(d: &Derivation, list: &[Expr]) -> Option<Vec<Tested>> {
+    tested(d, list)
+}
+
+fn asked(l: &Lines) -> Vec<Asked> {
+    let mut out = Vec::new();
+    let at = || Places {
+        here: quote!(at),
+        next: quote!(at),
+    };
+    let at_nodes = |tests: Option<Vec<Tested>>| -> Vec<Tested> {
+        let mut tests = tests.unwrap_or_default();
+        tests.retain(|t| !t.constant);
+        tests
+    };
+    for lone in &l.line.lone {
+        let d = &lone.d;
+        let tests = at_nodes(asked_of(d, &lone_terms(d)));
+        let Some(first) = lone.movers.first().filter(|_| !tests.is_empty()) else {
+            continue;
+        };
+        let values: Vec<Expr> = tests.iter().map(|t| t.argument.clone()).collect();
+        let s = &d.letters.symbols;
+        let (locals, bindings) = l.locals(s, &l.of_site(d, &values), &at(), &quote!(site));
+        let p = schedule::program(s, &values, "t");
+        let (lets, values) = program(&p, &bindings);
+        let count = l.count(lone.label, lone.sites);
+        out.push(Asked {
+            tests,
+            range: quote!(let (first, last) = (0, #count);),
+            quantity: first.name.clone(),
+            body: (quote!(#locals #lets), values),
+        });
+    }
+    let d = &l.line.representative.d;
+    for pull in &l.line.pulls {
+        let tests = at_nodes(asked_of(d, std::slice::from_ref(&pull.terms)));
+        let Some(first) = pull.forces.first().filter(|_| !tests.is_empty()) else {
+            continue;
+        };
+        let values: Vec<Expr> = tests.iter().map(|t| t.argument.clone()).collect();
+        let s = &d.letters.symbols;
+        let (locals, bindings) = l.locals(s, &known(l, &values), &at(), &quote!(site));
+        let p = schedule::program(s, &values, "t");
+        let (lets, values) = program(&p, &bindings);
+        out.push(Asked {
+            tests,
+            range: range_of(l, pull),
+            quantity: first.on.clone(),
+            body: (quote!(#locals #lets), values),
+        });
+    }
+    out
+}
+
+/// The kernels of arguments, and the call of the test in a step.
+pub(super) fn domain(l: &Lines) -> (TokenStream, TokenStream) {
+    let (name, places) = (l.item(""), l.item("Places"));
+    let h = step(&l.line.representative.d);
+    let mut kernels = TokenStream::new();
+    let mut calls = TokenStream::new();
+    for (n, a) in asked(l).into_iter().enumerate() {
+        let kernel = format_ident!("arguments_{}", n + 1);
+        let count = number(a.tests.len());
+        let (lets, values) = &a.body;
+        kernels.extend(quote! {
+            /// Arguments of functions that have a domain.
+            #[inline(always)]
+            fn #kernel(&self, #h: T, site: usize, at: &#places<T>) -> [T; #count] {
+                let _ = #h;
+                #lets
+                [#(#values),*]
+            }
+        });
+        let tests = a.tests.iter().enumerate().map(|(i, t)| {
+            let (domain, call, i) = (&t.domain, &t.call, number(i));
+            quote!(#domain.at_nodes(#call, from[#i], to[#i], h)?;)
+        });
+        let (range, quantity) = (&a.range, &a.quantity);
+        calls.extend(quote! {{
+            #range
+            let inside = |i: usize| -> Result<(), domain::Contact> {
+                let from = self.#kernel(h, i, &state.places);
+                let to = self.#kernel(h, i, &work.places);
+                #(#tests)*
+                Ok(())
+            };
+            if let Err((site, contact)) = line::try_each(first, last, inside) {
+                let at = line::Place { quantity: #quantity, site };
+                return Err(self.refused(state, h, at, StepCause::Contact(contact)));
+            }
+        }});
+    }
+    let kernels = (!kernels.is_empty()).then(|| quote!(impl<T: Real> #name<T> { #kernels }));
+    (kernels.unwrap_or_default(), calls)
+}
+
+/// Tests of parameters that stand in functions with a domain, those of sites apart.
+pub(super) fn of_parameters(l: &Lines) -> TokenStream {
+    let mut out = TokenStream::new();
+    let mut seen: Vec<String> = Vec::new();
+    let part = &l.line.representative.d;
+    let mut each = |d: &Derivation, list: &[Expr]| {
+        for t in asked_of(d, list)
+            .unwrap_or_default()
+            .iter()
+            .filter(|t| t.constant)
+        {
+            let letters = l.of_site(d, std::slice::from_ref(&t.argument));
+            if seen.contains(&t.text) || letters.iter().any(|k| k.on.is_some()) {
+                continue;
+            }
+            seen.push(t.text.clone());
+            let s = &d.letters.symbols;
+            let lets = letters.iter().map(|k| {
+                let field = format_ident!("{}", k.of);
+                let local = crate::emit::names::variable(s, k.letter.symbol);
+                quote!(let #local = model.parameters.#field;)
+            });
+            let p = schedule::program(s, std::slice::from_ref(&t.argument), "t");
+            let (more, values) = program(&p, &crate::emit::expression::Bindings::new());
+            let (domain, function, text) = (&t.domain, &t.function, &t.text);
+            out.extend(quote! {{
+                #(#lets)*
+                #more
+                validate::inside(#domain, #function, #text, #(#values)*)?;
+            }});
+        }
+    };
+    for lone in &l.line.lone {
+        each(&lone.d, &lone_terms(&lone.d));
+    }
+    for pull in &l.line.pulls {
+        each(part, std::slice::from_ref(&pull.terms));
+    }
+    out
+}

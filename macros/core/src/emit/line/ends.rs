@@ -1,0 +1,173 @@
+//! What end conditions add: put where a site at the end collects what its neighbours add.
+
+use super::items::End;
+use super::locals::{Known, Places};
+use super::pulls::{computed, field, front};
+use super::{Lines, number};
+use crate::algebra::Algebra;
+use crate::emit::expression::Bindings;
+use crate::emit::items::letters_of;
+use crate::emit::names::variable;
+use crate::expr::symbol::Role;
+use crate::expr::{self, Expr};
+use crate::line::EndTerm;
+use proc_macro2::{Ident, TokenStream};
+use quote::{format_ident, quote};
+
+/// Calls `body` with every end condition that adds something, in the place where it holds.
+fn each_end(
+    l: &Lines,
+    body: &mut dyn FnMut(&EndTerm) -> Option<TokenStream>,
+) -> Option<TokenStream> {
+    let ends = l.item("Ends");
+    let mut out = TokenStream::new();
+    for last in [false, true] {
+        let Some((ty, alternatives)) = l.alternatives(last) else {
+            continue;
+        };
+        for end in l.line.ends.iter().filter(|e| e.last == last) {
+            let pattern = pattern(&ty, alternatives.get(end.which)?);
+            let body = body(end)?;
+            let field = if last { quote!(last) } else { quote!(first) };
+            out.extend(quote! {
+                if let #ends::Open { #field: #pattern, .. } = self.sites.ends {
+                    #body
+                }
+            });
+        }
+    }
+    Some(out)
+}
+
+fn pattern(ty: &Ident, end: &End) -> TokenStream {
+    let variant = &end.variant;
+    let parameters: Vec<&Ident> = end.parameters.iter().map(|(n, _)| n).collect();
+    match parameters.is_empty() {
+        true => quote!(#ty::#variant),
+        false => quote!(#ty::#variant { #(#parameters),* }),
+    }
+}
+
+/// The function of what the end conditions add.
+pub(super) fn ends(l: &Lines) -> TokenStream {
+    let (places, pulls) = (l.item("Places"), l.item("Pulls"));
+    let step = super::locals::step(&l.line.representative.d);
+    let out = each_end(l, &mut |end| Some(added(l, end))).unwrap_or_default();
+    quote! {
+        /// What the end conditions add at these places.
+        #[inline]
+        fn ended(&self, #step: T, at: &#places<T>, pulls: &mut #pulls<T>) {
+            let _ = (#step, at, &pulls);
+            #out
+        }
+    }
+}
+
+/// The function of their potential energy; none where the step stays in it.
+pub(super) fn energies(l: &Lines) -> Option<TokenStream> {
+    let places = l.item("Places");
+    let out = each_end(l, &mut |end| {
+        let s = &end.symbols;
+        let step = s.ids().find(|id| s.get(*id).role == Role::Step)?;
+        let h = expr::here(s, step);
+        let energy = expr::neg(expr::quotient(end.terms.clone(), h.clone()));
+        let algebra = Algebra::new(s);
+        let energy = super::energy::without_step(&algebra, &energy, &h)?;
+        let (lets, values) = values(l, end, &[energy]);
+        Some(quote! {
+            #lets
+            energy += #(#values)*;
+        })
+    })?;
+    Some(quote! {
+        /// The potential energy of the end conditions.
+        #[allow(unused_mut)]
+        fn potential_of_ends(&self, at: &#places<T>) -> T {
+            let _ = at;
+            let mut energy = T::zero();
+            #out
+            energy
+        }
+    })
+}
+
+/// The site of a quantity so far from the end.
+fn place(l: &Lines, end: &EndTerm, of: &str, from_end: usize) -> TokenStream {
+    let n = number(from_end);
+    match end.last {
+        false => quote!(#n),
+        true => {
+            let count = l.count_of(of);
+            quote!((#count - 1 - #n))
+        }
+    }
+}
+
+/// Expressions of an end: what stands before them, and their values.
+fn values(l: &Lines, end: &EndTerm, values: &[Expr]) -> (TokenStream, Vec<TokenStream>) {
+    let s = &end.symbols;
+    let mut locals = TokenStream::new();
+    let mut bindings = Bindings::new();
+    for letter in &letters_of(values) {
+        let symbol = s.get(letter.symbol);
+        if symbol.role == Role::Step {
+            continue;
+        }
+        match end.letters.iter().find(|(known, ..)| known == letter) {
+            // A parameter of the end, bound by the pattern.
+            Some((_, of, None)) => bindings.bind(*letter, format_ident!("{of}")),
+            Some((_, of, Some(site))) => {
+                let local = format_ident!("{of}_end_{site}");
+                let one = [Known {
+                    letter: *letter,
+                    of: of.clone(),
+                    on: Some(0),
+                }];
+                let at = Places {
+                    here: quote!(at),
+                    next: quote!(at),
+                };
+                let (lets, inner) = l.locals(s, &one, &at, &place(l, end, of, *site));
+                let name = inner.local(s, *letter);
+                locals.extend(quote!(let #local = { #lets #name };));
+                bindings.bind(*letter, local);
+            }
+            None => {
+                let own = &symbol.name;
+                let (field, local) = (format_ident!("{own}"), variable(s, letter.symbol));
+                locals.extend(quote!(let #local = self.parameters.#field;));
+            }
+        }
+    }
+    let (lets, results) = computed(s, values, &bindings);
+    (quote!(#locals #lets), results)
+}
+
+fn added(l: &Lines, end: &EndTerm) -> TokenStream {
+    let forces: Vec<Expr> = end.forces.iter().map(|f| f.value.clone()).collect();
+    let (lets, results) = values(l, end, &forces);
+    let moving: Vec<_> = l.moving().collect();
+    let added = end.forces.iter().zip(results).map(|(f, value)| {
+        let m = moving.iter().find(|m| m.mover.name == f.on);
+        let value = m.map_or(value.clone(), |m| m.array(value));
+        let slots = l.line.pulls.iter().enumerate();
+        let mut slots = slots.filter_map(|(n, p)| {
+            let own = p.forces.iter().find(|x| x.on == f.on)?;
+            Some((
+                format_ident!("pull_{}", n + 1),
+                front(p) - own.site,
+                own.site,
+            ))
+        });
+        let Some((array, before, site)) = slots.next() else {
+            return TokenStream::new();
+        };
+        let index = place(l, end, &f.on, f.site);
+        let (before, name) = (number(before), field(&f.on, site));
+        quote!(pulls.#array[#index + #before].#name += #value;)
+    });
+    quote! {
+        #lets
+        #(#added)*
+    }
+}

@@ -1,0 +1,220 @@
+//! Energies of a line: the kinetic energy of every site, and the potential of sites, of neighbours and
+//! of ends, summed over all of them.
+
+use super::locals::{Places, defined};
+use super::pulls::{known, range_of};
+use super::{Lines, Moving};
+use crate::algebra::Algebra;
+use crate::derive::limit::Limit;
+use crate::emit::element;
+use crate::emit::energy::inverted_parts;
+use crate::emit::expression::program;
+use crate::expr::{self, Expr};
+use crate::line::{Lone, Total};
+use crate::schedule;
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
+
+/// The functions.
+pub(super) fn energy(l: &Lines) -> TokenStream {
+    let name = l.item("");
+    let energies = energies(l).unwrap_or_default();
+    let totals = l.line.totals.iter().map(|t| total(l, t));
+    quote!(impl<T: Real> #name<T> { #energies #(#totals)* })
+}
+
+/// `energies` and `energy`, where every part has a limit of small steps.
+fn energies(l: &Lines) -> Option<TokenStream> {
+    let [places, momenta, state] = ["Places", "Momenta", "State"].map(|suffix| l.item(suffix));
+    let part = &l.line.representative;
+    let mut kernels = TokenStream::new();
+    let (mut kinetic, mut potential) = (Vec::new(), Vec::new());
+    for (n, lone) in l.line.lone.iter().enumerate() {
+        let limit = lone.d.limit.as_ref().ok()?;
+        let kernel = format_ident!("energies_{}", n + 1);
+        let body = of_site(l, lone, limit);
+        kernels.extend(quote! {
+            /// The kinetic and the potential energy of one site by itself.
+            fn #kernel(&self, site: usize, at: &#places<T>, momenta: &#momenta<T>) -> (T, T) {
+                let _ = (site, at, momenta);
+                #body
+            }
+        });
+        let count = l.count(lone.label, lone.sites);
+        kinetic.push(quote!(line::sum(#count, |i| self.#kernel(i, at, momenta).0)));
+        if !limit.potential.is_zero() {
+            potential.push(quote!(line::sum(#count, |i| self.#kernel(i, at, momenta).1)));
+        }
+    }
+    let s = &part.d.letters.symbols;
+    let h = expr::here(s, part.d.spec.step);
+    let algebra = Algebra::new(s);
+    for (n, pull) in l.line.pulls.iter().enumerate() {
+        let energy = expr::neg(expr::quotient(pull.terms.clone(), h.clone()));
+        let energy = without_step(&algebra, &energy, &h)?;
+        let kernel = format_ident!("potential_{}", n + 1);
+        let at = Places {
+            here: quote!(at),
+            next: quote!(at),
+        };
+        let values = [energy];
+        let (locals, bindings) = l.locals(s, &known(l, &values), &at, &quote!(site));
+        let p = schedule::program(s, &values, "t");
+        let (lets, results) = program(&p, &bindings);
+        kernels.extend(quote! {
+            /// The potential energy of one term of neighbours.
+            fn #kernel(&self, site: usize, at: &#places<T>) -> T {
+                #locals
+                #lets
+                #(#results)*
+            }
+        });
+        let range = range_of(l, pull);
+        potential.push(quote!({
+            #range
+            line::sum(last - first, |i| self.#kernel(first + i, at))
+        }));
+    }
+    let ends = super::ends::energies(l)?;
+    let potential = match potential.is_empty() {
+        true => quote!(T::zero()),
+        false => quote!(#(#potential)+*),
+    };
+    Some(quote! {
+        #kernels
+        #ends
+
+        /// The kinetic and the potential energy at this node, of all sites: those of the limit of small
+        /// steps, at the momenta of the node.
+        pub fn energies(&self, state: &#state<T>) -> (T, T) {
+            let (at, momenta) = (&state.places, &state.momenta);
+            let kinetic = #(#kinetic)+*;
+            (kinetic, #potential + self.potential_of_ends(at))
+        }
+
+        /// The energy at this node: it oscillates within a bound.
+        pub fn energy(&self, state: &#state<T>) -> T {
+            let (kinetic, potential) = self.energies(state);
+            kinetic + potential
+        }
+    })
+}
+
+/// The expression in a form without the step.
+pub(super) fn without_step(algebra: &Algebra, e: &Expr, h: &Expr) -> Option<Expr> {
+    let s = algebra.symbols();
+    let free = |e: &Expr| {
+        let step = expr::letters(h).first().copied();
+        step.is_none_or(|step| !expr::contains(e, step))
+    };
+    let forms = [expr::collect(s, e), algebra.shortest(e)];
+    forms.into_iter().find(free)
+}
+
+/// The energies of one site.
+fn of_site(l: &Lines, lone: &Lone, limit: &Limit) -> TokenStream {
+    let d = &lone.d;
+    let limit = Limit {
+        lagrangian: limit.lagrangian.clone(),
+        potential: defined(d, &limit.potential),
+        linear: defined(d, &limit.linear),
+        kinetic: defined(d, &limit.kinetic),
+    };
+    let values = [
+        limit.potential.clone(),
+        limit.linear.clone(),
+        limit.kinetic.clone(),
+    ];
+    let at = Places {
+        here: quote!(at),
+        next: quote!(at),
+    };
+    let letters = l.of_site(d, &values);
+    let roles = letters.into_iter().filter(|k| {
+        let role = d.letters.symbols.get(k.letter.symbol).role;
+        role != crate::expr::symbol::Role::Variation
+    });
+    let letters: Vec<_> = roles.collect();
+    let (locals, bindings) = l.locals(&d.letters.symbols, &letters, &at, &quote!(site));
+    let own = lone.movers.iter().map(|mover| {
+        let m = Moving { lone, mover };
+        let c = &d.spec.configurations[mover.index];
+        element::value(c, momentum(&m, &quote!(site)))
+    });
+    let own: Vec<TokenStream> = own.collect();
+    let (inverted, potential) = inverted_parts(d, &bindings, &limit, &own);
+    quote! {
+        #locals
+        #inverted
+        (twice * T::from_f64(0.5), #potential)
+    }
+}
+
+/// The momentum of a site in the frame of its side.
+fn momentum(m: &Moving, site: &TokenStream) -> TokenStream {
+    let name = m.name();
+    match m.is_rotation() {
+        true => quote!(at.#name[#site].matrix().tr_mul(&momenta.#name[#site])),
+        false => quote!(momenta.#name[#site]),
+    }
+}
+
+/// A conserved total.
+fn total(l: &Lines, t: &Total) -> TokenStream {
+    let part = &l.line.representative;
+    let s = &part.d.letters.symbols;
+    let (method, state) = (format_ident!("{}", t.name), l.item("State"));
+    let doc = format!(" Conserved {}: {}.", t.on, t.reason);
+    let moving: Vec<Moving> = l.moving().collect();
+    let mut output = quote!(T);
+    let parts: Vec<TokenStream> = t
+        .densities
+        .iter()
+        .map(|(label, sites, density)| {
+            let d = &part.d;
+            let density = defined(d, density);
+            let values = [density.clone()];
+            let (momenta, letters): (Vec<_>, Vec<_>) =
+                known(l, &values).into_iter().partition(|k| {
+                    part.sited(k.letter.symbol)
+                        .is_some_and(|x| x.momentum_of().is_some())
+                });
+            let at = Places {
+                here: quote!(at),
+                next: quote!(at),
+            };
+            let (mut locals, mut bindings) = l.locals(s, &letters, &at, &quote!(site));
+            for k in momenta {
+                let Some(of) = part.sited(k.letter.symbol) else {
+                    continue;
+                };
+                let Some(m) = moving.iter().find(|m| m.mover.name == of.plain()) else {
+                    continue;
+                };
+                let c = &m.d().spec.configurations[m.mover.index];
+                let local = format_ident!("momentum_{}", m.mover.name);
+                let value = element::value(c, momentum(m, &quote!(site)));
+                locals.extend(quote!(let #local = #value;));
+                bindings.bind(k.letter, local);
+            }
+            let p = schedule::program(s, &values, "t");
+            let (lets, results) = program(&p, &bindings);
+            let count = l.count(*label, *sites);
+            let shape = density.shape();
+            let sum = match shape.is_scalar() {
+                true => quote!(sum),
+                false => quote!(total),
+            };
+            output = crate::emit::expression::ty(s, shape);
+            quote!(line::#sum(#count, |site| { #locals #lets #(#results)* }))
+        })
+        .collect();
+    quote! {
+        #[doc = #doc]
+        pub fn #method(&self, state: &#state<T>) -> #output {
+            let (at, momenta) = (&state.places, &state.momenta);
+            let _ = at;
+            #(#parts)+*
+        }
+    }
+}

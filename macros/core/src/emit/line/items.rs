@@ -1,0 +1,495 @@
+//! What is given: parameters, numbers of sites and end conditions, and the model that checks them.
+
+use super::{Lines, number};
+use crate::emit::expression::{Bindings, Writer, ty};
+use crate::expr;
+use crate::expr::shape::Structure;
+use crate::expr::symbol::{Role, Symbol};
+use crate::lattice::{Kind, Sites};
+use crate::line::How;
+use proc_macro2::{Ident, TokenStream};
+use quote::{format_ident, quote};
+
+/// A parameter: its name, its symbol, and its sites.
+pub(super) struct Given<'a> {
+    pub name: String,
+    pub symbol: &'a Symbol,
+    pub at: Option<(usize, Sites)>,
+}
+
+impl Lines<'_> {
+    /// The parameters in order of declaration, those of ends and offsets apart.
+    pub(super) fn given(&self) -> Vec<Given<'_>> {
+        let part = &self.line.representative;
+        let s = &part.d.letters.symbols;
+        let of_end = |name: &str| {
+            part.unfolded
+                .end_parameters
+                .iter()
+                .any(|(own, ..)| own == name)
+        };
+        let offset = |name: &str| {
+            let mut all = self.line.lattice.quantities.iter();
+            all.any(|q| q.offset.as_ref().is_some_and(|o| o.text == name))
+        };
+        let mut out: Vec<Given> = Vec::new();
+        for id in &part.d.spec.parameters {
+            let symbol = s.get(*id);
+            let (name, at) = match part.sited(*id) {
+                Some(sited) => {
+                    let q = self.line.lattice.find(&sited.of);
+                    if q.is_none_or(|q| q.kind != Kind::Parameter) {
+                        continue;
+                    }
+                    (sited.of, q.map(|q| (q.label, q.sites)))
+                }
+                None => (symbol.name.clone(), None),
+            };
+            let known = out.iter().any(|g| g.name == name);
+            if known || of_end(&symbol.name) || offset(&symbol.name) {
+                continue;
+            }
+            out.push(Given { name, symbol, at });
+        }
+        out
+    }
+
+    /// How one value of a parameter is tested.
+    fn test(&self, name: &str, structure: Structure, scalar: bool, vector: bool) -> TokenStream {
+        let finite = match (scalar, vector) {
+            (true, _) => quote!(validate::finite(#name, &[*value])?;),
+            (_, true) => quote!(validate::finite(#name, value.as_slice())?;),
+            _ => quote!(validate::finite_entries(#name, value)?;),
+        };
+        let of = match structure {
+            Structure::Symmetric => quote!(validate::symmetric(#name, value)?;),
+            Structure::Skew => quote!(validate::skew(#name, value)?;),
+            Structure::Diagonal => quote!(validate::diagonal(#name, value)?;),
+            Structure::Orthogonal => quote!(validate::orthogonal(#name, value)?;),
+            Structure::Invertible => quote!(validate::invertible(#name, value)?;),
+            _ => TokenStream::new(),
+        };
+        quote!(#finite #of)
+    }
+
+    /// The alternatives of an end: the name of their type, and each with its parameters.
+    pub(super) fn alternatives(&self, last: bool) -> Option<(Ident, Vec<End>)> {
+        let list = &self.line.lattice.ends[usize::from(last)];
+        if list.is_empty() {
+            return None;
+        }
+        let ends = list.iter().map(|a| {
+            let names = a
+                .params
+                .iter()
+                .flat_map(|(names, shape)| names.iter().map(move |n| (n.text.clone(), shape)));
+            let parameters = names.map(|(name, shape)| {
+                let t = shape_type(shape);
+                (format_ident!("{name}"), t)
+            });
+            End {
+                variant: variant(&a.name.text),
+                given: a.given.iter().map(|n| n.text.clone()).collect(),
+                parameters: parameters.collect(),
+            }
+        });
+        let suffix = if last { "Last" } else { "First" };
+        Some((self.item(suffix), ends.collect()))
+    }
+}
+
+/// One way to end a line.
+pub(super) struct End {
+    pub variant: Ident,
+    pub given: Vec<String>,
+    pub parameters: Vec<(Ident, TokenStream)>,
+}
+
+/// `clamped` as the name of a variant.
+fn variant(name: &str) -> Ident {
+    let words = name.split('_').map(|w| {
+        let mut letters = w.chars();
+        let first = letters.next().map(|c| c.to_uppercase().to_string());
+        first.unwrap_or_default() + letters.as_str()
+    });
+    format_ident!("{}", words.collect::<String>())
+}
+
+/// The type of a declared shape.
+pub(super) fn shape_type(shape: &crate::syntax::ast::Kindred) -> TokenStream {
+    use crate::syntax::ast::Size;
+    let sizes: Vec<usize> = shape
+        .sizes
+        .iter()
+        .map(|n| match n {
+            Size::Number(n, _) => usize::try_from(*n).unwrap_or(0),
+            Size::Name(_) => 0,
+        })
+        .collect();
+    match (shape.name.text.as_str(), sizes.as_slice()) {
+        ("Real", _) => quote!(T),
+        ("Vec", [n]) => {
+            let n = number(*n);
+            quote!(SVector<T, #n>)
+        }
+        (_, [n, m]) => {
+            let (n, m) = (number(*n), number(*m));
+            quote!(SMatrix<T, #n, #m>)
+        }
+        (_, [n]) => {
+            let n = number(*n);
+            quote!(SMatrix<T, #n, #n>)
+        }
+        _ => quote!(T),
+    }
+}
+
+/// The parameters as plain data.
+pub(super) fn parameters(l: &Lines) -> TokenStream {
+    let s = &l.line.representative.d.letters.symbols;
+    let name = l.item("Parameters");
+    let model = l.item("");
+    let doc = format!(" Parameters of [`{model}`](struct@{model}), as given.");
+    let fields = l.given().into_iter().map(|g| {
+        let field = format_ident!("{}", g.name);
+        let t = ty(s, g.symbol.shape);
+        let said = g.symbol.doc();
+        let said = if said.is_empty() {
+            String::new()
+        } else {
+            format!(": {said}")
+        };
+        let (doc, t) = match g.at {
+            None => (format!(" `{}`{said}.", g.name), t),
+            Some((_, sites)) => (
+                format!(" `{}`{said}; one for each of the {}.", g.name, words(sites)),
+                quote!(Vec<#t>),
+            ),
+        };
+        quote!(#[doc = #doc] pub #field: #t)
+    });
+    let fields: Vec<TokenStream> = fields.collect();
+    let phantom = fields.is_empty().then(|| {
+        quote! {
+            #[doc = " No parameters: the scalar type alone."]
+            pub scalar: ::core::marker::PhantomData<T>
+        }
+    });
+    quote! {
+        #[doc = #doc]
+        #[derive(Clone, Debug, PartialEq)]
+        pub struct #name<T = f64> { #(#fields,)* #phantom }
+    }
+}
+
+/// The sites of a kind in words.
+pub(super) fn words(sites: Sites) -> &'static str {
+    match sites {
+        Sites::Nodes => "nodes",
+        Sites::Segments => "segments",
+        Sites::Members => "sites",
+    }
+}
+
+/// How many sites, and how a line ends.
+pub(super) fn sites(l: &Lines) -> TokenStream {
+    let (name, ends) = (l.item("Sites"), l.item("Ends"));
+    let lattice = &l.line.lattice;
+    let counts = lattice.labels.iter().map(|label| {
+        let (field, index) = (format_ident!("{}", label.count.text), &label.index.text);
+        let doc = match label.set {
+            true => format!(" The number of sites of `{index}`."),
+            false => {
+                format!(" The number of segments of `{index}`; along a ring also that of nodes.")
+            }
+        };
+        quote!(#[doc = #doc] pub #field: usize)
+    });
+    if lattice.line.is_none() {
+        return quote! {
+            /// How many sites there are.
+            #[derive(Clone, Copy, Debug, PartialEq)]
+            pub struct #name<T = f64> { #(#counts,)* #[doc(hidden)] pub scalar: ::core::marker::PhantomData<T> }
+        };
+    }
+    let mut types = TokenStream::new();
+    let mut fields = TokenStream::new();
+    for last in [false, true] {
+        let Some((ty, alternatives)) = l.alternatives(last) else {
+            continue;
+        };
+        let variants = alternatives.iter().map(|a| {
+            let (v, given) = (&a.variant, &a.given);
+            let held = match given.as_slice() {
+                [] => String::new(),
+                list => format!("; {} held at the initial value", list.join(", ")),
+            };
+            let doc = format!(" `{v}`{held}.");
+            let list = a.parameters.iter().map(|(n, t)| {
+                let doc = format!(" `{n}` of this end.");
+                quote!(#[doc = #doc] #n: #t)
+            });
+            match a.parameters.is_empty() {
+                true => quote!(#[doc = #doc] #v),
+                false => quote!(#[doc = #doc] #v { #(#list),* }),
+            }
+        });
+        let doc = match last {
+            false => " How the line begins.",
+            true => " How the line ends.",
+        };
+        // Scalars that no alternative has.
+        let none = alternatives.iter().all(|a| a.parameters.is_empty());
+        let marker = none.then(|| quote!(#[doc(hidden)] Scalar(::core::marker::PhantomData<T>),));
+        types.extend(quote! {
+            #[doc = #doc]
+            #[derive(Clone, Copy, Debug, PartialEq)]
+            pub enum #ty<T = f64> { #(#variants,)* #marker }
+        });
+        let field = if last { quote!(last) } else { quote!(first) };
+        fields.extend(quote!(#[doc = #doc] #field: #ty<T>,));
+    }
+    let open = match fields.is_empty() {
+        true => quote!(
+            #[doc = " Both ends free."]
+            Open
+        ),
+        false => quote!(#[doc = " Two ends."] Open { #fields }),
+    };
+    let ring = lattice.periodic.is_some().then(|| {
+        let offsets = l.offsets().into_iter().map(|(name, of)| {
+            let doc = format!(" By what `{of}` grows once around the ring.");
+            let field = format_ident!("{name}");
+            let t = lattice.find(&of).map(|q| shape_type(&q.shape));
+            quote!(#[doc = #doc] #field: #t)
+        });
+        let offsets: Vec<TokenStream> = offsets.collect();
+        match offsets.is_empty() {
+            true => quote!(
+                #[doc = " Closed to a ring."]
+                Ring,
+            ),
+            false => quote!(#[doc = " Closed to a ring."] Ring { #(#offsets),* },),
+        }
+    });
+    quote! {
+        #types
+        /// How the line ends.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub enum #ends<T = f64> { #open, #ring #[doc(hidden)] Scalar(::core::marker::PhantomData<T>) }
+
+        /// How many sites there are, and how the line ends.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct #name<T = f64> {
+            #(#counts,)*
+            /// How the line ends.
+            pub ends: #ends<T>,
+        }
+    }
+}
+
+impl Lines<'_> {
+    /// Offsets around the ring, each once, with a field that has it.
+    pub(super) fn offsets(&self) -> Vec<(String, String)> {
+        let mut out: Vec<(String, String)> = Vec::new();
+        for q in &self.line.lattice.quantities {
+            if let Some(o) = &q.offset
+                && !out.iter().any(|(known, _)| *known == o.text)
+            {
+                out.push((o.text.clone(), q.name.text.clone()));
+            }
+        }
+        out
+    }
+
+    /// The pattern of a ring, with the offsets that are asked for.
+    pub(super) fn ring_pattern(&self, offsets: &[Ident]) -> TokenStream {
+        let ends = self.item("Ends");
+        match (self.offsets().is_empty(), offsets) {
+            (true, _) => quote!(#ends::Ring),
+            (_, list) => quote!(#ends::Ring { #(#list,)* .. }),
+        }
+    }
+}
+
+/// The model: validated parameters, factors of the equations, sites.
+pub(super) fn model(l: &Lines) -> TokenStream {
+    let (name, data, sites) = (l.item(""), l.item("Parameters"), l.item("Sites"));
+    let line = l.line;
+    let source = l.source;
+    let beyond = number(line.beyond());
+    let docs = line.model.docs.iter();
+    let ring = match line.lattice.periodic {
+        Some(_) => {
+            let pattern = l.ring_pattern(&[]);
+            quote!(matches!(self.sites.ends, #pattern))
+        }
+        None => quote!(false),
+    };
+    let mut checks = TokenStream::new();
+    for g in l.given() {
+        let (field, label, shape) = (format_ident!("{}", g.name), &g.name, g.symbol.shape);
+        let test = l.test(
+            label,
+            g.symbol.structure,
+            shape.is_scalar(),
+            shape.is_vector(),
+        );
+        checks.extend(match g.at {
+            None => quote!({ let value = &model.parameters.#field; #test }),
+            Some((at, kind)) => {
+                let words = words(kind);
+                let t = ty(&line.representative.d.letters.symbols, shape);
+                let expected = on_model(l, at, kind);
+                quote! {
+                    line::length_of(#label, &model.parameters.#field, #expected, #words)?;
+                    line::each(#label, &model.parameters.#field, |value: &#t| -> Result<(), ParameterError> { #test Ok(()) })?;
+                    model.parameters.#field = line::repeated(&model.parameters.#field, #beyond, ring);
+                }
+            }
+        });
+    }
+    let counts = line.lattice.labels.iter().map(|label| {
+        let (field, text) = (format_ident!("{}", label.count.text), &label.count.text);
+        quote! {
+            if sites.#field == 0 {
+                return Err(LineError::NoSites { count: #text });
+            }
+        }
+    });
+    let (mut fields, mut init, mut made) = Default::default();
+    factors(l, &mut fields, &mut init, &mut made);
+    let nodes = l.segments().map(|n| {
+        quote! {
+            /// The number of nodes of the line.
+            pub fn nodes(&self) -> usize {
+                self.sites.#n + usize::from(!self.is_ring())
+            }
+            /// Whether the line is closed to a ring.
+            pub fn is_ring(&self) -> bool {
+                #ring
+            }
+        }
+    });
+    checks.extend(super::domain::of_parameters(l));
+    let is_ring = match line.lattice.line {
+        Some(_) => quote!(model.is_ring()),
+        None => quote!(false),
+    };
+    quote! {
+        #(#[doc = #docs])*
+        #[derive(Clone, Debug)]
+        pub struct #name<T = f64> {
+            parameters: #data<T>,
+            sites: #sites<T>,
+            threads: line::Threads,
+            stamp: line::Stamp,
+            #fields
+        }
+
+        impl<T: Real> #name<T> {
+            /// The model as it was stated.
+            pub const SOURCE: &'static str = #source;
+
+            /// Checks the parameters, at every site.
+            ///
+            /// # Errors
+            /// Names the parameter and the site whose value is not admissible, and lists of a wrong length.
+            pub fn new(parameters: #data<T>, sites: #sites<T>) -> Result<Self, LineError> {
+                #(#counts)*
+                let mut model = Self {
+                    parameters,
+                    sites,
+                    threads: line::Threads::ONE,
+                    stamp: line::Stamp::fresh(),
+                    #init
+                };
+                let ring = #is_ring;
+                let _ = ring;
+                #checks
+                #made
+                Ok(model)
+            }
+
+            /// The same model, its loops over sites shared by so many threads. They change no bit of any result.
+            #[must_use]
+            pub fn with_threads(self, threads: usize) -> Self {
+                Self { threads: line::Threads(threads), ..self }
+            }
+
+            /// How many sites there are, and how the line ends.
+            pub fn sites(&self) -> &#sites<T> {
+                &self.sites
+            }
+
+            #nodes
+        }
+    }
+}
+
+/// The number of sites of a kind, of the local `model`.
+fn on_model(l: &Lines, label: usize, sites: Sites) -> TokenStream {
+    let name = l
+        .line
+        .lattice
+        .labels
+        .get(label)
+        .map(|x| x.count.text.clone());
+    let name = format_ident!("{}", name.unwrap_or_default());
+    match l.line.lattice.line == Some(label) && sites == Sites::Nodes {
+        true => quote!(model.nodes()),
+        false => quote!(model.sites.#name),
+    }
+}
+
+/// The factors of rotations: one, or one for each site where a parameter of sites stands in it.
+fn factors(l: &Lines, fields: &mut TokenStream, init: &mut TokenStream, made: &mut TokenStream) {
+    for m in l.moving() {
+        let How::Rotation { factor, .. } = &m.mover.how else {
+            continue;
+        };
+        let d = m.d();
+        let s = &d.letters.symbols;
+        let name = format_ident!("factor_{}", m.mover.name);
+        fields.extend(quote!(#name: Vec<Poinsot<T>>,));
+        init.extend(quote!(#name: Vec::new(),));
+        let letters = expr::letters(factor);
+        let varies = letters
+            .iter()
+            .any(|x| l.is_site_parameter(&s.get(x.symbol).name));
+        let label = crate::emit::items::text(d, factor);
+        let locals = letters.iter().map(|x| {
+            let own = &s.get(x.symbol).name;
+            let (field, local) = (
+                format_ident!("{own}"),
+                crate::emit::names::variable(s, x.symbol),
+            );
+            match (s.get(x.symbol).role, l.is_site_parameter(own)) {
+                (Role::Parameter, true) => quote!(let #local = model.parameters.#field[site];),
+                (Role::Parameter, false) => quote!(let #local = model.parameters.#field;),
+                _ => TokenStream::new(),
+            }
+        });
+        let bindings = Bindings::new();
+        let value = Writer {
+            symbols: s,
+            bindings: &bindings,
+        }
+        .write(factor);
+        let count = match varies {
+            true => on_model(l, m.lone.label, m.lone.sites),
+            false => quote!(1),
+        };
+        let quantity = &m.mover.name;
+        made.extend(quote! {
+            for site in 0..#count {
+                #(#locals)*
+                let made = Poinsot::new(#value).map_err(|e| e.in_field(#label));
+                model.#name.push(made.map_err(|error| match #count {
+                    1 => LineError::Parameter(error),
+                    _ => LineError::Site { at: line::Place { quantity: #quantity, site }, error },
+                })?);
+            }
+        });
+    }
+}

@@ -1,0 +1,195 @@
+//! The stepper of a model with labels, for every number of sites: kernels of one site and of one term
+//! of neighbours; loops, threads and errors with sites are the runtime's (`clebsch::line`).
+//! Takes a [`Line`]; gives Rust items.
+
+mod acting;
+mod domain;
+mod ends;
+mod energy;
+mod forms;
+mod items;
+mod locals;
+mod pulls;
+mod solved;
+mod state;
+mod step;
+
+use crate::derive::Derivation;
+use crate::groups::Kept;
+use crate::lattice::{Kind, Sites};
+use crate::line::{How, Line, Lone, Mover};
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::{format_ident, quote};
+
+/// A line with the names of what is emitted.
+struct Lines<'a> {
+    line: &'a Line,
+    source: &'a str,
+}
+
+/// The items of a model with labels; `source` is its text.
+pub fn emit_line(line: &Line, source: &str) -> TokenStream {
+    let l = Lines { line, source };
+    let name = l.item("");
+    let module = format_ident!("{}", super::names::module(&line.model.name.text));
+    let visibility = line.model.public.then(|| quote!(pub));
+    let items = [
+        items::parameters(&l),
+        items::sites(&l),
+        items::model(&l),
+        state::state(&l),
+        step::step(&l),
+        pulls::pulls(&l),
+        solved::solved(&l),
+        acting::acting(&l),
+        energy::energy(&l),
+        domain::domain(&l).0,
+    ];
+    let about = format!(" The model [`{name}`](struct@{name}) and what belongs to it.");
+    quote! {
+        #[doc = #about]
+        #[allow(non_snake_case, non_camel_case_types, uncommon_codepoints, mixed_script_confusables, confusable_idents, clippy::all)]
+        #visibility mod #module {
+            use ::clebsch::emitted::*;
+            #(#items)*
+        }
+        #[allow(unused_imports)]
+        #visibility use #module::*;
+    }
+}
+
+/// Why no stepper with loops over sites is emitted, if so.
+pub fn refusal_of_line(line: &Line) -> Option<String> {
+    domain::refusal(line)
+}
+
+/// A configuration with the derivation of its site.
+#[derive(Clone, Copy)]
+struct Moving<'a> {
+    lone: &'a Lone,
+    mover: &'a Mover,
+}
+
+impl Moving<'_> {
+    fn d(&self) -> &Derivation {
+        &self.lone.d
+    }
+
+    fn name(&self) -> Ident {
+        format_ident!("{}", self.mover.name)
+    }
+
+    fn is_rotation(&self) -> bool {
+        matches!(self.mover.how, How::Rotation { .. })
+    }
+
+    /// Rows and columns of a field; of a rotation those of its momentum.
+    fn dims(&self) -> (TokenStream, TokenStream) {
+        let c = &self.d().spec.configurations[self.mover.index];
+        match c.group.kept() {
+            Kept::Field(shape) => super::expression::dims(&self.d().letters.symbols, shape),
+            _ => (quote!(3), quote!(1)),
+        }
+    }
+
+    /// The type of its momentum, and of what acts on it.
+    fn covector(&self) -> TokenStream {
+        let (rows, cols) = self.dims();
+        quote!(SMatrix<T, #rows, #cols>)
+    }
+
+    /// The type of its place.
+    fn place(&self) -> TokenStream {
+        match self.is_rotation() {
+            true => quote!(line::Attitude<T>),
+            false => self.covector(),
+        }
+    }
+
+    /// The type of the momentum of its edge.
+    fn edge(&self) -> TokenStream {
+        match self.is_rotation() {
+            true => quote!(Edge<T>),
+            false => self.covector(),
+        }
+    }
+
+    /// Whether it is a number.
+    fn is_number(&self) -> bool {
+        let c = &self.d().spec.configurations[self.mover.index];
+        c.group.shape().is_scalar()
+    }
+
+    /// A value of its shape as an array.
+    fn array(&self, value: TokenStream) -> TokenStream {
+        match self.is_number() {
+            true => quote!(SMatrix::<T, 1, 1>::new(#value)),
+            false => value,
+        }
+    }
+
+    /// The block that it belongs to, from 1, and the components before its own, where several
+    /// velocities or several components are found together.
+    fn system(&self) -> Option<(usize, &[usize])> {
+        if !matches!(self.mover.how, How::System { .. }) {
+            return None;
+        }
+        let blocks = self.lone.blocks.iter().enumerate();
+        let mut own = blocks.filter(|(_, b)| b.contains(&self.mover.index));
+        own.next().map(|(i, b)| (i, b.as_slice()))
+    }
+}
+
+impl<'a> Lines<'a> {
+    /// `NameSuffix`.
+    fn item(&self, suffix: &str) -> Ident {
+        format_ident!("{}{}", self.line.model.name.text, suffix)
+    }
+
+    /// Everything that moves.
+    fn moving(&self) -> impl Iterator<Item = Moving<'a>> + use<'a> {
+        let line = self.line;
+        line.lone
+            .iter()
+            .flat_map(|lone| lone.movers.iter().map(move |mover| Moving { lone, mover }))
+    }
+
+    /// The function that gives how many sites a kind has.
+    fn count(&self, label: usize, sites: Sites) -> TokenStream {
+        let name = self
+            .line
+            .lattice
+            .labels
+            .get(label)
+            .map(|l| l.count.text.clone());
+        let name = format_ident!("{}", name.unwrap_or_default());
+        let open = self.line.lattice.line == Some(label) && sites == Sites::Nodes;
+        match open {
+            true => quote!(self.nodes()),
+            false => quote!(self.sites.#name),
+        }
+    }
+
+    fn count_of(&self, name: &str) -> TokenStream {
+        match self.line.lattice.find(name) {
+            Some(q) => self.count(q.label, q.sites),
+            None => quote!(0),
+        }
+    }
+
+    /// The name of the number of segments of the line.
+    fn segments(&self) -> Option<Ident> {
+        let label = self.line.lattice.line_label()?;
+        Some(format_ident!("{}", label.count.text))
+    }
+
+    /// Whether a quantity is a parameter of sites.
+    fn is_site_parameter(&self, name: &str) -> bool {
+        let found = self.line.lattice.find(name);
+        found.is_some_and(|q| q.kind == Kind::Parameter)
+    }
+}
+
+fn number(n: usize) -> Literal {
+    Literal::usize_unsuffixed(n)
+}

@@ -1,0 +1,241 @@
+//! Kernels of terms of neighbours: what one term adds to the sites that it touches, evaluated once for
+//! all of them, and the loop over all terms.
+
+use super::forms::forms;
+use super::locals::{Known, Places};
+use super::{Lines, number};
+use crate::emit::expression::{Bindings, program};
+use crate::emit::items::letters_of;
+use crate::emit::names::variable;
+use crate::expr::Expr;
+use crate::expr::symbol::Symbols;
+use crate::line::Pull;
+use crate::schedule;
+use proc_macro2::{Ident, TokenStream};
+use quote::{format_ident, quote};
+
+/// The field of what a term adds to a site.
+pub(super) fn field(on: &str, site: usize) -> Ident {
+    format_ident!("{on}_{site}")
+}
+
+/// The farthest site that a term adds to: so many places stand before the first term.
+pub(super) fn front(pull: &Pull) -> usize {
+    pull.forces.iter().map(|f| f.site).max().unwrap_or(0)
+}
+
+/// Structures and kernels.
+pub(super) fn pulls(l: &Lines) -> TokenStream {
+    let name = l.item("");
+    let mut structs = TokenStream::new();
+    let mut kernels = TokenStream::new();
+    for (n, pull) in l.line.pulls.iter().enumerate() {
+        let (one, kernel) = of_pull(l, n + 1, pull);
+        structs.extend(one);
+        kernels.extend(kernel);
+    }
+    let all = sweep(l);
+    let ends = super::ends::ends(l);
+    quote! {
+        #structs
+        impl<T: Real> #name<T> {
+            #kernels
+            #all
+            #ends
+        }
+    }
+}
+
+fn of_pull(l: &Lines, n: usize, pull: &Pull) -> (TokenStream, TokenStream) {
+    let part = &l.line.representative;
+    let s = &part.d.letters.symbols;
+    let t = l.item(&format!("Pull{n}"));
+    let places = l.item("Places");
+    let moving: Vec<_> = l.moving().collect();
+    let of = |on: &str| moving.iter().find(|m| m.mover.name == on);
+    let mut fields = TokenStream::new();
+    let mut zeros = TokenStream::new();
+    for f in &pull.forces {
+        let name = field(&f.on, f.site);
+        let covector = of(&f.on).map(|m| m.covector());
+        fields.extend(quote!(#name: #covector,));
+        zeros.extend(quote!(#name: SMatrix::zeros(),));
+    }
+    let values: Vec<_> = pull.forces.iter().map(|f| f.value.clone()).collect();
+    let letters = known(l, &values);
+    let site = quote!(site);
+    let at = Places {
+        here: quote!(at),
+        next: quote!(at),
+    };
+    let (locals, bindings) = l.locals(s, &letters, &at, &site);
+    let (lets, results) = computed(s, &values, &bindings);
+    let made = pull.forces.iter().zip(results).map(|(f, value)| {
+        let name = field(&f.on, f.site);
+        let value = of(&f.on).map_or(value.clone(), |m| m.array(value));
+        quote!(#name: #value)
+    });
+    let step = super::locals::step(&part.d);
+    let kernel = format_ident!("pull_{n}");
+    let (term, sites) = (term_text(l, pull), pull.forces.len());
+    let doc = format!(
+        " What `{term}` adds to the {sites} momenta that it touches, the whole of it at one node."
+    );
+    let structure = quote! {
+        #[doc = #doc]
+        #[derive(Clone, Copy, Debug)]
+        struct #t<T> { #fields }
+        impl<T: Real> #t<T> {
+            /// Nothing.
+            fn none() -> Self { Self { #zeros } }
+        }
+    };
+    let kernel = quote! {
+        #[doc = #doc]
+        #[inline(always)]
+        fn #kernel(&self, #step: T, site: usize, at: &#places<T>) -> #t<T> {
+            #locals
+            #lets
+            #t { #(#made),* }
+        }
+    };
+    (structure, kernel)
+}
+
+/// Expressions of neighbours in the form in which they are computed.
+pub(super) fn computed(
+    s: &Symbols,
+    values: &[Expr],
+    bindings: &Bindings,
+) -> (TokenStream, Vec<TokenStream>) {
+    let forms = forms(s, values);
+    let mut lets = TokenStream::new();
+    for (id, value) in &forms.relative {
+        let p = schedule::program(&forms.symbols, std::slice::from_ref(value), "t");
+        let (_, made) = program(&p, bindings);
+        let name = variable(&forms.symbols, *id);
+        lets.extend(quote!(let #name = #(#made)*;));
+    }
+    let p = schedule::program(&forms.symbols, &forms.values, "t");
+    let (more, results) = program(&p, bindings);
+    lets.extend(more);
+    (lets, results)
+}
+
+/// The terms of a pull, letters seen from their first site.
+fn term_text(l: &Lines, pull: &Pull) -> String {
+    crate::emit::items::text(&l.line.representative.d, &pull.terms)
+}
+
+/// Letters of a term of neighbours.
+pub(super) fn known(l: &Lines, values: &[Expr]) -> Vec<Known> {
+    let part = &l.line.representative;
+    let letters = letters_of(values).into_iter();
+    letters
+        .map(|letter| match part.sited(letter.symbol) {
+            Some(at) => Known {
+                letter,
+                of: at.of,
+                on: Some(at.site.saturating_sub(crate::line::BASE)),
+            },
+            None => Known {
+                letter,
+                of: part.d.letters.symbols.get(letter.symbol).name.clone(),
+                on: None,
+            },
+        })
+        .collect()
+}
+
+/// The number of segments or sites of a term's label.
+fn count(l: &Lines, pull: &Pull) -> Ident {
+    let name = l
+        .line
+        .lattice
+        .labels
+        .get(pull.label)
+        .map(|x| x.count.text.clone());
+    format_ident!("{}", name.unwrap_or_default())
+}
+
+/// `let (first, last)`: the indices of a term, the one after the last.
+pub(super) fn range_of(l: &Lines, pull: &Pull) -> TokenStream {
+    let count = count(l, pull);
+    let last = match (pull.to, pull.to.unsigned_abs()) {
+        (-1, _) => quote!(self.sites.#count),
+        (..-1, by) => {
+            let by = number(by - 1);
+            quote!(self.sites.#count.saturating_sub(#by))
+        }
+        (_, by) => {
+            let by = number(by + 1);
+            quote!((self.sites.#count + #by))
+        }
+    };
+    let from = number(pull.from);
+    // A line may be too short for any such term.
+    let last = match pull.from {
+        0 => last,
+        _ => quote!(#last.max(#from)),
+    };
+    let of_line = l.line.lattice.line == Some(pull.label);
+    match (of_line, l.line.lattice.periodic.is_some()) {
+        (true, true) => quote! {
+            let (first, last) = match self.is_ring() {
+                true => (0, self.sites.#count),
+                false => (#from, #last),
+            };
+        },
+        (true, false) => quote!(let (first, last) = (#from, #last);),
+        (false, _) => quote!(let (first, last) = (0, self.sites.#count);),
+    }
+}
+
+/// The sweep over all terms, and the repetition along a ring.
+fn sweep(l: &Lines) -> TokenStream {
+    let (places, pulls) = (l.item("Places"), l.item("Pulls"));
+    let part = &l.line.representative;
+    let step = super::locals::step(&part.d);
+    let mut out = TokenStream::new();
+    for (n, pull) in l.line.pulls.iter().enumerate() {
+        let field = format_ident!("pull_{}", n + 1);
+        let t = l.item(&format!("Pull{}", n + 1));
+        let front = number(front(pull));
+        let count = count(l, pull);
+        let of_line = l.line.lattice.line == Some(pull.label);
+        let range = range_of(l, pull);
+        let kernel = quote! {
+            line::fill(self.threads, &mut pulls.#field[first + #front..last + #front], |i| {
+                self.#field(#step, first + i, at)
+            });
+        };
+        let around = (of_line && l.line.lattice.periodic.is_some()).then(|| {
+            quote! {
+                if self.is_ring() {
+                    for i in (0..#front).rev() {
+                        pulls.#field[i] = pulls.#field[i + self.sites.#count];
+                    }
+                } else {
+                    pulls.#field[..first + #front].fill(#t::none());
+                    pulls.#field[last + #front..].fill(#t::none());
+                }
+            }
+        });
+        let around = around.unwrap_or_else(|| {
+            quote! {
+                pulls.#field[..first + #front].fill(#t::none());
+                pulls.#field[last + #front..].fill(#t::none());
+            }
+        });
+        out.extend(quote!({ #range #kernel #around }));
+    }
+    quote! {
+        /// What neighbours and ends add at these places.
+        #[inline]
+        fn pulled(&self, #step: T, at: &#places<T>, pulls: &mut #pulls<T>) {
+            let _ = (#step, at, &pulls);
+            #out
+            self.ended(#step, at, pulls);
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! Kernels of the velocities of a site: from the momentum that leaves a node to the place at the next
+//! one.
+
+use super::locals::{Places, defined, step};
+use super::{Lines, Moving, number};
+use crate::emit::blocks::linear_solution;
+use crate::emit::element;
+use crate::emit::expression::program;
+use crate::expr::Expr;
+use crate::line::How;
+use crate::schedule;
+use proc_macro2::{Ident, TokenStream};
+use quote::{format_ident, quote};
+
+impl Lines<'_> {
+    /// Blocks of fields that are solved together: the field of their velocities, the number of
+    /// components, and their members in order.
+    pub(super) fn systems(&self) -> Vec<(Ident, usize, Vec<Moving<'_>>)> {
+        let mut out: Vec<(Ident, usize, Vec<Moving>)> = Vec::new();
+        for m in self.moving() {
+            let Some((_, block)) = m.system() else {
+                continue;
+            };
+            let members: Vec<Moving> = self
+                .moving()
+                .filter(|o| std::ptr::eq(o.lone, m.lone) && block.contains(&o.mover.index))
+                .collect();
+            if members.first().is_none_or(|f| f.mover.name != m.mover.name) {
+                continue;
+            }
+            let count = members.iter().map(Moving::components).sum();
+            out.push((format_ident!("velocity_{}", m.mover.name), count, members));
+        }
+        out
+    }
+}
+
+impl Moving<'_> {
+    /// How many components its velocity has.
+    pub(super) fn components(&self) -> usize {
+        let most = element::most_coordinates(self.d(), self.mover.index);
+        usize::try_from(most).unwrap_or(0)
+    }
+}
+
+/// The kernels.
+pub(super) fn solved(l: &Lines) -> TokenStream {
+    let name = l.item("");
+    let each = l.moving().map(|m| match &m.mover.how {
+        How::Rotation { .. } => rotation(l, m),
+        How::Field { form, .. } => field(l, m, &[&form.left, &form.right]),
+        How::System { .. } => TokenStream::new(),
+    });
+    let each: Vec<TokenStream> = each.collect();
+    let systems = l.systems();
+    let systems = systems.iter().map(|(_, n, members)| system(l, *n, members));
+    quote!(impl<T: Real> #name<T> { #(#each)* #(#systems)* })
+}
+
+/// The name of the kernel of a velocity.
+pub(super) fn kernel(m: &Moving) -> Ident {
+    format_ident!("moved_{}", m.mover.name)
+}
+
+fn rotation(l: &Lines, m: Moving) -> TokenStream {
+    let (kernel, places, name) = (kernel(&m), l.item("Places"), m.name());
+    let factor = format_ident!("factor_{}", m.mover.name);
+    let h = step(m.d());
+    let doc = format!(
+        " `{}` where the edge that leaves a site ends.",
+        m.mover.name
+    );
+    quote! {
+        #[doc = #doc]
+        #[inline(always)]
+        fn #kernel(&self, #h: T, site: usize, at: &#places<T>, edge: &Edge<T>) -> Result<line::Attitude<T>, StepCause> {
+            let factor = &self.#factor[site.min(self.#factor.len() - 1)];
+            match edge.turn(factor, #h, &at.#name[site].rotation()) {
+                Ok(turned) => Ok(line::Attitude::turned(&turned)),
+                Err(e) => Err(StepCause::from(e)),
+            }
+        }
+    }
+}
+
+fn field(l: &Lines, m: Moving, factors: &[&Expr; 2]) -> TokenStream {
+    let d = m.d();
+    let s = &d.letters.symbols;
+    let (kernel, places, name, t) = (kernel(&m), l.item("Places"), m.name(), m.covector());
+    let h = step(d);
+    let values: Vec<Expr> = factors.iter().map(|e| defined(d, e)).collect();
+    let at = Places {
+        here: quote!(at),
+        next: quote!(at),
+    };
+    let (locals, bindings) = l.locals(s, &l.of_site(d, &values), &at, &quote!(site));
+    let p = schedule::program(s, &values, "t");
+    let (lets, results) = program(&p, &bindings);
+    let [left, right] = results.as_slice() else {
+        return TokenStream::new();
+    };
+    let form = match &m.mover.how {
+        How::Field { form, .. } => form,
+        _ => return TokenStream::new(),
+    };
+    // The array around a number is made where it is solved for.
+    let known = match m.is_number() {
+        true => quote!(edge[0]),
+        false => quote!(*edge),
+    };
+    let index = m.mover.index;
+    let solution = linear_solution(d, index, form, left.clone(), known, right.clone());
+    let doc = format!(
+        " `{}` where the edge that leaves a site ends.",
+        m.mover.name
+    );
+    quote! {
+        #[doc = #doc]
+        #[inline(always)]
+        fn #kernel(&self, #h: T, site: usize, at: &#places<T>, edge: &#t) -> Result<#t, StepCause> {
+            #locals
+            #lets
+            match #solution {
+                Ok(velocity) => Ok(at.#name[site] + velocity.matrix()),
+                Err(e) => Err(StepCause::Singular(e)),
+            }
+        }
+    }
+}
+
+/// The velocities of a block, stacked.
+fn system(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
+    let Some(first) = members.first() else {
+        return TokenStream::new();
+    };
+    let d = first.d();
+    let s = &d.letters.symbols;
+    let (kernel, places, edges) = (kernel(first), l.item("Places"), l.item("Edges"));
+    let h = step(d);
+    let mut values: Vec<Expr> = Vec::new();
+    for m in members {
+        if let How::System { columns, rest, .. } = &m.mover.how {
+            values.extend(columns.iter().chain([rest]).map(|e| defined(d, e)));
+        }
+    }
+    let at = Places {
+        here: quote!(at),
+        next: quote!(at),
+    };
+    let (locals, bindings) = l.locals(s, &l.of_site(d, &values), &at, &quote!(site));
+    let p = schedule::program(s, &values, "t");
+    let (lets, results) = program(&p, &bindings);
+    let size = number(n);
+    let mut fill = TokenStream::new();
+    let mut row = 0;
+    let mut results = results.into_iter();
+    for m in members {
+        let count = m.components();
+        let (rows, name) = (number(count), m.name());
+        let at_row = number(row);
+        for column in 0..n {
+            let (column, value) = (number(column), results.next().unwrap_or_default());
+            let value = m.array(value);
+            fill.extend(
+                quote!(a.fixed_view_mut::<#rows, 1>(#at_row, #column).copy_from(&(#value));),
+            );
+        }
+        let rest = m.array(results.next().unwrap_or_default());
+        fill.extend(quote! {
+            known.fixed_view_mut::<#rows, 1>(#at_row, 0).copy_from(&(edges.#name[site] - #rest));
+        });
+        row += count;
+    }
+    let names: Vec<String> = members.iter().map(|m| m.mover.name.clone()).collect();
+    let what = format!(
+        "the derivative of the momenta of {} by their velocities",
+        names.join(", ")
+    );
+    let doc = format!(
+        " The velocities of {}, of the edge that leaves a site.",
+        names.join(", ")
+    );
+    quote! {
+        #[doc = #doc]
+        #[inline(always)]
+        fn #kernel(&self, #h: T, site: usize, at: &#places<T>, edges: &#edges<T>) -> Result<SVector<T, #size>, StepCause> {
+            #locals
+            #lets
+            let mut a = SMatrix::<T, #size, #size>::zeros();
+            let mut known = SVector::<T, #size>::zeros();
+            #fill
+            line::solve_columns(&a, &known, #what).map_err(StepCause::Singular)
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! What moves: initial data, places and momenta at a node, and what a step keeps for the next one.
+
+use super::items::words;
+use super::{Lines, number};
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
+
+/// The items.
+pub(super) fn state(l: &Lines) -> TokenStream {
+    let [initial, places, momenta, edges, pulls, state, work] = [
+        "Initial",
+        "Places",
+        "Momenta",
+        "Edges",
+        "Pulls",
+        "State",
+        "Workspace",
+    ]
+    .map(|suffix| l.item(suffix));
+    let moving: Vec<_> = l.moving().collect();
+    let given = moving.iter().map(|m| {
+        let (name, sites) = (m.name(), words(m.lone.sites));
+        let momentum = format_ident!("momentum_{}", m.mover.name);
+        let doc = format!(" `{}` at node 0, at each of the {sites}.", m.mover.name);
+        let t = m.covector();
+        match m.is_rotation() {
+            true => {
+                let body = format_ident!("body_momentum_{}", m.mover.name);
+                quote! {
+                    #[doc = #doc] pub #name: Vec<Rotation<T>>,
+                    /// Its momenta at node 0, in body frames.
+                    pub #body: Vec<BodyMomentum<T>>
+                }
+            }
+            false => quote! {
+                #[doc = #doc] pub #name: Vec<#t>,
+                /// Its momenta at node 0.
+                pub #momentum: Vec<#t>
+            },
+        }
+    });
+    let names: Vec<_> = moving.iter().map(|m| m.name()).collect();
+    let place_types = moving.iter().map(|m| m.place());
+    let momentum_types = moving.iter().map(|m| m.covector());
+    let edge_types = moving.iter().map(|m| m.edge());
+    let pull_fields = (1..=l.line.pulls.len()).map(|n| {
+        let (field, t) = (format_ident!("pull_{n}"), l.item(&format!("Pull{n}")));
+        quote!(#field: Vec<#t<T>>)
+    });
+    let velocities = l.systems().into_iter().map(|(field, n, _)| {
+        let n = number(n);
+        quote!(#field: Vec<SVector<T, #n>>)
+    });
+    let access = moving.iter().map(|m| {
+        let (name, sites) = (m.name(), words(m.lone.sites));
+        let momentum = format_ident!("momentum_{}", m.mover.name);
+        let count = format_ident!("count_{}", m.mover.name);
+        let t = m.covector();
+        let doc = format!(" `{}` at this node, at each of the {sites}.", m.mover.name);
+        match m.is_rotation() {
+            true => {
+                let [spatial, body] = ["spatial_momentum", "body_momentum"]
+                    .map(|x| format_ident!("{x}_{}", m.mover.name));
+                quote! {
+                    #[doc = #doc]
+                    pub fn #name(&self) -> impl ExactSizeIterator<Item = Rotation<T>> {
+                        self.places.#name[..self.#count].iter().map(|x| x.rotation())
+                    }
+                    /// Its momenta at this node, in the space frame.
+                    pub fn #spatial(&self) -> impl ExactSizeIterator<Item = SpatialMomentum<T>> {
+                        self.momenta.#name.iter().map(|m| SpatialMomentum(*m))
+                    }
+                    /// Its momenta at this node, in body frames.
+                    pub fn #body(&self) -> impl ExactSizeIterator<Item = BodyMomentum<T>> {
+                        let both = self.momenta.#name.iter().zip(&self.places.#name);
+                        both.map(|(m, x)| BodyMomentum(x.matrix().tr_mul(m)))
+                    }
+                }
+            }
+            false => quote! {
+                #[doc = #doc]
+                pub fn #name(&self) -> &[#t] {
+                    &self.places.#name[..self.#count]
+                }
+                /// Its momenta at this node.
+                pub fn #momentum(&self) -> &[#t] {
+                    &self.momenta.#name
+                }
+            },
+        }
+    });
+    let counts = moving.iter().map(|m| {
+        let count = format_ident!("count_{}", m.mover.name);
+        quote!(#count: usize)
+    });
+    let (p, v): (Vec<_>, Vec<_>) = (pull_fields.collect(), velocities.collect());
+    let no_pulls = p
+        .is_empty()
+        .then(|| quote!(scalar: ::core::marker::PhantomData<T>));
+    quote! {
+        /// Initial data.
+        #[derive(Clone, Debug, PartialEq)]
+        pub struct #initial<T = f64> { #(#given),* }
+
+        /// Places of all sites, those beyond the last one included.
+        #[derive(Clone, Debug, PartialEq)]
+        struct #places<T> { #(#names: Vec<#place_types>),* }
+
+        /// Momenta of all sites, of rotations in the space frame.
+        #[derive(Clone, Debug, PartialEq)]
+        struct #momenta<T> { #(#names: Vec<#momentum_types>),* }
+
+        /// Momenta of the edges that begin at a node.
+        #[derive(Clone, Debug)]
+        struct #edges<T> { #(#names: Vec<#edge_types>),* }
+
+        /// What neighbours add at a node.
+        #[derive(Clone, Debug)]
+        struct #pulls<T> { #(#p,)* #no_pulls }
+
+        /// What moves, at one node in time.
+        #[derive(Clone, Debug)]
+        pub struct #state<T = f64> {
+            places: #places<T>,
+            momenta: #momenta<T>,
+            node: u64,
+            stamp: line::Stamp,
+            #(#counts,)*
+        }
+
+        impl<T: Real> #state<T> {
+            #(#access)*
+            /// The number of the node.
+            pub fn node(&self) -> u64 { self.node }
+        }
+
+        impl<T: Real> PartialEq for #state<T> {
+            fn eq(&self, other: &Self) -> bool {
+                self.places == other.places && self.momenta == other.momenta && self.node == other.node
+            }
+        }
+
+        /// The step, and the momenta of the edges that begin at the state of the same stamp.
+        #[derive(Clone, Debug)]
+        pub struct #work<T = f64> {
+            h: T,
+            stamp: line::Stamp,
+            places: #places<T>,
+            momenta: #momenta<T>,
+            edges: #edges<T>,
+            pulls: #pulls<T>,
+            #(#v,)*
+        }
+    }
+}

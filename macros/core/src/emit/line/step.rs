@@ -1,0 +1,482 @@
+//! `start`, `workspace` and `step` of a line: the order of its loops. All places first, then what
+//! neighbours add at the new places, then all momenta; the state changes when everything has worked.
+
+use super::acting::{self, Acting};
+use super::{Lines, Moving, number, solved};
+use proc_macro2::{Ident, TokenStream};
+use quote::{format_ident, quote};
+
+/// The functions.
+pub(super) fn step(l: &Lines) -> TokenStream {
+    let [name, initial, state, work, places, momenta, edges, pulls] = [
+        "",
+        "Initial",
+        "State",
+        "Workspace",
+        "Places",
+        "Momenta",
+        "Edges",
+        "Pulls",
+    ]
+    .map(|suffix| l.item(suffix));
+    let moving: Vec<_> = l.moving().collect();
+    let names: Vec<_> = moving.iter().map(Moving::name).collect();
+    let counts: Vec<_> = moving.iter().map(|m| l.count_of(&m.mover.name)).collect();
+    let ranges = moving.iter().map(|m| range(l, m));
+    let checks = moving.iter().map(|m| check(l, m));
+    let beyond = number(l.line.beyond());
+    let around = around(l, &moving);
+    let solves = moving.iter().map(|m| solve(l, m));
+    let systems = l.systems();
+    let of_systems = systems
+        .iter()
+        .map(|(field, n, members)| solve_system(field, *n, members));
+    let arrivals = moving.iter().map(|m| arrive(l, m));
+    let beginnings = moving.iter().map(|m| begin(l, m));
+    let count_fields: Vec<_> = moving
+        .iter()
+        .map(|m| format_ident!("count_{}", m.mover.name))
+        .collect();
+    let edge_values: Vec<TokenStream> = moving
+        .iter()
+        .map(|m| {
+            let own = m.name();
+            match m.is_rotation() {
+                true => quote!(::std::vec![Edge::new(SVector::zeros(), SVector::zeros()); state.momenta.#own.len()]),
+                false => quote!(state.momenta.#own.clone()),
+            }
+        })
+        .collect();
+    let pull_values = l.line.pulls.iter().enumerate().map(|(n, pull)| {
+        let (field, t) = (
+            format_ident!("pull_{}", n + 1),
+            l.item(&format!("Pull{}", n + 1)),
+        );
+        let front = number(super::pulls::front(pull));
+        let label = l
+            .line
+            .lattice
+            .labels
+            .get(pull.label)
+            .map(|x| x.count.text.clone());
+        let count = format_ident!("{}", label.unwrap_or_default());
+        quote!(#field: ::std::vec![#t::none(); self.sites.#count + 1 + 2 * #front])
+    });
+    let no_pulls = l
+        .line
+        .pulls
+        .is_empty()
+        .then(|| quote!(scalar: ::core::marker::PhantomData));
+    let velocity_values = systems.iter().map(|(field, n, members)| {
+        let n = number(*n);
+        let own = members.first().map(Moving::name);
+        quote!(#field: ::std::vec![SVector::<T, #n>::zeros(); state.momenta.#own.len()])
+    });
+    let place_values = moving.iter().map(|m| {
+        let own = m.name();
+        match m.is_rotation() {
+            true => quote!(initial.#own.iter().map(|x| line::Attitude::new(*x)).collect()),
+            false => quote!(initial.#own.clone()),
+        }
+    });
+    let momentum_values = moving.iter().map(|m| {
+        let own = m.name();
+        match m.is_rotation() {
+            true => {
+                let body = format_ident!("body_momentum_{}", m.mover.name);
+                quote!(initial.#body.iter().zip(&initial.#own).map(|(m, x)| m.to_space(x).0).collect())
+            }
+            false => {
+                let momentum = format_ident!("momentum_{}", m.mover.name);
+                quote!(initial.#momentum.clone())
+            }
+        }
+    });
+    let solves: Vec<TokenStream> = solves.collect();
+    let (_, inside) = super::domain::domain(l);
+    quote! {
+        impl<T: Real> #name<T> {
+            /// Starts a trajectory with step `h` from data at node 0.
+            ///
+            /// # Errors
+            /// Names the quantity and the site whose value is not admissible, or says at which site the first
+            /// step cannot be made.
+            pub fn start(&self, initial: #initial<T>, h: T) -> Result<(#state<T>, #work<T>), LineError> {
+                validate::positive_step(h)?;
+                #(#checks)*
+                let mut state = #state {
+                    places: #places { #(#names: #place_values),* },
+                    momenta: #momenta { #(#names: #momentum_values),* },
+                    node: 0,
+                    stamp: line::Stamp::fresh(),
+                    #(#count_fields: #counts,)*
+                };
+                #(
+                    let last = state.places.#names[#counts - 1];
+                    state.places.#names.resize(#counts + #beyond, last);
+                )*
+                self.around(&mut state.places);
+                let work = self.workspace(&state, h)?;
+                let (mut trial, mut scratch) = (state.clone(), work.clone());
+                self.step(&mut trial, &mut scratch)?;
+                Ok((state, work))
+            }
+
+            /// A workspace for steps of `h`, of either sign, from any state.
+            ///
+            /// # Errors
+            /// When `h` is zero or not finite.
+            pub fn workspace(&self, state: &#state<T>, h: T) -> Result<#work<T>, LineError> {
+                validate::directed_step(h)?;
+                let mut work = #work {
+                    h,
+                    stamp: line::Stamp::none(),
+                    places: state.places.clone(),
+                    momenta: state.momenta.clone(),
+                    edges: #edges { #(#names: #edge_values),* },
+                    pulls: #pulls { #(#pull_values,)* #no_pulls },
+                    #(#velocity_values,)*
+                };
+                self.begin(state, &mut work);
+                Ok(work)
+            }
+
+            /// One step, in place.
+            ///
+            /// # Errors
+            /// When the step cannot be made: at which site, why, and which shorter step can; the state is then
+            /// unchanged.
+            pub fn step(&self, state: &mut #state<T>, work: &mut #work<T>) -> Result<(), LineError> {
+                let h = work.h;
+                if work.stamp != state.stamp {
+                    self.begin(state, work);
+                }
+                #(#of_systems)*
+                #(#solves)*
+                self.around(&mut work.places);
+                #inside
+                self.pulled(h, &work.places, &mut work.pulls);
+                work.stamp = line::Stamp::none();
+                #(#arrivals)*
+                ::core::mem::swap(&mut state.places, &mut work.places);
+                ::core::mem::swap(&mut state.momenta, &mut work.momenta);
+                state.node += 1;
+                state.stamp = state.stamp.after(self.stamp, h.value());
+                work.stamp = state.stamp;
+                Ok(())
+            }
+
+            /// The momenta of the edges that begin at this state.
+            #[cold]
+            fn begin(&self, state: &#state<T>, work: &mut #work<T>) {
+                let h = work.h;
+                self.pulled(h, &state.places, &mut work.pulls);
+                #(#beginnings)*
+                work.stamp = state.stamp;
+            }
+
+            /// Says at which site a step is refused, and which shorter one can be made.
+            #[cold]
+            #[inline(never)]
+            fn refused(&self, state: &#state<T>, h: T, at: line::Place, cause: StepCause) -> LineError {
+                let made = |h: T| {
+                    let mut work = self.workspace(state, h).ok()?;
+                    self.step(&mut state.clone(), &mut work).ok()
+                };
+                LineError::Step { node: state.node, at, cause, works: line::shorter(h, |h| made(h).is_some()) }
+            }
+
+            #around
+            #(#ranges)*
+        }
+    }
+}
+
+/// The name of the function of the sites that move.
+fn range_name(m: &Moving) -> Ident {
+    format_ident!("moving_{}", m.mover.name)
+}
+
+/// Which sites of a configuration move: all but those that an end holds.
+fn range(l: &Lines, m: &Moving) -> TokenStream {
+    let (name, ends, count) = (range_name(m), l.item("Ends"), l.count_of(&m.mover.name));
+    let held = |last: bool| {
+        let (ty, alternatives) = l.alternatives(last)?;
+        let own = alternatives
+            .iter()
+            .filter(|a| a.given.contains(&m.mover.name));
+        let variants: Vec<TokenStream> = own
+            .map(|a| {
+                let v = &a.variant;
+                match a.parameters.is_empty() {
+                    true => quote!(#ty::#v),
+                    false => quote!(#ty::#v { .. }),
+                }
+            })
+            .collect();
+        let field = if last { quote!(last) } else { quote!(first) };
+        (!variants.is_empty()).then(|| {
+            quote!(usize::from(
+                matches!(self.sites.ends, #ends::Open { #field: #(#variants)|*, .. })
+            ))
+        })
+    };
+    let first = held(false).unwrap_or_else(|| quote!(0));
+    let last = match held(true) {
+        Some(held) => quote!((#count - #held).max(first)),
+        None => quote!(#count),
+    };
+    let doc = format!(
+        " The sites at which `{}` moves: the first, and the one after the last.",
+        m.mover.name
+    );
+    quote! {
+        #[doc = #doc]
+        #[inline]
+        fn #name(&self) -> [usize; 2] {
+            let first = #first;
+            [first, #last]
+        }
+    }
+}
+
+/// The sites beyond the last one, those from the beginning of a ring.
+fn around(l: &Lines, moving: &[Moving]) -> TokenStream {
+    let places = l.item("Places");
+    let beyond = number(l.line.beyond());
+    if l.line.lattice.periodic.is_none() || l.line.beyond() == 0 {
+        return quote! {
+            /// No site is beyond the last one.
+            #[inline]
+            fn around(&self, _: &mut #places<T>) {}
+        };
+    }
+    let lattice = &l.line.lattice;
+    let offsets: Vec<Ident> = l
+        .offsets()
+        .iter()
+        .map(|(n, _)| format_ident!("{n}"))
+        .collect();
+    let pattern = l.ring_pattern(&offsets);
+    let each = moving.iter().filter_map(|m| {
+        let q = lattice.find(&m.mover.name)?;
+        if lattice.line != Some(q.label) {
+            return None;
+        }
+        let (name, count) = (m.name(), l.count_of(&m.mover.name));
+        let offset = q.offset.as_ref().map(|o| {
+            let local = format_ident!("{}", o.text);
+            let value = m.array(quote!(#local));
+            quote!(+ #value)
+        });
+        Some(quote! {
+            for i in 0..#beyond {
+                at.#name[#count + i] = at.#name[i] #offset;
+            }
+        })
+    });
+    let each: Vec<TokenStream> = each.collect();
+    quote! {
+        /// The sites beyond the last one of a ring are those from its beginning.
+        #[inline]
+        fn around(&self, at: &mut #places<T>) {
+            if let #pattern = self.sites.ends {
+                #(#each)*
+            }
+        }
+    }
+}
+
+/// Tests of initial data.
+fn check(l: &Lines, m: &Moving) -> TokenStream {
+    let (name, text, count) = (m.name(), &m.mover.name, l.count_of(&m.mover.name));
+    let words = super::items::words(m.lone.sites);
+    let momentum = match m.is_rotation() {
+        true => format!("body_momentum_{text}"),
+        false => format!("momentum_{text}"),
+    };
+    let field = format_ident!("{momentum}");
+    let finite = match m.is_rotation() {
+        true => quote! {
+            line::each(#text, &initial.#name, |x| validate::finite(#text, &x.quaternion()))?;
+            line::each(#momentum, &initial.#field, |x| validate::finite(#momentum, x.0.as_slice()))?;
+        },
+        false => quote! {
+            line::each(#text, &initial.#name, |x| validate::finite(#text, x.as_slice()))?;
+            line::each(#momentum, &initial.#field, |x| validate::finite(#momentum, x.as_slice()))?;
+        },
+    };
+    quote! {
+        line::length_of(#text, &initial.#name, #count, #words)?;
+        line::length_of(#momentum, &initial.#field, #count, #words)?;
+        #finite
+    }
+}
+
+/// The places of one configuration at the next node.
+fn solve(l: &Lines, m: &Moving) -> TokenStream {
+    let (name, text, range) = (m.name(), &m.mover.name, range_name(m));
+    let count = l.count_of(text);
+    let fill = match m.system() {
+        None => {
+            let kernel = solved::kernel(m);
+            quote! {
+                let (at, edges) = (&state.places, &work.edges.#name);
+                let made = line::try_fill(self.threads, &mut work.places.#name[first..last], |i| {
+                    self.#kernel(h, first + i, at, &edges[first + i])
+                });
+                if let Err((i, cause)) = made {
+                    return Err(self.refused(state, h, line::Place { quantity: #text, site: first + i }, cause));
+                }
+            }
+        }
+        Some(_) => {
+            let systems = l.systems();
+            let own = systems
+                .iter()
+                .find(|(.., members)| members.iter().any(|o| o.mover.name == *text));
+            let Some((field, _, members)) = own else {
+                return TokenStream::new();
+            };
+            let before: usize = members
+                .iter()
+                .take_while(|o| o.mover.name != *text)
+                .map(Moving::components)
+                .sum();
+            let (rows, row) = (number(m.components()), number(before));
+            quote! {
+                let (at, velocity) = (&state.places, &work.#field);
+                line::fill(self.threads, &mut work.places.#name[first..last], |i| {
+                    at.#name[first + i] + velocity[first + i].fixed_rows::<#rows>(#row)
+                });
+            }
+        }
+    };
+    quote! {
+        {
+            let [first, last] = self.#range();
+            #fill
+            work.places.#name[..first].copy_from_slice(&state.places.#name[..first]);
+            work.places.#name[last..#count].copy_from_slice(&state.places.#name[last..#count]);
+        }
+    }
+}
+
+/// The velocities of one block of fields.
+fn solve_system(field: &Ident, _: usize, members: &[Moving]) -> TokenStream {
+    let Some(first) = members.first() else {
+        return TokenStream::new();
+    };
+    let (kernel, range, text) = (solved::kernel(first), range_name(first), &first.mover.name);
+    quote! {
+        {
+            let [first, last] = self.#range();
+            let (at, edges) = (&state.places, &work.edges);
+            let made = line::try_fill(self.threads, &mut work.#field[first..last], |i| {
+                self.#kernel(h, first + i, at, edges)
+            });
+            if let Err((i, cause)) = made {
+                return Err(self.refused(state, h, line::Place { quantity: #text, site: first + i }, cause));
+            }
+        }
+    }
+}
+
+/// What is done with what acts: the momentum at the node and that of the edge that leaves, given that
+/// of the edge that came.
+fn arrived(l: &Lines, m: &Moving) -> TokenStream {
+    let name = m.name();
+    match (m.is_rotation(), l.acting(m)) {
+        (true, Acting::Halves) => quote! {
+            let turn = at.#name[site].matrix();
+            let space = edge.space();
+            let kick = turn * acting;
+            let momentum = space + kick * T::from_f64(0.5);
+            let edge = Edge::new(turn.tr_mul(&space) + acting, space + kick);
+            all_finite(&edge.space()).then_some((momentum, edge))
+        },
+        (true, Acting::Both) => quote! {
+            let [before, after] = acting;
+            let turn = at.#name[site].matrix();
+            let space = edge.space();
+            let momentum = space + turn * before;
+            let edge = Edge::new(turn.tr_mul(&space) + before + after, momentum + turn * after);
+            all_finite(&edge.space()).then_some((momentum, edge))
+        },
+        (false, Acting::Halves) => quote! {
+            let momentum = edge + acting * T::from_f64(0.5);
+            let edge = edge + acting;
+            all_finite(&edge).then_some((momentum, edge))
+        },
+        (false, Acting::Both) => quote! {
+            let [before, after] = acting;
+            let momentum = edge + before;
+            let edge = momentum + after;
+            all_finite(&edge).then_some((momentum, edge))
+        },
+    }
+}
+
+fn arrive(l: &Lines, m: &Moving) -> TokenStream {
+    let (name, text, range, kernel) = (m.name(), &m.mover.name, range_name(m), acting::kernel(m));
+    let added = m.system().map(|_| {
+        let systems = l.systems();
+        let own = systems
+            .iter()
+            .find(|(.., members)| members.iter().any(|o| o.mover.name == *text));
+        let field = own.map(|(field, ..)| field.clone());
+        let kernel = acting::edge_kernel(m);
+        quote!(let edge = edge + self.#kernel(h, site, &state.places, at, &work.#field[site]);)
+    });
+    let arrived = arrived(l, m);
+    quote! {
+        {
+            let [first, last] = self.#range();
+            let (at, pulls) = (&work.places, &work.pulls);
+            let made = line::update(
+                self.threads,
+                &mut work.momenta.#name[first..last],
+                &mut work.edges.#name[first..last],
+                |i, edge| {
+                    let site = first + i;
+                    #added
+                    let acting = self.#kernel(h, site, at, pulls);
+                    #arrived
+                },
+            );
+            if let Err(i) = made {
+                let cause = StepCause::NotFinite { what: "momentum" };
+                return Err(self.refused(state, h, line::Place { quantity: #text, site: first + i }, cause));
+            }
+        }
+    }
+}
+
+/// The momentum of the edge that begins at a state.
+fn begin(l: &Lines, m: &Moving) -> TokenStream {
+    let (name, kernel) = (m.name(), acting::kernel(m));
+    let after = match l.acting(m) {
+        Acting::Halves => quote!(acting * T::from_f64(0.5)),
+        Acting::Both => quote!(acting[1]),
+    };
+    let edge = match m.is_rotation() {
+        true => quote! {
+            let turn = state.places.#name[site].matrix();
+            Edge::new(turn.tr_mul(&momentum) + after, momentum + turn * after)
+        },
+        false => quote!(momentum + after),
+    };
+    let range = range_name(m);
+    quote! {
+        {
+            let [first, last] = self.#range();
+            let pulls = &work.pulls;
+            line::fill(self.threads, &mut work.edges.#name[first..last], |i| {
+                let site = first + i;
+                let acting = self.#kernel(h, site, &state.places, pulls);
+                let (momentum, after) = (state.momenta.#name[site], #after);
+                #edge
+            });
+        }
+    }
+}

@@ -1,0 +1,362 @@
+//! What moves at one site by itself: the model of one site without its neighbours, derived as any
+//! other, and how its velocities are found when neighbours add to its momentum.
+
+use super::pull::lone_at;
+use super::{Refused, Written};
+use crate::algebra::Algebra;
+use crate::check::{self, spec::Side};
+use crate::derive::carry::Carry;
+use crate::derive::explicit::Explicit;
+use crate::derive::recognise::{MoserVeselov, Riccati};
+use crate::derive::{self, Derivation};
+use crate::diagnostic::Errors;
+use crate::expr::symbol::Role;
+use crate::expr::{self, Expr, Letter, Shift};
+use crate::groups::Kept;
+use crate::lattice::{Kind as Standing, Lattice, Sites, definitions, inlined};
+use crate::syntax::ast::{Expression, Kind, Kindred, Model, Name, Statement};
+
+/// The model of one site.
+pub struct Lone {
+    /// Its label.
+    pub label: usize,
+    /// At which of its sites it stands.
+    pub sites: Sites,
+    /// Its derivation, in the names of the model as stated.
+    pub d: Derivation,
+    /// Its configurations.
+    pub movers: Vec<Mover>,
+    /// Configurations whose velocities are found together, each by its number.
+    pub blocks: Vec<Vec<usize>>,
+}
+
+/// A configuration of a site.
+pub struct Mover {
+    /// Its name.
+    pub name: String,
+    /// Its number in the derivation.
+    pub index: usize,
+    /// How its velocity is found.
+    pub how: How,
+}
+
+/// How a velocity is found from the momentum that leaves the node.
+pub enum How {
+    /// A rotation by the Moser-Veselov equation with a factor of parameters.
+    Rotation {
+        /// The factor.
+        factor: Expr,
+        /// What acts at the start of the edge, and at its end, both seen from the body.
+        leave: Expr,
+        /// The same at its end.
+        arrive: Expr,
+    },
+    /// A field on which only potentials act: `p = L ΔX R + rest`.
+    Field {
+        /// The factors.
+        form: Explicit,
+        /// What acts at the end of the edge.
+        arrive: Expr,
+    },
+    /// Fields whose momenta are linear in all velocities of their block together.
+    System {
+        /// The momentum where nothing moves.
+        rest: Expr,
+        /// The columns of the momentum's derivative, one for each component of each velocity of the block.
+        columns: Vec<Expr>,
+        /// What the edge adds to the momentum, in velocities and both ends.
+        added: Expr,
+    },
+}
+
+/// The models of the sites that hold something that moves.
+pub(super) fn lone(model: &Model, lattice: &Lattice, part: &Written) -> Result<Vec<Lone>, Refused> {
+    let mut kinds: Vec<(usize, Sites)> = Vec::new();
+    for q in &lattice.quantities {
+        let at = (q.label, q.sites);
+        if q.kind == Standing::Configuration && !kinds.contains(&at) {
+            kinds.push(at);
+        }
+    }
+    kinds
+        .into_iter()
+        .map(|(label, sites)| one(model, lattice, part, (label, sites)))
+        .collect()
+}
+
+fn one(
+    model: &Model,
+    lattice: &Lattice,
+    part: &Written,
+    (label, sites): (usize, Sites),
+) -> Result<Lone, Refused> {
+    let terms = part.unfolded.summands.iter().filter(|t| {
+        let range = t.range.map(|r| r.label);
+        lone_at(t) == Some(sites) && range == Some(label)
+    });
+    let terms: Vec<Expression> = terms.map(|t| t.stated.clone()).collect();
+    let spec = check::check_written_out(&alone(model, lattice, (label, sites), terms)?)?;
+    let d = derive::derive(spec).map_err(Errors::first_at_each_place)?;
+    let blocks: Vec<Vec<usize>> = match d.solve.blocks.as_slice() {
+        [] => vec![(0..d.spec.configurations.len()).collect()],
+        blocks => blocks.iter().map(|b| b.members.clone()).collect(),
+    };
+    let algebra = Algebra::new(&d.letters.symbols);
+    let mut movers = Vec::new();
+    for block in &blocks {
+        for i in block {
+            let name = d
+                .letters
+                .symbols
+                .get(d.spec.configurations[*i].element)
+                .name
+                .clone();
+            movers.push(Mover {
+                how: how(&d, *i, block, &name, &algebra)?,
+                name,
+                index: *i,
+            });
+        }
+    }
+    movers.sort_by_key(|m| m.index);
+    Ok(Lone {
+        label,
+        sites,
+        d,
+        movers,
+        blocks,
+    })
+}
+
+/// The model of one site: what is declared there, and the terms that it has by itself.
+fn alone(
+    model: &Model,
+    lattice: &Lattice,
+    at: (usize, Sites),
+    terms: Vec<Expression>,
+) -> Result<Model, Refused> {
+    let here = |name: &str| match lattice.find(name) {
+        None => true,
+        Some(q) => (q.label, q.sites) == at,
+    };
+    let lets = definitions(model)?;
+    let those =
+        |names: &[Name]| -> Vec<Name> { names.iter().filter(|n| here(&n.text)).cloned().collect() };
+    let mut out = Model {
+        statements: Vec::new(),
+        remarks: Vec::new(),
+        ..model.clone()
+    };
+    let mut place = model.name.place;
+    for (statement, docs) in model.statements.iter().zip(&model.remarks) {
+        let kept: Vec<Statement> = match statement {
+            Statement::Label { step: Some(s), .. } => vec![number(s)],
+            Statement::Label { step: None, .. }
+            | Statement::Periodic(_)
+            | Statement::End { .. }
+            | Statement::Let { .. } => Vec::new(),
+            Statement::Param { names, shape, .. } => vec![Statement::Param {
+                names: those(names),
+                shape: shape.clone(),
+                at: None,
+            }],
+            Statement::Field { names, shape, .. } => vec![Statement::Field {
+                names: those(names),
+                shape: shape.clone(),
+                at: None,
+                offset: None,
+            }],
+            Statement::Group {
+                name,
+                group,
+                velocity,
+                ..
+            } if here(&name.text) => vec![Statement::Group {
+                name: name.clone(),
+                group: group.clone(),
+                at: None,
+                velocity: velocity.clone(),
+            }],
+            Statement::Advected {
+                names,
+                shape,
+                definition,
+                ..
+            } => vec![Statement::Advected {
+                names: those(names),
+                shape: shape.clone(),
+                at: None,
+                definition: definition.as_ref().map(|e| inlined(e, &lets)),
+            }],
+            Statement::Constraint { name, value, place } if here(&name.text) => {
+                vec![Statement::Constraint {
+                    name: name.clone(),
+                    value: inlined(value, &lets),
+                    place: *place,
+                }]
+            }
+            Statement::Lagrangian(e) => {
+                place = e.place;
+                Vec::new()
+            }
+            Statement::Time { .. } | Statement::Node(..) => vec![statement.clone()],
+            Statement::Group { .. }
+            | Statement::Constraint { .. }
+            | Statement::Assume { .. }
+            | Statement::Scale(_)
+            | Statement::Dim { .. } => Vec::new(),
+        };
+        for statement in kept.into_iter().filter(|s| !is_empty(s)) {
+            out.statements.push(statement);
+            out.remarks.push(docs.clone());
+        }
+    }
+    let lagrangian = match terms.len() {
+        0 => {
+            return Err(Refused::Form(
+                "no term of the Lagrangian belongs to one site alone".to_owned(),
+            ));
+        }
+        1 => terms.into_iter().next(),
+        _ => Some(Expression {
+            kind: Kind::Sum(terms.into_iter().map(|t| (false, t)).collect()),
+            place,
+        }),
+    };
+    out.statements.extend(lagrangian.map(Statement::Lagrangian));
+    out.remarks.push(Vec::new());
+    Ok(out)
+}
+
+/// Whether it declares nothing.
+fn is_empty(statement: &Statement) -> bool {
+    match statement {
+        Statement::Param { names, .. }
+        | Statement::Field { names, .. }
+        | Statement::Advected { names, .. } => names.is_empty(),
+        _ => false,
+    }
+}
+
+fn number(name: &Name) -> Statement {
+    Statement::Param {
+        names: vec![name.clone()],
+        shape: Kindred {
+            name: Name {
+                text: "Real".to_owned(),
+                place: name.place,
+                typeset: None,
+            },
+            sizes: Vec::new(),
+            place: name.place,
+        },
+        at: None,
+    }
+}
+
+/// How the velocity of a configuration is found.
+fn how(
+    d: &Derivation,
+    i: usize,
+    block: &[usize],
+    name: &str,
+    algebra: &Algebra,
+) -> Result<How, Refused> {
+    let s = &d.letters.symbols;
+    let c = &d.spec.configurations[i];
+    let moving = |e: &Expr| expr::contains_role(s, e, Role::Velocity);
+    let together = || {
+        Err(Refused::Form(format!(
+            "the velocity of `{name}` is found by Newton's method"
+        )))
+    };
+    match (c.group.kept(), &d.solve.riccati[i]) {
+        (Kept::Rotation, Riccati::Exact(mv)) if c.side == Side::Body && block.len() == 1 => {
+            let Carry::Through { leave, arrive, .. } = &d.carries[i] else {
+                return together();
+            };
+            let constant =
+                |l: &Letter| matches!(s.get(l.symbol).role, Role::Parameter | Role::Step);
+            let free = !moving(leave) && !moving(arrive);
+            let known =
+                |mv: &MoserVeselov| mv.symmetric && expr::letters(&mv.factor).iter().all(constant);
+            match free && known(mv) {
+                true => Ok(How::Rotation {
+                    factor: mv.factor.clone(),
+                    leave: leave.clone(),
+                    arrive: arrive.clone(),
+                }),
+                false => together(),
+            }
+        }
+        (Kept::Field(_), Riccati::Linear(form)) if block.len() == 1 => {
+            let b = &d.balances[i];
+            let straight = expr::sub(b.edge_in.clone(), b.edge_out.clone());
+            let free = !moving(&b.node_in) && !moving(&b.node_out);
+            match free && algebra.is_zero(&straight) {
+                true => Ok(How::Field {
+                    form: form.clone(),
+                    arrive: b.node_in.clone(),
+                }),
+                false => system(d, i, block, name),
+            }
+        }
+        (Kept::Field(_), _) => system(d, i, block, name),
+        _ => together(),
+    }
+}
+
+/// The momentum of a field as a linear function of the velocities of its block.
+fn system(d: &Derivation, i: usize, block: &[usize], name: &str) -> Result<How, Refused> {
+    let s = &d.letters.symbols;
+    let refused = || {
+        Err(Refused::Form(format!(
+            "the momentum of `{name}` is not linear in the velocities"
+        )))
+    };
+    let velocity = |j: usize| Letter {
+        symbol: d.spec.configurations[j].velocity,
+        shift: Shift::HERE,
+    };
+    let momentum = expr::substitute(s, &d.balances[i].outgoing, &d.spec.end_of_edge());
+    let mut columns = Vec::new();
+    let mut still = Vec::new();
+    for j in block {
+        let c = &d.spec.configurations[*j];
+        let shape = c.group.shape();
+        if !c.group.is_additive() {
+            return refused();
+        }
+        let directions = match (shape.is_scalar(), shape.is_vector()) {
+            (true, _) => vec![expr::integer(1)],
+            (_, true) => match shape.rows {
+                crate::expr::shape::Dim::Fixed(n) => (0..n)
+                    .map(|axis| expr::unit(shape.rows, axis as u8))
+                    .collect(),
+                crate::expr::shape::Dim::Named(_) => return refused(),
+            },
+            _ => return refused(),
+        };
+        for direction in directions {
+            columns.push(expr::directional(
+                s,
+                &momentum,
+                &[(velocity(*j), direction)],
+            ));
+        }
+        still.push((velocity(*j), expr::zero(shape)));
+    }
+    let moving = |e: &Expr| expr::contains_role(s, e, Role::Velocity);
+    if columns.iter().any(moving) {
+        return refused();
+    }
+    let added = match &d.carries[i] {
+        Carry::Kept(added) => added.clone(),
+        Carry::Through { leave, arrive, .. } => expr::add(leave.clone(), arrive.clone()),
+    };
+    Ok(How::System {
+        rest: expr::substitute(s, &momentum, &still),
+        columns,
+        added,
+    })
+}

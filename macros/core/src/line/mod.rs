@@ -1,0 +1,174 @@
+//! A model with labels as one program for every number of sites: what moves at a site alone, what
+//! neighbours add to its momentum, and what the ends add. The short lattice that is written out
+//! proves that these are all of its equations. Takes a model with labels; gives the parts that a
+//! stepper with loops over sites is made of, or why it has to be written out.
+
+mod lone;
+mod proof;
+mod pull;
+mod site;
+#[cfg(test)]
+mod tests;
+mod total;
+
+pub use lone::{How, Lone, Mover};
+pub use pull::{EndTerm, Force, Pull};
+pub use site::{BASE, Sited};
+pub use total::Total;
+
+use crate::algebra::Rational;
+use crate::derive::Derivation;
+use crate::diagnostic::Errors;
+use crate::lattice::{Choice, Lattice, Unfolded};
+use crate::pipeline;
+use crate::syntax::ast::{Model, NodeRule, Statement};
+
+/// A model with labels for every number of sites.
+pub struct Line {
+    /// The model as stated.
+    pub model: Model,
+    /// Its labels.
+    pub lattice: Lattice,
+    /// The lattice that is written out: letters of [`Pull`] are those of its copies.
+    pub representative: Written,
+    /// What moves at a site, for each kind of sites.
+    pub lone: Vec<Lone>,
+    /// What neighbours add to momenta, terms of equal ranges together.
+    pub pulls: Vec<Pull>,
+    /// What end conditions add.
+    pub ends: Vec<EndTerm>,
+    /// Conserved totals.
+    pub totals: Vec<Total>,
+    /// What of a nodal term acts at the end of the edge that comes to its node, and what of it at the
+    /// start of the edge that leaves: together the whole.
+    pub shares: [Rational; 2],
+}
+
+/// One choice of sites and ends, written out and derived.
+pub struct Written {
+    /// The choice.
+    pub choice: Choice,
+    /// The model of as many bodies.
+    pub unfolded: Unfolded,
+    /// Its derivation.
+    pub d: Derivation,
+}
+
+/// Why a model has no program for every number of sites: it is written out, body by body.
+#[derive(Debug)]
+pub enum Refused {
+    /// The model itself is wrong.
+    Model(Errors),
+    /// Its form is not one that loops over sites take; in words.
+    Form(String),
+}
+
+impl From<Errors> for Refused {
+    fn from(errors: Errors) -> Refused {
+        Refused::Model(errors)
+    }
+}
+
+impl Line {
+    /// The program of a model with labels.
+    ///
+    /// # Errors
+    /// [`Refused`] where the model is wrong, or is solved together along the line.
+    pub fn of(model: &Model) -> Result<Line, Refused> {
+        let lattice = Lattice::read(model)?;
+        stands_alone(model, &lattice)?;
+        let choice = pipeline::representative(model, &lattice)?;
+        let representative = written(model, &lattice, choice)?;
+        let lone = lone::lone(model, &lattice, &representative)?;
+        let pulls = pull::pulls(&representative)?;
+        let ends = pull::ends(model, &lattice, &representative.choice)?;
+        let totals = total::totals(model, &lattice, &representative)?;
+        let (all, none) = (Rational::integer(1), Rational::integer(0));
+        let shares = match representative.d.spec.node_rule {
+            NodeRule::Symmetric => [Rational::HALF; 2],
+            NodeRule::Incoming => [all, none],
+            NodeRule::Outgoing => [none, all],
+        };
+        let line = Line {
+            model: model.clone(),
+            lattice,
+            representative,
+            lone,
+            pulls,
+            ends,
+            totals,
+            shares,
+        };
+        line.ends_are_collected()?;
+        line.prove()?;
+        Ok(line)
+    }
+
+    /// What an end adds is put beside what neighbours add, and what an end holds is solved for by itself.
+    fn ends_are_collected(&self) -> Result<(), Refused> {
+        let pulled = |name: &str| {
+            let mut all = self.pulls.iter().flat_map(|p| &p.forces);
+            all.any(|f| f.on == name)
+        };
+        let mut acted = self.ends.iter().flat_map(|e| &e.forces);
+        if let Some(alone) = acted.find(|f| !pulled(&f.on)) {
+            let words = format!("an end acts on `{}`, and no neighbour does", alone.on);
+            return Err(Refused::Form(words));
+        }
+        let held = self.lattice.ends.iter().flatten().flat_map(|a| &a.given);
+        let held: Vec<&str> = held.map(|n| n.text.as_str()).collect();
+        for (lone, mover) in held.iter().filter_map(|name| self.mover(name)) {
+            let block = lone.blocks.iter().find(|b| b.contains(&mover.index));
+            let members = block.map_or(1, Vec::len);
+            if matches!(mover.how, How::System { .. }) && members > 1 {
+                let words = format!(
+                    "an end holds `{}`, whose velocity is found together with others",
+                    mover.name
+                );
+                return Err(Refused::Form(words));
+            }
+        }
+        Ok(())
+    }
+
+    /// What moves, by name.
+    pub fn mover(&self, name: &str) -> Option<(&Lone, &Mover)> {
+        self.lone
+            .iter()
+            .find_map(|l| Some((l, l.movers.iter().find(|m| m.name == name)?)))
+    }
+
+    /// How many sites beyond the last one terms look.
+    pub fn beyond(&self) -> usize {
+        self.pulls.iter().map(|p| p.width).max().unwrap_or(0)
+    }
+}
+
+fn written(model: &Model, lattice: &Lattice, choice: Choice) -> Result<Written, Errors> {
+    let (unfolded, d) = pipeline::derive_lattice(model, lattice, &choice)?;
+    Ok(Written {
+        choice,
+        unfolded,
+        d,
+    })
+}
+
+/// Everything that moves lives at sites, and nothing scales the action.
+fn stands_alone(model: &Model, lattice: &Lattice) -> Result<(), Refused> {
+    let refused = |words: &str| Err(Refused::Form(words.to_owned()));
+    for statement in &model.statements {
+        let without_site = match statement {
+            Statement::Group { name, .. } => lattice.find(&name.text).is_none(),
+            Statement::Field { names, .. } | Statement::Advected { names, .. } => {
+                names.iter().any(|n| lattice.find(&n.text).is_none())
+            }
+            Statement::Scale(_) => return refused("the action is scaled"),
+            Statement::Dim { .. } => return refused("shapes have sizes that are named"),
+            _ => false,
+        };
+        if without_site {
+            return refused("something that moves belongs to no site");
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,111 @@
+//! The proof that a site by itself and what neighbours add are the whole equation of a site: shown on
+//! the lattice that is written out, at a site with all its neighbours.
+
+use super::{Line, Lone, Mover, Refused};
+use crate::algebra::Algebra;
+use crate::derive::transport::Transport;
+use crate::expr::shape::Shape;
+use crate::expr::{self, Expr, Letter, Shift};
+
+impl Line {
+    /// Proves it for every configuration.
+    ///
+    /// # Errors
+    /// [`Refused::Form`] where the two are not seen to be equal.
+    pub(super) fn prove(&self) -> Result<(), Refused> {
+        for lone in &self.lone {
+            for mover in &lone.movers {
+                self.prove_one(lone, mover)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn prove_one(&self, lone: &Lone, mover: &Mover) -> Result<(), Refused> {
+        let refused = || {
+            Refused::Form(format!(
+                "the equation of `{}` at a site is not that of the site alone and of its neighbours",
+                mover.name
+            ))
+        };
+        let part = &self.representative;
+        let d = &part.d;
+        let s = &d.letters.symbols;
+        // The site in the middle of the sites shown.
+        let site = self.beyond() + 1;
+        let element = part.copy(&mover.name, site).ok_or_else(refused)?;
+        let mut configurations = d.spec.configurations.iter();
+        let i = configurations
+            .position(|c| c.element == element)
+            .ok_or_else(refused)?;
+        let (whole, own) = (&d.balances[i], &lone.d.balances[mover.index]);
+        let here = |e: &Expr| self.renamed(lone, e, site).ok_or_else(refused);
+        let pulled = self.pulled(&mover.name, site).ok_or_else(refused)?;
+        let next = expr::shift_time(s, &pulled, Shift::NEXT.time);
+        let [arriving, leaving] = self.shares;
+        let algebra = Algebra::new(s);
+        let zero = |e: Expr| algebra.is_zero(&self.known(&e));
+        let out = expr::sub(whole.outgoing.clone(), here(&own.outgoing)?);
+        let into = expr::sub(whole.incoming.clone(), here(&own.incoming)?);
+        let equal = zero(expr::add(out, expr::scale(leaving, pulled)))
+            && zero(expr::sub(into, expr::scale(arriving, next)));
+        equal.then_some(()).ok_or_else(refused)
+    }
+
+    /// What neighbours add at a site of the representative.
+    fn pulled(&self, name: &str, site: usize) -> Option<Expr> {
+        let part = &self.representative;
+        let mut terms = Vec::new();
+        let mut shape = Shape::SCALAR;
+        for pull in &self.pulls {
+            for f in pull.forces.iter().filter(|f| f.on == name) {
+                let by = isize::try_from(site).ok()?
+                    - isize::try_from(f.site + super::site::BASE).ok()?;
+                shape = f.value.shape();
+                terms.push(part.moved(&f.value, by)?);
+            }
+        }
+        if terms.is_empty() {
+            let (lone, mover) = self.mover(name)?;
+            shape = lone.d.balances[mover.index].outgoing.shape();
+        }
+        Some(expr::sum(terms, shape))
+    }
+
+    /// An expression of one site in the letters of a copy of it.
+    fn renamed(&self, lone: &Lone, e: &Expr, site: usize) -> Option<Expr> {
+        let part = &self.representative;
+        let s = &part.d.letters.symbols;
+        let mut list: Vec<(Letter, Expr)> = Vec::new();
+        for l in expr::letters(e) {
+            let name = &lone.d.letters.symbols.get(l.symbol).name;
+            let there = part.copy(name, site).or_else(|| s.find(name))?;
+            list.push((l, expr::letter(s, there, l.shift)));
+        }
+        Some(expr::substitute(s, e, &list))
+    }
+
+    /// With advected quantities by what defines them.
+    fn known(&self, e: &Expr) -> Expr {
+        let d = &self.representative.d;
+        let s = &d.letters.symbols;
+        let mut list: Vec<(Letter, Expr)> = Vec::new();
+        for (a, t) in d.spec.advected.iter().zip(&d.transports) {
+            let Transport::Defined(value) = t else {
+                continue;
+            };
+            for time in [0, 1] {
+                let shift = Shift {
+                    time,
+                    ..Shift::HERE
+                };
+                let letter = Letter {
+                    symbol: a.quantity,
+                    shift,
+                };
+                list.push((letter, expr::shift_time(s, value, time)));
+            }
+        }
+        expr::substitute(s, e, &list)
+    }
+}

@@ -1,0 +1,279 @@
+//! What terms of neighbours add to the momenta of the sites that they touch, and what end conditions
+//! add: derivatives of one term along the variations of the lattice that is written out. All act at a
+//! node in time, on covectors of the side of each configuration.
+
+use super::site::BASE;
+use super::{Refused, Written, written};
+use crate::derive::action;
+use crate::derive::balance::{pairing, shorter};
+use crate::derive::transport::Transport;
+use crate::expr::shape::Shape;
+use crate::expr::symbol::Role;
+use crate::expr::{self, Expr, Letter, Shift};
+use crate::lattice::{Choice, Lattice, Sites, Summand};
+use crate::syntax::ast::Model;
+use crate::{algebra::Algebra, check};
+
+/// What acts on one configuration.
+#[derive(Clone, Debug)]
+pub struct Force {
+    /// The configuration as stated.
+    pub on: String,
+    /// Its site, from the index of the term; of an end condition from the first or to the last site.
+    pub site: usize,
+    /// The covector, the whole of it at one node.
+    pub value: Expr,
+}
+
+/// Terms of one range of sites.
+#[derive(Clone, Debug)]
+pub struct Pull {
+    /// The label.
+    pub label: usize,
+    /// The first index of an open line.
+    pub from: usize,
+    /// The last index of an open line, less the number of segments.
+    pub to: isize,
+    /// How far its letters stand apart.
+    pub width: usize,
+    /// What it adds, letters of the first site at the base of the representative.
+    pub forces: Vec<Force>,
+    /// The terms of the Lagrangian, in the same letters.
+    pub terms: Expr,
+}
+
+/// What one end condition adds.
+#[derive(Clone, Debug)]
+pub struct EndTerm {
+    /// Whether of the last site.
+    pub last: bool,
+    /// Which alternative.
+    pub which: usize,
+    /// The sites and ends that its letters are copies of.
+    pub forces: Vec<Force>,
+    /// The terms of the Lagrangian.
+    pub terms: Expr,
+    /// Letters as they are bound: name as stated, and the site counted from the end, or none for
+    /// parameters of the end itself.
+    pub letters: Vec<(Letter, String, Option<usize>)>,
+    /// The symbols of the letters.
+    pub symbols: crate::expr::symbol::Symbols,
+}
+
+/// The kind of sites of which every one has this term by itself; no term of neighbours.
+pub(super) fn lone_at(summand: &Summand) -> Option<Sites> {
+    let [(sites, 0)] = summand.letters.as_slice() else {
+        return None;
+    };
+    let range = summand.range?;
+    let last = match sites {
+        Sites::Nodes => 0,
+        Sites::Segments | Sites::Members => -1,
+    };
+    (range.from == 0 && range.to == last).then_some(*sites)
+}
+
+/// The terms of neighbours.
+pub(super) fn pulls(part: &Written) -> Result<Vec<Pull>, Refused> {
+    let mut out: Vec<Pull> = Vec::new();
+    let inner = part.unfolded.summands.iter().filter(|t| t.end.is_none());
+    for summand in inner.filter(|t| lone_at(t).is_none()) {
+        // What holds no letter of a site is constant.
+        let Some(range) = summand.range else { continue };
+        let term = elaborated(part, summand)?;
+        let first = summand.letters.iter().map(|(_, o)| *o).min().unwrap_or(0);
+        let at = isize::try_from(summand.site).unwrap_or(0) + first;
+        let by = isize::try_from(BASE).unwrap_or(0) - at;
+        let Some(term) = part.moved(&term, by) else {
+            return Err(Refused::Form(
+                "a term reaches beyond the sites shown".to_owned(),
+            ));
+        };
+        let from = usize::try_from(range.from + first)
+            .map_err(|_| Refused::Form("a term begins before the line".to_owned()))?;
+        let to = range.to + first;
+        let known = out
+            .iter_mut()
+            .find(|p| p.label == range.label && p.from == from && p.to == to);
+        match known {
+            Some(pull) => {
+                pull.width = pull.width.max(summand.width);
+                pull.terms = expr::add(pull.terms.clone(), term);
+            }
+            None => out.push(Pull {
+                label: range.label,
+                from,
+                to,
+                width: summand.width,
+                forces: Vec::new(),
+                terms: term,
+            }),
+        }
+    }
+    for pull in &mut out {
+        pull.terms = defined(part, &pull.terms)?;
+        pull.forces = forces(part, &pull.terms)
+            .into_iter()
+            .map(|f| Force {
+                site: f.site - BASE,
+                ..f
+            })
+            .collect();
+    }
+    Ok(out)
+}
+
+/// A summand as it is shown, which must stand at one node in time.
+fn elaborated(part: &Written, summand: &Summand) -> Result<Expr, Refused> {
+    let found = check::numbers(&part.unfolded.model, &[&summand.shown]);
+    let Some(Some(term)) = found.into_iter().next() else {
+        return Err(Refused::Form("a term of neighbours is not read".to_owned()));
+    };
+    let s = &part.d.letters.symbols;
+    let (edge, nodal) = action::split(s, &term);
+    if !edge.is_zero() {
+        return Err(Refused::Form(
+            "velocities of neighbours stand in one term: they are solved for together".to_owned(),
+        ));
+    }
+    Ok(nodal)
+}
+
+/// Advected quantities by the configurations that carry them.
+fn defined(part: &Written, term: &Expr) -> Result<Expr, Refused> {
+    let d = &part.d;
+    let s = &d.letters.symbols;
+    let mut list: Vec<(Letter, Expr)> = Vec::new();
+    for (a, t) in d.spec.advected.iter().zip(&d.transports) {
+        let here = Letter {
+            symbol: a.quantity,
+            shift: Shift::HERE,
+        };
+        if !expr::contains(term, here) {
+            continue;
+        }
+        match t {
+            Transport::Defined(e) => list.push((here, e.clone())),
+            Transport::Carried { .. } | Transport::Advanced => {
+                return Err(Refused::Form(format!(
+                    "`{}` is carried from its value at the start, and neighbours see it",
+                    s.get(a.quantity).name
+                )));
+            }
+        }
+    }
+    Ok(expr::substitute(s, term, &list))
+}
+
+/// The derivative of a term at one node along every variation, as covectors, by configuration.
+fn forces(part: &Written, term: &Expr) -> Vec<Force> {
+    let d = &part.d;
+    let s = &d.letters.symbols;
+    let algebra = Algebra::new(s);
+    let mut out = Vec::new();
+    for (i, (c, v)) in d.spec.configurations.iter().zip(&d.variations).enumerate() {
+        let xi = Letter {
+            symbol: d.letters.variation[i],
+            shift: Shift::HERE,
+        };
+        let (letter, change) = &v.element;
+        let gradient = expr::gradient(s, term, *letter);
+        if gradient.is_zero() {
+            continue;
+        }
+        let paired = expr::sum([pairing(&d.letters, &gradient, change)], Shape::SCALAR);
+        let covector = c.group.of_gradient(s, expr::gradient(s, &paired, xi));
+        let value = shorter(&algebra, covector);
+        if value.is_zero() {
+            continue;
+        }
+        let Some(at) = part.sited(c.element) else {
+            continue;
+        };
+        out.push(Force {
+            on: at.of,
+            site: at.site,
+            value,
+        });
+    }
+    out
+}
+
+/// What every end condition adds, each from a lattice that ends so.
+pub(super) fn ends(
+    model: &Model,
+    lattice: &Lattice,
+    open: &Choice,
+) -> Result<Vec<EndTerm>, Refused> {
+    let mut out = Vec::new();
+    for last in [false, true] {
+        let alternatives = &lattice.ends[usize::from(last)];
+        for (which, alternative) in alternatives.iter().enumerate() {
+            if alternative.terms.is_empty() {
+                continue;
+            }
+            let mut choice = open.clone();
+            choice.ends[usize::from(last)] = which;
+            let part = written(model, lattice, choice)?;
+            out.extend(end(lattice, &part, last, which)?);
+        }
+    }
+    Ok(out)
+}
+
+fn end(
+    lattice: &Lattice,
+    part: &Written,
+    last: bool,
+    which: usize,
+) -> Result<Option<EndTerm>, Refused> {
+    let s = &part.d.letters.symbols;
+    let mut terms = Vec::new();
+    let own = |t: &&Summand| t.end == Some((last, which));
+    for summand in part.unfolded.summands.iter().filter(own) {
+        terms.push(elaborated(part, summand)?);
+    }
+    let whole = defined(part, &expr::sum(terms, Shape::SCALAR))?;
+    if whole.is_zero() {
+        return Ok(None);
+    }
+    let from_end = |of: &str, site: usize| -> usize {
+        let q = lattice.find(of.strip_prefix('Δ').unwrap_or(of));
+        let count = q.map_or(0, |q| part.choice.sites_of(lattice, q));
+        match last {
+            false => site,
+            true => count.saturating_sub(1).saturating_sub(site),
+        }
+    };
+    let forces: Vec<Force> = forces(part, &whole)
+        .into_iter()
+        .map(|f| Force {
+            site: from_end(&f.on, f.site),
+            ..f
+        })
+        .collect();
+    let mut letters: Vec<(Letter, String, Option<usize>)> = Vec::new();
+    let all = expr::letters(&whole).into_iter();
+    let of_forces = forces.iter().flat_map(|f| expr::letters(&f.value));
+    for l in all.chain(of_forces) {
+        if letters.iter().any(|(known, ..)| *known == l) || s.get(l.symbol).role == Role::Step {
+            continue;
+        }
+        let name = &s.get(l.symbol).name;
+        let of_end = part.unfolded.end_parameters.iter();
+        if let Some((_, stated, _)) = of_end.clone().find(|(own, ..)| own == name) {
+            letters.push((l, stated.clone(), None));
+        } else if let Some(at) = part.sited(l.symbol) {
+            let site = from_end(&at.of, at.site);
+            letters.push((l, at.of, Some(site)));
+        }
+    }
+    Ok(Some(EndTerm {
+        last,
+        which,
+        forces,
+        terms: whole,
+        letters,
+        symbols: s.clone(),
+    }))
+}

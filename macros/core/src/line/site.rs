@@ -1,0 +1,81 @@
+//! Letters of a lattice that is written out, by the quantity and the site they are copies of.
+
+use super::Written;
+use crate::expr::symbol::SymbolId;
+use crate::expr::{self, Expr, Letter};
+use crate::lattice::copy_name;
+
+/// The site from which letters of terms of neighbours are counted: the first one whose equation has
+/// all its neighbours at every width.
+pub const BASE: usize = 1;
+
+/// What stands before the name of a configuration to mean its node momentum.
+const MOMENTUM: &str = "momentum of ";
+
+/// A copy of a quantity, or the node momentum of a configuration.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Sited {
+    /// The name of the quantity as stated.
+    pub of: String,
+    /// Its site.
+    pub site: usize,
+}
+
+impl Sited {
+    /// The name of what is declared.
+    pub fn plain(&self) -> &str {
+        self.momentum_of().unwrap_or(&self.of)
+    }
+
+    /// The configuration whose momentum it is.
+    pub fn momentum_of(&self) -> Option<&str> {
+        self.of.strip_prefix(MOMENTUM)
+    }
+}
+
+impl Written {
+    /// The quantity and the site of a letter, where it is a copy.
+    pub fn sited(&self, symbol: SymbolId) -> Option<Sited> {
+        let name = &self.d.letters.symbols.get(symbol).name;
+        if let Some(copy) = self.unfolded.copy(name) {
+            let (of, site) = (copy.of.clone(), copy.site);
+            return Some(Sited { of, site });
+        }
+        let momenta = &self.d.letters.node_momentum;
+        let i = momenta.iter().position(|m| *m == symbol)?;
+        let c = self.d.spec.configurations.get(i)?;
+        let element = &self.d.letters.symbols.get(c.element).name;
+        let copy = self.unfolded.copy(element)?;
+        Some(Sited {
+            of: format!("{MOMENTUM}{}", copy.of),
+            site: copy.site,
+        })
+    }
+
+    /// The copy of a quantity at a site.
+    pub fn copy(&self, of: &str, site: usize) -> Option<SymbolId> {
+        let s = &self.d.letters.symbols;
+        let Some(element) = of.strip_prefix(MOMENTUM) else {
+            return s.find(&copy_name(of, site));
+        };
+        let element = s.find(&copy_name(element, site))?;
+        let mut all = self.d.spec.configurations.iter();
+        let i = all.position(|c| c.element == element)?;
+        self.d.letters.node_momentum.get(i).copied()
+    }
+
+    /// An expression moved along the line; none where a copy does not exist there.
+    pub fn moved(&self, e: &Expr, by: isize) -> Option<Expr> {
+        let s = &self.d.letters.symbols;
+        let mut list: Vec<(Letter, Expr)> = Vec::new();
+        for l in expr::letters(e) {
+            let Some(at) = self.sited(l.symbol) else {
+                continue;
+            };
+            let site = at.site.checked_add_signed(by)?;
+            let there = self.copy(&at.of, site)?;
+            list.push((l, expr::letter(s, there, l.shift)));
+        }
+        Some(expr::substitute(s, e, &list))
+    }
+}

@@ -1,0 +1,203 @@
+//! Conserved totals of a line: sums over sites of one density, which is the same at every site. Found on
+//! the lattice that is written out; a quantity that is no such sum is left to it.
+
+use super::site::BASE;
+use super::{Refused, Written, written};
+use crate::algebra::Algebra;
+use crate::expr::symbol::SymbolId;
+use crate::expr::{self, Expr, Node};
+use crate::lattice::{Choice, Lattice, Sites};
+use crate::syntax::ast::Model;
+use std::collections::BTreeMap;
+
+/// A conserved total.
+#[derive(Clone, Debug)]
+pub struct Total {
+    /// Its name.
+    pub name: String,
+    /// Why it is conserved.
+    pub reason: String,
+    /// On which lines.
+    pub on: String,
+    /// What is summed, over which sites: letters at the base of the representative.
+    pub densities: Vec<(usize, Sites, Expr)>,
+}
+
+/// The totals on a line with its first end conditions, and along a ring.
+pub(super) fn totals(
+    model: &Model,
+    lattice: &Lattice,
+    part: &Written,
+) -> Result<Vec<Total>, Refused> {
+    let mut out = of_part(lattice, part, part);
+    if lattice.periodic.is_some() {
+        let ring: Choice = part.choice.clone().as_ring(lattice);
+        let ring = written(model, lattice, ring)?;
+        for total in of_part(lattice, &ring, part) {
+            match out.iter_mut().find(|t| t.name == total.name) {
+                Some(known) => known.on = format!("{}, and {}", known.on, total.on),
+                None => out.push(total),
+            }
+        }
+    }
+    Ok(out)
+}
+
+/// The totals of one lattice in the letters of another.
+fn of_part(lattice: &Lattice, part: &Written, base: &Written) -> Vec<Total> {
+    let on = match part.choice.periodic {
+        true => "along a ring".to_owned(),
+        false if lattice.line.is_none() => "always".to_owned(),
+        false => {
+            let names = [false, true].map(|last| lattice.alternatives(last)[0].clone());
+            match names[0] == names[1] {
+                true => format!("with both ends {}", names[0]),
+                false => format!(
+                    "with the first end {} and the last one {}",
+                    names[0], names[1]
+                ),
+            }
+        }
+    };
+    let each = part.d.invariants.iter().filter_map(|v| {
+        let value = v.value.as_ref()?;
+        if !v.exact {
+            return None;
+        }
+        let densities = densities(lattice, part, value)?;
+        let moved = densities
+            .into_iter()
+            .map(|(label, sites, e)| Some((label, sites, part.into_letters_of(base, &e)?)));
+        Some(Total {
+            name: plain(part, &v.name),
+            reason: v.reason.clone(),
+            on: on.clone(),
+            densities: moved.collect::<Option<_>>()?,
+        })
+    });
+    each.collect()
+}
+
+/// The name without the list of all copies.
+fn plain(part: &Written, name: &str) -> String {
+    let mut words: Vec<String> = Vec::new();
+    let all: Vec<&str> = name.split('_').collect();
+    let mut i = 0;
+    while let Some(word) = all.get(i) {
+        let site = all.get(i + 1).is_some_and(|n| n.parse::<usize>().is_ok());
+        let is = |c: &crate::lattice::Copied| expr::symbol::ascii(&c.of) == *word || c.of == *word;
+        let copy = site && part.unfolded.copies.iter().any(is);
+        if !words.iter().any(|w| w == word) {
+            words.push((*word).to_owned());
+        }
+        i += if copy { 2 } else { 1 };
+    }
+    words.join("_")
+}
+
+/// The density of a sum over all sites of each kind, at the base.
+fn densities(lattice: &Lattice, part: &Written, e: &Expr) -> Option<Vec<(usize, Sites, Expr)>> {
+    let mut by_site: BTreeMap<(usize, Sites), BTreeMap<usize, Vec<Expr>>> = BTreeMap::new();
+    for term in terms(part, e) {
+        let (kind, site) = only_site(lattice, part, &term)?;
+        by_site
+            .entry(kind)
+            .or_default()
+            .entry(site)
+            .or_default()
+            .push(term);
+    }
+    let algebra = Algebra::new(&part.d.letters.symbols);
+    let mut out = Vec::new();
+    for ((label, sites), all) in by_site {
+        if all.len() != part.choice.sites(lattice, label, sites) {
+            return None;
+        }
+        let mut density: Option<Expr> = None;
+        for (site, terms) in all {
+            let by = isize::try_from(BASE).ok()? - isize::try_from(site).ok()?;
+            let sum = expr::sum(terms, e.shape());
+            let at_base = part.moved(&sum, by)?;
+            match &density {
+                None => density = Some(at_base),
+                Some(d) if algebra.is_zero(&expr::sub(d.clone(), at_base)) => {}
+                Some(_) => return None,
+            }
+        }
+        out.push((label, sites, density?));
+    }
+    (!out.is_empty()).then_some(out)
+}
+
+/// The only site of a term.
+fn only_site(lattice: &Lattice, part: &Written, e: &Expr) -> Option<((usize, Sites), usize)> {
+    let mut found = None;
+    for l in expr::letters(e) {
+        let Some(at) = part.sited(l.symbol) else {
+            continue;
+        };
+        let q = lattice.find(at.plain())?;
+        let here = ((q.label, q.sites), at.site);
+        match found {
+            None => found = Some(here),
+            Some(known) if known == here => {}
+            Some(_) => return None,
+        }
+    }
+    found
+}
+
+/// The terms of a sum, with what multiplies a sum as a whole multiplied in.
+fn terms(part: &Written, e: &Expr) -> Vec<Expr> {
+    let go = |x: &Expr| terms(part, x);
+    let both = |a: &Expr, b: &Expr, with: &dyn Fn(Expr, Expr) -> Expr| {
+        let (a, b) = (go(a), go(b));
+        let each = a
+            .iter()
+            .flat_map(|x| b.iter().map(move |y| with(x.clone(), y.clone())));
+        each.collect()
+    };
+    match e.node() {
+        Node::Sum(list) => list.iter().flat_map(go).collect(),
+        Node::Neg(a) => go(a).into_iter().map(expr::neg).collect(),
+        Node::Dot(a, b) => both(a, b, &expr::dot),
+        Node::Cross(a, b) => both(a, b, &expr::cross),
+        Node::Product(factors) => {
+            let sited = |x: &Expr| {
+                expr::letters(x)
+                    .iter()
+                    .any(|l| part.sited(l.symbol).is_some())
+            };
+            let mut summed = factors.iter().enumerate();
+            let place = summed.find(|(_, f)| sited(f) && go(f).len() > 1);
+            match place {
+                Some((i, f)) => {
+                    let with = |t: Expr| {
+                        let mut list = factors.clone();
+                        list[i] = t;
+                        expr::product(list)
+                    };
+                    go(f).into_iter().map(with).collect()
+                }
+                None => vec![e.clone()],
+            }
+        }
+        _ => vec![e.clone()],
+    }
+}
+
+impl Written {
+    /// An expression in the letters of another lattice of the same model, copies of equal sites.
+    fn into_letters_of(&self, other: &Written, e: &Expr) -> Option<Expr> {
+        let (own, s) = (&self.d.letters.symbols, &other.d.letters.symbols);
+        let there = |id: SymbolId| match self.sited(id) {
+            Some(at) => other.copy(&at.of, at.site),
+            None => s.find(&own.get(id).name),
+        };
+        let mut list = Vec::new();
+        for l in expr::letters(e) {
+            list.push((l, expr::letter(s, there(l.symbol)?, l.shift)));
+        }
+        Some(expr::substitute(s, e, &list))
+    }
+}

@@ -1,0 +1,32 @@
+//! Models with labels, compiled: one stepper for every number of sites. Their statements are those of
+//! the files in `models/lattices/`, which run without a build.
+
+pub mod coupled_tops;
+pub mod elastic_rod;
+pub mod shallow_water;
+pub mod sine_gordon;
+pub mod toda_chain;
+
+/// The files and the statements that are compiled.
+pub const STATEMENTS: [(&str, &str); 5] = [
+    (
+        include_str!("../../lattices/coupled-tops.clebsch"),
+        coupled_tops::CoupledTops::<f64>::SOURCE,
+    ),
+    (
+        include_str!("../../lattices/elastic-rod.clebsch"),
+        elastic_rod::ElasticRod::<f64>::SOURCE,
+    ),
+    (
+        include_str!("../../lattices/shallow-water.clebsch"),
+        shallow_water::ShallowWater::<f64>::SOURCE,
+    ),
+    (
+        include_str!("../../lattices/sine-gordon.clebsch"),
+        sine_gordon::SineGordon::<f64>::SOURCE,
+    ),
+    (
+        include_str!("../../lattices/toda-chain.clebsch"),
+        toda_chain::TodaChain::<f64>::SOURCE,
+    ),
+];

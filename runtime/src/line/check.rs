@@ -1,0 +1,71 @@
+//! Tests of what is given at sites, before anything is built of it.
+
+use super::error::{LineError, Place};
+use crate::solvers::largest_step::search_of;
+use crate::{ParameterError, Real};
+
+/// Whether a list has a value for each of its sites.
+///
+/// # Errors
+/// [`LineError::Length`].
+pub fn length_of<S>(
+    quantity: &'static str,
+    list: &[S],
+    expected: usize,
+    sites: &'static str,
+) -> Result<(), LineError> {
+    match list.len() == expected {
+        true => Ok(()),
+        false => Err(LineError::Length {
+            quantity,
+            expected,
+            found: list.len(),
+            sites,
+        }),
+    }
+}
+
+/// Tests, or makes, one value of each site.
+///
+/// # Errors
+/// [`LineError::Site`] of the first that is not admissible.
+pub fn each<S, R>(
+    quantity: &'static str,
+    list: &[S],
+    test: impl Fn(&S) -> Result<R, ParameterError>,
+) -> Result<Vec<R>, LineError> {
+    let site = |(site, value): (usize, &S)| {
+        test(value).map_err(|error| LineError::Site {
+            at: Place { quantity, site },
+            error,
+        })
+    };
+    list.iter().enumerate().map(site).collect()
+}
+
+/// The list with so many sites more behind it: along a ring those from its beginning, else copies of
+/// the last, which no term reads.
+pub fn repeated<S: Clone>(list: &[S], beyond: usize, ring: bool) -> Vec<S> {
+    let mut out = list.to_vec();
+    for i in 0..beyond {
+        let next = match ring {
+            true => out.get(i),
+            false => out.last(),
+        };
+        out.extend(next.cloned());
+    }
+    out
+}
+
+/// The first of the halves of a step that can be made, of twenty; a trial looks for none of its own.
+#[cold]
+pub fn shorter<T: Real>(h: T, made: impl Fn(T) -> bool) -> Option<f64> {
+    let mut half = h;
+    let found = search_of(|| {
+        (0..20).find(|_| {
+            half *= T::from_f64(0.5);
+            made(half)
+        })
+    });
+    found.flatten().map(|_| half.value())
+}

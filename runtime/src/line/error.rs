@@ -1,0 +1,101 @@
+//! What can go wrong along a line: data of a wrong length, a value at one site, a step at one site.
+//! Takes the failure and its site; gives messages that name both.
+
+use crate::{ParameterError, StepCause};
+use core::fmt;
+
+/// A quantity and the site where something happened, counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The quantity as the model writes it.
+    pub quantity: &'static str,
+    /// The site.
+    pub site: usize,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "`{}` at site {}", self.quantity, self.site)
+    }
+}
+
+/// Why a line is not built, started or stepped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LineError {
+    /// No sites.
+    NoSites {
+        /// The name of the number of sites.
+        count: &'static str,
+    },
+    /// A list has another length than there are sites.
+    Length {
+        /// The quantity.
+        quantity: &'static str,
+        /// How many sites there are.
+        expected: usize,
+        /// How long the list is.
+        found: usize,
+        /// Which sites, in words.
+        sites: &'static str,
+    },
+    /// A parameter or the step that is the same at all sites.
+    Parameter(ParameterError),
+    /// A parameter or an initial value at one site.
+    Site {
+        /// Where.
+        at: Place,
+        /// What is wrong.
+        error: ParameterError,
+    },
+    /// A step was not made; the state is as it was before.
+    Step {
+        /// The node in time from which it would have started.
+        node: u64,
+        /// Where.
+        at: Place,
+        /// Why.
+        cause: StepCause,
+        /// A shorter step from the same state that was tried and works, where one was found.
+        works: Option<f64>,
+    },
+}
+
+impl From<ParameterError> for LineError {
+    #[cold]
+    fn from(error: ParameterError) -> Self {
+        Self::Parameter(error)
+    }
+}
+
+impl fmt::Display for LineError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoSites { count } => write!(f, "{count} = 0: a line has at least one segment"),
+            Self::Length {
+                quantity,
+                expected,
+                found,
+                sites,
+            } => write!(
+                f,
+                "`{quantity}` is given at {found} sites, and there are {expected} {sites}: give one value for each"
+            ),
+            Self::Parameter(error) => write!(f, "{error}"),
+            Self::Site { at, error } => write!(f, "at site {}: {error}", at.site),
+            Self::Step {
+                node,
+                at,
+                cause,
+                works,
+            } => {
+                write!(f, "step from node {node}: {at}: {cause}")?;
+                match works {
+                    Some(h) => write!(f, "; a step of {h} can be made"),
+                    None => Ok(()),
+                }
+            }
+        }
+    }
+}
+
+impl std::error::Error for LineError {}

@@ -1,0 +1,17 @@
+//! Chains, rods and rings: what emitted steppers of models with labels call. Loops over sites, which
+//! threads share by ranges of sites, so that no result depends on their number; errors that name
+//! the site; what moves at a site.
+
+mod attitude;
+mod check;
+mod error;
+mod stamp;
+mod sweep;
+mod system;
+
+pub use attitude::Attitude;
+pub use check::{each, length_of, repeated, shorter};
+pub use error::{LineError, Place};
+pub use stamp::Stamp;
+pub use sweep::{Threads, fill, sum, total, try_each, try_fill, update};
+pub use system::solve_columns;

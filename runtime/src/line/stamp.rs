@@ -1,0 +1,39 @@
+//! Which state a workspace was made for, without a comparison of states.
+//! Takes what a step depends on; gives numbers that are equal for equal histories only.
+
+use core::sync::atomic::{AtomicU64, Ordering};
+
+/// A number that stands for a state: that of a trajectory and how it got here. Two states of equal stamps
+/// are equal; it reaches no output.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stamp(u64);
+
+static NEXT: AtomicU64 = AtomicU64::new(1);
+
+impl Stamp {
+    /// One that no other state has.
+    pub fn fresh() -> Self {
+        Self(mixed(NEXT.fetch_add(1, Ordering::Relaxed)))
+    }
+
+    /// That of no state.
+    pub fn none() -> Self {
+        Self(0)
+    }
+
+    /// That of the state after a step of `h` by the model of this stamp.
+    #[inline]
+    #[must_use]
+    pub fn after(self, model: Stamp, h: f64) -> Self {
+        Self(mixed(self.0 ^ mixed(model.0 ^ h.to_bits())).max(1))
+    }
+}
+
+/// All bits of a number spread over all of them (the finaliser of splitmix64, Steele and others 2014).
+#[inline]
+fn mixed(x: u64) -> u64 {
+    let x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ (x >> 31)
+}

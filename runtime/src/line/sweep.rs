@@ -1,0 +1,141 @@
+//! Loops over sites. Each site's value is computed from what stood before the loop, so that the order
+//! of sites, and how threads share them, changes no bit. Threads need the feature `rayon`.
+
+use nalgebra::SMatrix;
+#[cfg(feature = "rayon")]
+use rayon::prelude::*;
+
+/// How many threads share a loop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Threads(pub usize);
+
+#[cfg(feature = "rayon")]
+/// Fewest sites that a thread is given: with fewer, waking it costs more than it saves.
+const FEWEST: usize = 2048;
+
+impl Threads {
+    /// One.
+    pub const ONE: Threads = Threads(1);
+
+    #[cfg(feature = "rayon")]
+    /// The length of the ranges of `sites` sites, if there are to be several.
+    fn share(self, sites: usize) -> Option<usize> {
+        let parts = self.0.min(sites / FEWEST);
+        (parts > 1).then(|| sites.div_ceil(parts))
+    }
+}
+
+/// `out[i] = value(i)` for every site.
+#[inline]
+pub fn fill<S: Send>(threads: Threads, out: &mut [S], value: impl Fn(usize) -> S + Sync) {
+    let one = |first: usize, part: &mut [S]| {
+        for (i, place) in part.iter_mut().enumerate() {
+            *place = value(first + i);
+        }
+    };
+    #[cfg(feature = "rayon")]
+    if let Some(share) = threads.share(out.len()) {
+        let parts = out.par_chunks_mut(share).enumerate();
+        return parts.for_each(|(k, part)| one(k * share, part));
+    }
+    let _ = threads;
+    one(0, out);
+}
+
+/// The same where a site may fail: the first one that does, and why. Others may be filled or not.
+///
+/// # Errors
+/// That of the site with the smallest number.
+#[inline]
+pub fn try_fill<S: Send, E: Send>(
+    threads: Threads,
+    out: &mut [S],
+    value: impl Fn(usize) -> Result<S, E> + Sync,
+) -> Result<(), (usize, E)> {
+    let one = |first: usize, part: &mut [S]| {
+        for (i, place) in part.iter_mut().enumerate() {
+            match value(first + i) {
+                Ok(found) => *place = found,
+                Err(e) => return Err((first + i, e)),
+            }
+        }
+        Ok(())
+    };
+    #[cfg(feature = "rayon")]
+    if let Some(share) = threads.share(out.len()) {
+        let parts = out.par_chunks_mut(share).enumerate();
+        let all: Vec<_> = parts.map(|(k, part)| one(k * share, part)).collect();
+        return all.into_iter().collect();
+    }
+    let _ = threads;
+    one(0, out)
+}
+
+/// The first of the sites from `first` to the one before `last` at which a test fails, and why.
+///
+/// # Errors
+/// That of the site with the smallest number.
+pub fn try_each<E>(
+    first: usize,
+    last: usize,
+    test: impl Fn(usize) -> Result<(), E>,
+) -> Result<(), (usize, E)> {
+    (first..last).try_for_each(|i| test(i).map_err(|e| (i, e)))
+}
+
+/// `(value, kept[i]) = change(i, kept[i])`, the value put into `out[i]`, for every site. Says which
+/// site is the first whose change is none; what is kept then is of no meaning.
+///
+/// # Errors
+/// The number of that site.
+#[inline]
+pub fn update<S: Send, K: Copy + Send>(
+    threads: Threads,
+    out: &mut [S],
+    kept: &mut [K],
+    change: impl Fn(usize, K) -> Option<(S, K)> + Sync,
+) -> Result<(), usize> {
+    let one = |first: usize, out: &mut [S], kept: &mut [K]| {
+        for (i, (place, keep)) in out.iter_mut().zip(kept).enumerate() {
+            match change(first + i, *keep) {
+                Some(both) => (*place, *keep) = both,
+                None => return Err(first + i),
+            }
+        }
+        Ok(())
+    };
+    #[cfg(feature = "rayon")]
+    if let Some(share) = threads.share(out.len()) {
+        let parts = out.par_chunks_mut(share).zip(kept.par_chunks_mut(share));
+        let all: Vec<_> = parts
+            .enumerate()
+            .map(|(k, (out, kept))| one(k * share, out, kept))
+            .collect();
+        return all.into_iter().collect();
+    }
+    let _ = threads;
+    one(0, out, kept)
+}
+
+/// The sum of the values of sites, in the order of sites and in two numbers (Neumaier).
+pub fn sum<T: crate::Real>(sites: usize, value: impl Fn(usize) -> T) -> T {
+    let (mut total, mut rest) = (T::zero(), T::zero());
+    for i in 0..sites {
+        let x = value(i);
+        let next = total + x;
+        let lost = match total.magnitude() >= x.magnitude() {
+            true => (total - next) + x,
+            false => (x - next) + total,
+        };
+        (total, rest) = (next, rest + lost);
+    }
+    total + rest
+}
+
+/// The sum of vectors or matrices of sites, component by component as [`sum`].
+pub fn total<T: crate::Real, const R: usize, const C: usize>(
+    sites: usize,
+    value: impl Fn(usize) -> SMatrix<T, R, C>,
+) -> SMatrix<T, R, C> {
+    SMatrix::from_fn(|row, column| sum(sites, |i| value(i)[(row, column)]))
+}
