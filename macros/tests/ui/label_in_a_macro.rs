@@ -1,12 +1,11 @@
-//! A chain runs from its file.
+//! A chain whose velocities are solved for together runs from its file.
 
 clebsch::model! {
-    model Tops {
+    model Chain {
         label i in 0..N;
-        param J, C: Sym<3>;
-        group Λ: SO<3> at nodes velocity Ω;
-        constraint next(Λ) = Λ*Ω;
-        lagrangian = -tr(J*Ω)/h + h*tr(C*Λ^T*next(Λ, i));
+        param m, k: Real;
+        field q: Real at nodes;
+        lagrangian = m*(next(q) - q)^2/(2*h) + (k/h)*(next(q) - q)*(next(next(q, i)) - next(q, i));
     }
 }
 

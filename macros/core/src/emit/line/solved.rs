@@ -167,7 +167,7 @@ fn system(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
         }
         let rest = m.array(results.next().unwrap_or_default());
         fill.extend(quote! {
-            known.fixed_view_mut::<#rows, 1>(#at_row, 0).copy_from(&(edges.#name[site] - #rest));
+            known.fixed_view_mut::<#rows, 1>(#at_row, 0).copy_from(&(edges.#name[site] - (#rest)));
         });
         row += count;
     }

@@ -1,0 +1,251 @@
+//! Time per site and step of lines that are compiled for every number of sites: Toda's chain and shallow water beside plain
+//! loops, coupled tops and an elastic rod beside the lone heavy top. Takes no arguments; prints a table.
+//! `cargo run --release --manifest-path benches/Cargo.toml --bin lines`, a minute.
+
+// The fields of the models are Greek letters, as in the papers.
+#![allow(mixed_script_confusables, non_snake_case)]
+
+use clebsch::nalgebra::{Matrix3, SMatrix, Vector3};
+use clebsch::{BodyMomentum, Rotation};
+use clebsch_benches::blocks::computed;
+use clebsch_models::heavy_top::{HeavyTop, HeavyTopInitial, HeavyTopParameters};
+use clebsch_models::lattices::{coupled_tops::*, elastic_rod::*, shallow_water::*, toda_chain::*};
+use std::hint::black_box;
+use std::time::Instant;
+
+/// Sites times steps of one block.
+const WORK: usize = 1_000_000;
+
+/// Blocks each way, interleaved.
+const BLOCKS: usize = 11;
+
+const SIZES: [usize; 4] = [100, 1_000, 10_000, 100_000];
+
+fn main() {
+    println!("{}", env!("RUSTC_VERSION"));
+    println!("nanoseconds of computing time per site and step, medians of {BLOCKS} blocks each way, interleaved\n");
+    println!("| line | sites | generated | beside | ratio |");
+    println!("|---|---|---|---|---|");
+    for n in SIZES {
+        let (one, other) = both(&mut toda(n), &mut toda_by_hand(n));
+        row("Toda's chain, a ring, beside a plain loop", n, one, other);
+    }
+    for n in SIZES {
+        let (one, other) = both(&mut water(n), &mut water_by_hand(n));
+        row("shallow water, a ring, beside a plain loop", n, one, other);
+    }
+    for n in SIZES {
+        let (one, other) = both(&mut tops(n, 1), &mut lone(n));
+        row("coupled tops, beside the lone heavy top", n, one, other);
+    }
+    for n in SIZES {
+        let (one, other) = both(&mut rod(n), &mut lone(n));
+        row("elastic rod, beside the lone heavy top", n, one, other);
+    }
+    let wall = |threads| {
+        let mut block = tops(100_000, threads);
+        let begin = Instant::now();
+        for _ in 0..BLOCKS {
+            block();
+        }
+        begin.elapsed().as_secs_f64()
+    };
+    println!("\ncoupled tops, 100000 sites: two threads take {:.3} of the time of one", wall(2) / wall(1));
+}
+
+fn row(name: &str, n: usize, one: f64, other: f64) {
+    println!("| {name} | {n} | {one:.2} | {other:.2} | {:.3} |", one / other);
+}
+
+/// Medians of both, in nanoseconds per site and step.
+fn both(one: &mut dyn FnMut(), other: &mut dyn FnMut()) -> (f64, f64) {
+    let time = |work: &mut dyn FnMut()| {
+        let begin = computed();
+        work();
+        (computed() - begin) / WORK as f64 * 1e9
+    };
+    let (mut a, mut b) = (Vec::new(), Vec::new());
+    for _ in 0..BLOCKS {
+        a.push(time(one));
+        b.push(time(other));
+    }
+    a.sort_by(f64::total_cmp);
+    b.sort_by(f64::total_cmp);
+    (a[BLOCKS / 2], b[BLOCKS / 2])
+}
+
+fn number(x: f64) -> SMatrix<f64, 1, 1> {
+    SMatrix::repeat(x)
+}
+
+fn toda(n: usize) -> impl FnMut() {
+    let sites = TodaChainSites { N: n, ends: TodaChainEnds::Ring { L: 0.0 } };
+    let chain = TodaChain::new(TodaChainParameters { m: 1.0, a: 1.0, b: 1.0 }, sites).expect("a chain");
+    let initial = TodaChainInitial {
+        q: (0..n).map(|i| number(0.1 * (0.3 * i as f64).sin())).collect(),
+        momentum_q: (0..n).map(|i| number(0.1 * (0.7 * i as f64).cos())).collect(),
+    };
+    let (mut state, mut work) = chain.start(initial, 0.01).expect("starts");
+    move || {
+        for _ in 0..WORK / n {
+            chain.step(&mut state, &mut work).expect("steps");
+        }
+        black_box(&state);
+    }
+}
+
+fn toda_by_hand(n: usize) -> impl FnMut() {
+    let (h, m, a, b) = black_box((0.01, 1.0, 1.0, 1.0));
+    let mut q: Vec<f64> = (0..n).map(|i| 0.1 * (0.3 * i as f64).sin()).collect();
+    let mut edge: Vec<f64> = (0..n).map(|i| 0.1 * (0.7 * i as f64).cos()).collect();
+    let (mut p, mut pull) = (vec![0.0; n], vec![0.0; n]);
+    move || {
+        for _ in 0..WORK / n {
+            for (q, e) in q.iter_mut().zip(&edge) {
+                *q += e * h / m;
+            }
+            for i in 0..n - 1 {
+                pull[i] = h * a * (1.0 - (-b * (q[i + 1] - q[i])).exp());
+            }
+            pull[n - 1] = h * a * (1.0 - (-b * (q[0] - q[n - 1])).exp());
+            let mut before = pull[n - 1];
+            for i in 0..n {
+                let kick = pull[i] - before;
+                before = pull[i];
+                p[i] = edge[i] + 0.5 * kick;
+                edge[i] += kick;
+            }
+        }
+        black_box((&q, &p));
+    }
+}
+
+fn water(n: usize) -> impl FnMut() {
+    let sites = ShallowWaterSites { N: n, ends: ShallowWaterEnds::Ring { L: n as f64 } };
+    let parameters = ShallowWaterParameters { m: vec![1.0; n], g: 1.0, f: 0.5 };
+    let water = ShallowWater::new(parameters, sites).expect("water");
+    let initial = ShallowWaterInitial {
+        X: (0..n).map(|i| number(i as f64 + 0.1 * (0.3 * i as f64).sin())).collect(),
+        momentum_X: vec![number(0.0); n],
+        Y: vec![number(0.0); n],
+        momentum_Y: (0..n).map(|i| number(0.5 * i as f64)).collect(),
+    };
+    let (mut state, mut work) = water.start(initial, 0.02).expect("starts");
+    move || {
+        for _ in 0..WORK / n {
+            water.step(&mut state, &mut work).expect("steps");
+        }
+        black_box(&state);
+    }
+}
+
+fn water_by_hand(n: usize) -> impl FnMut() {
+    let (dt, g, f) = black_box((0.02, 1.0, 0.5));
+    let m = vec![1.0; n];
+    let length = n as f64;
+    let mut x: Vec<f64> = (0..n).map(|i| i as f64 + 0.1 * (0.3 * i as f64).sin()).collect();
+    let mut y = vec![0.0; n];
+    let mut p = vec![0.0; n];
+    let r: Vec<f64> = (0..n).map(|i| 0.5 * i as f64).collect();
+    let mut pressure = vec![0.0; n];
+    let mut force = vec![0.0; n];
+    move || {
+        for _ in 0..WORK / n {
+            // Momenta are linear in both velocities.
+            for i in 0..n {
+                let (a, b, c) = (m[i] / dt, -0.5 * m[i] * f, m[i] * f * x[i]);
+                let (known_x, known_y) = (p[i] + 0.5 * force[i], r[i] - c);
+                let determinant = a * a + b * b;
+                let u = (a * known_x - b * known_y) / determinant;
+                let v = (a * known_y + b * known_x) / determinant;
+                x[i] += u;
+                y[i] += v;
+                p[i] += 0.5 * force[i] + m[i] * f * v;
+            }
+            for i in 0..n {
+                let next = if i + 1 < n { x[i + 1] } else { x[0] + length };
+                let before = if i > 0 { x[i - 1] } else { x[n - 1] - length };
+                let gap = next - before;
+                pressure[i] = dt * g * m[i] * m[i] / (gap * gap);
+            }
+            for i in 0..n {
+                let next = pressure[if i + 1 < n { i + 1 } else { 0 }];
+                let before = pressure[if i > 0 { i - 1 } else { n - 1 }];
+                force[i] = before - next;
+                p[i] += 0.5 * force[i];
+            }
+        }
+        black_box((&x, &y, &p));
+    }
+}
+
+fn diagonal(a: f64, b: f64, c: f64) -> Matrix3<f64> {
+    Matrix3::from_diagonal(&Vector3::new(a, b, c))
+}
+
+fn tops(n: usize, threads: usize) -> impl FnMut() {
+    let parameters = CoupledTopsParameters {
+        s: 1.0,
+        J: diagonal(0.5, 0.5, 1.5),
+        C: diagonal(0.3, 0.3, 0.3),
+        gU: Vector3::z(),
+        z: Vector3::z(),
+    };
+    let sites = CoupledTopsSites { N: n - 1, ends: CoupledTopsEnds::Open };
+    let tops = CoupledTops::new(parameters, sites).expect("tops").with_threads(threads);
+    let initial = CoupledTopsInitial {
+        Λ: (0..n).map(|i| Rotation::exp(&Vector3::new(0.2 * (0.1 * i as f64).sin(), 0.6, 0.0))).collect(),
+        body_momentum_Λ: vec![BodyMomentum(Vector3::new(0.1, 0.0, 3.0)); n],
+    };
+    let (mut state, mut work) = tops.start(initial, 0.01).expect("starts");
+    move || {
+        for _ in 0..WORK / n {
+            tops.step(&mut state, &mut work).expect("steps");
+        }
+        black_box(&state);
+    }
+}
+
+fn lone(n: usize) -> impl FnMut() {
+    let parameters = HeavyTopParameters { J: diagonal(0.5, 0.5, 1.5), gU: Vector3::z(), z: Vector3::z() };
+    let top = HeavyTop::new(parameters).expect("a top");
+    let initial = HeavyTopInitial {
+        Λ: Rotation::exp(&Vector3::new(0.0, 0.6, 0.0)),
+        body_momentum: BodyMomentum(Vector3::new(0.1, 0.0, 3.0)),
+    };
+    let (mut state, mut work) = top.start(initial, 0.01).expect("starts");
+    let _ = n;
+    move || {
+        for _ in 0..WORK {
+            top.step(&mut state, &mut work).expect("steps");
+        }
+        black_box(&state);
+    }
+}
+
+fn rod(n: usize) -> impl FnMut() {
+    let s = 0.1;
+    let parameters = ElasticRodParameters {
+        s,
+        m: (0..=n).map(|i| s * if i == 0 || i == n { 0.5 } else { 1.0 }).collect(),
+        J: vec![diagonal(0.01, 0.01, 0.02); n],
+        S: diagonal(100.0, 100.0, 200.0),
+        B: diagonal(1.0, 1.0, 2.0),
+        g: Vector3::zeros(),
+    };
+    let ends = ElasticRodEnds::Open { first: ElasticRodFirst::Free, last: ElasticRodLast::Free };
+    let rod = ElasticRod::new(parameters, ElasticRodSites { N: n, ends }).expect("a rod");
+    let initial = ElasticRodInitial {
+        φ: (0..=n).map(|i| Vector3::z() * (s * i as f64)).collect(),
+        momentum_φ: (0..=n).map(|i| Vector3::x() * (1e-3 * (0.2 * i as f64).sin())).collect(),
+        Λ: vec![Rotation::identity(); n],
+        body_momentum_Λ: vec![BodyMomentum(Vector3::new(0.0, 1e-5, 1e-4)); n],
+    };
+    let (mut state, mut work) = rod.start(initial, 0.001).expect("starts");
+    move || {
+        for _ in 0..WORK / n {
+            rod.step(&mut state, &mut work).expect("steps");
+        }
+        black_box(&state);
+    }
+}

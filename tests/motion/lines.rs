@@ -1,0 +1,151 @@
+//! Lines compiled for every number of sites: steps from random states make the action stationary, whose
+//! sums over sites are typed here by hand; ends, rings, threads, errors.
+
+// The fields of the models are Greek letters, as in the papers.
+#![allow(
+    mixed_script_confusables,
+    confusable_idents,
+    non_snake_case,
+    missing_docs
+)]
+
+#[path = "lines/action.rs"]
+mod action;
+#[path = "lines/laws.rs"]
+mod laws;
+#[path = "lines/models.rs"]
+mod models;
+
+use action::stationarity;
+use clebsch::BodyMomentum;
+use clebsch::line::LineError;
+use clebsch::nalgebra::{SMatrix, Vector3};
+use clebsch_models::lattices::{STATEMENTS, toda_chain::*};
+use models::{Line, Rod, Toda};
+
+/// Sizes that are tried: shorter than any stencil, and longer.
+const SIZES: [usize; 6] = [1, 2, 3, 5, 12, 50];
+
+/// Derivatives of the action are sums of terms of the size of momenta and forces, each rounded to a few
+/// units of 2e-16; a hundred of them leave 1e-13 of the largest.
+const STATIONARY: f64 = 2e-13;
+
+fn holds(line: &dyn Line, seed: u64) {
+    let states = line.three(seed);
+    let residual = stationarity(line, &states);
+    assert!(
+        residual < STATIONARY,
+        "{}: {residual:e} at seed {seed}",
+        line.name()
+    );
+}
+
+#[test]
+fn steps_from_random_states_make_the_action_stationary() {
+    for n in SIZES {
+        for seed in 0..3 {
+            for line in models::all(n) {
+                holds(line.as_ref(), seed);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_wrong_sign_in_any_term_is_seen() {
+    for line in models::all(5) {
+        let states = line.three(1);
+        for term in 0..line.terms() {
+            let wrong = models::Flipped(line.as_ref(), term);
+            let residual = stationarity(&wrong, &states);
+            assert!(
+                residual > 1e-4,
+                "{}: term {term} leaves {residual:e}",
+                line.name()
+            );
+        }
+    }
+}
+
+#[test]
+fn the_compiled_statements_are_those_of_the_files() {
+    let emitted = |text: &str| {
+        let mut model = clebsch_core::pipeline::parse_source(text).expect("a model");
+        model.public = true;
+        let items = clebsch_core::pipeline::emitted_line(&model, "").expect("items");
+        items.to_string()
+    };
+    for (file, compiled) in STATEMENTS {
+        assert!(emitted(file) == emitted(compiled), "{file}");
+    }
+}
+
+#[test]
+fn threads_change_no_bit() {
+    let n = 10_000;
+    let start = |threads| {
+        let rod = Rod::new(n, 0).stepper().with_threads(threads);
+        let (mut state, mut work) = rod.start(Rod::new(n, 0).initial(3), 1e-3).expect("starts");
+        for _ in 0..20 {
+            rod.step(&mut state, &mut work).expect("steps");
+        }
+        state
+    };
+    let one = start(1);
+    for threads in [2, 3, 7] {
+        assert!(start(threads) == one, "{threads} threads");
+    }
+}
+
+#[test]
+fn errors_name_the_site() {
+    let chain = Toda::ring(50).stepper();
+    let q = vec![SMatrix::<f64, 1, 1>::zeros(); 50];
+    let mut p = q.clone();
+    p[37] = SMatrix::repeat(f64::NAN);
+    let initial = TodaChainInitial {
+        q: q.clone(),
+        momentum_q: p,
+    };
+    match chain.start(initial, 0.1) {
+        Err(LineError::Site { at, .. }) => assert_eq!(at.site, 37),
+        other => panic!("{other:?}"),
+    }
+    let initial = TodaChainInitial {
+        q: q.clone(),
+        momentum_q: q[1..].to_vec(),
+    };
+    let told = chain.start(initial, 0.1).expect_err("a list too short");
+    assert!(
+        told.to_string()
+            .contains("49 sites, and there are 50 nodes"),
+        "{told}"
+    );
+    let none = TodaChain::<f64>::new(
+        TodaChainParameters {
+            m: 1.0,
+            a: 1.0,
+            b: 1.0,
+        },
+        TodaChainSites {
+            N: 0,
+            ends: TodaChainEnds::Open,
+        },
+    );
+    assert!(matches!(none, Err(LineError::NoSites { .. })));
+}
+
+#[test]
+fn a_step_that_is_too_long_names_the_site_and_a_shorter_one() {
+    let rod = Rod::new(8, 0);
+    let mut initial = rod.initial(0);
+    initial.body_momentum_Λ[5] = BodyMomentum(Vector3::new(0.0, 0.0, 1e3));
+    let stepper = rod.stepper();
+    let told = stepper.start(initial.clone(), 0.1).expect_err("too long");
+    let LineError::Step { at, works, .. } = told else {
+        panic!("{told}");
+    };
+    assert_eq!((at.quantity, at.site), ("Λ", 5));
+    let works = works.expect("a shorter step");
+    assert!(stepper.start(initial, works).is_ok());
+}

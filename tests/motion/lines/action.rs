@@ -1,0 +1,81 @@
+//! The action of two edges and its derivatives, by dual numbers: sums over sites are typed by hand, and
+//! nothing here is known to the engine.
+
+use super::models::Line;
+use clebsch::nalgebra::{Matrix3, Vector3};
+use clebsch::{Dual, Real};
+
+/// A number with one derivative.
+pub type D = Dual<1>;
+
+/// Numbers and attitudes at one node.
+#[derive(Clone, Debug)]
+pub struct Configuration<T> {
+    /// Fields, component after component.
+    pub x: Vec<T>,
+    /// Rotations, body to space.
+    pub r: Vec<Matrix3<T>>,
+}
+
+impl Configuration<f64> {
+    /// As constants.
+    pub fn lifted(&self) -> Configuration<D> {
+        Configuration {
+            x: self.x.iter().map(|x| D::constant(*x)).collect(),
+            r: self.r.iter().map(|r| r.map(D::constant)).collect(),
+        }
+    }
+
+    /// One number or one turn about a body axis as the variable.
+    pub fn varied(&self, at: usize) -> Configuration<D> {
+        let mut out = self.lifted();
+        if at < self.x.len() {
+            out.x[at] = D::variable(self.x[at], 0);
+            return out;
+        }
+        let (i, axis) = ((at - self.x.len()) / 3, (at - self.x.len()) % 3);
+        let mut v = Vector3::repeat(D::constant(0.0));
+        v[axis] = D::variable(0.0, 0);
+        let zero = D::constant(0.0);
+        let hat = Matrix3::new(zero, -v[2], v[1], v[2], zero, -v[0], -v[1], v[0], zero);
+        out.r[i] = out.r[i] * (Matrix3::identity() + hat);
+        out
+    }
+
+    /// How many derivatives there are.
+    pub fn coordinates(&self) -> usize {
+        self.x.len() + 3 * self.r.len()
+    }
+}
+
+/// `tr(A B)`.
+pub fn trace<T: Real>(a: &Matrix3<T>, b: &Matrix3<T>) -> T {
+    (a * b).trace()
+}
+
+/// The largest derivative of the action of two edges at the middle one of three configurations, less what
+/// the rounding of places by two units leaves in a velocity, of the largest derivative of one edge.
+pub fn stationarity(line: &dyn Line, [a, b, c]: &[Configuration<f64>; 3]) -> f64 {
+    let (before, after) = (a.lifted(), c.lifted());
+    let (mut worst, mut scale) = (0.0_f64, 1e-300_f64);
+    for at in 0..b.coordinates() {
+        if line.held(at) {
+            continue;
+        }
+        let here = b.varied(at);
+        let (into, out) = (line.action(&before, &here), line.action(&here, &after));
+        worst = worst.max((into.dual[0] + out.dual[0]).abs());
+        scale = scale.max(into.dual[0].abs()).max(out.dual[0].abs());
+    }
+    assert!(worst.is_finite() && scale.is_finite());
+    let far = b.x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let rounded = 2.0 * f64::EPSILON * far * line.mass_by_step();
+    (worst - rounded).max(0.0) / scale
+}
+
+/// The momentum at the first node of an edge: minus the derivative of the action there.
+pub fn momenta(line: &dyn Line, [a, b]: [&Configuration<f64>; 2]) -> Vec<f64> {
+    let after = b.lifted();
+    let each = (0..a.coordinates()).map(|at| -line.action(&a.varied(at), &after).dual[0]);
+    each.collect()
+}

@@ -1,0 +1,54 @@
+//! What a line keeps: the symplectic form by the tangent map, momenta, the energy within a bound; and
+//! the way back.
+
+use super::action::momenta;
+use super::models;
+
+#[test]
+fn given_momenta_are_those_of_the_action() {
+    for n in [1, 2, 5, 12] {
+        for line in models::all(n) {
+            let [a, b, _] = line.three(2);
+            let (derived, given) = (momenta(line.as_ref(), [&a, &b]), line.given(2));
+            let scale = given.iter().fold(1e-300_f64, |m, p| m.max(p.abs()));
+            for (at, (p, q)) in derived.iter().zip(&given).enumerate() {
+                if !line.held(at) {
+                    let off = (p - q).abs() / scale;
+                    // One division by the step of differences of places of order one.
+                    assert!(off < 1e-11, "{}: {p} for {q} at {at}", line.name());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_way_back_is_the_way() {
+    for line in models::all(5) {
+        let off = line.there_and_back(200);
+        // Two hundred steps there and back, each rounded to a few units.
+        assert!(off < 1e-11, "{}: {off:e}", line.name());
+    }
+}
+
+#[test]
+fn energies_stay_within_a_bound_and_totals_to_rounding() {
+    for line in models::all(12) {
+        let [energy, total] = line.kept(20_000);
+        assert!(
+            energy < line.energy_bound(),
+            "{}: energy {energy:e}",
+            line.name()
+        );
+        // A random walk of 2e4 roundings of 1e-16.
+        assert!(total < 2e-13, "{}: total {total:e}", line.name());
+    }
+}
+
+#[test]
+fn bounds_of_the_energy_fall_with_the_square_of_the_step() {
+    for line in models::all(5) {
+        let ratio = line.energy_ratio();
+        assert!((3.2..5.0).contains(&ratio), "{}: {ratio}", line.name());
+    }
+}
