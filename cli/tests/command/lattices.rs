@@ -4,7 +4,13 @@
 use crate::common::{Folder, clebsch};
 
 /// The model files that the project ships, each with its case.
-const SHIPPED: [&str; 5] = ["coupled-tops", "elastic-rod", "shallow-water", "sine-gordon", "toda-chain"];
+const SHIPPED: [&str; 5] = [
+    "coupled-tops",
+    "elastic-rod",
+    "shallow-water",
+    "sine-gordon",
+    "toda-chain",
+];
 
 fn shipped(file: &str) -> String {
     format!("{}/../models/lattices/{file}", env!("CARGO_MANIFEST_DIR"))
