@@ -50,6 +50,11 @@ pub fn command(width: Option<usize>) -> Command {
 }
 
 fn run() -> Command {
+    let checkpoint = option(
+        "checkpoint",
+        "SECONDS",
+        "Write a checkpoint every so many seconds of a run with --out, from which --resume goes on",
+    );
     planned(
         Command::new("run")
             .about("Run a case and check what it conserves")
@@ -62,6 +67,21 @@ fn run() -> Command {
          watched at every node in any case",
         "Write trajectory.csv, trajectory.npz, run.json and plots into this new folder; when a step \
          fails, those of the run up to there, which run.json and the plots say",
+    )
+    .arg(
+        flag(
+            "resume",
+            "Go on with the run into DIR that was interrupted or killed, to the same results to the last \
+             bit; begin it where there is none",
+        )
+        .requires("out")
+        .conflicts_with("force"),
+    )
+    .arg(
+        checkpoint
+            .requires("out")
+            .default_value("60")
+            .value_parser(positive_number),
     )
 }
 

@@ -8,11 +8,13 @@
 pub mod arguments;
 mod asked;
 pub mod case_file;
+mod checkpoint;
 mod columns;
 pub mod compare;
 pub mod derive;
 pub mod failure;
 mod figures;
+mod follow;
 pub mod gallery;
 mod lines;
 mod list;

@@ -47,7 +47,9 @@ impl Record {
     #[must_use]
     pub fn size(card: &Card, steps: u64, every: u64) -> u64 {
         let row = 2 + card.observable_count() + card.invariant_count();
-        (steps / every.max(1) + 2).saturating_mul(row as u64)
+        (steps / every.max(1))
+            .saturating_add(2)
+            .saturating_mul(row as u64)
     }
 
     /// Drops samples at the end, down to the last node that is wanted.
@@ -106,7 +108,7 @@ impl Recorder {
     }
 }
 
-fn progress_bar(steps: u64) -> ProgressBar {
+pub(crate) fn progress_bar(steps: u64) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr());
     match ProgressStyle::with_template("{wide_bar} {human_pos}/{human_len} steps, {eta} left") {
         Ok(style) => bar.with_style(style),

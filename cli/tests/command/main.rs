@@ -13,6 +13,7 @@ mod npz;
 mod own_models;
 mod rest;
 mod results;
+mod resumed;
 mod scales;
 mod staging;
 mod stopped;
