@@ -64,6 +64,12 @@ impl Identity {
         Self(all)
     }
 
+    /// The same, with one more that must be the same.
+    pub(crate) fn with(mut self, key: &str, value: String) -> Self {
+        self.0.push((key.to_owned(), value));
+        self
+    }
+
     fn text(&self) -> String {
         let lines = self.0.iter();
         lines
@@ -265,7 +271,7 @@ mod tests {
             why,
             Err("it is of another run: h = 0.1 there, h = 0.2 here".to_owned())
         );
-        let later = String::from_utf8_lossy(&bytes[..20]).replace('1', "2");
+        let later = String::from_utf8_lossy(&bytes[..21]).replace('1', "2");
         let why = Checkpoint::of_bytes(later.as_bytes(), &identity("0.1"));
         assert_eq!(
             why,

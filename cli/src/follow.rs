@@ -79,7 +79,7 @@ impl Run<'_> {
     /// Failed: the file system refuses samples or checkpoints. What it took before can be gone on with.
     pub(crate) fn follow(&mut self, kept: Option<&mut Kept<'_>>) -> Result<End, Failure> {
         let listening = Listening::begin();
-        let bar = self.progress.then(|| progress_bar(self.steps));
+        let bar = self.progress.then(|| progress_bar(self.steps, "steps"));
         if let Some(bar) = &bar {
             bar.set_position(self.watch.summary().steps);
             bar.reset_eta();

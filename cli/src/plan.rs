@@ -44,7 +44,7 @@ impl Plan {
         let asked = matches.get_one::<String>("case").map(String::as_str);
         let steps = matches.get_one::<u64>("steps").copied();
         let h = matches.get_one::<f64>("h").copied();
-        let every = matches.get_one::<u64>("every").copied();
+        let every = matches.try_get_one::<u64>("every").ok().flatten().copied();
         let order = matches.get_one::<u32>("order").copied();
         let compensated = matches.get_flag("compensated");
         let solver = match matches.get_one::<String>("solver") {

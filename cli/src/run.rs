@@ -287,6 +287,11 @@ fn already(
             return Err(wrong(&format!("it holds another run: its {key} differs")));
         }
     }
+    for key in ["order", "solver", "compensated"] {
+        if there["arguments"][key] != plan.arguments[key] {
+            return Err(wrong(&format!("it holds another run: its {key} differs")));
+        }
+    }
     if there["results"]["complete"] != json!(true) {
         let why = there["results"]["stopped"]["why"].as_str().unwrap_or("?");
         return Err(wrong(&format!(

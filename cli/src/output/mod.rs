@@ -3,8 +3,8 @@
 
 mod csv;
 mod interrupted;
-mod names;
-mod npz;
+pub(crate) mod names;
+pub(crate) mod npz;
 pub(crate) mod run_json;
 pub(crate) mod samples;
 pub(crate) mod sites;

@@ -10,7 +10,7 @@ use std::io::{self, Seek, SeekFrom, Write};
 use std::ops::Range;
 
 /// A named array whose first index is the sample.
-pub(super) struct Array<'a> {
+pub(crate) struct Array<'a> {
     name: String,
     shape: Vec<usize>,
     entries: Entries<'a>,
@@ -97,6 +97,21 @@ pub(super) fn arrays<'a>(card: &Card, rows: &'a Rows) -> Vec<Array<'a>> {
     arrays
 }
 
+/// One array a column, the first of counts.
+pub(crate) fn columns<'a>(names: &[String], rows: &'a Rows) -> Vec<Array<'a>> {
+    let samples = usize::try_from(rows.count).unwrap_or(usize::MAX);
+    let array = |(column, name): (usize, &String)| Array {
+        name: name.clone(),
+        shape: vec![samples],
+        entries: Entries::Columns {
+            rows,
+            columns: vec![column..column + 1],
+            counts: column == 0,
+        },
+    };
+    names.iter().enumerate().map(array).collect()
+}
+
 impl Array<'_> {
     /// The npy header: magic, version 1.0, dictionary padded so that the data are 64-byte aligned.
     fn header(&self) -> Vec<u8> {
@@ -172,7 +187,7 @@ impl Member {
 ///
 /// # Errors
 /// Those of `file`, and `InvalidInput` beyond the 4 GiB of a classic zip.
-pub(super) fn write(file: &mut (impl Write + Seek), arrays: &[Array<'_>]) -> io::Result<()> {
+pub(crate) fn write(file: &mut (impl Write + Seek), arrays: &[Array<'_>]) -> io::Result<()> {
     let too_large = |_| io::Error::new(io::ErrorKind::InvalidInput, "more than 4 GiB");
     let mut members: Vec<Member> = Vec::with_capacity(arrays.len());
     let mut offset = 0_usize;

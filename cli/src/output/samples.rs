@@ -141,6 +141,15 @@ pub(crate) struct Rows {
 }
 
 impl Rows {
+    /// Those of a file with so many of so many words.
+    pub(crate) fn of(path: &Path, width: usize, count: u64) -> Self {
+        Self {
+            path: path.to_owned(),
+            width,
+            count,
+        }
+    }
+
     /// Shows one row after the other, each as its words: the node, then the bits of all numbers.
     pub(crate) fn each(&self, mut show: impl FnMut(&[u64]) -> io::Result<()>) -> io::Result<()> {
         let mut file = BufReader::with_capacity(BUFFER, File::open(&self.path)?);

@@ -17,4 +17,5 @@ mod resumed;
 mod scales;
 mod staging;
 mod stopped;
+mod sweeps;
 mod terminal;
