@@ -80,6 +80,13 @@ fn run() -> Command {
         .conflicts_with("force"),
     )
     .arg(
+        flag(
+            "paper",
+            "Draw pictures for a column of a paper: 86 mm wide, without titles, legends below",
+        )
+        .requires("out"),
+    )
+    .arg(
         checkpoint
             .requires("out")
             .default_value("60")

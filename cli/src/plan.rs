@@ -31,6 +31,8 @@ pub struct Plan {
     pub solver: Option<Method>,
     /// Whether steps with modified moments are compensated.
     pub compensated: bool,
+    /// Whether pictures are drawn for a column of a paper.
+    pub paper: bool,
     /// For a case read from a file: its name, and the line of each key.
     origin: Option<(String, BTreeMap<String, usize>)>,
 }
@@ -86,6 +88,12 @@ impl Plan {
             }),
             solver,
             compensated,
+            paper: matches
+                .try_get_one::<bool>("paper")
+                .ok()
+                .flatten()
+                .copied()
+                .unwrap_or(false),
             origin,
         })
     }
@@ -100,6 +108,7 @@ impl Plan {
             arguments: Value::Null,
             solver: None,
             compensated: false,
+            paper: false,
             origin: None,
         }
     }

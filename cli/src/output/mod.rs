@@ -55,7 +55,7 @@ pub struct Finished<'a> {
 }
 
 /// Every file name a run can write, so that a folder with anything else is never replaced.
-pub const FILES: [&str; 10] = [
+pub const FILES: [&str; 12] = [
     "trajectory.csv",
     "trajectory.npz",
     "run.json",
@@ -63,6 +63,8 @@ pub const FILES: [&str; 10] = [
     "invariants.svg",
     "advected.svg",
     "fields.svg",
+    "attitude.svg",
+    "angles.svg",
     // While it runs, and where it can be gone on with.
     samples::NAME,
     checkpoint::NAME,
@@ -79,7 +81,18 @@ pub fn write(
     rows: &Rows,
     opening: Option<Record>,
 ) -> Result<Vec<&'static str>, Failure> {
-    let [csv, npz, json, momentum, invariants, advected, fields, ..] = FILES;
+    let [
+        csv,
+        npz,
+        json,
+        momentum,
+        invariants,
+        advected,
+        fields,
+        attitude,
+        angles,
+        ..,
+    ] = FILES;
     staging.write(csv, |file| csv::write(file, run.card, rows))?;
     staging.write(npz, |file| npz::write(file, &npz::arrays(run.card, rows)))?;
     let record = thinned::record(run.card, rows).map_err(|error| {
@@ -94,6 +107,8 @@ pub fn write(
         (invariants, plots::invariants(run, record)),
         (advected, plots::advected(run, samples)),
         (fields, plots::fields(run, samples)),
+        (attitude, plots::attitude(run, samples)),
+        (angles, plots::angles(run, samples)),
     ];
     for (name, plot) in drawn {
         let plot = plot.map_err(|error| Failure::Failed(format!("cannot draw {name}: {error}")))?;

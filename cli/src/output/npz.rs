@@ -105,7 +105,7 @@ pub(crate) fn columns<'a>(names: &[String], rows: &'a Rows) -> Vec<Array<'a>> {
         shape: vec![samples],
         entries: Entries::Columns {
             rows,
-            columns: vec![column..column + 1],
+            columns: std::iter::once(column..column + 1).collect(),
             counts: column == 0,
         },
     };

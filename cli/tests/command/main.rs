@@ -11,6 +11,7 @@ mod model_files;
 mod names;
 mod npz;
 mod own_models;
+mod pictures;
 mod rest;
 mod results;
 mod resumed;
