@@ -44,12 +44,19 @@ pub fn command(width: Option<usize>) -> Command {
                 )),
         )
         .subcommand(run())
+        .subcommand(sweep())
+        .subcommand(collect())
         .subcommand(compare())
         .subcommand(figures())
         .subcommand(derive())
 }
 
 fn run() -> Command {
+    let checkpoint = option(
+        "checkpoint",
+        "SECONDS",
+        "Write a checkpoint every so many seconds of a run with --out, from which --resume goes on",
+    );
     planned(
         Command::new("run")
             .about("Run a case and check what it conserves")
@@ -62,6 +69,28 @@ fn run() -> Command {
          watched at every node in any case",
         "Write trajectory.csv, trajectory.npz, run.json and plots into this new folder; when a step \
          fails, those of the run up to there, which run.json and the plots say",
+    )
+    .arg(
+        flag(
+            "resume",
+            "Go on with the run into DIR that was interrupted or killed, to the same results to the last \
+             bit; begin it where there is none",
+        )
+        .requires("out")
+        .conflicts_with("force"),
+    )
+    .arg(
+        flag(
+            "paper",
+            "Draw pictures for a column of a paper: 86 mm wide, without titles, legends below",
+        )
+        .requires("out"),
+    )
+    .arg(
+        checkpoint
+            .requires("out")
+            .default_value("60")
+            .value_parser(positive_number),
     )
 }
 
@@ -97,8 +126,87 @@ fn figures() -> Command {
         .arg(json())
 }
 
-/// What every command that runs a case takes.
+/// What every command that runs a case once takes.
 fn planned(command: Command, every: &'static str, out: &'static str) -> Command {
+    of_a_case(command)
+        .arg(option("every", "N", every).value_parser(positive_count))
+        .arg(option("out", "DIR", out).value_parser(value_parser!(std::path::PathBuf)))
+        .arg(flag("force", "Replace DIR when it holds an earlier run").requires("out"))
+        .arg(json())
+}
+
+fn sweep() -> Command {
+    of_a_case(
+        Command::new("sweep")
+            .about("Run a case at every point of a grid, on all cores, into one table")
+            .after_help(
+                "Examples:\n  clebsch sweep heavy-top --vary gU.z=0:1:100 --out out/sweep\n  \
+                 clebsch sweep heavy-top --vary gU.z=0:1:100 --vary h=0.1,0.05 --shard 3/16 --out out/part-3\n  \
+                 clebsch collect out/part-* --out out/sweep",
+            ),
+    )
+    .arg(
+        option(
+            "vary",
+            "NAME=VALUES",
+            "Parameter, initial value or step h, with its component, and its values as FROM:TO:COUNT or \
+             A,B,...; of several the last varies fastest",
+        )
+        .action(ArgAction::Append)
+        .required(true),
+    )
+    .arg(
+        option(
+            "shard",
+            "PART/OF",
+            "Compute only this part of the points; `clebsch collect` joins the parts",
+        )
+        .value_parser(crate::sweep::Shard::read),
+    )
+    .arg(
+        option(
+            "out",
+            "DIR",
+            "Write sweep.csv, sweep.npz and sweep.json into this new folder",
+        )
+        .required(true)
+        .value_parser(value_parser!(std::path::PathBuf)),
+    )
+    .arg(
+        flag(
+            "resume",
+            "Go on with the sweep into DIR that was interrupted or killed; begin it where there is none",
+        )
+        .conflicts_with("force"),
+    )
+    .arg(flag("force", "Replace DIR when it holds an earlier sweep"))
+    .arg(json())
+}
+
+fn collect() -> Command {
+    Command::new("collect")
+        .about("Join the parts of a sweep to the table of the whole")
+        .after_help("Examples:\n  clebsch collect out/part-* --out out/sweep")
+        .arg(
+            Arg::new("parts")
+                .value_name("PART")
+                .required(true)
+                .action(ArgAction::Append)
+                .num_args(1..)
+                .value_parser(value_parser!(std::path::PathBuf))
+                .help("Folders of all parts, in any order"),
+        )
+        .arg(
+            option("out", "DIR", "Write the table into this new folder")
+                .required(true)
+                .value_parser(value_parser!(std::path::PathBuf)),
+        )
+        .arg(flag("force", "Replace DIR when it holds an earlier sweep"))
+        .arg(json())
+}
+
+/// What says which case is run, and how.
+fn of_a_case(command: Command) -> Command {
     command
         .arg(model())
         .arg(option(
@@ -150,10 +258,6 @@ fn planned(command: Command, every: &'static str, out: &'static str) -> Command 
             )
             .value_parser(positive_count),
         )
-        .arg(option("every", "N", every).value_parser(positive_count))
-        .arg(option("out", "DIR", out).value_parser(value_parser!(std::path::PathBuf)))
-        .arg(flag("force", "Replace DIR when it holds an earlier run").requires("out"))
-        .arg(json())
 }
 
 fn derive() -> Command {

@@ -13,6 +13,8 @@ pub const FAILED: u8 = 1;
 pub const USAGE: u8 = 2;
 /// The run ended, its results are written, and an invariant left its bound or a residual is not a number.
 pub const BOUND_LEFT: u8 = 3;
+/// Less than the codes of commands that a signal ended, by its number: 130 for SIGINT, 143 for SIGTERM.
+pub const BY_SIGNAL: u8 = 128;
 
 /// A command that did not come to its end.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -8,11 +8,13 @@
 pub mod arguments;
 mod asked;
 pub mod case_file;
+mod checkpoint;
 mod columns;
 pub mod compare;
 pub mod derive;
 pub mod failure;
 mod figures;
+mod follow;
 pub mod gallery;
 mod lines;
 mod list;
@@ -24,6 +26,7 @@ pub mod plots;
 mod record;
 mod run;
 mod suggestion;
+mod sweep;
 mod verdict;
 mod width;
 
@@ -91,7 +94,8 @@ pub fn execute(
         Err(error) => return answer_clap(&error, streams),
     };
     let as_json = matches.subcommand().is_some_and(|(name, matches)| {
-        ["run", "compare", "figures"].contains(&name) && matches.get_flag("json")
+        ["run", "sweep", "collect", "compare", "figures"].contains(&name)
+            && matches.get_flag("json")
     });
     let done = dispatch(&matches, gallery, streams);
     let done = done.and_then(|code| {
@@ -139,6 +143,8 @@ fn dispatch(
             Ok(DONE)
         }
         Some(("run", matches)) => run::run(gallery, matches, streams),
+        Some(("sweep", matches)) => sweep::sweep(gallery, matches, streams),
+        Some(("collect", matches)) => sweep::collect(matches, streams),
         Some(("compare", matches)) => compare::compare(gallery, matches, streams),
         Some(("figures", matches)) => figures::figures(gallery, matches, streams),
         Some(("derive", matches)) => {

@@ -31,6 +31,8 @@ pub struct Plan {
     pub solver: Option<Method>,
     /// Whether steps with modified moments are compensated.
     pub compensated: bool,
+    /// Whether pictures are drawn for a column of a paper.
+    pub paper: bool,
     /// For a case read from a file: its name, and the line of each key.
     origin: Option<(String, BTreeMap<String, usize>)>,
 }
@@ -44,7 +46,7 @@ impl Plan {
         let asked = matches.get_one::<String>("case").map(String::as_str);
         let steps = matches.get_one::<u64>("steps").copied();
         let h = matches.get_one::<f64>("h").copied();
-        let every = matches.get_one::<u64>("every").copied();
+        let every = matches.try_get_one::<u64>("every").ok().flatten().copied();
         let order = matches.get_one::<u32>("order").copied();
         let compensated = matches.get_flag("compensated");
         let solver = match matches.get_one::<String>("solver") {
@@ -86,6 +88,12 @@ impl Plan {
             }),
             solver,
             compensated,
+            paper: matches
+                .try_get_one::<bool>("paper")
+                .ok()
+                .flatten()
+                .copied()
+                .unwrap_or(false),
             origin,
         })
     }
@@ -100,6 +108,7 @@ impl Plan {
             arguments: Value::Null,
             solver: None,
             compensated: false,
+            paper: false,
             origin: None,
         }
     }

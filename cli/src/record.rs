@@ -47,7 +47,9 @@ impl Record {
     #[must_use]
     pub fn size(card: &Card, steps: u64, every: u64) -> u64 {
         let row = 2 + card.observable_count() + card.invariant_count();
-        (steps / every.max(1) + 2).saturating_mul(row as u64)
+        (steps / every.max(1))
+            .saturating_add(2)
+            .saturating_mul(row as u64)
     }
 
     /// Drops samples at the end, down to the last node that is wanted.
@@ -92,7 +94,7 @@ impl Recorder {
                 invariants: table(card.invariant_count()),
                 ..Record::default()
             }),
-            bar: bar.then(|| progress_bar(steps)),
+            bar: bar.then(|| progress_bar(steps, "steps")),
         }
     }
 
@@ -106,9 +108,11 @@ impl Recorder {
     }
 }
 
-fn progress_bar(steps: u64) -> ProgressBar {
+/// A bar on standard error with the time left, for so many `what`.
+pub(crate) fn progress_bar(steps: u64, what: &str) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr());
-    match ProgressStyle::with_template("{wide_bar} {human_pos}/{human_len} steps, {eta} left") {
+    let template = format!("{{wide_bar}} {{human_pos}}/{{human_len}} {what}, {{eta}} left");
+    match ProgressStyle::with_template(&template) {
         Ok(style) => bar.with_style(style),
         // The template is fixed; should it ever be wrong, the plain bar does.
         Err(_) => bar,

@@ -3,21 +3,25 @@
 
 use crate::Streams;
 use crate::asked;
-use crate::failure::{BOUND_LEFT, DONE, FAILED, Failure};
+use crate::checkpoint::{Checkpoint, Identity};
+use crate::failure::{BOUND_LEFT, BY_SIGNAL, DONE, FAILED, Failure};
+use crate::follow::{End, Kept, Run};
 use crate::gallery::Gallery;
 use crate::list::first_line;
-use crate::output::{self, Finished, Staging, Stopped, run_json};
+use crate::output::samples::{self, Stream};
+use crate::output::{self, Finished, Found, Staging, Stopped, run_json};
 use crate::plain::shown;
 use crate::plan::Plan;
 use crate::plots::axis;
-use crate::record::{LARGEST, Record, Recorder, Samples};
+use crate::record::{LARGEST, Record, Recorder};
 use crate::verdict::{Verdict, judge, table};
 use crate::width::paragraph;
 use clap::ArgMatches;
 use clebsch::card::Card;
-use clebsch::integrate;
+use clebsch::integrate::{self, Watch};
 use serde_json::json;
-use std::path::PathBuf;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
 
 /// Steps whose every node is kept for the plots: all the swings there is room for, of 150 steps each.
 const OPENING: u64 = 10_000;
@@ -45,15 +49,23 @@ pub fn run(
     let card = &entry.card_of(&plan.case);
     let target = matches.get_one::<PathBuf>("out");
     let as_json = matches.get_flag("json");
-    let staging = match target {
-        None => None,
+    let identity = Identity::of(card, &plan);
+    let (mut staging, checkpoint) = match target {
+        None => (None, None),
         Some(target) => {
             fits(card, &plan)?;
-            Some(Staging::new(
-                target,
-                matches.get_flag("force"),
-                &output::FILES,
-            )?)
+            let found = match matches.get_flag("resume") {
+                true => Staging::resume(target, &output::FILES, &identity)?,
+                false => Found::Nothing,
+            };
+            match found {
+                Found::Results => return already(card, &plan, target, as_json, streams),
+                Found::Middle(both) => (Some(both.0), Some(both.1)),
+                Found::Nothing => {
+                    let force = matches.get_flag("force");
+                    (Some(Staging::new(target, force, &output::FILES)?), None)
+                }
+            }
         }
     };
     let mut trajectory = plan.open(card)?;
@@ -62,23 +74,69 @@ pub fn run(
         // With `--json` it stands in the object as well; nothing is lost when it cannot be written.
         let _ = writeln!(streams.err, "clebsch: warning: {warning}");
     }
+    let mut out = Told {
+        out: &mut *streams.out,
+        // Results that are written to files are worth the work, whoever listens.
+        may_go: target.is_some(),
+        gone: false,
+    };
+    let width = streams.width;
     if !as_json {
-        introduce(streams, card, &plan)?;
+        introduce(&mut out, width, card, &plan)?;
     }
     let steps = plan.case.steps;
-    let mut recorder = Recorder::new(card, steps, staging.is_some(), streams.progress);
-    let (summary, stopped) =
-        integrate::run_until_stopped(trajectory.as_mut(), steps, plan.every, &mut recorder);
-    let record = recorder.finish();
-    let stopped = match stopped {
-        // A run without a step has no results.
-        Some(error) if summary.steps == 0 => return Err(Failure::Failed(error.to_string())),
-        error => error.map(|error| Stopped {
-            node: summary.node,
-            time: summary.time,
-            why: error.to_string(),
-        }),
+    let watch = Watch::new(trajectory.as_ref(), steps, plan.every);
+    let mut following = Run {
+        trajectory: trajectory.as_mut(),
+        watch,
+        steps,
+        progress: streams.progress,
     };
+    let mut kept = match &mut staging {
+        None => None,
+        Some(staging) => {
+            let stream = match &checkpoint {
+                None => {
+                    Stream::new(staging.folder(), card).map_err(|error| cannot(staging, &error))?
+                }
+                Some(checkpoint) => {
+                    following.restore(checkpoint)?;
+                    resumed(staging, card, checkpoint)?
+                }
+            };
+            let seconds = matches.get_one::<f64>("checkpoint").copied();
+            Some(Kept {
+                staging,
+                stream,
+                identity,
+                seconds: seconds.unwrap_or(f64::INFINITY),
+            })
+        }
+    };
+    if let (Some(kept), Some(_)) = (&mut kept, &checkpoint) {
+        kept.staging.go_on();
+    }
+    if checkpoint.is_some() && !as_json {
+        let node = following.watch.summary().node;
+        let text = format!("resumed at node {node}");
+        out.write_all(paragraph(&text, width, 2).as_bytes())?;
+    }
+    let end = following.follow(kept.as_mut())?;
+    let summary = following.watch.summary();
+    let why = match &end {
+        End::Whole => None,
+        // A run without a step has no results.
+        End::Stopped(error) if summary.steps == 0 => {
+            return Err(Failure::Failed(error.to_string()));
+        }
+        End::Stopped(error) => Some(error.to_string()),
+        End::Interrupted(signal) => Some(interrupted(*signal)),
+    };
+    let stopped = why.map(|why| Stopped {
+        node: summary.node,
+        time: summary.time,
+        why,
+    });
     let outcomes = judge(card, &plan.case, &summary.drifts);
     let run = Finished {
         card,
@@ -88,14 +146,28 @@ pub fn run(
         residual: summary.residual,
         stopped,
     };
+    let stream = kept.map(|kept| kept.stream);
     let (mut files, mut place) = (Vec::new(), None);
-    if let (Some(staging), Some(record), Some(target)) = (staging, record, target) {
+    if let (Some(staging), Some(stream), Some(target)) = (staging, stream, target) {
         let write = |files: &mut Vec<&'static str>| {
-            let opening = opening(card, &plan, summary.steps)?;
-            *files = output::write(&staging, &run, &Samples { record, opening })?;
-            match &run.stopped {
-                None => staging.commit().map(|()| shown(target)),
-                Some(_) => staging.commit_stopped(),
+            let rows = stream.into_rows();
+            let rows = rows.map_err(|error| cannot(&staging, &error))?;
+            // Who has interrupted a run waits for its end, not for its beginning.
+            let opening = match end {
+                End::Interrupted(_) => None,
+                _ => opening(card, &plan, summary.steps)?,
+            };
+            *files = output::write(&staging, &run, &rows, opening)?;
+            match (&end, &run.stopped) {
+                (End::Interrupted(_), _) => staging.commit_stopped(),
+                (_, None) => staging.commit().map(|()| {
+                    output::remove_what_resumes(target);
+                    shown(target)
+                }),
+                (_, Some(_)) => {
+                    output::remove_what_resumes(staging.folder());
+                    staging.commit_stopped()
+                }
             }
         };
         // Of two things that went wrong both are said.
@@ -111,12 +183,16 @@ pub fn run(
         .collect();
     let lost = run.residual.filter(|residual| residual.relative.is_nan());
     let code = match (&run.stopped, left.is_empty() && lost.is_none()) {
+        (Some(_), _) if matches!(end, End::Interrupted(_)) => match end {
+            End::Interrupted(signal) => BY_SIGNAL.saturating_add(signal),
+            _ => FAILED,
+        },
         (Some(_), _) => FAILED,
         (None, true) => DONE,
         (None, false) => BOUND_LEFT,
     };
     if as_json {
-        let mut object = run_json(&run, &files);
+        let mut object = run_json::run_json(&run, &files);
         if let Some(object) = object.as_object_mut() {
             let place = place.as_ref().map(ToString::to_string);
             object.insert("out".to_owned(), json!(place));
@@ -129,16 +205,16 @@ pub fn run(
                 object.insert("error".to_owned(), json!(stopped.why));
             }
         }
-        writeln!(streams.out, "{object}")?;
+        writeln!(out, "{object}")?;
     } else {
-        write!(streams.out, "\n{}", table(&outcomes, streams.width))?;
+        write!(out, "\n{}", table(&outcomes, width))?;
         for line in below_the_table(&run, summary.steps) {
-            write!(streams.out, "\n{}", paragraph(&line, streams.width, 2))?;
+            write!(out, "\n{}", paragraph(&line, width, 2))?;
         }
         if let Some(place) = place {
             let written = format!("written to {place}: {}", files.join(", "));
-            let written = paragraph(&written, streams.width, 2);
-            write!(streams.out, "\n{written}")?;
+            let written = paragraph(&written, width, 2);
+            write!(out, "\n{written}")?;
         }
     }
     // The exit code says the same; nothing is lost when these cannot be written.
@@ -158,6 +234,105 @@ pub fn run(
         let _ = writeln!(streams.err, "clebsch: {}", stopped.why);
     }
     Ok(code)
+}
+
+/// The samples of a run that is gone on with.
+fn resumed(staging: &Staging, card: &Card, checkpoint: &Checkpoint) -> Result<Stream, Failure> {
+    let (rows, sum) = (checkpoint.rows, checkpoint.sum);
+    let again = Stream::again(staging.folder(), card, rows, sum);
+    again.map_err(|error| cannot(staging, &error))?.ok_or_else(|| {
+        let file = staging.folder().join(samples::NAME);
+        Failure::Usage(format!(
+            "--resume: {}: the samples before the checkpoint are damaged: their checksum is another. Give \
+             --force instead to begin anew",
+            shown(&file)
+        ))
+    })
+}
+
+fn cannot(staging: &Staging, error: &io::Error) -> Failure {
+    let path = staging.folder().join(samples::NAME);
+    Failure::io(&format!("cannot write {}", shown(&path)), error)
+}
+
+/// What a signal did.
+fn interrupted(signal: u8) -> String {
+    let by = match signal {
+        2 => "SIGINT".to_owned(),
+        15 => "SIGTERM".to_owned(),
+        other => format!("signal {other}"),
+    };
+    format!("interrupted by {by}; a run with --out goes on by --resume")
+}
+
+/// Asked to go on with a run that has come to its end.
+fn already(
+    card: &Card,
+    plan: &Plan,
+    target: &Path,
+    as_json: bool,
+    streams: &mut Streams<'_>,
+) -> Result<u8, Failure> {
+    let wrong = |words: &str| Failure::Usage(format!("--resume: {}: {words}", shown(target)));
+    let text = std::fs::read_to_string(target.join("run.json")).unwrap_or_default();
+    let Ok(there) = text.parse::<serde_json::Value>() else {
+        return Err(wrong("this is no folder of a run"));
+    };
+    let own = run_json::plan_json(card, plan)
+        .to_string()
+        .parse::<serde_json::Value>();
+    let own = own.unwrap_or_default();
+    for (key, value) in own.as_object().into_iter().flatten() {
+        if there.get(key) != Some(value) {
+            return Err(wrong(&format!("it holds another run: its {key} differs")));
+        }
+    }
+    for key in ["order", "solver", "compensated"] {
+        if there["arguments"][key] != plan.arguments[key] {
+            return Err(wrong(&format!("it holds another run: its {key} differs")));
+        }
+    }
+    if there["results"]["complete"] != json!(true) {
+        let why = there["results"]["stopped"]["why"].as_str().unwrap_or("?");
+        return Err(wrong(&format!(
+            "the run there cannot be gone on with: {why}"
+        )));
+    }
+    output::remove_what_resumes(target);
+    match as_json {
+        true => writeln!(streams.out, "{there}")?,
+        false => writeln!(streams.out, "complete already: {}", shown(target))?,
+    }
+    Ok(DONE)
+}
+
+/// Standard output of a run whose results are written to files: they are worth the work when nobody reads it.
+struct Told<'a, 'b> {
+    out: &'a mut (dyn Write + 'b),
+    may_go: bool,
+    gone: bool,
+}
+
+impl Write for Told<'_, '_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.gone {
+            return Ok(bytes.len());
+        }
+        match self.out.write(bytes) {
+            Err(error) if self.may_go && error.kind() == io::ErrorKind::BrokenPipe => {
+                self.gone = true;
+                Ok(bytes.len())
+            }
+            other => other,
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self.gone {
+            true => Ok(()),
+            false => self.out.flush(),
+        }
+    }
 }
 
 /// How well the steps are solved, and whether all were made.
@@ -207,11 +382,16 @@ fn fits(card: &Card, plan: &Plan) -> Result<(), Failure> {
 }
 
 /// What runs, and what was derived for it.
-fn introduce(streams: &mut Streams<'_>, card: &Card, plan: &Plan) -> Result<(), Failure> {
-    let (case, width) = (&plan.case, streams.width);
+fn introduce(
+    out: &mut dyn Write,
+    width: Option<usize>,
+    card: &Card,
+    plan: &Plan,
+) -> Result<(), Failure> {
+    let case = &plan.case;
     let mut say = |text: &str, indent: usize| {
         let text = paragraph(text, width, indent);
-        streams.out.write_all(text.as_bytes())
+        out.write_all(text.as_bytes())
     };
     say(&format!("{}: {}", card.kebab, first_line(card.doc)), 2)?;
     for line in card.summary.trim().lines() {

@@ -104,6 +104,9 @@ pub mod body_in_quadratic_field {
         edge: Edge<T>,
         here: BodyInQuadraticFieldState<T>,
     }
+    ::clebsch::saved! {
+        [] BodyInQuadraticFieldWorkspace { h, method, edge, here }
+    }
     impl<T: Real> BodyInQuadraticField<T> {
         /// Starts a trajectory with step `h` from data at node 0.
         ///

@@ -109,6 +109,9 @@ pub mod body_in_two_fields {
         edge: Edge<T>,
         here: BodyInTwoFieldsState<T>,
     }
+    ::clebsch::saved! {
+        [] BodyInTwoFieldsWorkspace { h, method, edge, here }
+    }
     impl<T: Real> BodyInTwoFields<T> {
         /// Starts a trajectory with step `h` from data at node 0.
         ///

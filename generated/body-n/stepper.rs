@@ -97,6 +97,9 @@ pub mod body_n {
         h: T,
         method: Method,
     }
+    ::clebsch::saved! {
+        [N] BodyNWorkspace { h, method }
+    }
     impl<const N: usize, T: Real> BodyN<N, T> {
         /// Starts a trajectory with step `h` from data at node 0.
         ///

@@ -86,6 +86,9 @@ pub mod cayley_klein_spatial {
         edge: Edge<T>,
         here: CayleyKleinSpatialState<T>,
     }
+    ::clebsch::saved! {
+        [] CayleyKleinSpatialWorkspace { h, factor, edge, here }
+    }
     impl<T: Real> CayleyKleinSpatial<T> {
         /// Starts a trajectory with step `h` from data at node 0.
         ///

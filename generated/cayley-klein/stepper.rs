@@ -94,6 +94,9 @@ pub mod cayley_klein {
         edge: Edge<T>,
         here: CayleyKleinState<T>,
     }
+    ::clebsch::saved! {
+        [] CayleyKleinWorkspace { h, edge, here }
+    }
     impl<T: Real> CayleyKlein<T> {
         /// Starts a trajectory with step `h` from data at node 0.
         ///

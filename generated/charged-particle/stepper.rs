@@ -87,6 +87,9 @@ pub mod charged_particle {
     pub struct ChargedParticleWorkspace<T = f64> {
         h: T,
     }
+    ::clebsch::saved! {
+        [] ChargedParticleWorkspace { h, }
+    }
     impl<T: Real> ChargedParticle<T> {
         /// Starts a trajectory with step `h` from data at node 0.
         ///

@@ -113,6 +113,9 @@ pub mod coupled_bodies {
         h: T,
         search: newton::Search<T, [Rotation<T>; 2], CoupledBodiesNode<T>, 6>,
     }
+    ::clebsch::saved! {
+        [] CoupledBodiesWorkspace { h, search }
+    }
     impl<T: Real> CoupledBodiesWorkspace<T> {
         /// How the last step was solved: tangents, corrections, and the residual before the last.
         pub fn solved(&self) -> newton::Summary {

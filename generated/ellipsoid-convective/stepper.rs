@@ -102,6 +102,9 @@ pub mod ellipsoid_convective {
     pub struct EllipsoidConvectiveWorkspace<const N: usize, T = f64> {
         h: T,
     }
+    ::clebsch::saved! {
+        [N] EllipsoidConvectiveWorkspace { h, }
+    }
     impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         /// Starts a trajectory with step `h` from data at node 0.
         ///

@@ -102,6 +102,9 @@ pub mod ellipsoid_spatial {
     pub struct EllipsoidSpatialWorkspace<const N: usize, T = f64> {
         h: T,
     }
+    ::clebsch::saved! {
+        [N] EllipsoidSpatialWorkspace { h, }
+    }
     impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         /// Starts a trajectory with step `h` from data at node 0.
         ///

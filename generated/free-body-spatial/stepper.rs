@@ -93,6 +93,9 @@ pub mod free_body_spatial {
         solver: Free<T>,
         J: SMatrix<T, 3, 3>,
     }
+    ::clebsch::saved! {
+        [] FreeBodySpatialWorkspace { h, solver, J }
+    }
     impl<T: Real> FreeBodySpatialWorkspace<T> {
         /// The solver: the momentum that it keeps, and what its last projection corrected.
         pub fn solver(&self) -> &Free<T> {

@@ -93,6 +93,9 @@ pub mod free_body {
         h: T,
         solver: Free<T>,
     }
+    ::clebsch::saved! {
+        [] FreeBodyWorkspace { h, solver }
+    }
     impl<T: Real> FreeBodyWorkspace<T> {
         /// The solver: the momentum that it keeps, and what its last projection corrected.
         pub fn solver(&self) -> &Free<T> {

@@ -102,6 +102,9 @@ pub mod heavy_top_spatial {
         edge: Edge<T>,
         here: HeavyTopSpatialState<T>,
     }
+    ::clebsch::saved! {
+        [] HeavyTopSpatialWorkspace { h, method, factor, edge, here }
+    }
     impl<T: Real> HeavyTopSpatial<T> {
         /// Starts a trajectory with step `h` from data at node 0.
         ///

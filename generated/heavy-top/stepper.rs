@@ -101,6 +101,9 @@ pub mod heavy_top {
         edge: Edge<T>,
         here: HeavyTopState<T>,
     }
+    ::clebsch::saved! {
+        [] HeavyTopWorkspace { h, method, edge, here }
+    }
     impl<T: Real> HeavyTop<T> {
         /// Starts a trajectory with step `h` from data at node 0.
         ///

@@ -79,6 +79,9 @@ pub mod kepler {
     pub struct KeplerWorkspace<T = f64> {
         h: T,
     }
+    ::clebsch::saved! {
+        [] KeplerWorkspace { h, }
+    }
     impl<T: Real> Kepler<T> {
         /// Starts a trajectory with step `h` from data at node 0.
         ///

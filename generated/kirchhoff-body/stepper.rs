@@ -97,6 +97,9 @@ pub mod kirchhoff_body {
         h: T,
         search: newton::Search<T, [RigidMotion<T>; 1], KirchhoffBodyNode<T>, 6>,
     }
+    ::clebsch::saved! {
+        [] KirchhoffBodyWorkspace { h, search }
+    }
     impl<T: Real> KirchhoffBodyWorkspace<T> {
         /// How the last step was solved: tangents, corrections, and the residual before the last.
         pub fn solved(&self) -> newton::Summary {

@@ -184,6 +184,9 @@ pub mod mixed_four {
         search_2: newton::Search<T, [RigidMotion<T>; 1], MixedFourNode2<T>, 6>,
         search_4: newton::Search<T, [Additive<3, 1, T>; 1], MixedFourNode4<T>, 3>,
     }
+    ::clebsch::saved! {
+        [] MixedFourWorkspace { h, method, search_2, search_4 }
+    }
     type MixedFourNode2<T> = [T; 0];
     type MixedFourNode4<T> = [T; 0];
     impl<T: Real> MixedFour<T> {

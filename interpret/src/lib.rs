@@ -13,6 +13,7 @@ mod opened;
 mod packed;
 mod program;
 mod running;
+mod saved;
 mod value;
 
 pub use cards::{card, card_and_warnings, card_on_lattice};

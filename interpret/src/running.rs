@@ -9,6 +9,7 @@ use clebsch::card::{Card, Field, OpenError, Settings, Trajectory, chosen_solver}
 use clebsch::emitted as e;
 use clebsch::integrate::{Composition, Offer, Residual, Reversible, Stepper, Way, counted};
 use clebsch::kinetic::KineticWarning;
+use clebsch::saved::{Saved, Words};
 use clebsch::{ParameterError, StartError, StepError, validate};
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -369,6 +370,24 @@ impl Trajectory for Running {
 
     fn scales(&self, out: &mut [f64]) {
         self.watch(&self.opened.functions.scales, out);
+    }
+
+    fn words(&mut self, words: &mut Words) {
+        let places = self.places.get_mut();
+        for at in [at::STATE, at::BEFORE, at::WORK] {
+            match places.get_mut(at) {
+                Some(value) => value.words(words),
+                None => words.refuse(),
+            }
+        }
+        if let Steps::Composed(both) = &mut self.steps {
+            for places in both.1.workspaces_mut() {
+                match places.get_mut(at::WORK) {
+                    Some(work) => work.words(words),
+                    None => words.refuse(),
+                }
+            }
+        }
     }
 }
 

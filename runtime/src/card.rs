@@ -3,6 +3,7 @@
 
 use crate::integrate::CompositionOrder;
 use crate::kinetic::KineticWarning;
+use crate::saved::Words;
 use crate::solvers::Method;
 use crate::{ParameterError, StartError, StepCause, StepError};
 use core::fmt;
@@ -336,6 +337,13 @@ pub trait Trajectory: Send {
     /// is made of at this node, or a bound of it; not negative. The largest along a run is the natural
     /// scale of the component, see [`Drift`](crate::integrate::Drift).
     fn scales(&self, out: &mut [f64]);
+
+    /// Meets everything that changes from step to step: the state, the one before it, and what steps remember.
+    /// Put into a trajectory that was opened anew from the same data, it goes on to the last bit as the one
+    /// it was taken from. A trajectory of your own refuses unless it says otherwise.
+    fn words(&mut self, words: &mut Words) {
+        words.refuse();
+    }
 }
 
 /// Why [`Card::open`] refuses.

@@ -21,6 +21,7 @@ pub mod kinetic;
 pub mod linalg;
 pub mod line;
 mod said;
+pub mod saved;
 pub mod scalar;
 pub mod solvers;
 pub mod validate;

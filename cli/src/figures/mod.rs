@@ -14,6 +14,7 @@ use crate::output::Staging;
 use crate::plain::shown;
 use clap::ArgMatches;
 use serde_json::{Value, json};
+use std::io::Write;
 use std::path::PathBuf;
 
 /// A figure: its number in the thesis, its file, and what draws it.

@@ -286,6 +286,7 @@ pub(super) fn sheet(
     panels: Vec<Panel>,
 ) -> Result<String, Failure> {
     drawn(&Figure {
+        paper: false,
         title: title.to_owned(),
         subtitle: subject.subtitle(more),
         x: subject.times(),

@@ -91,6 +91,7 @@ pub(super) fn energy_against_step(gallery: &Gallery) -> Result<String, Failure> 
         .map(|halvings| 0.4 / f64::from(1 << halvings))
         .collect();
     drawn(&Figure {
+        paper: false,
         title: "Figure 2.15: energy against the step, I = (1, 2, 3)".to_owned(),
         subtitle: format!(
             "free-body, case {}, to time {time}; discrete energy: (tr J − tr ΩJ) / h²",
@@ -199,6 +200,7 @@ pub(super) fn time_against_steps(gallery: &Gallery) -> Result<String, Failure> {
     }
     let places: Vec<f64> = counts.iter().map(|count| *count as f64).collect();
     drawn(&Figure {
+        paper: false,
         title: "Figure 2.16: time of computation, I = (1, 2, 3)".to_owned(),
         subtitle: format!(
             "free-body, case {}; h = {}; the least of three runs on this machine",

@@ -1,18 +1,28 @@
-//! Runs that are interrupted: what they have begun to write is removed before the process ends.
-//! Takes the folders in the making; on SIGINT and SIGTERM removes them, then lets the signal do what it does.
+//! Runs that are interrupted, by SIGINT (Ctrl-C) or SIGTERM.
+//! Takes the folders in the making. While a run computes, the first signal only asks it to stop, and it writes what
+//! there is. At any other time, and at the second signal, what was begun is removed before the process ends, but for
+//! what a checkpoint makes worth keeping; then the signal does what it does.
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicI32, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// A hidden folder, and the parents that were made for it, innermost first.
 struct Begun {
     hidden: PathBuf,
     created: Vec<PathBuf>,
+    kept: bool,
 }
 
 /// What this process is writing.
 static BEGUN: Mutex<Vec<Begun>> = Mutex::new(Vec::new());
+
+/// How many runs stop by themselves when they are asked to.
+static LISTENING: AtomicUsize = AtomicUsize::new(0);
+
+/// The signal that asked them to; 0 for none.
+static ASKED: AtomicI32 = AtomicI32::new(0);
 
 fn with_begun<R>(then: impl FnOnce(&mut Vec<Begun>) -> R) -> R {
     then(&mut BEGUN.lock().unwrap_or_else(PoisonError::into_inner))
@@ -25,11 +35,20 @@ pub(super) fn begin(hidden: &Path, created: &[PathBuf]) {
         all.push(Begun {
             hidden: hidden.to_owned(),
             created: created.to_vec(),
+            kept: false,
         });
     });
 }
 
-/// From here on it is not: it is complete, or removed already.
+/// From here on it is left as it is: a checkpoint in it can be gone on from.
+pub(super) fn keep(hidden: &Path) {
+    with_begun(|all| {
+        let own = all.iter_mut().filter(|begun| begun.hidden == hidden);
+        own.for_each(|begun| begun.kept = true);
+    });
+}
+
+/// From here on it is not removed: it is complete, or removed already.
 pub(super) fn end(hidden: &Path) {
     with_begun(|all| all.retain(|begun| begun.hidden != hidden));
 }
@@ -42,6 +61,31 @@ pub(super) fn remove(hidden: &Path, created: &[PathBuf]) {
     }
     for parent in created {
         let _ = fs::remove_dir(parent);
+    }
+}
+
+/// A run that stops by itself when it is asked to, as long as this lives.
+pub(crate) struct Listening(());
+
+impl Listening {
+    /// From here on.
+    pub(crate) fn begin() -> Self {
+        watch();
+        LISTENING.fetch_add(1, Ordering::SeqCst);
+        Self(())
+    }
+
+    /// The signal that asked it to, if any.
+    pub(crate) fn asked(&self) -> Option<u8> {
+        u8::try_from(ASKED.load(Ordering::SeqCst))
+            .ok()
+            .filter(|signal| *signal != 0)
+    }
+}
+
+impl Drop for Listening {
+    fn drop(&mut self) {
+        LISTENING.fetch_sub(1, Ordering::SeqCst);
     }
 }
 
@@ -61,9 +105,13 @@ fn watch() {
         };
         std::thread::spawn(move || {
             for signal in signals.forever() {
+                let first = ASKED.swap(signal, Ordering::SeqCst) == 0;
+                if first && LISTENING.load(Ordering::SeqCst) > 0 {
+                    continue;
+                }
                 // Held to the end: no other folder is begun, and none is completed while it is removed.
                 with_begun(|all| {
-                    for begun in all.iter() {
+                    for begun in all.iter().filter(|begun| !begun.kept) {
                         remove(&begun.hidden, &begun.created);
                     }
                     let _ = emulate_default_handler(signal);

@@ -3,23 +3,30 @@
 
 mod csv;
 mod interrupted;
-mod names;
-mod npz;
-mod run_json;
+pub(crate) mod names;
+pub(crate) mod npz;
+pub(crate) mod run_json;
+pub(crate) mod samples;
 pub(crate) mod sites;
 mod staging;
 mod standing;
+mod thinned;
 
-pub use run_json::run_json;
-pub use staging::Staging;
+pub(crate) use interrupted::Listening;
+pub use staging::{Found, Staging};
 
+use crate::checkpoint;
 use crate::failure::Failure;
+use crate::plain::shown;
 use crate::plan::Plan;
 use crate::plots;
-use crate::record::Samples;
+use crate::record::{Record, Samples};
 use crate::verdict::Outcome;
 use clebsch::card::Card;
 use clebsch::integrate::LargestResidual;
+use samples::Rows;
+use std::io::Write;
+use std::path::Path;
 
 /// Where and why a run stopped before its end.
 pub struct Stopped {
@@ -48,7 +55,7 @@ pub struct Finished<'a> {
 }
 
 /// Every file name a run can write, so that a folder with anything else is never replaced.
-pub const FILES: [&str; 7] = [
+pub const FILES: [&str; 12] = [
     "trajectory.csv",
     "trajectory.npz",
     "run.json",
@@ -56,6 +63,12 @@ pub const FILES: [&str; 7] = [
     "invariants.svg",
     "advected.svg",
     "fields.svg",
+    "attitude.svg",
+    "angles.svg",
+    // While it runs, and where it can be gone on with.
+    samples::NAME,
+    checkpoint::NAME,
+    checkpoint::UNFINISHED,
 ];
 
 /// Writes all files into `staging`; gives their names.
@@ -65,18 +78,37 @@ pub const FILES: [&str; 7] = [
 pub fn write(
     staging: &Staging,
     run: &Finished<'_>,
-    samples: &Samples,
+    rows: &Rows,
+    opening: Option<Record>,
 ) -> Result<Vec<&'static str>, Failure> {
+    let [
+        csv,
+        npz,
+        json,
+        momentum,
+        invariants,
+        advected,
+        fields,
+        attitude,
+        angles,
+        ..,
+    ] = FILES;
+    staging.write(csv, |file| csv::write(file, run.card, rows))?;
+    staging.write(npz, |file| npz::write(file, &npz::arrays(run.card, rows)))?;
+    let record = thinned::record(run.card, rows).map_err(|error| {
+        let path = staging.folder().join(samples::NAME);
+        Failure::io(&format!("cannot read {}", shown(&path)), &error)
+    })?;
+    let samples = &Samples { record, opening };
     let record = &samples.record;
-    let [csv, npz, json, momentum, invariants, advected, fields] = FILES;
-    staging.write(csv, |file| csv::write(file, run.card, record))?;
-    staging.write(npz, |file| npz::write(file, &npz::arrays(run.card, record)))?;
     let mut files = vec![csv, npz, json];
     let drawn = [
         (momentum, plots::momentum(run, samples)),
         (invariants, plots::invariants(run, record)),
         (advected, plots::advected(run, samples)),
         (fields, plots::fields(run, samples)),
+        (attitude, plots::attitude(run, samples)),
+        (angles, plots::angles(run, samples)),
     ];
     for (name, plot) in drawn {
         let plot = plot.map_err(|error| Failure::Failed(format!("cannot draw {name}: {error}")))?;
@@ -85,7 +117,15 @@ pub fn write(
             files.push(name);
         }
     }
-    let text = format!("{:#}\n", run_json(run, &files));
+    let text = format!("{:#}\n", run_json::run_json(run, &files));
     staging.write(json, |file| file.write_all(text.as_bytes()))?;
     Ok(files)
+}
+
+/// Removes what a run that has come to its end, or cannot be gone on with, needs no longer.
+pub(crate) fn remove_what_resumes(folder: &Path) {
+    // The checkpoint first: without it the samples are nothing.
+    for name in [checkpoint::NAME, checkpoint::UNFINISHED, samples::NAME] {
+        let _ = std::fs::remove_file(folder.join(name));
+    }
 }

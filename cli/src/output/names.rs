@@ -9,7 +9,7 @@ pub(super) fn invariant(invariant: &Invariant) -> String {
 }
 
 /// Names of all columns after `node` and `time`.
-pub(super) fn columns(card: &Card) -> Vec<String> {
+pub(crate) fn columns(card: &Card) -> Vec<String> {
     let mut names = Vec::new();
     for field in card.observables {
         names.extend(components(field.ascii, field));

@@ -1,88 +1,77 @@
 //! The trajectory as npz, which `numpy.load` reads: a zip of stored npy arrays, one per quantity.
-//! Takes named arrays; writes them without holding a second copy. Formats: NEP 1 (npy 1.0) and
+//! Takes the rows of a run; writes array after array without holding any. Formats: NEP 1 (npy 1.0) and
 //! PKWARE APPNOTE 6.3 (sections 4.3.7, 4.3.12, 4.3.16). Every member is dated 1980-01-01.
 
 use super::names;
+use super::samples::Rows;
 use super::sites::{AtSites, at_sites};
-use crate::record::{Record, Table};
 use clebsch::card::Card;
-use std::io::{self, Write};
+use std::io::{self, Seek, SeekFrom, Write};
 use std::ops::Range;
 
 /// A named array whose first index is the sample.
-pub(super) struct Array<'a> {
+pub(crate) struct Array<'a> {
     name: String,
     shape: Vec<usize>,
     entries: Entries<'a>,
 }
 
 enum Entries<'a> {
-    Nodes(&'a [u64]),
-    Times(&'a [f64]),
-    /// Columns `from .. from + width` of a table.
+    /// Words of every row, one range after the other; whether they are counts.
     Columns {
-        table: &'a Table,
-        from: usize,
-        width: usize,
-    },
-    /// Columns of a table, one range for each site.
-    Sites {
-        table: &'a Table,
+        rows: &'a Rows,
         columns: Vec<Range<usize>>,
+        counts: bool,
     },
     /// The numbers of the sites.
     Numbers(Vec<u64>),
 }
 
-/// All arrays of a record: `node`, `time`, the observables, the invariants.
-pub(super) fn arrays<'a>(card: &Card, record: &'a Record) -> Vec<Array<'a>> {
-    let samples = record.nodes.len();
-    let mut arrays = vec![
-        Array {
-            name: "node".to_owned(),
-            shape: vec![samples],
-            entries: Entries::Nodes(&record.nodes),
-        },
-        Array {
-            name: "time".to_owned(),
-            shape: vec![samples],
-            entries: Entries::Times(&record.times),
-        },
-    ];
-    let mut push = |name: String, rows: usize, cols: usize, table: &'a Table, from: &mut usize| {
-        let width = rows * cols;
-        let shape = match (rows, cols) {
-            (1, 1) => vec![samples],
-            (rows, 1) => vec![samples, rows],
-            (rows, cols) => vec![samples, rows, cols],
-        };
-        let entries = Entries::Columns {
-            table,
-            from: *from,
-            width,
-        };
-        *from += width;
-        arrays.push(Array {
-            name,
-            shape,
-            entries,
-        });
+/// All arrays of a run: `node`, `time`, the observables, the invariants.
+pub(super) fn arrays<'a>(card: &Card, rows: &'a Rows) -> Vec<Array<'a>> {
+    let samples = usize::try_from(rows.count).unwrap_or(usize::MAX);
+    let columns = |columns: Vec<Range<usize>>, counts: bool| Entries::Columns {
+        rows,
+        columns,
+        counts,
     };
+    let array = |name: &str, shape: Vec<usize>, entries: Entries<'a>| Array {
+        name: name.to_owned(),
+        shape,
+        entries,
+    };
+    let shaped = |rows: usize, cols: usize| match (rows, cols) {
+        (1, 1) => vec![samples],
+        (rows, 1) => vec![samples, rows],
+        (rows, cols) => vec![samples, rows, cols],
+    };
+    let all = |range: Range<usize>| vec![range];
+    let mut arrays = vec![
+        array("node", vec![samples], columns(all(0..1), true)),
+        array("time", vec![samples], columns(all(1..2), false)),
+    ];
     let at_sites = at_sites(card);
-    let mut from = 0;
+    // Where the observables begin in a row.
+    let offset = 2;
+    let mut from = offset;
     for field in card.observables {
-        let of_a_site = |q: &AtSites<'_>| q.members.iter().any(|(_, c)| c.start == from);
-        if at_sites.iter().any(of_a_site) {
-            from += field.count();
-            continue;
+        let here = from..from + field.count();
+        from = here.end;
+        let of_a_site = |q: &AtSites<'_>| {
+            q.members
+                .iter()
+                .any(|(_, c)| c.start + offset == here.start)
+        };
+        if !at_sites.iter().any(of_a_site) {
+            let shape = shaped(field.rows, field.cols);
+            arrays.push(array(field.ascii, shape, columns(all(here), false)));
         }
-        let name = field.ascii.to_owned();
-        push(name, field.rows, field.cols, &record.observables, &mut from);
     }
-    let mut from = 0;
     for invariant in card.invariants {
-        let name = names::invariant(invariant);
-        push(name, invariant.rows, 1, &record.invariants, &mut from);
+        let here = from..from + invariant.rows;
+        from = here.end;
+        let (name, shape) = (names::invariant(invariant), shaped(invariant.rows, 1));
+        arrays.push(array(&name, shape, columns(all(here), false)));
     }
     for q in at_sites {
         let (rows, cols) = (q.field.rows, q.field.cols);
@@ -97,30 +86,38 @@ pub(super) fn arrays<'a>(card: &Card, record: &'a Record) -> Vec<Array<'a>> {
         if !whole {
             // Some site has its value given.
             let numbers = q.members.iter().map(|(site, _)| *site as u64);
-            arrays.push(Array {
-                name: format!("sites_of_{}", q.key),
-                shape: vec![q.members.len()],
-                entries: Entries::Numbers(numbers.collect()),
-            });
+            let name = format!("sites_of_{}", q.key);
+            let entries = Entries::Numbers(numbers.collect());
+            arrays.push(array(&name, vec![q.members.len()], entries));
         }
-        arrays.push(Array {
-            name: q.key,
-            shape,
-            entries: Entries::Sites {
-                table: &record.observables,
-                columns: q.members.into_iter().map(|(_, c)| c).collect(),
-            },
-        });
+        let members = q.members.into_iter();
+        let own = members.map(|(_, c)| c.start + offset..c.end + offset);
+        arrays.push(array(&q.key, shape, columns(own.collect(), false)));
     }
     arrays
+}
+
+/// One array a column, the first of counts.
+pub(crate) fn columns<'a>(names: &[String], rows: &'a Rows) -> Vec<Array<'a>> {
+    let samples = usize::try_from(rows.count).unwrap_or(usize::MAX);
+    let array = |(column, name): (usize, &String)| Array {
+        name: name.clone(),
+        shape: vec![samples],
+        entries: Entries::Columns {
+            rows,
+            columns: std::iter::once(column..column + 1).collect(),
+            counts: column == 0,
+        },
+    };
+    names.iter().enumerate().map(array).collect()
 }
 
 impl Array<'_> {
     /// The npy header: magic, version 1.0, dictionary padded so that the data are 64-byte aligned.
     fn header(&self) -> Vec<u8> {
         let kind = match self.entries {
-            Entries::Nodes(_) | Entries::Numbers(_) => "<u8",
-            Entries::Times(_) | Entries::Columns { .. } | Entries::Sites { .. } => "<f8",
+            Entries::Columns { counts: false, .. } => "<f8",
+            Entries::Columns { .. } | Entries::Numbers(_) => "<u8",
         };
         // A tuple of one needs its comma; more may have it.
         let shape: String = self.shape.iter().map(|n| format!("{n}, ")).collect();
@@ -146,17 +143,11 @@ impl Array<'_> {
     fn each(&self, mut show: impl FnMut(&[u8]) -> io::Result<()>) -> io::Result<()> {
         match &self.entries {
             Entries::Numbers(list) => list.iter().try_for_each(|n| show(&n.to_le_bytes())),
-            Entries::Sites { table, columns } => table.rows().try_for_each(|row| {
+            Entries::Columns { rows, columns, .. } => rows.each(|row| {
                 let cells = columns
                     .iter()
                     .flat_map(|c| row.get(c.clone()).into_iter().flatten());
                 cells.into_iter().try_for_each(|x| show(&x.to_le_bytes()))
-            }),
-            Entries::Nodes(nodes) => nodes.iter().try_for_each(|node| show(&node.to_le_bytes())),
-            Entries::Times(times) => times.iter().try_for_each(|time| show(&time.to_le_bytes())),
-            Entries::Columns { table, from, width } => table.rows().try_for_each(|row| {
-                let columns = row.iter().skip(*from).take(*width);
-                columns.into_iter().try_for_each(|x| show(&x.to_le_bytes()))
             }),
         }
     }
@@ -196,21 +187,16 @@ impl Member {
 ///
 /// # Errors
 /// Those of `file`, and `InvalidInput` beyond the 4 GiB of a classic zip.
-pub(super) fn write(file: &mut dyn Write, arrays: &[Array<'_>]) -> io::Result<()> {
+pub(crate) fn write(file: &mut (impl Write + Seek), arrays: &[Array<'_>]) -> io::Result<()> {
     let too_large = |_| io::Error::new(io::ErrorKind::InvalidInput, "more than 4 GiB");
     let mut members: Vec<Member> = Vec::with_capacity(arrays.len());
     let mut offset = 0_usize;
     for array in arrays {
         let header = array.header();
-        let mut crc = crc32fast::Hasher::new();
-        crc.update(&header);
-        array.each(|bytes| {
-            crc.update(bytes);
-            Ok(())
-        })?;
-        let member = Member {
+        let mut member = Member {
             name: format!("{}.npy", array.name),
-            crc: crc.finalize(),
+            // Known when the data are written.
+            crc: 0,
             size: u32::try_from(header.len() + array.size()).map_err(too_large)?,
             offset: u32::try_from(offset).map_err(too_large)?,
         };
@@ -218,8 +204,17 @@ pub(super) fn write(file: &mut dyn Write, arrays: &[Array<'_>]) -> io::Result<()
         file.write_all(&member.common())?;
         file.write_all(member.name.as_bytes())?;
         file.write_all(&header)?;
-        array.each(|bytes| file.write_all(bytes))?;
+        let mut crc = crc32fast::Hasher::new();
+        crc.update(&header);
+        array.each(|bytes| {
+            crc.update(bytes);
+            file.write_all(bytes)
+        })?;
+        member.crc = crc.finalize();
+        file.seek(SeekFrom::Start(u64::from(member.offset) + 4))?;
+        file.write_all(&member.common())?;
         offset += 30 + member.name.len() + header.len() + array.size();
+        file.seek(SeekFrom::Start(offset as u64))?;
         members.push(member);
     }
     let start = u32::try_from(offset).map_err(too_large)?;

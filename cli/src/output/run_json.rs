@@ -2,8 +2,9 @@
 //! Takes a finished run; gives a JSON object with sorted keys and no trace of when or where it ran.
 
 use super::Finished;
+use crate::plan::Plan;
 use crate::verdict::{Outcome, Verdict};
-use clebsch::card::{Field, Kind};
+use clebsch::card::{Card, Field, Kind};
 use serde_json::{Map, Value, json};
 
 /// The object written as run.json and printed by `--json`; `files` are the names beside it.
@@ -17,6 +18,25 @@ pub fn run_json(run: &Finished<'_>, files: &[&str]) -> Value {
         residual,
         stopped,
     } = run;
+    let mut object = plan_json(card, plan);
+    let results = json!({
+        "samples": samples,
+        "complete": stopped.is_none(),
+        "invariants": outcomes.iter().map(Outcome::json).collect::<Vec<_>>(),
+        "kept": outcomes.iter().all(|outcome| outcome.verdict != Verdict::Left),
+        "files": files,
+        "residual": residual.map(|r| json!({"relative": r.relative, "node": r.node})),
+        "stopped": stopped.as_ref().map(|s| json!({"node": s.node, "time": s.time, "why": s.why})),
+    });
+    if let Some(object) = object.as_object_mut() {
+        object.insert("results".to_owned(), results);
+        object.insert("arguments".to_owned(), plan.arguments.clone());
+    }
+    object
+}
+
+/// What was asked for, and of which model: the part that is known before a run.
+pub(crate) fn plan_json(card: &Card, plan: &Plan) -> Value {
     let case = &plan.case;
     let bounds = case.bounds.iter();
     json!({
@@ -31,20 +51,11 @@ pub fn run_json(run: &Finished<'_>, files: &[&str]) -> Value {
         "h": case.h,
         "steps": case.steps,
         "every": plan.every,
-        "arguments": plan.arguments,
         "derived": {
             "summary": card.summary,
             "solver": card.solver,
             "order": card.order,
             "reversible": card.reversible,
-        },
-        "results": {
-            "samples": samples,
-            "invariants": outcomes.iter().map(Outcome::json).collect::<Vec<_>>(),
-            "kept": outcomes.iter().all(|outcome| outcome.verdict != Verdict::Left),
-            "files": files,
-            "residual": residual.map(|r| json!({"relative": r.relative, "node": r.node})),
-            "stopped": stopped.as_ref().map(|s| json!({"node": s.node, "time": s.time, "why": s.why})),
         },
     })
 }

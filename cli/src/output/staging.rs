@@ -7,8 +7,12 @@
 //! folder is made only if it is not there ([`fs::create_dir`]), and renamed only over an empty one. So
 //! of any number of runs into one folder one takes the name, and each of the others keeps its results.
 //!
-//! A run that is interrupted removes its hidden folder. It holds a lock on it, which the system takes back however
-//! the run ends; the next run into the same place removes what runs that were killed left behind.
+//! A run holds a lock on its hidden folder, which the system takes back however the run ends. The next run into the same
+//! place removes what runs that were killed left behind, unless it can be gone on with: see [`resumed`].
+
+mod resumed;
+
+pub use resumed::Found;
 
 use super::interrupted;
 use super::standing::{self, Standing};
@@ -16,7 +20,7 @@ use crate::failure::Failure;
 use crate::plain::{Shown, shown};
 use std::ffi::OsString;
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
 /// Names tried before giving up; each attempt goes on only where a name is taken.
@@ -37,6 +41,10 @@ pub struct Staging {
     known: Vec<&'static str>,
     /// Parents of the target that did not exist, innermost first.
     created: Vec<PathBuf>,
+    /// Whether it stays when the run ends before its results are complete: it can be gone on with.
+    kept: bool,
+    /// Where it stood before it was taken up, until the run goes on.
+    taken_from: Option<PathBuf>,
     committed: bool,
 }
 
@@ -53,13 +61,19 @@ impl Staging {
                 shown(target)
             )));
         }
+        let standing = standing::at(target, force, known)?;
+        if !force {
+            Self::nothing_to_resume(target)?;
+        }
         let mut staging = Self {
             target: target.to_owned(),
             hidden: PathBuf::new(),
             held: None,
-            standing: standing::at(target, force, known)?,
+            standing,
             known: known.to_vec(),
             created: Vec::new(),
+            kept: false,
+            taken_from: None,
             committed: false,
         };
         staging.make().map_err(|error| {
@@ -98,25 +112,8 @@ impl Staging {
     /// Removes hidden folders of runs that were killed: nobody holds them, and they hold nothing but files
     /// of a run. What cannot be removed is left, and none of it concerns this run.
     fn remove_abandoned(&self) {
-        let parent = self.target.parent().filter(|p| !p.as_os_str().is_empty());
-        let Ok(siblings) = fs::read_dir(parent.unwrap_or(Path::new("."))) else {
-            return;
-        };
-        let start = self.sibling(".", &format!(".{PARTIAL}-"));
-        let start = start.file_name().map(|n| n.to_string_lossy().into_owned());
-        for entry in siblings.flatten() {
-            let name = entry.file_name().to_string_lossy().into_owned();
-            let numbers = start.as_deref().and_then(|s| name.strip_prefix(s));
-            let numbers = numbers.and_then(|n| n.split_once('-'));
-            let Some((Ok(id), Ok(_))) = numbers.map(|(id, n)| (id.parse(), n.parse::<u32>()))
-            else {
-                continue;
-            };
-            // Names with the number of this process may be of another run of its own, not yet locked.
-            let another: u32 = id;
-            if another != std::process::id() {
-                let _ = self.remove_if_abandoned(&entry.path());
-            }
+        for folder in Self::abandoned(&self.target) {
+            let _ = self.remove_if_abandoned(&folder);
         }
     }
 
@@ -156,6 +153,17 @@ impl Staging {
         self.target.with_file_name(name)
     }
 
+    /// The folder in the making.
+    pub(crate) fn folder(&self) -> &Path {
+        &self.hidden
+    }
+
+    /// From here on the folder is not removed before its results are complete.
+    pub(crate) fn keep(&mut self) {
+        self.kept = true;
+        interrupted::keep(&self.hidden);
+    }
+
     /// Writes one file and sees it to the disk.
     ///
     /// # Errors
@@ -163,7 +171,7 @@ impl Staging {
     pub fn write(
         &self,
         name: &str,
-        contents: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+        contents: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
     ) -> Result<(), Failure> {
         let put = || {
             let mut file = BufWriter::new(File::create_new(self.hidden.join(name))?);
@@ -335,6 +343,11 @@ impl Drop for Staging {
             return;
         }
         interrupted::end(&self.hidden);
-        interrupted::remove(&self.hidden, &self.created);
+        if let Some(before) = &self.taken_from {
+            let _ = place(&self.hidden, before);
+        }
+        if !self.kept {
+            interrupted::remove(&self.hidden, &self.created);
+        }
     }
 }

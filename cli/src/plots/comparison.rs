@@ -49,6 +49,7 @@ pub(crate) fn comparison(card: &Card, plan: &Plan, done: &Comparison) -> Result<
         ));
     }
     let figure = Figure {
+        paper: false,
         title: format!(
             "{}, case {}: methods compared",
             card.kebab,

@@ -21,6 +21,14 @@ const GRID: RGBColor = RGBColor(232, 232, 232);
 const HEAD: u32 = 52;
 const FOOT: u32 = 50;
 const EDGE: u32 = 4;
+/// Tenths of a pixel a letter of a legend takes in the widest of the usual fonts.
+const LETTER: u32 = 73;
+/// Where legends below a chart begin.
+const LEFT: u32 = 24;
+/// Width of a column of a paper.
+const COLUMN: u32 = 430;
+/// Most letters of a caption there.
+const CAPTION: usize = 60;
 
 /// Panels that share the axis of time.
 #[derive(Clone, Debug)]
@@ -35,6 +43,8 @@ pub struct Figure {
     pub x_label: String,
     /// From above.
     pub panels: Vec<Panel>,
+    /// For a column of a paper: as wide as that, without titles, legends below their charts.
+    pub paper: bool,
 }
 
 /// One chart.
@@ -62,16 +72,26 @@ impl Figure {
     /// # Errors
     /// What the drawing library says.
     pub fn svg(&self) -> Result<String, String> {
-        let height = HEAD + self.panels.iter().map(|panel| panel.height).sum::<u32>() + FOOT + EDGE;
+        let head = if self.paper { EDGE } else { HEAD };
+        let below = |panel: &Panel| if self.paper { panel.legend_height() } else { 0 };
+        let panels = self
+            .panels
+            .iter()
+            .map(|panel| panel.height(self.paper) + below(panel));
+        let height = head + panels.sum::<u32>() + FOOT + EDGE;
+        let width = if self.paper { COLUMN } else { WIDTH };
         let mut svg = String::new();
         {
-            let backend = SVGBackend::with_string(&mut svg, (WIDTH * FINE, height * FINE));
+            let backend = SVGBackend::with_string(&mut svg, (width * FINE, height * FINE));
             let root = backend.into_drawing_area();
             self.draw(&root).map_err(|error| error.to_string())?;
         }
         // The view box keeps the fine coordinates; the size on the page is the plain one.
-        let fine = format!("width=\"{}\" height=\"{}\"", WIDTH * FINE, height * FINE);
-        let plain = format!("width=\"{WIDTH}\" height=\"{height}\"");
+        let fine = format!("width=\"{}\" height=\"{}\"", width * FINE, height * FINE);
+        let plain = match self.paper {
+            true => super::sphere::printed_size(f64::from(width), f64::from(height)),
+            false => format!("width=\"{WIDTH}\" height=\"{height}\""),
+        };
         let svg = svg.replacen(&fine, &plain, 1);
         Ok(match self.panels.iter().any(|panel| panel.map.is_some()) {
             // Cells that meet leave no line between them.
@@ -82,9 +102,11 @@ impl Figure {
 
     fn draw(&self, root: &Area<'_>) -> Result<(), Box<dyn std::error::Error>> {
         root.fill(&WHITE)?;
-        text(root, &self.title, 16, INK, (16, 10))?;
-        text(root, &self.subtitle, 12, FAINT, (16, 31))?;
-        let (_, mut rest) = root.split_vertically(fine(HEAD));
+        let (_, mut rest) = root.split_vertically(fine(if self.paper { EDGE } else { HEAD }));
+        if !self.paper {
+            text(root, &self.title, 16, INK, (16, 10))?;
+            text(root, &self.subtitle, 12, FAINT, (16, 31))?;
+        }
         let legend = self
             .panels
             .iter()
@@ -94,11 +116,30 @@ impl Figure {
         let last = self.panels.len().saturating_sub(1);
         for (index, panel) in self.panels.iter().enumerate() {
             let foot = if index == last { FOOT } else { 0 };
-            let (area, below) = rest.split_vertically(fine(panel.height + foot));
+            let (area, below) = rest.split_vertically(fine(panel.height(self.paper) + foot));
             rest = below;
+            if self.paper {
+                let x_label = (index == last).then_some(self.x_label.as_str());
+                panel.chart(&area, &self.x, x_label)?;
+                let caption: String = match panel.caption.chars().count() {
+                    ..=CAPTION => panel.caption.clone(),
+                    _ => panel
+                        .caption
+                        .chars()
+                        .take(CAPTION - 1)
+                        .chain(['…'])
+                        .collect(),
+                };
+                text(&area, &caption, 12, INK, (LEFT.cast_signed(), 3))?;
+                let (beside, below) = rest.split_vertically(fine(panel.legend_height()));
+                rest = below;
+                panel.legend_in_lines(&beside)?;
+                continue;
+            }
             let (chart, beside) = area.split_horizontally(fine(WIDTH - legend));
             let x_label = (index == last).then_some(self.x_label.as_str());
-            panel.draw(&chart, &self.x, x_label)?;
+            text(&chart, &panel.caption, 13, INK, (84, 2))?;
+            panel.chart(&chart, &self.x, x_label)?;
             panel.legend(&beside)?;
         }
         root.present()?;
@@ -107,13 +148,12 @@ impl Figure {
 }
 
 impl Panel {
-    fn draw(
+    fn chart(
         &self,
         area: &Area<'_>,
         x: &Axis,
         x_label: Option<&str>,
     ) -> Result<(), Box<dyn std::error::Error>> {
-        text(area, &self.caption, 13, INK, (84, 2))?;
         let y_label = match &self.y.factor {
             Some(factor) => format!("{}   × {factor}", self.y_label),
             None => self.y_label.clone(),
@@ -174,6 +214,57 @@ impl Panel {
         Ok(())
     }
 
+    /// Its height: on paper that of its chart alone, with no legend beside it.
+    fn height(&self, paper: bool) -> u32 {
+        match paper {
+            true => self.height.min(230),
+            false => self.height,
+        }
+    }
+
+    /// The entries of a legend below the chart: which line, how far from the left.
+    fn lines(&self) -> Vec<(u32, u32, String, Stroke)> {
+        let (mut line, mut at) = (0, LEFT);
+        let mut all = Vec::new();
+        for curve in self.curves.iter().filter(|curve| !curve.label.is_empty()) {
+            let words = match &curve.note {
+                Some(note) => format!("{}: {note}", curve.label),
+                None => curve.label.clone(),
+            };
+            let letters = u32::try_from(words.chars().count())
+                .unwrap_or(u32::MAX)
+                .min(100);
+            let wide = 40 + letters * LETTER / 10;
+            if at > LEFT && at + wide > COLUMN {
+                (line, at) = (line + 1, LEFT);
+            }
+            all.push((line, at, words, curve.stroke));
+            at += wide;
+        }
+        all
+    }
+
+    /// Of such a legend.
+    fn legend_height(&self) -> u32 {
+        match (&self.map, self.lines().last()) {
+            (Some(_), _) => 160,
+            (None, Some((line, ..))) => 18 * (line + 1) + 8,
+            (None, None) => 0,
+        }
+    }
+
+    fn legend_in_lines(&self, area: &Area<'_>) -> Result<(), Box<dyn std::error::Error>> {
+        if let Some(map) = &self.map {
+            return map.legend(area);
+        }
+        for (line, at, words, stroke) in self.lines() {
+            let (x, y) = (at.cast_signed(), (2 + 18 * line).cast_signed());
+            sample(area, stroke, (x, y))?;
+            text(area, &words, 12, INK, (x + 28, y))?;
+        }
+        Ok(())
+    }
+
     /// Room for the longest text of the legend, at 7.3 pixels a letter: as wide as the widest of the usual fonts.
     fn legend_width(&self) -> u32 {
         if self.map.is_some() {
@@ -182,8 +273,8 @@ impl Panel {
         let notes = self.curves.iter().filter_map(|curve| curve.note.as_ref());
         let texts = self.curves.iter().map(|curve| &curve.label).chain(notes);
         let letters = texts.map(|text| text.chars().count()).max().unwrap_or(0);
-        let letters = u32::try_from(letters).unwrap_or(u32::MAX).min(40);
-        (40 + letters * 73 / 10).max(70)
+        let letters = u32::try_from(letters).unwrap_or(u32::MAX).min(60);
+        (40 + letters * LETTER / 10).max(70)
     }
 
     fn legend(&self, area: &Area<'_>) -> Result<(), Box<dyn std::error::Error>> {
@@ -192,7 +283,7 @@ impl Panel {
         }
         let mut y = 28;
         for curve in self.curves.iter().filter(|curve| !curve.label.is_empty()) {
-            sample(area, curve.stroke, y)?;
+            sample(area, curve.stroke, (0, y))?;
             text(area, &curve.label, 12, INK, (32, y))?;
             y += 17;
             if let Some(note) = &curve.note {
@@ -218,11 +309,15 @@ fn mark<P: Copy>(place: P, stroke: Stroke) -> Vec<Circle<P, i32>> {
 }
 
 /// A short piece of the curve, beside its label.
-fn sample(area: &Area<'_>, stroke: Stroke, y: i32) -> Result<(), Box<dyn std::error::Error>> {
+fn sample(
+    area: &Area<'_>,
+    stroke: Stroke,
+    (x, y): (i32, i32),
+) -> Result<(), Box<dyn std::error::Error>> {
     let level = (y + 7) * fine(1).cast_signed();
     let ends = [
-        (4 * fine(1).cast_signed(), level),
-        (26 * fine(1).cast_signed(), level),
+        ((x + 4) * fine(1).cast_signed(), level),
+        ((x + 26) * fine(1).cast_signed(), level),
     ];
     let pen = line(stroke.color, 7);
     match stroke.dash {
@@ -240,7 +335,7 @@ fn sample(area: &Area<'_>, stroke: Stroke, y: i32) -> Result<(), Box<dyn std::er
             ))?;
         }
     }
-    for mark in mark((15 * fine(1).cast_signed(), level), stroke) {
+    for mark in mark(((x + 15) * fine(1).cast_signed(), level), stroke) {
         area.draw(&mark)?;
     }
     Ok(())

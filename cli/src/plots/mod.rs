@@ -1,6 +1,7 @@
 //! Plots of a run as SVG: momenta, drift of the invariants, advected vectors, fields.
 //! Takes a finished run and its samples; gives SVG text, or nothing when there is nothing to show.
 
+mod attitude;
 pub mod axis;
 mod comparison;
 pub mod curve;
@@ -8,8 +9,10 @@ pub mod figure;
 pub mod map;
 pub(crate) mod reduce;
 mod sites;
+mod sphere;
 mod window;
 
+pub(crate) use attitude::{angles, attitude};
 pub(crate) use comparison::comparison;
 
 use crate::output::Finished;
@@ -124,6 +127,22 @@ pub(crate) fn invariants(run: &Finished<'_>, record: &Record) -> Plot {
 }
 
 fn figure(run: &Finished<'_>, shown: Window<'_>, what: &str, panels: Vec<Panel>) -> Plot {
+    let times = shown.record.times.get(..shown.count).unwrap_or_default();
+    let (title, subtitle) = titles(run, shown, what);
+    let paper = run.plan.paper;
+    let figure = Figure {
+        title,
+        subtitle,
+        x: Axis::linear(first(times), last(times), if paper { 4 } else { 8 }),
+        x_label: "time t".to_owned(),
+        panels,
+        paper,
+    };
+    figure.svg().map(Some)
+}
+
+/// What stands above a picture: model, case and quantity; step, length and order.
+fn titles(run: &Finished<'_>, shown: Window<'_>, what: &str) -> (String, String) {
     let case = &run.plan.case;
     let times = shown.record.times.get(..shown.count).unwrap_or_default();
     let to = axis::plain(last(times));
@@ -136,24 +155,19 @@ fn figure(run: &Finished<'_>, shown: Window<'_>, what: &str, panels: Vec<Panel>)
         let time = axis::plain(stopped.time);
         format!("; stopped at node {} (time {time})", stopped.node)
     });
-    let figure = Figure {
-        title: format!(
-            "{}, case {}: {what}",
-            run.card.kebab,
-            crate::plain::shown(&case.name)
-        ),
-        subtitle: format!(
-            "h = {}, {} steps, to time {}; order {}{stopped}{part}",
-            case.h,
-            case.steps,
-            axis::plain(end(case.h, case.steps)),
-            run.card.order
-        ),
-        x: Axis::linear(first(times), last(times), 8),
-        x_label: "time t".to_owned(),
-        panels,
-    };
-    figure.svg().map(Some)
+    let title = format!(
+        "{}, case {}: {what}",
+        run.card.kebab,
+        crate::plain::shown(&case.name)
+    );
+    let subtitle = format!(
+        "h = {}, {} steps, to time {}; order {}{stopped}{part}",
+        case.h,
+        case.steps,
+        axis::plain(end(case.h, case.steps)),
+        run.plan.order.unwrap_or(run.card.order)
+    );
+    (title, subtitle)
 }
 
 /// A figure with one panel for each observable that `wanted` accepts, which is also told whether it is a field:
@@ -195,24 +209,91 @@ fn observables(
 fn panel(field: &Field, columns: Range<usize>, shown: Window<'_>) -> Panel {
     let letter = letter(field);
     let times = shown.record.times.get(..shown.count).unwrap_or_default();
-    let curves: Vec<Curve> = columns
+    let column = |component: usize| {
+        let values = shown.record.observables.column(columns.start + component);
+        values.take(shown.count)
+    };
+    let skew = is_skew(field, &column);
+    let above = |component: &usize| !skew || component / field.cols < component % field.cols;
+    let drawn: Vec<usize> = (0..field.count()).filter(above).collect();
+    let mut curves: Vec<Curve> = drawn
+        .iter()
         .enumerate()
-        .map(|(component, column)| Curve {
-            label: format!("{letter}{}", place(field, component)),
+        .map(|(number, component)| Curve {
+            label: format!("{letter}{}", place(field, *component)),
             note: None,
-            points: reduce::extremes(times, shown.record.observables.column(column)),
-            stroke: Stroke::number(component),
+            points: reduce::extremes(times, column(*component)),
+            stroke: Stroke::number(number),
         })
         .collect();
+    let hidden = coincident(&drawn, &column);
+    for (over, under) in &hidden {
+        let label = curves.get(*over).map(|curve| curve.label.clone());
+        if let (Some(label), Some(curve)) = (label, curves.get_mut(*under)) {
+            curve.note = Some(format!("under {label}"));
+        }
+    }
+    let entries = |count: usize, tall: u32| tall * u32::try_from(count).unwrap_or(0);
     Panel {
-        caption: caption(field),
+        caption: match skew {
+            true => format!("{}; skew, entries above the diagonal", caption(field)),
+            false => caption(field),
+        },
         y_label: quantity(field),
         y: Axis::around(&curves),
         // As high as its legend, if that is long: the entries of a large matrix.
-        height: 230.max(45 + 17 * u32::try_from(curves.len()).unwrap_or(0)),
+        height: 230.max(45 + entries(curves.len(), 17) + entries(hidden.len(), 20)),
         curves,
         map: None,
     }
+}
+
+/// Whether a square matrix is skew at every sample, so that each of its numbers is drawn once.
+fn is_skew<I: Iterator<Item = f64>>(field: &Field, column: &impl Fn(usize) -> I) -> bool {
+    let size = field.rows;
+    if size < 2 || field.cols != size {
+        return false;
+    }
+    let pairs = || (0..size).flat_map(|i| (0..=i).map(move |j| (i * size + j, j * size + i)));
+    let most = (0..size * size)
+        .flat_map(column)
+        .map(f64::abs)
+        .fold(0.0, f64::max);
+    most > 0.0
+        && pairs().all(|(a, b)| {
+            let mut both = column(a).zip(column(b));
+            both.all(|(x, y)| (x + y).abs() <= 1e-12 * most)
+        })
+}
+
+/// Curves that cannot be seen: each with the later one that covers it, by their numbers. Nearer than a line is wide,
+/// at every sample.
+fn coincident<I: Iterator<Item = f64>>(
+    drawn: &[usize],
+    column: &impl Fn(usize) -> I,
+) -> Vec<(usize, usize)> {
+    let all = || drawn.iter().flat_map(|component| column(*component));
+    let all = || all().filter(|x| x.is_finite());
+    let (low, high) = all().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
+        (a.min(x), b.max(x))
+    });
+    let near = 0.004 * (high - low);
+    let covers = |under: usize, over: usize| {
+        let both = drawn.get(under).zip(drawn.get(over));
+        both.is_some_and(|(under, over)| {
+            column(*under)
+                .zip(column(*over))
+                .all(|(x, y)| (x - y).abs() <= near)
+        })
+    };
+    let over = |under: usize| {
+        (under + 1..drawn.len())
+            .rev()
+            .find(|over| covers(under, *over))
+    };
+    (0..drawn.len())
+        .filter_map(|under| Some((over(under)?, under)))
+        .collect()
 }
 
 /// Body momenta are written μ and spatial ones m, as in the equations.

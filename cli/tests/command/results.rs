@@ -4,8 +4,10 @@ use super::common::{Folder, clebsch, on};
 use clebsch_cli::gallery::Gallery;
 use std::fs;
 
-const FILES: [&str; 6] = [
+const FILES: [&str; 8] = [
     "advected.svg",
+    "angles.svg",
+    "attitude.svg",
     "invariants.svg",
     "momentum.svg",
     "run.json",

@@ -5,8 +5,10 @@ use super::shape::Shape;
 use super::solve::{self, Solve};
 use crate::code::{Exit, Places, unfit};
 use crate::library::NAMES;
+use crate::saved;
 use crate::value::{Layout, Struct, Value};
 use clebsch::Real;
+use clebsch::saved::Words;
 use clebsch::solvers::newton::{AnySearch, Chart, Purpose, Solved};
 use std::sync::{Arc, OnceLock};
 
@@ -47,6 +49,14 @@ impl Held {
     /// Whether no step follows.
     pub fn tries(&self) -> bool {
         self.search.purpose() != Purpose::Run
+    }
+
+    /// Meets what it remembers.
+    pub fn words(&mut self, words: &mut Words) {
+        let chart = &self.sought.shape;
+        self.search.words(words, chart, |element, words| {
+            saved::all(element, words);
+        });
     }
 
     /// Solves a step that leaves `node`.

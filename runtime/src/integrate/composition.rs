@@ -142,6 +142,11 @@ impl<S: Reversible> Composition<S> {
 }
 
 impl<S: Stepper> Composition<S> {
+    /// The workspaces of the steps it is made of, in their order.
+    pub fn workspaces_mut(&mut self) -> impl Iterator<Item = &mut S::Workspace> {
+        self.stages.iter_mut().map(|stage| &mut stage.workspace)
+    }
+
     /// One composed step, in place; it is counted as one node.
     ///
     /// # Errors

@@ -5,10 +5,11 @@ use super::{Model, Steps, counted};
 use crate::StepError;
 use crate::card::{Card, OpenError, Settings, Trajectory};
 use crate::kinetic::KineticWarning;
+use crate::saved::{Saved, Words};
 
 /// A model over plain numbers as its [`Card`] describes it. Slices of numbers are row-major, fields in
 /// the order of the card.
-pub trait Described: Model<Scalar = f64> + Sized + 'static {
+pub trait Described: Model<Scalar = f64, State: Saved, Workspace: Saved> + Sized + 'static {
     /// The description.
     fn card() -> &'static Card;
 
@@ -135,5 +136,11 @@ impl<M: Described> Trajectory for Running<M> {
 
     fn scales(&self, out: &mut [f64]) {
         self.model.scales(&self.state, out);
+    }
+
+    fn words(&mut self, words: &mut Words) {
+        self.state.words(words);
+        self.before.words(words);
+        self.steps.words(words);
     }
 }

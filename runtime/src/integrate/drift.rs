@@ -1,6 +1,7 @@
 //! How far an invariant has moved: relative to its natural scale, absolute where that scale is zero.
 //! Takes its value and its scale at every step; gives the largest and the last deviation.
 
+use crate::saved::{Saved, Words};
 use crate::scalar::larger;
 
 /// The drift of one component of one invariant since the run began.
@@ -59,6 +60,20 @@ pub(super) struct Deviation {
     last: f64,
     /// The largest sum of the absolute values of the terms.
     scale: f64,
+}
+
+impl Saved for Deviation {
+    fn words(&mut self, words: &mut Words) {
+        let Self {
+            start,
+            largest,
+            last,
+            scale,
+        } = self;
+        [start, largest, last, scale]
+            .into_iter()
+            .for_each(|x| x.words(words));
+    }
 }
 
 impl Deviation {

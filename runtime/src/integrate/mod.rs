@@ -21,7 +21,7 @@ pub use drift::Drift;
 pub use ensemble::{Ensemble, EnsembleError, InstructionSet, Work};
 pub use model::Model;
 pub use residual::Residual;
-pub use run::{LargestResidual, Observer, Summary, run, run_until_stopped};
+pub use run::{LargestResidual, Observer, Summary, Watch, run, run_until_stopped};
 pub use side_by_side::{Moving, SideBySide, advance_side_by_side};
 pub use stepper::{Reversible, Stepper};
 pub use steps::Steps;

@@ -5,6 +5,7 @@
 use super::drift::Deviation;
 use super::{Drift, NotFinite, RunError, Watched};
 use crate::card::Trajectory;
+use crate::saved::{Saved, Words, optional};
 
 /// What watches a run.
 pub trait Observer {
@@ -86,26 +87,33 @@ pub fn run_until_stopped(
     observer: &mut dyn Observer,
 ) -> (Summary, Option<RunError>) {
     let mut watch = Watch::new(trajectory, steps, every);
-    let stopped = watch.follow(trajectory, observer).err();
-    // Seen already, but for the observables of a node that was not to be sampled.
-    if matches!(stopped, Some(RunError::Step(_))) && watch.sampled != watch.summary.node {
-        trajectory.observe(&mut watch.observables);
-        if finite(trajectory, Watched::Observable, &watch.observables).is_ok() {
-            watch.sample(observer);
+    let stride = (steps / 200).clamp(1, 1024);
+    let stopped = loop {
+        let done = watch.summary.steps;
+        if let Err(error) = watch.advance(trajectory, observer, stride - done % stride) {
+            break Some(error);
         }
-    }
-    let drifts = watch.seen.iter().map(Deviation::drift).collect();
-    let summary = Summary {
-        drifts,
-        ..watch.summary
+        if watch.summary.steps > done {
+            observer.progress(watch.summary.steps, steps);
+        }
+        if watch.is_over() {
+            break None;
+        }
     };
-    (summary, stopped)
+    if let Some(error) = &stopped {
+        watch.stop(trajectory, observer, error);
+    }
+    (watch.summary(), stopped)
 }
 
-/// A run up to a node: the numbers there, and what was seen before.
-struct Watch {
+/// A run up to a node: the numbers there, and what was seen before. It is advanced as far as one likes at a
+/// time, and can be written down and made again together with its trajectory: how often makes no difference.
+#[derive(Clone, Debug)]
+pub struct Watch {
     total: u64,
     every: u64,
+    /// Whether the start was looked at.
+    begun: bool,
     observables: Vec<f64>,
     invariants: Vec<f64>,
     scales: Vec<f64>,
@@ -117,11 +125,14 @@ struct Watch {
 }
 
 impl Watch {
-    fn new(trajectory: &dyn Trajectory, total: u64, every: u64) -> Self {
+    /// A run of `total` steps, of which every `every`-th is sampled, as by [`run`].
+    #[must_use]
+    pub fn new(trajectory: &dyn Trajectory, total: u64, every: u64) -> Self {
         let card = trajectory.card();
         Self {
             total,
             every,
+            begun: false,
             observables: vec![0.0; card.observable_count()],
             invariants: vec![0.0; card.invariant_count()],
             scales: vec![0.0; card.invariant_count()],
@@ -138,18 +149,28 @@ impl Watch {
         }
     }
 
-    fn follow(
+    /// Makes at most `most` of the steps that are left. Before the first of all it looks at the start and
+    /// samples it.
+    ///
+    /// # Errors
+    /// As [`run_until_stopped`] says; [`Watch::stop`] then takes the last sample.
+    pub fn advance(
         &mut self,
         trajectory: &mut dyn Trajectory,
         observer: &mut dyn Observer,
+        most: u64,
     ) -> Result<(), RunError> {
-        self.look(trajectory, true)?;
-        let start = self.invariants.iter().zip(&self.scales);
-        let start = start.map(|(value, terms)| Deviation::none(*value, *terms));
-        self.seen.extend(start);
-        self.sample(observer);
-        let stride = (self.total / 200).clamp(1, 1024);
-        for done in 1..=self.total {
+        if !self.begun {
+            self.look(trajectory, true)?;
+            let start = self.invariants.iter().zip(&self.scales);
+            let start = start.map(|(value, terms)| Deviation::none(*value, *terms));
+            self.seen.extend(start);
+            self.sample(observer);
+            self.begun = true;
+        }
+        let made = self.summary.steps;
+        let last = self.total.min(made.saturating_add(most));
+        for done in made.saturating_add(1)..=last {
             trajectory.step()?;
             let sampled = done == self.total || (self.every != 0 && done % self.every == 0);
             self.look(trajectory, sampled)?;
@@ -169,11 +190,48 @@ impl Watch {
             if sampled {
                 self.sample(observer);
             }
-            if done == self.total || done % stride == 0 {
-                observer.progress(done, self.total);
-            }
         }
         Ok(())
+    }
+
+    /// Whether all steps are made.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        self.begun && self.summary.steps >= self.total
+    }
+
+    /// Samples the node at which a run ends before its end, unless it was sampled or is none: `error` is
+    /// what [`Watch::advance`] gave.
+    pub fn stop(
+        &mut self,
+        trajectory: &dyn Trajectory,
+        observer: &mut dyn Observer,
+        error: &RunError,
+    ) {
+        if matches!(error, RunError::Step(_)) {
+            self.sample_here(trajectory, observer);
+        }
+    }
+
+    /// Samples the node at hand, unless it was sampled: the last one of a run that is not continued.
+    pub fn sample_here(&mut self, trajectory: &dyn Trajectory, observer: &mut dyn Observer) {
+        if !self.begun || self.sampled == self.summary.node {
+            return;
+        }
+        // Everything else was looked at after the step.
+        trajectory.observe(&mut self.observables);
+        if finite(trajectory, Watched::Observable, &self.observables).is_ok() {
+            self.sample(observer);
+        }
+    }
+
+    /// What was done up to here.
+    #[must_use]
+    pub fn summary(&self) -> Summary {
+        Summary {
+            drifts: self.seen.iter().map(Deviation::drift).collect(),
+            ..self.summary.clone()
+        }
     }
 
     /// The numbers at the node, if all are finite; the observables where it is to be sampled.
@@ -196,6 +254,55 @@ impl Watch {
         observer.sample(node, time, &self.observables, &self.invariants);
         self.summary.samples += 1;
         self.sampled = node;
+    }
+}
+
+/// What was seen, for a run of the same trajectory with the same numbers of steps.
+impl Saved for Watch {
+    fn words(&mut self, words: &mut Words) {
+        let Self {
+            total,
+            every,
+            begun,
+            // Those of the node at hand, and written before they are read.
+            observables: _,
+            invariants: _,
+            scales: _,
+            seen,
+            sampled,
+            summary,
+        } = self;
+        words.same(*total);
+        words.same(*every);
+        begun.words(words);
+        let count = words.count(seen.len(), seen.capacity());
+        seen.resize(count, Deviation::none(0.0, 0.0));
+        seen.iter_mut().for_each(|seen| seen.words(words));
+        sampled.words(words);
+        let Summary {
+            steps,
+            node,
+            time,
+            samples,
+            drifts: _,
+            residual,
+        } = summary;
+        steps.words(words);
+        node.words(words);
+        time.words(words);
+        samples.words(words);
+        let none = LargestResidual {
+            relative: 0.0,
+            node: 0,
+        };
+        optional(residual, words, || Some(none));
+    }
+}
+
+impl Saved for LargestResidual {
+    fn words(&mut self, words: &mut Words) {
+        self.relative.words(words);
+        self.node.words(words);
     }
 }
 

@@ -4,6 +4,7 @@
 use super::{Composition, Model, Offer, Reversible, Stepper, Way};
 use crate::StepError;
 use crate::card::{OpenError, Settings};
+use crate::saved::{Saved, Words};
 use crate::solvers::moser_veselov::Order;
 
 /// What makes the steps of one trajectory.
@@ -57,6 +58,19 @@ impl<S: Stepper> Steps<S> {
         match self {
             Self::Plain(workspace) | Self::Modified(workspace) => Some(workspace),
             Self::Composed(_) => None,
+        }
+    }
+}
+
+impl<S: Stepper<Workspace: Saved>> Saved for Steps<S> {
+    fn words(&mut self, words: &mut Words) {
+        match self {
+            Self::Plain(workspace) | Self::Modified(workspace) => workspace.words(words),
+            Self::Composed(composition) => {
+                composition
+                    .workspaces_mut()
+                    .for_each(|workspace| workspace.words(words));
+            }
         }
     }
 }

@@ -4,6 +4,7 @@
 
 use super::{Dense, balance, inverse_leading, solve_leading};
 use crate::Real;
+use crate::saved::{Saved, Words};
 use nalgebra::{SMatrix, SVector};
 
 /// The factors of a matrix of which the leading `size` rows and columns count.
@@ -13,6 +14,19 @@ pub struct Factors<T, const D: usize> {
     columns: [[T; D]; D],
     size: usize,
     blocks: bool,
+}
+
+impl<const D: usize> Saved for Factors<f64, D> {
+    fn words(&mut self, words: &mut Words) {
+        let Self {
+            columns,
+            size,
+            blocks,
+        } = self;
+        columns.words(words);
+        *size = words.count(*size, D);
+        blocks.words(words);
+    }
 }
 
 impl<T: Real, const D: usize> Factors<T, D> {
@@ -239,6 +253,19 @@ pub struct DenseFactors {
     columns: Dense<f64>,
     in_blocks: bool,
     blocks: bool,
+}
+
+impl Saved for DenseFactors {
+    fn words(&mut self, words: &mut Words) {
+        let Self {
+            columns,
+            // Decided by the sizes of the model.
+            in_blocks: _,
+            blocks,
+        } = self;
+        columns.words(words);
+        blocks.words(words);
+    }
 }
 
 impl DenseFactors {

@@ -46,6 +46,13 @@ macro_rules! of_scalars {
                 $name { $($field: self.$field.over(change),)* $($node: self.$node,)? }
             }
         }
+
+        impl<$(const $size: usize),*> $crate::saved::Saved for $name<$($size,)* f64> {
+            fn words(&mut self, words: &mut $crate::saved::Words) {
+                $($crate::saved::Saved::words(&mut self.$field, words);)*
+                $($crate::saved::Saved::words(&mut self.$node, words);)?
+            }
+        }
     };
 }
 
@@ -145,6 +152,12 @@ macro_rules! of_scalars {
                 change: &mut impl FnMut(T) -> U,
             ) -> $Type<$($($N,)+)? U> {
                 $Type { $($field: self.$field.over(change)),+ }
+            }
+        }
+
+        impl $(<$(const $N: usize),+>)? $crate::saved::Saved for $Type<$($($N,)+)? f64> {
+            fn words(&mut self, words: &mut $crate::saved::Words) {
+                $($crate::saved::Saved::words(&mut self.$field, words);)+
             }
         }
     };

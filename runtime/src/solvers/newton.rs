@@ -10,6 +10,7 @@ mod lasting;
 mod node;
 mod principal;
 mod region;
+mod saved;
 mod stage;
 
 pub use crate::scalar::{Affine, Bounded, Enclosure, swing_of};

@@ -85,7 +85,7 @@ fn the_figures_are_what_the_command_writes() {
         },
     );
     assert_eq!(code, 0, "{}", String::from_utf8_lossy(&err));
-    for name in ["momentum.svg", "invariants.svg"] {
+    for name in ["momentum.svg", "invariants.svg", "attitude.svg"] {
         let shown = fs::read(root().join("docs/heavy-top").join(name)).unwrap();
         let written = fs::read(folder.join(name)).unwrap();
         assert!(

@@ -9,7 +9,7 @@ use super::sizes::Generics;
 use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::recognise::Method;
-use proc_macro2::TokenStream;
+use proc_macro2::{Ident, Spacing, TokenStream, TokenTree};
 use quote::quote;
 
 /// Initial data, state and workspace.
@@ -126,6 +126,8 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
         }
         Method::Linear | Method::Blocks => super::blocks::work(d, names),
     };
+    let sizes = super::sizes::constants(s);
+    let remembered = fields_of(&work_field);
     let rounding = matches!(d.solve.method, Method::FreeMoserVeselov).then(|| {
         quote! {
             impl #bound #work #used {
@@ -188,8 +190,23 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
         #[doc = #work_doc]
         #[derive(Clone, Copy, Debug)]
         pub struct #work #declared { h: T, #work_field }
+        ::clebsch::saved! { [#(#sizes)*] #work { h, #(#remembered),* } }
 
         #rounding
         #summary
     }
+}
+
+/// The names of the fields in `a: A, b: B<C>,`: what stands before a single colon.
+fn fields_of(fields: &TokenStream) -> Vec<Ident> {
+    let trees: Vec<TokenTree> = fields.clone().into_iter().collect();
+    let names = trees.windows(3).filter_map(|three| match three {
+        [TokenTree::Ident(name), TokenTree::Punct(colon), _]
+            if colon.as_char() == ':' && colon.spacing() == Spacing::Alone =>
+        {
+            Some(name.clone())
+        }
+        _ => None,
+    });
+    names.collect()
 }

@@ -4,6 +4,7 @@
 use super::{Refusal, Unsolved};
 use crate::groups::Orthogonal;
 use crate::linalg::{determinant, inverse, principal_frame};
+use crate::saved::{Saved, Words, optional};
 use crate::solvers::Method;
 use crate::solvers::moser_veselov::Poinsot;
 use crate::validate::mirrored_difference;
@@ -32,6 +33,27 @@ pub struct LeftFactor<const N: usize, T = f64> {
     space: Option<(Poinsot<T>, Rotation<T>)>,
     /// Whether `Q` is the identity.
     symmetric: bool,
+}
+
+impl<const N: usize> Saved for LeftFactor<N, f64> {
+    fn words(&mut self, words: &mut Words) {
+        let Self {
+            given,
+            left,
+            right,
+            framed,
+            plain,
+            space,
+            symmetric,
+        } = self;
+        [given, left, right, framed]
+            .into_iter()
+            .for_each(|x| x.words(words));
+        plain.words(words);
+        symmetric.words(words);
+        // In three dimensions always, in others never.
+        optional(space, words, || None);
+    }
 }
 
 /// A matrix that is no left factor.

@@ -42,6 +42,8 @@ pub(super) struct Pencil<T> {
     determinant: T,
 }
 
+crate::saved!([] Pencil { d_moments, adjugate_moments, adjugate_products, determinant });
+
 impl<T: Real> Pencil<T> {
     pub(super) fn new(body: &Poinsot<T>, kappa: T, a: T) -> Self {
         let [x, y, z] = body.moments.map(|moment| moment - kappa);
@@ -96,6 +98,8 @@ pub(super) struct Orbit<T> {
     /// Twice the differences of the moments.
     doubled: [T; 3],
 }
+
+crate::saved!([] Orbit { adjugate, determinant, doubled });
 
 impl<T: Real> Orbit<T> {
     /// The trajectory through `u`.

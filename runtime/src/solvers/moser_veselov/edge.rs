@@ -35,6 +35,8 @@ struct Paired<T> {
 
 in_lanes!(Paired { pair, alone; gap });
 in_lanes!(Edge { body, space });
+crate::saved!([] Paired { pair, gap, alone });
+crate::saved!([] Edge { body, space });
 
 impl<T: Real> Paired<T> {
     #[inline(always)]

@@ -3,6 +3,7 @@
 
 mod by_name;
 mod projection;
+mod saved;
 
 use super::cayley::{Orbit, Pencil, dot, gyroscopic, square_sum};
 use super::compensation;
@@ -122,6 +123,8 @@ struct Axis<T> {
     /// Spatial axes; constant.
     space: T,
 }
+
+crate::saved!([] Axis { body, space });
 
 impl<T: Real> Free<T> {
     /// Prepares a trajectory from the attitude, the spatial momentum and the step size `h` (of

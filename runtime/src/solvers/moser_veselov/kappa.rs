@@ -43,6 +43,8 @@ in_lanes!(Symmetric {
     easy
 });
 
+crate::saved!([] Symmetric { zeroth, first, second, easy });
+
 impl<T: Real> Symmetric<T> {
     pub(super) fn new(s1: T, s2: T, s3: T) -> Self {
         let zeroth = T::one() / s3;

@@ -59,6 +59,8 @@ pub(super) struct Moving<T> {
     pub(super) turn: [T; 2],
 }
 
+crate::saved!([] Phase { first, sign, length, kappa, frame, tail, base, turn, current });
+
 impl<T: Real> Phase<T> {
     /// A trajectory with this `|u|^2` and `kappa`. `frame` takes components in the axes of the
     /// solver to components in the axes given.

@@ -62,6 +62,12 @@ in_lanes!(Poinsot {
     s1, s2, s3, symmetric, energy, deviation; unit, diagonal
 });
 
+crate::saved!([] Form { squares, products });
+crate::saved!([] Poinsot {
+    j, unit, half_over_unit, moments, products, rest, differences, adjugate_moments,
+    adjugate_products, s1, s2, s3, symmetric, energy, deviation, diagonal
+});
+
 impl<T: Real> Form<T> {
     #[inline(always)]
     pub(super) fn value<const DIAGONAL: bool>(&self, squares: [T; 3], products: [T; 3]) -> T {

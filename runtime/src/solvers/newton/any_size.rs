@@ -8,6 +8,7 @@ mod curve;
 mod lasting;
 mod principal;
 mod region;
+mod saved;
 mod stage;
 
 pub use curve::{Bounds, Chart, Enclosed, Lane, Parts};

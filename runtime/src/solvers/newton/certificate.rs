@@ -5,6 +5,7 @@ use super::node::{NodeValues, Spread};
 use super::principal::{Care, Traced};
 use crate::groups::Group;
 use crate::linalg::Factors;
+use crate::saved::{Saved, Words, optional};
 use crate::scalar::{OfScalars, Real};
 
 /// Steps without a proof that lasts, after which one is looked for again.
@@ -46,6 +47,33 @@ pub struct Certificate<V, const D: usize> {
     left: u32,
     misses: u32,
     purpose: Purpose,
+}
+
+impl<V: NodeValues + Saved, const D: usize> Saved for Certificate<V, D> {
+    fn words(&mut self, words: &mut Words) {
+        let Self {
+            reach,
+            node,
+            spread,
+            inverse,
+            factored,
+            bounded,
+            stale,
+            left,
+            misses,
+            // Steps are made to go on from there.
+            purpose: _,
+        } = self;
+        reach.words(words);
+        optional(node, words, || Some(V::blank()));
+        spread.words(words);
+        inverse.words(words);
+        optional(factored, words, || Some(V::blank()));
+        bounded.words(words);
+        stale.words(words);
+        left.words(words);
+        misses.words(words);
+    }
 }
 
 /// What steps are made for.

@@ -3,6 +3,7 @@
 //! Takes values of a node; gives the same in bounds, and whether they are near others.
 
 use crate::Real;
+use crate::saved::{Saved, Words};
 use crate::scalar::{Enclosure, OfScalars, largest};
 use nalgebra::SMatrix;
 
@@ -50,6 +51,10 @@ pub trait NodeValues: OfScalars {
     /// Whether there are any.
     const ANY: bool;
 
+    /// Zeros in their place.
+    #[must_use]
+    fn blank() -> Self;
+
     /// One lane of the values, and of all that are as near as `spread` says.
     fn enclosed<const K: usize>(&self, lane: usize, spread: Spread) -> Self::Over<Enclosure<K>>;
 
@@ -70,8 +75,25 @@ impl<M: OfScalars> OfScalars for Turn<M> {
     }
 }
 
+impl<M: Saved> Saved for Turn<M> {
+    fn words(&mut self, words: &mut Words) {
+        self.0.words(words);
+    }
+}
+
+impl Saved for Spread {
+    fn words(&mut self, words: &mut Words) {
+        self.turned.words(words);
+        self.share.words(words);
+    }
+}
+
 impl<T: Real> NodeValues for [T; 0] {
     const ANY: bool = false;
+
+    fn blank() -> Self {
+        []
+    }
 
     fn enclosed<const K: usize>(&self, _: usize, _: Spread) -> [Enclosure<K>; 0] {
         []
@@ -86,6 +108,10 @@ impl<T: Real> NodeValues for [T; 0] {
 impl<A: NodeValues, B: NodeValues<Scalar = A::Scalar>> NodeValues for (A, B) {
     const ANY: bool = true;
 
+    fn blank() -> Self {
+        (A::blank(), B::blank())
+    }
+
     fn enclosed<const K: usize>(&self, lane: usize, spread: Spread) -> Self::Over<Enclosure<K>> {
         (self.0.enclosed(lane, spread), self.1.enclosed(lane, spread))
     }
@@ -98,6 +124,10 @@ impl<A: NodeValues, B: NodeValues<Scalar = A::Scalar>> NodeValues for (A, B) {
 
 impl<T: Real, const R: usize, const C: usize> NodeValues for SMatrix<T, R, C> {
     const ANY: bool = true;
+
+    fn blank() -> Self {
+        Self::zeros()
+    }
 
     fn enclosed<const K: usize>(&self, lane: usize, spread: Spread) -> SMatrix<Enclosure<K>, R, C> {
         let size = |x: &T| x.lane(lane).abs();
@@ -125,6 +155,10 @@ impl<T: Real, const R: usize, const C: usize> NodeValues for SMatrix<T, R, C> {
 
 impl<T: Real, const R: usize, const C: usize> NodeValues for Turn<SMatrix<T, R, C>> {
     const ANY: bool = true;
+
+    fn blank() -> Self {
+        Turn(SMatrix::zeros())
+    }
 
     fn enclosed<const K: usize>(
         &self,

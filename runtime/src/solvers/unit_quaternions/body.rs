@@ -49,6 +49,11 @@ pub struct QuaternionBody<T = f64> {
     pub(super) diagonal: bool,
 }
 
+crate::saved!([] QuaternionBody {
+    unit, half_over_unit, real, moments, products, differences, inverse_moments, inverse_products,
+    linear_moments, linear_products, zeroth, first, second, quick, exact, easy, moderate, diagonal
+});
+
 impl<T: Real> QuaternionBody<T> {
     /// Validates `A` (symmetric up to a few roundings) and `β`, in every lane; `field` is what `A`
     /// is called.

@@ -1,0 +1,281 @@
+//! A run in the middle, on disk: everything that going on from there to the last bit needs.
+//! Takes the words of a trajectory and of what was seen of it; gives a file that is whole or not there, and refuses one
+//! that is damaged, of another version or of another run, with the reason.
+//!
+//! The file: a line with name and version; what run it is, as lines `key = value`, behind their length; the words
+//! behind their number; rows and checksum of the samples; a checksum of all that. Numbers have eight bytes, the lowest
+//! first.
+
+use crate::plan::Plan;
+use clebsch::card::{Card, Field};
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::Path;
+
+/// The name of the file.
+pub(crate) const NAME: &str = "checkpoint";
+
+/// The name while it is written.
+pub(crate) const UNFINISHED: &str = "checkpoint.new";
+
+/// How every file begins, before its version.
+const MAGIC: &str = "clebsch checkpoint ";
+
+/// The version that is written, and the only one that is read.
+const VERSION: &str = "1";
+
+/// Which run it is: what must be the same for one to go on from the other.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Identity(Vec<(String, String)>);
+
+impl Identity {
+    /// That of a plan.
+    pub(crate) fn of(card: &Card, plan: &Plan) -> Self {
+        let text = |x: &dyn std::fmt::Debug| format!("{x:?}");
+        let case = &plan.case;
+        let mut all = vec![
+            (
+                "version of clebsch".to_owned(),
+                env!("CARGO_PKG_VERSION").to_owned(),
+            ),
+            ("model".to_owned(), card.kebab.to_owned()),
+            (
+                "fingerprint of the model".to_owned(),
+                format!("{:016x}", card.fingerprint),
+            ),
+            ("h".to_owned(), text(&case.h)),
+            ("steps".to_owned(), text(&case.steps)),
+            ("every".to_owned(), text(&plan.every)),
+            ("order".to_owned(), text(&plan.order)),
+            (
+                "solver".to_owned(),
+                text(&plan.solver.map(|solver| solver.name())),
+            ),
+            ("compensated".to_owned(), text(&plan.compensated)),
+        ];
+        let mut values = |table: &str, fields: &[Field], values: &[Vec<f64>]| {
+            let each = fields.iter().zip(values);
+            all.extend(
+                each.map(|(field, value)| (format!("{table}.{}", field.ascii), text(value))),
+            );
+        };
+        values("parameters", card.parameters, &case.parameters);
+        values("initial", card.initial, &case.initial);
+        Self(all)
+    }
+
+    /// The same, with one more that must be the same.
+    pub(crate) fn with(mut self, key: &str, value: String) -> Self {
+        self.0.push((key.to_owned(), value));
+        self
+    }
+
+    fn text(&self) -> String {
+        let lines = self.0.iter();
+        lines
+            .map(|(key, value)| format!("{key} = {value}\n"))
+            .collect()
+    }
+
+    /// How another run differs, if it does.
+    fn unlike(&self, found: &str) -> Option<String> {
+        let own = self.text();
+        if own == found {
+            return None;
+        }
+        let mut pairs = own.lines().zip(found.lines());
+        Some(match pairs.find(|(a, b)| a != b) {
+            Some((here, there)) => format!("it is of another run: {there} there, {here} here"),
+            None => "it is of another run, with other values".to_owned(),
+        })
+    }
+}
+
+/// What a checkpoint holds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Checkpoint {
+    /// Of the trajectory.
+    pub(crate) trajectory: Vec<u64>,
+    /// Of what was seen of it.
+    pub(crate) watch: Vec<u64>,
+    /// Rows of the samples.
+    pub(crate) rows: u64,
+    /// Their checksum.
+    pub(crate) sum: u32,
+}
+
+impl Checkpoint {
+    fn bytes(&self, identity: &Identity) -> Vec<u8> {
+        let text = identity.text();
+        let mut bytes = format!("{MAGIC}{VERSION}\n").into_bytes();
+        let mut put = |word: u64| bytes.extend(word.to_le_bytes());
+        put(text.len() as u64);
+        bytes.extend(text.into_bytes());
+        let mut put = |word: u64| bytes.extend(word.to_le_bytes());
+        for list in [&self.trajectory, &self.watch] {
+            put(list.len() as u64);
+            list.iter().for_each(|word| put(*word));
+        }
+        put(self.rows);
+        put(u64::from(self.sum));
+        let sum = crc32fast::hash(&bytes);
+        bytes.extend(u64::from(sum).to_le_bytes());
+        bytes
+    }
+
+    /// Writes the file beside its name, sees it to the disk, and gives it the name in one step: whenever the
+    /// machine stops, the last checkpoint or the one before is there.
+    pub(crate) fn write(&self, folder: &Path, identity: &Identity) -> io::Result<()> {
+        let unfinished = folder.join(UNFINISHED);
+        let mut file = File::create(&unfinished)?;
+        file.write_all(&self.bytes(identity))?;
+        file.sync_all()?;
+        fs::rename(&unfinished, folder.join(NAME))?;
+        // The name as well, where folders can be synchronised.
+        let _ = File::open(folder).and_then(|folder| folder.sync_all());
+        Ok(())
+    }
+
+    /// Reads the file in `folder`, of the run `identity`.
+    ///
+    /// # Errors
+    /// Why it cannot be gone on from, in words.
+    pub(crate) fn read(folder: &Path, identity: &Identity) -> Result<Self, String> {
+        let bytes = fs::read(folder.join(NAME)).map_err(|e| format!("it cannot be read: {e}"))?;
+        Self::of_bytes(&bytes, identity)
+    }
+
+    fn of_bytes(bytes: &[u8], identity: &Identity) -> Result<Self, String> {
+        let Some(rest) = bytes.strip_prefix(MAGIC.as_bytes()) else {
+            return Err("it is no checkpoint".to_owned());
+        };
+        let line = rest.iter().position(|byte| *byte == b'\n').unwrap_or(0);
+        let (version, rest) = rest.split_at(line);
+        let version = String::from_utf8_lossy(version);
+        if version != VERSION {
+            return Err(format!(
+                "its format has version {}, this program reads version {VERSION}",
+                version.escape_debug()
+            ));
+        }
+        let damaged = || "it is damaged: its checksum is not that of its contents".to_owned();
+        let Some((contents, sum)) = bytes.split_last_chunk::<8>() else {
+            return Err(damaged());
+        };
+        if u64::from_le_bytes(*sum) != u64::from(crc32fast::hash(contents)) {
+            return Err(damaged());
+        }
+        let mut rest = Rest(
+            rest.get(1..rest.len().saturating_sub(8))
+                .unwrap_or_default(),
+        );
+        let cut = "it is cut short";
+        let text = rest.count().and_then(|n| rest.take(n)).ok_or(cut)?;
+        if let Some(why) = identity.unlike(&String::from_utf8_lossy(text)) {
+            return Err(why);
+        }
+        let trajectory = rest.list().ok_or(cut)?;
+        let watch = rest.list().ok_or(cut)?;
+        let rows = rest.word().ok_or(cut)?;
+        let sum = rest.word().and_then(|sum| u32::try_from(sum).ok());
+        Ok(Self {
+            trajectory,
+            watch,
+            rows,
+            sum: sum.ok_or(cut)?,
+        })
+    }
+}
+
+/// What is left to read.
+struct Rest<'a>(&'a [u8]);
+
+impl<'a> Rest<'a> {
+    fn take(&mut self, bytes: usize) -> Option<&'a [u8]> {
+        let (taken, left) = self.0.split_at_checked(bytes)?;
+        self.0 = left;
+        Some(taken)
+    }
+
+    fn word(&mut self) -> Option<u64> {
+        let eight = self.take(8)?.first_chunk::<8>()?;
+        Some(u64::from_le_bytes(*eight))
+    }
+
+    fn count(&mut self) -> Option<usize> {
+        usize::try_from(self.word()?).ok()
+    }
+
+    fn list(&mut self) -> Option<Vec<u64>> {
+        let count = self.count()?;
+        let bytes = self.take(count.checked_mul(8)?)?;
+        Some(
+            bytes
+                .as_chunks::<8>()
+                .0
+                .iter()
+                .map(|x| u64::from_le_bytes(*x))
+                .collect(),
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Checkpoint, Identity};
+
+    fn identity(h: &str) -> Identity {
+        let pair = |a: &str, b: &str| (a.to_owned(), b.to_owned());
+        Identity(vec![pair("model", "top"), pair("h", h)])
+    }
+
+    fn sample() -> Checkpoint {
+        Checkpoint {
+            trajectory: vec![1, u64::MAX, 0],
+            watch: Vec::new(),
+            rows: 7,
+            sum: 0xdead_beef,
+        }
+    }
+
+    #[test]
+    fn what_is_written_is_read() {
+        let bytes = sample().bytes(&identity("0.1"));
+        assert_eq!(Checkpoint::of_bytes(&bytes, &identity("0.1")), Ok(sample()));
+    }
+
+    #[test]
+    fn every_flipped_bit_and_every_cut_is_noticed() {
+        let bytes = sample().bytes(&identity("0.1"));
+        for at in 0..bytes.len() {
+            for bit in 0..8 {
+                let mut other = bytes.clone();
+                other[at] ^= 1 << bit;
+                assert!(
+                    Checkpoint::of_bytes(&other, &identity("0.1")).is_err(),
+                    "{at} {bit}"
+                );
+            }
+            assert!(
+                Checkpoint::of_bytes(&bytes[..at], &identity("0.1")).is_err(),
+                "{at}"
+            );
+        }
+    }
+
+    #[test]
+    fn another_run_is_told_by_what_differs() {
+        let bytes = sample().bytes(&identity("0.1"));
+        let why = Checkpoint::of_bytes(&bytes, &identity("0.2"));
+        assert_eq!(
+            why,
+            Err("it is of another run: h = 0.1 there, h = 0.2 here".to_owned())
+        );
+        let later = String::from_utf8_lossy(&bytes[..21]).replace('1', "2");
+        let why = Checkpoint::of_bytes(later.as_bytes(), &identity("0.1"));
+        assert_eq!(
+            why,
+            Err("its format has version 2, this program reads version 1".to_owned())
+        );
+    }
+}

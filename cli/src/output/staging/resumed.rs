@@ -1,0 +1,176 @@
+//! Runs that are gone on with: what an interrupted or killed run left, taken up again.
+//! Takes the place where its results were to go; gives its folder, locked and hidden, with its checkpoint, or why there
+//! is nothing to go on with. What cannot be taken up is left as it is.
+
+use super::{PARTIAL, Staging, first_free, interrupted};
+use crate::checkpoint::{self, Checkpoint, Identity};
+use crate::failure::Failure;
+use crate::output::samples;
+use crate::plain::shown;
+use std::fs::{self, File, TryLockError};
+use std::path::{Path, PathBuf};
+
+/// What there is to go on with.
+pub enum Found {
+    /// Nothing: the run begins.
+    Nothing,
+    /// A run in the middle.
+    Middle(Box<(Staging, Checkpoint)>),
+    /// The results of a run are there already.
+    Results,
+}
+
+/// Whether a folder holds a checkpoint.
+fn has_checkpoint(folder: &Path) -> bool {
+    folder.join(checkpoint::NAME).is_file()
+}
+
+impl Staging {
+    /// Hidden folders of other runs into the same place.
+    fn partial_folders(target: &Path) -> Vec<PathBuf> {
+        let parent = target.parent().filter(|p| !p.as_os_str().is_empty());
+        let Ok(siblings) = fs::read_dir(parent.unwrap_or(Path::new("."))) else {
+            return Vec::new();
+        };
+        let name = target.file_name().unwrap_or_default().to_string_lossy();
+        let start = format!(".{name}.{PARTIAL}-");
+        let own = std::process::id();
+        let mut found: Vec<PathBuf> = Vec::new();
+        for entry in siblings.flatten() {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            let numbers = name.strip_prefix(&start).and_then(|n| n.split_once('-'));
+            let Some((Ok(id), Ok(_))) = numbers.map(|(id, n)| (id.parse(), n.parse::<u32>()))
+            else {
+                continue;
+            };
+            // Names with the number of this process may be of another run of its own, not yet locked.
+            let another: u32 = id;
+            if another != own {
+                let parent = target.parent().unwrap_or(Path::new(""));
+                found.push(parent.join(&name));
+            }
+        }
+        found.sort();
+        found
+    }
+
+    /// The hidden folders of runs that are no more.
+    pub(super) fn abandoned(target: &Path) -> Vec<PathBuf> {
+        let mut all = Self::partial_folders(target);
+        all.retain(|folder| File::open(folder).is_ok_and(|file| file.try_lock().is_ok()));
+        all
+    }
+
+    /// Refuses to begin a run where a killed one could be gone on with.
+    pub(super) fn nothing_to_resume(target: &Path) -> Result<(), Failure> {
+        let mut left = Self::abandoned(target).into_iter();
+        match left.find(|folder| has_checkpoint(folder)) {
+            None => Ok(()),
+            Some(_) => Err(Failure::Usage(format!(
+                "--out {}: a run into this folder was killed and left a checkpoint; give --resume to go on \
+                 from it, or --force to begin anew without it",
+                shown(target)
+            ))),
+        }
+    }
+
+    /// Looks for the run to go on with.
+    ///
+    /// # Errors
+    /// Usage: a checkpoint is damaged or of another run, with the reason; what stands there is no run.
+    /// Failed: a run into the same folder goes on, or the file system gives up.
+    pub(crate) fn resume(
+        target: &Path,
+        known: &[&'static str],
+        identity: &Identity,
+    ) -> Result<Found, Failure> {
+        let standing = target.exists();
+        let mut candidates = Self::partial_folders(target);
+        if standing && has_checkpoint(target) {
+            candidates.insert(0, target.to_owned());
+        }
+        let mut refused = None;
+        for folder in candidates {
+            let Ok(held) = File::open(&folder) else {
+                continue;
+            };
+            if let Err(TryLockError::WouldBlock) = held.try_lock() {
+                return Err(Failure::Failed(format!(
+                    "--out {}: another run into this folder is still going on",
+                    shown(target)
+                )));
+            }
+            if !has_checkpoint(&folder) {
+                continue;
+            }
+            match Checkpoint::read(&folder, identity) {
+                Ok(checkpoint) => {
+                    // Beside results that are there already only they are of interest.
+                    if standing && folder != target {
+                        break;
+                    }
+                    let staging = Self::take_up(target, known, &folder, held)?;
+                    return Ok(Found::Middle(Box::new((staging, checkpoint))));
+                }
+                Err(why) => refused = refused.or(Some((folder, why))),
+            }
+        }
+        if let Some((folder, why)) = refused {
+            return Err(Failure::Usage(format!(
+                "--resume: {}: {why}; nothing was changed. Give --force instead to begin anew",
+                shown(&folder.join(checkpoint::NAME))
+            )));
+        }
+        Ok(match standing {
+            true => Found::Results,
+            false => Found::Nothing,
+        })
+    }
+
+    /// Hides the folder of a run under the number of this process, and removes what is made anew.
+    fn take_up(
+        target: &Path,
+        known: &[&'static str],
+        folder: &Path,
+        held: File,
+    ) -> Result<Self, Failure> {
+        let mut staging = Self {
+            target: target.to_owned(),
+            hidden: PathBuf::new(),
+            held: Some(held),
+            standing: None,
+            known: known.to_vec(),
+            created: Vec::new(),
+            kept: true,
+            taken_from: Some(folder.to_owned()),
+            committed: false,
+        };
+        let id = std::process::id();
+        let hidden = first_free(|count| {
+            let hidden = staging.sibling(".", &format!(".{PARTIAL}-{id}-{count}"));
+            super::place(folder, &hidden).map(|()| hidden)
+        });
+        let cannot = |error| Failure::io(&format!("cannot take up {}", shown(folder)), &error);
+        match hidden {
+            Ok(hidden) => staging.hidden = hidden,
+            Err(error) => {
+                staging.taken_from = None;
+                return Err(cannot(error));
+            }
+        }
+        interrupted::begin(&staging.hidden, &[]);
+        interrupted::keep(&staging.hidden);
+        Ok(staging)
+    }
+
+    /// The run goes on: what is made anew at its end is removed. Before that, the folder goes back to where it
+    /// was taken from.
+    pub(crate) fn go_on(&mut self) {
+        self.taken_from = None;
+        for name in &self.known {
+            if ![checkpoint::NAME, samples::NAME].contains(name) {
+                let _ = fs::remove_file(self.hidden.join(name));
+            }
+        }
+    }
+}

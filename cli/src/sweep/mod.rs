@@ -1,0 +1,434 @@
+//! `clebsch sweep`: a case at every point of a grid of parameters, initial values and steps, on all cores.
+//! Takes the gallery and the options; gives one table with a row a point. A row is computed from its point alone, so that
+//! neither the number of cores, nor kills, nor a division into parts changes a bit of it.
+
+mod collect;
+mod points;
+mod table;
+mod vary;
+
+pub(crate) use collect::collect;
+
+use crate::Streams;
+use crate::asked;
+use crate::checkpoint::{Checkpoint, Identity};
+use crate::failure::{BY_SIGNAL, DONE, Failure};
+use crate::gallery::Gallery;
+use crate::output::{self, Found, Listening, Staging, run_json};
+use crate::plain::shown;
+use crate::plan::Plan;
+use crate::record::progress_bar;
+use crate::verdict::{Verdict, judge};
+use crate::width::paragraph;
+use clap::ArgMatches;
+use clebsch::card::Card;
+use clebsch::integrate::{Observer, RunError, Watch};
+use points::Points;
+use serde_json::{Value, json};
+use std::path::PathBuf;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+use table::Columns;
+use vary::Axis;
+
+/// Steps of a point between two looks at the signals.
+const AT_A_TIME: u64 = 256;
+
+/// A checkpoint, which makes a killed sweep worth keeping, is written when it has taken so long: the rows need none.
+const WORTH_KEEPING: Duration = Duration::from_millis(200);
+
+/// A part of a sweep: `3/16`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Shard {
+    part: u64,
+    of: u64,
+}
+
+impl Shard {
+    /// Reads `PART/OF`, counted from 1.
+    pub(crate) fn read(text: &str) -> Result<Self, String> {
+        let numbers = text.split_once('/');
+        let numbers = numbers.and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
+        match numbers {
+            Some((part, of)) if 1 <= part && part <= of => Ok(Self { part, of }),
+            _ => Err("give PART/OF, such as 3/16, the parts counted from 1".to_owned()),
+        }
+    }
+
+    /// The points from the first to before the second.
+    fn points(self, all: u64) -> (u64, u64) {
+        let before = |part: u64| {
+            let share = u128::from(all) * u128::from(part) / u128::from(self.of);
+            u64::try_from(share).unwrap_or(all)
+        };
+        (before(self.part - 1), before(self.part))
+    }
+}
+
+/// Everything that a point is computed from.
+struct Sweep<'a> {
+    card: &'a Card,
+    plan: &'a Plan,
+    axes: &'a [Axis],
+    columns: &'a Columns,
+}
+
+/// Runs the command; 0 when every point has its row, however it ended.
+///
+/// # Errors
+/// Usage for a wrong request; failed when the file system gives up.
+pub(crate) fn sweep(
+    gallery: &Gallery,
+    matches: &ArgMatches,
+    streams: &mut Streams<'_>,
+) -> Result<u8, Failure> {
+    let text = |key: &str| matches.get_one::<String>(key).map(String::as_str);
+    let name = text("model").unwrap_or_default();
+    let entry = asked::model(gallery, name, text("case"), &mut streams.err)?;
+    let plan = Plan::new(&entry, matches)?;
+    let card = &entry.card_of(&plan.case);
+    let axes = matches.get_many::<String>("vary").into_iter().flatten();
+    let axes: Vec<Axis> = axes
+        .map(|axis| Axis::read(axis, card))
+        .collect::<Result<_, _>>()?;
+    if let Some(twice) = axes
+        .iter()
+        .enumerate()
+        .find_map(|(i, axis)| axes.iter().take(i).find(|other| other.place == axis.place))
+    {
+        return Err(Failure::Usage(format!(
+            "--vary {}: given twice",
+            shown(&twice.name)
+        )));
+    }
+    let all = vary::points(&axes)?;
+    let shard = matches.get_one::<Shard>("shard").copied();
+    let (first, end) = shard.map_or((0, all), |shard| shard.points(all));
+    let Some(target) = matches.get_one::<PathBuf>("out") else {
+        return Err(Failure::Usage(
+            "--out DIR: name a folder for the table".to_owned(),
+        ));
+    };
+    let as_json = matches.get_flag("json");
+    let mut description = run_json::plan_json(card, &plan);
+    description["vary"] = axes
+        .iter()
+        .map(|axis| json!({"name": axis.name, "values": axis.values}))
+        .collect();
+    description["points"] = json!(all);
+    description["stepped"] = json!({
+        "order": plan.order,
+        "solver": plan.solver.map(clebsch::solvers::Method::name),
+        "compensated": plan.compensated,
+    });
+    description["shard"] = json!(
+        shard.map(|shard| json!({"part": shard.part, "of": shard.of, "first": first, "end": end}))
+    );
+    let identity = Identity::of(card, &plan)
+        .with("vary", description["vary"].to_string())
+        .with("shard", description["shard"].to_string());
+    let found = match matches.get_flag("resume") {
+        true => Staging::resume(target, &table::FILES, &identity)?,
+        false => Found::Nothing,
+    };
+    let mut staging = match found {
+        Found::Results => return already(target, &description, as_json, streams),
+        Found::Middle(both) => {
+            let mut staging = both.0;
+            staging.go_on();
+            staging
+        }
+        Found::Nothing => Staging::new(target, matches.get_flag("force"), &table::FILES)?,
+    };
+    let columns = Columns::of(card, &axes);
+    let sweep = Sweep {
+        card,
+        plan: &plan,
+        axes: &axes,
+        columns: &columns,
+    };
+    let failed = |error: std::io::Error| {
+        Failure::io(&format!("cannot write into {}", shown(target)), &error)
+    };
+    let width = columns.names.len();
+    let mut rows = Points::open(staging.folder(), width, end - first).map_err(failed)?;
+    let there = rows.there(first).map_err(failed)?;
+    let left: Vec<u64> = (0..)
+        .zip(&there)
+        .filter(|(_, there)| !**there)
+        .map(|(n, _)| n)
+        .collect();
+    if !as_json {
+        let here = match shard {
+            None => String::new(),
+            Some(shard) => format!(
+                ", of which part {} of {} has {}",
+                shard.part,
+                shard.of,
+                end - first
+            ),
+        };
+        let done = match there.len() - left.len() {
+            0 => String::new(),
+            done => format!("; {done} are there already"),
+        };
+        let told = format!("{}: {all} points{here}{done}", card.kebab);
+        streams
+            .out
+            .write_all(paragraph(&told, streams.width, 2).as_bytes())?;
+    }
+    let rows = Mutex::new(rows);
+    let signal = sweep.compute(first, &left, &rows, streams.progress, &mut |n| {
+        let checkpoint = Checkpoint {
+            trajectory: Vec::new(),
+            watch: Vec::new(),
+            rows: n,
+            sum: 0,
+        };
+        checkpoint
+            .write(staging.folder(), &identity)
+            .map_err(failed)?;
+        staging.keep();
+        Ok(())
+    })?;
+    if let Some(signal) = signal {
+        let _ = writeln!(
+            streams.err,
+            "clebsch: interrupted; the points computed so far are kept, and --resume goes on with the others"
+        );
+        return Ok(BY_SIGNAL.saturating_add(signal));
+    }
+    let rows = rows
+        .into_inner()
+        .unwrap_or_else(std::sync::PoisonError::into_inner);
+    let rows = rows.into_rows(staging.folder()).map_err(failed)?;
+    let tally = table::write(&staging, &columns, &rows)?;
+    let object = table::describe(&staging, &description, &tally)?;
+    staging.commit()?;
+    output::remove_what_resumes(target);
+    tell(&object, &tally, target, as_json, streams)
+}
+
+/// What came out.
+fn tell(
+    object: &Value,
+    tally: &table::Tally,
+    target: &std::path::Path,
+    as_json: bool,
+    streams: &mut Streams<'_>,
+) -> Result<u8, Failure> {
+    if as_json {
+        writeln!(streams.out, "{object}")?;
+        return Ok(DONE);
+    }
+    let [csv, npz, json, ..] = table::FILES;
+    let lines = [
+        tally.text(),
+        format!("written to {}: {csv}, {npz}, {json}", shown(target)),
+    ];
+    for line in lines {
+        streams
+            .out
+            .write_all(paragraph(&line, streams.width, 2).as_bytes())?;
+    }
+    Ok(DONE)
+}
+
+/// Asked to go on with a sweep that has come to its end.
+fn already(
+    target: &std::path::Path,
+    own: &Value,
+    as_json: bool,
+    streams: &mut Streams<'_>,
+) -> Result<u8, Failure> {
+    let wrong = |words: String| Failure::Usage(format!("--resume: {}: {words}", shown(target)));
+    let there = collect::description(target).map_err(wrong)?;
+    for (key, value) in own.as_object().into_iter().flatten() {
+        if there.get(key) != Some(value) {
+            return Err(wrong(format!("it holds another sweep: its {key} differs")));
+        }
+    }
+    output::remove_what_resumes(target);
+    match as_json {
+        true => writeln!(streams.out, "{there}")?,
+        false => writeln!(streams.out, "complete already: {}", shown(target))?,
+    }
+    Ok(DONE)
+}
+
+impl Sweep<'_> {
+    /// Computes the rows that are left, on all cores; the signal that ended it, if one did.
+    fn compute(
+        &self,
+        first: u64,
+        left: &[u64],
+        rows: &Mutex<Points>,
+        progress: bool,
+        keep: &mut dyn FnMut(u64) -> Result<(), Failure>,
+    ) -> Result<Option<u8>, Failure> {
+        let listening = Listening::begin();
+        let bar = progress.then(|| progress_bar(left.len() as u64, "points"));
+        let (next, made) = (AtomicU64::new(0), AtomicU64::new(0));
+        let refused = Mutex::new(None);
+        let ended = AtomicBool::new(false);
+        let work = || {
+            let mut row = vec![0; self.columns.names.len()];
+            while !ended.load(Ordering::Relaxed) {
+                let turn = next.fetch_add(1, Ordering::Relaxed);
+                let Some(number) = usize::try_from(turn).ok().and_then(|n| left.get(n)) else {
+                    break;
+                };
+                let point = first + number;
+                if !self.row(point, &mut row, &|| listening.asked().is_some()) {
+                    break;
+                }
+                let mut rows = rows
+                    .lock()
+                    .unwrap_or_else(std::sync::PoisonError::into_inner);
+                if let Err(error) = rows.put(*number, &row) {
+                    ended.store(true, Ordering::Relaxed);
+                    let mut refused = refused
+                        .lock()
+                        .unwrap_or_else(std::sync::PoisonError::into_inner);
+                    *refused = Some(error);
+                    break;
+                }
+                made.fetch_add(1, Ordering::Relaxed);
+            }
+        };
+        let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        let kept = std::thread::scope(|scope| {
+            let workers: Vec<_> = (0..cores.min(left.len().max(1)))
+                .map(|_| scope.spawn(work))
+                .collect();
+            let begun = Instant::now();
+            let mut kept = false;
+            loop {
+                let over = workers
+                    .iter()
+                    .all(std::thread::ScopedJoinHandle::is_finished);
+                let made = made.load(Ordering::Relaxed);
+                if let Some(bar) = &bar {
+                    bar.set_position(made);
+                }
+                if !kept && (begun.elapsed() > WORTH_KEEPING || listening.asked().is_some()) {
+                    kept = true;
+                    if let Err(failure) = keep(made) {
+                        ended.store(true, Ordering::Relaxed);
+                        return Err(failure);
+                    }
+                }
+                if over {
+                    return Ok(());
+                }
+                std::thread::sleep(Duration::from_millis(5));
+            }
+        });
+        if let Some(bar) = bar {
+            bar.finish_and_clear();
+        }
+        kept?;
+        if let Some(error) = refused
+            .into_inner()
+            .unwrap_or_else(std::sync::PoisonError::into_inner)
+        {
+            return Err(Failure::io("cannot write the points", &error));
+        }
+        let all = made.load(Ordering::Relaxed) == left.len() as u64;
+        Ok(listening.asked().filter(|_| !all))
+    }
+
+    /// Computes the row of a point; false when `asked` to stop before its end.
+    fn row(&self, point: u64, row: &mut [u64], asked: &dyn Fn() -> bool) -> bool {
+        let values = vary::at(self.axes, point);
+        let mut plan = self.plan.clone();
+        for (axis, value) in self.axes.iter().zip(&values) {
+            axis.put(*value, &mut plan.case);
+        }
+        row.fill(f64::NAN.to_bits());
+        let mut slots = row.iter_mut();
+        if let Some(slot) = slots.next() {
+            *slot = point;
+        }
+        let mut put = |x: f64| {
+            if let Some(slot) = slots.next() {
+                // One NaN in all rows, so that they do not depend on how it came about.
+                *slot = if x.is_nan() { f64::NAN } else { x }.to_bits();
+            }
+        };
+        values.into_iter().for_each(&mut put);
+        let Ok(mut trajectory) = plan.open(self.card) else {
+            put(table::REFUSED);
+            put(0.0);
+            put(0.0);
+            return true;
+        };
+        let steps = plan.case.steps;
+        let mut watch = Watch::new(trajectory.as_ref(), steps, 0);
+        let mut last = Last(vec![f64::NAN; self.card.observable_count()]);
+        let status = loop {
+            match watch.advance(trajectory.as_mut(), &mut last, AT_A_TIME) {
+                Err(error) => {
+                    watch.stop(trajectory.as_ref(), &mut last, &error);
+                    break match (watch.summary().steps, error) {
+                        (0, RunError::Step(_)) => table::REFUSED,
+                        _ => table::STOPPED,
+                    };
+                }
+                Ok(()) if watch.is_over() => break table::DONE,
+                Ok(()) if asked() => return false,
+                Ok(()) => {}
+            }
+        };
+        let summary = watch.summary();
+        let outcomes = judge(self.card, &plan.case, &summary.drifts);
+        let kept = outcomes
+            .iter()
+            .all(|outcome| outcome.verdict != Verdict::Left);
+        put(status);
+        put(summary.steps as f64);
+        put(summary.time);
+        put(f64::from(u8::from(kept)));
+        put(summary
+            .residual
+            .map_or(f64::NAN, |residual| residual.relative));
+        let mut drifts = summary.drifts.iter().map(|drift| drift.worst);
+        (0..self.card.invariant_count()).for_each(|_| put(drifts.next().unwrap_or(f64::NAN)));
+        last.0.into_iter().for_each(&mut put);
+        true
+    }
+}
+
+/// The observables of the last sample.
+struct Last(Vec<f64>);
+
+impl Observer for Last {
+    fn sample(&mut self, _: u64, _: f64, observables: &[f64], _: &[f64]) {
+        self.0.copy_from_slice(observables);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Shard;
+
+    #[test]
+    fn parts_cover_every_point_once() {
+        for all in [0, 1, 5, 16, 1_000_000_000] {
+            for of in [1, 3, 16, 17] {
+                let ends = (1..=of).map(|part| Shard { part, of }.points(all));
+                let mut next = 0;
+                for (first, end) in ends {
+                    assert_eq!(first, next);
+                    assert!(end >= first && end - first <= all / of + 1);
+                    next = end;
+                }
+                assert_eq!(next, all);
+            }
+        }
+        for wrong in ["0/3", "4/3", "1", "a/b", "1/0", "-1/2"] {
+            assert!(Shard::read(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,290 @@
+//! What a sweep varies: `gU.z=0:1:100`, `h=0.1,0.05`, `kappa=2`.
+//! Takes texts and a card; gives the entries of parameters, initial values or the step that take the values, and the
+//! values of each point of the grid.
+
+use crate::failure::Failure;
+use crate::gallery::Case;
+use crate::plain::shown;
+use clebsch::card::{Card, Field, Kind};
+
+/// Most values of one quantity, so that a slip of the keyboard does not fill the memory.
+const MOST_VALUES: usize = 1_000_000;
+
+/// Most points of a sweep.
+pub(super) const MOST_POINTS: u64 = 1_000_000_000;
+
+/// A quantity and its values.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Axis {
+    /// As it was written, such as `gU.z`: the name of its column.
+    pub(super) name: String,
+    pub(super) place: Place,
+    pub(super) values: Vec<f64>,
+}
+
+/// What takes the values.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Place {
+    Step,
+    /// Entries of a parameter, each with the sign that its kind asks for.
+    Parameter(usize, Vec<(usize, f64)>),
+    Initial(usize, Vec<(usize, f64)>),
+}
+
+impl Axis {
+    /// Reads `NAME=FROM:TO:COUNT` or `NAME=VALUE,VALUE,...`.
+    ///
+    /// # Errors
+    /// Usage: what is wrong with it, and what the model has.
+    pub(super) fn read(text: &str, card: &Card) -> Result<Self, Failure> {
+        let wrong = |why: String| Failure::Usage(format!("--vary {}: {why}", shown(text)));
+        let Some((name, values)) = text.split_once('=') else {
+            return Err(wrong(
+                "give NAME=FROM:TO:COUNT or NAME=VALUE,VALUE,..., such as gU.z=0:1:100".to_owned(),
+            ));
+        };
+        let place = place(name.trim(), card).map_err(wrong)?;
+        let values = read_values(values).map_err(wrong)?;
+        Ok(Self {
+            name: name.trim().to_owned(),
+            place,
+            values,
+        })
+    }
+
+    /// Puts a value into a case.
+    pub(super) fn put(&self, value: f64, case: &mut Case) {
+        let entries = |list: &mut Vec<Vec<f64>>, field: usize, entries: &[(usize, f64)]| {
+            for (entry, sign) in entries {
+                if let Some(x) = list.get_mut(field).and_then(|own| own.get_mut(*entry)) {
+                    *x = sign * value;
+                }
+            }
+        };
+        match &self.place {
+            Place::Step => case.h = value,
+            Place::Parameter(field, list) => entries(&mut case.parameters, *field, list),
+            Place::Initial(field, list) => entries(&mut case.initial, *field, list),
+        }
+    }
+}
+
+fn place(name: &str, card: &Card) -> Result<Place, String> {
+    if name == "h" {
+        return Ok(Place::Step);
+    }
+    let (field, component) = match name.split_once('.') {
+        Some((field, component)) => (field, Some(component)),
+        None => (name, None),
+    };
+    let find = |fields: &'static [Field]| {
+        let named = |f: &Field| f.name == field || f.ascii == field;
+        let at = fields.iter().position(named)?;
+        Some((at, *fields.get(at)?))
+    };
+    if let Some((at, field)) = find(card.parameters) {
+        return Ok(Place::Parameter(at, entries(&field, component)?));
+    }
+    if let Some((at, field)) = find(card.initial) {
+        return Ok(Place::Initial(at, entries(&field, component)?));
+    }
+    let all = card.parameters.iter().chain(card.initial);
+    let names: Vec<&str> = all.map(|field| field.ascii).collect();
+    Err(format!(
+        "`{}` has no such parameter or initial value; it has {} and the step h",
+        card.kebab,
+        names.join(", ")
+    ))
+}
+
+/// The entries of a field that a component names: with its mirror image where the kind has one.
+fn entries(field: &Field, component: Option<&str>) -> Result<Vec<(usize, f64)>, String> {
+    let (rows, cols) = (field.rows, field.cols);
+    let name = field.ascii;
+    let Some(component) = component else {
+        return match rows * cols {
+            1 => Ok(vec![(0, 1.0)]),
+            count => Err(format!(
+                "`{name}` has {count} numbers; name one, such as {name}.{}",
+                if cols == 1 { "1" } else { "11" }
+            )),
+        };
+    };
+    let outside = || match cols {
+        1 => format!("`{name}` has the components {name}.1 to {name}.{rows}, or x, y, z of three"),
+        _ => {
+            format!("`{name}` has the entries {name}.11 to {name}.{rows}{cols}, row before column")
+        }
+    };
+    let number = |text: &str, most: usize| {
+        let number = text.parse::<usize>().ok()?;
+        (1..=most).contains(&number).then(|| number - 1)
+    };
+    if cols == 1 {
+        let letter = ["x", "y", "z"]
+            .iter()
+            .position(|letter| *letter == component);
+        let entry = letter
+            .filter(|_| rows == 3)
+            .or_else(|| number(component, rows));
+        return Ok(vec![(entry.ok_or_else(outside)?, 1.0)]);
+    }
+    let (row, col) = match component.split_once('_') {
+        Some(pair) => pair,
+        None if component.len() == 2 && component.is_ascii() => component.split_at(1),
+        None => return Err(outside()),
+    };
+    let (Some(i), Some(j)) = (number(row, rows), number(col, cols)) else {
+        return Err(outside());
+    };
+    let (here, mirror) = (i * cols + j, j * cols + i);
+    Ok(match field.kind {
+        Kind::Rotation | Kind::RigidMotion => {
+            return Err(format!(
+                "single entries of `{name}` cannot be varied: it would be no {} any more",
+                if field.kind == Kind::Rotation {
+                    "rotation"
+                } else {
+                    "rigid motion"
+                }
+            ));
+        }
+        _ if i == j && field.kind != Kind::Skew => vec![(here, 1.0)],
+        Kind::Symmetric | Kind::SecondMoments => vec![(here, 1.0), (mirror, 1.0)],
+        Kind::Skew if i != j => vec![(here, 1.0), (mirror, -1.0)],
+        Kind::Skew | Kind::Diagonal => {
+            return Err(format!(
+                "the entry {} of `{name}` is zero by its kind",
+                component
+            ));
+        }
+        _ => vec![(here, 1.0)],
+    })
+}
+
+fn read_values(text: &str) -> Result<Vec<f64>, String> {
+    let number = |text: &str| match text.trim().parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err(format!("`{}` is no finite number", shown(text))),
+    };
+    let parts: Vec<&str> = text.split(':').collect();
+    match parts.as_slice() {
+        [from, to, count] => {
+            let (from, to) = (number(from)?, number(to)?);
+            let count = crate::arguments::whole(count.trim())
+                .and_then(|count| usize::try_from(count).ok())
+                .filter(|count| (1..=MOST_VALUES).contains(count))
+                .ok_or_else(|| format!("give from 1 to {MOST_VALUES} values"))?;
+            if count == 1 {
+                return Ok(vec![from]);
+            }
+            // The ends are what was written, to the last bit.
+            let last = count - 1;
+            let value = |i: usize| match i {
+                _ if i == last => to,
+                _ => from + (to - from) * (i as f64 / last as f64),
+            };
+            Ok((0..count).map(value).collect())
+        }
+        [list] => list.split(',').map(number).collect(),
+        _ => Err("a range has three parts, FROM:TO:COUNT".to_owned()),
+    }
+}
+
+/// How many points all axes have together.
+pub(super) fn points(axes: &[Axis]) -> Result<u64, Failure> {
+    let all = axes
+        .iter()
+        .try_fold(1_u64, |n, axis| n.checked_mul(axis.values.len() as u64));
+    all.filter(|n| *n <= MOST_POINTS)
+        .ok_or_else(|| Failure::Usage(format!("a sweep has at most {MOST_POINTS} points")))
+}
+
+/// The values of a point, one of each axis: the last axis varies fastest.
+pub(super) fn at(axes: &[Axis], point: u64) -> Vec<f64> {
+    let mut left = point;
+    let mut values: Vec<f64> = axes
+        .iter()
+        .rev()
+        .map(|axis| {
+            let count = (axis.values.len() as u64).max(1);
+            let own = usize::try_from(left % count).unwrap_or(0);
+            left /= count;
+            axis.values.get(own).copied().unwrap_or(f64::NAN)
+        })
+        .collect();
+    values.reverse();
+    values
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Axis, at, entries, points, read_values};
+    use clebsch::card::Kind;
+
+    #[test]
+    fn ranges_hold_their_ends_and_lists_are_taken_as_they_are() {
+        assert_eq!(
+            read_values("0:0.3:4").expect("a range"),
+            [0.0, 0.3 * (1.0 / 3.0), 0.3 * (2.0 / 3.0), 0.3]
+        );
+        assert_eq!(read_values("2:9:1").expect("a range"), [2.0]);
+        assert_eq!(read_values("0.1, 1e-2").expect("a list"), [0.1, 0.01]);
+        for wrong in ["", "1:2", "1:2:0", "1:inf:3", "a", "1,,2", "1:2:3:4"] {
+            assert!(read_values(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn mirror_images_follow_the_kind() {
+        let field = |kind: Kind| kind.field("J", [3, 3], "");
+        assert_eq!(
+            entries(&field(Kind::Symmetric), Some("12")),
+            Ok(vec![(1, 1.0), (3, 1.0)])
+        );
+        assert_eq!(
+            entries(&field(Kind::Skew), Some("3_1")),
+            Ok(vec![(6, 1.0), (2, -1.0)])
+        );
+        assert_eq!(
+            entries(&field(Kind::Matrix), Some("12")),
+            Ok(vec![(1, 1.0)])
+        );
+        assert_eq!(
+            entries(&field(Kind::Diagonal), Some("22")),
+            Ok(vec![(4, 1.0)])
+        );
+        for (kind, component) in [
+            (Kind::Diagonal, "12"),
+            (Kind::Skew, "11"),
+            (Kind::Rotation, "12"),
+            (Kind::Matrix, "14"),
+            (Kind::Matrix, "x"),
+            (Kind::Matrix, "é"),
+        ] {
+            assert!(
+                entries(&field(kind), Some(component)).is_err(),
+                "{kind:?} {component}"
+            );
+        }
+        let vector = Kind::Vector.field("g", [3, 1], "");
+        assert_eq!(entries(&vector, Some("z")), Ok(vec![(2, 1.0)]));
+        assert_eq!(entries(&vector, Some("1")), Ok(vec![(0, 1.0)]));
+        assert!(entries(&vector, None).is_err());
+    }
+
+    #[test]
+    fn the_last_axis_varies_fastest() {
+        let axis = |values: &[f64]| Axis {
+            name: "h".to_owned(),
+            place: super::Place::Step,
+            values: values.to_vec(),
+        };
+        let axes = [axis(&[1.0, 2.0]), axis(&[5.0, 6.0, 7.0])];
+        assert_eq!(points(&axes), Ok(6));
+        let all: Vec<Vec<f64>> = (0..6).map(|point| at(&axes, point)).collect();
+        assert_eq!(all[1], [1.0, 6.0]);
+        assert_eq!(all[3], [2.0, 5.0]);
+        assert!(points(&vec![axis(&[0.0; 2000]); 3]).is_err());
+    }
+}

@@ -1,0 +1,75 @@
+//! Pictures of attitudes, and those for a paper.
+
+use super::common::{Folder, on};
+use clebsch_cli::gallery::Gallery;
+use std::fs;
+
+fn picture(folder: &Folder, name: &str, arguments: &[&str]) -> impl Fn(&str) -> String + use<> {
+    let out = folder.path(name);
+    let mut all = vec!["run"];
+    all.extend(arguments);
+    all.extend(["--out", &out]);
+    let done = on(&Gallery::shipped(), &all);
+    assert_eq!(done.code, 0, "{}", done.err);
+    move |file: &str| fs::read_to_string(format!("{out}/{file}")).unwrap_or_default()
+}
+
+#[test]
+fn attitudes_are_drawn_on_spheres() {
+    let folder = Folder::new("spheres");
+    let top = picture(&folder, "top", &["heavy-top", "--steps", "500"]);
+    let svg = top("attitude.svg");
+    for words in ["Λ e₃: the body axis", "Γ on |Γ| = 1", "μ in the ball |μ| ≤"] {
+        assert!(svg.contains(words), "{words}");
+    }
+    assert!(
+        !svg.contains("kinetic"),
+        "a momentum that changes its length has no sphere"
+    );
+    assert!(!svg.contains("NaN") && !svg.contains("inf"));
+    let free = picture(&folder, "free", &["free-body", "--steps", "500"]);
+    assert!(free("attitude.svg").contains("equal kinetic"));
+    // Unit quaternions are attitudes too; a point mass has none.
+    let quaternions = picture(&folder, "quaternions", &["cayley-klein", "--steps", "500"]);
+    assert!(quaternions("attitude.svg").contains("body axis"));
+    let planet = picture(&folder, "planet", &["kepler", "--steps", "500"]);
+    assert!(planet("attitude.svg").is_empty() && planet("angles.svg").is_empty());
+    let angles = top("angles.svg");
+    for words in ["precession", "nutation", "spin"] {
+        assert!(angles.contains(words), "{words}");
+    }
+}
+
+#[test]
+fn pictures_for_a_paper_fit_a_column() {
+    let folder = Folder::new("paper");
+    let wide = picture(&folder, "wide", &["heavy-top", "--steps", "500"]);
+    let paper = picture(
+        &folder,
+        "column",
+        &["heavy-top", "--steps", "500", "--paper"],
+    );
+    let pictures = ["momentum", "invariants", "advected", "attitude", "angles"];
+    for file in pictures.map(|name| format!("{name}.svg")) {
+        assert!(wide(&file).contains("heavy-top, case lagrange"), "{file}");
+        let svg = paper(&file);
+        assert!(
+            svg.starts_with("<svg width=\"86mm\" height=\""),
+            "{file}: {:.60}",
+            svg
+        );
+        assert!(!svg.contains("heavy-top, case"), "{file} has a title");
+    }
+    // The numbers are the same.
+    let read =
+        |name: &str| fs::read(folder.path(&format!("{name}/trajectory.csv"))).expect("there");
+    assert!(read("wide") == read("column"));
+}
+
+#[test]
+fn entries_of_skew_matrices_are_drawn_once() {
+    let folder = Folder::new("skew");
+    let svg = picture(&folder, "body", &["body-n", "--steps", "500"])("momentum.svg");
+    assert!(svg.contains("μ₁₂") && svg.contains("entries above the diagonal"));
+    assert!(!svg.contains("μ₂₁") && !svg.contains("μ₁₁"));
+}

@@ -1,0 +1,236 @@
+//! Sweeps: what is varied, and that neither parts nor kills change a byte of the table.
+
+use super::common::{Done, Folder, on};
+use clebsch_cli::gallery::Gallery;
+use std::fs;
+
+const FILES: [&str; 3] = ["sweep.csv", "sweep.json", "sweep.npz"];
+
+fn clebsch(arguments: &[&str]) -> Done {
+    on(&Gallery::shipped(), arguments)
+}
+
+fn sweep(out: &str, more: &[&str]) -> Done {
+    let mut all = vec!["sweep", "heavy-top", "--steps", "200", "--out", out];
+    all.extend(["--vary", "gU.z=0:1:5", "--vary", "h=0.1,0.05,5"]);
+    all.extend(more);
+    clebsch(&all)
+}
+
+fn same(one: &str, other: &str) {
+    for file in FILES {
+        let read = |folder: &str| fs::read(format!("{folder}/{file}")).expect("there");
+        assert!(read(one) == read(other), "{one} and {other}: {file}");
+    }
+}
+
+fn column(folder: &str, name: &str) -> Vec<f64> {
+    let text = fs::read_to_string(format!("{folder}/sweep.csv")).expect("there");
+    let mut lines = text.lines();
+    let header = lines.next().expect("a header");
+    let at = header
+        .split(',')
+        .position(|n| n == name)
+        .unwrap_or_else(|| panic!("{name} in {header}"));
+    let cell = |line: &str| {
+        line.split(',')
+            .nth(at)
+            .expect("a cell")
+            .parse()
+            .expect("a number")
+    };
+    lines.map(cell).collect()
+}
+
+#[test]
+fn a_row_is_the_run_of_its_point() {
+    let folder = Folder::new("sweep-rows");
+    let out = folder.path("sweep");
+    let done = sweep(&out, &[]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert!(done.out.contains("15 points"), "{}", done.out);
+    assert!(
+        done.out
+            .contains("10 complete, 0 stopped before their end, 5 refused"),
+        "{}",
+        done.out
+    );
+    let values = column(&out, "gU.z");
+    assert_eq!(values[..4], [0.0, 0.0, 0.0, 0.25]);
+    assert_eq!(column(&out, "h")[..4], [0.1, 0.05, 5.0, 0.1]);
+    assert_eq!(column(&out, "status")[..4], [0.0, 0.0, 2.0, 0.0]);
+    // The same point by a case file: number four of the grid.
+    let case = clebsch(&["case", "heavy-top"]).out;
+    let lines = case.lines().map(|line| match line.starts_with("gU = ") {
+        true => "gU = [0.0, 0.0, 0.25]".to_owned(),
+        false => line.to_owned(),
+    });
+    let text: Vec<String> = lines.collect();
+    let file = folder.path("case.toml");
+    fs::write(&file, text.join("\n")).expect("written");
+    let run = folder.path("run");
+    let done = clebsch(&[
+        "run",
+        "heavy-top",
+        "--case",
+        &file,
+        "--steps",
+        "200",
+        "--h",
+        "0.1",
+        "--out",
+        &run,
+    ]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let text = fs::read_to_string(format!("{run}/trajectory.csv")).expect("there");
+    let (header, last) = (
+        text.lines().next().expect("a header"),
+        text.lines().last().expect("a row"),
+    );
+    for name in ["Lambda_11", "body_momentum_3", "Gamma_2"] {
+        let at = header.split(',').position(|n| n == name).expect("a column");
+        let expected: f64 = last
+            .split(',')
+            .nth(at)
+            .expect("a cell")
+            .parse()
+            .expect("a number");
+        assert_eq!(
+            column(&out, name)[3].to_bits(),
+            expected.to_bits(),
+            "{name}"
+        );
+    }
+    // And it differs from that of its neighbour.
+    assert!(column(&out, "Lambda_11")[3] != column(&out, "Lambda_11")[0]);
+}
+
+#[test]
+fn parts_are_joined_to_the_table_of_the_whole() {
+    let folder = Folder::new("sweep-parts");
+    let whole = folder.path("whole");
+    assert_eq!(sweep(&whole, &[]).code, 0);
+    let parts: Vec<String> = (1..=4)
+        .map(|part| folder.path(&format!("part-{part}")))
+        .collect();
+    for (part, out) in parts.iter().enumerate() {
+        let done = sweep(out, &["--shard", &format!("{}/4", part + 1)]);
+        assert_eq!(done.code, 0, "{}", done.err);
+    }
+    let collect = |parts: &[&String], out: &str| {
+        let mut all = vec!["collect", "--out", out];
+        all.extend(parts.iter().map(|part| part.as_str()));
+        clebsch(&all)
+    };
+    let joined = folder.path("joined");
+    let [a, b, c, d] = [&parts[0], &parts[1], &parts[2], &parts[3]];
+    let done = collect(&[c, a, d, b], &joined);
+    assert_eq!(done.code, 0, "{}", done.err);
+    same(&whole, &joined);
+    // What is not the whole, or not of one sweep, is said.
+    let refused = |parts: &[&String], says: &str| {
+        let done = collect(parts, &folder.path("none"));
+        assert_eq!(done.code, 2, "{}", done.err);
+        assert!(done.err.contains(says), "{}", done.err);
+    };
+    refused(&[a, b, d], "is missing: 3 of 4");
+    refused(&[a, b, b, c, d], "given twice");
+    refused(&[a, &whole], "not of a part");
+    let other = folder.path("other");
+    assert_eq!(sweep(&other, &["--shard", "4/4", "--order", "4"]).code, 0);
+    // Orders are no part of a case; the columns are the same, and so is what they hold not.
+    let text = fs::read_to_string(format!("{other}/sweep.json")).expect("there");
+    assert!(text.contains("\"order\": 4"), "{text}");
+    refused(&[a, b, c, &other], "of another sweep");
+    let csv = format!("{d}/sweep.csv");
+    let text = fs::read_to_string(&csv).expect("there");
+    let cut = text.trim_end().rsplit_once('\n').expect("lines").0;
+    fs::write(&csv, cut).expect("written");
+    refused(&[a, b, c, d], "damaged");
+    assert!(!folder.names().contains(&"none".to_owned()));
+}
+
+#[test]
+fn wrong_axes_are_named() {
+    let folder = Folder::new("sweep-wrong");
+    let out = folder.path("out");
+    for (vary, says) in [
+        ("gU", "NAME=FROM:TO:COUNT"),
+        ("gU=1", "name one, such as gU.1"),
+        ("mass=1", "no such parameter"),
+        ("gU.w=1", "components gU.1 to gU.3"),
+        ("h=a", "no finite number"),
+        ("h=1:2", "three parts"),
+        ("h=1:2:0", "from 1 to"),
+        ("Lambda.11=1", "no rotation any more"),
+        ("h=0:1:1000000", ""),
+    ] {
+        let more: &[&str] = match says {
+            "" => &["--vary", "gU.x=0:1:1000000"],
+            _ => &[],
+        };
+        let mut all = vec!["sweep", "heavy-top", "--out", &out, "--vary", vary];
+        all.extend(more);
+        let done = clebsch(&all);
+        assert_eq!(done.code, 2, "{vary}: {}", done.err);
+        assert!(done.err.contains(says), "{vary}: {}", done.err);
+    }
+    let twice = clebsch(&[
+        "sweep",
+        "heavy-top",
+        "--out",
+        &out,
+        "--vary",
+        "gU.z=1",
+        "--vary",
+        "gU.3=2",
+    ]);
+    assert_eq!(twice.code, 2, "{}", twice.err);
+    assert!(twice.err.contains("given twice"), "{}", twice.err);
+    assert!(folder.names().is_empty());
+}
+
+#[cfg(unix)]
+#[test]
+fn killed_sweeps_go_on_with_what_is_left() {
+    use std::process::{Command, Stdio};
+    use std::time::{Duration, Instant};
+    let folder = Folder::new("sweep-killed");
+    let command = |out: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_clebsch"));
+        command.args([
+            "sweep",
+            "heavy-top",
+            "--steps",
+            "30000",
+            "--vary",
+            "gU.z=0:1:60",
+        ]);
+        command
+            .args(["--out", out, "--resume"])
+            .stdout(Stdio::null())
+            .stderr(Stdio::null());
+        command
+    };
+    let whole = folder.path("whole");
+    let from = Instant::now();
+    assert!(command(&whole).status().expect("runs").success());
+    let length = from.elapsed();
+    let out = folder.path("killed");
+    for (kill, signal) in ["-KILL", "-INT", "-KILL", "-TERM"].into_iter().enumerate() {
+        let mut child = command(&out).spawn().expect("starts");
+        std::thread::sleep(
+            length
+                .mul_f64(0.2 + 0.15 * kill as f64)
+                .max(Duration::from_millis(250)),
+        );
+        let _ = Command::new("kill")
+            .args([signal, &child.id().to_string()])
+            .stderr(Stdio::null())
+            .status();
+        child.wait().expect("ends");
+    }
+    assert!(command(&out).status().expect("runs").success());
+    same(&whole, &out);
+    assert_eq!(folder.names(), ["killed", "whole"]);
+}

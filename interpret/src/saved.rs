@@ -1,0 +1,100 @@
+//! What moves, written down and made again: the values that a trajectory keeps between its steps.
+
+use crate::library::Factor;
+use crate::value::Value;
+use clebsch::saved::{Saved, Words};
+use std::sync::Arc;
+
+/// Parts that change. The kind of a value does not, but for what may be there or not.
+impl Saved for Value<f64> {
+    fn words(&mut self, words: &mut Words) {
+        words.same(kind(self));
+        match self {
+            Value::Int(n) => {
+                let mut bits = n.cast_unsigned();
+                words.word(&mut bits);
+                *n = bits.cast_signed();
+            }
+            Value::Bool(b) => b.words(words),
+            Value::Real(x) | Value::Double(x) => x.words(words),
+            Value::Vector(v) | Value::Momentum(_, v) => v.words(words),
+            Value::Matrix(m) => m.words(words),
+            Value::Dense(a) | Value::Element(_, a) | Value::Impulse(_, a) => a.words(words),
+            Value::Rotation(r) => r.words(words),
+            Value::Quaternion(q) => q.words(words),
+            Value::Motion(g) => g.words(words),
+            Value::Plane(g) => g.words(words),
+            Value::Edge(edge) => edge.words(words),
+            Value::Poinsot(body) => Arc::make_mut(body).words(words),
+            Value::QuaternionBody(body) => Arc::make_mut(body).words(words),
+            Value::LeftFactor(factor) => factor.words(words),
+            Value::Free(free) => free.words(words),
+            Value::Struct(s) => all(&mut s.values, words),
+            Value::List(list) => all(list, words),
+            Value::Search(held) => held.words(words),
+            // As given with the trajectory, or nothing at all.
+            Value::Unit
+            | Value::None
+            | Value::Zeros
+            | Value::Text(_)
+            | Value::Method(_)
+            | Value::Order(_)
+            | Value::Domain(_)
+            | Value::Function(_)
+            | Value::Call(_) => {}
+            // No state or workspace holds these.
+            Value::Turned(_)
+            | Value::Residual(_)
+            | Value::Warning(_)
+            | Value::Part(..)
+            | Value::Failed(_) => words.refuse(),
+        }
+    }
+}
+
+/// The values of a list, whose number does not change.
+pub(crate) fn all(list: &mut [Value<f64>], words: &mut Words) {
+    words.same(list.len() as u64);
+    list.iter_mut().for_each(|value| value.words(words));
+}
+
+/// A number for each kind of value whose words differ.
+fn kind(value: &Value<f64>) -> u64 {
+    match value {
+        Value::Unit | Value::None => 0,
+        Value::Bool(_) => 1,
+        Value::Int(_) => 2,
+        Value::Real(_) | Value::Double(_) => 3,
+        Value::Vector(_) | Value::Momentum(..) => 4,
+        Value::Matrix(_) => 5,
+        Value::Dense(_) | Value::Element(..) | Value::Impulse(..) => 6,
+        Value::Zeros => 7,
+        Value::Rotation(_) => 8,
+        Value::Quaternion(_) => 9,
+        Value::Motion(_) => 10,
+        Value::Plane(_) => 11,
+        Value::Edge(_) => 12,
+        Value::Poinsot(_) => 13,
+        Value::QuaternionBody(_) => 14,
+        Value::LeftFactor(_) => 15,
+        Value::Free(_) => 16,
+        Value::Struct(_) => 17,
+        Value::List(_) => 18,
+        Value::Search(_) => 19,
+        _ => 20,
+    }
+}
+
+impl Saved for Factor<f64> {
+    fn words(&mut self, words: &mut Words) {
+        match self {
+            Factor::Two(f) => Arc::make_mut(f).words(words),
+            Factor::Three(f) => Arc::make_mut(f).words(words),
+            Factor::Four(f) => Arc::make_mut(f).words(words),
+            Factor::Five(f) => Arc::make_mut(f).words(words),
+            Factor::Six(f) => Arc::make_mut(f).words(words),
+            Factor::Seven(f) => Arc::make_mut(f).words(words),
+            Factor::Eight(f) => Arc::make_mut(f).words(words),
+        }
+    }
+}

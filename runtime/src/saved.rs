@@ -1,0 +1,231 @@
+//! What moves, as words of 64 bits: how a running trajectory is written down and made again to the last bit.
+//! Takes any value that changes from step to step; each type names its own parts once, in one order, which serves
+//! both directions, so that nothing can be written and not be read.
+
+use crate::linalg::Dense;
+use nalgebra::SMatrix;
+
+/// No list of numbers is longer: the square of the largest number of coordinates is far smaller.
+const LONGEST: usize = 1 << 24;
+
+/// The words of a value: gathered from it, or put back into another one of the same kind.
+#[derive(Clone, Debug)]
+pub struct Words {
+    list: Vec<u64>,
+    /// The next one to put back; `None` while they are gathered.
+    next: Option<usize>,
+    fits: bool,
+}
+
+impl Words {
+    /// For a value that is to be written down.
+    #[must_use]
+    pub fn gathered() -> Self {
+        Self {
+            list: Vec::new(),
+            next: None,
+            fits: true,
+        }
+    }
+
+    /// Those written down earlier, to be put back.
+    #[must_use]
+    pub fn given(list: Vec<u64>) -> Self {
+        Self {
+            list,
+            next: Some(0),
+            fits: true,
+        }
+    }
+
+    /// Whether they are put back.
+    #[must_use]
+    pub fn are_given(&self) -> bool {
+        self.next.is_some()
+    }
+
+    /// One word: noted, or replaced by the one that was.
+    pub fn word(&mut self, word: &mut u64) {
+        match &mut self.next {
+            None => self.list.push(*word),
+            Some(at) => {
+                match self.list.get(*at) {
+                    Some(known) => *word = *known,
+                    None => self.fits = false,
+                }
+                *at += 1;
+            }
+        }
+    }
+
+    /// A word that must be the same in the value that is written down and the one it is put back into: a length,
+    /// the kind of what follows.
+    pub fn same(&mut self, word: u64) {
+        let mut known = word;
+        self.word(&mut known);
+        self.fits &= known == word;
+    }
+
+    /// How many parts follow, at most `most` of them; that number when they are put back.
+    pub fn count(&mut self, count: usize, most: usize) -> usize {
+        let mut word = count as u64;
+        self.word(&mut word);
+        match usize::try_from(word) {
+            Ok(known) if known <= most => known,
+            _ => {
+                self.refuse();
+                count
+            }
+        }
+    }
+
+    /// This value cannot be written down, or does not take what was.
+    pub fn refuse(&mut self) {
+        self.fits = false;
+    }
+
+    /// The words gathered; none when something could not be written down.
+    #[must_use]
+    pub fn into_list(self) -> Option<Vec<u64>> {
+        self.fits.then_some(self.list)
+    }
+
+    /// Whether every word was put back, and each in its place.
+    #[must_use]
+    pub fn all_put(&self) -> bool {
+        self.fits && self.next == Some(self.list.len())
+    }
+}
+
+/// A value whose parts can be written down and put back, those that never change along a trajectory excepted:
+/// they are those of the trajectory, started anew from the same data, into which the others are put.
+pub trait Saved {
+    /// Meets all parts that change, always in the same order.
+    fn words(&mut self, words: &mut Words);
+}
+
+impl Saved for f64 {
+    fn words(&mut self, words: &mut Words) {
+        let mut bits = self.to_bits();
+        words.word(&mut bits);
+        *self = Self::from_bits(bits);
+    }
+}
+
+impl Saved for u64 {
+    fn words(&mut self, words: &mut Words) {
+        words.word(self);
+    }
+}
+
+impl Saved for u32 {
+    fn words(&mut self, words: &mut Words) {
+        let mut word = u64::from(*self);
+        words.word(&mut word);
+        match Self::try_from(word) {
+            Ok(known) => *self = known,
+            Err(_) => words.refuse(),
+        }
+    }
+}
+
+impl Saved for usize {
+    fn words(&mut self, words: &mut Words) {
+        *self = words.count(*self, Self::MAX);
+    }
+}
+
+impl Saved for bool {
+    fn words(&mut self, words: &mut Words) {
+        *self = words.count(usize::from(*self), 1) == 1;
+    }
+}
+
+impl<X: Saved, const N: usize> Saved for [X; N] {
+    fn words(&mut self, words: &mut Words) {
+        self.iter_mut().for_each(|x| x.words(words));
+    }
+}
+
+macro_rules! tuples {
+    ($(($($part:ident $index:tt),*))*) => {
+        $(impl<$($part: Saved),*> Saved for ($($part,)*) {
+            fn words(&mut self, words: &mut Words) {
+                $(self.$index.words(words);)*
+            }
+        })*
+    };
+}
+tuples!((A 0)(A 0, B 1)(A 0, B 1, C 2)(A 0, B 1, C 2, D 3)(A 0, B 1, C 2, D 3, E 4)(A 0, B 1, C 2, D 3, E 4, F 5));
+
+impl<X: Saved, const R: usize, const C: usize> Saved for SMatrix<X, R, C> {
+    fn words(&mut self, words: &mut Words) {
+        self.data.0.words(words);
+    }
+}
+
+/// Numbers of which there may be more or fewer than before.
+impl Saved for Vec<f64> {
+    fn words(&mut self, words: &mut Words) {
+        let count = words.count(self.len(), LONGEST);
+        self.resize(count, 0.0);
+        self.iter_mut().for_each(|x| x.words(words));
+    }
+}
+
+impl Saved for Dense<f64> {
+    fn words(&mut self, words: &mut Words) {
+        self.rows = words.count(self.rows, LONGEST);
+        self.cols = words.count(self.cols, LONGEST);
+        self.data.words(words);
+        if self.rows.checked_mul(self.cols) != Some(self.data.len()) {
+            words.refuse();
+        }
+    }
+}
+
+/// What was given with the trajectory does not change.
+macro_rules! given {
+    ($($Type:ty),*) => {
+        $(impl Saved for $Type {
+            fn words(&mut self, _: &mut Words) {}
+        })*
+    };
+}
+given!(
+    crate::solvers::Method,
+    crate::solvers::moser_veselov::Order,
+    crate::solvers::newton::Purpose,
+    core::marker::PhantomData<f64>
+);
+
+/// A value that may be there or not, put into one that is as it should be or made by `blank`.
+pub(crate) fn optional<X: Saved>(
+    value: &mut Option<X>,
+    words: &mut Words,
+    blank: impl FnOnce() -> Option<X>,
+) {
+    match (words.count(usize::from(value.is_some()), 1), &value) {
+        (0, _) => *value = None,
+        (_, None) => *value = blank(),
+        _ => {}
+    }
+    if let Some(value) = value {
+        value.words(words);
+    }
+}
+
+/// [`Saved`](crate::saved::Saved) for a struct over plain numbers, after const parameters in brackets; all fields are
+/// named. Emitted for the workspace of every model.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! saved {
+    ([$($size:ident)*] $name:ident { $($field:ident),* $(,)? }) => {
+        impl<$(const $size: usize),*> $crate::saved::Saved for $name<$($size,)* f64> {
+            fn words(&mut self, words: &mut $crate::saved::Words) {
+                let Self { $($field),* } = self;
+                $($crate::saved::Saved::words($field, words);)*
+            }
+        }
+    };
+}

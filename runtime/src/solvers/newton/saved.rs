@@ -1,0 +1,48 @@
+//! What a search remembers, written down and made again.
+
+use super::node::NodeValues;
+use super::{Search, Summary};
+use crate::groups::Group;
+use crate::saved::{Saved, Words};
+
+impl<G: Group<f64> + Saved, V: NodeValues + Saved, const D: usize> Saved for Search<f64, G, V, D> {
+    fn words(&mut self, words: &mut Words) {
+        let Self {
+            past,
+            newest,
+            known,
+            next,
+            weights,
+            weighed,
+            certificate,
+            factors,
+            unit,
+            age,
+            last,
+        } = self;
+        past.words(words);
+        *newest = words.count(*newest, super::REMEMBERED);
+        *known = words.count(*known, super::REMEMBERED);
+        next.words(words);
+        weights.words(words);
+        weighed.words(words);
+        certificate.words(words);
+        factors.words(words);
+        unit.words(words);
+        age.words(words);
+        last.words(words);
+    }
+}
+
+impl Saved for Summary {
+    fn words(&mut self, words: &mut Words) {
+        let Self {
+            tangents,
+            corrections,
+            residual,
+        } = self;
+        tangents.words(words);
+        corrections.words(words);
+        residual.words(words);
+    }
+}
