@@ -63,6 +63,19 @@ pub fn derive_lattice(
     Ok((unfolded, derived))
 }
 
+/// The beginning of the same.
+pub fn outline_lattice(
+    model: &Model,
+    line: &Lattice,
+    choice: &Choice,
+) -> Result<(Unfolded, derive::Outline), Errors> {
+    let unfolded = lattice::unfold(model, line, choice)?;
+    let _room = work::room(room(&unfolded));
+    let spec = check::check_written_out(&unfolded.model)?;
+    let outline = derive::outline(spec).map_err(Errors::first_at_each_place)?;
+    Ok((unfolded, outline))
+}
+
 /// The Rust items of a model, or compile errors on its tokens and empty items of the same names,
 /// so that one mistake does not cause more.
 pub fn expand(tokens: TokenStream) -> TokenStream {

@@ -221,6 +221,58 @@ pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
     }
 }
 
+/// What a derivation begins with: how everything varies, and the equations, without their proof and
+/// without what follows from them.
+#[derive(Clone, Debug)]
+pub struct Outline {
+    /// The reduced model.
+    pub spec: Spec,
+    /// Symbols of the model and of the derivation.
+    pub letters: Letters,
+    /// How every quantity varies, per configuration.
+    pub variations: Vec<variation::Variation>,
+    /// How advected quantities follow from the configuration.
+    pub transports: Vec<transport::Transport>,
+    /// The balance of every configuration.
+    pub balances: Vec<balance::Balance>,
+}
+
+/// The beginning of a derivation.
+pub fn outline(spec: Spec) -> Result<Outline, Errors> {
+    let _count = Count::begin();
+    let whole = place_of_most(&spec);
+    let spec = reduction::reduce(spec)?;
+    let letters = letters(&spec);
+    let algebra = Algebra::new(&letters.symbols);
+    let action = action::action(&spec);
+    let variations = variation::variations(&spec, &letters, &algebra)?;
+    let transports = transport::transports(&spec, &letters, &algebra)?;
+    let balances = balance::balances(&spec, &letters, &action, &variations, &algebra);
+    if work::exhausted() {
+        return Err(too_large(whole, work::excess()).into());
+    }
+    Ok(Outline {
+        spec,
+        letters,
+        variations,
+        transports,
+        balances,
+    })
+}
+
+impl Derivation {
+    /// What it began with.
+    pub fn outline(&self) -> Outline {
+        Outline {
+            spec: self.spec.clone(),
+            letters: self.letters.clone(),
+            variations: self.variations.clone(),
+            transports: self.transports.clone(),
+            balances: self.balances.clone(),
+        }
+    }
+}
+
 /// Where most of a Lagrangian stands: one term, if it is more than half of it, or all of them.
 fn place_of_most(spec: &Spec) -> Place {
     let largest = spec.terms.iter().max_by_key(|(e, _)| e.size());

@@ -12,8 +12,9 @@ use super::step::at;
 use crate::algebra::Rational;
 use crate::derive::Derivation;
 use crate::derive::recognise::Method;
-use crate::expr::symbol::Role;
+use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Function, Letter, Node, Shift};
+use crate::print::{Format, Style, expression};
 use crate::schedule;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
@@ -83,7 +84,12 @@ struct Guard {
 impl Guard {
     /// The function and its argument, as the runtime names them.
     fn call(&self, d: &Derivation) -> TokenStream {
-        let (function, argument) = (self.function.tokens(), text(d, &self.argument));
+        self.call_in(&text(d, &self.argument))
+    }
+
+    /// The same, its argument in these words.
+    fn call_in(&self, argument: &str) -> TokenStream {
+        let function = self.function.tokens();
         quote!(&domain::Call { function: #function, argument: #argument })
     }
 }
@@ -100,7 +106,7 @@ fn with_squares(d: &Derivation) -> Vec<Guard> {
     let lagrangian = [&d.spec.lagrangian, &d.action.edge, &d.action.nodal];
     let definitions = d.spec.advected.iter().filter_map(|a| a.definition.as_ref());
     for e in lagrangian.into_iter().chain(definitions) {
-        collect(d, e, &mut all);
+        collect(&d.letters.symbols, e, &mut all);
     }
     all
 }
@@ -111,22 +117,22 @@ fn of(d: &Derivation, place: Place) -> Vec<Guard> {
     all
 }
 
-fn collect(d: &Derivation, e: &Expr, all: &mut Vec<Guard>) {
+fn collect(s: &Symbols, e: &Expr, all: &mut Vec<Guard>) {
     match e.node() {
-        Node::Call(Function::Log, a) => guard(d, Domain::Positive, Named::Log, a, all),
+        Node::Call(Function::Log, a) => guard(s, Domain::Positive, Named::Log, a, all),
         Node::Power(a, q) => match (q.as_integer(), q.is_negative()) {
             (Some(_), false) => {}
-            (Some(_), true) => guard(d, Domain::NotZero, Named::Quotient, a, all),
-            (None, true) => guard(d, Domain::Positive, Named::Power, a, all),
+            (Some(_), true) => guard(s, Domain::NotZero, Named::Quotient, a, all),
+            (None, true) => guard(s, Domain::Positive, Named::Power, a, all),
             (None, false) if *q == Rational::HALF => {
-                guard(d, Domain::NotNegative, Named::Sqrt, a, all)
+                guard(s, Domain::NotNegative, Named::Sqrt, a, all)
             }
-            (None, false) => guard(d, Domain::NotNegative, Named::Power, a, all),
+            (None, false) => guard(s, Domain::NotNegative, Named::Power, a, all),
         },
-        Node::Quotient(_, b) => guard(d, Domain::NotZero, Named::Quotient, b, all),
-        Node::Inverse(a) if !expr::is_invertible(&d.letters.symbols, a) => {
+        Node::Quotient(_, b) => guard(s, Domain::NotZero, Named::Quotient, b, all),
+        Node::Inverse(a) if !expr::is_invertible(s, a) => {
             guard(
-                d,
+                s,
                 Domain::NotZero,
                 Named::Inverse,
                 &expr::det(a.clone()),
@@ -136,7 +142,7 @@ fn collect(d: &Derivation, e: &Expr, all: &mut Vec<Guard>) {
         _ => {}
     }
     for child in e.children() {
-        collect(d, child, all);
+        collect(s, child, all);
     }
 }
 
@@ -156,17 +162,16 @@ fn is_square(e: &Expr) -> bool {
     }
 }
 
-fn guard(d: &Derivation, domain: Domain, function: Named, argument: &Expr, all: &mut Vec<Guard>) {
+fn guard(s: &Symbols, domain: Domain, function: Named, argument: &Expr, all: &mut Vec<Guard>) {
     // A product is zero where a factor is.
     if let (Domain::NotZero, Node::Product(factors)) = (domain, argument.node())
         && factors.iter().all(|f| f.shape().is_scalar())
     {
         for f in factors {
-            guard(d, domain, function, f, all);
+            guard(s, domain, function, f, all);
         }
         return;
     }
-    let s = &d.letters.symbols;
     let letters = expr::letters(argument);
     let has = |role| letters.iter().any(|l| s.get(l.symbol).role == role);
     let place = if has(Role::Velocity) || letters.iter().any(|l| l.shift.time != 0) {
@@ -211,9 +216,10 @@ pub(super) struct Tested {
 
 /// What some expressions of a model ask of what stands at a node, and of parameters; none where they ask
 /// something of velocities.
-pub(super) fn tested(d: &Derivation, list: &[Expr]) -> Option<Vec<Tested>> {
+pub(super) fn tested(s: &Symbols, time_index: &str, list: &[Expr]) -> Option<Vec<Tested>> {
     let mut all = Vec::new();
-    list.iter().for_each(|e| collect(d, e, &mut all));
+    list.iter().for_each(|e| collect(s, e, &mut all));
+    let text = |e: &Expr| expression(e, s, &Style::new(time_index), Format::Text);
     all.retain(|g| !is_square(&g.argument));
     all.iter()
         .map(|g| {
@@ -221,8 +227,8 @@ pub(super) fn tested(d: &Derivation, list: &[Expr]) -> Option<Vec<Tested>> {
             admitted.then(|| Tested {
                 domain: g.domain.tokens(),
                 function: g.function.tokens(),
-                call: g.call(d),
-                text: text(d, &g.argument),
+                call: g.call_in(&text(&g.argument)),
+                text: text(&g.argument),
                 argument: g.argument.clone(),
                 constant: g.place == Place::Parameters,
             })

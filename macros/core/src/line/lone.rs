@@ -8,7 +8,7 @@ use crate::check::{self, spec::Side};
 use crate::derive::carry::Carry;
 use crate::derive::explicit::Explicit;
 use crate::derive::recognise::{MoserVeselov, Riccati};
-use crate::derive::{self, Derivation};
+use crate::derive::{self, Derivation, Outline};
 use crate::diagnostic::Errors;
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Letter, Shift};
@@ -24,6 +24,8 @@ pub struct Lone {
     pub sites: Sites,
     /// Its derivation, in the names of the model as stated.
     pub d: Derivation,
+    /// What that began with.
+    pub outline: Outline,
     /// Its configurations.
     pub movers: Vec<Mover>,
     /// Configurations whose velocities are found together, each by its number.
@@ -122,6 +124,7 @@ fn one(
     Ok(Lone {
         label,
         sites,
+        outline: d.outline(),
         d,
         movers,
         blocks,

@@ -17,7 +17,7 @@ pub use site::{BASE, Sited};
 pub use total::Total;
 
 use crate::algebra::Rational;
-use crate::derive::Derivation;
+use crate::derive::Outline;
 use crate::diagnostic::Errors;
 use crate::lattice::{Choice, Lattice, Unfolded};
 use crate::pipeline;
@@ -44,14 +44,14 @@ pub struct Line {
     pub shares: [Rational; 2],
 }
 
-/// One choice of sites and ends, written out and derived.
+/// One choice of sites and ends, written out.
 pub struct Written {
     /// The choice.
     pub choice: Choice,
     /// The model of as many bodies.
     pub unfolded: Unfolded,
-    /// Its derivation.
-    pub d: Derivation,
+    /// How its copies vary, and their equations.
+    pub d: Outline,
 }
 
 /// Why a model has no program for every number of sites: it is written out, body by body.
@@ -145,7 +145,7 @@ impl Line {
 }
 
 fn written(model: &Model, lattice: &Lattice, choice: Choice) -> Result<Written, Errors> {
-    let (unfolded, d) = pipeline::derive_lattice(model, lattice, &choice)?;
+    let (unfolded, d) = pipeline::outline_lattice(model, lattice, &choice)?;
     Ok(Written {
         choice,
         unfolded,

@@ -2,11 +2,14 @@
 //! the lattice that is written out; a quantity that is no such sum is left to it.
 
 use super::site::BASE;
-use super::{Refused, Written, written};
+use super::{Refused, Written};
 use crate::algebra::Algebra;
+use crate::derive::invariants::Invariant;
+use crate::document::default_choice;
 use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr, Node};
-use crate::lattice::{Choice, Lattice, Sites};
+use crate::lattice::{Lattice, Sites};
+use crate::pipeline;
 use crate::syntax::ast::Model;
 use std::collections::BTreeMap;
 
@@ -23,28 +26,30 @@ pub struct Total {
     pub densities: Vec<(usize, Sites, Expr)>,
 }
 
-/// The totals on a line with its first end conditions, and along a ring.
+/// The totals on the line that a case has by default: a ring where `periodic` stands alone, else the first
+/// end conditions.
 pub(super) fn totals(
     model: &Model,
     lattice: &Lattice,
     part: &Written,
 ) -> Result<Vec<Total>, Refused> {
-    let mut out = of_part(lattice, part, part);
-    if lattice.periodic.is_some() {
-        let ring: Choice = part.choice.clone().as_ring(lattice);
-        let ring = written(model, lattice, ring)?;
-        for total in of_part(lattice, &ring, part) {
-            match out.iter_mut().find(|t| t.name == total.name) {
-                Some(known) => known.on = format!("{}, and {}", known.on, total.on),
-                None => out.push(total),
-            }
-        }
-    }
-    Ok(out)
+    let choice = default_choice(lattice, part.choice.clone());
+    let (unfolded, d) = pipeline::derive_lattice(model, lattice, &choice)?;
+    let whole = Written {
+        choice,
+        unfolded,
+        d: d.outline(),
+    };
+    Ok(of_part(lattice, &whole, &d.invariants, part))
 }
 
 /// The totals of one lattice in the letters of another.
-fn of_part(lattice: &Lattice, part: &Written, base: &Written) -> Vec<Total> {
+fn of_part(
+    lattice: &Lattice,
+    part: &Written,
+    invariants: &[Invariant],
+    base: &Written,
+) -> Vec<Total> {
     let on = match part.choice.periodic {
         true => "along a ring".to_owned(),
         false if lattice.line.is_none() => "always".to_owned(),
@@ -59,7 +64,7 @@ fn of_part(lattice: &Lattice, part: &Written, base: &Written) -> Vec<Total> {
             }
         }
     };
-    let each = part.d.invariants.iter().filter_map(|v| {
+    let each = invariants.iter().filter_map(|v| {
         let value = v.value.as_ref()?;
         if !v.exact {
             return None;

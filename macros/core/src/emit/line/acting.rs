@@ -5,7 +5,6 @@ use super::locals::{Places, defined, step};
 use super::pulls::{field, front};
 use super::{Lines, Moving, number};
 use crate::algebra::Rational;
-use crate::derive::Derivation;
 use crate::emit::expression::program;
 use crate::expr::{self, Expr};
 use crate::line::How;
@@ -23,7 +22,8 @@ pub(super) enum Acting {
 
 /// What acts of the site itself at a node: at the end of the edge that comes, at the start of the one
 /// that leaves.
-fn own(d: &Derivation, m: &Moving) -> [Expr; 2] {
+fn own(m: &Moving) -> [Expr; 2] {
+    let d = m.outline();
     let s = &d.letters.symbols;
     let at_node = |e: &Expr| defined(d, &expr::shift_time(s, e, -1));
     match &m.mover.how {
@@ -39,7 +39,7 @@ fn own(d: &Derivation, m: &Moving) -> [Expr; 2] {
 impl Lines<'_> {
     /// Whether halves act: the shares are equal, of the site itself and of its neighbours.
     pub(super) fn acting(&self, m: &Moving) -> Acting {
-        let [arrive, leave] = own(m.d(), m);
+        let [arrive, leave] = own(m);
         let [before, after] = self.line.shares;
         match arrive == leave && before == after {
             true => Acting::Halves,
@@ -85,11 +85,11 @@ pub(super) fn acting(l: &Lines) -> TokenStream {
 }
 
 fn one(l: &Lines, m: Moving) -> TokenStream {
-    let d = m.d();
+    let d = m.outline();
     let s = &d.letters.symbols;
     let (kernel, places, pulls, t) = (kernel(&m), l.item("Places"), l.item("Pulls"), m.covector());
     let h = step(d);
-    let [arrive, leave] = own(d, &m);
+    let [arrive, leave] = own(&m);
     let halves = matches!(l.acting(&m), Acting::Halves);
     let wanted: Vec<Expr> = match halves {
         true => vec![crate::emit::forced::doubled(s, &leave)],
@@ -166,7 +166,7 @@ fn added(l: &Lines, m: Moving) -> TokenStream {
     let How::System { added, .. } = &m.mover.how else {
         return TokenStream::new();
     };
-    let d = m.d();
+    let d = m.outline();
     let s = &d.letters.symbols;
     let (kernel, places, t) = (edge_kernel(&m), l.item("Places"), m.covector());
     let h = step(d);

@@ -4,11 +4,11 @@
 use super::locals::{Places, defined, step};
 use super::pulls::{known, range_of};
 use super::{Lines, number};
-use crate::derive::Derivation;
+use crate::derive::{Derivation, Outline};
 use crate::emit::domain::{Tested, tested};
 use crate::emit::expression::program;
 use crate::expr::Expr;
-use crate::line::Line;
+use crate::line::{Line, Lone};
 use crate::schedule;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -26,7 +26,10 @@ struct Asked {
 
 /// Why no loop over sites tests what the model asks, if so.
 pub(in crate::emit) fn refusal(line: &Line) -> Option<String> {
-    let lone = line.lone.iter().map(|x| asked_of(&x.d, &lone_terms(&x.d)));
+    let lone = line
+        .lone
+        .iter()
+        .map(|x| asked_of(&x.outline, &lone_terms(x)));
     let part = &line.representative.d;
     let pulls = line
         .pulls
@@ -37,18 +40,19 @@ pub(in crate::emit) fn refusal(line: &Line) -> Option<String> {
     refused.then(|| "a function of velocities has a domain".to_owned())
 }
 
-fn lone_terms(d: &Derivation) -> Vec<Expr> {
+fn lone_terms(lone: &Lone) -> Vec<Expr> {
+    let d: &Derivation = &lone.d;
     let definitions = d.spec.advected.iter().filter_map(|a| a.definition.clone());
     let terms = [d.action.edge.clone(), d.action.nodal.clone()];
     terms
         .into_iter()
         .chain(definitions)
-        .map(|e| defined(d, &e))
+        .map(|e| defined(&lone.outline, &e))
         .collect()
 }
 
-fn asked_of(d: &Derivation, list: &[Expr]) -> Option<Vec<Tested>> {
-    tested(d, list)
+fn asked_of(d: &Outline, list: &[Expr]) -> Option<Vec<Tested>> {
+    tested(&d.letters.symbols, &d.spec.time_index, list)
 }
 
 fn asked(l: &Lines) -> Vec<Asked> {
@@ -63,8 +67,8 @@ fn asked(l: &Lines) -> Vec<Asked> {
         tests
     };
     for lone in &l.line.lone {
-        let d = &lone.d;
-        let tests = at_nodes(asked_of(d, &lone_terms(d)));
+        let d = &lone.outline;
+        let tests = at_nodes(asked_of(d, &lone_terms(lone)));
         let Some(first) = lone.movers.first().filter(|_| !tests.is_empty()) else {
             continue;
         };
@@ -149,7 +153,7 @@ pub(super) fn of_parameters(l: &Lines) -> TokenStream {
     let mut out = TokenStream::new();
     let mut seen: Vec<String> = Vec::new();
     let part = &l.line.representative.d;
-    let mut each = |d: &Derivation, list: &[Expr]| {
+    let mut each = |d: &Outline, list: &[Expr]| {
         for t in asked_of(d, list)
             .unwrap_or_default()
             .iter()
@@ -177,7 +181,7 @@ pub(super) fn of_parameters(l: &Lines) -> TokenStream {
         }
     };
     for lone in &l.line.lone {
-        each(&lone.d, &lone_terms(&lone.d));
+        each(&lone.outline, &lone_terms(lone));
     }
     for pull in &l.line.pulls {
         each(part, std::slice::from_ref(&pull.terms));

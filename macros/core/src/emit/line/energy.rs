@@ -116,9 +116,9 @@ fn of_site(l: &Lines, lone: &Lone, limit: &Limit) -> TokenStream {
     let d = &lone.d;
     let limit = Limit {
         lagrangian: limit.lagrangian.clone(),
-        potential: defined(d, &limit.potential),
-        linear: defined(d, &limit.linear),
-        kinetic: defined(d, &limit.kinetic),
+        potential: defined(&lone.outline, &limit.potential),
+        linear: defined(&lone.outline, &limit.linear),
+        kinetic: defined(&lone.outline, &limit.kinetic),
     };
     let values = [
         limit.potential.clone(),
@@ -129,7 +129,7 @@ fn of_site(l: &Lines, lone: &Lone, limit: &Limit) -> TokenStream {
         here: quote!(at),
         next: quote!(at),
     };
-    let letters = l.of_site(d, &values);
+    let letters = l.of_site(&lone.outline, &values);
     let roles = letters.into_iter().filter(|k| {
         let role = d.letters.symbols.get(k.letter.symbol).role;
         role != crate::expr::symbol::Role::Variation

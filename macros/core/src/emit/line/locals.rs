@@ -1,7 +1,7 @@
 //! The locals with which a kernel begins: what its expressions read of parameters and places.
 
 use super::{Lines, number};
-use crate::derive::Derivation;
+use crate::derive::Outline;
 use crate::derive::transport::Transport;
 use crate::emit::expression::Bindings;
 use crate::emit::names::{local_name, variable};
@@ -82,7 +82,7 @@ impl Lines<'_> {
     }
 
     /// The letters of expressions of one site.
-    pub(super) fn of_site(&self, d: &Derivation, list: &[Expr]) -> Vec<Known> {
+    pub(super) fn of_site(&self, d: &Outline, list: &[Expr]) -> Vec<Known> {
         let s = &d.letters.symbols;
         let letters = crate::emit::items::letters_of(list);
         let known = letters.into_iter().map(|letter| {
@@ -95,7 +95,7 @@ impl Lines<'_> {
 }
 
 /// With advected quantities by the configurations that carry them, at both ends of the edge.
-pub(super) fn defined(d: &Derivation, e: &Expr) -> Expr {
+pub(super) fn defined(d: &Outline, e: &Expr) -> Expr {
     let s = &d.letters.symbols;
     let mut list: Vec<(Letter, Expr)> = Vec::new();
     for (a, t) in d.spec.advected.iter().zip(&d.transports) {
@@ -117,6 +117,6 @@ pub(super) fn defined(d: &Derivation, e: &Expr) -> Expr {
 }
 
 /// The name of the step as a local.
-pub(super) fn step(d: &Derivation) -> proc_macro2::Ident {
+pub(super) fn step(d: &Outline) -> proc_macro2::Ident {
     variable(&d.letters.symbols, d.spec.step)
 }

@@ -14,7 +14,7 @@ mod solved;
 mod state;
 mod step;
 
-use crate::derive::Derivation;
+use crate::derive::{Derivation, Outline};
 use crate::groups::Kept;
 use crate::lattice::{Kind, Sites};
 use crate::line::{How, Line, Lone, Mover};
@@ -73,6 +73,10 @@ struct Moving<'a> {
 impl Moving<'_> {
     fn d(&self) -> &Derivation {
         &self.lone.d
+    }
+
+    fn outline(&self) -> &Outline {
+        &self.lone.outline
     }
 
     fn name(&self) -> Ident {

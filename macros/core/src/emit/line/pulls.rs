@@ -10,6 +10,7 @@ use crate::emit::names::variable;
 use crate::expr::Expr;
 use crate::expr::symbol::Symbols;
 use crate::line::Pull;
+use crate::print::{Format, Style, expression};
 use crate::schedule;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
@@ -124,7 +125,9 @@ pub(super) fn computed(
 
 /// The terms of a pull, letters seen from their first site.
 fn term_text(l: &Lines, pull: &Pull) -> String {
-    crate::emit::items::text(&l.line.representative.d, &pull.terms)
+    let d = &l.line.representative.d;
+    let style = Style::new(&d.spec.time_index);
+    expression(&pull.terms, &d.letters.symbols, &style, Format::Text)
 }
 
 /// Letters of a term of neighbours.

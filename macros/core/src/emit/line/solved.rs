@@ -65,7 +65,7 @@ pub(super) fn kernel(m: &Moving) -> Ident {
 fn rotation(l: &Lines, m: Moving) -> TokenStream {
     let (kernel, places, name) = (kernel(&m), l.item("Places"), m.name());
     let factor = format_ident!("factor_{}", m.mover.name);
-    let h = step(m.d());
+    let h = step(m.outline());
     let doc = format!(
         " `{}` where the edge that leaves a site ends.",
         m.mover.name
@@ -84,7 +84,7 @@ fn rotation(l: &Lines, m: Moving) -> TokenStream {
 }
 
 fn field(l: &Lines, m: Moving, factors: &[&Expr; 2]) -> TokenStream {
-    let d = m.d();
+    let d = m.outline();
     let s = &d.letters.symbols;
     let (kernel, places, name, t) = (kernel(&m), l.item("Places"), m.name(), m.covector());
     let h = step(d);
@@ -109,7 +109,7 @@ fn field(l: &Lines, m: Moving, factors: &[&Expr; 2]) -> TokenStream {
         false => quote!(*edge),
     };
     let index = m.mover.index;
-    let solution = linear_solution(d, index, form, left.clone(), known, right.clone());
+    let solution = linear_solution(m.d(), index, form, left.clone(), known, right.clone());
     let doc = format!(
         " `{}` where the edge that leaves a site ends.",
         m.mover.name
@@ -133,7 +133,7 @@ fn system(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
     let Some(first) = members.first() else {
         return TokenStream::new();
     };
-    let d = first.d();
+    let d = first.outline();
     let s = &d.letters.symbols;
     let (kernel, places, edges) = (kernel(first), l.item("Places"), l.item("Edges"));
     let h = step(d);
