@@ -35,8 +35,11 @@ const RUNS: [&[&str]; 6] = [
     &["LATTICE", "--steps", "300", "--every", "4"],
 ];
 
-/// How many kills a run is given before it is left to end.
-const KILLS: u32 = 6;
+/// How many kills a run is given before it is left to end: `CLEBSCH_KILLS`, or few.
+fn kills() -> u32 {
+    let asked = std::env::var("CLEBSCH_KILLS").ok();
+    asked.and_then(|text| text.parse().ok()).unwrap_or(6)
+}
 
 fn lattice() -> String {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/lattices/");
@@ -114,6 +117,9 @@ fn random(seed: &mut u64) -> f64 {
 fn killed_and_resumed(signals: &[&str]) {
     let folder = Folder::new(&format!("resumed{}", signals.concat()));
     let mut seed = 7;
+    // Together they take somewhat longer than the run.
+    let most = 3.0 / f64::from(kills());
+    let mut all = 0;
     for (number, arguments) in RUNS.iter().enumerate() {
         let what = arguments.join(" ");
         let whole = folder.path(&format!("whole-{number}"));
@@ -127,14 +133,16 @@ fn killed_and_resumed(signals: &[&str]) {
         let length = from.elapsed();
         let out = folder.path(&format!("killed-{number}"));
         let mut stopped = 0;
-        for kill in 0..KILLS {
+        let kills = kills();
+        for kill in 0..kills {
             let mut child = begun(arguments, &out, &["--resume", "--checkpoint", "0.001"]);
-            std::thread::sleep(length.mul_f64(random(&mut seed)));
+            std::thread::sleep(length.mul_f64(most * random(&mut seed)));
             send(signals[kill as usize % signals.len()], &child);
             let status = child.wait().expect("ends");
             stopped += u32::from(!status.success());
         }
-        println!("{what}: {stopped} of {KILLS} kills met it at work");
+        println!("{what}: {stopped} of {kills} kills met it at work");
+        all += stopped;
         let done = run(arguments, &out, &["--resume"]);
         assert!(
             done.status.success(),
@@ -144,6 +152,7 @@ fn killed_and_resumed(signals: &[&str]) {
         same(&whole, &out, &what);
     }
     assert_eq!(folder.names().len(), 2 * RUNS.len(), "{:?}", folder.names());
+    assert!(all as usize >= RUNS.len(), "{all} kills met a run at work");
 }
 
 #[test]

@@ -84,6 +84,8 @@ impl Staging {
         known: &[&'static str],
         identity: &Identity,
     ) -> Result<Found, Failure> {
+        // A run that was killed while it took its name leaves it empty.
+        let _ = fs::remove_dir(target);
         let standing = target.exists();
         let mut candidates = Self::partial_folders(target);
         if standing && has_checkpoint(target) {
@@ -160,6 +162,12 @@ impl Staging {
         }
         interrupted::begin(&staging.hidden, &[]);
         interrupted::keep(&staging.hidden);
+        // What others left that cannot be gone on with.
+        let mut others = Self::abandoned(target);
+        others.retain(|folder| !has_checkpoint(folder));
+        for folder in others {
+            let _ = staging.remove_if_abandoned(&folder);
+        }
         Ok(staging)
     }
 
