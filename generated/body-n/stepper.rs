@@ -276,9 +276,10 @@ pub mod body_n {
             let Ω_before = before.Λ.body_velocity(&here.Λ).matrix();
             let Ω = here.Λ.body_velocity(&after.Λ).matrix();
             let t1 = h.powi(-1);
+            let t2 = C.tr_mul(&Ω_before) * t1;
+            let t3 = C * Ω.transpose() * t1;
             let parts: [SMatrix<T, N, N>; 1] = [
-                C.tr_mul(&Ω_before) * t1 - Ω_before.tr_mul(&C) * t1
-                    + C * Ω.transpose() * t1 - Ω * C.transpose() * t1,
+                t2 - t2.transpose() + t3 - t3.transpose(),
             ];
             {
                 let mut all = SVector::<T, 28>::zeros();
@@ -304,21 +305,18 @@ pub mod body_n {
             let BodyNParameters { C, .. } = self.parameters;
             let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
             let t1 = h.powi(-1);
-            let t2 = (t1 * t1).sqrt();
-            let t3 = (C.tr_mul(&C)).trace().sqrt();
-            let t4 = (Ω_matrix.tr_mul(&Ω_matrix)).trace().sqrt();
+            let t2 = C.tr_mul(&Ω_matrix) * t1;
+            let t3 = (t1 * t1).sqrt();
+            let t4 = (C.tr_mul(&C)).trace().sqrt();
+            let t5 = (Ω_matrix.tr_mul(&Ω_matrix)).trace().sqrt();
             let _ = h;
             [
                 {
                     let momentum = after.momentum.to_body(&after.Λ).0;
                     Residual {
-                        size: length(
-                                &(momentum
-                                    - (C.tr_mul(&Ω_matrix) * t1 - Ω_matrix.tr_mul(&C) * t1)),
-                            )
-                            .magnitude(),
+                        size: length(&(momentum - (t2 - t2.transpose()))).magnitude(),
                         scale: length(&momentum).magnitude()
-                            + (t2 * t3 * t4 + t2 * t4 * t3).magnitude(),
+                            + (t3 * t4 * t5 + t3 * t5 * t4).magnitude(),
                     }
                 },
             ]

@@ -194,10 +194,9 @@ pub mod kirchhoff_body {
                                     let t2 = M * t1 * T::from_f64(0.25)
                                         + D.tr_mul(&vee(&V_rot)) * T::from_f64(0.5);
                                     let t3 = SMatrix::<T, 3, 3>::identity() * V_rot.trace();
-                                    let t4 = t3 - V_rot.transpose();
-                                    let t5 = D.tr_mul(&(t3 - V_rot)) - crossing(&M, &V_pos);
-                                    let t6 = V_rot.transpose() + SMatrix::<T, 3, 3>::identity();
-                                    let t7 = V_rot + SMatrix::<T, 3, 3>::identity();
+                                    let t4 = D.tr_mul(&(t3 - V_rot)) - crossing(&M, &V_pos);
+                                    let t5 = V_rot.transpose() + SMatrix::<T, 3, 3>::identity();
+                                    let t6 = t4.tr_mul(&t5) * T::from_f64(0.25);
                                     assembled::<
                                         T,
                                         2,
@@ -205,18 +204,21 @@ pub mod kirchhoff_body {
                                     >(
                                         &[
                                             [
-                                                crossing(&(hat(&t2) - t4 * D * T::from_f64(0.25)), &V_pos)
-                                                    + V_rot * ((-(hat(&(D * t1)) * T::from_f64(0.25))) - J)
-                                                    + crossed(&V_pos, &t5) * T::from_f64(0.25)
+                                                crossing(
+                                                    &(hat(&t2)
+                                                        - (t3 - V_rot.transpose()) * D * T::from_f64(0.25)),
+                                                    &V_pos,
+                                                ) + V_rot * ((-(hat(&(D * t1)) * T::from_f64(0.25))) - J)
+                                                    + crossed(&V_pos, &t4) * T::from_f64(0.25)
                                                     + SMatrix::<T, 3, 3>::identity()
                                                         * (T::from_f64(0.25) * (crossing(&V_rot, &(D * t1))).trace()
                                                             + (V_rot * J).trace()),
-                                                (crossed(&V_pos, &M) + t4 * D) * t6 * T::from_f64(0.25)
-                                                    - hat(&t2),
+                                                t6 - hat(&t2),
                                             ],
                                             [
-                                                t7 * t5 * T::from_f64(0.25) - hat(&(V_rot * t2)),
-                                                t7 * (M * t6) * T::from_f64(0.25),
+                                                t6.transpose() - hat(&(V_rot * t2)),
+                                                (V_rot + SMatrix::<T, 3, 3>::identity()) * (M * t5)
+                                                    * T::from_f64(0.25),
                                             ],
                                         ],
                                     )

@@ -324,6 +324,12 @@ pub fn power(a: Expr, q: Rational) -> Expr {
     make(Node::Power(a, q), Shape::SCALAR)
 }
 
+/// The transpose of what is computed elsewhere: it is not taken into sums and products.
+pub fn transposed(a: Expr) -> Expr {
+    let shape = a.shape().transposed();
+    make(Node::Transpose(a), shape)
+}
+
 /// The transpose, moved to the leaves.
 pub fn transpose(symbols: &Symbols, a: Expr) -> Expr {
     let shape = a.shape();

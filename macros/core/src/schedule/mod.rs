@@ -5,6 +5,7 @@ mod chain;
 mod known;
 mod program;
 mod rest;
+mod transposed;
 mod work;
 
 pub use chain::{Bracketed, associate};

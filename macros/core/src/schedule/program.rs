@@ -23,6 +23,7 @@ pub fn program(symbols: &Symbols, results: &[Expr], prefix: &str) -> Program {
         .iter()
         .map(|r| super::rest::displaced(symbols, &expr::without_adjugates(symbols, r)))
         .collect();
+    let results = super::transposed::aligned(symbols, &results);
     let mut uses: HashMap<Expr, usize> = HashMap::new();
     for r in &results {
         count(symbols, r, &mut uses);

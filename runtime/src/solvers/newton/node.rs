@@ -4,7 +4,7 @@
 
 use crate::Real;
 use crate::saved::{Saved, Words};
-use crate::scalar::{Enclosure, OfScalars, largest};
+use crate::scalar::{Enclosure, OfScalars, larger, largest};
 use nalgebra::SMatrix;
 
 /// How far the values of a node may be from those at hand for a proof to hold.
@@ -139,15 +139,17 @@ impl<T: Real, const R: usize, const C: usize> NodeValues for SMatrix<T, R, C> {
     fn is_near(&self, others: &Self, spread: Spread) -> bool {
         let mut near = true;
         for lane in 0..T::LANES {
-            let (mut most, mut off) = (0.0, 0.0);
-            for (x, y) in self.iter().zip(others) {
-                let (x, y) = (x.lane(lane), y.lane(lane));
-                let (size, change) = (y.abs(), (x - y).abs());
-                most = if size > most { size } else { most };
-                // NaN must not hide.
-                off = if change <= off { off } else { change };
+            let mut most = [0.0; R];
+            for other in &others.data.0 {
+                for (most, y) in most.iter_mut().zip(other) {
+                    *most = larger(*most, y.lane(lane).abs());
+                }
             }
-            near &= off <= spread.share * most;
+            let most = spread.share * most.into_iter().fold(0.0, larger);
+            // Every entry by itself: NaN is not near.
+            for (x, y) in self.iter().zip(others) {
+                near &= (x.lane(lane) - y.lane(lane)).abs() <= most;
+            }
         }
         near
     }

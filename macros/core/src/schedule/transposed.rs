@@ -1,0 +1,164 @@
+//! Matrices that are one another's transposes, in whatever order their terms stand, are computed once.
+//! Takes expressions that are computed together; gives equal ones in which the later of two such matrices is
+//! written as the transpose of the earlier one.
+
+use crate::expr::symbol::Symbols;
+use crate::expr::{self, Expr, Node};
+use std::collections::HashMap;
+
+/// The same expressions with products of matrices, and sums of such, that were met transposed.
+pub fn aligned(symbols: &Symbols, results: &[Expr]) -> Vec<Expr> {
+    let mut met = Met {
+        symbols,
+        numbers: HashMap::new(),
+        first: HashMap::new(),
+        done: HashMap::new(),
+    };
+    results.iter().map(|e| met.align(e)).collect()
+}
+
+struct Met<'a> {
+    symbols: &'a Symbols,
+    /// A number for each term, in the order in which they were met.
+    numbers: HashMap<Expr, usize>,
+    /// What was met first, by the numbers of its terms in rising order.
+    first: HashMap<Vec<usize>, Expr>,
+    done: HashMap<Expr, Expr>,
+}
+
+impl Met<'_> {
+    fn align(&mut self, e: &Expr) -> Expr {
+        if let Some(known) = self.done.get(e) {
+            return known.clone();
+        }
+        let inner = match super::rest::is_difference(self.symbols, e) {
+            true => e.clone(),
+            false => {
+                let children: Vec<Expr> = e.children().into_iter().cloned().collect();
+                for c in &children {
+                    self.align(c);
+                }
+                let done = &self.done;
+                expr::rebuild(self.symbols, e, &mut |c| {
+                    done.get(c).cloned().unwrap_or_else(|| c.clone())
+                })
+            }
+        };
+        let out = match multiplies(&inner) {
+            true => self.known(inner),
+            false => inner,
+        };
+        self.done.insert(e.clone(), out.clone());
+        out
+    }
+
+    /// The transpose of what was met first, where this is that; else this.
+    fn known(&mut self, e: Expr) -> Expr {
+        if let Some(found) = self.met_transposed(&e) {
+            return found;
+        }
+        let own = self.key(&e);
+        self.first.entry(own).or_insert_with(|| e.clone());
+        e
+    }
+
+    fn met_transposed(&mut self, e: &Expr) -> Option<Expr> {
+        let (own, turned) = (self.key(e), self.turned(e));
+        let turned = self.key(&turned);
+        let first = self.first.get(&turned).filter(|_| own != turned)?;
+        Some(expr::transposed(first.clone()))
+    }
+
+    /// The transpose of a sum or a product, in whose terms what is computed by itself stays whole.
+    fn turned(&self, e: &Expr) -> Expr {
+        match e.node() {
+            Node::Neg(a) => expr::neg(self.turned(a)),
+            Node::Sum(terms) => {
+                let shape = e.shape().transposed();
+                expr::sum(terms.iter().map(|t| self.turned(t)), shape)
+            }
+            Node::Product(factors) => {
+                let whole = |f: &Expr| match (f.node(), multiplies(f)) {
+                    (Node::Transpose(a), _) => a.clone(),
+                    (_, true) => expr::transposed(f.clone()),
+                    _ => expr::transpose(self.symbols, f.clone()),
+                };
+                expr::product(factors.iter().rev().map(whole))
+            }
+            _ => expr::transpose(self.symbols, e.clone()),
+        }
+    }
+
+    fn key(&mut self, e: &Expr) -> Vec<usize> {
+        let terms = match e.node() {
+            Node::Sum(terms) => terms.as_slice(),
+            _ => std::slice::from_ref(e),
+        };
+        let mut key: Vec<usize> = Vec::with_capacity(terms.len());
+        for term in terms {
+            let next = self.numbers.len();
+            key.push(*self.numbers.entry(term.clone()).or_insert(next));
+        }
+        key.sort_unstable();
+        key
+    }
+}
+
+/// Whether this is a matrix that is computed as a product of matrices, or a sum with such a product.
+fn multiplies(e: &Expr) -> bool {
+    let is_matrix = |e: &Expr| !e.shape().is_scalar() && !e.shape().is_vector();
+    let product = |e: &Expr| match e.node() {
+        Node::Product(factors) => factors.iter().filter(|f| is_matrix(f)).count() > 1,
+        _ => false,
+    };
+    let of_term = |t: &Expr| match t.node() {
+        Node::Neg(a) => product(a),
+        _ => product(t),
+    };
+    is_matrix(e)
+        && e.shape().rows != crate::expr::shape::Dim::Fixed(1)
+        && match e.node() {
+            Node::Sum(terms) => terms.iter().any(of_term),
+            _ => product(e),
+        }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::shape::{Dim, Shape, Structure};
+    use crate::expr::symbol::Role;
+
+    #[test]
+    fn a_transpose_is_computed_once() {
+        let mut symbols = Symbols::default();
+        let mut letter = |name: &str| {
+            let shape = Shape::square(Dim::Fixed(3));
+            let id = symbols.add(name, shape, Structure::General, Role::Derived);
+            expr::here(&symbols, id)
+        };
+        let (a, b, c) = (letter("A"), letter("B"), letter("C"));
+        let turned = |e: &Expr| expr::transpose(&symbols, e.clone());
+        let work = |list: &[Expr]| super::super::work(&super::super::program(&symbols, list, "t"));
+        let sum = expr::add(expr::mul(a.clone(), b.clone()), c.clone());
+        // The same in another order.
+        let back = expr::add(turned(&c), expr::mul(turned(&b), turned(&a)));
+        assert_eq!(work(std::slice::from_ref(&sum)), 45 + 9);
+        assert_eq!(work(&[sum.clone(), back.clone()]), 45 + 9);
+        let both = expr::mul(sum.clone(), a.clone());
+        assert_eq!(
+            work(&[both, expr::mul(turned(&a), back.clone())]),
+            45 + 9 + 45
+        );
+        // A factor that is met transposed itself.
+        let far = expr::mul(turned(&a), expr::mul(back, b.clone()));
+        let near = expr::mul(turned(&b), expr::mul(sum.clone(), a.clone()));
+        assert_eq!(work(&[far, near]), 45 + 9 + 90);
+        // Another sum is not the transpose.
+        let other = expr::add(turned(&c), expr::mul(turned(&a), turned(&b)));
+        assert_eq!(work(&[sum, other]), 2 * (45 + 9));
+        // What is symmetric is its own.
+        let square = expr::mul(a.clone(), turned(&a));
+        assert_eq!(aligned(&symbols, &[square.clone()]), [square]);
+    }
+}
