@@ -72,7 +72,7 @@ fn of_part(
         let densities = densities(lattice, part, value)?;
         let moved = densities
             .into_iter()
-            .map(|(label, sites, e)| Some((label, sites, part.into_letters_of(base, &e)?)));
+            .map(|(label, sites, e)| Some((label, sites, part.in_letters_of(base, &e)?)));
         Some(Total {
             name: plain(part, &v.name),
             reason: v.reason.clone(),
@@ -193,7 +193,7 @@ fn terms(part: &Written, e: &Expr) -> Vec<Expr> {
 
 impl Written {
     /// An expression in the letters of another lattice of the same model, copies of equal sites.
-    fn into_letters_of(&self, other: &Written, e: &Expr) -> Option<Expr> {
+    fn in_letters_of(&self, other: &Written, e: &Expr) -> Option<Expr> {
         let (own, s) = (&self.d.letters.symbols, &other.d.letters.symbols);
         let there = |id: SymbolId| match self.sited(id) {
             Some(at) => other.copy(&at.of, at.site),
