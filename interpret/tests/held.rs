@@ -153,6 +153,6 @@ fn shapes_held_in_space() {
     let moments = [0.5, 0.0, 0.0, 0.0, 0.7, 0.0, 0.0, 0.0, 0.8];
     let parameters: [&[f64]; 3] = [&ONE, &moments, &[0.4]];
     // A turn: C0 g I0 with g skew.
-    let momentum = [0.0, -0.14, 0.0, 0.1, 0.0, 0.08, 0.0, -0.07, 0.0];
+    let momentum = [0.0, -0.14, 0.08, 0.1, 0.0, 0.08, -0.05, -0.07, 0.0];
     both(&Shape::CARD, &case(0.02, &parameters, &[&ONE, &momentum]));
 }

@@ -263,7 +263,7 @@ fn update(d: &Derivation, names: &Names, i: usize, value: TokenStream) -> TokenS
                 state.#rest = #left;
             }
         }
-        None => quote!(state.#field = #kind(state.#field.0 - #kick);),
+        None => quote!(state.#field = #kind(state.#field.0 - (#kick));),
     }
 }
 
