@@ -12,6 +12,8 @@ pub struct Program {
     pub structs: BTreeMap<String, Vec<(String, syn::Type)>>,
     /// Functions by type and name; those of a trait have its name before theirs.
     pub functions: BTreeMap<(String, String), syn::ImplItemFn>,
+    /// Functions that the model is given: the path of each by its name in the model.
+    pub given: BTreeMap<String, String>,
     /// Types that have a name of their own.
     pub aliases: BTreeMap<String, syn::Type>,
     /// Constants by type and name.
@@ -50,8 +52,23 @@ impl Program {
                     self.aliases.insert(item.ident.to_string(), *item.ty);
                 }
                 syn::Item::Impl(item) => self.take_impl(item),
+                syn::Item::Use(item) => self.take_use(&item.tree, String::new()),
                 _ => {}
             }
+        }
+    }
+
+    /// A path under another name.
+    fn take_use(&mut self, tree: &syn::UseTree, before: String) {
+        match tree {
+            syn::UseTree::Path(p) => {
+                self.take_use(&p.tree, format!("{before}{}::", p.ident));
+            }
+            syn::UseTree::Rename(r) => {
+                let path = format!("{before}{}", r.ident);
+                self.given.insert(r.rename.to_string(), path);
+            }
+            _ => {}
         }
     }
 

@@ -105,6 +105,31 @@ pub enum Problem {
         /// The assumption as the model writes it.
         text: &'static str,
     },
+    /// The configuration at the start is off a held constraint.
+    OffConstraint {
+        /// The constraint as the model writes it.
+        equation: &'static str,
+        /// The left side less the right one.
+        size: f64,
+        /// The size of its terms.
+        scale: f64,
+    },
+    /// The momentum at the start moves the configuration off a held constraint.
+    AcrossConstraint {
+        /// The constraint as the model writes it.
+        equation: &'static str,
+        /// How much of the derivative of the left side less the right one it holds.
+        impulse: f64,
+        /// The size of what all constraints take from the momentum.
+        taken: f64,
+        /// The size of the momentum.
+        whole: f64,
+    },
+    /// Constraints are not independent where the motion starts.
+    DependentConstraints {
+        /// One of them.
+        equation: &'static str,
+    },
     /// A function of parameters is not defined there.
     OutsideDomain {
         /// The function.
@@ -173,6 +198,31 @@ impl fmt::Display for Problem {
                 write!(f, "{value:e} is too small: its inverse is infinite")
             }
             Self::AssumptionFails { text } => write!(f, "the assumption `{text}` does not hold"),
+            Self::OffConstraint {
+                equation,
+                size,
+                scale,
+            } => write!(
+                f,
+                "the initial configuration is off the constraint `{equation}`: the left side less the right one is \
+                 {size:e}, of terms of size {scale:e}"
+            ),
+            Self::AcrossConstraint {
+                equation,
+                impulse,
+                taken,
+                whole,
+            } => write!(
+                f,
+                "the initial momentum would move the configuration off the constraint `{equation}`: {taken:e} of its \
+                 size {whole:e} are along the reactions, of this one {impulse} times the derivative of the left side \
+                 less the right one"
+            ),
+            Self::DependentConstraints { equation } => write!(
+                f,
+                "the reaction of `{equation}` is not determined: at the initial configuration its derivative vanishes \
+                 or is a combination of those of other constraints"
+            ),
             Self::OutsideDomain {
                 function,
                 domain,

@@ -15,6 +15,7 @@ pub mod card;
 pub mod domain;
 pub mod emitted;
 pub mod error;
+pub mod functions;
 pub mod groups;
 pub mod integrate;
 pub mod kinetic;

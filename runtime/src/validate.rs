@@ -1,6 +1,10 @@
 //! Checks of parameters and initial values, as emitted constructors call them.
 //! Takes a name and a value; gives nothing, or a [`ParameterError`] with the offending numbers.
 
+mod constraints;
+
+pub use constraints::{along_constraint, on_constraint};
+
 use crate::domain::{Domain, Function};
 use crate::linalg::{
     Dense, Homogeneous, left_multiplication, quaternion_imaginary, quaternion_real,

@@ -4,6 +4,7 @@
 mod case_files;
 mod common;
 mod comparisons;
+mod elastic;
 mod exit_codes;
 mod figures;
 mod lattices;

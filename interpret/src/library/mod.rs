@@ -2,6 +2,7 @@
 
 mod algebra;
 mod domain;
+mod functions;
 pub(crate) mod groups;
 mod momenta;
 mod solvers;
@@ -66,6 +67,7 @@ pub fn inner<T: Real>(value: &Value<T>) -> Option<Value<T>> {
 /// counts what it is a method of.
 pub fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
     algebra::native(name, arguments)
+        .or_else(|| functions::native(name, arguments))
         .or_else(|| groups::native(name, arguments))
         .or_else(|| momenta::native(name, arguments))
         .or_else(|| solvers::native(name, arguments))
@@ -75,7 +77,9 @@ pub fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
 
 /// The same of those that residuals and tangents call: no solver, no element is moved.
 pub fn kernel<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
-    algebra::native(name, arguments).or_else(|| groups::native(name, arguments))
+    algebra::native(name, arguments)
+        .or_else(|| functions::native(name, arguments))
+        .or_else(|| groups::native(name, arguments))
 }
 
 /// The same for those that change their first argument, or call back.

@@ -93,6 +93,27 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             [Value::Bool(holds), Value::Text(label)] => told(validate::assumption(*holds, label)),
             _ => None,
         },
+        ("validate::on_constraint", 4) => |a, _| match a {
+            [
+                Value::Text(name),
+                Value::Text(equation),
+                Value::Real(value),
+                Value::Real(scale),
+            ] => told(validate::on_constraint(name, equation, *value, *scale)),
+            _ => None,
+        },
+        ("validate::along_constraint", 5) => |a, _| match a {
+            [
+                Value::Text(name),
+                Value::Text(equation),
+                Value::Real(impulse),
+                Value::Real(taken),
+                Value::Real(whole),
+            ] => told(validate::along_constraint(
+                name, equation, *impulse, *taken, *whole,
+            )),
+            _ => None,
+        },
         ("validate::inside", 4) => argument!(validate::inside),
         ("validate::defined", 4) => argument!(validate::defined),
         _ => return None,

@@ -205,10 +205,27 @@ impl<T: Lowered> Lower<'_, '_, T> {
         {
             return self.written_out(&owner, &name, Some(&m.receiver), m.args.iter());
         }
+        if let Some(path) = self.given(&m.receiver) {
+            let arguments = self.all(m.args.iter())?;
+            let missing = || Refused::Construct(format!("{path} by its {name}"));
+            return self
+                .native(&format!("{path}::{name}"), arguments, Vec::new())
+                .ok_or_else(missing);
+        }
         let receiver = self.expression(&m.receiver, None)?;
         let sizes = self.generics(m.turbofish.as_ref());
         self.runtime(&name, m.args.iter(), Some(receiver), sizes)?
             .ok_or_else(|| refuse(m))
+    }
+
+    /// The path of a function that the model is given, where an expression names one.
+    fn given(&self, e: &syn::Expr) -> Option<String> {
+        let syn::Expr::Path(p) = e else { return None };
+        let name = p.path.get_ident()?.to_string();
+        match self.find(&name) {
+            Some(_) => None,
+            None => self.shared.program.given.get(&name).cloned(),
+        }
     }
 
     /// A function of the model: its body, with the parameters standing for what is given. Those that

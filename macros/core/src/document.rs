@@ -4,6 +4,7 @@
 
 mod compose;
 mod folded;
+mod holds;
 mod lattice;
 mod motion;
 mod outlook;

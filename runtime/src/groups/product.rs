@@ -213,3 +213,6 @@ macro_rules! product_of {
 
 product_of!(A 0, B 1);
 product_of!(A 0, B 1, C 2);
+product_of!(A 0, B 1, C 2, D 3);
+product_of!(A 0, B 1, C 2, D 3, E 4);
+product_of!(A 0, B 1, C 2, D 3, E 4, F 5);

@@ -6,6 +6,7 @@ use super::shapes;
 use super::spec::{Dimension, Group};
 use crate::diagnostic::{Diagnostic, Errors, Place, closest};
 use crate::expr::Expr;
+use crate::expr::functional::{self, Functional};
 use crate::expr::shape::{Shape, Structure};
 use crate::expr::spelling::{seen, seen_typeset, twin};
 use crate::expr::symbol::{Role, SymbolId, Symbols, ascii};
@@ -57,6 +58,8 @@ pub struct Declared {
     pub parameter_places: Vec<Place>,
     pub configurations: Vec<DeclaredGroup>,
     pub advected: Vec<DeclaredAdvected>,
+    /// Fields that stand for the diagonal matrix of what they keep.
+    pub diagonal: Vec<SymbolId>,
     taken: Vec<Taken>,
     /// What is typeset, as a reader sees it: the name that says so, and where.
     typeset: Vec<(String, Name)>,
@@ -172,6 +175,7 @@ pub fn declare(model: &Model, errors: &mut Errors) -> Declared {
         parameter_places: Vec::new(),
         configurations: Vec::new(),
         advected: Vec::new(),
+        diagonal: Vec::new(),
         taken: Vec::new(),
         typeset: Vec::new(),
     };
@@ -262,7 +266,7 @@ impl Declared {
                 });
             }
             Statement::Field { names, shape, .. } => {
-                let Some(shape) = shapes::field(&self.symbols, shape, errors) else {
+                let Some((shape, diagonal)) = shapes::field(&self.symbols, shape, errors) else {
                     names.iter().for_each(|n| self.take(&n.text, n.place));
                     return;
                 };
@@ -274,6 +278,9 @@ impl Declared {
                         self.symbols
                             .add(&name.text, shape, Structure::General, Role::Element);
                     self.symbols.describe(element, name.latex(), docs);
+                    if diagonal {
+                        self.diagonal.push(element);
+                    }
                     self.configurations.push(DeclaredGroup {
                         element,
                         // Named when every name of the model is known.
@@ -309,9 +316,36 @@ impl Declared {
                     });
                 }
             }
+            Statement::Given {
+                name,
+                arguments,
+                value,
+                path,
+            } => {
+                let kind = |k, errors: &mut Errors| {
+                    let (shape, structure) = shapes::shape(&self.symbols, k, errors)?;
+                    Some(functional::Kind { shape, structure })
+                };
+                let arguments: Option<Vec<_>> = arguments.iter().map(|k| kind(k, errors)).collect();
+                let (Some(arguments), Some(value)) = (arguments, kind(value, errors)) else {
+                    self.take(&name.text, name.place);
+                    return;
+                };
+                if self.admit(name, errors) {
+                    self.symbols.add_functional(Functional {
+                        name: name.text.clone(),
+                        arguments,
+                        value,
+                        reach: functional::Reach::Point,
+                        path: path.text.clone(),
+                        typeset: name.latex(),
+                    });
+                }
+            }
             Statement::Time { .. }
             | Statement::Assume { .. }
             | Statement::Constraint { .. }
+            | Statement::Hold { .. }
             | Statement::Let { .. }
             | Statement::Scale(_)
             | Statement::Node(..)

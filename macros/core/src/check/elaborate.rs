@@ -4,6 +4,7 @@
 mod components;
 mod domains;
 mod functions;
+mod given;
 mod names;
 mod products;
 
@@ -163,7 +164,11 @@ impl<'a> Elaborator<'a> {
                     return Some(value.shape());
                 }
                 if let Some(id) = self.names.symbols.find(n) {
-                    return Some(self.names.symbols.get(id).shape);
+                    let shape = self.names.symbols.get(id).shape;
+                    return Some(match self.names.diagonal.contains(&id) {
+                        true => Shape::square(shape.rows),
+                        false => shape,
+                    });
                 }
                 None
             }
@@ -194,6 +199,10 @@ impl<'a> Elaborator<'a> {
             }
             Kind::Call(name, args) => {
                 let first = || args.first().and_then(|a| self.hint(a));
+                let symbols = &self.names.symbols;
+                if let Some(given) = symbols.functional_named(&name.text) {
+                    return Some(symbols.functional(given).value.shape);
+                }
                 match name.text.as_str() {
                     "im" | "vee" | "cross" => Some(Shape::vector(Dim::Fixed(3))),
                     "perp" => Some(Shape::vector(Dim::Fixed(2))),

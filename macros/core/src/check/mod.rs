@@ -4,6 +4,7 @@
 
 mod declare;
 mod elaborate;
+mod hold;
 mod lets;
 mod members;
 mod messages;
@@ -22,7 +23,7 @@ pub(crate) use members::name_of_function;
 
 use declare::Declared;
 use elaborate::Elaborator;
-use spec::{Advected, Assumption, Configuration, Side, Spec, Subject};
+use spec::{Advected, Assumption, Configuration, Hold, Side, Spec, Subject};
 
 /// Largest expression tree the derivation takes on.
 const LARGEST: u32 = 1_000;
@@ -77,6 +78,7 @@ fn checked(model: &Model, largest: u32) -> Result<Spec, Errors> {
     let mut assumptions = Vec::new();
     let mut node_rule = NodeRule::Symmetric;
     let mut terms = Vec::new();
+    let mut holds = Vec::new();
     for statement in &model.statements {
         match statement {
             Statement::Let { name, .. } if circular.iter().any(|c| c.text == name.text) => {}
@@ -122,6 +124,22 @@ fn checked(model: &Model, largest: u32) -> Result<Spec, Errors> {
                     }
                 }
             }
+            Statement::Hold {
+                name,
+                left,
+                right,
+                place,
+            } => match elaborator.pair(left, right) {
+                Ok(sides) => holds.extend(hold::hold(
+                    &mut declared,
+                    name,
+                    sides,
+                    *place,
+                    largest,
+                    &mut errors,
+                )),
+                Err(e) => errors.push(*e),
+            },
             Statement::Advected {
                 names: quantities,
                 definition: Some(value),
@@ -166,6 +184,7 @@ fn checked(model: &Model, largest: u32) -> Result<Spec, Errors> {
             },
             Statement::Dim { .. }
             | Statement::Time { .. }
+            | Statement::Given { .. }
             | Statement::Param { .. }
             | Statement::Group { .. }
             | Statement::Field { .. }
@@ -191,6 +210,7 @@ fn checked(model: &Model, largest: u32) -> Result<Spec, Errors> {
         model,
         declared,
         assumptions,
+        holds,
         typed,
         scale,
         lagrangian,
@@ -216,6 +236,7 @@ fn finish(
     model: &Model,
     declared: Declared,
     assumptions: Vec<Assumption>,
+    holds: Vec<Hold>,
     typed: Expr,
     scale: Option<Expr>,
     lagrangian: Expr,
@@ -287,6 +308,7 @@ fn finish(
         assumptions,
         configurations,
         advected,
+        holds,
         typed,
         scale,
         lagrangian,
@@ -315,11 +337,13 @@ fn remarks(model: &Model, declared: &Declared) -> Vec<(Subject, Vec<String>)> {
             Statement::Constraint { name, .. } => {
                 declared.symbols.find(&name.text).map(Subject::Constraint)
             }
+            Statement::Hold { name, .. } => declared.symbols.find(&name.text).map(Subject::Hold),
             Statement::Scale(_) => Some(Subject::Scale),
             Statement::Node(..) => Some(Subject::Node),
             Statement::Lagrangian(_) => Some(Subject::Lagrangian),
             // An abbreviation is put in where it stands and leaves no trace.
             Statement::Let { .. }
+            | Statement::Given { .. }
             | Statement::Param { .. }
             | Statement::Group { .. }
             | Statement::Field { .. }

@@ -145,11 +145,14 @@ pub fn advected_shape(
     shape(symbols, k, errors)
 }
 
-/// The shape of a field.
-pub fn field(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<Shape> {
+/// The shape of a field, and whether it is a diagonal matrix: kept and varied as the vector of its diagonal.
+pub fn field(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<(Shape, bool)> {
     let (found, structure) = shape(symbols, k, errors)?;
     if structure == Structure::General {
-        return Some(found);
+        return Some((found, false));
+    }
+    if structure == Structure::Diagonal {
+        return Some((Shape::vector(found.rows), true));
     }
     let own = written(k);
     let (message, help) = match is_group(&k.name.text) {
@@ -161,7 +164,7 @@ pub fn field(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<Shap
             format!(
                 "a field varies in every entry by itself, and those of `{own}` are bound to one another"
             ),
-            "fields are Real, Vec<n>, Mat<n> or Mat<n, m>".to_owned(),
+            "fields are Real, Vec<n>, Diag<n>, Mat<n> or Mat<n, m>".to_owned(),
         ),
     };
     errors.push(Diagnostic::new(k.place, message).help(help));

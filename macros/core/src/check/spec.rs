@@ -58,6 +58,23 @@ pub struct Advected {
     pub found: bool,
 }
 
+/// A holonomic constraint that a multiplier holds at every node.
+#[derive(Clone, Debug)]
+pub struct Hold {
+    /// Its multiplier, at nodes: a number or a vector.
+    pub multiplier: SymbolId,
+    /// Left side, made of configurations and advected quantities at one node.
+    pub left: Expr,
+    /// Right side.
+    pub right: Expr,
+    /// What vanishes: the left side less the right one.
+    pub value: Expr,
+    /// Where the equation stands.
+    pub place: Place,
+    /// Where the name of the multiplier stands.
+    pub name_place: Place,
+}
+
 /// What the reduction of a model that was stated by `Λ` and `next(Λ)` gave.
 #[derive(Clone, Debug)]
 pub struct Reduction {
@@ -107,6 +124,8 @@ pub enum Subject {
     Assumption(usize),
     /// The constraint of a quantity.
     Constraint(SymbolId),
+    /// The held constraint with this multiplier.
+    Hold(SymbolId),
     /// The scale.
     Scale,
     /// The rule for nodal terms.
@@ -146,6 +165,8 @@ pub struct Spec {
     pub configurations: Vec<Configuration>,
     /// Advected quantities in order.
     pub advected: Vec<Advected>,
+    /// Held constraints in order.
+    pub holds: Vec<Hold>,
     /// The Lagrangian as typed.
     pub typed: Expr,
     /// What `scale` says: typed = scale x physical.

@@ -2,6 +2,7 @@
 //! diagonals mean what unit vectors say.
 
 mod fields;
+mod holds;
 mod motions;
 
 use super::check;

@@ -5,12 +5,13 @@
 
 use super::balance::{Balance, shorter};
 use super::explicit::Explicit;
+use super::holds;
 use super::recognise::{Method, Riccati, Solve, is_constant, is_of_space};
 use super::seen_from_body::outgoing;
 use super::variation::at;
 use super::{Derivation, Letters};
 use crate::algebra::Algebra;
-use crate::check::spec::{Side, Spec};
+use crate::check::spec::{Hold, Side, Spec};
 use crate::expr::{self, Expr, Shift};
 
 /// Configurations whose velocities are solved together.
@@ -22,6 +23,8 @@ pub struct Block {
     pub method: Method,
     /// Why so, in one clause.
     pub reason: String,
+    /// The held constraints whose multipliers are solved with it.
+    pub holds: Vec<usize>,
     /// Whether its balances are one linear system in the velocities, which Newton's method solves.
     pub is_one_system: bool,
 }
@@ -73,11 +76,32 @@ pub fn blocks(
             }
         }
     }
+    // A constraint ties all that it holds.
+    let held = |hold: &Hold| -> Vec<usize> {
+        let each = 0..velocities.len();
+        each.filter(|i| holds::holds(&letters.symbols, spec, hold, *i))
+            .collect()
+    };
+    let held: Vec<Vec<usize>> = spec.holds.iter().map(held).collect();
+    for members in &held {
+        let low = members.iter().map(|i| first[*i]).min().unwrap_or(0);
+        let tied: Vec<usize> = members.iter().map(|i| first[*i]).collect();
+        for f in first.iter_mut().filter(|f| tied.contains(f)) {
+            *f = low;
+        }
+    }
     let starts = (0..first.len()).filter(|i| first[*i] == *i);
     let members = starts.map(|i| (0..first.len()).filter(|j| first[*j] == i).collect());
     members
         .map(|members| {
             let mut block = block(spec, letters, riccati, members);
+            let own = |j: &usize| held[*j].first().is_some_and(|i| block.members.contains(i));
+            block.holds = (0..held.len()).filter(own).collect();
+            if !block.holds.is_empty() {
+                block.method = Method::Newton;
+                block.reason = HELD.to_owned();
+                return block;
+            }
             if block.is_newton()
                 && linear_together(spec, letters, balances, &block.members, algebra)
             {
@@ -88,6 +112,9 @@ pub fn blocks(
         })
         .collect()
 }
+
+/// How velocities are found with multipliers.
+pub(super) const HELD: &str = "velocities and multipliers together, so that the constraints hold at the end of the step: Newton on the derived residuals";
 
 /// Why Newton's method solves a linear system.
 const ONE_SYSTEM: &str = "one linear system, which the first correction of Newton's method solves";
@@ -153,6 +180,7 @@ fn block(spec: &Spec, letters: &Letters, riccati: &[Riccati], members: Vec<usize
         members,
         method,
         reason,
+        holds: Vec::new(),
         is_one_system: false,
     }
 }
@@ -235,7 +263,10 @@ impl Derivation {
             blocks: Vec::new(),
             one_system: Vec::new(),
         };
-        own
+        match b.holds.is_empty() {
+            true => own,
+            false => own.with_multipliers(&b.holds),
+        }
     }
 }
 

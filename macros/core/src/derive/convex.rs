@@ -31,7 +31,8 @@ impl Convexity {
 /// Why the fields have one root only, if they do. All configurations of the model are solved together:
 /// of a block, it is that block as a model of its own.
 pub fn convexity(spec: &Spec, s: &Symbols, action: &Action) -> Option<Convexity> {
-    if !spec.has_only_fields() {
+    // With multipliers among the unknowns it is stationary, not least.
+    if !spec.has_only_fields() || !spec.holds.is_empty() {
         return None;
     }
     let configurations = spec.configurations.iter();

@@ -163,7 +163,12 @@ pub(crate) fn gradients(letters: &Letters, form: &Expr) -> Vec<Expr> {
         .collect()
 }
 
-fn rank(spec: &Spec, letters: &Letters, form: &Expr, equations: &[Expr]) -> Option<(usize, usize)> {
+pub(super) fn rank(
+    spec: &Spec,
+    letters: &Letters,
+    form: &Expr,
+    equations: &[Expr],
+) -> Option<(usize, usize)> {
     let s = &letters.symbols;
     let gradients = gradients(letters, form);
     let cost: u64 = gradients.iter().map(|g| u64::from(g.size())).sum();

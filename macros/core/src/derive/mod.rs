@@ -17,6 +17,7 @@ pub mod explicit;
 mod far;
 #[cfg(test)]
 mod functionals;
+pub mod holds;
 pub mod invariants;
 pub mod kinetic;
 pub mod lie;
@@ -68,6 +69,8 @@ pub struct Letters {
     pub edge_momentum: Vec<SymbolId>,
     /// For each configuration: the name of its node momentum, a covector (a vector for SO(3)).
     pub node_momentum: Vec<SymbolId>,
+    /// For each held constraint: its letters beside the multiplier.
+    pub held: Vec<holds::Held>,
     /// The spectral parameter of a Lax form.
     pub spectral: SymbolId,
 }
@@ -192,9 +195,11 @@ fn letters(spec: &Spec) -> Letters {
         let name = symbols.fresh_name(&format!("dζ{number}"));
         acceleration.push(symbols.add(&name, shape, structure, Role::Variation));
     }
+    let held = holds::letters(spec, &mut symbols);
     let name = symbols.fresh_name("λ");
     let spectral = symbols.add(&name, Shape::SCALAR, Structure::General, Role::Variation);
     Letters {
+        held,
         spectral,
         symbols,
         rate,
@@ -302,7 +307,9 @@ fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
         true => Err(Errors::from(too_large(whole, algebra.excess()))),
         false => Ok(()),
     };
-    let action = action::action(&spec);
+    // What the constraints do not touch is found without their reactions.
+    let free = action::action(&spec);
+    let action = holds::with_reactions(&spec, &letters, &free);
     // The constraints first: a wrong-sided action makes everything below meaningless.
     let variations = variation::variations(&spec, &letters, &algebra);
     bounded(&algebra)?;
@@ -311,6 +318,10 @@ fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
     bounded(&algebra)?;
     let transports = transports?;
     let balances = balance::balances(&spec, &letters, &action, &variations, &algebra);
+    let free_balances = match spec.holds.is_empty() {
+        true => balances.clone(),
+        false => balance::balances(&spec, &letters, &free, &variations, &algebra),
+    };
     let relations = clebsch::relations(&spec, &letters, &action, &algebra);
     let momenta = momentum::momenta(&spec, &letters, &balances, &variations, &algebra);
     let certificate = certificate::certify(&certificate::Inputs {
@@ -335,12 +346,12 @@ fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
         transports: &transports,
     });
     let assumed = assumptions::equations(&spec, &letters.symbols);
-    let reversal = reversal::reversal(&spec, &action, &assumed, &algebra);
-    let limit = limit::limit(&spec, &letters, &action, &variations, &assumed, &algebra);
+    let reversal = reversal::reversal(&spec, &free, &assumed, &algebra);
+    let limit = limit::limit(&spec, &letters, &free, &variations, &assumed, &algebra);
     let kinetic = kinetic::kinetic(
         &spec,
         &letters,
-        &action,
+        &free,
         limit.as_ref().ok(),
         &assumed,
         &algebra,
@@ -353,13 +364,13 @@ fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
     if work::cut_short() {
         return Err(too_large(whole, work::excess()).into());
     }
-    let bracket = bracket::bracket(&spec, &letters, &action, &variations);
+    let bracket = bracket::bracket(&spec, &letters, &free, &variations);
     let (invariants, integrability) = invariants::invariants(&invariants::Inputs {
         spec: &spec,
         letters: &letters,
-        action: &action,
+        action: &free,
         variations: &variations,
-        balances: &balances,
+        balances: &free_balances,
         bracket: &bracket,
         solve: &solve,
         // Momenta that do not determine the velocities have no energy.
@@ -370,11 +381,20 @@ fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
         assumed: &assumed,
         algebra: &algebra,
     });
+    let found = holds::Found {
+        invariants,
+        integrability,
+    };
+    let projected = limit.is_ok();
+    let holds::Found {
+        invariants,
+        integrability,
+    } = holds::kept(&spec, &letters, &variations, projected, &algebra, found);
     bounded(&algebra)?;
     let warnings = warnings::warnings(&warnings::Inputs {
         spec: &spec,
         letters: &letters,
-        action: &action,
+        action: &free,
         variations: &variations,
         reversal: &reversal,
         limit: &limit,
@@ -383,7 +403,7 @@ fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
         assumed: &assumed,
         algebra: &algebra,
     });
-    Ok(Derivation {
+    let d = Derivation {
         work: count.work(algebra.spent()),
         spec,
         letters,
@@ -406,5 +426,9 @@ fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
         integrability,
         warnings,
         residual: OnceLock::new(),
-    })
+    };
+    match holds::dependent(&d, &assumed) {
+        Some(refused) => Err(refused.into()),
+        None => Ok(d),
+    }
 }

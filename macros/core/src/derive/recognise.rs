@@ -181,6 +181,7 @@ pub fn recognise(
     }
     let three = |i: usize| is_of_space(&spec.configurations[i]);
     let turned = match riccati.as_slice() {
+        _ if !spec.holds.is_empty() => None,
         // Symmetric factors in three dimensions have steppers of their own.
         [Riccati::Exact(mv)] if three(0) && mv.symmetric && keeps_edge(mv) => None,
         [Riccati::Exact(mv)] if !is_constant(letters, mv) && balances[0].increment.is_some() => {
@@ -192,7 +193,9 @@ pub fn recognise(
     let iterated = "Newton's method on the Lie algebra";
     let solver = if three(0) { kappa } else { iterated };
     let (method, reason) = match riccati.as_slice() {
-        _ if !one_system.is_empty() => (Method::Newton, blocks::reasons(letters, spec, &blocks)),
+        _ if !one_system.is_empty() || !spec.holds.is_empty() => {
+            (Method::Newton, blocks::reasons(letters, spec, &blocks))
+        }
         [Riccati::Exact(mv)] if three(0) && mv.symmetric && is_free(mv) => (
             Method::FreeMoserVeselov,
             format!(

@@ -6,7 +6,7 @@
 use super::Letters;
 use super::balance::{self, Balance};
 use super::variation::{self, at};
-use super::{action, reduction};
+use super::{action, holds, reduction};
 use crate::algebra::Algebra;
 use crate::check::spec::{Configuration, Side, Spec};
 use crate::expr::symbol::Role;
@@ -39,7 +39,7 @@ pub fn seen_from_body(
     let own = super::letters(&turned);
     let algebra = Algebra::new(&own.symbols);
     let variations = variation::variations(&turned, &own, &algebra).ok()?;
-    let action = action::action(&turned);
+    let action = holds::with_reactions(&turned, &own, &action::action(&turned));
     let found = balance::balances(&turned, &own, &action, &variations, &algebra);
     // What the reduction found is no quantity of the model: it stands for its definition.
     let found_here = turned.advected.iter().filter(|a| a.found);

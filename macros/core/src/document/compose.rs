@@ -2,7 +2,7 @@
 //! relations; motion, solution and what follows from them in files of their own.
 
 use super::sheet::{Sheet, references};
-use super::{motion, outlook, solution, source, structure};
+use super::{holds, motion, outlook, solution, source, structure};
 use crate::check::spec::{Side, Subject};
 use crate::derive::Derivation;
 use crate::derive::clebsch::constraint_terms;
@@ -27,6 +27,7 @@ pub fn document(d: &Derivation) -> Document {
     motion::momentum_maps(&sheet, &mut doc);
     motion::balance(&sheet, &mut doc);
     solution::moser_veselov(&sheet, &mut doc);
+    holds::held(&sheet, &mut doc);
     structure::bracket(&sheet, &mut doc);
     outlook::invariants(&sheet, &mut doc);
     structure::lax(&sheet, &mut doc);
@@ -95,6 +96,7 @@ fn meanings(sheet: &Sheet) -> Vec<Vec<Inline>> {
                 a.map_or_else(|| "assume".to_owned(), |a| source::assumption(sheet.d, a))
             }
             Subject::Constraint(id) => format!("constraint next({})", name(*id)),
+            Subject::Hold(id) => format!("hold {}", name(*id)),
             Subject::Scale => "scale".to_owned(),
             Subject::Node => "node".to_owned(),
             Subject::Lagrangian => "lagrangian".to_owned(),
@@ -195,6 +197,12 @@ fn constraints(sheet: &Sheet, doc: &mut Document) {
         let equation = Formula::equal(sheet.at(c.element, Shift::NEXT), sheet.math(&c.update));
         section.sourced(equation, sheet.thesis.reconstruction(i));
     }
+    advected(sheet, section);
+    holds::stated(sheet, section);
+}
+
+fn advected(sheet: &Sheet, section: &mut Section) {
+    let spec = &sheet.d.spec;
     if spec.advected.is_empty() {
         return;
     }

@@ -62,6 +62,11 @@ fn invariant(sheet: &Sheet, v: &Invariant) -> Vec<Inline> {
         (None, Kind::Spectrum) => {
             line.extend(spectrum(sheet));
         }
+        (None, Kind::ConstraintRate(j)) => {
+            let hold = &sheet.d.spec.holds[*j];
+            line.push("rate of change of ".into());
+            line.push(sheet.derived(&hold.value).into());
+        }
         (None, _) => line.push("kinetic plus potential energy of the limit".into()),
     }
     let how = if v.exact { "exact" } else { "bounded" };

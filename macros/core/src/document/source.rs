@@ -3,6 +3,7 @@
 
 use crate::check::spec::{Assumption, Configuration, Spec, Subject};
 use crate::derive::Derivation;
+use crate::expr::functional::Kind;
 use crate::expr::shape::Structure;
 use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr, Letter, Shift};
@@ -60,6 +61,17 @@ pub fn source(d: &Derivation) -> String {
     for (i, a) in spec.assumptions.iter().enumerate() {
         line(said(Subject::Assumption(i)), assumption(d, a));
     }
+    for f in spec.symbols.functionals() {
+        let kinds: Vec<String> = f.arguments.iter().map(|k| kind(spec, *k)).collect();
+        let text = format!(
+            "given {}({}): {} = {}",
+            f.name,
+            kinds.join(", "),
+            kind(spec, f.value),
+            f.path
+        );
+        line(&[], text);
+    }
     for c in &spec.configurations {
         let group = c.group.statement(&|n| spec.symbols.dim_text(n).to_string());
         if c.group.is_additive() {
@@ -100,6 +112,17 @@ pub fn source(d: &Derivation) -> String {
         line(
             said(Subject::Constraint(quantity)),
             format!("constraint next({}) = {}", name(quantity), show(update)),
+        );
+    }
+    for hold in &spec.holds {
+        line(
+            said(Subject::Hold(hold.multiplier)),
+            format!(
+                "hold {}: {} = {}",
+                name(hold.multiplier),
+                show(&hold.left),
+                show(&hold.right)
+            ),
         );
     }
     if let Some(scale) = &spec.scale {
@@ -152,6 +175,16 @@ pub(super) fn assumption(d: &Derivation, a: &Assumption) -> String {
 
 fn shape(spec: &Spec, id: SymbolId) -> String {
     let symbol = spec.symbols.get(id);
+    kind(
+        spec,
+        Kind {
+            shape: symbol.shape,
+            structure: symbol.structure,
+        },
+    )
+}
+
+fn kind(spec: &Spec, symbol: Kind) -> String {
     let (rows, cols) = (
         spec.symbols.dim_text(symbol.shape.rows),
         spec.symbols.dim_text(symbol.shape.cols),

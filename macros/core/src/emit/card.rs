@@ -177,6 +177,14 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
             quote!(let out = put(out, rows(self.#method(state)));)
         });
     }
+    for hold in &d.spec.holds {
+        observables.push(of_symbol(
+            d,
+            hold.multiplier,
+            "multiplier over the step before",
+        ));
+    }
+    observed.extend(super::holds::observed(d));
     let mut values = TokenStream::new();
     let scales = super::invariants::scales(d, names);
     let invariants: Vec<TokenStream> = d
@@ -220,7 +228,11 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                         }
                     }
                 }
-                Kind::Value | Kind::Energy | Kind::TotalMomentum(_) | Kind::Spectrum => {
+                Kind::Value
+                | Kind::Energy
+                | Kind::TotalMomentum(_)
+                | Kind::Spectrum
+                | Kind::ConstraintRate(_) => {
                     let value = quote!(self.#method(state));
                     match super::invariants::form(d, v) {
                         Form::Number => quote!(let out = put(out, [#value]);),

@@ -372,6 +372,24 @@ pub fn basis(d: &Derivation, i: usize, index: TokenStream) -> TokenStream {
     }
 }
 
+/// The zero of a shape.
+pub fn zero(d: &Derivation, shape: crate::expr::shape::Shape) -> TokenStream {
+    if shape.is_scalar() {
+        return quote!(T::zero());
+    }
+    let s = &d.letters.symbols;
+    let (rows, cols) = (size(s, shape.rows), size(s, shape.cols));
+    quote!(SMatrix::<T, #rows, #cols>::zeros())
+}
+
+/// The covector that is zero.
+pub fn nothing(d: &Derivation, i: usize) -> TokenStream {
+    match of(d, i) {
+        Family::Field(shape) => zero(d, shape),
+        _ => zero(d, d.letters.symbols.get(d.letters.node_momentum[i]).shape),
+    }
+}
+
 /// Elements or covectors of all configurations together: an array where their types agree, else a
 /// tuple.
 pub struct Bundle {

@@ -184,7 +184,7 @@ fn of_matrices(d: &Derivation, names: &Names, limit: &Limit) -> TokenStream {
 
 /// The inertia column by column: the momentum of each unit velocity is the gradient of the kinetic
 /// energy, which costs less than the form on all pairs.
-fn matrices(
+pub(super) fn matrices(
     d: &Derivation,
     bindings: &Bindings,
     limit: &Limit,

@@ -19,6 +19,9 @@ pub fn formula(d: &Derivation, v: &Invariant) -> String {
             let factor = factor.map_or_else(String::new, |lax| text(d, &lax.factor));
             format!("coefficients of det(ν + μ + λ ({factor})²) that hold μ")
         }
+        (Kind::ConstraintRate(j), _, _, _) => {
+            format!("rate of change of {}", text(d, &d.spec.holds[*j].value))
+        }
         (Kind::Energy, _, Ok(limit), Some(c)) => energy(d, limit, c),
         (_, Some(value), _, _) => text(d, value),
         (_, None, _, _) => v.name.clone(),

@@ -7,9 +7,27 @@ mod tests;
 
 use super::expression::Writer;
 use super::names::local_name;
+use crate::derive::Derivation;
 use crate::expr::{Applied, Expr};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
+
+/// What the model is given by paths, under its names in the model. Not used where a model holds none of its
+/// values, as by a factor of zero.
+pub(super) fn paths(d: &Derivation) -> TokenStream {
+    let s = &d.letters.symbols;
+    let each = s.functionals().iter().filter_map(|f| {
+        let name = local_name(s, &f.name);
+        let own = ["crate", "self", "super"].contains(&f.path.split("::").next()?);
+        let path = match own {
+            true => f.path.clone(),
+            false => format!("::{}", f.path),
+        };
+        let path: TokenStream = path.parse().ok()?;
+        Some(quote!(#[allow(unused_imports)] use #path as #name;))
+    });
+    each.collect()
+}
 
 impl Writer<'_> {
     /// The call: arguments, then directions by their arguments, then the seed.

@@ -66,7 +66,8 @@ pub fn form(d: &Derivation, v: &Invariant) -> Form {
         (Kind::TotalMomentum(set), _) if set.first().is_some_and(|i| number(*i)) => Form::Number,
         (Kind::TotalMomentum(_) | Kind::SpatialMomentum(_), _) => Form::Entries,
         (Kind::Value, Some(e)) if !e.shape().is_scalar() => Form::Entries,
-        (Kind::Value | Kind::Energy, _) => Form::Number,
+        (Kind::ConstraintRate(j), _) if !super::holds::is_number(d, *j) => Form::Entries,
+        (Kind::Value | Kind::Energy | Kind::ConstraintRate(_), _) => Form::Number,
     }
 }
 
@@ -84,6 +85,7 @@ pub fn rows(d: &Derivation, v: &Invariant) -> TokenStream {
             let n = spectrum_size(d);
             quote!(even_count(#n))
         }
+        (Kind::ConstraintRate(j), _) => super::holds::rows(d, *j),
         (Kind::Value | Kind::Energy, _) => quote!(1usize),
     }
 }
@@ -210,7 +212,7 @@ pub fn invariants(d: &Derivation, names: &Names) -> TokenStream {
                     }
                 });
             }
-            (Kind::Value | Kind::Energy, None, _) => {}
+            (Kind::Value | Kind::Energy | Kind::ConstraintRate(_), None, _) => {}
         }
     }
     quote!(impl #bound #name #used { #functions })
@@ -244,6 +246,7 @@ pub fn scales(d: &Derivation, names: &Names) -> TokenStream {
         };
         let sizes = match (&v.kind, &v.scale) {
             (Kind::Spectrum, _) => spectrum_scales(d, names),
+            (Kind::ConstraintRate(j), _) => alike(super::holds::rate_scale(d, *j)),
             (_, None) => alike(quote!(sum_of_sizes(self.energies(state)))),
             (_, Some(_)) => match values.next() {
                 Some((e, value)) if e.shape().is_scalar() => alike(value),

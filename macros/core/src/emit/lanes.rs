@@ -35,6 +35,7 @@ pub fn over_any_scalar(d: &Derivation, names: &Names) -> TokenStream {
         initial.push(own(d, id));
         state.push(own(d, id));
     }
+    state.extend(super::holds::names_of_fields(d));
     let data = [
         ("Parameters", parameters, None),
         ("Initial", initial, None),

@@ -15,6 +15,7 @@ mod expression;
 mod forced;
 mod formula;
 mod functional;
+mod holds;
 mod invariants;
 mod items;
 mod kinetic;
@@ -64,7 +65,7 @@ struct Most {
 /// Where the stepper is compiled: arrays of these sizes stand on the stack, products of groups are types.
 const BUILT: Most = Most {
     coordinates: MOST_COORDINATES,
-    different: 3,
+    different: 6,
     made: "emits",
 };
 
@@ -132,12 +133,20 @@ fn too_many_together(d: &Derivation, most: &Most) -> Option<Diagnostic> {
         different,
         made,
     } = *most;
-    let everything: Vec<usize> = (0..d.spec.configurations.len()).collect();
-    let together: Vec<&[usize]> = match d.solve.method {
-        Method::Newton => vec![&everything],
+    // Multipliers stand behind the velocities.
+    let bodies = d.spec.configurations.len();
+    let held: Vec<usize> = (0..d.spec.holds.len()).collect();
+    let d = &d.with_multipliers(&held);
+    let together: Vec<Vec<usize>> = match d.solve.method {
+        Method::Newton => vec![(0..d.spec.configurations.len()).collect()],
         Method::Blocks => {
             let newton = d.solve.blocks.iter().filter(|b| b.is_newton());
-            newton.map(|b| b.members.as_slice()).collect()
+            newton
+                .map(|b| {
+                    let multipliers = b.holds.iter().map(|j| bodies + j);
+                    b.members.iter().copied().chain(multipliers).collect()
+                })
+                .collect()
         }
         _ => Vec::new(),
     };
@@ -154,7 +163,7 @@ fn too_many_together(d: &Derivation, most: &Most) -> Option<Diagnostic> {
             .map(|i| element::most_coordinates(d, *i))
             .sum()
     };
-    let refused = together.into_iter().find(|members| {
+    let refused = together.iter().find(|members| {
         coordinates(members) > admitted || members.len() > different && !families(members)
     })?;
     let name = |i: &usize| {
@@ -192,6 +201,7 @@ pub fn emit(d: &Derivation, documented: bool) -> TokenStream {
         discrete_energy::discrete_energy(d, &names),
         card::card(d, &names),
     ];
+    let given = functional::paths(d);
     let about = format!(
         " The model [`{}`](struct@{}) and what belongs to it.",
         d.spec.name, d.spec.name
@@ -201,6 +211,7 @@ pub fn emit(d: &Derivation, documented: bool) -> TokenStream {
         #[allow(non_snake_case, uncommon_codepoints, mixed_script_confusables, confusable_idents, clippy::all)]
         #visibility mod #module {
             use ::clebsch::emitted::*;
+            #given
             #(#items)*
         }
         #[allow(unused_imports)]

@@ -24,6 +24,11 @@ impl Names {
                 .ids()
                 .map(|id| variable(s, id).to_string())
                 .chain(super::sizes::constants(s).iter().map(ToString::to_string))
+                .chain(
+                    s.functionals()
+                        .iter()
+                        .map(|f| local_name(s, &f.name).to_string()),
+                )
                 .collect(),
         }
     }

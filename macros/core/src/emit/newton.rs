@@ -62,7 +62,8 @@ impl Together<'_> {
     /// The type of the velocities together.
     pub fn elements(&self) -> TokenStream {
         let d = self.block;
-        let types: Vec<TokenStream> = (0..self.members.len()).map(|i| element::ty(d, i)).collect();
+        let count = d.spec.configurations.len();
+        let types: Vec<TokenStream> = (0..count).map(|i| element::ty(d, i)).collect();
         Bundle::of(d).ty(&types)
     }
 
@@ -114,14 +115,16 @@ impl Together<'_> {
         let d = self.whole;
         let mut out = TokenStream::new();
         for (i, c) in self.block.spec.configurations.iter().enumerate() {
-            let own = own(d, c.element);
             let name = tagged(d, self.names, c.velocity, "matrix");
             after.bind(at(c.velocity, Shift::HERE), name.clone());
             let part = self.part(quote!(#solved), i);
             let stated = element::matrix(c, part.clone());
             out.extend(match self.side(i) == c.side {
                 true => quote!(let #name = #stated;),
-                false => quote!(let #name = (state.#own * #part * state.#own.inverse()).matrix();),
+                false => {
+                    let own = own(d, c.element);
+                    quote!(let #name = (state.#own * #part * state.#own.inverse()).matrix();)
+                }
             });
         }
         out
@@ -168,8 +171,12 @@ impl Together<'_> {
         let [residual_at, settled, principal, refused, rounding] =
             ["residual_at", "settled", "principal", "refused", "rounding"].map(|f| self.name(f));
         let tangent_at = self.name("tangent_at");
-        let node_momenta: Vec<TokenStream> = (0..self.members.len())
-            .map(|i| node_momentum(self.whole, self.members[i], self.side(i)))
+        let node_momenta: Vec<TokenStream> = (0..d.spec.configurations.len())
+            .map(|i| match self.members.get(i) {
+                Some(member) => node_momentum(self.whole, *member, self.side(i)),
+                // What a constraint holds is zero at the end of the step.
+                None => element::nothing(d, i),
+            })
             .collect();
         let solved_for = Equations {
             d,
@@ -310,7 +317,8 @@ impl Together<'_> {
         if !super::domain::is_guarded(d) {
             return None;
         }
-        let moves = d.spec.configurations.iter().enumerate().map(|(i, c)| {
+        let moving = d.spec.configurations.iter().take(self.members.len());
+        let moves = moving.enumerate().map(|(i, c)| {
             let (own, part) = (own(d, c.element), self.part(quote!(solved.element), i));
             let end = element::advanced(c, self.side(i), quote!(state.#own), part);
             quote!(moved.#own = #end;)
@@ -358,27 +366,39 @@ pub(super) fn onwards(d: &Derivation) -> Vec<Letter> {
     needed
 }
 
-/// All velocities together.
-fn all<'a>(d: &'a Derivation, names: &'a Names, members: &'a [usize]) -> Together<'a> {
+/// All velocities together; `block` has the multipliers among them.
+fn all<'a>(
+    d: &'a Derivation,
+    block: &'a Derivation,
+    names: &'a Names,
+    members: &'a [usize],
+) -> Together<'a> {
     Together {
         whole: d,
-        block: d,
+        block,
         members,
         number: None,
         names,
     }
 }
 
+/// The model with all multipliers as further velocities.
+fn with_all_multipliers(d: &Derivation) -> Derivation {
+    let holds: Vec<usize> = (0..d.spec.holds.len()).collect();
+    d.with_multipliers(&holds)
+}
+
 /// The type of the search where all velocities are found together.
 pub(super) fn search_of_all(d: &Derivation, names: &Names) -> TokenStream {
     let members: Vec<usize> = (0..d.spec.configurations.len()).collect();
-    all(d, names, &members).search_type()
+    all(d, &with_all_multipliers(d), names, &members).search_type()
 }
 
 /// The type of what the tangent asks of a node, and `step`, where all velocities are found together.
 pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
     let members: Vec<usize> = (0..d.spec.configurations.len()).collect();
-    let all = all(d, names, &members);
+    let block = with_all_multipliers(d);
+    let all = all(d, &block, names, &members);
     let mut needed = all.needed();
     needed.extend(onwards(d));
     let mut letters = with_transports(d, &needed, 0);

@@ -31,6 +31,12 @@ pub fn balance(d: &Derivation, names: &Names) -> TokenStream {
         let doc = format!(" `{field}` at the node, as its constraint carries it.");
         quote!(#[doc = #doc] pub #field: #t)
     });
+    let multipliers = d.spec.holds.iter().map(|hold| {
+        let (field, t) = (own(d, hold.multiplier), ty(s, s.get(hold.multiplier).shape));
+        let doc = format!(" `{field}`, the multiplier of the step that starts at the node.");
+        quote!(#[doc = #doc] pub #field: #t)
+    });
+    let multipliers: Vec<TokenStream> = multipliers.collect();
     let p = d.residual_program();
     let needed = letters_of(p.temporaries.iter().map(|(_, e)| e).chain(&p.results));
     let mut all = Vec::new();
@@ -112,6 +118,11 @@ pub fn balance(d: &Derivation, names: &Names) -> TokenStream {
             );
         }
     }
+    for hold in &d.spec.holds {
+        let (field, local) = (own(d, hold.multiplier), variable(s, hold.multiplier));
+        velocities.extend(quote!(let #local = #here.#field;));
+        bindings.bind(at(hold.multiplier, Shift::HERE), local);
+    }
     let parameters = parameter_locals(d, quote!(self.parameters), &all);
     let (lets, values) = program(&p, &bindings);
     let dimension = element::total(d);
@@ -124,7 +135,7 @@ pub fn balance(d: &Derivation, names: &Names) -> TokenStream {
     quote! {
         /// A configuration at one node, solution or not.
         #[derive(Clone, Copy, Debug, PartialEq)]
-        pub struct #configuration #declared { #(#elements,)* #(#others,)* }
+        pub struct #configuration #declared { #(#elements,)* #(#others,)* #(#multipliers,)* }
 
         impl #bound #name #used {
             /// The residual of the discrete Euler-Lagrange equations at the middle one of three

@@ -23,8 +23,13 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
     let step = variable(s, d.spec.step);
     // What the edge brings, in parts that are measured by themselves, and the sizes of their terms.
     let (mut brought, mut carried) = (Vec::new(), Vec::new());
+    let held = super::holds::left_over(d);
     for (i, (c, b)) in d.spec.configurations.iter().zip(&d.balances).enumerate() {
         let (field, own) = (per_configuration(d, "momentum", i), own(d, c.element));
+        let incoming = match held.kicks.get(i) {
+            Some(kick) => expr::add(b.incoming.clone(), kick.clone()),
+            None => b.incoming.clone(),
+        };
         let momentum = match c.side {
             Side::Body => quote!(#after.#field.to_body(&#after.#own).0),
             Side::Spatial => element::value(c, quote!(#after.#field.0)),
@@ -38,7 +43,7 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
                     quote!(rows_from::<T, #whole, #count, 1>(&#of, #at))
                 };
                 for (at, rows) in rigid.rows() {
-                    brought.push(expr::taken_rows(s, &b.incoming, at, rows));
+                    brought.push(expr::taken_rows(s, &incoming, at, rows));
                     // In space the angular part is carried about its origin, with the lever arm.
                     // In the body it gains the moment of its way.
                     let lever = match element::rests(d, i) {
@@ -59,21 +64,29 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
                 }
             }
             None => {
-                brought.push(b.incoming.clone());
+                brought.push(incoming);
                 carried.push((element::array(c, momentum), None));
             }
         }
     }
+    for (value, zero) in held.values {
+        brought.push(value);
+        carried.push((zero, None));
+    }
     let paths = paths(d);
+    let momenta = brought.len() - held.sizes.len();
     let sizes = brought
         .iter()
-        .map(|e| expr::magnitude_between(s, e, &paths));
+        .take(momenta)
+        .map(|e| expr::magnitude_between(s, e, &paths))
+        .chain(held.sizes);
     let all: Vec<Expr> = brought.iter().cloned().chain(sizes).collect();
     let Edge {
         parameters,
         locals,
-        bindings,
+        mut bindings,
     } = edge_between(d, names, &all);
+    let arrivals = super::holds::arrivals(d, &after, &mut bindings);
     let p = schedule::program(s, &all, "t");
     let (lets, values) = program(&p, &bindings);
     let (values, sizes) = values.split_at(brought.len());
@@ -107,6 +120,7 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
             pub fn residual(&self, #before: &#state #used, #after: &#state #used, #step: T) -> [Residual; #count] {
                 #parameters
                 #locals
+                #arrivals
                 #lets
                 let _ = #step;
                 [#(#parts),*]

@@ -175,6 +175,17 @@ pub(super) fn state_of(d: &Derivation, names: &Names) -> TokenStream {
         };
         references.extend(quote!(let #local = #value;));
     }
+    fields.extend(super::holds::at_start(d));
+    let admitted = super::holds::admitted(d, names);
+    if !admitted.is_empty() {
+        return quote! {
+            #(#checks)*
+            #references
+            let state = #state { #(#fields,)* #node: 0 };
+            #admitted
+            Ok(state)
+        };
+    }
     quote! {
         #(#checks)*
         #references

@@ -83,6 +83,9 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
         given.push(quote!(#[doc = #doc] pub #field: #t));
         kept_fields.push(quote!(#field: #t));
     }
+    let (held, shown) = super::holds::fields(d);
+    kept_fields.extend(held);
+    access.extend(shown);
     let g = Generics::of(d);
     let (declared, bound, used) = (g.declared(), g.bound(), g.used());
     let (work_field, work_doc) = match d.solve.method {

@@ -26,6 +26,7 @@ pub fn start_and_step(d: &Derivation, names: &Names) -> TokenStream {
     let start = super::start::entry(d);
     let factor = items::factor_of_state(d);
     let access = advected_access(d, names);
+    let held = super::holds::functions(d, names);
     let mut beside = TokenStream::new();
     let step = match (&d.solve.method, d.solve.riccati.first()) {
         (Method::FreeMoserVeselov, _) => free_step(d, names),
@@ -58,6 +59,7 @@ pub fn start_and_step(d: &Derivation, names: &Names) -> TokenStream {
             #factor
             #tested
             #step
+            #held
             #access
         }
     }
@@ -242,10 +244,12 @@ pub(super) fn finish(
     }
     let node = names.local("node");
     let finite = super::domain::finite_in_step(d, names, &finite);
+    let held = super::holds::after_step(d, names);
     quote! {
         #out
         #finite
         #assignments
+        #held
         state.#node += 1;
         #remembered
         Ok(())

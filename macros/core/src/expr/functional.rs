@@ -62,6 +62,8 @@ pub struct Functional {
     pub value: Kind,
     /// How far it sees.
     pub reach: Reach,
+    /// The Rust path of what computes it.
+    pub path: String,
     /// How it is typeset, in LaTeX, where its declaration says so.
     pub typeset: Option<String>,
 }

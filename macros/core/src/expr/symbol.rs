@@ -133,6 +133,17 @@ impl Symbols {
         &self.functionals[id.0 as usize]
     }
 
+    /// All functionals, in order.
+    pub fn functionals(&self) -> &[Functional] {
+        &self.functionals
+    }
+
+    /// The functional of this name.
+    pub fn functional_named(&self, name: &str) -> Option<FunctionalId> {
+        let found = self.functionals.iter().position(|f| f.name == name)?;
+        Some(FunctionalId(found as u32))
+    }
+
     /// Declares a named dimension, from this size to that.
     pub fn add_dim(&mut self, name: &str, from: u64, to: u64) -> Dim {
         self.dims.push(NamedSize {

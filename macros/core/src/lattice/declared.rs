@@ -407,7 +407,10 @@ impl Lattice {
                     names.iter().chain(offset).cloned().collect()
                 }
                 Statement::Group { name, velocity, .. } => vec![name.clone(), velocity.clone()],
-                Statement::Let { name, .. } | Statement::Dim { name, .. } => vec![name.clone()],
+                Statement::Let { name, .. }
+                | Statement::Dim { name, .. }
+                | Statement::Hold { name, .. }
+                | Statement::Given { name, .. } => vec![name.clone()],
                 Statement::Label {
                     step: Some(step), ..
                 } => vec![step.clone()],

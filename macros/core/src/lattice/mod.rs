@@ -36,6 +36,8 @@ pub fn has_labels(model: &Model) -> bool {
         | Statement::Time { .. }
         | Statement::Assume { .. }
         | Statement::Constraint { .. }
+        | Statement::Hold { .. }
+        | Statement::Given { .. }
         | Statement::Let { .. }
         | Statement::Scale(_)
         | Statement::Node(..)

@@ -2,6 +2,7 @@
 //! many bodies, each with a name of its own, whose Lagrangian is the sum over the sites that exist.
 
 mod definitions;
+mod holds;
 mod lagrangian;
 mod pinned;
 mod warned;
@@ -240,13 +241,22 @@ impl<'a> Writer<'a> {
                     self.push(stated, docs);
                 }
             }
+            Statement::Hold {
+                name,
+                left,
+                right,
+                place,
+            } => self.holds(name, left, right, *place, docs),
             Statement::Scale(value) => {
                 let value = inlined(value, self.lets);
                 self.constant(&value);
                 self.push(Statement::Scale(value), docs);
             }
             Statement::Lagrangian(value) => self.lagrangian(value, docs),
-            Statement::Dim { .. } | Statement::Time { .. } | Statement::Node(..) => {
+            Statement::Dim { .. }
+            | Statement::Time { .. }
+            | Statement::Given { .. }
+            | Statement::Node(..) => {
                 self.push(statement.clone(), docs);
             }
         }

@@ -205,6 +205,8 @@ fn alone(
             Statement::Time { .. } | Statement::Node(..) => vec![statement.clone()],
             Statement::Group { .. }
             | Statement::Constraint { .. }
+            | Statement::Hold { .. }
+            | Statement::Given { .. }
             | Statement::Assume { .. }
             | Statement::Scale(_)
             | Statement::Dim { .. } => Vec::new(),

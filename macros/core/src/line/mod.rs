@@ -162,6 +162,10 @@ fn stands_alone(model: &Model, lattice: &Lattice) -> Result<(), Refused> {
             Statement::Field { names, .. } | Statement::Advected { names, .. } => {
                 names.iter().any(|n| lattice.find(&n.text).is_none())
             }
+            Statement::Hold { .. } => {
+                return refused("a constraint is held, which ties what its sites solve");
+            }
+            Statement::Given { .. } => return refused("a function is given by its name"),
             Statement::Scale(_) => return refused("the action is scaled"),
             Statement::Dim { .. } => return refused("shapes have sizes that are named"),
             _ => false,

@@ -249,6 +249,28 @@ pub enum Statement {
         /// The whole statement.
         place: Place,
     },
+    /// `hold λ: a = b;`
+    Hold {
+        /// The multiplier.
+        name: Name,
+        /// Left side.
+        left: Expression,
+        /// Right side.
+        right: Expression,
+        /// The whole equation.
+        place: Place,
+    },
+    /// `given f(SHAPE, SHAPE): SHAPE = PATH;`
+    Given {
+        /// The name in the model.
+        name: Name,
+        /// What it takes.
+        arguments: Vec<Kindred>,
+        /// What it gives.
+        value: Kindred,
+        /// What computes it, a path of Rust.
+        path: Name,
+    },
     /// `let W = EXPR;`
     Let {
         /// The name.

@@ -143,6 +143,8 @@ fn statement(c: &mut Cursor) -> Result<Statement, Diagnostic> {
         "advected" => advected(c)?,
         "constraint" => constraint(c, &keyword)?,
         "let" => binding(c)?,
+        "hold" => hold(c)?,
+        "given" => given(c)?,
         "scale" => Statement::Scale(expression(c)?),
         "node" => node(c)?,
         "label" => label::label(c)?,
@@ -152,15 +154,15 @@ fn statement(c: &mut Cursor) -> Result<Statement, Diagnostic> {
             c.punct('=')?;
             Statement::Lagrangian(expression(c)?)
         }
-        "grid" | "hold" | "given" | "mesh" | "linear" | "integrate" => {
+        "grid" | "mesh" | "linear" | "integrate" => {
             return Err(Diagnostic::new(
                 keyword.place,
                 format!(
-                    "`{}` belongs to models of fluids and of held constraints, which this version does not derive yet",
+                    "`{}` belongs to models of fluids, which this version does not derive yet",
                     keyword.text
                 ),
             )
-            .help("models with `label`, `group`, `field`, `advected`, `constraint` and `lagrangian` are derived"));
+            .help("models with `label`, `group`, `field`, `advected`, `constraint`, `hold` and `lagrangian` are derived"));
         }
         other => {
             let mut e = Diagnostic::new(
@@ -170,7 +172,7 @@ fn statement(c: &mut Cursor) -> Result<Statement, Diagnostic> {
             if let Some(word) = closest(other, KEYWORDS) {
                 e = e.help(format!("did you mean `{word}`?"));
             } else {
-                e = e.help("statements start with param, group, field, advected, constraint, let, scale, node, assume or lagrangian");
+                e = e.help("statements start with param, group, field, advected, constraint, hold, let, scale, node, assume or lagrangian");
             }
             return Err(e);
         }
@@ -373,6 +375,66 @@ fn constraint(c: &mut Cursor, keyword: &Name) -> Result<Statement, Diagnostic> {
     let value = expression(c)?;
     let place = keyword.place.to(value.place);
     Ok(Statement::Constraint { name, value, place })
+}
+
+/// `hold λ: a = b;`
+fn hold(c: &mut Cursor) -> Result<Statement, Diagnostic> {
+    let remedy = "a held constraint reads `hold λ: dot(x, x) = L^2;`: the name of its multiplier, then the equation";
+    let name = c
+        .name("the name of the multiplier")
+        .map_err(|e| e.help(remedy))?;
+    c.punct(':').map_err(|e| e.help(remedy))?;
+    let left = expression(c)?;
+    c.punct('=').map_err(|e| e.help(remedy))?;
+    c.take_punct('=');
+    let right = expression(c)?;
+    let place = left.place.to(right.place);
+    Ok(Statement::Hold {
+        name,
+        left,
+        right,
+        place,
+    })
+}
+
+/// `given f(Sym<3>): Real = clebsch::functions::carlson_rf;`
+fn given(c: &mut Cursor) -> Result<Statement, Diagnostic> {
+    let remedy = "a function is given by its path, for example `given RF(Sym<3>): Real = clebsch::functions::carlson_rf;`";
+    let name = c
+        .name("the name of the function")
+        .map_err(|e| e.help(remedy))?;
+    c.delimiter('(').map_err(|e| e.help(remedy))?;
+    let mut arguments = vec![kindred(c)?];
+    while c.take_punct(',') {
+        arguments.push(kindred(c)?);
+    }
+    c.delimiter(')')?;
+    c.punct(':').map_err(|e| e.help(remedy))?;
+    let value = kindred(c)?;
+    c.punct('=').map_err(|e| e.help(remedy))?;
+    let mut path = c
+        .name("the path of what computes it")
+        .map_err(|e| e.help(remedy))?;
+    if path.text == "case" {
+        return Err(Diagnostic::new(
+            path.place,
+            "functions that a case gives as expressions are not read by this version",
+        )
+        .help("write the expression as a `let`, or give the function by a path of Rust")
+        .help(remedy));
+    }
+    while c.take_punct(':') {
+        c.punct(':')?;
+        let next = c.name("the next name of the path")?;
+        path.text = format!("{}::{}", path.text, next.text);
+        path.place = path.place.to(next.place);
+    }
+    Ok(Statement::Given {
+        name,
+        arguments,
+        value,
+        path,
+    })
 }
 
 fn binding(c: &mut Cursor) -> Result<Statement, Diagnostic> {

@@ -537,3 +537,6 @@ macro_rules! regions_of {
 
 regions_of!(A 0, B 1);
 regions_of!(A 0, B 1, C 2);
+regions_of!(A 0, B 1, C 2, D 3);
+regions_of!(A 0, B 1, C 2, D 3, E 4);
+regions_of!(A 0, B 1, C 2, D 3, E 4, F 5);

@@ -65,12 +65,22 @@ impl<G: Group<f64>, const D: usize> Stage<G, D> {
             let own = (0..size).filter(|k| G::part_of(*k) == b);
             own.fold(0.0, |most: f64, k| most.max(self.tangent[(k, k)].abs()))
         };
-        core::array::from_fn(|b| {
+        let units: [f64; D] = core::array::from_fn(|b| {
             if b >= G::PARTS || G::is_pure(b) {
                 return 1.0;
             }
             let unit = (block(b.saturating_sub(1)) / block(b)).sqrt();
             if unit.is_finite() { unit } else { 0.0 }
+        });
+        let size = G::DIMENSION.min(D);
+        let entry = |i: usize, j: usize| self.tangent[(i, j)];
+        let unit_of = |k: usize| units.get(G::part_of(k)).copied().unwrap_or(1.0);
+        core::array::from_fn(|b| {
+            if b >= G::PARTS || G::is_pure(b) || block(b) != 0.0 {
+                return units[b];
+            }
+            let own = (0..size).filter(|k| G::part_of(*k) == b);
+            of_multiplier(own, size, &entry, &unit_of)
         })
     }
 
@@ -158,6 +168,26 @@ impl<G: Group<f64>, const D: usize> Stage<G, D> {
         }
         None
     }
+}
+
+/// The unit of a part that stands in none of its own equations, as a multiplier does: what acts in the
+/// equations of the others as one unit of theirs.
+pub(super) fn of_multiplier(
+    own: impl Iterator<Item = usize>,
+    size: usize,
+    entry: &dyn Fn(usize, usize) -> f64,
+    unit_of: &dyn Fn(usize) -> f64,
+) -> f64 {
+    let mut unit = f64::INFINITY;
+    for column in own {
+        for k in 0..size {
+            let like = entry(k, k).abs() * unit_of(k) / entry(k, column).abs();
+            if like > 0.0 && like < unit {
+                unit = like;
+            }
+        }
+    }
+    if unit.is_finite() { unit } else { 0.0 }
 }
 
 /// Whether no part exceeds its bound; false for NaN.

@@ -166,6 +166,7 @@ fn structures_of_values_and_sizes_with_names_hold_at_points() {
         arguments: vec![kind],
         value,
         reach,
+        path: String::new(),
         typeset: None,
     };
     let three = Shape::square(Dim::Fixed(3));

@@ -119,6 +119,9 @@ impl Elaborator<'_> {
         place: Place,
         expected: Option<Shape>,
     ) -> Elaborated {
+        if let Some(given) = self.names.symbols.functional_named(&name.text) {
+            return self.given(given, args, place);
+        }
         if let Some(d) = self.no_function(name) {
             return fail(d);
         }

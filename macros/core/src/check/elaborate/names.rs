@@ -76,7 +76,11 @@ impl Elaborator<'_> {
             return Ok(value.clone());
         }
         if let Some(id) = self.names.symbols.find(n) {
-            return Ok(expr::here(&self.names.symbols, id));
+            let own = expr::here(&self.names.symbols, id);
+            return Ok(match self.names.diagonal.contains(&id) {
+                true => expr::diagonal(own),
+                false => own,
+            });
         }
         if n == "Id" {
             let size = match expected {

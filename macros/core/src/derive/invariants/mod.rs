@@ -51,6 +51,8 @@ pub enum Family {
     Manakov,
     /// An energy.
     Energy,
+    /// A held constraint, or its rate of change.
+    Held,
 }
 
 /// What an invariant is.
@@ -66,6 +68,8 @@ pub enum Kind {
     Spectrum,
     /// The physical energy.
     Energy,
+    /// The rate of change of what a constraint holds, by its number.
+    ConstraintRate(usize),
 }
 
 /// One conserved quantity at a node.

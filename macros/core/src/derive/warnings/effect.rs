@@ -11,6 +11,7 @@ pub(super) fn parameters(x: &Inputs) -> Vec<Warning> {
     let used: Vec<&Expr> = [&spec.typed]
         .into_iter()
         .chain(&spec.scale)
+        .chain(spec.holds.iter().map(|hold| &hold.value))
         .chain(spec.configurations.iter().map(|c| &c.update))
         .chain(spec.advected.iter().map(|a| &a.update))
         .chain(spec.advected.iter().filter_map(|a| a.definition.as_ref()))

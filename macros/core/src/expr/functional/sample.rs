@@ -87,6 +87,7 @@ impl Sample {
             arguments: arguments.to_vec(),
             value,
             reach: Reach::Point,
+            path: String::new(),
             typeset: None,
         });
         let letters = arguments.iter().map(|kind| {

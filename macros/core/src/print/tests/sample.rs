@@ -52,6 +52,7 @@ impl Sample {
             arguments: vec![kind],
             value: kind,
             reach: Reach::Point,
+            path: String::new(),
             typeset: None,
         });
         Sample { symbols: s }

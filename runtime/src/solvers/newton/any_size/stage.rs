@@ -7,6 +7,7 @@ use super::curve::{Curve, Parts, Point};
 use super::region::Strain;
 use crate::linalg::Dense;
 use crate::solvers::newton::node::Spread;
+use crate::solvers::newton::stage::of_multiplier;
 
 /// Corrections by which a stage is solved.
 const MOST_CORRECTIONS: usize = 12;
@@ -69,7 +70,16 @@ impl Stage {
             let unit = (block(b.saturating_sub(1)) / block(b)).sqrt();
             if unit.is_finite() { unit } else { 0.0 }
         };
-        parts.pure.iter().enumerate().map(unit).collect()
+        let units: Vec<f64> = parts.pure.iter().enumerate().map(unit).collect();
+        let unit_of = |k: usize| units.get(parts.part_of(k)).copied().unwrap_or(1.0);
+        let entry = |i: usize, j: usize| self.tangent.at(i, j);
+        let size = (0..units.len()).map(|b| parts.own(b).count()).sum();
+        let all = parts.pure.iter().zip(&units).enumerate();
+        all.map(|(b, (pure, unit))| match *pure || block(b) != 0.0 {
+            true => *unit,
+            false => of_multiplier(parts.own(b), size, &entry, &unit_of),
+        })
+        .collect()
     }
 
     /// A bound of how far the velocity moves, part by part, where the equations move by `own`

@@ -1,0 +1,178 @@
+//! Elastic bodies and held constraints on the command line: the shipped files derived and run, numbers of reference
+//! runs, what a trajectory says of multipliers.
+
+use crate::common::{Folder, clebsch};
+
+/// The model files that the project ships, each with its case and steps that take little time.
+const SHIPPED: [(&str, &str); 7] = [
+    ("fluid-ellipsoid", "200"),
+    ("mooney-rivlin", "200"),
+    ("neo-hooke", "200"),
+    ("pseudo-rigid", "20"),
+    ("pseudo-rigid-anisotropic", "5"),
+    ("pseudo-rigid-bipolar", "5"),
+    ("spherical-pendulum", "200"),
+];
+
+fn shipped(file: &str) -> String {
+    format!("{}/../models/elastic/{file}", env!("CARGO_MANIFEST_DIR"))
+}
+
+#[test]
+fn every_model_is_derived_and_runs_its_case() {
+    for (name, steps) in SHIPPED {
+        let (model, case) = (
+            shipped(&format!("{name}.clebsch")),
+            shipped(&format!("{name}.toml")),
+        );
+        for format in ["text", "latex", "markdown", "json"] {
+            let done = clebsch(&["derive", &model, "--format", format]);
+            assert_eq!(done.code, 0, "{name} {format}: {}", done.err);
+            assert!(done.out.contains("Invariants"), "{name} {format}");
+        }
+        let done = clebsch(&["run", &model, "--case", &case, "--steps", steps]);
+        assert_eq!(done.code, 0, "{name}: {}{}", done.out, done.err);
+        assert!(!done.out.contains("EXCEEDED"), "{name}: {}", done.out);
+    }
+}
+
+/// Columns of a table by their names, row by row.
+fn columns(csv: &str, wanted: &[&str]) -> Vec<Vec<f64>> {
+    let mut lines = csv.lines();
+    let head: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
+    let place = |name: &&str| head.iter().position(|h| h == name).expect("is a column");
+    let at: Vec<usize> = wanted.iter().map(place).collect();
+    let row = |line: &str| {
+        let all: Vec<&str> = line.split(',').collect();
+        at.iter()
+            .map(|i| all[*i].parse().expect("a number"))
+            .collect()
+    };
+    lines.map(row).collect()
+}
+
+fn trajectory(name: &str, arguments: &[&str], wanted: &[&str]) -> Vec<Vec<f64>> {
+    let folder = Folder::new(&format!("elastic-{name}"));
+    let out = folder.path("out");
+    let (model, case) = (
+        shipped(&format!("{name}.clebsch")),
+        shipped(&format!("{name}.toml")),
+    );
+    let own = ["run", &model, "--case", &case, "--out", &out];
+    let done = clebsch(&[&own[..], arguments].concat());
+    assert_eq!(done.code, 0, "{name}: {}{}", done.out, done.err);
+    let csv = std::fs::read_to_string(format!("{out}/trajectory.csv")).expect("is written");
+    columns(&csv, wanted)
+}
+
+/// Stretches and angular momentum of the run of figures 3.1 to 3.3 by another implementation: nodes 1, 2, 10 and 50.
+#[test]
+fn the_pseudo_rigid_body_of_the_thesis_is_that_of_the_reference_run() {
+    let rows = trajectory(
+        "pseudo-rigid",
+        &["--steps", "50"],
+        &["D_1", "D_2", "D_3", "spatial_momentum_R_2"],
+    );
+    for (node, wanted) in [
+        (
+            1,
+            [0.9821979249661978, 0.7954329005770054, 1.2284501554088025],
+        ),
+        (
+            2,
+            [0.939096422791831, 0.7913266125615055, 1.1724312292595402],
+        ),
+        (
+            10,
+            [0.935808633565574, 1.2263611948605857, 0.7394511100099694],
+        ),
+        (
+            50,
+            [0.8965056176408633, 1.1403595341838453, 0.7775555597739295],
+        ),
+    ] {
+        for (found, wanted) in rows[node].iter().zip(wanted) {
+            assert!(
+                (found - wanted).abs() < 1e-10,
+                "node {node}: {found} {wanted}"
+            );
+        }
+    }
+    // The thesis's momentum is the negative one.
+    assert!((rows[10][3] + 0.0008340017458855056).abs() < 1e-10);
+}
+
+/// A Maclaurin spheroid stands still in its own frame up to the square of the step.
+#[test]
+fn a_maclaurin_spheroid_is_steady() {
+    let off = |h: &str, steps: &str| {
+        let rows = trajectory(
+            "fluid-ellipsoid",
+            &["--h", h, "--steps", steps],
+            &["Q_31", "Q_32", "Q_33", "Q_11", "Q_21"],
+        );
+        let height = rows[0][2];
+        let radius = rows[0][3];
+        let each = rows.iter().map(|q| {
+            let own = (q[3] * q[3] + q[4] * q[4]).sqrt() - radius;
+            own.abs() + (q[2] - height).abs() + q[0].abs() + q[1].abs()
+        });
+        each.fold(0.0, |most: f64, x| if x > most { x } else { most })
+    };
+    let (coarse, fine) = (off("0.04", "250"), off("0.02", "500"));
+    let order = (coarse / fine).log2();
+    assert!(
+        coarse < 2e-4 && (order - 2.0).abs() < 0.1,
+        "{coarse:e} {fine:e}"
+    );
+}
+
+/// (3.62) prints the force with the other sign: the run of figure 3.1 then ends at its eighth step.
+#[test]
+fn the_printed_sign_of_the_force_in_3_62_explodes() {
+    let folder = Folder::new("elastic-sign");
+    let text = std::fs::read_to_string(shipped("pseudo-rigid.clebsch")).expect("is shipped");
+    assert!(text.contains("- h*W;"));
+    let model = folder.write("wrong.clebsch", &text.replace("- h*W;", "+ h*W;"));
+    let case = shipped("pseudo-rigid.toml");
+    let done = clebsch(&["run", &model, "--case", &case, "--steps", "30"]);
+    assert_ne!(done.code, 0);
+    assert!(done.err.contains("no step from node 8"), "{}", done.err);
+}
+
+/// Multipliers are observables, constraints at both levels invariants, and wrong data are told with the way out.
+#[test]
+fn multipliers_and_constraints_are_seen() {
+    let rows = trajectory(
+        "spherical-pendulum",
+        &["--steps", "100"],
+        &["lambda", "x_1", "x_2", "x_3"],
+    );
+    // The weight of the mass along its rod, and the pull of its turn.
+    assert!((rows[1][0] + 10.76).abs() < 0.1, "{:?}", rows[1]);
+    for row in &rows {
+        let length = row[1..].iter().map(|x| x * x).sum::<f64>().sqrt();
+        assert!((length - 0.5).abs() < 1e-15, "{length}");
+    }
+    let folder = Folder::new("elastic-off");
+    let text = std::fs::read_to_string(shipped("spherical-pendulum.toml")).expect("is shipped");
+    let model = shipped("spherical-pendulum.clebsch");
+    for (from, to, wanted) in [
+        (
+            "x = [0.3,",
+            "x = [0.4,",
+            "the initial configuration is off the constraint",
+        ),
+        (
+            "momentum = [0.0,",
+            "momentum = [0.3,",
+            "along the reactions",
+        ),
+    ] {
+        assert!(text.contains(from));
+        let case = folder.write("off.toml", &text.replace(from, to));
+        let done = clebsch(&["run", &model, "--case", &case]);
+        assert_ne!(done.code, 0);
+        assert!(done.err.contains(wanted), "{}", done.err);
+    }
+}

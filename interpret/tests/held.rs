@@ -1,0 +1,158 @@
+//! Models with held constraints and functions given by name, built and read: the same bits.
+
+#![allow(missing_docs)]
+
+mod side_by_side;
+
+use clebsch::card::{Card, Settings};
+use clebsch_models::Case;
+use side_by_side::compare;
+
+clebsch::model! {
+    /// Two masses on rods, one below the other: numbers held, fields of one shape.
+    pub model Rods {
+        param m, M, L, l, g: Real;
+        field x, y: Vec<2>;
+        hold a: dot(x, x) = L^2;
+        hold b: dot(y - x, y - x) = l^2;
+        let u = next(x) - x;
+        let v = next(y) - y;
+        lagrangian = (m*dot(u, u) + M*dot(v, v))/(2*h) - h*g*(m*x[2] + M*y[2]);
+    }
+}
+
+clebsch::model! {
+    /// A fluid ellipsoid: a determinant held, an integral given by name.
+    pub model Fluid {
+        param I0: Sym<3>;
+        param M: Real;
+        given RF(Real, Real, Real): Real = clebsch::functions::carlson_rf_of_invariants;
+        field Q: Mat<3>;
+        hold λ: det(Q) = 1;
+        let V = next(Q) - Q;
+        let B = Q*Q^T;
+        lagrangian = tr(V*I0*V^T)/(2*h) + h*(3/5)*M^2*RF(I1(B), I2(B), det(B));
+    }
+}
+
+clebsch::model! {
+    /// The same with the matrix as its argument.
+    pub model Drop {
+        param I0: Sym<3>;
+        param M: Real;
+        given RF(Sym<3>): Real = clebsch::functions::carlson_rf;
+        field Q: Mat<3>;
+        hold λ: det(Q) = 1;
+        lagrangian = tr((next(Q) - Q)*I0*(next(Q) - Q)^T)/(2*h) + h*(3/5)*M^2*RF(Q*Q^T);
+    }
+}
+
+clebsch::model! {
+    /// A joint: a vector held, a field and a rotation, and a field beside them that nothing holds.
+    pub model Hung {
+        param J: Sym<3>;
+        param m, k: Real;
+        param a, g: Vec<3>;
+        field X: Vec<3>;
+        group Λ: SO<3> velocity Ω;
+        field z: Real;
+        constraint next(Λ) = Λ*Ω;
+        hold n: X + Λ*a = 0;
+        lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) - tr(J*Ω)/h + h*m*dot(g, X)
+            + (next(z) - z)^2/(2*h) - (h/2)*k*z^2;
+    }
+}
+
+clebsch::model! {
+    /// Linear maps stated in space, their shape held.
+    pub model Shape {
+        param C0, I0: Sym<3>;
+        param k: Real;
+        group Q: GL<3> velocity g;
+        advected I: Sym<3> = Q*I0*Q^T;
+        constraint next(Q) = g*Q;
+        constraint next(I) = g*I*g^T;
+        hold λ: tr(I) = 2;
+        lagrangian = tr(C0*(g - Id)*I*(g - Id)^T)/(2*h) - (h*k/2)*tr(I*I);
+    }
+}
+
+fn case(h: f64, parameters: &[&[f64]], initial: &[&[f64]]) -> Case {
+    let lists = |all: &[&[f64]]| all.iter().map(|list| list.to_vec()).collect();
+    Case {
+        name: "here".to_owned(),
+        doc: String::new(),
+        h,
+        steps: 100,
+        parameters: lists(parameters),
+        initial: lists(initial),
+        bounds: Vec::new(),
+    }
+}
+
+const ONE: [f64; 9] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+
+/// Plain steps, composed ones, longer ones until they are refused, data off the constraints.
+fn both(built: &Card, case: &Case) {
+    let read = clebsch_interpret::card(built.source).expect("is read");
+    let made = compare(built, &read, case, Settings::step(case.h), case.steps);
+    assert_eq!(made, case.steps, "{}", built.name);
+    let settings = Settings::step(case.h).of_order(4);
+    compare(built, &read, case, settings, 20);
+    for times in [10.0, 100.0] {
+        compare(built, &read, case, Settings::step(times * case.h), 20);
+    }
+    for i in 0..case.initial.len() {
+        for off in [f64::NAN, 0.1] {
+            let mut other = case.clone();
+            other.initial[i][0] += off;
+            compare(built, &read, &other, Settings::step(case.h), 2);
+        }
+    }
+}
+
+#[test]
+fn numbers_held() {
+    let parameters: [&[f64]; 5] = [&[1.0], &[0.7], &[1.0], &[0.5], &[9.81]];
+    let initial: [&[f64]; 4] = [&[0.6, -0.8], &[0.0, 0.0], &[0.6, -0.3], &[0.2, 0.0]];
+    both(&Rods::CARD, &case(0.01, &parameters, &initial));
+}
+
+#[test]
+fn determinants_held() {
+    let moments = [0.2, 0.0, 0.0, 0.0, 0.2, 0.0, 0.0, 0.0, 0.2];
+    let parameters: [&[f64]; 2] = [&moments, &[1.0]];
+    let momentum = [0.05, 0.04, 0.0, 0.0, -0.02, 0.01, 0.0, 0.0, -0.03];
+    both(&Fluid::CARD, &case(0.02, &parameters, &[&ONE, &momentum]));
+    both(&Drop::CARD, &case(0.02, &parameters, &[&ONE, &momentum]));
+}
+
+#[test]
+fn vectors_held() {
+    let inertia = [0.5, 0.1, 0.0, 0.1, 0.7, 0.0, 0.0, 0.0, 0.9];
+    let parameters: [&[f64]; 5] = [
+        &inertia,
+        &[1.0],
+        &[2.0],
+        &[0.3, 0.0, 0.4],
+        &[0.0, 0.0, -1.0],
+    ];
+    let initial: [&[f64]; 6] = [
+        &[-0.3, 0.0, -0.4],
+        &[0.0, 0.0, 0.0],
+        &ONE,
+        &[0.0, 0.0, 0.0],
+        &[0.2],
+        &[0.1],
+    ];
+    both(&Hung::CARD, &case(0.02, &parameters, &initial));
+}
+
+#[test]
+fn shapes_held_in_space() {
+    let moments = [0.5, 0.0, 0.0, 0.0, 0.7, 0.0, 0.0, 0.0, 0.8];
+    let parameters: [&[f64]; 3] = [&ONE, &moments, &[0.4]];
+    // A turn: C0 g I0 with g skew.
+    let momentum = [0.0, -0.14, 0.08, 0.1, 0.0, 0.08, -0.05, -0.07, 0.0];
+    both(&Shape::CARD, &case(0.02, &parameters, &[&ONE, &momentum]));
+}

@@ -1,0 +1,103 @@
+//! Held constraints, `hold λ: a = b;`: what may stand in them, and the shape of their multiplier.
+//! Takes the two sides, of one shape; gives the constraint, or a mistake on its tokens.
+
+use super::declare::Declared;
+use super::messages::{self, shape_text};
+use super::spec::Hold;
+use crate::algebra::Algebra;
+use crate::diagnostic::{Diagnostic, Errors, Place};
+use crate::expr::shape::Structure;
+use crate::expr::symbol::{Role, Symbols};
+use crate::expr::{self, Expr, Shift};
+use crate::syntax::ast::Name;
+
+/// The held constraint; its multiplier becomes a symbol of the model.
+pub(super) fn hold(
+    declared: &mut Declared,
+    name: &Name,
+    (left, right): (Expr, Expr),
+    place: Place,
+    largest: u32,
+    errors: &mut Errors,
+) -> Option<Hold> {
+    let value = expr::sub(left.clone(), right.clone());
+    if value.size() > largest {
+        errors.push(messages::too_large(place, value.size(), largest, true));
+        return None;
+    }
+    if let Some(refused) = refused(&declared.symbols, name, &value, place) {
+        errors.push(refused);
+        return None;
+    }
+    if !declared.admit(name, errors) {
+        return None;
+    }
+    let shape = value.shape();
+    let multiplier = declared
+        .symbols
+        .add(&name.text, shape, Structure::General, Role::Multiplier);
+    declared.symbols.describe(multiplier, name.latex(), &[]);
+    Some(Hold {
+        multiplier,
+        left,
+        right,
+        value,
+        place,
+        name_place: name.place,
+    })
+}
+
+/// What is wrong with the equation, if anything.
+fn refused(symbols: &Symbols, name: &Name, value: &Expr, place: Place) -> Option<Diagnostic> {
+    let letters = expr::letters(value);
+    let role = |r: Role| letters.iter().find(|l| symbols.get(l.symbol).role == r);
+    if let Some(v) = role(Role::Velocity) {
+        let message = format!(
+            "`{}` is a velocity, and a held constraint is one on configurations at a node",
+            symbols.get(v.symbol).name
+        );
+        return Some(Diagnostic::new(place, message).help(
+            "state the holonomic constraint itself, for example `hold λ: dot(x, x) = L^2;`; its rate of change is held as well. Constraints on velocities alone (nonholonomic ones) are not derived",
+        ));
+    }
+    if letters.iter().any(|l| l.shift != Shift::HERE) {
+        let message = "a held constraint stands at one node, and this one holds `next(...)`";
+        return Some(Diagnostic::new(place, message).help(
+            "leave `next` out: the constraint holds at every node, its rate of change with it",
+        ));
+    }
+    let algebra = Algebra::new(symbols);
+    if algebra.is_zero(value) {
+        let message = format!(
+            "both sides of the constraint of `{}` are the same: its multiplier is not determined",
+            name.text
+        );
+        return Some(
+            Diagnostic::new(place, message)
+                .help("leave the constraint out, or correct one of its sides"),
+        );
+    }
+    if role(Role::Element)
+        .or_else(|| role(Role::Advected))
+        .is_none()
+    {
+        let message = format!(
+            "no configuration stands in the constraint of `{}`: there is nothing that it could hold",
+            name.text
+        );
+        return Some(Diagnostic::new(place, message).help(
+            "a held constraint is made of what moves, for example `hold λ: det(Q) = 1;`; a condition on parameters is stated by `assume`",
+        ));
+    }
+    let shape = value.shape();
+    if !shape.is_scalar() && !shape.is_vector() {
+        let message = format!(
+            "this constraint is {}, and a multiplier is a number or a vector",
+            shape_text(symbols, shape)
+        );
+        return Some(Diagnostic::new(place, message).help(
+            "state independent entries, each with a multiplier of its own: `hold a: dot(Q*E1, Q*E1) = 1;`, `hold b: dot(Q*E1, Q*E2) = 0;`; of a column, `A*E1`",
+        ));
+    }
+    None
+}

@@ -1,0 +1,128 @@
+//! What is said of held constraints and of functions given by name, and that their statements are read back.
+
+use crate::pipeline::derive_source;
+
+fn refused(body: &str) -> String {
+    let text = format!("model M {{ {body} }}");
+    match derive_source(&text) {
+        Ok(_) => format!("derives: {text}"),
+        Err(errors) => errors.to_string(),
+    }
+}
+
+const POINT: &str = "param m, L: Real; field x: Vec<3>; \
+    lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) - h*m*x[3];";
+
+fn held(hold: &str) -> String {
+    refused(&format!("{POINT} {hold}"))
+}
+
+#[test]
+fn constraints_are_read_back_and_hold_at_both_levels() {
+    let text = format!("model M {{ {POINT} hold λ: dot(x, x) = L^2; }}");
+    let d = derive_source(&text).unwrap_or_else(|e| panic!("{e}"));
+    let source = crate::document::source(&d);
+    assert!(source.contains("hold λ: dot(x, x) = L^2;"), "{source}");
+    let again = derive_source(&source).unwrap_or_else(|e| panic!("{source}\n{e}"));
+    assert_eq!(crate::document::source(&again), source);
+    let names: Vec<&str> = d.invariants.iter().map(|v| v.name.as_str()).collect();
+    for wanted in [
+        "momentum_angular_E3",
+        "constraint_lambda",
+        "constraint_rate_lambda",
+    ] {
+        assert!(names.contains(&wanted), "{names:?}");
+    }
+    // Momenta that a reaction changes are no invariants.
+    let free = derive_source(&format!("model M {{ {POINT} }}")).unwrap_or_else(|e| panic!("{e}"));
+    assert!(
+        free.invariants.len() > 1,
+        "the momentum across the weight is kept"
+    );
+    assert!(!names.contains(&"momentum_1"), "{names:?}");
+    assert!(d.reversible);
+}
+
+#[test]
+fn constraints_that_cannot_be_held_are_told_on_their_tokens() {
+    for (hold, wanted) in [
+        (
+            "hold λ: m = L;",
+            "no configuration stands in the constraint of `λ`",
+        ),
+        ("hold λ: dot(x, next(x)) = L^2;", "stands at one node"),
+        (
+            "hold λ: dot(x, x) = dot(x, x);",
+            "both sides of the constraint of `λ` are the same",
+        ),
+        ("hold m: dot(x, x) = L^2;", "`m` is declared twice"),
+        (
+            "hold λ: x*x^T = Id;",
+            "a multiplier is a number or a vector",
+        ),
+        ("hold λ: dot(x, x) = x;", "this is"),
+        ("hold λ dot(x, x) = L^2;", "a held constraint reads"),
+        ("hold λ: dot(x, x);", "a held constraint reads"),
+        (
+            "hold λ: dot(x, x) = L^2; hold ν: 2*dot(x, x) = m;",
+            "the constraint of `ν` follows from the others",
+        ),
+        ("hold λ: cross(E3, x) = 0;", "hold 2 directions"),
+    ] {
+        let told = held(hold);
+        assert!(told.contains(wanted), "{hold}\n{told}");
+    }
+    let turning = "param J: Sym<3>; group R: SO<3> velocity W; constraint next(R) = R*W; lagrangian = -tr(J*W)/h;";
+    let told = refused(&format!("{turning} hold λ: tr(W) = 3;"));
+    assert!(told.contains("`W` is a velocity"), "{told}");
+}
+
+const SHAPE: &str = "param I0: Sym<3>; field Q: Mat<3>;";
+
+fn given(statement: &str, potential: &str) -> String {
+    refused(&format!(
+        "{SHAPE} {statement} lagrangian = tr((next(Q) - Q)*I0*(next(Q) - Q)^T)/(2*h) - h*({potential});"
+    ))
+}
+
+#[test]
+fn functions_are_given_by_paths() {
+    let statement = "given f(Sym<3>): Real = clebsch::functions::carlson_rf;";
+    let told = given(statement, "f(Q*Q^T)");
+    assert!(told.starts_with("derives"), "{told}");
+    for (statement, potential, wanted) in [
+        (statement, "f(Q)", "takes a symmetric matrix here"),
+        (
+            statement,
+            "f(Q*Q^T, Q)",
+            "is given with 1 arguments, and 2 stand here",
+        ),
+        (statement, "f(det(Q))", "this is"),
+        (
+            "given f(Sym<3>): Real;",
+            "f(Q*Q^T)",
+            "a function is given by its path",
+        ),
+        (
+            "given f(Vec<2>): Real = case;",
+            "0",
+            "functions that a case gives",
+        ),
+    ] {
+        let told = given(statement, potential);
+        assert!(told.contains(wanted), "{statement} {potential}\n{told}");
+    }
+}
+
+#[test]
+fn fields_of_diagonal_matrices_are_their_diagonals() {
+    let text = "model M { param k: Real; field D: Diag<3>; let V = next(D) - D; \
+        lagrangian = tr(V*V)/(2*h) - h*k*det(D); }";
+    let d = derive_source(text).unwrap_or_else(|e| panic!("{e}"));
+    let source = crate::document::source(&d);
+    assert!(
+        source.contains("field D: Vec<3>;") && source.contains("diag(D)"),
+        "{source}"
+    );
+    derive_source(&source).unwrap_or_else(|e| panic!("{source}\n{e}"));
+}

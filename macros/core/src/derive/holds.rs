@@ -1,0 +1,385 @@
+//! Held constraints: `h <λ, g>` is added to the action at the node where the edge starts, and its
+//! multiplier is an unknown of that step, whose equation is the constraint at the end of the edge. To
+//! whatever solves equations a multiplier is then one more velocity, of an additive group.
+//! Takes the model; gives the reactions, what is solved with them, and which invariants they leave.
+
+use super::action::Action;
+use super::balance::{Balance, pairing};
+use super::invariants::{Family, Integrability, Invariant, Kind, Known};
+use super::recognise::Riccati;
+use super::variation::{Variation, at};
+use super::{Derivation, Letters};
+use crate::algebra::Algebra;
+use crate::check::spec::{Configuration, Hold, Side, Spec};
+use crate::diagnostic::Diagnostic;
+use crate::expr::shape::{Shape, Structure};
+use crate::expr::symbol::{Role, SymbolId, Symbols};
+use crate::expr::{self, Expr, Letter, Shift};
+use crate::groups::{Additive, Group};
+
+/// The letters of one held constraint beside its multiplier.
+#[derive(Clone, Debug)]
+pub struct Held {
+    /// What its multiplier is the increment of: an element that no state keeps.
+    pub element: SymbolId,
+    /// A free variation: the multiplier on arrival.
+    pub variation: SymbolId,
+    /// A second one.
+    pub direction: SymbolId,
+    /// Letters that are asked for every configuration.
+    others: [SymbolId; 3],
+}
+
+/// The letters of all held constraints.
+pub(super) fn letters(spec: &Spec, symbols: &mut Symbols) -> Vec<Held> {
+    let mut all = Vec::new();
+    for hold in &spec.holds {
+        let symbol = symbols.get(hold.multiplier).clone();
+        let mut own = |base: &str, role| {
+            let name = symbols.fresh_name(&format!("{base}_{}", symbol.name));
+            symbols.add(&name, symbol.shape, Structure::General, role)
+        };
+        let [variation, direction] = ["δ", "η"].map(|base| own(base, Role::Variation));
+        let others = ["P", "M", "p"].map(|base| own(base, Role::Derived));
+        // Its name stands in refusals alone.
+        let element = symbols.add(
+            &symbols.fresh_name(&format!("constraint_{}", symbol.name)),
+            symbol.shape,
+            Structure::General,
+            Role::Derived,
+        );
+        all.push(Held {
+            element,
+            variation,
+            direction,
+            others,
+        });
+    }
+    all
+}
+
+fn here(symbol: SymbolId) -> Letter {
+    at(symbol, Shift::HERE)
+}
+
+/// `<λ, g>` with this letter for the multiplier.
+fn work(letters: &Letters, hold: &Hold, multiplier: SymbolId) -> Expr {
+    let multiplier = expr::here(&letters.symbols, multiplier);
+    pairing(letters, &multiplier, &hold.value)
+}
+
+/// The action of a step with the work of the reactions where the edge starts.
+pub(super) fn with_reactions(spec: &Spec, letters: &Letters, free: &Action) -> Action {
+    if spec.holds.is_empty() {
+        return free.clone();
+    }
+    let step = expr::here(&letters.symbols, spec.step);
+    let mut action = free.clone();
+    for hold in &spec.holds {
+        let term = expr::mul(step.clone(), work(letters, hold, hold.multiplier));
+        action.total = expr::add(action.total, term.clone());
+        action.distributed = expr::add(action.distributed, term);
+    }
+    action
+}
+
+/// How the quantities of a node move with the configurations together, each along its variation.
+pub(crate) fn node_changes(variations: &[Variation], letters: &Letters) -> Vec<(Letter, Expr)> {
+    let mut all: Vec<(Letter, Expr)> = Vec::new();
+    let each = variations
+        .iter()
+        .flat_map(|v| v.advected.iter().chain([&v.element]));
+    for (letter, change) in each {
+        if change.is_zero() || letters.symbols.get(letter.symbol).role == Role::Velocity {
+            continue;
+        }
+        match all.iter_mut().find(|(known, _)| known == letter) {
+            Some((_, sum)) => *sum = expr::add(sum.clone(), change.clone()),
+            None => all.push((*letter, change.clone())),
+        }
+    }
+    all
+}
+
+/// The rate of change of what a constraint holds, in the letters of variation as velocities.
+pub(crate) fn rate(d: &Derivation, hold: &Hold) -> Expr {
+    let s = &d.letters.symbols;
+    let changes = node_changes(&d.variations, &d.letters);
+    expr::directional(s, &hold.value, &changes)
+}
+
+/// `<μ, dg>`, with the variation of the multiplier for `μ`: its derivatives along the velocities are
+/// the reactions, those along `μ` the rate of change of the constraint.
+pub(crate) fn rate_paired(d: &Derivation, which: usize) -> Expr {
+    let letters = &d.letters;
+    let mu = expr::here(&letters.symbols, letters.held[which].variation);
+    pairing(letters, &mu, &rate(d, &d.spec.holds[which]))
+}
+
+/// The reaction of one constraint on configuration `i`, a covector in the frame of its side, for this
+/// letter as the multiplier.
+fn reaction(
+    spec: &Spec,
+    letters: &Letters,
+    variations: &[Variation],
+    i: usize,
+    hold: &Hold,
+) -> Expr {
+    let s = &letters.symbols;
+    let v = &variations[i];
+    let changes: Vec<(Letter, Expr)> = v.advected.iter().chain([&v.element]).cloned().collect();
+    let change = expr::directional(s, &work(letters, hold, hold.multiplier), &changes);
+    let y = expr::gradient(s, &change, here(letters.variation[i]));
+    spec.configurations[i].group.of_gradient(s, y)
+}
+
+/// The value of a constraint at the end of the edge, by its start and the velocities.
+fn at_the_end(s: &Symbols, spec: &Spec, hold: &Hold) -> Expr {
+    let next = expr::shift_time(s, &hold.value, Shift::NEXT.time);
+    expr::substitute(s, &next, &spec.end_of_edge())
+}
+
+/// Whether a step moves what a constraint holds through the velocity of configuration `i`.
+pub(super) fn holds(s: &Symbols, spec: &Spec, hold: &Hold, i: usize) -> bool {
+    let velocity = here(spec.configurations[i].velocity);
+    expr::contains(&at_the_end(s, spec, hold), velocity)
+}
+
+/// The multiplier as a configuration.
+fn configuration(s: &Symbols, hold: &Hold, held: &Held) -> Configuration {
+    let shape = s.get(hold.multiplier).shape;
+    let add = |a, b| expr::add(expr::here(s, a), expr::here(s, b));
+    Configuration {
+        element: held.element,
+        velocity: hold.multiplier,
+        group: Group::Additive(Additive(shape)),
+        side: Side::Spatial,
+        update: add(held.element, hold.multiplier),
+        place: hold.place,
+        name_place: hold.name_place,
+        group_place: hold.place,
+    }
+}
+
+/// The constraint as the equation of its multiplier.
+fn equation(value: Expr) -> Balance {
+    let zero = expr::zero(value.shape());
+    Balance {
+        increment: None,
+        outgoing: value.clone(),
+        incoming: zero.clone(),
+        edge_out: value,
+        node_out: zero.clone(),
+        edge_in: zero.clone(),
+        node_in: zero.clone(),
+        gradient: zero,
+        advected_gradients: Vec::new(),
+        variation_out: expr::integer(0),
+        variation_in: expr::integer(0),
+    }
+}
+
+/// The refusal of a constraint that follows from those before it whatever the configuration is.
+pub(super) fn dependent(d: &Derivation, assumed: &[Expr]) -> Option<Diagnostic> {
+    let number = |j: usize| {
+        let shape = d.letters.symbols.get(d.spec.holds[j].multiplier).shape;
+        let size = |n| d.letters.symbols.sizes(n).1;
+        size(shape.rows) * size(shape.cols)
+    };
+    let rank_of = |count: usize| {
+        let all: Vec<usize> = (0..count).collect();
+        let whole = d.with_multipliers(&all);
+        let paired: Vec<Expr> = all.iter().map(|i| rate_paired(d, *i)).collect();
+        let form = expr::sum(paired, Shape::SCALAR);
+        // The form on velocities and multipliers has twice the rank of the derivatives.
+        let rank = super::kinetic::rank(&whole.spec, &whole.letters, &form, assumed);
+        let wanted: usize = all.iter().map(|j| number(*j)).sum();
+        rank.map(|(rank, _)| (rank / 2, wanted))
+            .filter(|(rank, wanted)| rank < wanted)
+    };
+    let count = d.spec.holds.len();
+    if count == 0 {
+        return None;
+    }
+    rank_of(count)?;
+    for j in 0..count {
+        let Some((rank, wanted)) = rank_of(j + 1) else {
+            continue;
+        };
+        let hold = &d.spec.holds[j];
+        let name = &d.letters.symbols.get(hold.multiplier).name;
+        let message = format!(
+            "the constraint of `{name}` follows from the others, or some of its components from one another: \
+             {wanted} equations hold {rank} directions, and its multiplier is not determined"
+        );
+        return Some(
+            Diagnostic::new(hold.place, message)
+                .help("leave out what the other constraints state already"),
+        );
+    }
+    None
+}
+
+impl Derivation {
+    /// What is solved, with the multipliers of these constraints as further velocities behind those of the
+    /// configurations.
+    pub fn with_multipliers(&self, which: &[usize]) -> Derivation {
+        let mut own = self.clone();
+        let s = &self.letters.symbols;
+        for j in which {
+            let (Some(hold), Some(held)) = (self.spec.holds.get(*j), self.letters.held.get(*j))
+            else {
+                continue;
+            };
+            let value = at_the_end(s, &self.spec, hold);
+            own.spec.configurations.push(configuration(s, hold, held));
+            own.balances.push(equation(value));
+            let letters = &mut own.letters;
+            letters.variation.push(held.variation);
+            letters.direction.push(held.direction);
+            letters.rate.push(held.variation);
+            letters.acceleration.push(held.direction);
+            let [momentum, edge, node] = held.others;
+            letters.momentum.push(momentum);
+            letters.edge_momentum.push(edge);
+            letters.node_momentum.push(node);
+            own.solve
+                .riccati
+                .push(Riccati::None("a multiplier".to_owned()));
+            if let Some(list) = &mut own.solve.seen_from_body {
+                list.push(seen_from_body(&self.spec, s, hold));
+            }
+        }
+        own
+    }
+}
+
+/// The constraint at the end of the edge with the letters of spatial velocities for those seen from
+/// the body.
+fn seen_from_body(spec: &Spec, s: &Symbols, hold: &Hold) -> Expr {
+    let (mut ends, mut velocities) = (Vec::new(), Vec::new());
+    for c in &spec.configurations {
+        if c.side == Side::Body || c.group.is_additive() {
+            ends.push((at(c.element, Shift::NEXT), c.update.clone()));
+            continue;
+        }
+        let (g, v) = (expr::here(s, c.element), expr::here(s, c.velocity));
+        ends.push((at(c.element, Shift::NEXT), expr::mul(g.clone(), v.clone())));
+        let seen = expr::product([g.clone(), v, expr::inverse(s, g)]);
+        velocities.push((here(c.velocity), seen));
+    }
+    for a in &spec.advected {
+        let end = expr::substitute(s, &a.update, &velocities);
+        ends.push((at(a.quantity, Shift::NEXT), end));
+    }
+    let next = expr::shift_time(s, &hold.value, Shift::NEXT.time);
+    expr::substitute(s, &next, &ends)
+}
+
+/// The size of the terms of a constraint, and of what rounding of the configuration changes in units of it:
+/// a logarithm near zero is as uncertain as its argument.
+pub(crate) fn scale(s: &Symbols, hold: &Hold) -> Expr {
+    let mut terms = vec![expr::magnitude(s, &hold.value)];
+    if hold.value.shape().is_scalar() {
+        let letters = expr::letters(&hold.value).into_iter();
+        for l in letters.filter(|l| s.get(l.symbol).role != Role::Parameter) {
+            let own = expr::letter(s, l.symbol, l.shift);
+            let gradient = expr::gradient(s, &hold.value, l);
+            terms.push(expr::mul(
+                expr::magnitude(s, &gradient),
+                expr::magnitude(s, &own),
+            ));
+        }
+    }
+    expr::sum(terms, Shape::SCALAR)
+}
+
+/// What the search for invariants of the motion without constraints found.
+pub(super) struct Found {
+    pub invariants: Vec<Invariant>,
+    pub integrability: Integrability,
+}
+
+/// The invariants that the reactions leave: those that no momentum along a reaction changes. The
+/// constraints are added, and their rates of change where these are held too.
+pub(super) fn kept(
+    spec: &Spec,
+    letters: &Letters,
+    variations: &[Variation],
+    projected: bool,
+    algebra: &Algebra,
+    found: Found,
+) -> Found {
+    let Found {
+        mut invariants,
+        mut integrability,
+    } = found;
+    if spec.holds.is_empty() {
+        return Found {
+            invariants,
+            integrability,
+        };
+    }
+    let s = &letters.symbols;
+    let kicks: Vec<Vec<(Letter, Expr)>> = spec
+        .holds
+        .iter()
+        .map(|hold| {
+            let each = letters.node_momentum.iter().enumerate();
+            each.map(|(i, m)| (here(*m), reaction(spec, letters, variations, i, hold)))
+                .collect()
+        })
+        .collect();
+    let unmoved = |value: &Expr| {
+        kicks
+            .iter()
+            .all(|kick| algebra.is_zero(&expr::directional(s, value, kick)))
+    };
+    invariants.retain_mut(|v| match (&v.kind, &v.value) {
+        (Kind::Energy, _) => {
+            if v.exact {
+                v.exact = false;
+                v.reason = "the stepper is symplectic".to_owned();
+            }
+            true
+        }
+        (Kind::Spectrum, _) | (_, None) => false,
+        (_, Some(value)) => unmoved(value),
+    });
+    integrability.lax = None;
+    integrability.discrete_energy.exact = false;
+    integrability.casimirs = Known::NotSought(
+        "constraints are held, and the space that they leave is no longer that of the bracket"
+            .to_owned(),
+    );
+    for (j, hold) in spec.holds.iter().enumerate() {
+        let multiplier = s.get(hold.multiplier);
+        invariants.push(Invariant {
+            name: format!("constraint_{}", multiplier.ascii),
+            kind: Kind::Value,
+            family: Family::Held,
+            scale: Some(scale(s, hold)),
+            value: Some(hold.value.clone()),
+            exact: true,
+            reason: format!("held by the multiplier {}", multiplier.name),
+        });
+        if projected {
+            invariants.push(Invariant {
+                name: format!("constraint_rate_{}", multiplier.ascii),
+                kind: Kind::ConstraintRate(j),
+                family: Family::Held,
+                scale: None,
+                value: None,
+                exact: true,
+                reason: format!(
+                    "the rate of change of what {} holds vanishes: the momentum is projected on arrival",
+                    multiplier.name
+                ),
+            });
+        }
+    }
+    Found {
+        invariants,
+        integrability,
+    }
+}

@@ -1,0 +1,185 @@
+//! Carlson's symmetric elliptic integral of a positive definite matrix,
+//! R_F(B) = ½ ∫ det(B + s)^{-1/2} ds from 0 to infinity, and its gradient: the potential of a homogeneous
+//! ellipsoid whose shape is B.
+//! Takes B of three rows; gives a number, or the symmetric matrix of derivatives. Both are made of the principal
+//! invariants of B alone, so that equal axes are no special case. Theorem of duplication and series: DLMF
+//! 19.26.18 and 19.36.1.
+
+use super::jet::Jet;
+use crate::Real;
+use nalgebra::SMatrix;
+
+/// The integral, to be named in a model.
+#[allow(non_camel_case_types)]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct carlson_rf;
+
+/// Duplications after which nothing changes any more: each leaves a quarter of the differences.
+const MOST: usize = 64;
+
+/// Where the series is exact to rounding with its derivatives: deviations of 3e-3 to the seventh power.
+const NEAR: f64 = 1e-5;
+
+/// Newton's iterations for the trace of the root, which converge from above.
+const MOST_CORRECTIONS: usize = 64;
+
+impl carlson_rf {
+    /// R_F(B) of a symmetric positive definite matrix; NaN where it is not.
+    #[must_use]
+    pub fn value<T: Real>(&self, b: &SMatrix<T, 3, 3>) -> T {
+        integral(invariants(b)).value
+    }
+
+    /// The gradient with respect to B times a number, a symmetric matrix.
+    #[must_use]
+    pub fn pull_back_1<T: Real>(&self, b: &SMatrix<T, 3, 3>, seed: &T) -> SMatrix<T, 3, 3> {
+        let own = invariants(b);
+        let [first, second, third] = integral(own).along.map(|x| x * *seed);
+        // The gradients of the invariants: 1, tr(B) - B, and the cofactors B² - tr(B) B + I2(B).
+        let whole = first + second * own[0] + third * own[1];
+        let linear = second + third * own[0];
+        let square = b * b;
+        SMatrix::from_fn(|i, j| {
+            let unit = if i == j { whole } else { T::zero() };
+            let even = T::from_f64(0.5);
+            let (b, square) = (
+                (b[(i, j)] + b[(j, i)]) * even,
+                (square[(i, j)] + square[(j, i)]) * even,
+            );
+            unit - b * linear + square * third
+        })
+    }
+}
+
+/// The same integral by the principal invariants of B, its trace, second invariant and determinant: what a
+/// model states so is seen to be isotropic.
+#[allow(non_camel_case_types)]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct carlson_rf_of_invariants;
+
+impl carlson_rf_of_invariants {
+    /// R_F of a matrix with these invariants; NaN where it is not positive definite.
+    #[must_use]
+    pub fn value<T: Real>(&self, first: &T, second: &T, third: &T) -> T {
+        integral([*first, *second, *third]).value
+    }
+
+    /// The derivative with respect to the trace, times a number.
+    #[must_use]
+    pub fn pull_back_1<T: Real>(&self, first: &T, second: &T, third: &T, seed: &T) -> T {
+        integral([*first, *second, *third]).along[0] * *seed
+    }
+
+    /// The derivative with respect to the second invariant, times a number.
+    #[must_use]
+    pub fn pull_back_2<T: Real>(&self, first: &T, second: &T, third: &T, seed: &T) -> T {
+        integral([*first, *second, *third]).along[1] * *seed
+    }
+
+    /// The derivative with respect to the determinant, times a number.
+    #[must_use]
+    pub fn pull_back_3<T: Real>(&self, first: &T, second: &T, third: &T, seed: &T) -> T {
+        integral([*first, *second, *third]).along[2] * *seed
+    }
+}
+
+/// The principal invariants.
+fn invariants<T: Real>(b: &SMatrix<T, 3, 3>) -> [T; 3] {
+    let minor = |i: usize, j: usize| b[(i, i)] * b[(j, j)] - b[(i, j)] * b[(j, i)];
+    [
+        b[(0, 0)] + b[(1, 1)] + b[(2, 2)],
+        minor(0, 1) + minor(1, 2) + minor(0, 2),
+        crate::emitted::determinant(b),
+    ]
+}
+
+/// The integral with its derivatives with respect to the three invariants.
+fn integral<T: Real>(of: [T; 3]) -> Jet<T> {
+    let mut all: [Jet<T>; 3] = core::array::from_fn(|i| Jet::variable(of[i], i));
+    for _ in 0..MOST {
+        let [mean, second, third] = deviations(all);
+        let far = |x: T| !(x.greatest().max(-x.least()) <= NEAR);
+        if !far(second.value) && !far(third.value) {
+            return series(mean, second, third);
+        }
+        if !mean.value.is_finite() {
+            break;
+        }
+        all = duplicated(all);
+    }
+    let [mean, second, third] = deviations(all);
+    series(mean, second, third)
+}
+
+/// A third of the trace, and the second and third invariants of the deviations from it, in units of it.
+fn deviations<T: Real>([first, second, third]: [Jet<T>; 3]) -> [Jet<T>; 3] {
+    let mean = first.times(1.0 / 3.0);
+    let square = mean * mean;
+    let e2 = second / square - Jet::constant(T::from_f64(3.0));
+    let e3 = (mean * second - third) / (square * mean) - Jet::constant(T::from_f64(2.0));
+    [mean, e2, e3]
+}
+
+fn series<T: Real>(mean: Jet<T>, e2: Jet<T>, e3: Jet<T>) -> Jet<T> {
+    let one = Jet::constant(T::one());
+    let (square, product) = (e2 * e2, e2 * e3);
+    let sum = one - e2.times(0.1) + e3.times(1.0 / 14.0) + square.times(1.0 / 24.0)
+        - product.times(3.0 / 44.0)
+        - (square * e2).times(5.0 / 208.0)
+        + (e3 * e3).times(3.0 / 104.0)
+        + (square * e3).times(1.0 / 16.0);
+    sum / mean.sqrt()
+}
+
+/// The invariants of `(B + λ)/4`, where λ is the second invariant of the root of B.
+fn duplicated<T: Real>([first, second, third]: [Jet<T>; 3]) -> [Jet<T>; 3] {
+    let root = third.sqrt();
+    let trace = trace_of_root(first, second, root);
+    let l = (trace * trace - first).times(0.5);
+    let square = l * l;
+    [
+        (first + l.times(3.0)).times(0.25),
+        (second + (l * first).times(2.0) + square.times(3.0)).times(1.0 / 16.0),
+        (third + l * second + square * first + square * l).times(1.0 / 64.0),
+    ]
+}
+
+/// The trace `u` of the root of B, the largest root of `((u² - I1)/2)² = I2 + 2 √I3 u`. It is found in plain numbers,
+/// lane by lane, and improved in the scalar at hand, the last time with derivatives: bounds of rounding then do
+/// not gather over the iterations.
+fn trace_of_root<T: Real>(first: Jet<T>, second: Jet<T>, root: Jet<T>) -> Jet<T> {
+    let mut u = T::zero();
+    for lane in 0..T::LANES {
+        let known = [first, second, root].map(|x| x.value.lane(lane));
+        u.set_lane(lane, T::One::from_f64(plain_trace(known)));
+    }
+    let precise = u32::from(T::EPSILON < 1e-20);
+    for _ in 0..T::ORDER + precise {
+        u = improved(Jet::constant(u), first, second, root).value;
+    }
+    improved(Jet::constant(u), first, second, root)
+}
+
+/// One correction of Newton's method.
+fn improved<T: Real>(u: Jet<T>, first: Jet<T>, second: Jet<T>, root: Jet<T>) -> Jet<T> {
+    let l = (u * u - first).times(0.5);
+    let value = l * l - second - (root * u).times(2.0);
+    u - value / (u * l - root).times(2.0)
+}
+
+/// The same root of numbers: Newton's iteration from above, which falls until rounding stops it.
+fn plain_trace([first, second, root]: [f64; 3]) -> f64 {
+    let mut u = (3.0 * first).sqrt();
+    for _ in 0..MOST_CORRECTIONS {
+        let l = 0.5 * (u * u - first);
+        let step = (l * l - second - 2.0 * root * u) / (2.0 * (u * l - root));
+        u -= step;
+        if !(step > 4.0 * f64::EPSILON * u) {
+            break;
+        }
+    }
+    u
+}
+
+#[cfg(test)]
+mod tests;

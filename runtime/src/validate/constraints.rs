@@ -1,0 +1,71 @@
+//! Initial data of models with held constraints: the configuration must be on them, and its momentum
+//! must not move it off.
+//! Takes the constraint as the model writes it, with numbers; gives nothing, or an error with them.
+
+use crate::{ParameterError, Problem, Real};
+
+/// The first step solves the constraint to rounding: data typed with ten digits are on it.
+const OFF: f64 = 1e-9;
+
+/// What is along the reactions is taken away: data typed with eight digits are along the constraint.
+const ACROSS: f64 = 1e-7;
+
+/// The configuration at the start is on a constraint.
+///
+/// # Errors
+/// When the left side less the right one, `value`, is no rounding of terms of size `scale`.
+pub fn on_constraint<T: Real>(
+    field: &'static str,
+    equation: &'static str,
+    value: T,
+    scale: T,
+) -> Result<(), ParameterError> {
+    let (size, scale) = (value.magnitude(), scale.magnitude());
+    if size <= OFF * scale {
+        return Ok(());
+    }
+    Err(ParameterError {
+        field,
+        problem: Problem::OffConstraint {
+            equation,
+            size,
+            scale,
+        },
+        remedy: "give a configuration that obeys it to ten digits, or the parameters for which this one does",
+    })
+}
+
+/// The momentum at the start leaves a constraint as it is. `impulse` is what the projection found for its
+/// multiplier, `taken` what the projection took from the momentum, of size `whole`.
+///
+/// # Errors
+/// When more than rounding is taken; when the impulse is not determined.
+pub fn along_constraint<T: Real>(
+    field: &'static str,
+    equation: &'static str,
+    impulse: T,
+    taken: T,
+    whole: T,
+) -> Result<(), ParameterError> {
+    if !impulse.is_finite() {
+        return Err(ParameterError {
+            field,
+            problem: Problem::DependentConstraints { equation },
+            remedy: "leave out constraints that follow from others, or start elsewhere",
+        });
+    }
+    let (taken, whole) = (taken.magnitude(), whole.magnitude());
+    if taken <= ACROSS * whole {
+        return Ok(());
+    }
+    Err(ParameterError {
+        field,
+        problem: Problem::AcrossConstraint {
+            equation,
+            impulse: impulse.value(),
+            taken,
+            whole,
+        },
+        remedy: "subtract that from the momentum, or give one that belongs to a velocity along the constraint",
+    })
+}
