@@ -479,5 +479,5 @@ fn a_drop_keeps_volume_and_angular_momentum() {
     assert!((angular(&state) - first).norm() < 2e-13);
     assert!((state.Q().matrix().determinant() - 1.0).abs() < 1e-14);
     assert!((model.energy(&state) - energy).abs() < 1e-3);
-    assert!((carlson_rf.value(&Matrix3::identity()) - 1.0).abs() < 1e-15);
+    assert!((carlson_rf.value(&Matrix3::<f64>::identity()) - 1.0).abs() < 1e-15);
 }

@@ -66,6 +66,6 @@ fn derivatives_pass_through() {
     let value = carlson_rf.value(&dual);
     let gradient = carlson_rf.pull_back_1(&b, &1.0);
     let wanted = (gradient.transpose() * along).trace();
-    assert!((value.derivative(0) - wanted).abs() < 1e-14);
+    assert!((value.dual[0] - wanted).abs() < 1e-14);
     assert!(carlson_rf.value(&(-b)).is_nan());
 }
