@@ -98,8 +98,9 @@ fn integral<T: Real>(of: [T; 3]) -> Jet<T> {
     let mut all: [Jet<T>; 3] = core::array::from_fn(|i| Jet::variable(of[i], i));
     for _ in 0..MOST {
         let [mean, second, third] = deviations(all);
-        let far = |x: T| !(x.greatest().max(-x.least()) <= NEAR);
-        if !far(second.value) && !far(third.value) {
+        // Not what is no number.
+        let near = |x: T| x.greatest().max(-x.least()) <= NEAR;
+        if near(second.value) && near(third.value) {
             return series(mean, second, third);
         }
         if !mean.value.is_finite() {
@@ -174,7 +175,9 @@ fn plain_trace([first, second, root]: [f64; 3]) -> f64 {
         let l = 0.5 * (u * u - first);
         let step = (l * l - second - 2.0 * root * u) / (2.0 * (u * l - root));
         u -= step;
-        if !(step > 4.0 * f64::EPSILON * u) {
+        // What is no number falls no further either.
+        let falls = step > 4.0 * f64::EPSILON * u;
+        if !falls {
             break;
         }
     }

@@ -50,6 +50,17 @@ impl<T: Real> Jet<T> {
         }
     }
 
+    fn times(self, other: Self) -> Self {
+        let (x, y) = (self.value, other.value);
+        self.with(other, x * y, |a, b| a * y + x * b)
+    }
+
+    fn over(self, other: Self) -> Self {
+        let (one, y) = (T::one(), other.value);
+        let value = self.value / y;
+        self.with(other, value, |a, b| (a - value * b) * (one / y))
+    }
+
     fn with(self, other: Self, value: T, each: impl Fn(T, T) -> T) -> Self {
         let (a, b) = (self.along, other.along);
         Self {
@@ -79,8 +90,7 @@ impl<T: Real> Mul for Jet<T> {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
-        let (x, y) = (self.value, other.value);
-        self.with(other, x * y, |a, b| a * y + x * b)
+        self.times(other)
     }
 }
 
@@ -88,8 +98,6 @@ impl<T: Real> Div for Jet<T> {
     type Output = Self;
 
     fn div(self, other: Self) -> Self {
-        let (one, y) = (T::one(), other.value);
-        let value = self.value / y;
-        self.with(other, value, |a, b| (a - value * b) * (one / y))
+        self.over(other)
     }
 }
