@@ -104,6 +104,11 @@ pub trait Saved {
     fn words(&mut self, words: &mut Words);
 }
 
+/// What a search keeps of a node whose tangent asks for nothing of it.
+impl Saved for () {
+    fn words(&mut self, _: &mut Words) {}
+}
+
 impl Saved for f64 {
     fn words(&mut self, words: &mut Words) {
         let mut bits = self.to_bits();

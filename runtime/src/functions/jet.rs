@@ -50,12 +50,12 @@ impl<T: Real> Jet<T> {
         }
     }
 
-    fn times(self, other: Self) -> Self {
+    fn product(self, other: Self) -> Self {
         let (x, y) = (self.value, other.value);
         self.with(other, x * y, |a, b| a * y + x * b)
     }
 
-    fn over(self, other: Self) -> Self {
+    fn quotient(self, other: Self) -> Self {
         let (one, y) = (T::one(), other.value);
         let value = self.value / y;
         self.with(other, value, |a, b| (a - value * b) * (one / y))
@@ -90,7 +90,7 @@ impl<T: Real> Mul for Jet<T> {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
-        self.times(other)
+        self.product(other)
     }
 }
 
@@ -98,6 +98,6 @@ impl<T: Real> Div for Jet<T> {
     type Output = Self;
 
     fn div(self, other: Self) -> Self {
-        self.over(other)
+        self.quotient(other)
     }
 }
