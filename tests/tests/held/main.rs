@@ -350,7 +350,8 @@ fn a_pendulum_keeps_its_length_and_shows_its_tension() {
         for _ in 0..steps {
             let before = state;
             model.step(&mut state, &mut work).expect("steps");
-            assert!(model.constraint_lambda(&state).abs() < 1e-15);
+            // A solution is taken below sixteen roundings of its terms.
+            assert!(model.constraint_lambda(&state).abs() < 1e-14);
             assert!(model.constraint_rate_lambda(&state).abs() < 1e-14);
             // The tension by the equation of motion, in the middle of the step.
             let tension = |s: &SphericalState| {
