@@ -132,7 +132,14 @@ fn errors_name_the_site() {
             ends: TodaChainEnds::Open,
         },
     );
-    assert!(matches!(none, Err(LineError::NoSites { .. })));
+    assert!(matches!(
+        none,
+        Err(LineError::Count {
+            found: 0,
+            least: 1,
+            ..
+        })
+    ));
 }
 
 #[test]
@@ -148,4 +155,36 @@ fn a_step_that_is_too_long_names_the_site_and_a_shorter_one() {
     assert_eq!((at.quantity, at.site), ("Λ", 5));
     let works = works.expect("a shorter step");
     assert!(stepper.start(initial, works).is_ok());
+}
+
+#[test]
+fn a_workspace_of_another_model_is_made_anew() {
+    let (soft, hard) = (Toda::ring(5).stepper(), Toda::hard(5));
+    let initial = Toda::ring(5).initial(1);
+    let (state, _) = hard.start(initial.clone(), 0.05).expect("starts");
+    let (_, mut others) = soft.start(initial, 0.05).expect("starts");
+    let (mut one, mut two) = (state.clone(), state);
+    hard.step(&mut one, &mut others).expect("steps");
+    let mut own = hard.workspace(&two, 0.05).expect("a workspace");
+    hard.step(&mut two, &mut own).expect("steps");
+    assert!(one == two);
+    // A state of another number of sites is none of this model.
+    let longer = Toda::ring(8).stepper();
+    assert!(matches!(
+        longer.step(&mut one, &mut own),
+        Err(LineError::Length { .. })
+    ));
+}
+
+#[test]
+fn terms_that_the_offset_of_a_ring_changes_are_refused_where_they_look_back() {
+    let text =
+        "model Off { label i in 0..N; periodic; param m, k: Real; field q: Real at nodes offset L;
+        lagrangian = m*(next(q)-q)^2/(2*h) - h*k*cos(q + prev(q,i)); }";
+    let model = clebsch_core::pipeline::parse_source(text).expect("a model");
+    let told = clebsch_core::pipeline::emitted_line(&model, "").expect_err("refused");
+    assert!(
+        format!("{told:?}").contains("grow by their offsets"),
+        "{told:?}"
+    );
 }

@@ -25,6 +25,24 @@ pub fn length_of<S>(
     }
 }
 
+/// Most sites: beyond it not even their numbers are counted.
+const MOST: usize = 1 << 40;
+
+/// Whether there are enough sites, and not too many.
+///
+/// # Errors
+/// [`LineError::Count`].
+pub fn count_of(count: &'static str, found: usize, least: usize) -> Result<(), LineError> {
+    match (least..=MOST).contains(&found) {
+        true => Ok(()),
+        false => Err(LineError::Count {
+            count,
+            found,
+            least,
+        }),
+    }
+}
+
 /// Tests, or makes, one value of each site.
 ///
 /// # Errors

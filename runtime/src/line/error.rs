@@ -22,10 +22,14 @@ impl fmt::Display for Place {
 /// Why a line is not built, started or stepped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LineError {
-    /// No sites.
-    NoSites {
+    /// Too few sites, or more than can be counted.
+    Count {
         /// The name of the number of sites.
         count: &'static str,
+        /// How many were asked for.
+        found: usize,
+        /// How many it takes.
+        least: usize,
     },
     /// A list has another length than there are sites.
     Length {
@@ -70,7 +74,17 @@ impl From<ParameterError> for LineError {
 impl fmt::Display for LineError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoSites { count } => write!(f, "{count} = 0: a line has at least one segment"),
+            Self::Count {
+                count,
+                found,
+                least,
+            } if found < least => write!(
+                f,
+                "{count} = {found}, and this line with its ends takes at least {least}"
+            ),
+            Self::Count { count, found, .. } => {
+                write!(f, "{count} = {found} is more than memory holds")
+            }
             Self::Length {
                 quantity,
                 expected,

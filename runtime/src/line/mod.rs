@@ -10,7 +10,7 @@ mod sweep;
 mod system;
 
 pub use attitude::Attitude;
-pub use check::{each, length_of, repeated, shorter};
+pub use check::{count_of, each, length_of, repeated, shorter};
 pub use error::{LineError, Place};
 pub use stamp::Stamp;
 pub use sweep::{Threads, fill, sum, total, try_each, try_fill, update};

@@ -38,7 +38,7 @@ impl Configuration<f64> {
         v[axis] = D::variable(0.0, 0);
         let zero = D::constant(0.0);
         let hat = Matrix3::new(zero, -v[2], v[1], v[2], zero, -v[0], -v[1], v[0], zero);
-        out.r[i] = out.r[i] * (Matrix3::identity() + hat);
+        out.r[i] *= Matrix3::identity() + hat;
         out
     }
 

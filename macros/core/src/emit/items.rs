@@ -9,7 +9,7 @@ use crate::derive::Derivation;
 use crate::derive::recognise::{Method, Riccati};
 use crate::derive::transport::Transport;
 use crate::expr::shape::Structure;
-use crate::expr::symbol::SymbolId;
+use crate::expr::symbol::{SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::print::{Format, Style, expression};
 use crate::syntax::ast::Comparison;
@@ -328,11 +328,21 @@ pub fn node_locals(
 }
 
 fn assumption(d: &Derivation, a: &Assumption) -> TokenStream {
-    let s = &d.letters.symbols;
     let none = Bindings::new();
+    holds(&d.letters.symbols, &d.spec.time_index, a, &none)
+}
+
+/// The test that an assumption holds, its letters bound.
+pub(super) fn holds(
+    s: &Symbols,
+    time_index: &str,
+    a: &Assumption,
+    bindings: &Bindings,
+) -> TokenStream {
+    let text = |e: &Expr| expression(e, s, &Style::new(time_index), Format::Text);
     let w = Writer {
         symbols: s,
-        bindings: &none,
+        bindings,
     };
     let difference = w.operand(&expr::sub(a.left.clone(), a.right.clone()));
     let (sign, shown) = match a.relation {
@@ -356,7 +366,7 @@ fn assumption(d: &Derivation, a: &Assumption) -> TokenStream {
         };
         quote!(#gap <= 64.0 * T::EPSILON * #bound.magnitude())
     });
-    let message = format!("{} {sign} {}", text(d, &a.left), text(d, &a.right));
+    let message = format!("{} {sign} {}", text(&a.left), text(&a.right));
     quote!(validate::assumption(#holds, #message)?;)
 }
 

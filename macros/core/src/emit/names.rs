@@ -49,7 +49,7 @@ pub fn own(d: &Derivation, id: SymbolId) -> Ident {
 }
 
 /// Types, traits and variants that emitted code calls by a plain name: no model can bear one.
-const TYPES: [&str; 57] = [
+const TYPES: [&str; 58] = [
     "AboutBody",
     "Additive",
     "BodyMomentum",
@@ -70,6 +70,7 @@ const TYPES: [&str; 57] = [
     "KineticWarning",
     "LeftFactor",
     "LeftFactorError",
+    "LineError",
     "Linear",
     "Method",
     "MoserVeselovError",

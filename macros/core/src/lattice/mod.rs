@@ -17,6 +17,7 @@ pub mod value;
 pub use choice::{Choice, Refusal};
 pub use declared::{Kind, Label, Lattice, Quantity, Sites};
 pub use names::{Copied, copy_name};
+pub(crate) use put::any_name;
 pub use range::Range;
 pub use unfold::{Summand, Unfolded, unfold};
 pub(crate) use unfold::{definitions, inlined};

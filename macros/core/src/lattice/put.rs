@@ -181,7 +181,7 @@ fn named(text: String, e: &Expression) -> Expression {
 }
 
 /// Whether a name in the expression is such a one.
-pub(super) fn any_name(e: &Expression, is: &dyn Fn(&str) -> bool) -> bool {
+pub(crate) fn any_name(e: &Expression, is: &dyn Fn(&str) -> bool) -> bool {
     match &e.kind {
         Kind::Number(_) => false,
         Kind::Name(n) => is(n),

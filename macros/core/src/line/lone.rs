@@ -280,8 +280,7 @@ fn how(
             let Carry::Through { leave, arrive, .. } = &d.carries[i] else {
                 return together();
             };
-            let constant =
-                |l: &Letter| matches!(s.get(l.symbol).role, Role::Parameter | Role::Step);
+            let constant = |l: &Letter| s.get(l.symbol).role == Role::Parameter;
             let free = !moving(leave) && !moving(arrive);
             let known =
                 |mv: &MoserVeselov| mv.symmetric && expr::letters(&mv.factor).iter().all(constant);

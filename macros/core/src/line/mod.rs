@@ -19,7 +19,7 @@ pub use total::Total;
 use crate::algebra::Rational;
 use crate::derive::Outline;
 use crate::diagnostic::Errors;
-use crate::lattice::{Choice, Lattice, Unfolded};
+use crate::lattice::{Choice, Lattice, Unfolded, any_name};
 use crate::pipeline;
 use crate::syntax::ast::{Model, NodeRule, Statement};
 
@@ -80,7 +80,7 @@ impl Line {
         let choice = pipeline::representative(model, &lattice)?;
         let representative = written(model, &lattice, choice)?;
         let lone = lone::lone(model, &lattice, &representative)?;
-        let pulls = pull::pulls(&representative)?;
+        let pulls = pull::pulls(&lattice, &representative)?;
         let ends = pull::ends(model, &lattice, &representative.choice)?;
         let totals = total::totals(model, &lattice, &representative)?;
         let (all, none) = (Rational::integer(1), Rational::integer(0));
@@ -167,6 +167,13 @@ fn stands_alone(model: &Model, lattice: &Lattice) -> Result<(), Refused> {
             }
             Statement::Given { .. } => return refused("a function is given by its name"),
             Statement::Scale(_) => return refused("the action is scaled"),
+            Statement::Assume { left, right, .. } => {
+                let sited = |n: &str| lattice.find(n).is_some();
+                if any_name(left, &sited) || any_name(right, &sited) {
+                    return refused("an assumption holds what differs from site to site");
+                }
+                false
+            }
             Statement::Dim { .. } => return refused("shapes have sizes that are named"),
             _ => false,
         };

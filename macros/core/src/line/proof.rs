@@ -6,6 +6,7 @@ use crate::algebra::Algebra;
 use crate::derive::transport::Transport;
 use crate::expr::shape::Shape;
 use crate::expr::{self, Expr, Letter, Shift};
+use crate::lattice::Sites;
 
 impl Line {
     /// Proves it for every configuration.
@@ -32,7 +33,10 @@ impl Line {
         let d = &part.d;
         let s = &d.letters.symbols;
         // The site in the middle of the sites shown.
-        let site = self.beyond() + 1;
+        let site = match lone.sites {
+            Sites::Members => 0,
+            Sites::Nodes | Sites::Segments => self.beyond() + 1,
+        };
         let element = part.copy(&mover.name, site).ok_or_else(refused)?;
         let mut configurations = d.spec.configurations.iter();
         let i = configurations

@@ -74,7 +74,7 @@ pub(super) fn lone_at(summand: &Summand) -> Option<Sites> {
 }
 
 /// The terms of neighbours.
-pub(super) fn pulls(part: &Written) -> Result<Vec<Pull>, Refused> {
+pub(super) fn pulls(lattice: &Lattice, part: &Written) -> Result<Vec<Pull>, Refused> {
     let mut out: Vec<Pull> = Vec::new();
     let inner = part.unfolded.summands.iter().filter(|t| t.end.is_none());
     for summand in inner.filter(|t| lone_at(t).is_none()) {
@@ -89,6 +89,11 @@ pub(super) fn pulls(part: &Written) -> Result<Vec<Pull>, Refused> {
                 "a term reaches beyond the sites shown".to_owned(),
             ));
         };
+        if first != 0 && lattice.periodic.is_some() && !keeps(lattice, part, &term) {
+            return Err(Refused::Form(
+                "a term of the site before changes when fields grow by their offsets".to_owned(),
+            ));
+        }
         let from = usize::try_from(range.from + first)
             .map_err(|_| Refused::Form("a term begins before the line".to_owned()))?;
         let to = range.to + first;
@@ -121,6 +126,25 @@ pub(super) fn pulls(part: &Written) -> Result<Vec<Pull>, Refused> {
             .collect();
     }
     Ok(out)
+}
+
+/// Whether a term stays as it is when all copies of a field grow alike, as they do once around a ring.
+fn keeps(lattice: &Lattice, part: &Written, term: &Expr) -> bool {
+    let s = &part.d.letters.symbols;
+    let algebra = Algebra::new(s);
+    let mut grown = lattice.quantities.iter().filter(|q| q.offset.is_some());
+    grown.all(|q| {
+        let letters = expr::letters(term).into_iter();
+        let is_own = |l: &Letter| part.sited(l.symbol).is_some_and(|at| at.of == q.name.text);
+        let own: Vec<Letter> = letters.filter(is_own).collect();
+        let Some(first) = own.first() else {
+            return true;
+        };
+        // By an amount that stands for any: the first letter itself.
+        let by = expr::letter(s, first.symbol, first.shift);
+        let changes: Vec<(Letter, Expr)> = own.iter().map(|l| (*l, by.clone())).collect();
+        algebra.is_zero(&expr::directional(s, term, &changes))
+    })
 }
 
 /// A summand as it is shown, which must stand at one node in time.

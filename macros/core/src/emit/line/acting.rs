@@ -100,7 +100,7 @@ fn one(l: &Lines, m: Moving) -> TokenStream {
         next: quote!(at),
     };
     let (locals, bindings) = l.locals(s, &l.of_site(d, &wanted), &at, &quote!(site));
-    let p = schedule::program(s, &wanted, "t");
+    let p = schedule::program(s, &wanted, &l.prefix("t"));
     let (lets, results) = program(&p, &bindings);
     let collected = l.collected(&m.mover.name);
     let shared = |value: &TokenStream, e: &Expr, share: Rational| -> TokenStream {
@@ -205,7 +205,7 @@ fn added(l: &Lines, m: Moving) -> TokenStream {
         velocities.extend(quote!(let #local = #value;));
         bindings.bind(letter, local);
     }
-    let p = schedule::program(s, &wanted, "t");
+    let p = schedule::program(s, &wanted, &l.prefix("t"));
     let (lets, results) = program(&p, &bindings);
     let value = m.array(results.into_iter().next().unwrap_or_default());
     let size = number(*n);

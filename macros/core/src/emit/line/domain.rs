@@ -6,9 +6,9 @@ use super::pulls::{known, range_of};
 use super::{Lines, number};
 use crate::derive::{Derivation, Outline};
 use crate::emit::domain::{Tested, tested};
-use crate::emit::expression::program;
+use crate::emit::expression::{Bindings, program};
 use crate::expr::Expr;
-use crate::line::{Line, Lone};
+use crate::line::{EndTerm, Line, Lone};
 use crate::schedule;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -36,8 +36,16 @@ pub(in crate::emit) fn refusal(line: &Line) -> Option<String> {
         .iter()
         .map(|p| asked_of(part, std::slice::from_ref(&p.terms)));
     let mut all = lone.chain(pulls);
-    let refused = all.any(|found| found.is_none());
-    refused.then(|| "a function of velocities has a domain".to_owned())
+    if all.any(|found| found.is_none()) {
+        return Some("a function of velocities has a domain".to_owned());
+    }
+    let at_end = |e: &EndTerm| {
+        let terms = std::slice::from_ref(&e.terms);
+        let asked = tested(&e.symbols, &part.spec.time_index, terms);
+        asked.is_none_or(|list| list.iter().any(|t| !t.constant))
+    };
+    let refused = line.ends.iter().any(at_end);
+    refused.then(|| "a function in a term of an end has a domain".to_owned())
 }
 
 fn lone_terms(lone: &Lone) -> Vec<Expr> {
@@ -75,7 +83,7 @@ fn asked(l: &Lines) -> Vec<Asked> {
         let values: Vec<Expr> = tests.iter().map(|t| t.argument.clone()).collect();
         let s = &d.letters.symbols;
         let (locals, bindings) = l.locals(s, &l.of_site(d, &values), &at(), &quote!(site));
-        let p = schedule::program(s, &values, "t");
+        let p = schedule::program(s, &values, &l.prefix("t"));
         let (lets, values) = program(&p, &bindings);
         let count = l.count(lone.label, lone.sites);
         out.push(Asked {
@@ -94,7 +102,7 @@ fn asked(l: &Lines) -> Vec<Asked> {
         let values: Vec<Expr> = tests.iter().map(|t| t.argument.clone()).collect();
         let s = &d.letters.symbols;
         let (locals, bindings) = l.locals(s, &known(l, &values), &at(), &quote!(site));
-        let p = schedule::program(s, &values, "t");
+        let p = schedule::program(s, &values, &l.prefix("t"));
         let (lets, values) = program(&p, &bindings);
         out.push(Asked {
             tests,
@@ -153,25 +161,32 @@ pub(super) fn of_parameters(l: &Lines) -> TokenStream {
     let mut out = TokenStream::new();
     let mut seen: Vec<String> = Vec::new();
     let part = &l.line.representative.d;
-    let mut each = |d: &Outline, list: &[Expr]| {
+    let mut each = |d: &Outline, list: &[Expr], of_site: bool| {
         for t in asked_of(d, list)
             .unwrap_or_default()
             .iter()
             .filter(|t| t.constant)
         {
-            let letters = l.of_site(d, std::slice::from_ref(&t.argument));
+            let one = std::slice::from_ref(&t.argument);
+            let letters = match of_site {
+                true => l.of_site(d, one),
+                false => known(l, one),
+            };
             if seen.contains(&t.text) || letters.iter().any(|k| k.on.is_some()) {
                 continue;
             }
             seen.push(t.text.clone());
             let s = &d.letters.symbols;
+            let mut bindings = Bindings::new();
             let lets = letters.iter().map(|k| {
                 let field = format_ident!("{}", k.of);
-                let local = crate::emit::names::variable(s, k.letter.symbol);
+                let local = format_ident!("__{}", k.of);
+                bindings.bind(k.letter, local.clone());
                 quote!(let #local = model.parameters.#field;)
             });
-            let p = schedule::program(s, std::slice::from_ref(&t.argument), "t");
-            let (more, values) = program(&p, &crate::emit::expression::Bindings::new());
+            let lets: Vec<TokenStream> = lets.collect();
+            let p = schedule::program(s, std::slice::from_ref(&t.argument), &l.prefix("t"));
+            let (more, values) = program(&p, &bindings);
             let (domain, function, text) = (&t.domain, &t.function, &t.text);
             out.extend(quote! {{
                 #(#lets)*
@@ -181,10 +196,10 @@ pub(super) fn of_parameters(l: &Lines) -> TokenStream {
         }
     };
     for lone in &l.line.lone {
-        each(&lone.outline, &lone_terms(lone));
+        each(&lone.outline, &lone_terms(lone), true);
     }
     for pull in &l.line.pulls {
-        each(part, std::slice::from_ref(&pull.terms));
+        each(part, std::slice::from_ref(&pull.terms), false);
     }
     out
 }

@@ -7,7 +7,6 @@ use super::{Lines, number};
 use crate::algebra::Algebra;
 use crate::emit::expression::Bindings;
 use crate::emit::items::letters_of;
-use crate::emit::names::variable;
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr};
 use crate::line::EndTerm;
@@ -39,13 +38,21 @@ fn each_end(
     Some(out)
 }
 
-fn pattern(ty: &Ident, end: &End) -> TokenStream {
+pub(super) fn pattern(ty: &Ident, end: &End) -> TokenStream {
     let variant = &end.variant;
-    let parameters: Vec<&Ident> = end.parameters.iter().map(|(n, _)| n).collect();
-    match parameters.is_empty() {
+    let fields = end.parameters.iter().map(|p| {
+        let (name, local) = (&p.name, end_local(&p.name.to_string()));
+        quote!(#name: #local)
+    });
+    match end.parameters.is_empty() {
         true => quote!(#ty::#variant),
-        false => quote!(#ty::#variant { #(#parameters),* }),
+        false => quote!(#ty::#variant { #(#fields),* }),
     }
+}
+
+/// The local of a parameter of an end: stated names do not begin so.
+pub(super) fn end_local(name: &str) -> Ident {
+    format_ident!("__end_{name}")
 }
 
 /// The function of what the end conditions add.
@@ -115,9 +122,9 @@ fn values(l: &Lines, end: &EndTerm, values: &[Expr]) -> (TokenStream, Vec<TokenS
         }
         match end.letters.iter().find(|(known, ..)| known == letter) {
             // A parameter of the end, bound by the pattern.
-            Some((_, of, None)) => bindings.bind(*letter, format_ident!("{of}")),
+            Some((_, of, None)) => bindings.bind(*letter, end_local(of)),
             Some((_, of, Some(site))) => {
-                let local = format_ident!("{of}_end_{site}");
+                let local = format_ident!("__{of}_{site}");
                 let one = [Known {
                     letter: *letter,
                     of: of.clone(),
@@ -134,12 +141,13 @@ fn values(l: &Lines, end: &EndTerm, values: &[Expr]) -> (TokenStream, Vec<TokenS
             }
             None => {
                 let own = &symbol.name;
-                let (field, local) = (format_ident!("{own}"), variable(s, letter.symbol));
+                let (field, local) = (format_ident!("{own}"), format_ident!("__{own}"));
                 locals.extend(quote!(let #local = self.parameters.#field;));
+                bindings.bind(*letter, local);
             }
         }
     }
-    let (lets, results) = computed(s, values, &bindings);
+    let (lets, results) = computed(l, s, values, &bindings);
     (quote!(#locals #lets), results)
 }
 

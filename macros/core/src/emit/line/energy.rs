@@ -59,7 +59,7 @@ fn energies(l: &Lines) -> Option<TokenStream> {
         };
         let values = [energy];
         let (locals, bindings) = l.locals(s, &known(l, &values), &at, &quote!(site));
-        let p = schedule::program(s, &values, "t");
+        let p = schedule::program(s, &values, &l.prefix("t"));
         let (lets, results) = program(&p, &bindings);
         kernels.extend(quote! {
             /// The potential energy of one term of neighbours.
@@ -197,7 +197,7 @@ fn total(l: &Lines, t: &Total) -> TokenStream {
                 locals.extend(quote!(let #local = #value;));
                 bindings.bind(k.letter, local);
             }
-            let p = schedule::program(s, &values, "t");
+            let p = schedule::program(s, &values, &l.prefix("t"));
             let (lets, results) = program(&p, &bindings);
             let count = l.count(*label, *sites);
             let shape = density.shape();

@@ -20,7 +20,7 @@ pub(super) struct Forms {
 type Pair = ((Letter, Letter), bool);
 
 /// The form of several expressions that are computed together.
-pub(super) fn forms(s: &Symbols, values: &[Expr]) -> Forms {
+pub(super) fn forms(s: &Symbols, values: &[Expr], prefix: &str) -> Forms {
     // Twice: what comes out of a bracket may be an outer product, whose axial vector is a cross product.
     let once = |e: &Expr| expr::factored(s, e);
     let values: Vec<Expr> = values.iter().map(|e| once(&once(e))).collect();
@@ -34,7 +34,7 @@ pub(super) fn forms(s: &Symbols, values: &[Expr]) -> Forms {
     for (pair, _) in met.into_iter().filter(|(_, n)| *n > 1) {
         let [x, y] = [pair.0, pair.1].map(|l| expr::letter(s, l.symbol, l.shift));
         let value = expr::mul(expr::transpose(s, x.clone()), y);
-        let name = symbols.fresh_name(&format!("R{}", relative.len() + 1));
+        let name = symbols.fresh_name(&format!("{prefix}{}", relative.len() + 1));
         let id = symbols.add(&name, x.shape(), Structure::Orthogonal, Role::Derived);
         names.insert(pair, id);
         relative.push((id, value));

@@ -7,6 +7,7 @@ use crate::expr::shape::Structure;
 use crate::expr::symbol::{Role, Symbol};
 use crate::lattice::{Kind, Sites};
 use crate::line::How;
+use crate::syntax::ast::{Kindred, Size};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
@@ -67,9 +68,16 @@ impl Lines<'_> {
             Structure::Diagonal => quote!(validate::diagonal(#name, value)?;),
             Structure::Orthogonal => quote!(validate::orthogonal(#name, value)?;),
             Structure::Invertible => quote!(validate::invertible(#name, value)?;),
+            Structure::UnitQuaternion => quote!(validate::unit_quaternion(#name, value)?;),
+            Structure::RigidMotion => quote!(validate::rigid_motion(#name, value)?;),
             _ => TokenStream::new(),
         };
         quote!(#finite #of)
+    }
+
+    /// The test of a parameter of an end.
+    pub(super) fn tested(&self, name: &str, p: &Parameter) -> TokenStream {
+        self.test(name, p.structure, p.is_number, p.is_vector)
     }
 
     /// The alternatives of an end: the name of their type, and each with its parameters.
@@ -79,13 +87,14 @@ impl Lines<'_> {
             return None;
         }
         let ends = list.iter().map(|a| {
-            let names = a
-                .params
-                .iter()
-                .flat_map(|(names, shape)| names.iter().map(move |n| (n.text.clone(), shape)));
-            let parameters = names.map(|(name, shape)| {
-                let t = shape_type(shape);
-                (format_ident!("{name}"), t)
+            let names = a.params.iter();
+            let names = names.flat_map(|(names, shape)| names.iter().map(move |n| (n, shape)));
+            let parameters = names.map(|(name, shape)| Parameter {
+                name: format_ident!("{}", name.text),
+                ty: shape_type(shape),
+                structure: structure(shape),
+                is_number: shape.name.text == "Real",
+                is_vector: shape.name.text == "Vec",
             });
             End {
                 variant: variant(&a.name.text),
@@ -102,7 +111,30 @@ impl Lines<'_> {
 pub(super) struct End {
     pub variant: Ident,
     pub given: Vec<String>,
-    pub parameters: Vec<(Ident, TokenStream)>,
+    pub parameters: Vec<Parameter>,
+}
+
+/// A parameter of an end.
+pub(super) struct Parameter {
+    pub name: Ident,
+    pub ty: TokenStream,
+    structure: Structure,
+    is_number: bool,
+    is_vector: bool,
+}
+
+/// What a declared shape says of its values.
+fn structure(shape: &Kindred) -> Structure {
+    match shape.name.text.as_str() {
+        "Sym" => Structure::Symmetric,
+        "Skew" => Structure::Skew,
+        "Diag" => Structure::Diagonal,
+        "SO" => Structure::Orthogonal,
+        "GL" => Structure::Invertible,
+        "SU" => Structure::UnitQuaternion,
+        "SE" => Structure::RigidMotion,
+        _ => Structure::General,
+    }
 }
 
 /// `clamped` as the name of a variant.
@@ -116,8 +148,7 @@ fn variant(name: &str) -> Ident {
 }
 
 /// The type of a declared shape.
-pub(super) fn shape_type(shape: &crate::syntax::ast::Kindred) -> TokenStream {
-    use crate::syntax::ast::Size;
+pub(super) fn shape_type(shape: &Kindred) -> TokenStream {
     let sizes: Vec<usize> = shape
         .sizes
         .iter()
@@ -225,7 +256,8 @@ pub(super) fn sites(l: &Lines) -> TokenStream {
                 list => format!("; {} held at the initial value", list.join(", ")),
             };
             let doc = format!(" `{v}`{held}.");
-            let list = a.parameters.iter().map(|(n, t)| {
+            let list = a.parameters.iter().map(|p| {
+                let (n, t) = (&p.name, &p.ty);
                 let doc = format!(" `{n}` of this end.");
                 quote!(#[doc = #doc] #n: #t)
             });
@@ -303,11 +335,17 @@ impl Lines<'_> {
     }
 
     /// The pattern of a ring, with the offsets that are asked for.
-    pub(super) fn ring_pattern(&self, offsets: &[Ident]) -> TokenStream {
+    pub(super) fn ring_pattern(&self, offsets: &[String]) -> TokenStream {
         let ends = self.item("Ends");
         match (self.offsets().is_empty(), offsets) {
             (true, _) => quote!(#ends::Ring),
-            (_, list) => quote!(#ends::Ring { #(#list,)* .. }),
+            (_, list) => {
+                let fields = list.iter().map(|n| {
+                    let (name, local) = (format_ident!("{n}"), super::ends::end_local(n));
+                    quote!(#name: #local)
+                });
+                quote!(#ends::Ring { #(#fields,)* .. })
+            }
         }
     }
 }
@@ -352,9 +390,7 @@ pub(super) fn model(l: &Lines) -> TokenStream {
     let counts = line.lattice.labels.iter().map(|label| {
         let (field, text) = (format_ident!("{}", label.count.text), &label.count.text);
         quote! {
-            if sites.#field == 0 {
-                return Err(LineError::NoSites { count: #text });
-            }
+            line::count_of(#text, sites.#field, 1)?;
         }
     });
     let (mut fields, mut init, mut made) = Default::default();
@@ -372,6 +408,8 @@ pub(super) fn model(l: &Lines) -> TokenStream {
         }
     });
     checks.extend(super::domain::of_parameters(l));
+    checks.extend(l.assumptions());
+    checks.extend(l.ends_given());
     let is_ring = match line.lattice.line {
         Some(_) => quote!(model.is_ring()),
         None => quote!(false),
@@ -458,19 +496,20 @@ fn factors(l: &Lines, fields: &mut TokenStream, init: &mut TokenStream, made: &m
             .iter()
             .any(|x| l.is_site_parameter(&s.get(x.symbol).name));
         let label = crate::emit::items::text(d, factor);
+        let mut bindings = Bindings::new();
+        let mut used = Vec::new();
         let locals = letters.iter().map(|x| {
             let own = &s.get(x.symbol).name;
-            let (field, local) = (
-                format_ident!("{own}"),
-                crate::emit::names::variable(s, x.symbol),
-            );
+            let base = crate::emit::names::variable(s, x.symbol).to_string();
+            let (field, local) = (format_ident!("{own}"), l.unique(own, &base, &mut used));
+            bindings.bind(*x, local.clone());
             match (s.get(x.symbol).role, l.is_site_parameter(own)) {
                 (Role::Parameter, true) => quote!(let #local = model.parameters.#field[site];),
                 (Role::Parameter, false) => quote!(let #local = model.parameters.#field;),
                 _ => TokenStream::new(),
             }
         });
-        let bindings = Bindings::new();
+        let locals: Vec<TokenStream> = locals.collect();
         let value = Writer {
             symbols: s,
             bindings: &bindings,

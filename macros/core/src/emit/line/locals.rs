@@ -35,6 +35,7 @@ impl Lines<'_> {
     ) -> (TokenStream, Bindings) {
         let mut bindings = Bindings::new();
         let mut out = TokenStream::new();
+        let mut used = Vec::new();
         for known in letters {
             let symbol = s.get(known.letter.symbol);
             if symbol.role == Role::Step || symbol.role == Role::Velocity {
@@ -50,13 +51,14 @@ impl Lines<'_> {
                 }
             };
             let stated = self.line.lattice.find(&known.of).map(|q| q.kind);
-            let base = local_name(s, &known.of);
-            let name = match (known.on, known.letter.shift.time) {
+            let base = local_name(s, &known.of).to_string();
+            let base = match (known.on, known.letter.shift.time) {
                 (None | Some(0), 0) => base,
-                (None | Some(0), _) => format_ident!("{base}_next"),
-                (Some(n), 0) => format_ident!("{base}_{n}"),
-                (Some(n), _) => format_ident!("{base}_{n}_next"),
+                (None | Some(0), _) => format!("{base}_next"),
+                (Some(n), 0) => format!("{base}_{n}"),
+                (Some(n), _) => format!("{base}_{n}_next"),
             };
+            let name = self.unique(&known.of, &base, &mut used);
             let value = match (stated, index) {
                 (Some(Kind::Configuration), Some(index)) => {
                     let at = match known.letter.shift.time {

@@ -7,12 +7,14 @@ mod domain;
 mod ends;
 mod energy;
 mod forms;
+mod given;
 mod items;
 mod locals;
 mod pulls;
 mod solved;
 mod state;
 mod step;
+mod unique;
 
 use crate::derive::{Derivation, Outline};
 use crate::groups::Kept;

@@ -70,7 +70,7 @@ fn of_pull(l: &Lines, n: usize, pull: &Pull) -> (TokenStream, TokenStream) {
         next: quote!(at),
     };
     let (locals, bindings) = l.locals(s, &letters, &at, &site);
-    let (lets, results) = computed(s, &values, &bindings);
+    let (lets, results) = computed(l, s, &values, &bindings);
     let made = pull.forces.iter().zip(results).map(|(f, value)| {
         let name = field(&f.on, f.site);
         let value = of(&f.on).map_or(value.clone(), |m| m.array(value));
@@ -105,19 +105,20 @@ fn of_pull(l: &Lines, n: usize, pull: &Pull) -> (TokenStream, TokenStream) {
 
 /// Expressions of neighbours in the form in which they are computed.
 pub(super) fn computed(
+    l: &Lines,
     s: &Symbols,
     values: &[Expr],
     bindings: &Bindings,
 ) -> (TokenStream, Vec<TokenStream>) {
-    let forms = forms(s, values);
+    let forms = forms(s, values, &l.prefix("R"));
     let mut lets = TokenStream::new();
     for (id, value) in &forms.relative {
-        let p = schedule::program(&forms.symbols, std::slice::from_ref(value), "t");
+        let p = schedule::program(&forms.symbols, std::slice::from_ref(value), &l.prefix("t"));
         let (_, made) = program(&p, bindings);
         let name = variable(&forms.symbols, *id);
         lets.extend(quote!(let #name = #(#made)*;));
     }
-    let p = schedule::program(&forms.symbols, &forms.values, "t");
+    let p = schedule::program(&forms.symbols, &forms.values, &l.prefix("t"));
     let (more, results) = program(&p, bindings);
     lets.extend(more);
     (lets, results)

@@ -94,7 +94,7 @@ fn field(l: &Lines, m: Moving, factors: &[&Expr; 2]) -> TokenStream {
         next: quote!(at),
     };
     let (locals, bindings) = l.locals(s, &l.of_site(d, &values), &at, &quote!(site));
-    let p = schedule::program(s, &values, "t");
+    let p = schedule::program(s, &values, &l.prefix("t"));
     let (lets, results) = program(&p, &bindings);
     let [left, right] = results.as_slice() else {
         return TokenStream::new();
@@ -148,7 +148,7 @@ fn system(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
         next: quote!(at),
     };
     let (locals, bindings) = l.locals(s, &l.of_site(d, &values), &at, &quote!(site));
-    let p = schedule::program(s, &values, "t");
+    let p = schedule::program(s, &values, &l.prefix("t"));
     let (lets, results) = program(&p, &bindings);
     let size = number(n);
     let mut fill = TokenStream::new();

@@ -144,6 +144,7 @@ pub(super) fn state(l: &Lines) -> TokenStream {
         #[derive(Clone, Debug)]
         pub struct #work<T = f64> {
             h: T,
+            model: line::Stamp,
             stamp: line::Stamp,
             places: #places<T>,
             momenta: #momenta<T>,

@@ -22,6 +22,11 @@ pub(super) fn step(l: &Lines) -> TokenStream {
     let moving: Vec<_> = l.moving().collect();
     let names: Vec<_> = moving.iter().map(Moving::name).collect();
     let counts: Vec<_> = moving.iter().map(|m| l.count_of(&m.mover.name)).collect();
+    let texts: Vec<&String> = moving.iter().map(|m| &m.mover.name).collect();
+    let words: Vec<_> = moving
+        .iter()
+        .map(|m| super::items::words(m.lone.sites))
+        .collect();
     let ranges = moving.iter().map(|m| range(l, m));
     let checks = moving.iter().map(|m| check(l, m));
     let beyond = number(l.line.beyond());
@@ -128,8 +133,10 @@ pub(super) fn step(l: &Lines) -> TokenStream {
             /// When `h` is zero or not finite.
             pub fn workspace(&self, state: &#state<T>, h: T) -> Result<#work<T>, LineError> {
                 validate::directed_step(h)?;
+                #(line::length_of(#texts, &state.momenta.#names, #counts, #words)?;)*
                 let mut work = #work {
                     h,
+                    model: self.stamp,
                     stamp: line::Stamp::none(),
                     places: state.places.clone(),
                     momenta: state.momenta.clone(),
@@ -148,7 +155,10 @@ pub(super) fn step(l: &Lines) -> TokenStream {
             /// unchanged.
             pub fn step(&self, state: &mut #state<T>, work: &mut #work<T>) -> Result<(), LineError> {
                 let h = work.h;
-                if work.stamp != state.stamp {
+                #(line::length_of(#texts, &state.momenta.#names, #counts, #words)?;)*
+                if work.model != self.stamp {
+                    *work = self.workspace(state, h)?;
+                } else if work.stamp != state.stamp {
                     self.begin(state, work);
                 }
                 #(#of_systems)*
@@ -252,11 +262,7 @@ fn around(l: &Lines, moving: &[Moving]) -> TokenStream {
         };
     }
     let lattice = &l.line.lattice;
-    let offsets: Vec<Ident> = l
-        .offsets()
-        .iter()
-        .map(|(n, _)| format_ident!("{n}"))
-        .collect();
+    let offsets: Vec<String> = l.offsets().iter().map(|(n, _)| n.clone()).collect();
     let pattern = l.ring_pattern(&offsets);
     let each = moving.iter().filter_map(|m| {
         let q = lattice.find(&m.mover.name)?;
@@ -265,7 +271,7 @@ fn around(l: &Lines, moving: &[Moving]) -> TokenStream {
         }
         let (name, count) = (m.name(), l.count_of(&m.mover.name));
         let offset = q.offset.as_ref().map(|o| {
-            let local = format_ident!("{}", o.text);
+            let local = super::ends::end_local(&o.text);
             let value = m.array(quote!(#local));
             quote!(+ #value)
         });
