@@ -154,6 +154,6 @@ mod tests {
         assert_eq!(work(&[sum, other]), 2 * (45 + 9));
         // What is symmetric is its own.
         let square = expr::mul(a.clone(), turned(&a));
-        assert_eq!(aligned(&symbols, &[square.clone()]), [square]);
+        assert_eq!(aligned(&symbols, std::slice::from_ref(&square)), [square]);
     }
 }
