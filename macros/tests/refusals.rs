@@ -3,7 +3,7 @@
 //! compiler too. To write messages anew: `TRYBUILD=overwrite cargo test --release --test refusals`.
 
 use clebsch_core::diagnostic::{Diagnostic, Place};
-use clebsch_core::pipeline;
+use clebsch_core::{lattice, pipeline};
 use std::path::{Path, PathBuf};
 
 /// Where the faults are.
@@ -67,9 +67,13 @@ fn faults() -> Vec<PathBuf> {
 fn messages(file: &Path) -> String {
     let source = std::fs::read_to_string(file).unwrap();
     let model = pipeline::parse_source(&source);
-    let list: Vec<Diagnostic> = match model.and_then(|m| pipeline::emitted(&m)) {
+    let stepper = model.and_then(|m| match lattice::has_labels(&m) {
+        true => pipeline::emitted_line(&m, &source).map(|_| ()),
+        false => pipeline::emitted(&m).map(|_| ()),
+    });
+    let list: Vec<Diagnostic> = match stepper {
         Err(errors) => errors.iter().cloned().collect(),
-        Ok(_) => Vec::new(),
+        Ok(()) => Vec::new(),
     };
     list.iter()
         .flat_map(|d| {

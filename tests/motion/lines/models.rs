@@ -2,6 +2,7 @@
 
 use super::action::{Configuration, D, trace};
 use clebsch::nalgebra::{Matrix3, SMatrix, Vector2, Vector3};
+use clebsch::scalar::largest;
 use clebsch::{BodyMomentum, Real, Rotation};
 use clebsch_models::lattices::coupled_tops::*;
 use clebsch_models::lattices::elastic_rod::*;
@@ -183,7 +184,7 @@ macro_rules! stepped {
             let to = self.seen(&state);
             let x = from.x.iter().zip(&to.x).map(|(a, b)| (a - b).abs());
             let r = from.r.iter().zip(&to.r).map(|(a, b)| (a - b).amax());
-            x.chain(r).fold(0.0, f64::max)
+            largest(x.chain(r))
         }
         fn kept(&self, steps: u64) -> [f64; 2] {
             self.kept_with($h, steps)
