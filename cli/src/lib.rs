@@ -179,8 +179,3 @@ fn answer_clap(error: &clap::Error, streams: &mut Streams<'_>) -> u8 {
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 pub struct Readme;
-
-/// So are those of the language page.
-#[cfg(doctest)]
-#[doc = include_str!("../../docs/language.md")]
-pub struct Language;

@@ -77,6 +77,7 @@ pub fn svg(measured: &[Measured]) -> Result<String, String> {
         x,
         x_label: "processor time of one trajectory, microseconds".to_owned(),
         panels: vec![panel],
+        paper: false,
     };
     figure.svg()
 }
