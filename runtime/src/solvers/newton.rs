@@ -66,14 +66,6 @@ const OLDEST_TANGENT: u32 = 8;
 /// How far the next residual may exceed the one foreseen at the rate of the last correction.
 const FORESIGHT: f64 = 4.0;
 
-/// By how much more than it has been measured a correction with the tangent at the trial may bend the
-/// equations.
-const BENT: f64 = 16.0;
-
-/// That is measured where the residual is between these parts of its terms: below, its square is
-/// rounding.
-const MEASURABLE: [f64; 2] = [1e-6, 0.1];
-
 /// A converged solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solved<G> {
@@ -93,20 +85,10 @@ const LAST_ATTEMPT: u32 = 2;
 const LEAST_SHARE: f64 = 1e-30;
 
 /// How many solutions the next guess is made from.
-const REMEMBERED: usize = 8;
-
-/// How many of them where the first correction of that guess is enough: with each more the rounding of
-/// the guess doubles.
-const FEWER: usize = 6;
-
-/// From so many the guess begins anew where the size of the terms is asked for, so that the bend is measured.
-const COARSE: usize = 3;
-
-/// With more of them rounding is all that is left where the guess leaves no more than this.
-const CALM_ROUNDINGS: f64 = 64.0;
+const REMEMBERED: usize = 6;
 
 /// The search for one velocity after the other along a trajectory: it remembers the last solutions,
-/// in which the next one is foreseen to eighth order in the step.
+/// in which the next one is foreseen to sixth order in the step.
 ///
 /// What it remembers decides how many iterations a step takes, and rounding; not which equations
 /// are solved.
@@ -116,8 +98,6 @@ pub struct Search<T, G, V, const D: usize> {
     past: [G; 2 * REMEMBERED],
     newest: usize,
     known: usize,
-    /// How many of them serve where the last [`FEWER`] are not enough.
-    serving: usize,
     /// The node of the step that follows the newest solution.
     next: u64,
     /// One over the size of the terms of each equation.
@@ -131,9 +111,6 @@ pub struct Search<T, G, V, const D: usize> {
     unit: T,
     /// How many steps ago that was.
     age: u32,
-    /// What a correction with the tangent at the trial has left of the residual, over its square; not
-    /// known before one was made, and not asked for where lanes would hide in one another.
-    bend: f64,
     last: Summary,
 }
 
@@ -164,8 +141,6 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Search<T, 
             factors: Factors::none(),
             unit: T::one(),
             age: OLDEST_TANGENT,
-            bend: f64::INFINITY,
-            serving: FEWER,
             last: Summary {
                 tangents: 0,
                 corrections: 0,
@@ -226,7 +201,6 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Search<T, 
     pub fn begin(&mut self, node: u64, values: V) -> Newton<'_, T, G, V, D> {
         if node != self.next {
             self.known = 0;
-            self.bend = f64::INFINITY;
             self.age = OLDEST_TANGENT;
             self.weighed = OLDEST_SCALE;
         }
@@ -254,7 +228,6 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Search<T, 
             size: f64::NAN,
             previous: f64::INFINITY,
             iteration: 0,
-            straight: false,
         }
     }
 
@@ -271,15 +244,13 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Search<T, 
     fn foreseen(&self) -> G {
         // Each solution stands twice, so that the last ones are always side by side.
         let past = |i: usize| self.past[self.newest + i];
-        match self.known.min(self.serving) {
+        match self.known {
             0 | 1 => past(0),
             2 => G::combined(&[2.0, -1.0], past),
             3 => G::combined(&[3.0, -3.0, 1.0], past),
             4 => G::combined(&[4.0, -6.0, 4.0, -1.0], past),
             5 => G::combined(&[5.0, -10.0, 10.0, -5.0, 1.0], past),
-            6 => G::combined(&[6.0, -15.0, 20.0, -15.0, 6.0, -1.0], past),
-            7 => G::combined(&[7.0, -21.0, 35.0, -35.0, 21.0, -7.0, 1.0], past),
-            _ => G::combined(&[8.0, -28.0, 56.0, -70.0, 56.0, -28.0, 8.0, -1.0], past),
+            _ => G::combined(&[6.0, -15.0, 20.0, -15.0, 6.0, -1.0], past),
         }
     }
 
@@ -302,10 +273,6 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Search<T, 
         self.next = node + 1;
         self.age = self.age.saturating_add(1);
         self.weighed = self.weighed.saturating_add(1);
-        if self.weighed == OLDEST_SCALE {
-            self.known = self.known.min(COARSE);
-            self.serving = FEWER;
-        }
         self.certificate.count();
     }
 }
@@ -325,9 +292,7 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Search<T, 
 /// [`Group::retract`] at 0, or of [`Group::retract_from_left`]. It is factored once and kept while the corrections shrink fast. Each
 /// equation is judged by the size of its own terms, its scale. A solution is accepted when every
 /// residual is below `16 EPSILON scale` and one more correction is made, or is sure to fall below a
-/// quarter of that with the next one, or has stopped falling below `64 EPSILON scale`. That a correction
-/// squares the residual is measured along a trajectory: where the guess is so good that the first one
-/// makes it rounding by far, no second residual is asked for. The size of the
+/// quarter of that with the next one, or has stopped falling below `64 EPSILON scale`. The size of the
 /// residual is that of its real parts, in every lane: from a real solution one more step makes the
 /// first derivatives exact whatever they were, so that step follows for dual numbers, with a
 /// tangent of its own.
@@ -345,8 +310,6 @@ pub struct Newton<'a, T, G, V, const D: usize> {
     size: f64,
     previous: f64,
     iteration: usize,
-    /// Whether the tangent is that at the trial, or the last correction was made with such a one.
-    straight: bool,
 }
 
 /// What became of a correction.
@@ -454,15 +417,7 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_,
             return true;
         }
         if self.iteration > 0 {
-            self.search.serving = REMEMBERED;
-            if self.straight {
-                self.search.bend = bent(self.search.bend, self.previous, self.size);
-            }
-            self.straight = false;
             return self.size > WORTH_KEEPING * self.previous && !self.polished();
-        }
-        if self.size <= CALM_ROUNDINGS * T::EPSILON {
-            self.search.serving = FEWER;
         }
         // What is foreseen to rounding needs no more than the tangent of a step before.
         !(self.size <= CONVERGED_ROUNDINGS * T::EPSILON && self.search.age < OLDEST_TANGENT)
@@ -490,7 +445,6 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_,
         search.certificate.note(factors, trial, &self.values);
         self.search.age = 0;
         self.search.last.tangents += 1;
-        self.straight = true;
     }
 
     /// Moves the trial by Newton's correction, or ends.
@@ -517,12 +471,7 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_,
         let unit = T::EPSILON;
         let done = size <= CONVERGED_ROUNDINGS * unit
             || (size <= STAGNATED_ROUNDINGS * unit && size >= 0.5 * self.previous)
-            || (T::ORDER == 0 && self.iteration > 0 && foreseen <= POLISHED_ROUNDINGS * unit)
-            || (T::ORDER == 0
-                && T::LANES == 1
-                && self.straight
-                && self.attempt == 0
-                && BENT * self.search.bend * size * size <= POLISHED_ROUNDINGS * unit);
+            || (T::ORDER == 0 && self.iteration > 0 && foreseen <= POLISHED_ROUNDINGS * unit);
         let right = self.residual * self.search.unit;
         let Some(correction) = self.search.factors.solve(&right) else {
             return self.failed();
@@ -551,20 +500,6 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_,
             residual: self.size,
         })
     }
-}
-
-/// What a correction with the tangent at the trial leaves of a residual over its square: the measure so far
-/// and that of a residual `before` and `after` one, of which the larger holds, and no more than twice the newer.
-#[inline(always)]
-fn bent(so_far: f64, before: f64, after: f64) -> f64 {
-    let [least, most] = MEASURABLE;
-    let measurable = before > least && before < most;
-    if !measurable {
-        return so_far;
-    }
-    let bend = after / (before * before);
-    let lasting = so_far.min(2.0 * bend);
-    if bend > lasting { bend } else { lasting }
 }
 
 /// Solves `residual(g) = 0` from the guess `g`, with `tangent(g)` and the size `scale` of the

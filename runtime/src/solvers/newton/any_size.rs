@@ -16,10 +16,9 @@ pub use curve::{Bounds, Chart, Enclosed, Lane, Parts};
 use super::node::Spread;
 use super::principal::{Care, Fold};
 use super::{
-    BENT, BOUND_ROUNDINGS, CALM_ROUNDINGS, COARSE, CONVERGED_ROUNDINGS, FEWER, FORESIGHT,
-    LAST_ATTEMPT, LATE, LEAST_SHARE, MOST_ITERATIONS, NewtonError, NewtonFailure, OLDEST_SCALE,
-    OLDEST_TANGENT, POLISHED_ROUNDINGS, Progress, REMEMBERED, STAGNATED_ROUNDINGS, Solved,
-    WORTH_KEEPING, bent,
+    BOUND_ROUNDINGS, CONVERGED_ROUNDINGS, FORESIGHT, LAST_ATTEMPT, LATE, LEAST_SHARE,
+    MOST_ITERATIONS, NewtonError, NewtonFailure, OLDEST_SCALE, OLDEST_TANGENT, POLISHED_ROUNDINGS,
+    Progress, REMEMBERED, STAGNATED_ROUNDINGS, Solved, WORTH_KEEPING,
 };
 use crate::linalg::{Dense, DenseFactors};
 use crate::scalar::Real;
@@ -61,11 +60,14 @@ impl NodeValue {
         if self.turn && spread.turned {
             return true;
         }
-        let sizes = other.numbers.iter().map(|y| y.abs());
-        let most = spread.share * sizes.fold(0.0, crate::scalar::larger);
-        // Every entry by itself: NaN is not near.
-        let mut pairs = self.numbers.iter().zip(&other.numbers);
-        pairs.all(|(x, y)| (x - y).abs() <= most)
+        let (mut most, mut off) = (0.0, 0.0);
+        for (x, y) in self.numbers.iter().zip(&other.numbers) {
+            let (size, change) = (y.abs(), (x - y).abs());
+            most = if size > most { size } else { most };
+            // NaN must not hide.
+            off = if change <= off { off } else { change };
+        }
+        off <= spread.share * most
     }
 }
 
@@ -209,7 +211,6 @@ struct Anchor<G> {
 pub struct AnySearch<C: Chart> {
     /// The last solutions, the newest first.
     past: Vec<C::Element>,
-    serving: usize,
     next: u64,
     weights: Vec<f64>,
     weighed: u32,
@@ -217,7 +218,6 @@ pub struct AnySearch<C: Chart> {
     factors: DenseFactors,
     unit: f64,
     age: u32,
-    bend: f64,
 }
 
 impl<C: Chart> AnySearch<C> {
@@ -227,7 +227,6 @@ impl<C: Chart> AnySearch<C> {
     pub fn new(dimension: usize, in_blocks: bool, purpose: Purpose) -> Self {
         Self {
             past: Vec::new(),
-            serving: FEWER,
             next: 0,
             weights: vec![0.0; dimension],
             weighed: OLDEST_SCALE,
@@ -235,7 +234,6 @@ impl<C: Chart> AnySearch<C> {
             factors: DenseFactors::none(dimension, in_blocks),
             unit: 1.0,
             age: OLDEST_TANGENT,
-            bend: f64::INFINITY,
         }
     }
 
@@ -249,7 +247,6 @@ impl<C: Chart> AnySearch<C> {
     pub fn begin<'a>(&'a mut self, chart: &'a C, node: u64, values: NodeList) -> AnyNewton<'a, C> {
         if node != self.next {
             self.past.clear();
-            self.bend = f64::INFINITY;
             self.age = OLDEST_TANGENT;
             self.weighed = OLDEST_SCALE;
         }
@@ -276,7 +273,6 @@ impl<C: Chart> AnySearch<C> {
             size: f64::NAN,
             previous: f64::INFINITY,
             iteration: 0,
-            straight: false,
         }
     }
 
@@ -288,15 +284,13 @@ impl<C: Chart> AnySearch<C> {
     }
 
     fn foreseen(&self, chart: &C) -> C::Element {
-        let weights: &[f64] = match self.past.len().min(self.serving) {
+        let weights: &[f64] = match self.past.len() {
             0 | 1 => return self.start(chart, 1),
             2 => &[2.0, -1.0],
             3 => &[3.0, -3.0, 1.0],
             4 => &[4.0, -6.0, 4.0, -1.0],
             5 => &[5.0, -10.0, 10.0, -5.0, 1.0],
-            6 => &[6.0, -15.0, 20.0, -15.0, 6.0, -1.0],
-            7 => &[7.0, -21.0, 35.0, -35.0, 21.0, -7.0, 1.0],
-            _ => &[8.0, -28.0, 56.0, -70.0, 56.0, -28.0, 8.0, -1.0],
+            _ => &[6.0, -15.0, 20.0, -15.0, 6.0, -1.0],
         };
         chart.combined(weights, &self.past)
     }
@@ -308,10 +302,6 @@ impl<C: Chart> AnySearch<C> {
         self.next = node + 1;
         self.age = self.age.saturating_add(1);
         self.weighed = self.weighed.saturating_add(1);
-        if self.weighed == OLDEST_SCALE {
-            self.past.truncate(COARSE);
-            self.serving = FEWER;
-        }
         self.certificate.left = self.certificate.left.saturating_sub(1);
     }
 }
@@ -329,7 +319,6 @@ pub struct AnyNewton<'a, C: Chart> {
     size: f64,
     previous: f64,
     iteration: usize,
-    straight: bool,
 }
 
 impl<C: Chart> AnyNewton<'_, C> {
@@ -437,15 +426,7 @@ impl<C: Chart> AnyNewton<'_, C> {
         self.size = largest + 0.0 * f64::abs(sum);
         self.residual = residual;
         if self.iteration > 0 {
-            self.search.serving = REMEMBERED;
-            if self.straight {
-                self.search.bend = bent(self.search.bend, self.previous, self.size);
-            }
-            self.straight = false;
             return self.size > WORTH_KEEPING * self.previous && !self.polished();
-        }
-        if self.size <= CALM_ROUNDINGS * UNIT {
-            self.search.serving = FEWER;
         }
         // What is foreseen to rounding needs no more than the tangent of a step before.
         !(self.size <= CONVERGED_ROUNDINGS * UNIT && self.search.age < OLDEST_TANGENT)
@@ -463,7 +444,6 @@ impl<C: Chart> AnyNewton<'_, C> {
         let (factors, trial) = (&search.factors, &self.trial);
         (search.certificate).note(self.chart, factors, trial, &self.values);
         search.age = 0;
-        self.straight = true;
     }
 
     /// Moves the trial by Newton's correction, or ends.
@@ -477,10 +457,7 @@ impl<C: Chart> AnyNewton<'_, C> {
         let unit = UNIT;
         let done = size <= CONVERGED_ROUNDINGS * unit
             || (size <= STAGNATED_ROUNDINGS * unit && size >= 0.5 * self.previous)
-            || (self.iteration > 0 && foreseen <= POLISHED_ROUNDINGS * unit)
-            || (self.straight
-                && self.attempt == 0
-                && BENT * self.search.bend * size * size <= POLISHED_ROUNDINGS * unit);
+            || (self.iteration > 0 && foreseen <= POLISHED_ROUNDINGS * unit);
         let right: Vec<f64> = (self.residual.iter())
             .map(|x| x * self.search.unit)
             .collect();

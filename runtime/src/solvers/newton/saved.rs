@@ -19,8 +19,6 @@ impl<G: Group<f64> + Saved, V: NodeValues + Saved, const D: usize> Saved for Sea
             unit,
             age,
             last,
-            serving,
-            bend,
         } = self;
         past.words(words);
         *newest = words.count(*newest, super::REMEMBERED);
@@ -33,8 +31,6 @@ impl<G: Group<f64> + Saved, V: NodeValues + Saved, const D: usize> Saved for Sea
         unit.words(words);
         age.words(words);
         last.words(words);
-        *serving = words.count(*serving, super::REMEMBERED);
-        bend.words(words);
     }
 }
 

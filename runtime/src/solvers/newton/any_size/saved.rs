@@ -24,8 +24,6 @@ impl<C: Chart> AnySearch<C> {
             factors,
             unit,
             age,
-            serving,
-            bend,
         } = self;
         let known = words.count(past.len(), REMEMBERED);
         past.resize_with(known, || chart.identity());
@@ -37,8 +35,6 @@ impl<C: Chart> AnySearch<C> {
         factors.words(words);
         unit.words(words);
         age.words(words);
-        *serving = words.count(*serving, REMEMBERED);
-        bend.words(words);
     }
 }
 
