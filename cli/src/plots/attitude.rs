@@ -11,6 +11,7 @@ use crate::output::Finished;
 use crate::record::Samples;
 use clebsch::card::{Field, Kind};
 use clebsch::nalgebra::{Matrix3, Vector3};
+use clebsch::scalar::largest;
 use std::ops::Range;
 
 /// Most spheres of a picture.
@@ -102,7 +103,7 @@ pub(crate) fn attitude(run: &Finished<'_>, samples: &Samples) -> Plot {
         let vectors: Vec<Vector3<f64>> =
             rows(shown, columns).map(Vector3::from_row_slice).collect();
         let lengths = || vectors.iter().map(Vector3::norm).filter(|x| x.is_finite());
-        let longest = lengths().fold(0.0, f64::max);
+        let longest = largest(lengths());
         let shortest = lengths().fold(f64::INFINITY, f64::min);
         if longest == 0.0 || !shortest.is_finite() {
             continue;

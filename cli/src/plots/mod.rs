@@ -21,6 +21,7 @@ use crate::run::end;
 use axis::{Axis, FLOOR, superscript};
 use clebsch::card::{Field, Kind};
 use clebsch::integrate::Drift;
+use clebsch::scalar::largest;
 use curve::{Curve, Stroke};
 use figure::{Figure, Panel};
 use std::ops::Range;
@@ -255,10 +256,7 @@ fn is_skew<I: Iterator<Item = f64>>(field: &Field, column: &impl Fn(usize) -> I)
         return false;
     }
     let pairs = || (0..size).flat_map(|i| (0..=i).map(move |j| (i * size + j, j * size + i)));
-    let most = (0..size * size)
-        .flat_map(column)
-        .map(f64::abs)
-        .fold(0.0, f64::max);
+    let most = largest((0..size * size).flat_map(column));
     most > 0.0
         && pairs().all(|(a, b)| {
             let mut both = column(a).zip(column(b));
