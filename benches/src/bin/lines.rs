@@ -23,7 +23,9 @@ const SIZES: [usize; 4] = [100, 1_000, 10_000, 100_000];
 
 fn main() {
     println!("{}", env!("RUSTC_VERSION"));
-    println!("nanoseconds of computing time per site and step, medians of {BLOCKS} blocks each way, interleaved\n");
+    println!(
+        "nanoseconds of computing time per site and step, medians of {BLOCKS} blocks each way, interleaved\n"
+    );
     println!("| line | sites | generated | beside | ratio |");
     println!("|---|---|---|---|---|");
     for n in SIZES {
@@ -50,11 +52,17 @@ fn main() {
         }
         begin.elapsed().as_secs_f64()
     };
-    println!("\ncoupled tops, 100000 sites: two threads take {:.3} of the time of one", wall(2) / wall(1));
+    println!(
+        "\ncoupled tops, 100000 sites: two threads take {:.3} of the time of one",
+        wall(2) / wall(1)
+    );
 }
 
 fn row(name: &str, n: usize, one: f64, other: f64) {
-    println!("| {name} | {n} | {one:.2} | {other:.2} | {:.3} |", one / other);
+    println!(
+        "| {name} | {n} | {one:.2} | {other:.2} | {:.3} |",
+        one / other
+    );
 }
 
 /// Medians of both, in nanoseconds per site and step.
@@ -79,11 +87,26 @@ fn number(x: f64) -> SMatrix<f64, 1, 1> {
 }
 
 fn toda(n: usize) -> impl FnMut() {
-    let sites = TodaChainSites { N: n, ends: TodaChainEnds::Ring { L: 0.0 } };
-    let chain = TodaChain::new(TodaChainParameters { m: 1.0, a: 1.0, b: 1.0 }, sites).expect("a chain");
+    let sites = TodaChainSites {
+        N: n,
+        ends: TodaChainEnds::Ring { L: 0.0 },
+    };
+    let chain = TodaChain::new(
+        TodaChainParameters {
+            m: 1.0,
+            a: 1.0,
+            b: 1.0,
+        },
+        sites,
+    )
+    .expect("a chain");
     let initial = TodaChainInitial {
-        q: (0..n).map(|i| number(0.1 * (0.3 * i as f64).sin())).collect(),
-        momentum_q: (0..n).map(|i| number(0.1 * (0.7 * i as f64).cos())).collect(),
+        q: (0..n)
+            .map(|i| number(0.1 * (0.3 * i as f64).sin()))
+            .collect(),
+        momentum_q: (0..n)
+            .map(|i| number(0.1 * (0.7 * i as f64).cos()))
+            .collect(),
     };
     let (mut state, mut work) = chain.start(initial, 0.01).expect("starts");
     move || {
@@ -121,11 +144,20 @@ fn toda_by_hand(n: usize) -> impl FnMut() {
 }
 
 fn water(n: usize) -> impl FnMut() {
-    let sites = ShallowWaterSites { N: n, ends: ShallowWaterEnds::Ring { L: n as f64 } };
-    let parameters = ShallowWaterParameters { m: vec![1.0; n], g: 1.0, f: 0.5 };
+    let sites = ShallowWaterSites {
+        N: n,
+        ends: ShallowWaterEnds::Ring { L: n as f64 },
+    };
+    let parameters = ShallowWaterParameters {
+        m: vec![1.0; n],
+        g: 1.0,
+        f: 0.5,
+    };
     let water = ShallowWater::new(parameters, sites).expect("water");
     let initial = ShallowWaterInitial {
-        X: (0..n).map(|i| number(i as f64 + 0.1 * (0.3 * i as f64).sin())).collect(),
+        X: (0..n)
+            .map(|i| number(i as f64 + 0.1 * (0.3 * i as f64).sin()))
+            .collect(),
         momentum_X: vec![number(0.0); n],
         Y: vec![number(0.0); n],
         momentum_Y: (0..n).map(|i| number(0.5 * i as f64)).collect(),
@@ -143,7 +175,9 @@ fn water_by_hand(n: usize) -> impl FnMut() {
     let (dt, g, f) = black_box((0.02, 1.0, 0.5));
     let m = vec![1.0; n];
     let length = n as f64;
-    let mut x: Vec<f64> = (0..n).map(|i| i as f64 + 0.1 * (0.3 * i as f64).sin()).collect();
+    let mut x: Vec<f64> = (0..n)
+        .map(|i| i as f64 + 0.1 * (0.3 * i as f64).sin())
+        .collect();
     let mut y = vec![0.0; n];
     let mut p = vec![0.0; n];
     let r: Vec<f64> = (0..n).map(|i| 0.5 * i as f64).collect();
@@ -191,10 +225,17 @@ fn tops(n: usize, threads: usize) -> impl FnMut() {
         gU: Vector3::z(),
         z: Vector3::z(),
     };
-    let sites = CoupledTopsSites { N: n - 1, ends: CoupledTopsEnds::Open };
-    let tops = CoupledTops::new(parameters, sites).expect("tops").with_threads(threads);
+    let sites = CoupledTopsSites {
+        N: n - 1,
+        ends: CoupledTopsEnds::Open,
+    };
+    let tops = CoupledTops::new(parameters, sites)
+        .expect("tops")
+        .with_threads(threads);
     let initial = CoupledTopsInitial {
-        Λ: (0..n).map(|i| Rotation::exp(&Vector3::new(0.2 * (0.1 * i as f64).sin(), 0.6, 0.0))).collect(),
+        Λ: (0..n)
+            .map(|i| Rotation::exp(&Vector3::new(0.2 * (0.1 * i as f64).sin(), 0.6, 0.0)))
+            .collect(),
         body_momentum_Λ: vec![BodyMomentum(Vector3::new(0.1, 0.0, 3.0)); n],
     };
     let (mut state, mut work) = tops.start(initial, 0.01).expect("starts");
@@ -207,7 +248,11 @@ fn tops(n: usize, threads: usize) -> impl FnMut() {
 }
 
 fn lone(n: usize) -> impl FnMut() {
-    let parameters = HeavyTopParameters { J: diagonal(0.5, 0.5, 1.5), gU: Vector3::z(), z: Vector3::z() };
+    let parameters = HeavyTopParameters {
+        J: diagonal(0.5, 0.5, 1.5),
+        gU: Vector3::z(),
+        z: Vector3::z(),
+    };
     let top = HeavyTop::new(parameters).expect("a top");
     let initial = HeavyTopInitial {
         Λ: Rotation::exp(&Vector3::new(0.0, 0.6, 0.0)),
@@ -227,17 +272,24 @@ fn rod(n: usize) -> impl FnMut() {
     let s = 0.1;
     let parameters = ElasticRodParameters {
         s,
-        m: (0..=n).map(|i| s * if i == 0 || i == n { 0.5 } else { 1.0 }).collect(),
+        m: (0..=n)
+            .map(|i| s * if i == 0 || i == n { 0.5 } else { 1.0 })
+            .collect(),
         J: vec![diagonal(0.01, 0.01, 0.02); n],
         S: diagonal(100.0, 100.0, 200.0),
         B: diagonal(1.0, 1.0, 2.0),
         g: Vector3::zeros(),
     };
-    let ends = ElasticRodEnds::Open { first: ElasticRodFirst::Free, last: ElasticRodLast::Free };
+    let ends = ElasticRodEnds::Open {
+        first: ElasticRodFirst::Free,
+        last: ElasticRodLast::Free,
+    };
     let rod = ElasticRod::new(parameters, ElasticRodSites { N: n, ends }).expect("a rod");
     let initial = ElasticRodInitial {
         φ: (0..=n).map(|i| Vector3::z() * (s * i as f64)).collect(),
-        momentum_φ: (0..=n).map(|i| Vector3::x() * (1e-3 * (0.2 * i as f64).sin())).collect(),
+        momentum_φ: (0..=n)
+            .map(|i| Vector3::x() * (1e-3 * (0.2 * i as f64).sin()))
+            .collect(),
         Λ: vec![Rotation::identity(); n],
         body_momentum_Λ: vec![BodyMomentum(Vector3::new(0.0, 1e-5, 1e-4)); n],
     };
