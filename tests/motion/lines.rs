@@ -13,7 +13,7 @@
 mod action;
 #[path = "lines/laws.rs"]
 mod laws;
-#[path = "lines/models.rs"]
+#[path = "lines/models/mod.rs"]
 mod models;
 
 use action::stationarity;

@@ -1,0 +1,205 @@
+//! The lines that are tried: their steppers, random states, and their actions as sums typed by hand.
+
+use super::action::{Configuration, D};
+use clebsch::nalgebra::{Matrix3, Vector3};
+
+mod charges;
+mod named;
+mod rod;
+mod sine;
+mod toda;
+mod tops;
+mod water;
+
+pub use charges::Charges;
+pub use named::Named;
+pub use rod::Rod;
+pub use sine::Sine;
+pub use toda::Toda;
+pub use tops::Tops;
+pub use water::Water;
+
+/// A line that is tried.
+pub trait Line {
+    /// What it is.
+    fn name(&self) -> String;
+    /// How many terms its action has.
+    fn terms(&self) -> usize;
+    /// The action of an edge, each term times a number.
+    fn weighed(&self, w: &[f64], a: &Configuration<D>, b: &Configuration<D>) -> D;
+    /// Whether an end holds this coordinate.
+    fn held(&self, at: usize) -> bool;
+    /// Three nodes from a random start.
+    fn three(&self, seed: u64) -> [Configuration<f64>; 3];
+    /// The momenta at its first node.
+    fn given(&self, seed: u64) -> Vec<f64>;
+    /// How far steps forward and back end from where they began.
+    fn there_and_back(&self, steps: u64) -> f64;
+    /// The largest relative change of the energy and of a conserved total.
+    fn kept(&self, steps: u64) -> [f64; 2];
+    /// What that of the energy may be.
+    fn energy_bound(&self) -> f64;
+    /// That of the energy by that at half the step.
+    fn energy_ratio(&self) -> f64;
+    /// The largest mass over the step, by which the rounding of places shows in momenta.
+    fn mass_by_step(&self) -> f64;
+
+    /// The action of an edge.
+    fn action(&self, a: &Configuration<D>, b: &Configuration<D>) -> D {
+        self.weighed(&vec![1.0; self.terms()], a, b)
+    }
+}
+
+/// A line with the sign of one term of its action changed.
+pub struct Flipped<'a>(pub &'a dyn Line, pub usize);
+
+impl Line for Flipped<'_> {
+    fn name(&self) -> String {
+        self.0.name()
+    }
+    fn terms(&self) -> usize {
+        self.0.terms()
+    }
+    fn weighed(&self, w: &[f64], a: &Configuration<D>, b: &Configuration<D>) -> D {
+        let mut w = w.to_vec();
+        w[self.1] = -w[self.1];
+        self.0.weighed(&w, a, b)
+    }
+    fn held(&self, at: usize) -> bool {
+        self.0.held(at)
+    }
+    fn three(&self, seed: u64) -> [Configuration<f64>; 3] {
+        self.0.three(seed)
+    }
+    fn given(&self, seed: u64) -> Vec<f64> {
+        self.0.given(seed)
+    }
+    fn there_and_back(&self, steps: u64) -> f64 {
+        self.0.there_and_back(steps)
+    }
+    fn kept(&self, steps: u64) -> [f64; 2] {
+        self.0.kept(steps)
+    }
+    fn energy_bound(&self) -> f64 {
+        self.0.energy_bound()
+    }
+    fn energy_ratio(&self) -> f64 {
+        self.0.energy_ratio()
+    }
+    fn mass_by_step(&self) -> f64 {
+        self.0.mass_by_step()
+    }
+}
+
+/// Every line of this size, with every end.
+pub fn all(n: usize) -> Vec<Box<dyn Line>> {
+    let mut out: Vec<Box<dyn Line>> = vec![
+        Box::new(Toda::ring(n)),
+        Box::new(Toda { n, ring: false }),
+        Box::new(Tops::new(n, false)),
+        Box::new(Tops::new(n, true)),
+        Box::new(Water::new(n)),
+        Box::new(Charges::new(n)),
+    ];
+    out.push(Box::new(Named { n, end: false }));
+    out.push(Box::new(Named { n, end: true }));
+    let sine = (0..5).filter(|ends| n > 1 || *ends < 4);
+    out.extend(sine.map(|ends| Box::new(Sine::new(n, ends)) as Box<dyn Line>));
+    let rods = (0..9).filter(|ends| n > 1 || *ends == 0);
+    out.extend(rods.map(|ends| Box::new(Rod::new(n, ends)) as Box<dyn Line>));
+    out
+}
+
+/// Numbers between -1 and 1.
+pub struct Random(u64);
+
+impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(12345))
+    }
+    pub fn number(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 11) as f64 / (1u64 << 53) as f64).mul_add(2.0, -1.0)
+    }
+    pub fn vector(&mut self) -> Vector3<f64> {
+        Vector3::from_fn(|_, _| self.number())
+    }
+}
+
+fn c(x: f64) -> D {
+    D::constant(x)
+}
+
+fn diagonal(x: f64, y: f64, z: f64) -> Matrix3<f64> {
+    Matrix3::from_diagonal(&Vector3::new(x, y, z))
+}
+
+/// What every line does with its stepper.
+macro_rules! stepped {
+    ($h:expr, $bound:expr) => {
+        fn three(&self, seed: u64) -> [Configuration<f64>; 3] {
+            let model = self.stepper();
+            let (mut state, mut work) = model.start(self.initial(seed), $h).expect("starts");
+            let a = self.seen(&state);
+            model.step(&mut state, &mut work).expect("steps");
+            let b = self.seen(&state);
+            model.step(&mut state, &mut work).expect("steps");
+            [a, b, self.seen(&state)]
+        }
+        fn there_and_back(&self, steps: u64) -> f64 {
+            let model = self.stepper();
+            let (mut state, mut work) = model.start(self.initial(7), $h).expect("starts");
+            let from = self.seen(&state);
+            for _ in 0..steps {
+                model.step(&mut state, &mut work).expect("steps");
+            }
+            let mut back = model.workspace(&state, -$h).expect("a step back");
+            for _ in 0..steps {
+                model.step(&mut state, &mut back).expect("steps back");
+            }
+            let to = self.seen(&state);
+            let x = from.x.iter().zip(&to.x).map(|(a, b)| (a - b).abs());
+            let r = from.r.iter().zip(&to.r).map(|(a, b)| (a - b).amax());
+            clebsch::scalar::largest(x.chain(r))
+        }
+        fn kept(&self, steps: u64) -> [f64; 2] {
+            self.kept_with($h, steps)
+        }
+        fn energy_bound(&self) -> f64 {
+            $bound
+        }
+        fn energy_ratio(&self) -> f64 {
+            let one = self.kept_with($h, 400)[0];
+            let half = self.kept_with($h / 2.0, 800)[0];
+            one / half
+        }
+    };
+}
+
+macro_rules! keeping {
+    ($model:ty, $total:expr) => {
+        fn kept_with(&self, h: f64, steps: u64) -> [f64; 2] {
+            let model = self.stepper();
+            let (mut state, mut work) = model.start(self.initial(4), h).expect("starts");
+            let total: fn(&$model, &_) -> f64 = $total;
+            let (energy, first) = (model.energy(&state), total(&model, &state));
+            let (kinetic, _) = model.energies(&state);
+            let (mut worst, mut off) = (0.0_f64, 0.0_f64);
+            for _ in 0..steps {
+                model.step(&mut state, &mut work).expect("steps");
+                worst = worst.max((model.energy(&state) - energy).abs());
+                off = off.max((total(&model, &state) - first).abs());
+            }
+            [worst / (energy.abs() + kinetic), off / (1.0 + first.abs())]
+        }
+    };
+}
+
+fn vector(x: &Vector3<f64>) -> Vector3<D> {
+    x.map(c)
+}
+
+pub(crate) use {keeping, stepped};

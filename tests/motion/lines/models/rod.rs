@@ -1,0 +1,149 @@
+//! The elastic rod.
+
+use super::{Line, Random, c, diagonal, keeping, stepped, vector};
+use crate::action::{Configuration, D, trace};
+use clebsch::nalgebra::{Matrix3, Vector3};
+use clebsch::{BodyMomentum, Rotation};
+use clebsch_models::lattices::elastic_rod::*;
+
+/// An elastic rod: free, pinned, clamped at its first end; free, pinned, loaded at its last.
+pub struct Rod {
+    pub n: usize,
+    ends: usize,
+}
+
+impl Rod {
+    pub fn new(n: usize, ends: usize) -> Self {
+        Self { n, ends }
+    }
+    fn mass(&self, i: usize) -> f64 {
+        0.5 * if i == 0 || i == self.n { 0.5 } else { 1.0 }
+    }
+    fn inertia(i: usize) -> Matrix3<f64> {
+        diagonal(0.3, 0.4, 0.5) * (1.0 + 0.1 * (i % 3) as f64)
+    }
+    fn wall() -> Matrix3<f64> {
+        Rotation::exp(&Vector3::new(0.1, 0.2, -0.1)).matrix()
+    }
+    fn force() -> Vector3<f64> {
+        Vector3::new(0.2, -0.1, 0.3)
+    }
+    fn stiffness() -> [Matrix3<f64>; 2] {
+        let shear = Matrix3::new(2.0, 0.1, 0.2, 0.1, 2.5, 0.0, 0.2, 0.0, 3.0);
+        [shear, diagonal(0.5, 0.4, 0.7)]
+    }
+    pub fn stepper(&self) -> ElasticRod {
+        let first = match self.ends / 3 {
+            0 => ElasticRodFirst::Free,
+            1 => ElasticRodFirst::Pinned,
+            _ => ElasticRodFirst::Clamped { Λw: Self::wall() },
+        };
+        let last = match self.ends % 3 {
+            0 => ElasticRodLast::Free,
+            1 => ElasticRodLast::Pinned,
+            _ => ElasticRodLast::Load {
+                force: Self::force(),
+            },
+        };
+        let parameters = ElasticRodParameters {
+            s: 0.5,
+            m: (0..=self.n).map(|i| self.mass(i)).collect(),
+            J: (0..self.n).map(Self::inertia).collect(),
+            S: Self::stiffness()[0],
+            B: Self::stiffness()[1],
+            g: Vector3::new(0.0, 0.1, -0.3),
+        };
+        let sites = ElasticRodSites {
+            N: self.n,
+            ends: ElasticRodEnds::Open { first, last },
+        };
+        ElasticRod::new(parameters, sites).expect("a rod")
+    }
+    pub fn initial(&self, seed: u64) -> ElasticRodInitial {
+        let mut r = Random::new(seed);
+        ElasticRodInitial {
+            φ: (0..=self.n)
+                .map(|i| Vector3::z() * (0.5 * i as f64) + r.vector() * 0.1)
+                .collect(),
+            momentum_φ: (0..=self.n).map(|_| r.vector() * 0.2).collect(),
+            Λ: (0..self.n)
+                .map(|_| Rotation::exp(&(r.vector() * 0.3)))
+                .collect(),
+            body_momentum_Λ: (0..self.n)
+                .map(|_| BodyMomentum(r.vector() * 0.2))
+                .collect(),
+        }
+    }
+    fn seen(&self, s: &ElasticRodState) -> Configuration<f64> {
+        Configuration {
+            x: s.φ().iter().flat_map(|x| [x[0], x[1], x[2]]).collect(),
+            r: s.Λ().map(|r| r.matrix()).collect(),
+        }
+    }
+    keeping!(ElasticRod, |_, _: &ElasticRodState| 0.0);
+}
+
+impl Line for Rod {
+    fn name(&self) -> String {
+        format!("rod {} ends {}", self.n, self.ends)
+    }
+    fn terms(&self) -> usize {
+        5 + usize::from(self.ends >= 6) + usize::from(self.ends % 3 == 2)
+    }
+    fn weighed(&self, w: &[f64], a: &Configuration<D>, b: &Configuration<D>) -> D {
+        let (h, l) = (0.02, 0.5);
+        let [shear, bend] = Self::stiffness().map(|m| m.map(c));
+        let at = |x: &[D], i: usize| Vector3::new(x[3 * i], x[3 * i + 1], x[3 * i + 2]);
+        let mut s = c(0.0);
+        for i in 0..=self.n {
+            let d = at(&b.x, i) - at(&a.x, i);
+            s += c(w[0] * self.mass(i) / (2.0 * h)) * d.dot(&d);
+        }
+        for (i, (x, y)) in a.r.iter().zip(&b.r).enumerate() {
+            s -= c(w[2] * l / h) * trace(&Self::inertia(i).map(c), &(x.transpose() * y));
+        }
+        for q in [a, b] {
+            let half = 0.5 * h;
+            for i in 0..=self.n {
+                let g = Vector3::new(0.0, 0.1, -0.3);
+                s += c(w[1] * half * self.mass(i)) * vector(&g).dot(&at(&q.x, i));
+            }
+            for i in 0..self.n {
+                let along = (at(&q.x, i + 1) - at(&q.x, i)) * c(1.0 / l);
+                let strain = q.r[i].transpose() * along - vector(&Vector3::z());
+                s -= c(w[3] * half * l / 2.0) * strain.dot(&(shear * strain));
+                if i + 1 < self.n {
+                    s += c(w[4] * half / l) * trace(&bend, &(q.r[i].transpose() * q.r[i + 1]));
+                }
+            }
+            let mut term = 5;
+            if self.ends >= 6 {
+                let wall = Self::wall().map(c);
+                s += c(w[term] * half * 2.0 / l) * trace(&bend, &(wall.transpose() * q.r[0]));
+                term += 1;
+            }
+            if self.ends % 3 == 2 {
+                s += c(w[term] * half) * vector(&Self::force()).dot(&at(&q.x, self.n));
+            }
+        }
+        s
+    }
+    fn held(&self, at: usize) -> bool {
+        let (first, last) = (self.ends >= 3, self.ends % 3 == 1);
+        let fields = 3 * (self.n + 1);
+        first && at < 3 || last && at >= fields - 3 && at < fields
+    }
+    fn given(&self, seed: u64) -> Vec<f64> {
+        let all = self.initial(seed);
+        let p = all.momentum_φ.iter().flat_map(|p| [p[0], p[1], p[2]]);
+        let m = all
+            .body_momentum_Λ
+            .iter()
+            .flat_map(|m| [m.0[0], m.0[1], m.0[2]]);
+        p.chain(m).collect()
+    }
+    stepped!(0.02, 5e-2);
+    fn mass_by_step(&self) -> f64 {
+        0.5 / 0.02
+    }
+}

@@ -1,0 +1,115 @@
+//! Shallow water.
+
+use super::{Line, Random, c, keeping, stepped};
+use crate::action::{Configuration, D};
+use clebsch::nalgebra::SMatrix;
+use clebsch_models::lattices::shallow_water::*;
+
+/// Shallow water on a ring.
+pub struct Water {
+    pub n: usize,
+}
+
+impl Water {
+    pub fn new(n: usize) -> Self {
+        Self { n }
+    }
+    fn mass(i: usize) -> f64 {
+        1.0 + 0.2 * (i % 4) as f64
+    }
+    fn length(&self) -> f64 {
+        self.n as f64
+    }
+    pub fn stepper(&self) -> ShallowWater {
+        let parameters = ShallowWaterParameters {
+            m: (0..self.n).map(Self::mass).collect(),
+            g: 0.9,
+            f: 0.6,
+        };
+        let ends = ShallowWaterEnds::Ring { L: self.length() };
+        ShallowWater::new(parameters, ShallowWaterSites { N: self.n, ends }).expect("water")
+    }
+    fn initial(&self, seed: u64) -> ShallowWaterInitial {
+        let mut r = Random::new(seed);
+        let mut list = |size: f64| {
+            (0..self.n)
+                .map(|_| SMatrix::repeat(size * r.number()))
+                .collect()
+        };
+        let mut initial = ShallowWaterInitial {
+            X: list(0.2),
+            momentum_X: list(0.3),
+            Y: list(0.5),
+            momentum_Y: list(0.3),
+        };
+        initial
+            .X
+            .iter_mut()
+            .enumerate()
+            .for_each(|(i, x)| x[0] += i as f64);
+        initial
+    }
+    fn seen(&self, s: &ShallowWaterState) -> Configuration<f64> {
+        let x = s.X().iter().chain(s.Y()).map(|x| x[0]);
+        Configuration {
+            x: x.collect(),
+            r: Vec::new(),
+        }
+    }
+    keeping!(ShallowWater, |_, s: &ShallowWaterState| s
+        .momentum_Y()
+        .iter()
+        .map(|p| p[0])
+        .sum());
+}
+
+impl Line for Water {
+    fn name(&self) -> String {
+        format!("water {}", self.n)
+    }
+    fn terms(&self) -> usize {
+        4
+    }
+    fn weighed(&self, w: &[f64], a: &Configuration<D>, b: &Configuration<D>) -> D {
+        let (dt, n) = (0.02, self.n);
+        let mut s = c(0.0);
+        for i in 0..n {
+            let (u, v) = (b.x[i] - a.x[i], b.x[n + i] - a.x[n + i]);
+            let m = Self::mass(i);
+            s += c(m / (2.0 * dt)) * (c(w[0]) * u * u + c(w[1]) * v * v);
+            s += c(w[2] * m * 0.6 * 0.5) * (a.x[i] + b.x[i]) * v;
+        }
+        for q in [&a.x, &b.x] {
+            for i in 0..n {
+                let next = if i + 1 < n {
+                    q[i + 1]
+                } else {
+                    q[0] + c(self.length())
+                };
+                let before = if i > 0 {
+                    q[i - 1]
+                } else {
+                    q[n - 1] - c(self.length())
+                };
+                let m = Self::mass(i);
+                s -= c(w[3] * 0.5 * dt * 0.9 / 2.0 * m * 2.0 * m) / (next - before);
+            }
+        }
+        s
+    }
+    fn held(&self, _: usize) -> bool {
+        false
+    }
+    fn given(&self, seed: u64) -> Vec<f64> {
+        let all = self.initial(seed);
+        all.momentum_X
+            .iter()
+            .chain(&all.momentum_Y)
+            .map(|p| p[0])
+            .collect()
+    }
+    stepped!(0.02, 5e-2);
+    fn mass_by_step(&self) -> f64 {
+        1.6 / 0.02
+    }
+}
