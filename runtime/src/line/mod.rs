@@ -7,11 +7,9 @@ mod check;
 mod error;
 mod stamp;
 mod sweep;
-mod system;
 
 pub use attitude::Attitude;
 pub use check::{count_of, each, length_of, repeated, shorter};
 pub use error::{LineError, Place};
 pub use stamp::Stamp;
 pub use sweep::{Threads, fill, sum, total, try_each, try_fill, update};
-pub use system::solve_columns;

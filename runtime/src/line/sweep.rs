@@ -1,6 +1,7 @@
 //! Loops over sites. Each site's value is computed from what stood before the loop, so that the order
 //! of sites, and how threads share them, changes no bit. Threads need the feature `rayon`.
 
+use crate::Real;
 use nalgebra::SMatrix;
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
@@ -118,24 +119,26 @@ pub fn update<S: Send, K: Copy + Send>(
 }
 
 /// The sum of the values of sites, in the order of sites and in two numbers (Neumaier).
-pub fn sum<T: crate::Real>(sites: usize, value: impl Fn(usize) -> T) -> T {
-    let (mut total, mut rest) = (T::zero(), T::zero());
-    for i in 0..sites {
-        let x = value(i);
-        let next = total + x;
-        let lost = match total.magnitude() >= x.magnitude() {
-            true => (total - next) + x,
-            false => (x - next) + total,
-        };
-        (total, rest) = (next, rest + lost);
-    }
-    total + rest
+pub fn sum<T: Real>(sites: usize, value: impl Fn(usize) -> T) -> T {
+    total(sites, |i| SMatrix::<T, 1, 1>::new(value(i)))[0]
 }
 
-/// The sum of vectors or matrices of sites, component by component as [`sum`].
-pub fn total<T: crate::Real, const R: usize, const C: usize>(
+/// The same of vectors or matrices, component by component.
+pub fn total<T: Real, const R: usize, const C: usize>(
     sites: usize,
     value: impl Fn(usize) -> SMatrix<T, R, C>,
 ) -> SMatrix<T, R, C> {
-    SMatrix::from_fn(|row, column| sum(sites, |i| value(i)[(row, column)]))
+    let (mut total, mut rest) = (SMatrix::zeros(), SMatrix::zeros());
+    for i in 0..sites {
+        let x = value(i);
+        let next: SMatrix<T, R, C> = total + x;
+        let lost = total.zip_zip_map(&x, &next, |total: T, x: T, next: T| {
+            match total.magnitude() >= x.magnitude() {
+                true => (total - next) + x,
+                false => (x - next) + total,
+            }
+        });
+        (total, rest) = (next, rest + lost);
+    }
+    total + rest
 }

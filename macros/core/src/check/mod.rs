@@ -14,9 +14,10 @@ pub mod spec;
 mod tests;
 
 use crate::diagnostic::{Diagnostic, Errors};
-use crate::expr::symbol::Role;
+use crate::expr::shape::{Shape, Structure};
+use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
-use crate::syntax::ast::{Expression, Model, NodeRule, Statement};
+use crate::syntax::ast::{Expression, Kindred, Model, NodeRule, Statement};
 use crate::{schedule, work};
 pub(crate) use declare::is_rust_word;
 pub(crate) use members::name_of_function;
@@ -58,6 +59,11 @@ pub fn numbers(model: &Model, list: &[&Expression]) -> Vec<Option<Expr>> {
     let names = declare::declare(model, &mut Errors::new());
     let elaborator = Elaborator::new(&names, Vec::new());
     list.iter().map(|e| elaborator.number(e).ok()).collect()
+}
+
+/// The shape of a parameter as declared, where it is one.
+pub fn parameter_shape(symbols: &Symbols, declared: &Kindred) -> Option<(Shape, Structure)> {
+    shapes::shape(symbols, declared, &mut Errors::new())
 }
 
 fn checked(model: &Model, largest: u32) -> Result<Spec, Errors> {

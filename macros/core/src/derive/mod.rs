@@ -24,6 +24,7 @@ pub mod lie;
 pub mod limit;
 pub mod momentum;
 mod occurrence;
+mod outline;
 pub mod parts;
 pub mod quaternionic;
 pub mod recognise;
@@ -35,6 +36,8 @@ pub mod tangent;
 pub mod transport;
 pub mod variation;
 pub mod warnings;
+
+pub use outline::{Outline, outline};
 
 use crate::algebra::Algebra;
 use crate::check::spec::{Side, Spec};
@@ -214,6 +217,22 @@ fn letters(spec: &Spec) -> Letters {
     }
 }
 
+impl Derivation {
+    /// How a step is solved, in one sentence for the documentation of what is emitted; that none is,
+    /// where no parameters are taken.
+    pub fn how_solved(&self) -> String {
+        let reason = &self.solve.reason;
+        let degenerate = self.kinetic.as_ref().and_then(kinetic::Kinetic::degenerate);
+        match degenerate.filter(|_| self.solve.needs_second_moments()) {
+            None => reason.clone(),
+            Some((rank, n)) => format!(
+                "{reason}, for no parameters, since the kinetic energy has rank {rank} of {n}: \
+                 all are refused at the start"
+            ),
+        }
+    }
+}
+
 /// Derives a checked model. Work is counted, and a model that takes more than any is given is
 /// refused: what was found until then is void, errors among it.
 pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
@@ -223,58 +242,6 @@ pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
     match work::exhausted() {
         true => Err(too_large(whole, work::excess()).into()),
         false => derived,
-    }
-}
-
-/// What a derivation begins with: how everything varies, and the equations, without their proof and
-/// without what follows from them.
-#[derive(Clone, Debug)]
-pub struct Outline {
-    /// The reduced model.
-    pub spec: Spec,
-    /// Symbols of the model and of the derivation.
-    pub letters: Letters,
-    /// How every quantity varies, per configuration.
-    pub variations: Vec<variation::Variation>,
-    /// How advected quantities follow from the configuration.
-    pub transports: Vec<transport::Transport>,
-    /// The balance of every configuration.
-    pub balances: Vec<balance::Balance>,
-}
-
-/// The beginning of a derivation.
-pub fn outline(spec: Spec) -> Result<Outline, Errors> {
-    let _count = Count::begin();
-    let whole = place_of_most(&spec);
-    let spec = reduction::reduce(spec)?;
-    let letters = letters(&spec);
-    let algebra = Algebra::new(&letters.symbols);
-    let action = action::action(&spec);
-    let variations = variation::variations(&spec, &letters, &algebra)?;
-    let transports = transport::transports(&spec, &letters, &algebra)?;
-    let balances = balance::balances(&spec, &letters, &action, &variations, &algebra);
-    if work::exhausted() {
-        return Err(too_large(whole, work::excess()).into());
-    }
-    Ok(Outline {
-        spec,
-        letters,
-        variations,
-        transports,
-        balances,
-    })
-}
-
-impl Derivation {
-    /// What it began with.
-    pub fn outline(&self) -> Outline {
-        Outline {
-            spec: self.spec.clone(),
-            letters: self.letters.clone(),
-            variations: self.variations.clone(),
-            transports: self.transports.clone(),
-            balances: self.balances.clone(),
-        }
     }
 }
 

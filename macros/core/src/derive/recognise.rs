@@ -2,16 +2,15 @@
 //! `Ω C^T - C Ω^T = h N` when the balance is linear in the velocity with `C` free of velocities
 //! (an exact matrix Riccati equation), else Newton on the derived residual and tangent.
 
+use super::Letters;
 use super::balance::{Balance, shorter};
 use super::blocks::{self, Block};
 use super::explicit::{self, Explicit};
-use super::kinetic::Kinetic;
 use super::occurrence::{Occurrence, occurrence};
 use super::quaternionic::{self, Quaternionic};
 use super::seen_from_body::seen_from_body;
 use super::transport::Transport;
 use super::variation::at;
-use super::{Derivation, Letters};
 use crate::algebra::{Algebra, Poly, Rational};
 use crate::check::spec::{Configuration, Side, Spec};
 use crate::expr::shape::Dim;
@@ -129,22 +128,6 @@ impl Solve {
             _ => false,
         };
         self.turned.is_some() || by_newton && self.seen_from_body.is_some()
-    }
-}
-
-impl Derivation {
-    /// How a step is solved, in one sentence for the documentation of what is emitted; that none is,
-    /// where no parameters are taken.
-    pub fn how_solved(&self) -> String {
-        let reason = &self.solve.reason;
-        let degenerate = self.kinetic.as_ref().and_then(Kinetic::degenerate);
-        match degenerate.filter(|_| self.solve.needs_second_moments()) {
-            None => reason.clone(),
-            Some((rank, n)) => format!(
-                "{reason}, for no parameters, since the kinetic energy has rank {rank} of {n}: \
-                 all are refused at the start"
-            ),
-        }
     }
 }
 

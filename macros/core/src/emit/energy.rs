@@ -17,7 +17,7 @@ use quote::quote;
 /// `energies` and `energy`.
 pub fn energy(d: &Derivation, names: &Names, limit: &Limit) -> TokenStream {
     match (parts(d, limit).as_slice(), element::only_rotations(d)) {
-        (several @ [_, _, ..], _) => in_parts(d, names, limit, several),
+        ([_, _, ..], _) => in_parts(d, names, limit),
         (_, true) => of_rotations(d, names, limit),
         (_, false) => of_matrices(d, names, limit),
     }
@@ -69,42 +69,30 @@ fn part_of(whole: &mut Derivation, d: &Derivation, members: &[usize]) {
 }
 
 /// `energies` and `energy`, the kinetic energy part by part.
-fn in_parts(d: &Derivation, names: &Names, limit: &Limit, parts: &[Vec<usize>]) -> TokenStream {
+fn in_parts(d: &Derivation, names: &Names, limit: &Limit) -> TokenStream {
     let needed = letters_of([&limit.kinetic, &limit.linear, &limit.potential]);
     let all = with_transports(d, &needed, 0);
     let parameters = parameter_locals(d, quote!(self.parameters), &all);
     let mut bindings = Bindings::new();
     let locals = here(d, names, &needed, &mut bindings);
-    let momenta = momenta(d);
-    let mut part = d.clone();
-    let each = parts.iter().map(|members| {
-        part_of(&mut part, d, members);
-        let own = members.iter().map(|i| momenta[*i].clone()).collect();
-        let inverted = match element::only_rotations(&part) {
-            true => rotations(&part, &bindings, limit, own),
-            false => matrices(&part, &bindings, limit, own),
-        };
-        quote!({ #inverted momentum.dot(&velocity) })
-    });
-    let kinetic: Vec<TokenStream> = each.collect();
+    let twice = twice_kinetic(d, &bindings, limit, &momenta(d));
     let potential = potential(d, &bindings, limit);
     let body = quote! {
         #parameters
         #locals
-        let mut twice = T::zero();
-        #(twice += #kinetic;)*
+        #twice
         (twice * T::from_f64(0.5), #potential)
     };
     both(d, body)
 }
 
-/// Twice the kinetic energy in the local `twice`, at momenta that are given by tokens, and the potential.
-pub(super) fn inverted_parts(
+/// Twice the kinetic energy in the local `twice`, part by part, at momenta that are given by tokens.
+pub(super) fn twice_kinetic(
     d: &Derivation,
     bindings: &Bindings,
     limit: &Limit,
     momenta: &[TokenStream],
-) -> (TokenStream, TokenStream) {
+) -> TokenStream {
     let mut part = d.clone();
     let each = parts(d, limit).into_iter().map(|members| {
         part_of(&mut part, d, &members);
@@ -116,11 +104,10 @@ pub(super) fn inverted_parts(
         quote!({ #inverted momentum.dot(&velocity) })
     });
     let kinetic: Vec<TokenStream> = each.collect();
-    let twice = quote! {
+    quote! {
         let mut twice = T::zero();
         #(twice += #kinetic;)*
-    };
-    (twice, potential(d, bindings, limit))
+    }
 }
 
 fn potential(d: &Derivation, bindings: &Bindings, limit: &Limit) -> TokenStream {

@@ -8,7 +8,7 @@ use crate::check::spec::{Advected, Assumption};
 use crate::derive::Derivation;
 use crate::derive::recognise::{Method, Riccati};
 use crate::derive::transport::Transport;
-use crate::expr::shape::Structure;
+use crate::expr::shape::{Shape, Structure};
 use crate::expr::symbol::{SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::print::{Format, Style, expression};
@@ -370,6 +370,33 @@ pub(super) fn holds(
     quote!(validate::assumption(#holds, #message)?;)
 }
 
+/// The tests of a value at this place that is given for a quantity of this shape and structure.
+pub(super) fn admitted(
+    label: &str,
+    shape: Shape,
+    structure: Structure,
+    value: &TokenStream,
+) -> TokenStream {
+    let finite = if shape.is_scalar() {
+        quote!(validate::finite(#label, &[#value])?;)
+    } else if shape.is_vector() {
+        quote!(validate::finite(#label, #value.as_slice())?;)
+    } else {
+        quote!(validate::finite_entries(#label, &#value)?;)
+    };
+    let structure = match structure {
+        Structure::Symmetric => quote!(validate::symmetric(#label, &#value)?;),
+        Structure::Skew => quote!(validate::skew(#label, &#value)?;),
+        Structure::Diagonal => quote!(validate::diagonal(#label, &#value)?;),
+        Structure::Orthogonal => quote!(validate::orthogonal(#label, &#value)?;),
+        Structure::Invertible => quote!(validate::invertible(#label, &#value)?;),
+        Structure::UnitQuaternion => quote!(validate::unit_quaternion(#label, &#value)?;),
+        Structure::RigidMotion => quote!(validate::rigid_motion(#label, &#value)?;),
+        Structure::General => TokenStream::new(),
+    };
+    quote!(#finite #structure)
+}
+
 /// The model: validated parameters, and the factor of its Moser-Veselov equation.
 pub fn model(d: &Derivation, documented: bool) -> TokenStream {
     let s = &d.letters.symbols;
@@ -377,26 +404,12 @@ pub fn model(d: &Derivation, documented: bool) -> TokenStream {
     let checks = d.spec.parameters.iter().map(|p| {
         let symbol = s.get(*p);
         let (field, label) = (own(d, *p), &symbol.name);
-        let finite = if symbol.shape.is_scalar() {
-            quote!(validate::finite(#label, &[parameters.#field])?;)
-        } else if symbol.shape.is_vector() {
-            quote!(validate::finite(#label, parameters.#field.as_slice())?;)
-        } else {
-            quote!(validate::finite_entries(#label, &parameters.#field)?;)
-        };
-        let structure = match symbol.structure {
-            Structure::Symmetric => quote!(validate::symmetric(#label, &parameters.#field)?;),
-            Structure::Skew => quote!(validate::skew(#label, &parameters.#field)?;),
-            Structure::Diagonal => quote!(validate::diagonal(#label, &parameters.#field)?;),
-            Structure::Orthogonal => quote!(validate::orthogonal(#label, &parameters.#field)?;),
-            Structure::Invertible => quote!(validate::invertible(#label, &parameters.#field)?;),
-            Structure::UnitQuaternion => {
-                quote!(validate::unit_quaternion(#label, &parameters.#field)?;)
-            }
-            Structure::RigidMotion => quote!(validate::rigid_motion(#label, &parameters.#field)?;),
-            Structure::General => TokenStream::new(),
-        };
-        quote!(#finite #structure)
+        admitted(
+            label,
+            symbol.shape,
+            symbol.structure,
+            &quote!(parameters.#field),
+        )
     });
     let constant = factor(d).filter(|_| factor_references(d).is_empty());
     let assumed: Vec<&Expr> = d

@@ -200,6 +200,20 @@ impl Choice {
         self.sites(lattice, q.label, q.sites)
     }
 
+    /// How an open line is held: `with both ends free`.
+    pub fn held(&self, lattice: &Lattice) -> String {
+        let name = |last: bool| {
+            let names = lattice.alternatives(last);
+            let chosen = names.get(self.ends[usize::from(last)]).cloned();
+            chosen.unwrap_or_default()
+        };
+        let (a, b) = (name(false), name(true));
+        match a == b {
+            true => format!("with both ends {a}"),
+            false => format!("with the first end {a} and the last one {b}"),
+        }
+    }
+
     /// How the choice reads: `i = 4, periodic`.
     pub fn words(&self, lattice: &Lattice) -> String {
         let counts = lattice.labels.iter().zip(&self.counts);

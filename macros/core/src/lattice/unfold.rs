@@ -15,6 +15,7 @@ use super::range::{Range, reach};
 use crate::check::circular_definitions;
 use crate::derive::warnings::Warning;
 use crate::diagnostic::{Diagnostic, Errors, Place};
+use crate::expr::symbol::ascii;
 use crate::syntax::ast::{Alternative, Expression, Kind, Kindred, Model, Name, Statement};
 pub(crate) use definitions::{definitions, inlined};
 use std::collections::BTreeMap;
@@ -263,15 +264,7 @@ impl<'a> Writer<'a> {
     }
 
     fn declare_number(&mut self, name: &Name, docs: &[String]) {
-        let shape = Kindred {
-            name: Name {
-                text: "Real".to_owned(),
-                place: name.place,
-                typeset: None,
-            },
-            sizes: Vec::new(),
-            place: name.place,
-        };
+        let shape = Kindred::number(name.place);
         let names = vec![name.clone()];
         let at = None;
         self.push(Statement::Param { names, shape, at }, docs);
@@ -504,6 +497,25 @@ impl Unfolded {
     /// The farthest that letters of one term stand apart.
     pub fn width(&self) -> usize {
         self.summands.iter().map(|s| s.width).max().unwrap_or(0)
+    }
+
+    /// The name of an invariant without the list of all copies, its words apart.
+    pub fn plain(&self, name: &str) -> String {
+        let mut words: Vec<&str> = Vec::new();
+        let mut parts = name.split('_').peekable();
+        while let Some(word) = parts.next() {
+            let site = parts.peek().is_some_and(|n| n.parse::<usize>().is_ok());
+            let spelt = |c: &Copied| ascii(&c.of) == word || c.of == word;
+            if site && self.copies.iter().any(spelt) {
+                parts.next();
+                if !words.contains(&word) {
+                    words.push(word);
+                }
+                continue;
+            }
+            words.push(word);
+        }
+        words.join(" ")
     }
 
     /// The copy of this name.

@@ -246,15 +246,7 @@ fn is_empty(statement: &Statement) -> bool {
 fn number(name: &Name) -> Statement {
     Statement::Param {
         names: vec![name.clone()],
-        shape: Kindred {
-            name: Name {
-                text: "Real".to_owned(),
-                place: name.place,
-                typeset: None,
-            },
-            sizes: Vec::new(),
-            place: name.place,
-        },
+        shape: Kindred::number(name.place),
         at: None,
     }
 }

@@ -3,7 +3,6 @@
 
 use super::{Line, Lone, Mover, Refused};
 use crate::algebra::Algebra;
-use crate::derive::transport::Transport;
 use crate::expr::shape::Shape;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::lattice::Sites;
@@ -48,7 +47,7 @@ impl Line {
         let next = expr::shift_time(s, &pulled, Shift::NEXT.time);
         let [arriving, leaving] = self.shares;
         let algebra = Algebra::new(s);
-        let zero = |e: Expr| algebra.is_zero(&self.known(&e));
+        let zero = |e: Expr| algebra.is_zero(&d.defined(&e));
         let out = expr::sub(whole.outgoing.clone(), here(&own.outgoing)?);
         let into = expr::sub(whole.incoming.clone(), here(&own.incoming)?);
         let equal = zero(expr::add(out, expr::scale(leaving, pulled)))
@@ -87,29 +86,5 @@ impl Line {
             list.push((l, expr::letter(s, there, l.shift)));
         }
         Some(expr::substitute(s, e, &list))
-    }
-
-    /// With advected quantities by what defines them.
-    fn known(&self, e: &Expr) -> Expr {
-        let d = &self.representative.d;
-        let s = &d.letters.symbols;
-        let mut list: Vec<(Letter, Expr)> = Vec::new();
-        for (a, t) in d.spec.advected.iter().zip(&d.transports) {
-            let Transport::Defined(value) = t else {
-                continue;
-            };
-            for time in [0, 1] {
-                let shift = Shift {
-                    time,
-                    ..Shift::HERE
-                };
-                let letter = Letter {
-                    symbol: a.quantity,
-                    shift,
-                };
-                list.push((letter, expr::shift_time(s, value, time)));
-            }
-        }
-        expr::substitute(s, e, &list)
     }
 }

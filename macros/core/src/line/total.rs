@@ -53,16 +53,7 @@ fn of_part(
     let on = match part.choice.periodic {
         true => "along a ring".to_owned(),
         false if lattice.line.is_none() => "always".to_owned(),
-        false => {
-            let names = [false, true].map(|last| lattice.alternatives(last)[0].clone());
-            match names[0] == names[1] {
-                true => format!("with both ends {}", names[0]),
-                false => format!(
-                    "with the first end {} and the last one {}",
-                    names[0], names[1]
-                ),
-            }
-        }
+        false => part.choice.held(lattice),
     };
     let each = invariants.iter().filter_map(|v| {
         let value = v.value.as_ref()?;
@@ -74,30 +65,13 @@ fn of_part(
             .into_iter()
             .map(|(label, sites, e)| Some((label, sites, part.in_letters_of(base, &e)?)));
         Some(Total {
-            name: plain(part, &v.name),
+            name: part.unfolded.plain(&v.name).replace(' ', "_"),
             reason: v.reason.clone(),
             on: on.clone(),
             densities: moved.collect::<Option<_>>()?,
         })
     });
     each.collect()
-}
-
-/// The name without the list of all copies.
-fn plain(part: &Written, name: &str) -> String {
-    let mut words: Vec<String> = Vec::new();
-    let all: Vec<&str> = name.split('_').collect();
-    let mut i = 0;
-    while let Some(word) = all.get(i) {
-        let site = all.get(i + 1).is_some_and(|n| n.parse::<usize>().is_ok());
-        let is = |c: &crate::lattice::Copied| expr::symbol::ascii(&c.of) == *word || c.of == *word;
-        let copy = site && part.unfolded.copies.iter().any(is);
-        if !words.iter().any(|w| w == word) {
-            words.push((*word).to_owned());
-        }
-        i += if copy { 2 } else { 1 };
-    }
-    words.join("_")
 }
 
 /// The density of a sum over all sites of each kind, at the base.

@@ -76,6 +76,21 @@ pub struct Kindred {
     pub place: Place,
 }
 
+impl Kindred {
+    /// The shape of a number, at this place.
+    pub fn number(place: Place) -> Kindred {
+        Kindred {
+            name: Name {
+                text: "Real".to_owned(),
+                place,
+                typeset: None,
+            },
+            sizes: Vec::new(),
+            place,
+        }
+    }
+}
+
 /// How purely nodal terms enter the action of a step.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum NodeRule {

@@ -1,7 +1,7 @@
 //! What is said of a model with labels where it runs: its action, momenta and invariants with sums
 //! over sites in the place of lists of copies.
 
-use super::invariants::{plain, total};
+use super::invariants::total;
 use super::{ranged, stated_configurations};
 use crate::derive::Derivation;
 use crate::document::folded::{Folded, From, Part};
@@ -63,7 +63,7 @@ pub fn card_words(
     }
     let mut invariants: Vec<(String, String)> = Vec::new();
     for v in &d.invariants {
-        let name = plain(&part, &v.name).replace(' ', "_");
+        let name = part.unfolded.plain(&v.name).replace(' ', "_");
         let mut own = name.clone();
         let mut count = 1;
         while invariants.iter().any(|(taken, _)| *taken == own) {

@@ -47,20 +47,11 @@ fn heading(lattice: &Lattice, part: &Part) -> String {
     if part.choice.periodic {
         return "On a ring".to_owned();
     }
-    let name = |last: bool| {
-        let names = lattice.alternatives(last);
-        let chosen = names.get(part.choice.ends[usize::from(last)]).cloned();
-        chosen.unwrap_or_default()
-    };
-    let (a, b) = (name(false), name(true));
-    match a == b {
-        true => format!("On a line with both ends {a}"),
-        false => format!("On a line with the first end {a} and the last one {b}"),
-    }
+    format!("On a line {}", part.choice.held(lattice))
 }
 
 fn invariant(folded: &mut Folded, part: &Part, v: &Invariant) -> Vec<Inline> {
-    let mut line: Vec<Inline> = vec![format!("{}: ", plain(part, &v.name)).into()];
+    let mut line: Vec<Inline> = vec![format!("{}: ", part.unfolded.plain(&v.name)).into()];
     match &v.value {
         Some(e) => line.push(total(folded, part, e).into()),
         None => line.push("kinetic plus potential energy of the limit".into()),
@@ -68,27 +59,6 @@ fn invariant(folded: &mut Folded, part: &Part, v: &Invariant) -> Vec<Inline> {
     let how = if v.exact { "exact" } else { "bounded" };
     line.push(format!(" ({how}: {})", v.reason).into());
     line
-}
-
-/// The name without the list of all copies.
-pub(super) fn plain(part: &Part, name: &str) -> String {
-    let kept = name.split('_').scan(false, |_, word| Some(word));
-    let mut words: Vec<&str> = Vec::new();
-    let mut parts = kept.peekable();
-    while let Some(word) = parts.next() {
-        let site = parts.peek().is_some_and(|n| n.parse::<usize>().is_ok());
-        let spelt =
-            |c: &crate::lattice::Copied| crate::expr::symbol::ascii(&c.of) == word || c.of == word;
-        if site && part.unfolded.copies.iter().any(spelt) {
-            parts.next();
-            if !words.contains(&word) {
-                words.push(word);
-            }
-            continue;
-        }
-        words.push(word);
-    }
-    words.join(" ")
 }
 
 /// A total, terms of the same form collected to sums over sites.

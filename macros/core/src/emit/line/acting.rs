@@ -1,14 +1,12 @@
 //! Kernels of what acts on a site at a node: its own potential and what neighbours add, before the node
 //! and after it; of blocks of fields, what the edge adds.
 
-use super::locals::{Places, defined, step};
+use super::locals::{Places, step};
 use super::pulls::{field, front};
 use super::{Lines, Moving, number};
 use crate::algebra::Rational;
-use crate::emit::expression::program;
 use crate::expr::{self, Expr};
 use crate::line::How;
-use crate::schedule;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
@@ -25,10 +23,10 @@ pub(super) enum Acting {
 fn own(m: &Moving) -> [Expr; 2] {
     let d = m.outline();
     let s = &d.letters.symbols;
-    let at_node = |e: &Expr| defined(d, &expr::shift_time(s, e, -1));
+    let at_node = |e: &Expr| d.defined(&expr::shift_time(s, e, -1));
     match &m.mover.how {
-        How::Rotation { leave, arrive, .. } => [at_node(arrive), defined(d, leave)],
-        How::Field { form, arrive } => [at_node(arrive), defined(d, &expr::neg(form.rest.clone()))],
+        How::Rotation { leave, arrive, .. } => [at_node(arrive), d.defined(leave)],
+        How::Field { form, arrive } => [at_node(arrive), d.defined(&expr::neg(form.rest.clone()))],
         How::System { .. } => {
             let shape = d.balances[m.mover.index].outgoing.shape();
             [expr::zero(shape), expr::zero(shape)]
@@ -95,13 +93,7 @@ fn one(l: &Lines, m: Moving) -> TokenStream {
         true => vec![crate::emit::forced::doubled(s, &leave)],
         false => vec![arrive, leave],
     };
-    let at = Places {
-        here: quote!(at),
-        next: quote!(at),
-    };
-    let (locals, bindings) = l.locals(s, &l.of_site(d, &wanted), &at, &quote!(site));
-    let p = schedule::program(s, &wanted, &l.prefix("t"));
-    let (lets, results) = program(&p, &bindings);
+    let (lets, results) = l.computed(s, &l.of_site(d, &wanted), &wanted);
     let collected = l.collected(&m.mover.name);
     let shared = |value: &TokenStream, e: &Expr, share: Rational| -> TokenStream {
         let own = (!e.is_zero()).then(|| m.array(value.clone()));
@@ -154,7 +146,6 @@ fn one(l: &Lines, m: Moving) -> TokenStream {
         #[inline(always)]
         fn #kernel(&self, #h: T, site: usize, at: &#places<T>, pulls: &#pulls<T>) -> #output {
             let _ = (#h, site, at, pulls);
-            #locals
             #lets
             #value
         }
@@ -170,7 +161,7 @@ fn added(l: &Lines, m: Moving) -> TokenStream {
     let s = &d.letters.symbols;
     let (kernel, places, t) = (edge_kernel(&m), l.item("Places"), m.covector());
     let h = step(d);
-    let wanted = [defined(d, added)];
+    let wanted = [d.defined(added)];
     let at = Places {
         here: quote!(from),
         next: quote!(to),
@@ -205,8 +196,7 @@ fn added(l: &Lines, m: Moving) -> TokenStream {
         velocities.extend(quote!(let #local = #value;));
         bindings.bind(letter, local);
     }
-    let p = schedule::program(s, &wanted, &l.prefix("t"));
-    let (lets, results) = program(&p, &bindings);
+    let (lets, results) = l.program(s, &wanted, &bindings);
     let value = m.array(results.into_iter().next().unwrap_or_default());
     let size = number(*n);
     let doc = format!(" What the edge adds to the momentum of `{}`.", m.mover.name);

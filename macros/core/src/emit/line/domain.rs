@@ -1,15 +1,14 @@
 //! What a step along a line must not leave: the domains of functions, at every site and in every term of
 //! neighbours.
 
-use super::locals::{Places, defined, step};
+use super::locals::{Known, step};
 use super::pulls::{known, range_of};
 use super::{Lines, number};
 use crate::derive::{Derivation, Outline};
 use crate::emit::domain::{Tested, tested};
-use crate::emit::expression::{Bindings, program};
+use crate::emit::expression::Bindings;
 use crate::expr::Expr;
 use crate::line::{EndTerm, Line, Lone};
-use crate::schedule;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
@@ -55,7 +54,7 @@ fn lone_terms(lone: &Lone) -> Vec<Expr> {
     terms
         .into_iter()
         .chain(definitions)
-        .map(|e| defined(&lone.outline, &e))
+        .map(|e| lone.outline.defined(&e))
         .collect()
 }
 
@@ -64,54 +63,46 @@ fn asked_of(d: &Outline, list: &[Expr]) -> Option<Vec<Tested>> {
 }
 
 fn asked(l: &Lines) -> Vec<Asked> {
-    let mut out = Vec::new();
-    let at = || Places {
-        here: quote!(at),
-        next: quote!(at),
-    };
-    let at_nodes = |tests: Option<Vec<Tested>>| -> Vec<Tested> {
-        let mut tests = tests.unwrap_or_default();
-        tests.retain(|t| !t.constant);
-        tests
-    };
-    for lone in &l.line.lone {
+    let lone = l.line.lone.iter().filter_map(|lone| {
         let d = &lone.outline;
-        let tests = at_nodes(asked_of(d, &lone_terms(lone)));
-        let Some(first) = lone.movers.first().filter(|_| !tests.is_empty()) else {
-            continue;
-        };
-        let values: Vec<Expr> = tests.iter().map(|t| t.argument.clone()).collect();
-        let s = &d.letters.symbols;
-        let (locals, bindings) = l.locals(s, &l.of_site(d, &values), &at(), &quote!(site));
-        let p = schedule::program(s, &values, &l.prefix("t"));
-        let (lets, values) = program(&p, &bindings);
         let count = l.count(lone.label, lone.sites);
-        out.push(Asked {
-            tests,
-            range: quote!(let (first, last) = (0, #count);),
-            quantity: first.name.clone(),
-            body: (quote!(#locals #lets), values),
-        });
-    }
+        let range = quote!(let (first, last) = (0, #count););
+        let quantity = lone.movers.first()?.name.clone();
+        let letters = |values: &[Expr]| l.of_site(d, values);
+        one(l, d, &lone_terms(lone), range, quantity, &letters)
+    });
     let d = &l.line.representative.d;
-    for pull in &l.line.pulls {
-        let tests = at_nodes(asked_of(d, std::slice::from_ref(&pull.terms)));
-        let Some(first) = pull.forces.first().filter(|_| !tests.is_empty()) else {
-            continue;
-        };
-        let values: Vec<Expr> = tests.iter().map(|t| t.argument.clone()).collect();
-        let s = &d.letters.symbols;
-        let (locals, bindings) = l.locals(s, &known(l, &values), &at(), &quote!(site));
-        let p = schedule::program(s, &values, &l.prefix("t"));
-        let (lets, values) = program(&p, &bindings);
-        out.push(Asked {
-            tests,
-            range: range_of(l, pull),
-            quantity: first.on.clone(),
-            body: (quote!(#locals #lets), values),
-        });
+    let pulls = l.line.pulls.iter().filter_map(|pull| {
+        let quantity = pull.forces.first()?.on.clone();
+        let terms = std::slice::from_ref(&pull.terms);
+        let letters = |values: &[Expr]| known(l, values);
+        one(l, d, terms, range_of(l, pull), quantity, &letters)
+    });
+    lone.chain(pulls).collect()
+}
+
+/// What the terms of one loop ask of what stands at a node, if anything.
+fn one(
+    l: &Lines,
+    d: &Outline,
+    terms: &[Expr],
+    range: TokenStream,
+    quantity: String,
+    letters: &dyn Fn(&[Expr]) -> Vec<Known>,
+) -> Option<Asked> {
+    let mut tests = asked_of(d, terms).unwrap_or_default();
+    tests.retain(|t| !t.constant);
+    if tests.is_empty() {
+        return None;
     }
-    out
+    let values: Vec<Expr> = tests.iter().map(|t| t.argument.clone()).collect();
+    let body = l.computed(&d.letters.symbols, &letters(&values), &values);
+    Some(Asked {
+        tests,
+        range,
+        quantity,
+        body,
+    })
 }
 
 /// The kernels of arguments, and the call of the test in a step.
@@ -185,8 +176,7 @@ pub(super) fn of_parameters(l: &Lines) -> TokenStream {
                 quote!(let #local = model.parameters.#field;)
             });
             let lets: Vec<TokenStream> = lets.collect();
-            let p = schedule::program(s, std::slice::from_ref(&t.argument), &l.prefix("t"));
-            let (more, values) = program(&p, &bindings);
+            let (more, values) = l.program(s, one, &bindings);
             let (domain, function, text) = (&t.domain, &t.function, &t.text);
             out.extend(quote! {{
                 #(#lets)*

@@ -38,6 +38,7 @@ fn each_end(
     Some(out)
 }
 
+/// An end condition, its parameters in locals of their own.
 pub(super) fn pattern(ty: &Ident, end: &End) -> TokenStream {
     let variant = &end.variant;
     let fields = end.parameters.iter().map(|p| {
@@ -130,11 +131,8 @@ fn values(l: &Lines, end: &EndTerm, values: &[Expr]) -> (TokenStream, Vec<TokenS
                     of: of.clone(),
                     on: Some(0),
                 }];
-                let at = Places {
-                    here: quote!(at),
-                    next: quote!(at),
-                };
-                let (lets, inner) = l.locals(s, &one, &at, &place(l, end, of, *site));
+                let site = place(l, end, of, *site);
+                let (lets, inner) = l.locals(s, &one, &Places::of_node(), &site);
                 let name = inner.local(s, *letter);
                 locals.extend(quote!(let #local = { #lets #name };));
                 bindings.bind(*letter, local);

@@ -1,17 +1,16 @@
 //! Energies of a line: the kinetic energy of every site, and the potential of sites, of neighbours and
 //! of ends, summed over all of them.
 
-use super::locals::{Places, defined};
+use super::locals::Places;
 use super::pulls::{known, range_of};
 use super::{Lines, Moving};
 use crate::algebra::Algebra;
 use crate::derive::limit::Limit;
 use crate::emit::element;
-use crate::emit::energy::inverted_parts;
-use crate::emit::expression::program;
+use crate::emit::energy::twice_kinetic;
+use crate::expr::symbol::Role;
 use crate::expr::{self, Expr};
 use crate::line::{Lone, Total};
-use crate::schedule;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
@@ -31,19 +30,30 @@ fn energies(l: &Lines) -> Option<TokenStream> {
     let (mut kinetic, mut potential) = (Vec::new(), Vec::new());
     for (n, lone) in l.line.lone.iter().enumerate() {
         let limit = lone.d.limit.as_ref().ok()?;
-        let kernel = format_ident!("energies_{}", n + 1);
-        let body = of_site(l, lone, limit);
+        let count = l.count(lone.label, lone.sites);
+        let kernel = format_ident!("kinetic_{}", n + 1);
+        let body = kinetic_of_site(l, lone, limit);
         kernels.extend(quote! {
-            /// The kinetic and the potential energy of one site by itself.
-            fn #kernel(&self, site: usize, at: &#places<T>, momenta: &#momenta<T>) -> (T, T) {
-                let _ = (site, at, momenta);
+            /// The kinetic energy of one site.
+            fn #kernel(&self, site: usize, at: &#places<T>, momenta: &#momenta<T>) -> T {
+                let _ = (site, at);
                 #body
             }
         });
-        let count = l.count(lone.label, lone.sites);
-        kinetic.push(quote!(line::sum(#count, |i| self.#kernel(i, at, momenta).0)));
+        kinetic.push(quote!(line::sum(#count, |i| self.#kernel(i, at, momenta))));
         if !limit.potential.is_zero() {
-            potential.push(quote!(line::sum(#count, |i| self.#kernel(i, at, momenta).1)));
+            let kernel = format_ident!("own_potential_{}", n + 1);
+            let (d, values) = (&lone.outline, [lone.outline.defined(&limit.potential)]);
+            let (lets, results) = l.computed(&d.letters.symbols, &l.of_site(d, &values), &values);
+            kernels.extend(quote! {
+                /// The potential energy of one site by itself.
+                fn #kernel(&self, site: usize, at: &#places<T>) -> T {
+                    let _ = (site, at);
+                    #lets
+                    #(#results)*
+                }
+            });
+            potential.push(quote!(line::sum(#count, |i| self.#kernel(i, at))));
         }
     }
     let s = &part.d.letters.symbols;
@@ -53,18 +63,11 @@ fn energies(l: &Lines) -> Option<TokenStream> {
         let energy = expr::neg(expr::quotient(pull.terms.clone(), h.clone()));
         let energy = without_step(&algebra, &energy, &h)?;
         let kernel = format_ident!("potential_{}", n + 1);
-        let at = Places {
-            here: quote!(at),
-            next: quote!(at),
-        };
         let values = [energy];
-        let (locals, bindings) = l.locals(s, &known(l, &values), &at, &quote!(site));
-        let p = schedule::program(s, &values, &l.prefix("t"));
-        let (lets, results) = program(&p, &bindings);
+        let (lets, results) = l.computed(s, &known(l, &values), &values);
         kernels.extend(quote! {
             /// The potential energy of one term of neighbours.
             fn #kernel(&self, site: usize, at: &#places<T>) -> T {
-                #locals
                 #lets
                 #(#results)*
             }
@@ -111,42 +114,30 @@ pub(super) fn without_step(algebra: &Algebra, e: &Expr, h: &Expr) -> Option<Expr
     forms.into_iter().find(free)
 }
 
-/// The energies of one site.
-fn of_site(l: &Lines, lone: &Lone, limit: &Limit) -> TokenStream {
-    let d = &lone.d;
+/// The kinetic energy of one site, that of the limit inverted for its momenta.
+fn kinetic_of_site(l: &Lines, lone: &Lone, limit: &Limit) -> TokenStream {
+    let (d, outline) = (&lone.d, &lone.outline);
+    let s = &d.letters.symbols;
     let limit = Limit {
-        lagrangian: limit.lagrangian.clone(),
-        potential: defined(&lone.outline, &limit.potential),
-        linear: defined(&lone.outline, &limit.linear),
-        kinetic: defined(&lone.outline, &limit.kinetic),
+        linear: outline.defined(&limit.linear),
+        kinetic: outline.defined(&limit.kinetic),
+        ..limit.clone()
     };
-    let values = [
-        limit.potential.clone(),
-        limit.linear.clone(),
-        limit.kinetic.clone(),
-    ];
-    let at = Places {
-        here: quote!(at),
-        next: quote!(at),
-    };
-    let letters = l.of_site(&lone.outline, &values);
-    let roles = letters.into_iter().filter(|k| {
-        let role = d.letters.symbols.get(k.letter.symbol).role;
-        role != crate::expr::symbol::Role::Variation
-    });
-    let letters: Vec<_> = roles.collect();
-    let (locals, bindings) = l.locals(&d.letters.symbols, &letters, &at, &quote!(site));
+    let values = [limit.linear.clone(), limit.kinetic.clone()];
+    let mut letters = l.of_site(outline, &values);
+    letters.retain(|k| s.get(k.letter.symbol).role != Role::Variation);
+    let (locals, bindings) = l.locals(s, &letters, &Places::of_node(), &quote!(site));
     let own = lone.movers.iter().map(|mover| {
         let m = Moving { lone, mover };
         let c = &d.spec.configurations[mover.index];
         element::value(c, momentum(&m, &quote!(site)))
     });
     let own: Vec<TokenStream> = own.collect();
-    let (inverted, potential) = inverted_parts(d, &bindings, &limit, &own);
+    let twice = twice_kinetic(d, &bindings, &limit, &own);
     quote! {
         #locals
-        #inverted
-        (twice * T::from_f64(0.5), #potential)
+        #twice
+        twice * T::from_f64(0.5)
     }
 }
 
@@ -172,18 +163,15 @@ fn total(l: &Lines, t: &Total) -> TokenStream {
         .iter()
         .map(|(label, sites, density)| {
             let d = &part.d;
-            let density = defined(d, density);
+            let density = d.defined(density);
             let values = [density.clone()];
             let (momenta, letters): (Vec<_>, Vec<_>) =
                 known(l, &values).into_iter().partition(|k| {
                     part.sited(k.letter.symbol)
                         .is_some_and(|x| x.momentum_of().is_some())
                 });
-            let at = Places {
-                here: quote!(at),
-                next: quote!(at),
-            };
-            let (mut locals, mut bindings) = l.locals(s, &letters, &at, &quote!(site));
+            let places = Places::of_node();
+            let (mut locals, mut bindings) = l.locals(s, &letters, &places, &quote!(site));
             for k in momenta {
                 let Some(of) = part.sited(k.letter.symbol) else {
                     continue;
@@ -197,8 +185,7 @@ fn total(l: &Lines, t: &Total) -> TokenStream {
                 locals.extend(quote!(let #local = #value;));
                 bindings.bind(k.letter, local);
             }
-            let p = schedule::program(s, &values, &l.prefix("t"));
-            let (lets, results) = program(&p, &bindings);
+            let (lets, results) = l.program(s, &values, &bindings);
             let count = l.count(*label, *sites);
             let shape = density.shape();
             let sum = match shape.is_scalar() {

@@ -4,7 +4,7 @@
 use super::Lines;
 use super::ends::{end_local, pattern};
 use crate::emit::expression::Bindings;
-use crate::emit::items::holds;
+use crate::emit::items::{admitted, holds};
 use crate::expr;
 use crate::lattice::Sites;
 use proc_macro2::TokenStream;
@@ -44,8 +44,7 @@ impl Lines<'_> {
             for (which, a) in alternatives.iter().enumerate() {
                 let tests = a.parameters.iter().map(|p| {
                     let (name, local) = (p.name.to_string(), end_local(&p.name.to_string()));
-                    let test = self.tested(&name, p);
-                    quote!({ let value = &#local; #test })
+                    admitted(&name, p.shape, p.structure, &quote!(#local))
                 });
                 let tests: Vec<TokenStream> = tests.collect();
                 let long = self.long_enough(last, which);
@@ -65,10 +64,9 @@ impl Lines<'_> {
         if self.line.lattice.periodic.is_some() && !offsets.is_empty() {
             let names: Vec<String> = offsets.iter().map(|(n, _)| n.clone()).collect();
             let pattern = self.ring_pattern(&names);
-            let tests = offsets.iter().map(|(name, of)| {
+            let tests = offsets.iter().map(|(name, m)| {
                 let local = end_local(name);
-                let q = self.line.lattice.find(of);
-                match q.is_some_and(|q| q.shape.name.text == "Real") {
+                match m.is_number() {
                     true => quote!(validate::finite(#name, &[#local])?;),
                     false => quote!(validate::finite(#name, #local.as_slice())?;),
                 }

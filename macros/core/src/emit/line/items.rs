@@ -1,13 +1,14 @@
 //! What is given: parameters, numbers of sites and end conditions, and the model that checks them.
 
-use super::{Lines, number};
+use super::{Lines, Moving, number};
+use crate::check::parameter_shape;
 use crate::emit::expression::{Bindings, Writer, ty};
+use crate::emit::items::admitted;
 use crate::expr;
-use crate::expr::shape::Structure;
+use crate::expr::shape::{Shape, Structure};
 use crate::expr::symbol::{Role, Symbol};
 use crate::lattice::{Kind, Sites};
 use crate::line::How;
-use crate::syntax::ast::{Kindred, Size};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
@@ -55,46 +56,24 @@ impl Lines<'_> {
         out
     }
 
-    /// How one value of a parameter is tested.
-    fn test(&self, name: &str, structure: Structure, scalar: bool, vector: bool) -> TokenStream {
-        let finite = match (scalar, vector) {
-            (true, _) => quote!(validate::finite(#name, &[*value])?;),
-            (_, true) => quote!(validate::finite(#name, value.as_slice())?;),
-            _ => quote!(validate::finite_entries(#name, value)?;),
-        };
-        let of = match structure {
-            Structure::Symmetric => quote!(validate::symmetric(#name, value)?;),
-            Structure::Skew => quote!(validate::skew(#name, value)?;),
-            Structure::Diagonal => quote!(validate::diagonal(#name, value)?;),
-            Structure::Orthogonal => quote!(validate::orthogonal(#name, value)?;),
-            Structure::Invertible => quote!(validate::invertible(#name, value)?;),
-            Structure::UnitQuaternion => quote!(validate::unit_quaternion(#name, value)?;),
-            Structure::RigidMotion => quote!(validate::rigid_motion(#name, value)?;),
-            _ => TokenStream::new(),
-        };
-        quote!(#finite #of)
-    }
-
-    /// The test of a parameter of an end.
-    pub(super) fn tested(&self, name: &str, p: &Parameter) -> TokenStream {
-        self.test(name, p.structure, p.is_number, p.is_vector)
-    }
-
     /// The alternatives of an end: the name of their type, and each with its parameters.
     pub(super) fn alternatives(&self, last: bool) -> Option<(Ident, Vec<End>)> {
         let list = &self.line.lattice.ends[usize::from(last)];
         if list.is_empty() {
             return None;
         }
+        let s = &self.line.representative.d.letters.symbols;
         let ends = list.iter().map(|a| {
             let names = a.params.iter();
             let names = names.flat_map(|(names, shape)| names.iter().map(move |n| (n, shape)));
-            let parameters = names.map(|(name, shape)| Parameter {
-                name: format_ident!("{}", name.text),
-                ty: shape_type(shape),
-                structure: structure(shape),
-                is_number: shape.name.text == "Real",
-                is_vector: shape.name.text == "Vec",
+            let parameters = names.filter_map(|(name, declared)| {
+                let (shape, structure) = parameter_shape(s, declared)?;
+                let name = format_ident!("{}", name.text);
+                Some(Parameter {
+                    name,
+                    shape,
+                    structure,
+                })
             });
             End {
                 variant: variant(&a.name.text),
@@ -117,24 +96,8 @@ pub(super) struct End {
 /// A parameter of an end.
 pub(super) struct Parameter {
     pub name: Ident,
-    pub ty: TokenStream,
-    structure: Structure,
-    is_number: bool,
-    is_vector: bool,
-}
-
-/// What a declared shape says of its values.
-fn structure(shape: &Kindred) -> Structure {
-    match shape.name.text.as_str() {
-        "Sym" => Structure::Symmetric,
-        "Skew" => Structure::Skew,
-        "Diag" => Structure::Diagonal,
-        "SO" => Structure::Orthogonal,
-        "GL" => Structure::Invertible,
-        "SU" => Structure::UnitQuaternion,
-        "SE" => Structure::RigidMotion,
-        _ => Structure::General,
-    }
+    pub shape: Shape,
+    pub structure: Structure,
 }
 
 /// `clamped` as the name of a variant.
@@ -145,34 +108,6 @@ fn variant(name: &str) -> Ident {
         first.unwrap_or_default() + letters.as_str()
     });
     format_ident!("{}", words.collect::<String>())
-}
-
-/// The type of a declared shape.
-pub(super) fn shape_type(shape: &Kindred) -> TokenStream {
-    let sizes: Vec<usize> = shape
-        .sizes
-        .iter()
-        .map(|n| match n {
-            Size::Number(n, _) => usize::try_from(*n).unwrap_or(0),
-            Size::Name(_) => 0,
-        })
-        .collect();
-    match (shape.name.text.as_str(), sizes.as_slice()) {
-        ("Real", _) => quote!(T),
-        ("Vec", [n]) => {
-            let n = number(*n);
-            quote!(SVector<T, #n>)
-        }
-        (_, [n, m]) => {
-            let (n, m) = (number(*n), number(*m));
-            quote!(SMatrix<T, #n, #m>)
-        }
-        (_, [n]) => {
-            let n = number(*n);
-            quote!(SMatrix<T, #n, #n>)
-        }
-        _ => quote!(T),
-    }
 }
 
 /// The parameters as plain data.
@@ -225,6 +160,7 @@ pub(super) fn words(sites: Sites) -> &'static str {
 /// How many sites, and how a line ends.
 pub(super) fn sites(l: &Lines) -> TokenStream {
     let (name, ends) = (l.item("Sites"), l.item("Ends"));
+    let s = &l.line.representative.d.letters.symbols;
     let lattice = &l.line.lattice;
     let counts = lattice.labels.iter().map(|label| {
         let (field, index) = (format_ident!("{}", label.count.text), &label.index.text);
@@ -246,7 +182,7 @@ pub(super) fn sites(l: &Lines) -> TokenStream {
     let mut types = TokenStream::new();
     let mut fields = TokenStream::new();
     for last in [false, true] {
-        let Some((ty, alternatives)) = l.alternatives(last) else {
+        let Some((kind, alternatives)) = l.alternatives(last) else {
             continue;
         };
         let variants = alternatives.iter().map(|a| {
@@ -257,7 +193,7 @@ pub(super) fn sites(l: &Lines) -> TokenStream {
             };
             let doc = format!(" `{v}`{held}.");
             let list = a.parameters.iter().map(|p| {
-                let (n, t) = (&p.name, &p.ty);
+                let (n, t) = (&p.name, ty(s, p.shape));
                 let doc = format!(" `{n}` of this end.");
                 quote!(#[doc = #doc] #n: #t)
             });
@@ -276,10 +212,10 @@ pub(super) fn sites(l: &Lines) -> TokenStream {
         types.extend(quote! {
             #[doc = #doc]
             #[derive(Clone, Copy, Debug, PartialEq)]
-            pub enum #ty<T = f64> { #(#variants,)* #marker }
+            pub enum #kind<T = f64> { #(#variants,)* #marker }
         });
         let field = if last { quote!(last) } else { quote!(first) };
-        fields.extend(quote!(#[doc = #doc] #field: #ty<T>,));
+        fields.extend(quote!(#[doc = #doc] #field: #kind<T>,));
     }
     let open = match fields.is_empty() {
         true => quote!(
@@ -289,10 +225,10 @@ pub(super) fn sites(l: &Lines) -> TokenStream {
         false => quote!(#[doc = " Two ends."] Open { #fields }),
     };
     let ring = lattice.periodic.is_some().then(|| {
-        let offsets = l.offsets().into_iter().map(|(name, of)| {
-            let doc = format!(" By what `{of}` grows once around the ring.");
+        let offsets = l.offsets().into_iter().map(|(name, m)| {
+            let doc = format!(" By what `{}` grows once around the ring.", m.mover.name);
             let field = format_ident!("{name}");
-            let t = lattice.find(&of).map(|q| shape_type(&q.shape));
+            let t = m.value();
             quote!(#[doc = #doc] #field: #t)
         });
         let offsets: Vec<TokenStream> = offsets.collect();
@@ -322,13 +258,14 @@ pub(super) fn sites(l: &Lines) -> TokenStream {
 
 impl Lines<'_> {
     /// Offsets around the ring, each once, with a field that has it.
-    pub(super) fn offsets(&self) -> Vec<(String, String)> {
-        let mut out: Vec<(String, String)> = Vec::new();
-        for q in &self.line.lattice.quantities {
-            if let Some(o) = &q.offset
+    pub(super) fn offsets(&self) -> Vec<(String, Moving<'_>)> {
+        let mut out: Vec<(String, Moving)> = Vec::new();
+        for m in self.moving() {
+            let q = self.line.lattice.find(&m.mover.name);
+            if let Some(o) = q.and_then(|q| q.offset.as_ref())
                 && !out.iter().any(|(known, _)| *known == o.text)
             {
-                out.push((o.text.clone(), q.name.text.clone()));
+                out.push((o.text.clone(), m));
             }
         }
         out
@@ -366,22 +303,18 @@ pub(super) fn model(l: &Lines) -> TokenStream {
     };
     let mut checks = TokenStream::new();
     for g in l.given() {
-        let (field, label, shape) = (format_ident!("{}", g.name), &g.name, g.symbol.shape);
-        let test = l.test(
-            label,
-            g.symbol.structure,
-            shape.is_scalar(),
-            shape.is_vector(),
-        );
+        let (field, label) = (format_ident!("{}", g.name), &g.name);
+        let (shape, structure) = (g.symbol.shape, g.symbol.structure);
         checks.extend(match g.at {
-            None => quote!({ let value = &model.parameters.#field; #test }),
+            None => admitted(label, shape, structure, &quote!(model.parameters.#field)),
             Some((at, kind)) => {
                 let words = words(kind);
+                let test = admitted(label, shape, structure, &quote!(value));
                 let t = ty(&line.representative.d.letters.symbols, shape);
-                let expected = on_model(l, at, kind);
+                let expected = l.count_in(quote!(model), at, kind);
                 quote! {
                     line::length_of(#label, &model.parameters.#field, #expected, #words)?;
-                    line::each(#label, &model.parameters.#field, |value: &#t| -> Result<(), ParameterError> { #test Ok(()) })?;
+                    line::each(#label, &model.parameters.#field, |&value: &#t| -> Result<(), ParameterError> { #test Ok(()) })?;
                     model.parameters.#field = line::repeated(&model.parameters.#field, #beyond, ring);
                 }
             }
@@ -465,21 +398,6 @@ pub(super) fn model(l: &Lines) -> TokenStream {
     }
 }
 
-/// The number of sites of a kind, of the local `model`.
-fn on_model(l: &Lines, label: usize, sites: Sites) -> TokenStream {
-    let name = l
-        .line
-        .lattice
-        .labels
-        .get(label)
-        .map(|x| x.count.text.clone());
-    let name = format_ident!("{}", name.unwrap_or_default());
-    match l.line.lattice.line == Some(label) && sites == Sites::Nodes {
-        true => quote!(model.nodes()),
-        false => quote!(model.sites.#name),
-    }
-}
-
 /// The factors of rotations: one, or one for each site where a parameter of sites stands in it.
 fn factors(l: &Lines, fields: &mut TokenStream, init: &mut TokenStream, made: &mut TokenStream) {
     for m in l.moving() {
@@ -516,7 +434,7 @@ fn factors(l: &Lines, fields: &mut TokenStream, init: &mut TokenStream, made: &m
         }
         .write(factor);
         let count = match varies {
-            true => on_model(l, m.lone.label, m.lone.sites),
+            true => l.count_in(quote!(model), m.lone.label, m.lone.sites),
             false => quote!(1),
         };
         let quantity = &m.mover.name;

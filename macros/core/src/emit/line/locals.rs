@@ -2,12 +2,12 @@
 
 use super::{Lines, number};
 use crate::derive::Outline;
-use crate::derive::transport::Transport;
-use crate::emit::expression::Bindings;
+use crate::emit::expression::{Bindings, program};
 use crate::emit::names::{local_name, variable};
 use crate::expr::symbol::{Role, Symbols};
-use crate::expr::{self, Expr, Letter, Shift};
+use crate::expr::{Expr, Letter};
 use crate::lattice::Kind;
+use crate::schedule;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
@@ -24,7 +24,37 @@ pub(super) struct Places {
     pub next: TokenStream,
 }
 
+impl Places {
+    /// Those of one node, in the argument `at` of a kernel.
+    pub(super) fn of_node() -> Places {
+        let (here, next) = (quote!(at), quote!(at));
+        Places { here, next }
+    }
+}
+
 impl Lines<'_> {
+    /// Expressions of what stands at one node: what comes before them, and their values.
+    pub(super) fn computed(
+        &self,
+        s: &Symbols,
+        letters: &[Known],
+        values: &[Expr],
+    ) -> (TokenStream, Vec<TokenStream>) {
+        let (locals, bindings) = self.locals(s, letters, &Places::of_node(), &quote!(site));
+        let (lets, values) = self.program(s, values, &bindings);
+        (quote!(#locals #lets), values)
+    }
+
+    /// Expressions whose letters are bound, with their temporaries.
+    pub(super) fn program(
+        &self,
+        s: &Symbols,
+        values: &[Expr],
+        bindings: &Bindings,
+    ) -> (TokenStream, Vec<TokenStream>) {
+        program(&schedule::program(s, values, &self.temporary), bindings)
+    }
+
     /// Lets for letters, and their bindings. `site` is the index of the kernel.
     pub(super) fn locals(
         &self,
@@ -94,28 +124,6 @@ impl Lines<'_> {
         });
         known.collect()
     }
-}
-
-/// With advected quantities by the configurations that carry them, at both ends of the edge.
-pub(super) fn defined(d: &Outline, e: &Expr) -> Expr {
-    let s = &d.letters.symbols;
-    let mut list: Vec<(Letter, Expr)> = Vec::new();
-    for (a, t) in d.spec.advected.iter().zip(&d.transports) {
-        if let Transport::Defined(value) = t {
-            for time in [0, 1] {
-                let shift = Shift {
-                    time,
-                    ..Shift::HERE
-                };
-                let letter = Letter {
-                    symbol: a.quantity,
-                    shift,
-                };
-                list.push((letter, expr::shift_time(s, value, time)));
-            }
-        }
-    }
-    expr::substitute(s, e, &list)
 }
 
 /// The name of the step as a local.

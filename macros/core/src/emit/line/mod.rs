@@ -22,16 +22,22 @@ use crate::lattice::{Kind, Sites};
 use crate::line::{How, Line, Lone, Mover};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
+use std::collections::BTreeSet;
 
 /// A line with the names of what is emitted.
 struct Lines<'a> {
     line: &'a Line,
     source: &'a str,
+    /// What names of temporaries and of relative rotations begin with.
+    temporary: String,
+    relative: String,
+    /// Every name that the model states.
+    stated: BTreeSet<String>,
 }
 
 /// The items of a model with labels; `source` is its text.
 pub fn emit_line(line: &Line, source: &str) -> TokenStream {
-    let l = Lines { line, source };
+    let l = Lines::new(line, source);
     let name = l.item("");
     let module = format_ident!("{}", super::names::module(&line.model.name.text));
     let visibility = line.model.public.then(|| quote!(pub));
@@ -45,7 +51,6 @@ pub fn emit_line(line: &Line, source: &str) -> TokenStream {
         solved::solved(&l),
         acting::acting(&l),
         energy::energy(&l),
-        domain::domain(&l).0,
     ];
     let about = format!(" The model [`{name}`](struct@{name}) and what belongs to it.");
     quote! {
@@ -104,6 +109,14 @@ impl Moving<'_> {
         quote!(SMatrix<T, #rows, #cols>)
     }
 
+    /// The type of a value of a field as users give it.
+    fn value(&self) -> TokenStream {
+        match self.is_number() {
+            true => quote!(T),
+            false => self.covector(),
+        }
+    }
+
     /// The type of its place.
     fn place(&self) -> TokenStream {
         match self.is_rotation() {
@@ -134,15 +147,14 @@ impl Moving<'_> {
         }
     }
 
-    /// The block that it belongs to, from 1, and the components before its own, where several
-    /// velocities or several components are found together.
-    fn system(&self) -> Option<(usize, &[usize])> {
+    /// The block that it belongs to, where several velocities or components are found together.
+    fn system(&self) -> Option<&[usize]> {
         if !matches!(self.mover.how, How::System { .. }) {
             return None;
         }
-        let blocks = self.lone.blocks.iter().enumerate();
-        let mut own = blocks.filter(|(_, b)| b.contains(&self.mover.index));
-        own.next().map(|(i, b)| (i, b.as_slice()))
+        let mut blocks = self.lone.blocks.iter();
+        let own = blocks.find(|b| b.contains(&self.mover.index))?;
+        Some(own.as_slice())
     }
 }
 
@@ -160,20 +172,24 @@ impl<'a> Lines<'a> {
             .flat_map(|lone| lone.movers.iter().map(move |mover| Moving { lone, mover }))
     }
 
-    /// The function that gives how many sites a kind has.
-    fn count(&self, label: usize, sites: Sites) -> TokenStream {
-        let name = self
-            .line
-            .lattice
-            .labels
-            .get(label)
-            .map(|l| l.count.text.clone());
-        let name = format_ident!("{}", name.unwrap_or_default());
-        let open = self.line.lattice.line == Some(label) && sites == Sites::Nodes;
-        match open {
-            true => quote!(self.nodes()),
-            false => quote!(self.sites.#name),
+    /// The field that says how many segments or sites a label has.
+    fn count_field(&self, label: usize) -> Ident {
+        let label = self.line.lattice.labels.get(label);
+        format_ident!("{}", label.map_or("", |l| l.count.text.as_str()))
+    }
+
+    /// How many sites a kind has, of the model found at `of`.
+    fn count_in(&self, of: TokenStream, label: usize, sites: Sites) -> TokenStream {
+        let field = self.count_field(label);
+        match self.line.lattice.line == Some(label) && sites == Sites::Nodes {
+            true => quote!(#of.nodes()),
+            false => quote!(#of.sites.#field),
         }
+    }
+
+    /// How many sites a kind has.
+    fn count(&self, label: usize, sites: Sites) -> TokenStream {
+        self.count_in(quote!(self), label, sites)
     }
 
     fn count_of(&self, name: &str) -> TokenStream {

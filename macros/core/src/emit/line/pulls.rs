@@ -4,14 +4,13 @@
 use super::forms::forms;
 use super::locals::{Known, Places};
 use super::{Lines, number};
-use crate::emit::expression::{Bindings, program};
+use crate::emit::expression::Bindings;
 use crate::emit::items::letters_of;
 use crate::emit::names::variable;
 use crate::expr::Expr;
 use crate::expr::symbol::Symbols;
 use crate::line::Pull;
 use crate::print::{Format, Style, expression};
-use crate::schedule;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
@@ -64,12 +63,7 @@ fn of_pull(l: &Lines, n: usize, pull: &Pull) -> (TokenStream, TokenStream) {
     }
     let values: Vec<_> = pull.forces.iter().map(|f| f.value.clone()).collect();
     let letters = known(l, &values);
-    let site = quote!(site);
-    let at = Places {
-        here: quote!(at),
-        next: quote!(at),
-    };
-    let (locals, bindings) = l.locals(s, &letters, &at, &site);
+    let (locals, bindings) = l.locals(s, &letters, &Places::of_node(), &quote!(site));
     let (lets, results) = computed(l, s, &values, &bindings);
     let made = pull.forces.iter().zip(results).map(|(f, value)| {
         let name = field(&f.on, f.site);
@@ -110,16 +104,14 @@ pub(super) fn computed(
     values: &[Expr],
     bindings: &Bindings,
 ) -> (TokenStream, Vec<TokenStream>) {
-    let forms = forms(s, values, &l.prefix("R"));
+    let forms = forms(s, values, &l.relative);
     let mut lets = TokenStream::new();
     for (id, value) in &forms.relative {
-        let p = schedule::program(&forms.symbols, std::slice::from_ref(value), &l.prefix("t"));
-        let (_, made) = program(&p, bindings);
+        let (_, made) = l.program(&forms.symbols, std::slice::from_ref(value), bindings);
         let name = variable(&forms.symbols, *id);
         lets.extend(quote!(let #name = #(#made)*;));
     }
-    let p = schedule::program(&forms.symbols, &forms.values, &l.prefix("t"));
-    let (more, results) = program(&p, bindings);
+    let (more, results) = l.program(&forms.symbols, &forms.values, bindings);
     lets.extend(more);
     (lets, results)
 }
@@ -151,20 +143,9 @@ pub(super) fn known(l: &Lines, values: &[Expr]) -> Vec<Known> {
         .collect()
 }
 
-/// The number of segments or sites of a term's label.
-fn count(l: &Lines, pull: &Pull) -> Ident {
-    let name = l
-        .line
-        .lattice
-        .labels
-        .get(pull.label)
-        .map(|x| x.count.text.clone());
-    format_ident!("{}", name.unwrap_or_default())
-}
-
 /// `let (first, last)`: the indices of a term, the one after the last.
 pub(super) fn range_of(l: &Lines, pull: &Pull) -> TokenStream {
-    let count = count(l, pull);
+    let count = l.count_field(pull.label);
     let last = match (pull.to, pull.to.unsigned_abs()) {
         (-1, _) => quote!(self.sites.#count),
         (..-1, by) => {
@@ -205,7 +186,7 @@ fn sweep(l: &Lines) -> TokenStream {
         let field = format_ident!("pull_{}", n + 1);
         let t = l.item(&format!("Pull{}", n + 1));
         let front = number(front(pull));
-        let count = count(l, pull);
+        let count = l.count_field(pull.label);
         let of_line = l.line.lattice.line == Some(pull.label);
         let range = range_of(l, pull);
         let kernel = quote! {
@@ -213,24 +194,22 @@ fn sweep(l: &Lines) -> TokenStream {
                 self.#field(#step, first + i, at)
             });
         };
-        let around = (of_line && l.line.lattice.periodic.is_some()).then(|| {
-            quote! {
+        let beside = quote! {
+            pulls.#field[..first + #front].fill(#t::none());
+            pulls.#field[last + #front..].fill(#t::none());
+        };
+        let around = match of_line && l.line.lattice.periodic.is_some() {
+            true => quote! {
                 if self.is_ring() {
                     for i in (0..#front).rev() {
                         pulls.#field[i] = pulls.#field[i + self.sites.#count];
                     }
                 } else {
-                    pulls.#field[..first + #front].fill(#t::none());
-                    pulls.#field[last + #front..].fill(#t::none());
+                    #beside
                 }
-            }
-        });
-        let around = around.unwrap_or_else(|| {
-            quote! {
-                pulls.#field[..first + #front].fill(#t::none());
-                pulls.#field[last + #front..].fill(#t::none());
-            }
-        });
+            },
+            false => beside,
+        };
         out.extend(quote!({ #range #kernel #around }));
     }
     quote! {

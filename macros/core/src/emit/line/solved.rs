@@ -1,14 +1,12 @@
 //! Kernels of the velocities of a site: from the momentum that leaves a node to the place at the next
 //! one.
 
-use super::locals::{Places, defined, step};
+use super::locals::step;
 use super::{Lines, Moving, number};
 use crate::emit::blocks::linear_solution;
 use crate::emit::element;
-use crate::emit::expression::program;
 use crate::expr::Expr;
 use crate::line::How;
-use crate::schedule;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
@@ -18,7 +16,7 @@ impl Lines<'_> {
     pub(super) fn systems(&self) -> Vec<(Ident, usize, Vec<Moving<'_>>)> {
         let mut out: Vec<(Ident, usize, Vec<Moving>)> = Vec::new();
         for m in self.moving() {
-            let Some((_, block)) = m.system() else {
+            let Some(block) = m.system() else {
                 continue;
             };
             let members: Vec<Moving> = self
@@ -88,14 +86,8 @@ fn field(l: &Lines, m: Moving, factors: &[&Expr; 2]) -> TokenStream {
     let s = &d.letters.symbols;
     let (kernel, places, name, t) = (kernel(&m), l.item("Places"), m.name(), m.covector());
     let h = step(d);
-    let values: Vec<Expr> = factors.iter().map(|e| defined(d, e)).collect();
-    let at = Places {
-        here: quote!(at),
-        next: quote!(at),
-    };
-    let (locals, bindings) = l.locals(s, &l.of_site(d, &values), &at, &quote!(site));
-    let p = schedule::program(s, &values, &l.prefix("t"));
-    let (lets, results) = program(&p, &bindings);
+    let values: Vec<Expr> = factors.iter().map(|e| d.defined(e)).collect();
+    let (lets, results) = l.computed(s, &l.of_site(d, &values), &values);
     let [left, right] = results.as_slice() else {
         return TokenStream::new();
     };
@@ -118,7 +110,6 @@ fn field(l: &Lines, m: Moving, factors: &[&Expr; 2]) -> TokenStream {
         #[doc = #doc]
         #[inline(always)]
         fn #kernel(&self, #h: T, site: usize, at: &#places<T>, edge: &#t) -> Result<#t, StepCause> {
-            #locals
             #lets
             match #solution {
                 Ok(velocity) => Ok(at.#name[site] + velocity.matrix()),
@@ -140,16 +131,10 @@ fn system(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
     let mut values: Vec<Expr> = Vec::new();
     for m in members {
         if let How::System { columns, rest, .. } = &m.mover.how {
-            values.extend(columns.iter().chain([rest]).map(|e| defined(d, e)));
+            values.extend(columns.iter().chain([rest]).map(|e| d.defined(e)));
         }
     }
-    let at = Places {
-        here: quote!(at),
-        next: quote!(at),
-    };
-    let (locals, bindings) = l.locals(s, &l.of_site(d, &values), &at, &quote!(site));
-    let p = schedule::program(s, &values, &l.prefix("t"));
-    let (lets, results) = program(&p, &bindings);
+    let (lets, results) = l.computed(s, &l.of_site(d, &values), &values);
     let size = number(n);
     let mut fill = TokenStream::new();
     let mut row = 0;
@@ -184,12 +169,11 @@ fn system(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
         #[doc = #doc]
         #[inline(always)]
         fn #kernel(&self, #h: T, site: usize, at: &#places<T>, edges: &#edges<T>) -> Result<SVector<T, #size>, StepCause> {
-            #locals
             #lets
             let mut a = SMatrix::<T, #size, #size>::zeros();
             let mut known = SVector::<T, #size>::zeros();
             #fill
-            line::solve_columns(&a, &known, #what).map_err(StepCause::Singular)
+            left_sided(&a, &known, #what).map(|x| x.matrix()).map_err(StepCause::Singular)
         }
     }
 }

@@ -35,7 +35,7 @@ pub(super) fn step(l: &Lines) -> TokenStream {
     let systems = l.systems();
     let of_systems = systems
         .iter()
-        .map(|(field, n, members)| solve_system(field, *n, members));
+        .map(|(field, _, members)| solve_system(field, members));
     let arrivals = moving.iter().map(|m| arrive(l, m));
     let beginnings = moving.iter().map(|m| begin(l, m));
     let count_fields: Vec<_> = moving
@@ -58,13 +58,7 @@ pub(super) fn step(l: &Lines) -> TokenStream {
             l.item(&format!("Pull{}", n + 1)),
         );
         let front = number(super::pulls::front(pull));
-        let label = l
-            .line
-            .lattice
-            .labels
-            .get(pull.label)
-            .map(|x| x.count.text.clone());
-        let count = format_ident!("{}", label.unwrap_or_default());
+        let count = l.count_field(pull.label);
         quote!(#field: ::std::vec![#t::none(); self.sites.#count + 1 + 2 * #front])
     });
     let no_pulls = l
@@ -98,7 +92,7 @@ pub(super) fn step(l: &Lines) -> TokenStream {
         }
     });
     let solves: Vec<TokenStream> = solves.collect();
-    let (_, inside) = super::domain::domain(l);
+    let (domains, inside) = super::domain::domain(l);
     quote! {
         impl<T: Real> #name<T> {
             /// Starts a trajectory with step `h` from data at node 0.
@@ -199,6 +193,8 @@ pub(super) fn step(l: &Lines) -> TokenStream {
             #around
             #(#ranges)*
         }
+
+        #domains
     }
 }
 
@@ -369,7 +365,7 @@ fn solve(l: &Lines, m: &Moving) -> TokenStream {
 }
 
 /// The velocities of one block of fields.
-fn solve_system(field: &Ident, _: usize, members: &[Moving]) -> TokenStream {
+fn solve_system(field: &Ident, members: &[Moving]) -> TokenStream {
     let Some(first) = members.first() else {
         return TokenStream::new();
     };

@@ -2,8 +2,10 @@
 //! every kernel has.
 
 use super::Lines;
+use crate::line::Line;
 use proc_macro2::Ident;
 use quote::format_ident;
+use std::collections::BTreeSet;
 
 /// What kernels and the functions around them call their own.
 const KERNEL: [&str; 44] = [
@@ -14,43 +16,56 @@ const KERNEL: [&str; 44] = [
     "velocity",
 ];
 
-impl Lines<'_> {
-    /// Every name that the model states.
-    fn is_stated(&self, name: &str) -> bool {
-        let of_site = self.line.lattice.find(name).is_some();
-        let s = &self.line.representative.d.letters.symbols;
-        let of_end = self.line.lattice.ends.iter().flatten();
-        let mut of_end = of_end.flat_map(|a| a.params.iter().flat_map(|(names, _)| names));
-        of_site || s.find(name).is_some() || of_end.any(|n| n.text == name)
-    }
-
-    /// The beginning of names of temporaries, which no stated name has before a number.
-    pub(super) fn prefix(&self, base: &str) -> String {
-        let mut prefix = base.to_owned();
-        let taken = |prefix: &str| (1..=400).any(|n| self.is_stated(&format!("{prefix}{n}")));
-        while taken(&prefix) {
-            prefix.push('_');
+impl<'a> Lines<'a> {
+    /// The names of a line that is emitted.
+    pub(super) fn new(line: &'a Line, source: &'a str) -> Lines<'a> {
+        let stated = stated(line);
+        let prefix = |base: &str| {
+            let mut prefix = base.to_owned();
+            while stated.iter().any(|n| is_numbered(n, &prefix)) {
+                prefix.push('_');
+            }
+            prefix
+        };
+        Lines {
+            line,
+            source,
+            temporary: prefix("t"),
+            relative: prefix("R"),
+            stated,
         }
-        prefix
     }
 
     /// A name for the letter of `own` that no other one has; `used` are those of the same kernel.
     pub(super) fn unique(&self, own: &str, base: &str, used: &mut Vec<String>) -> Ident {
         let mut name = base.to_owned();
-        let temporary = |name: &str| {
-            ["t", "R"].iter().any(|base| {
-                let rest = name.strip_prefix(&self.prefix(base));
-                rest.is_some_and(|n| n.parse::<u32>().is_ok())
-            })
-        };
+        let made = [&self.temporary, &self.relative];
         while KERNEL.contains(&name.as_str())
             || used.contains(&name)
-            || temporary(&name)
-            || (name != own && self.is_stated(&name))
+            || made.iter().any(|prefix| is_numbered(&name, prefix))
+            || (name != own && self.stated.contains(&name))
         {
             name.push('_');
         }
         used.push(name.clone());
         format_ident!("{name}")
     }
+}
+
+/// Every name that the model states.
+fn stated(line: &Line) -> BTreeSet<String> {
+    let part = &line.representative;
+    let s = &part.d.letters.symbols;
+    let of_sites = line.lattice.quantities.iter().map(|q| &q.name.text);
+    let of_ends = line.lattice.ends.iter().flatten().flat_map(|a| &a.params);
+    let of_ends = of_ends.flat_map(|(names, _)| names.iter().map(|n| &n.text));
+    let all = s.ids().filter(|id| part.sited(*id).is_none());
+    let once = all.map(|id| &s.get(id).name);
+    of_sites.chain(of_ends).chain(once).cloned().collect()
+}
+
+/// Whether a name is the prefix with a number behind it.
+fn is_numbered(name: &str, prefix: &str) -> bool {
+    let number = name.strip_prefix(prefix);
+    number.is_some_and(|n| n.parse::<u32>().is_ok())
 }

@@ -1,0 +1,83 @@
+//! The beginning of a derivation: how everything varies, and the equations. Takes a checked model; gives
+//! what neighbours and ends of a line are derived from, without proofs and what follows from them.
+
+use super::balance::{self, Balance};
+use super::transport::{self, Transport};
+use super::variation::{self, Variation, at};
+use super::{Derivation, Letters, action, letters, place_of_most, reduction, too_large};
+use crate::algebra::Algebra;
+use crate::check::spec::Spec;
+use crate::diagnostic::Errors;
+use crate::expr::{self, Expr, Letter, Shift};
+use crate::work::{self, Count};
+
+/// What a derivation begins with: how everything varies, and the equations, without their proof and
+/// without what follows from them.
+#[derive(Clone, Debug)]
+pub struct Outline {
+    /// The reduced model.
+    pub spec: Spec,
+    /// Symbols of the model and of the derivation.
+    pub letters: Letters,
+    /// How every quantity varies, per configuration.
+    pub variations: Vec<Variation>,
+    /// How advected quantities follow from the configuration.
+    pub transports: Vec<Transport>,
+    /// The balance of every configuration.
+    pub balances: Vec<Balance>,
+}
+
+/// The beginning of a derivation.
+pub fn outline(spec: Spec) -> Result<Outline, Errors> {
+    let _count = Count::begin();
+    let whole = place_of_most(&spec);
+    let spec = reduction::reduce(spec)?;
+    let letters = letters(&spec);
+    let algebra = Algebra::new(&letters.symbols);
+    let action = action::action(&spec);
+    let variations = variation::variations(&spec, &letters, &algebra)?;
+    let transports = transport::transports(&spec, &letters, &algebra)?;
+    let balances = balance::balances(&spec, &letters, &action, &variations, &algebra);
+    if work::exhausted() {
+        return Err(too_large(whole, work::excess()).into());
+    }
+    Ok(Outline {
+        spec,
+        letters,
+        variations,
+        transports,
+        balances,
+    })
+}
+
+impl Outline {
+    /// The expression with advected quantities by the configurations that carry them, at both ends of
+    /// the edge; those that no definition gives stay.
+    pub fn defined(&self, e: &Expr) -> Expr {
+        let s = &self.letters.symbols;
+        let mut list: Vec<(Letter, Expr)> = Vec::new();
+        for (a, t) in self.spec.advected.iter().zip(&self.transports) {
+            let Transport::Defined(value) = t else {
+                continue;
+            };
+            for shift in [Shift::HERE, Shift::NEXT] {
+                let value = expr::shift_time(s, value, shift.time);
+                list.push((at(a.quantity, shift), value));
+            }
+        }
+        expr::substitute(s, e, &list)
+    }
+}
+
+impl Derivation {
+    /// What it began with.
+    pub fn outline(&self) -> Outline {
+        Outline {
+            spec: self.spec.clone(),
+            letters: self.letters.clone(),
+            variations: self.variations.clone(),
+            transports: self.transports.clone(),
+            balances: self.balances.clone(),
+        }
+    }
+}
