@@ -21,6 +21,7 @@ pub mod integrate;
 pub mod kinetic;
 pub mod linalg;
 pub mod line;
+pub mod mesh;
 mod said;
 pub mod saved;
 pub mod scalar;

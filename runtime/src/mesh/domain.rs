@@ -1,0 +1,47 @@
+//! Where particles live: a box, each direction of which closes on itself or ends in walls.
+//! Positions are kept as they are; what is computed from them wraps.
+
+/// What stands at the ends of a direction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wall {
+    /// Nothing: the direction closes on itself.
+    Periodic,
+    /// A wall at either end, which reflects.
+    Solid,
+}
+
+/// A box from the origin to its lengths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Domain<const D: usize> {
+    /// Length along each direction.
+    pub lengths: [f64; D],
+    /// What stands at the ends of each direction.
+    pub walls: [Wall; D],
+}
+
+impl<const D: usize> Domain<D> {
+    /// Periodic in every direction.
+    pub fn torus(lengths: [f64; D]) -> Self {
+        let walls = [Wall::Periodic; D];
+        Self { lengths, walls }
+    }
+
+    /// Walls on all sides.
+    pub fn basin(lengths: [f64; D]) -> Self {
+        let walls = [Wall::Solid; D];
+        Self { lengths, walls }
+    }
+
+    /// Its length, area or volume.
+    pub fn measure(&self) -> f64 {
+        self.lengths.iter().product()
+    }
+}
+
+impl Domain<2> {
+    /// Walls across the first direction, periodic along the second.
+    pub fn channel(lengths: [f64; 2]) -> Self {
+        let walls = [Wall::Solid, Wall::Periodic];
+        Self { lengths, walls }
+    }
+}

@@ -1,0 +1,65 @@
+//! What can go wrong while functionals of all sites are computed. Takes the numbers of the failure and its sites,
+//! counted from 0; gives messages that name them.
+
+use core::fmt;
+
+/// Why a functional has no value, or no derivative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// The place of a particle is NaN or infinite.
+    NotFinite {
+        /// Its number.
+        site: usize,
+    },
+    /// Two particles are at one place, or so near that no cells lie between them.
+    Coincident {
+        /// One of them.
+        first: usize,
+        /// The other.
+        second: usize,
+    },
+    /// An iteration did not arrive.
+    NotConverged {
+        /// Steps taken.
+        iterations: usize,
+        /// What was left, relative to the right side.
+        residual: f64,
+        /// What was asked for.
+        tolerance: f64,
+    },
+    /// A particle is beyond a wall by more than a reflection puts back.
+    Outside {
+        /// Its number.
+        site: usize,
+        /// How far.
+        by: f64,
+    },
+}
+
+impl fmt::Display for MeshError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFinite { site } => write!(f, "particle {site} is at no finite place"),
+            Self::Coincident { first, second } => {
+                write!(f, "particles {first} and {second} are at one place")
+            }
+            Self::NotConverged {
+                iterations,
+                residual,
+                tolerance,
+            } => write!(
+                f,
+                "after {iterations} iterations a residual of {residual:e} is left, and {tolerance:e} is asked for"
+            ),
+            Self::Outside { site, by } => {
+                write!(
+                    f,
+                    "particle {site} is {by:e} beyond a wall: take a shorter step"
+                )
+            }
+        }
+    }
+}
+
+impl std::error::Error for MeshError {}

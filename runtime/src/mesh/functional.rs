@@ -1,0 +1,56 @@
+//! What a function of all sites is to a stepper: its values at sites, and its derivative, transposed and
+//! applied to a seed. Takes a field of particles or the values of another functional.
+
+use super::{Domain, MeshError};
+use crate::{ParameterError, Real};
+
+/// What a functional is made for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setting<const D: usize> {
+    /// Where particles live.
+    pub domain: Domain<D>,
+    /// Cells of the grid along each direction; none where the model has no grid.
+    pub grid: Option<[usize; D]>,
+    /// How many particles there are.
+    pub particles: usize,
+}
+
+/// A function of the values of one argument at all of its sites, with values at sites of its own: an area of each
+/// cell of a mesh, a depth on a grid. What it depends on beside that argument is constant in time.
+///
+/// Dot products and sums run in an order that is fixed by the numbers of sites: no result depends on the number of
+/// threads.
+pub trait Functional<T: Real, const D: usize>: Clone + Send + Sync + Sized {
+    /// Value of the argument at one of its sites: of a field of particles `T` for `D = 1` and
+    /// `nalgebra::SVector<T, D>` otherwise, not wrapped around the domain; `T` of another functional.
+    type Argument: Copy + Send + Sync;
+    /// Its other arguments, in their order, as a tuple: slices with one value a site, or numbers.
+    type Data<'a>;
+
+    /// Makes its workspace.
+    ///
+    /// # Errors
+    /// Names what it cannot work with.
+    fn new(setting: &Setting<D>, data: Self::Data<'_>) -> Result<Self, ParameterError>;
+
+    /// How many sites its values stand at.
+    fn sites(&self) -> usize;
+
+    /// Its values, one for each of its sites.
+    ///
+    /// # Errors
+    /// [`MeshError`] with the site; `out` is of no meaning then.
+    fn value(&mut self, at: &[Self::Argument], out: &mut [T]) -> Result<(), MeshError>;
+
+    /// The transposed derivative at the argument of the last [`Functional::value`], applied to `seed`: with `seed` the
+    /// derivatives of a number with respect to the values, `out` holds those with respect to the argument.
+    ///
+    /// # Errors
+    /// [`MeshError`] with the site; `out` is of no meaning then.
+    fn pull_back(
+        &mut self,
+        at: &[Self::Argument],
+        seed: &[T],
+        out: &mut [Self::Argument],
+    ) -> Result<(), MeshError>;
+}

@@ -1,0 +1,10 @@
+//! Functions of all sites at once, which models take by name (`mesh A: Real at a = voronoi_area(X);`): what they
+//! are to a stepper, the domains that their particles live in, and what can go wrong.
+
+mod domain;
+mod error;
+mod functional;
+
+pub use domain::{Domain, Wall};
+pub use error::MeshError;
+pub use functional::{Functional, Setting};
