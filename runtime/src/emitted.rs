@@ -24,6 +24,7 @@ pub use crate::linalg::{
     quaternion_rotation, rows_from, skew_coordinates, solve, trace_complement, twist, vee,
 };
 pub use crate::line::{self, LineError};
+pub use crate::mesh::{self, Functional as _};
 pub use crate::scalar::{InLanes, OfScalars as _, Real};
 pub use crate::solvers::Method;
 pub use crate::solvers::left_factor::{

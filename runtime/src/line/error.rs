@@ -1,6 +1,7 @@
 //! What can go wrong along a line: data of a wrong length, a value at one site, a step at one site.
 //! Takes the failure and its site; gives messages that name both.
 
+use crate::mesh::MeshError;
 use crate::{ParameterError, StepCause};
 use core::fmt;
 
@@ -51,6 +52,17 @@ pub enum LineError {
         /// What is wrong.
         error: ParameterError,
     },
+    /// A functional of all sites has no value where it is needed, or no derivative; the state is as it was before.
+    Functional {
+        /// The node in time.
+        node: u64,
+        /// Its values, as the model names them.
+        quantity: &'static str,
+        /// Why.
+        cause: MeshError,
+        /// A shorter step from the same state that was tried and works, where one was found.
+        works: Option<f64>,
+    },
     /// A step was not made; the state is as it was before.
     Step {
         /// The node in time from which it would have started.
@@ -96,6 +108,15 @@ impl fmt::Display for LineError {
             ),
             Self::Parameter(error) => write!(f, "{error}"),
             Self::Site { at, error } => write!(f, "at site {}: {error}", at.site),
+            Self::Functional {
+                node,
+                quantity,
+                cause,
+                works,
+            } => {
+                write!(f, "step from node {node}: `{quantity}`: {cause}")?;
+                shorter(f, *works)
+            }
             Self::Step {
                 node,
                 at,
@@ -103,12 +124,17 @@ impl fmt::Display for LineError {
                 works,
             } => {
                 write!(f, "step from node {node}: {at}: {cause}")?;
-                match works {
-                    Some(h) => write!(f, "; a step of {h} can be made"),
-                    None => Ok(()),
-                }
+                shorter(f, *works)
             }
         }
+    }
+}
+
+/// Which shorter step can be made.
+fn shorter(f: &mut fmt::Formatter<'_>, works: Option<f64>) -> fmt::Result {
+    match works {
+        Some(h) => write!(f, "; a step of {h} can be made"),
+        None => Ok(()),
     }
 }
 

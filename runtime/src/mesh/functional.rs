@@ -1,7 +1,7 @@
 //! What a function of all sites is to a stepper: its values at sites, and its derivative, transposed and
 //! applied to a seed. Takes a field of particles or the values of another functional.
 
-use super::{Domain, MeshError};
+use super::{Domain, MeshError, Wall};
 use crate::{ParameterError, Real};
 
 /// What a functional is made for.
@@ -15,16 +15,30 @@ pub struct Setting<const D: usize> {
     pub particles: usize,
 }
 
+impl<const D: usize> Setting<D> {
+    /// How many nodes the grid has: one more than cells between walls, as many around.
+    pub fn nodes(&self) -> usize {
+        let grid = self.grid.unwrap_or([0; D]);
+        let along = grid.iter().zip(&self.domain.walls);
+        along
+            .map(|(n, wall)| n + usize::from(*wall == Wall::Solid))
+            .product()
+    }
+}
+
 /// A function of the values of one argument at all of its sites, with values at sites of its own: an area of each
 /// cell of a mesh, a depth on a grid. What it depends on beside that argument is constant in time.
 ///
 /// Dot products and sums run in an order that is fixed by the numbers of sites: no result depends on the number of
 /// threads.
-pub trait Functional<T: Real, const D: usize>: Clone + Send + Sync + Sized {
-    /// Value of the argument at one of its sites: of a field of particles `T` for `D = 1` and
-    /// `nalgebra::SVector<T, D>` otherwise, not wrapped around the domain; `T` of another functional.
+pub trait Functional<T: Real, const D: usize>:
+    Clone + core::fmt::Debug + Send + Sync + Sized
+{
+    /// Value of the argument at one of its sites: of a field of particles `nalgebra::SVector<T, D>`, not wrapped
+    /// around the domain; `T` of another functional.
     type Argument: Copy + Send + Sync;
-    /// Its other arguments, in their order, as a tuple: slices with one value a site, or numbers.
+    /// Its other arguments, in their order, as a tuple: `&[T]` with one value a site, or `T`; of one argument
+    /// `(T,)`, of none `()`.
     type Data<'a>;
 
     /// Makes its workspace.

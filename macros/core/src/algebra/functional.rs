@@ -2,6 +2,7 @@
 //! them is that derivatives are linear in directions and seeds, symmetric in their directions, and that
 //! `<s, D f(x)[u]>` is `<(D f(x))^T[s], u>`; at random points they have random derivatives.
 
+mod sites;
 #[cfg(test)]
 mod tests;
 

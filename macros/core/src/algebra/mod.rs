@@ -174,6 +174,10 @@ impl<'a> Algebra<'a> {
         if normal.is_zero() {
             return Some(Known::NormalForm);
         }
+        let summed = self.by_parts(&normal);
+        if !self.exhausted() && summed.is_some_and(|p| p.is_zero()) {
+            return Some(Known::NormalForm);
+        }
         let in_blocks = self.lower_in_blocks(e);
         if !self.exhausted() && in_blocks.is_some_and(|p| p.is_zero()) {
             return Some(Known::NormalForm);

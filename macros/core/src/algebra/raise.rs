@@ -192,7 +192,7 @@ impl Algebra<'_> {
         }
     }
 
-    fn raise_atom(&self, atom: &Atom) -> Expr {
+    pub(super) fn raise_atom(&self, atom: &Atom) -> Expr {
         let number = |i: u32| self.numbers.borrow()[i as usize].meaning.clone();
         match atom {
             Atom::Letter(at) => expr::letter(self.symbols, at.symbol, at.shift),

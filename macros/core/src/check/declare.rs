@@ -342,7 +342,37 @@ impl Declared {
                     });
                 }
             }
+            Statement::Mesh {
+                name,
+                shape,
+                path,
+                arguments,
+                ..
+            } => {
+                let value = shapes::shape(&self.symbols, shape, errors);
+                let kinds: Option<Vec<functional::Kind>> =
+                    arguments.iter().map(|a| self.kind_of(&a.text)).collect();
+                let (Some(arguments), Some((shape, structure))) = (kinds, value) else {
+                    let message = format!("an argument of `{}` is not declared", name.text);
+                    let d = Diagnostic::new(name.place, message);
+                    errors.push(
+                        d.help("declare the field and the parameters that it is made of before it"),
+                    );
+                    return self.take(&name.text, name.place);
+                };
+                if self.admit(name, errors) {
+                    self.symbols.add_functional(Functional {
+                        name: name.text.clone(),
+                        arguments,
+                        value: functional::Kind { shape, structure },
+                        reach: functional::Reach::Sites,
+                        path: path.text.clone(),
+                        typeset: name.latex(),
+                    });
+                }
+            }
             Statement::Time { .. }
+            | Statement::Grid(_)
             | Statement::Assume { .. }
             | Statement::Constraint { .. }
             | Statement::Hold { .. }
@@ -354,6 +384,17 @@ impl Declared {
             | Statement::End { .. }
             | Statement::Lagrangian(_) => {}
         }
+    }
+
+    /// What a letter or a functional gives.
+    fn kind_of(&self, name: &str) -> Option<functional::Kind> {
+        if let Some(id) = self.symbols.find(name) {
+            let symbol = self.symbols.get(id);
+            let (shape, structure) = (symbol.shape, symbol.structure);
+            return Some(functional::Kind { shape, structure });
+        }
+        let mut all = self.symbols.functionals().iter();
+        all.find(|f| f.name == name).map(|f| f.value)
     }
 
     /// Whether the name is free; reports it otherwise.

@@ -191,6 +191,8 @@ fn checked(model: &Model, largest: u32) -> Result<Spec, Errors> {
             Statement::Dim { .. }
             | Statement::Time { .. }
             | Statement::Given { .. }
+            | Statement::Mesh { .. }
+            | Statement::Grid(_)
             | Statement::Param { .. }
             | Statement::Group { .. }
             | Statement::Field { .. }
@@ -350,6 +352,8 @@ fn remarks(model: &Model, declared: &Declared) -> Vec<(Subject, Vec<String>)> {
             // An abbreviation is put in where it stands and leaves no trace.
             Statement::Let { .. }
             | Statement::Given { .. }
+            | Statement::Mesh { .. }
+            | Statement::Grid(_)
             | Statement::Param { .. }
             | Statement::Group { .. }
             | Statement::Field { .. }

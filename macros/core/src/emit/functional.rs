@@ -7,26 +7,31 @@ mod tests;
 
 use super::expression::Writer;
 use super::names::local_name;
-use crate::derive::Derivation;
-use crate::expr::{Applied, Expr};
+use crate::expr::symbol::Symbols;
+use crate::expr::{Applied, Expr, Reach};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 /// What the model is given by paths, under its names in the model. Not used where a model holds none of its
 /// values, as by a factor of zero.
-pub(super) fn paths(d: &Derivation) -> TokenStream {
-    let s = &d.letters.symbols;
-    let each = s.functionals().iter().filter_map(|f| {
+pub(super) fn paths(s: &Symbols) -> TokenStream {
+    let at_points = s.functionals().iter().filter(|f| f.reach == Reach::Point);
+    let each = at_points.filter_map(|f| {
         let name = local_name(s, &f.name);
-        let own = ["crate", "self", "super"].contains(&f.path.split("::").next()?);
-        let path = match own {
-            true => f.path.clone(),
-            false => format!("::{}", f.path),
-        };
-        let path: TokenStream = path.parse().ok()?;
+        let path = path(&f.path)?;
         Some(quote!(#[allow(unused_imports)] use #path as #name;))
     });
     each.collect()
+}
+
+/// A path of Rust, from the root of a crate.
+pub(super) fn path(text: &str) -> Option<TokenStream> {
+    let own = ["crate", "self", "super"].contains(&text.split("::").next()?);
+    let path = match own {
+        true => text.to_owned(),
+        false => format!("::{text}"),
+    };
+    path.parse().ok()
 }
 
 impl Writer<'_> {

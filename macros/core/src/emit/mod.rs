@@ -201,7 +201,7 @@ pub fn emit(d: &Derivation, documented: bool) -> TokenStream {
         discrete_energy::discrete_energy(d, &names),
         card::card(d, &names),
     ];
-    let given = functional::paths(d);
+    let given = functional::paths(&d.letters.symbols);
     let about = format!(
         " The model [`{}`](struct@{}) and what belongs to it.",
         d.spec.name, d.spec.name

@@ -93,6 +93,8 @@ impl Choice {
     /// sites, so that its even and odd ones are not two lattices.
     pub fn representative(lattice: &Lattice, reach: usize) -> Choice {
         let count = |l: &Label| match l.set {
+            // Values of functionals stand for those of all sites: there is one.
+            true if !lattice.meshes.is_empty() => 1,
             true => 2,
             false => 2 * reach.max(1) + 2,
         };

@@ -1,8 +1,9 @@
 //! What a model declares of its labels: lines and sets, what lives at their sites, how a line may
 //! end. Mistakes that can be seen before anything is written out are told here.
 
+use super::mesh::Mesh;
 use crate::diagnostic::{Diagnostic, Errors, Place, closest};
-use crate::syntax::ast::{Alternative, At, Kindred, Model, Name, Site, Statement};
+use crate::syntax::ast::{Alternative, At, Extent, Kindred, Model, Name, Site, Statement};
 use std::collections::BTreeSet;
 
 /// The kinds of sites of a label.
@@ -27,6 +28,8 @@ pub enum Kind {
     Velocity,
     /// An advected quantity.
     Advected,
+    /// Values of a functional of all sites.
+    Functional,
 }
 
 /// A label.
@@ -40,6 +43,8 @@ pub struct Label {
     pub step: Option<Name>,
     /// Whether it is a set, without neighbours.
     pub set: bool,
+    /// Whether its sites are the nodes of a grid.
+    pub grid: bool,
 }
 
 /// A quantity that lives at the sites of a label.
@@ -57,6 +62,8 @@ pub struct Quantity {
     pub shape: Kindred,
     /// By what it grows once around a ring.
     pub offset: Option<Name>,
+    /// Where its values lie, of places of particles.
+    pub domain: Option<Extent>,
 }
 
 /// The labels of a model.
@@ -72,6 +79,8 @@ pub struct Lattice {
     pub ends: [Vec<Alternative>; 2],
     /// What lives at sites.
     pub quantities: Vec<Quantity>,
+    /// Functionals of all sites, in an order in which each stands behind those that it takes.
+    pub meshes: Vec<Mesh>,
     /// Names of numbers, at sites or not.
     pub(super) numbers: BTreeSet<String>,
     /// Names that move, at sites or not.
@@ -113,6 +122,7 @@ impl Lattice {
         for statement in &model.statements {
             out.statement(statement, &mut errors);
         }
+        out.functionals(model, &mut errors);
         out.check_ends(&mut errors);
         out.check_names(model, &mut errors);
         errors.propagate()?;
@@ -129,6 +139,26 @@ impl Lattice {
         });
         let sets: BTreeSet<String> = sets.collect();
         for statement in &model.statements {
+            if let Statement::Grid(name) = statement {
+                let known = self
+                    .labels
+                    .iter()
+                    .find(|l| l.index.text == name.text || l.count.text == name.text);
+                if let Some(first) = known {
+                    let d =
+                        Diagnostic::new(name.place, format!("`{}` is declared twice", name.text));
+                    errors.push(d.also(first.index.place, "it is declared here first"));
+                    continue;
+                }
+                self.labels.push(Label {
+                    index: name.clone(),
+                    count: name.clone(),
+                    step: None,
+                    set: true,
+                    grid: true,
+                });
+                continue;
+            }
             let Statement::Label { index, count, step } = statement else {
                 continue;
             };
@@ -174,6 +204,7 @@ impl Lattice {
                 count: count.clone(),
                 step: step.clone(),
                 set,
+                grid: false,
             });
         }
     }
@@ -190,14 +221,22 @@ impl Lattice {
                     self.numbers.insert(step.text.clone());
                 }
                 Statement::Param { names, shape, .. } => self.shaped(names, shape),
+                Statement::Mesh { name, shape, .. } => {
+                    self.shaped(std::slice::from_ref(name), shape);
+                    self.moving.insert(name.text.clone());
+                }
                 Statement::Field {
                     names,
                     shape,
                     offset,
+                    domain,
                     ..
                 } => {
                     self.shaped(names, shape);
                     self.shaped(offset.as_slice(), shape);
+                    if let Some(Extent::Torus(lengths)) = domain {
+                        self.shaped(std::slice::from_ref(lengths), shape);
+                    }
                     self.moving.extend(names.iter().map(|n| n.text.clone()));
                 }
                 Statement::Advected { names, shape, .. } => {
@@ -238,9 +277,13 @@ impl Lattice {
                 shape,
                 at,
                 offset,
+                domain,
             } => {
                 let before = self.quantities.len();
                 self.quantities_at(names, shape, at.as_ref(), Kind::Configuration, errors);
+                for q in self.quantities.iter_mut().skip(before) {
+                    q.domain.clone_from(domain);
+                }
                 let Some(offset) = offset else { return };
                 let added = self.quantities.iter_mut().skip(before);
                 let mut on_line = false;
@@ -291,7 +334,7 @@ impl Lattice {
         }
     }
 
-    fn quantities_at(
+    pub(super) fn quantities_at(
         &mut self,
         names: &[Name],
         shape: &Kindred,
@@ -320,6 +363,7 @@ impl Lattice {
                 kind,
                 shape: shape.clone(),
                 offset: None,
+                domain: None,
             });
         }
     }
@@ -403,14 +447,24 @@ impl Lattice {
         let declared = |s: &Statement| -> Vec<Name> {
             match s {
                 Statement::Param { names, .. } | Statement::Advected { names, .. } => names.clone(),
-                Statement::Field { names, offset, .. } => {
-                    names.iter().chain(offset).cloned().collect()
+                Statement::Field {
+                    names,
+                    offset,
+                    domain,
+                    ..
+                } => {
+                    let lengths = match domain {
+                        Some(Extent::Torus(lengths)) => Some(lengths),
+                        Some(Extent::Box(_)) | None => None,
+                    };
+                    names.iter().chain(offset).chain(lengths).cloned().collect()
                 }
                 Statement::Group { name, velocity, .. } => vec![name.clone(), velocity.clone()],
                 Statement::Let { name, .. }
                 | Statement::Dim { name, .. }
                 | Statement::Hold { name, .. }
-                | Statement::Given { name, .. } => vec![name.clone()],
+                | Statement::Given { name, .. }
+                | Statement::Mesh { name, .. } => vec![name.clone()],
                 Statement::Label {
                     step: Some(step), ..
                 } => vec![step.clone()],
@@ -421,7 +475,10 @@ impl Lattice {
         self.declared = known.iter().map(|n| n.text.clone()).collect();
         let ends = self.ends.iter().flatten();
         let own = ends.flat_map(|a| &a.params).flat_map(|(names, _)| names);
-        let labels = self.labels.iter().flat_map(|l| [&l.index, &l.count]);
+        let labels = self.labels.iter().flat_map(|l| match l.grid {
+            true => vec![&l.index],
+            false => vec![&l.index, &l.count],
+        });
         for name in own.chain(labels) {
             if let Some(first) = known.iter().find(|k| k.text == name.text) {
                 let message = format!("`{}` is declared twice", name.text);
@@ -470,6 +527,7 @@ fn at_of(statement: &Statement) -> Option<&At> {
         Statement::Param { at, .. }
         | Statement::Group { at, .. }
         | Statement::Field { at, .. }
+        | Statement::Mesh { at, .. }
         | Statement::Advected { at, .. } => at.as_ref(),
         _ => None,
     }

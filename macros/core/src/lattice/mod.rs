@@ -5,6 +5,7 @@
 
 mod choice;
 mod declared;
+mod mesh;
 mod names;
 mod put;
 mod range;
@@ -16,6 +17,7 @@ pub mod value;
 
 pub use choice::{Choice, Refusal};
 pub use declared::{Kind, Label, Lattice, Quantity, Sites};
+pub use mesh::{Mesh, Source};
 pub use names::{Copied, copy_name};
 pub(crate) use put::any_name;
 pub use range::Range;
@@ -28,7 +30,14 @@ use crate::syntax::ast::{Model, Statement};
 /// Whether a model is stated with labels.
 pub fn has_labels(model: &Model) -> bool {
     model.statements.iter().any(|s| match s {
-        Statement::Label { .. } | Statement::Periodic(_) | Statement::End { .. } => true,
+        Statement::Label { .. }
+        | Statement::Periodic(_)
+        | Statement::End { .. }
+        | Statement::Grid(_)
+        | Statement::Mesh { .. } => true,
+        Statement::Field {
+            domain: Some(_), ..
+        } => true,
         Statement::Param { at, .. }
         | Statement::Group { at, .. }
         | Statement::Field { at, .. }

@@ -104,6 +104,9 @@ impl Put<'_> {
                 false => Ok(e.clone()),
             };
         };
+        if q.kind == super::declared::Kind::Functional {
+            return self.functional(n, e);
+        }
         let count = self.choice.sites_of(self.lattice, q);
         let size = isize::try_from(count).unwrap_or(isize::MAX);
         let last_segment = self.at_last && q.sites == Sites::Segments;
@@ -144,6 +147,35 @@ impl Put<'_> {
         }
         Ok(Expression {
             kind: Kind::Sum(vec![(false, value), (turns < 0, step)]),
+            place,
+        })
+    }
+
+    /// The values of a functional of all sites, `A(X)`: of the only site that is written out, which stands for all.
+    fn functional(&self, n: &str, e: &Expression) -> Placed {
+        let mut meshes = self.lattice.meshes.iter();
+        let Some(mesh) = meshes.find(|m| m.name.text == n) else {
+            return Ok(e.clone());
+        };
+        let at_first = Put {
+            lattice: self.lattice,
+            choice: self.choice,
+            pinned: self.pinned,
+            locals: self.locals,
+            site: 0,
+            at_last: false,
+        };
+        let place = e.place;
+        let arguments = mesh.arguments.iter().map(|a| {
+            let kind = Kind::Name(a.text.clone());
+            at_first.put(&Expression { kind, place })
+        });
+        let name = crate::syntax::ast::Name {
+            place,
+            ..mesh.name.clone()
+        };
+        Ok(Expression {
+            kind: Kind::Call(name, arguments.collect::<Result<_, _>>()?),
             place,
         })
     }

@@ -4,6 +4,7 @@
 mod definitions;
 mod holds;
 mod lagrangian;
+mod mesh;
 mod pinned;
 mod warned;
 
@@ -16,7 +17,7 @@ use crate::check::circular_definitions;
 use crate::derive::warnings::Warning;
 use crate::diagnostic::{Diagnostic, Errors, Place};
 use crate::expr::symbol::ascii;
-use crate::syntax::ast::{Alternative, Expression, Kind, Kindred, Model, Name, Statement};
+use crate::syntax::ast::{Alternative, Expression, Extent, Kind, Kindred, Model, Name, Statement};
 pub(crate) use definitions::{definitions, inlined};
 use std::collections::BTreeMap;
 use warned::without_a_ring;
@@ -44,6 +45,8 @@ pub struct Summand {
     pub shown: Expression,
     /// That site.
     pub site: usize,
+    /// Whether it holds values of functionals of all sites.
+    pub of_functionals: bool,
 }
 
 /// A model written out.
@@ -182,7 +185,8 @@ impl<'a> Writer<'a> {
                     self.declare_number(step, docs);
                 }
             }
-            Statement::Periodic(_) | Statement::Let { .. } => {}
+            Statement::Periodic(_) | Statement::Let { .. } | Statement::Grid(_) => {}
+            Statement::Mesh { name, .. } => self.mesh(statement, name, docs),
             Statement::End { at, .. } => self.end_parameters(at),
             Statement::Param { names, .. } | Statement::Advected { names, .. } => {
                 self.declared(statement, names, docs);
@@ -191,20 +195,20 @@ impl<'a> Writer<'a> {
                 names,
                 offset,
                 shape,
+                domain,
                 ..
             } => {
                 self.declared(statement, names, docs);
+                if let Some(Extent::Torus(lengths)) = domain
+                    && is_used(model, lengths)
+                {
+                    self.declare(lengths, shape);
+                }
                 if let Some(offset) = offset {
                     if self.lattice.periodic.is_none() {
                         self.out.warnings.push(without_a_ring(offset));
                     }
-                    let used = |e: &Expression| any_name(e, &|n| n == offset.text);
-                    let assumed = model.statements.iter().any(|s| match s {
-                        Statement::Assume { left, right, .. } => used(left) || used(right),
-                        Statement::Lagrangian(e) | Statement::Scale(e) => used(e),
-                        _ => false,
-                    });
-                    if self.choice.periodic || assumed {
+                    if self.choice.periodic || is_used(model, offset) {
                         self.declare(offset, shape);
                     }
                 }
@@ -365,6 +369,7 @@ impl<'a> Writer<'a> {
                 shape,
                 at,
                 offset: None,
+                domain: None,
             },
             Statement::Advected { definition, .. } => {
                 let index = isize::try_from(site).ok()?;
@@ -484,6 +489,16 @@ impl<'a> Writer<'a> {
         }
         out
     }
+}
+
+/// Whether the Lagrangian or an assumption holds a name.
+fn is_used(model: &Model, name: &Name) -> bool {
+    let used = |e: &Expression| any_name(e, &|n| n == name.text);
+    model.statements.iter().any(|s| match s {
+        Statement::Assume { left, right, .. } => used(left) || used(right),
+        Statement::Lagrangian(e) | Statement::Scale(e) => used(e),
+        _ => false,
+    })
 }
 
 fn velocity_of<'a>(model: &'a Model, element: &str) -> Option<&'a Name> {

@@ -94,7 +94,7 @@ fn one(
 ) -> Result<Lone, Refused> {
     let terms = part.unfolded.summands.iter().filter(|t| {
         let range = t.range.map(|r| r.label);
-        lone_at(t) == Some(sites) && range == Some(label)
+        lone_at(t) == Some(sites) && range == Some(label) && !t.of_functionals
     });
     let terms: Vec<Expression> = terms.map(|t| t.stated.clone()).collect();
     let spec = check::check_written_out(&alone(model, lattice, (label, sites), terms)?)?;
@@ -168,6 +168,7 @@ fn alone(
                 shape: shape.clone(),
                 at: None,
                 offset: None,
+                domain: None,
             }],
             Statement::Group {
                 name,
@@ -202,11 +203,14 @@ fn alone(
                 place = e.place;
                 Vec::new()
             }
-            Statement::Time { .. } | Statement::Node(..) => vec![statement.clone()],
+            Statement::Time { .. } | Statement::Node(..) | Statement::Given { .. } => {
+                vec![statement.clone()]
+            }
             Statement::Group { .. }
             | Statement::Constraint { .. }
             | Statement::Hold { .. }
-            | Statement::Given { .. }
+            | Statement::Mesh { .. }
+            | Statement::Grid(_)
             | Statement::Assume { .. }
             | Statement::Scale(_)
             | Statement::Dim { .. } => Vec::new(),

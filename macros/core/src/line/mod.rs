@@ -4,6 +4,7 @@
 //! stepper with loops over sites is made of, or why it has to be written out.
 
 mod lone;
+mod meshed;
 mod proof;
 mod pull;
 mod site;
@@ -12,6 +13,7 @@ mod tests;
 mod total;
 
 pub use lone::{How, Lone, Mover};
+pub use meshed::Meshed;
 pub use pull::{EndTerm, Force, Pull};
 pub use site::{BASE, Sited};
 pub use total::Total;
@@ -37,6 +39,8 @@ pub struct Line {
     pub pulls: Vec<Pull>,
     /// What end conditions add.
     pub ends: Vec<EndTerm>,
+    /// What terms with functionals of all sites add.
+    pub meshed: Option<Meshed>,
     /// Conserved totals.
     pub totals: Vec<Total>,
     /// What of a nodal term acts at the end of the edge that comes to its node, and what of it at the
@@ -81,6 +85,7 @@ impl Line {
         let representative = written(model, &lattice, choice)?;
         let lone = lone::lone(model, &lattice, &representative)?;
         let pulls = pull::pulls(&lattice, &representative)?;
+        let meshed = meshed::meshed(&lattice, &representative)?;
         let ends = pull::ends(model, &lattice, &representative.choice)?;
         let totals = total::totals(model, &lattice, &representative)?;
         let (all, none) = (Rational::integer(1), Rational::integer(0));
@@ -96,6 +101,7 @@ impl Line {
             lone,
             pulls,
             ends,
+            meshed,
             totals,
             shares,
         };
@@ -165,7 +171,6 @@ fn stands_alone(model: &Model, lattice: &Lattice) -> Result<(), Refused> {
             Statement::Hold { .. } => {
                 return refused("a constraint is held, which ties what its sites solve");
             }
-            Statement::Given { .. } => return refused("a function is given by its name"),
             Statement::Scale(_) => return refused("the action is scaled"),
             Statement::Assume { left, right, .. } => {
                 let sited = |n: &str| lattice.find(n).is_some();

@@ -68,6 +68,11 @@ impl Line {
                 terms.push(part.moved(&f.value, by)?);
             }
         }
+        let of_functionals = self.meshed.iter().flat_map(|m| &m.forces);
+        for f in of_functionals.filter(|f| f.on == name) {
+            shape = f.value.shape();
+            terms.push(f.value.clone());
+        }
         if terms.is_empty() {
             let (lone, mover) = self.mover(name)?;
             shape = lone.d.balances[mover.index].outgoing.shape();

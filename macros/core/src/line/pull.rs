@@ -77,7 +77,7 @@ pub(super) fn lone_at(summand: &Summand) -> Option<Sites> {
 pub(super) fn pulls(lattice: &Lattice, part: &Written) -> Result<Vec<Pull>, Refused> {
     let mut out: Vec<Pull> = Vec::new();
     let inner = part.unfolded.summands.iter().filter(|t| t.end.is_none());
-    for summand in inner.filter(|t| lone_at(t).is_none()) {
+    for summand in inner.filter(|t| lone_at(t).is_none() && !t.of_functionals) {
         // What holds no letter of a site is constant.
         let Some(range) = summand.range else { continue };
         let term = elaborated(part, summand)?;
@@ -148,7 +148,7 @@ fn keeps(lattice: &Lattice, part: &Written, term: &Expr) -> bool {
 }
 
 /// A summand as it is shown, which must stand at one node in time.
-fn elaborated(part: &Written, summand: &Summand) -> Result<Expr, Refused> {
+pub(super) fn elaborated(part: &Written, summand: &Summand) -> Result<Expr, Refused> {
     let found = check::numbers(&part.unfolded.model, &[&summand.shown]);
     let Some(Some(term)) = found.into_iter().next() else {
         return Err(Refused::Form("a term of neighbours is not read".to_owned()));
@@ -190,7 +190,7 @@ fn defined(part: &Written, term: &Expr) -> Result<Expr, Refused> {
 }
 
 /// The derivative of a term at one node along every variation, as covectors, by configuration.
-fn forces(part: &Written, term: &Expr) -> Vec<Force> {
+pub(super) fn forces(part: &Written, term: &Expr) -> Vec<Force> {
     let d = &part.d;
     let s = &d.letters.symbols;
     let algebra = Algebra::new(s);

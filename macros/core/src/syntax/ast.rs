@@ -163,6 +163,15 @@ pub struct Alternative {
     pub terms: Vec<Expression>,
 }
 
+/// Where places of particles lie: `on torus(L)`, `on box`.
+#[derive(Clone, Debug)]
+pub enum Extent {
+    /// A torus, with the name of its lengths.
+    Torus(Name),
+    /// A box, each direction of which closes on itself or ends in walls, as the case says.
+    Box(Place),
+}
+
 /// A statement.
 #[derive(Clone, Debug)]
 pub enum Statement {
@@ -243,6 +252,8 @@ pub enum Statement {
         at: Option<At>,
         /// The parameter by which the value grows once around a ring.
         offset: Option<Name>,
+        /// Where the values lie, for fields of places of particles.
+        domain: Option<Extent>,
     },
     /// `advected Γ, S: SHAPE;`, `advected Γ: SHAPE = EXPR;`
     Advected {
@@ -285,6 +296,21 @@ pub enum Statement {
         value: Kindred,
         /// What computes it, a path of Rust.
         path: Name,
+    },
+    /// `grid n;`
+    Grid(Name),
+    /// `mesh A: SHAPE at a = FUNCTIONAL(X);`
+    Mesh {
+        /// Its values, by this name.
+        name: Name,
+        /// What it is at one site.
+        shape: Kindred,
+        /// At which sites.
+        at: Option<At>,
+        /// What computes it: a name of the runtime's, or a path of Rust.
+        path: Name,
+        /// What it is made of: a field or another functional first, then what is constant in time.
+        arguments: Vec<Name>,
     },
     /// `let W = EXPR;`
     Let {

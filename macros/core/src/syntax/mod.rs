@@ -5,6 +5,7 @@ pub mod ast;
 mod delimiters;
 mod expression;
 mod label;
+mod mesh;
 mod statement;
 mod text;
 mod token;

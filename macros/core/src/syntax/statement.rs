@@ -4,6 +4,7 @@
 use super::ast::{Comparison, Kindred, Model, Name, NodeRule, Size, Statement};
 use super::expression::expression;
 use super::label;
+use super::mesh;
 use super::token::{Cursor, KEYWORDS, Token};
 use super::typeset::typeset;
 use crate::diagnostic::{Diagnostic, Errors, closest};
@@ -154,15 +155,17 @@ fn statement(c: &mut Cursor) -> Result<Statement, Diagnostic> {
             c.punct('=')?;
             Statement::Lagrangian(expression(c)?)
         }
-        "grid" | "mesh" | "linear" | "integrate" => {
+        "grid" => Statement::Grid(c.name("the name of the grid")?),
+        "mesh" => mesh::mesh(c)?,
+        "linear" | "integrate" => {
             return Err(Diagnostic::new(
                 keyword.place,
                 format!(
-                    "`{}` belongs to models of fluids, which this version does not derive yet",
+                    "`{}` is no statement: kinetic terms are written with `next(X) - X`, and linear functionals are `mesh` statements",
                     keyword.text
                 ),
             )
-            .help("models with `label`, `group`, `field`, `advected`, `constraint`, `hold` and `lagrangian` are derived"));
+            .help("models with `label`, `grid`, `group`, `field`, `mesh`, `advected`, `constraint`, `hold` and `lagrangian` are derived"));
         }
         other => {
             let mut e = Diagnostic::new(
@@ -233,13 +236,6 @@ pub(super) fn kindred(c: &mut Cursor) -> Result<Kindred, Diagnostic> {
         c.punct('>')?;
     }
     let place = name.place.to(c.last_place());
-    if c.is_word("on") {
-        return Err(Diagnostic::new(
-            c.place(),
-            "domains (`on ...`) belong to fluids in the plane, which this version does not derive yet",
-        )
-        .help("leave it out, or take the fluid along a line: `field X: Real at nodes offset L;`"));
-    }
     Ok(Kindred { name, sizes, place })
 }
 
@@ -262,6 +258,7 @@ fn field(c: &mut Cursor) -> Result<Statement, Diagnostic> {
         true => Some(c.name("the name of the offset, by which the field grows around a ring")?),
         false => None,
     };
+    let domain = mesh::extent(c)?;
     let place = c.place();
     if c.take_word("velocity") {
         return Err(Diagnostic::new(
@@ -275,6 +272,7 @@ fn field(c: &mut Cursor) -> Result<Statement, Diagnostic> {
         shape,
         at,
         offset,
+        domain,
     })
 }
 
@@ -423,18 +421,24 @@ fn given(c: &mut Cursor) -> Result<Statement, Diagnostic> {
         .help("write the expression as a `let`, or give the function by a path of Rust")
         .help(remedy));
     }
-    while c.take_punct(':') {
-        c.punct(':')?;
-        let next = c.name("the next name of the path")?;
-        path.text = format!("{}::{}", path.text, next.text);
-        path.place = path.place.to(next.place);
-    }
+    path_goes_on(c, &mut path)?;
     Ok(Statement::Given {
         name,
         arguments,
         value,
         path,
     })
+}
+
+/// What follows the first name of a path of Rust.
+pub(super) fn path_goes_on(c: &mut Cursor, path: &mut Name) -> Result<(), Diagnostic> {
+    while c.take_punct(':') {
+        c.punct(':')?;
+        let next = c.name("the next name of the path")?;
+        path.text = format!("{}::{}", path.text, next.text);
+        path.place = path.place.to(next.place);
+    }
+    Ok(())
 }
 
 fn binding(c: &mut Cursor) -> Result<Statement, Diagnostic> {

@@ -4,6 +4,7 @@ use super::action::{Configuration, D};
 use clebsch::nalgebra::{Matrix3, Vector3};
 
 mod charges;
+pub mod cloud;
 mod named;
 mod rod;
 mod sine;
@@ -12,6 +13,7 @@ mod tops;
 mod water;
 
 pub use charges::Charges;
+pub use cloud::Cloud;
 pub use named::Named;
 pub use rod::Rod;
 pub use sine::Sine;
@@ -100,6 +102,7 @@ pub fn all(n: usize) -> Vec<Box<dyn Line>> {
         Box::new(Tops::new(n, true)),
         Box::new(Water::new(n)),
         Box::new(Charges::new(n)),
+        Box::new(Cloud { n }),
     ];
     out.push(Box::new(Named { n, end: false }));
     out.push(Box::new(Named { n, end: true }));

@@ -56,6 +56,11 @@ impl Lines<'_> {
                 terms.push(quote!(pulls.#array[site + #by].#field));
             }
         }
+        let of_functionals = self.line.meshed.iter().flat_map(|m| &m.forces);
+        if of_functionals.into_iter().any(|f| f.on == name) {
+            let array = super::meshes::collected(name);
+            terms.push(quote!(pulls.#array[site]));
+        }
         let first = terms.first()?.clone();
         let rest = terms.iter().skip(1);
         Some(quote!(#first #(+ #rest)*))

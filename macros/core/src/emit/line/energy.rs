@@ -3,7 +3,7 @@
 
 use super::locals::Places;
 use super::pulls::{known, range_of};
-use super::{Lines, Moving};
+use super::{Lines, Moving, OfMeshes};
 use crate::algebra::Algebra;
 use crate::derive::limit::Limit;
 use crate::emit::element;
@@ -15,15 +15,15 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 /// The functions.
-pub(super) fn energy(l: &Lines) -> TokenStream {
+pub(super) fn energy(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
     let name = l.item("");
-    let energies = energies(l).unwrap_or_default();
+    let energies = energies(l, of_meshes).unwrap_or_default();
     let totals = l.line.totals.iter().map(|t| total(l, t));
     quote!(impl<T: Real> #name<T> { #energies #(#totals)* })
 }
 
 /// `energies` and `energy`, where every part has a limit of small steps.
-fn energies(l: &Lines) -> Option<TokenStream> {
+fn energies(l: &Lines, of_meshes: Option<&OfMeshes>) -> Option<TokenStream> {
     let [places, momenta, state] = ["Places", "Momenta", "State"].map(|suffix| l.item(suffix));
     let part = &l.line.representative;
     let mut kernels = TokenStream::new();
@@ -77,6 +77,11 @@ fn energies(l: &Lines) -> Option<TokenStream> {
             #range
             line::sum(last - first, |i| self.#kernel(first + i, at))
         }));
+    }
+    if let Some(m) = of_meshes {
+        let (more, terms) = m.energy.as_ref()?;
+        kernels.extend(more.clone());
+        potential.extend(terms.iter().cloned());
     }
     let ends = super::ends::energies(l)?;
     let potential = match potential.is_empty() {

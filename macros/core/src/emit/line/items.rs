@@ -164,6 +164,10 @@ pub(super) fn sites(l: &Lines) -> TokenStream {
     let lattice = &l.line.lattice;
     let counts = lattice.labels.iter().map(|label| {
         let (field, index) = (format_ident!("{}", label.count.text), &label.index.text);
+        if label.grid {
+            let d = number(l.extent().map_or(1, |(_, d)| d));
+            return quote!(#[doc = " Cells of the grid along each direction."] pub #field: [usize; #d]);
+        }
         let doc = match label.set {
             true => format!(" The number of sites of `{index}`."),
             false => {
@@ -173,10 +177,11 @@ pub(super) fn sites(l: &Lines) -> TokenStream {
         quote!(#[doc = #doc] pub #field: usize)
     });
     if lattice.line.is_none() {
+        let extent = l.extent_fields();
         return quote! {
             /// How many sites there are.
             #[derive(Clone, Copy, Debug, PartialEq)]
-            pub struct #name<T = f64> { #(#counts,)* #[doc(hidden)] pub scalar: ::core::marker::PhantomData<T> }
+            pub struct #name<T = f64> { #(#counts,)* #extent #[doc(hidden)] pub scalar: ::core::marker::PhantomData<T> }
         };
     }
     let mut types = TokenStream::new();
@@ -322,6 +327,9 @@ pub(super) fn model(l: &Lines) -> TokenStream {
     }
     let counts = line.lattice.labels.iter().map(|label| {
         let (field, text) = (format_ident!("{}", label.count.text), &label.count.text);
+        if label.grid {
+            return quote!(for cells in sites.#field { line::count_of(#text, cells, 1)?; });
+        }
         quote! {
             line::count_of(#text, sites.#field, 1)?;
         }
@@ -343,6 +351,7 @@ pub(super) fn model(l: &Lines) -> TokenStream {
     checks.extend(super::domain::of_parameters(l));
     checks.extend(l.assumptions());
     checks.extend(l.ends_given());
+    let functionals = line.meshed.is_some().then(|| quote!(model.meshes()?;));
     let is_ring = match line.lattice.line {
         Some(_) => quote!(model.is_ring()),
         None => quote!(false),
@@ -379,6 +388,7 @@ pub(super) fn model(l: &Lines) -> TokenStream {
                 let _ = ring;
                 #checks
                 #made
+                #functionals
                 Ok(model)
             }
 

@@ -10,6 +10,7 @@ mod forms;
 mod given;
 mod items;
 mod locals;
+mod meshes;
 mod pulls;
 mod solved;
 mod state;
@@ -35,22 +36,30 @@ struct Lines<'a> {
     stated: BTreeSet<String>,
 }
 
+/// What is emitted of functionals of all sites.
+use meshes::Emitted as OfMeshes;
+
 /// The items of a model with labels; `source` is its text.
 pub fn emit_line(line: &Line, source: &str) -> TokenStream {
     let l = Lines::new(line, source);
     let name = l.item("");
     let module = format_ident!("{}", super::names::module(&line.model.name.text));
     let visibility = line.model.public.then(|| quote!(pub));
+    let of_meshes = meshes::meshes(&l);
+    let of_meshes = of_meshes.as_ref();
+    let paths = super::functional::paths(&line.representative.d.letters.symbols);
     let items = [
+        paths,
         items::parameters(&l),
         items::sites(&l),
         items::model(&l),
-        state::state(&l),
-        step::step(&l),
+        state::state(&l, of_meshes),
+        step::step(&l, of_meshes),
         pulls::pulls(&l),
         solved::solved(&l),
         acting::acting(&l),
-        energy::energy(&l),
+        energy::energy(&l, of_meshes),
+        of_meshes.map(|m| m.items.clone()).unwrap_or_default(),
     ];
     let about = format!(" The model [`{name}`](struct@{name}) and what belongs to it.");
     quote! {
@@ -181,6 +190,9 @@ impl<'a> Lines<'a> {
     /// How many sites a kind has, of the model found at `of`.
     fn count_in(&self, of: TokenStream, label: usize, sites: Sites) -> TokenStream {
         let field = self.count_field(label);
+        if self.line.lattice.labels.get(label).is_some_and(|l| l.grid) {
+            return quote!(#of.setting().nodes());
+        }
         match self.line.lattice.line == Some(label) && sites == Sites::Nodes {
             true => quote!(#of.nodes()),
             false => quote!(#of.sites.#field),

@@ -1,12 +1,12 @@
 //! What moves: initial data, places and momenta at a node, and what a step keeps for the next one.
 
 use super::items::words;
-use super::{Lines, number};
+use super::{Lines, OfMeshes, number};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 /// The items.
-pub(super) fn state(l: &Lines) -> TokenStream {
+pub(super) fn state(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
     let [initial, places, momenta, edges, pulls, state, work] = [
         "Initial",
         "Places",
@@ -94,8 +94,12 @@ pub(super) fn state(l: &Lines) -> TokenStream {
         quote!(#count: usize)
     });
     let (p, v): (Vec<_>, Vec<_>) = (pull_fields.collect(), velocities.collect());
-    let no_pulls = p
-        .is_empty()
+    let of_functionals = of_meshes.map(|m| &m.fields);
+    let meshes = of_meshes.map(|_| {
+        let meshes = l.item("Meshes");
+        quote!(meshes: #meshes<T>,)
+    });
+    let no_pulls = (p.is_empty() && of_meshes.is_none())
         .then(|| quote!(scalar: ::core::marker::PhantomData<T>));
     quote! {
         /// Initial data.
@@ -116,7 +120,7 @@ pub(super) fn state(l: &Lines) -> TokenStream {
 
         /// What neighbours add at a node.
         #[derive(Clone, Debug)]
-        struct #pulls<T> { #(#p,)* #no_pulls }
+        struct #pulls<T> { #(#p,)* #of_functionals #no_pulls }
 
         /// What moves, at one node in time.
         #[derive(Clone, Debug)]
@@ -142,7 +146,7 @@ pub(super) fn state(l: &Lines) -> TokenStream {
 
         /// The step, and the momenta of the edges that begin at the state of the same stamp.
         #[derive(Clone, Debug)]
-        pub struct #work<T = f64> {
+        pub struct #work<T: Real = f64> {
             h: T,
             model: line::Stamp,
             stamp: line::Stamp,
@@ -150,6 +154,7 @@ pub(super) fn state(l: &Lines) -> TokenStream {
             momenta: #momenta<T>,
             edges: #edges<T>,
             pulls: #pulls<T>,
+            #meshes
             #(#v,)*
         }
     }

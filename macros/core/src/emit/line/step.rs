@@ -2,12 +2,12 @@
 //! neighbours add at the new places, then all momenta; the state changes when everything has worked.
 
 use super::acting::{self, Acting};
-use super::{Lines, Moving, number, solved};
+use super::{Lines, Moving, OfMeshes, number, solved};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 /// The functions.
-pub(super) fn step(l: &Lines) -> TokenStream {
+pub(super) fn step(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
     let [name, initial, state, work, places, momenta, edges, pulls] = [
         "",
         "Initial",
@@ -61,10 +61,43 @@ pub(super) fn step(l: &Lines) -> TokenStream {
         let count = l.count_field(pull.label);
         quote!(#field: ::std::vec![#t::none(); self.sites.#count + 1 + 2 * #front])
     });
-    let no_pulls = l
-        .line
-        .pulls
-        .is_empty()
+    let mesh_values = of_meshes.map(|m| &m.zeros);
+    let meshes_made = of_meshes.map(|_| quote!(meshes: self.meshes()?,));
+    let (fallible, done) = match of_meshes {
+        Some(_) => (quote!(-> Result<(), LineError>), quote!(Ok(()))),
+        None => (TokenStream::new(), TokenStream::new()),
+    };
+    let tried = of_meshes.map(|_| quote!(?));
+    let meshed = of_meshes.map(|_| {
+        quote! {
+            if let Err((quantity, cause)) = self.meshed(h, &work.places, &mut work.meshes, &mut work.pulls) {
+                work.stamp = line::Stamp::none();
+                return Err(self.refused_by(state, h, quantity, cause));
+            }
+        }
+    });
+    let meshed_at_start = of_meshes.map(|_| {
+        quote! {
+            if let Err((quantity, cause)) = self.meshed(h, &state.places, &mut work.meshes, &mut work.pulls) {
+                return Err(LineError::Functional { node: state.node, quantity, cause, works: None });
+            }
+        }
+    });
+    let refused_by = of_meshes.map(|_| {
+        quote! {
+            /// Says which functional refuses a step, and which shorter one can be made.
+            #[cold]
+            #[inline(never)]
+            fn refused_by(&self, state: &#state<T>, h: T, quantity: &'static str, cause: mesh::MeshError) -> LineError {
+                let made = |h: T| {
+                    let mut work = self.workspace(state, h).ok()?;
+                    self.step(&mut state.clone(), &mut work).ok()
+                };
+                LineError::Functional { node: state.node, quantity, cause, works: line::shorter(h, |h| made(h).is_some()) }
+            }
+        }
+    });
+    let no_pulls = (l.line.pulls.is_empty() && of_meshes.is_none())
         .then(|| quote!(scalar: ::core::marker::PhantomData));
     let velocity_values = systems.iter().map(|(field, n, members)| {
         let n = number(*n);
@@ -135,10 +168,11 @@ pub(super) fn step(l: &Lines) -> TokenStream {
                     places: state.places.clone(),
                     momenta: state.momenta.clone(),
                     edges: #edges { #(#names: #edge_values),* },
-                    pulls: #pulls { #(#pull_values,)* #no_pulls },
+                    pulls: #pulls { #(#pull_values,)* #mesh_values #no_pulls },
+                    #meshes_made
                     #(#velocity_values,)*
                 };
-                self.begin(state, &mut work);
+                self.begin(state, &mut work) #tried;
                 Ok(work)
             }
 
@@ -153,13 +187,14 @@ pub(super) fn step(l: &Lines) -> TokenStream {
                 if work.model != self.stamp {
                     *work = self.workspace(state, h)?;
                 } else if work.stamp != state.stamp {
-                    self.begin(state, work);
+                    self.begin(state, work) #tried;
                 }
                 #(#of_systems)*
                 #(#solves)*
                 self.around(&mut work.places);
                 #inside
                 self.pulled(h, &work.places, &mut work.pulls);
+                #meshed
                 work.stamp = line::Stamp::none();
                 #(#arrivals)*
                 ::core::mem::swap(&mut state.places, &mut work.places);
@@ -172,12 +207,16 @@ pub(super) fn step(l: &Lines) -> TokenStream {
 
             /// The momenta of the edges that begin at this state.
             #[cold]
-            fn begin(&self, state: &#state<T>, work: &mut #work<T>) {
+            fn begin(&self, state: &#state<T>, work: &mut #work<T>) #fallible {
                 let h = work.h;
                 self.pulled(h, &state.places, &mut work.pulls);
+                #meshed_at_start
                 #(#beginnings)*
                 work.stamp = state.stamp;
+                #done
             }
+
+            #refused_by
 
             /// Says at which site a step is refused, and which shorter one can be made.
             #[cold]

@@ -8,12 +8,12 @@ use quote::format_ident;
 use std::collections::BTreeSet;
 
 /// What kernels and the functions around them call their own.
-const KERNEL: [&str; 44] = [
+const KERNEL: [&str; 47] = [
     "a", "acting", "after", "at", "axis", "before", "contact", "domain", "each", "edge", "edges",
     "energy", "factor", "first", "from", "h", "i", "index", "inertia", "inside", "j", "kick",
-    "known", "last", "line", "list", "made", "model", "momenta", "momentum", "newton", "parts",
-    "pulls", "ring", "self", "site", "sites", "space", "state", "to", "turn", "twice", "validate",
-    "velocity",
+    "known", "last", "line", "list", "made", "meshes", "model", "momenta", "momentum", "newton",
+    "parts", "pulls", "quantity", "ring", "self", "setting", "site", "sites", "space", "state",
+    "to", "turn", "twice", "validate", "velocity",
 ];
 
 impl<'a> Lines<'a> {

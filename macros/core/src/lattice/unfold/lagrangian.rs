@@ -55,6 +55,7 @@ impl Writer<'_> {
             if let (Some(shown), Some(site)) = (copies.get(middle), sites.get(middle)) {
                 self.out.summands.push(Summand {
                     shown: shown.clone(),
+                    of_functionals: self.lattice.has_functional(&stated),
                     site: usize::try_from(*site).unwrap_or(0),
                     stated,
                     range,
@@ -79,6 +80,7 @@ impl Writer<'_> {
                     (Ok(found), Ok(shown)) => {
                         terms.push((false, shown.clone()));
                         self.out.summands.push(Summand {
+                            of_functionals: self.lattice.has_functional(&stated),
                             stated,
                             range: None,
                             end: Some((last, which)),

@@ -1,0 +1,123 @@
+//! What terms with functionals of all sites add to the momenta of sites: derivatives of each through the
+//! functionals' pull-backs, and as far as it holds places itself. One site is written out, whose letters
+//! stand for those of all: `A(X)` are the values at all sites, and the pull-back of a seed is what all sites
+//! of the functional add to one site of what it is made of.
+
+use super::pull::{Force, elaborated, forces};
+use super::{Refused, Written};
+use crate::algebra::Rational;
+use crate::expr::shape::Shape;
+use crate::expr::{self, Applied, Expr, Node};
+use crate::lattice::{Lattice, Sites};
+
+/// Terms with functionals.
+#[derive(Clone, Debug)]
+pub struct Meshed {
+    /// The terms of the Lagrangian, with the label over whose sites each is summed.
+    pub terms: Vec<(usize, Expr)>,
+    /// What they add, the whole of it at one node.
+    pub forces: Vec<Force>,
+}
+
+/// The terms with functionals, if there are any.
+pub(super) fn meshed(lattice: &Lattice, part: &Written) -> Result<Option<Meshed>, Refused> {
+    let mut terms: Vec<(usize, Expr)> = Vec::new();
+    for summand in part.unfolded.summands.iter().filter(|t| t.of_functionals) {
+        let Some(range) = summand.range else { continue };
+        let term = elaborated(part, summand).map_err(|refused| match refused {
+            Refused::Form(_) => {
+                Refused::Form("a functional of all sites stands beside a velocity".to_owned())
+            }
+            wrong => wrong,
+        })?;
+        match terms.iter_mut().find(|(label, _)| *label == range.label) {
+            Some((_, known)) => *known = expr::add(known.clone(), term),
+            None => terms.push((range.label, term)),
+        }
+    }
+    if terms.is_empty() {
+        return Ok(None);
+    }
+    let on_line = |q: &crate::lattice::Quantity| q.sites != Sites::Members;
+    if lattice.quantities.iter().any(on_line) {
+        return Err(Refused::Form(
+            "functionals of all sites stand beside a line".to_owned(),
+        ));
+    }
+    let domains = lattice.quantities.iter().filter(|q| q.domain.is_some());
+    if domains.count() != 1 {
+        return Err(Refused::Form(
+            "places lie in several domains, or in none: one field is stated `on torus(L)` or `on box`"
+                .to_owned(),
+        ));
+    }
+    let whole = terms.iter().map(|(_, e)| e.clone()).reduce(expr::add);
+    let forces = whole.map_or_else(Vec::new, |e| forces(part, &e));
+    let forces = forces.into_iter().map(|f| Force {
+        value: gathered(part, &f.value),
+        ..f
+    });
+    Ok(Some(Meshed {
+        terms,
+        forces: forces.collect(),
+    }))
+}
+
+/// A pull-back of a sum of seeds in the place of a sum of pull-backs: each is computed over all sites.
+fn gathered(part: &Written, e: &Expr) -> Expr {
+    let s = &part.d.letters.symbols;
+    let mut rest: Vec<Expr> = Vec::new();
+    let mut backs: Vec<(Applied, u8, Vec<Expr>)> = Vec::new();
+    for term in summands(e) {
+        let Some((factor, a, which, seed)) = back(&term) else {
+            rest.push(term);
+            continue;
+        };
+        // What multiplies a seed may stand in it, as long as it is the same at all sites.
+        let seed = expr::mul(expr::number(factor), gathered(part, &seed));
+        match backs.iter_mut().find(|(b, i, _)| *b == a && *i == which) {
+            Some((.., seeds)) => seeds.push(seed),
+            None => backs.push((a, which, vec![seed])),
+        }
+    }
+    let backs = backs.into_iter().map(|(a, which, seeds)| {
+        let seed = expr::sum(seeds, Shape::SCALAR);
+        expr::pull_back(s, a, which, seed)
+    });
+    expr::sum(rest.into_iter().chain(backs).collect::<Vec<_>>(), e.shape())
+}
+
+fn summands(e: &Expr) -> Vec<Expr> {
+    match e.node() {
+        Node::Sum(list) => list.iter().flat_map(summands).collect(),
+        Node::Neg(a) => summands(a).into_iter().map(expr::neg).collect(),
+        _ => vec![e.clone()],
+    }
+}
+
+/// A pull-back of a number with an exact number before it.
+fn back(e: &Expr) -> Option<(Rational, Applied, u8, Expr)> {
+    match e.node() {
+        Node::PullBack(a, which, seed) if seed.shape().is_scalar() => {
+            Some((Rational::ONE, a.clone(), *which, seed.clone()))
+        }
+        Node::Neg(a) => {
+            let (factor, a, which, seed) = back(a)?;
+            Some((factor.negated(), a, which, seed))
+        }
+        Node::Product(list) => {
+            let mut factor = Rational::ONE;
+            let mut found = None;
+            for x in list {
+                match x.node() {
+                    Node::Number(q) => factor = factor.times(*q)?,
+                    _ if found.is_none() => found = Some(back(x)?),
+                    _ => return None,
+                }
+            }
+            let (own, a, which, seed) = found?;
+            Some((factor.times(own)?, a, which, seed))
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,57 @@
+//! Statements of functionals of all sites: `mesh`, and `on` behind a field of places.
+
+use super::ast::{Extent, Statement};
+use super::label;
+use super::statement::{kindred, path_goes_on};
+use super::token::Cursor;
+use crate::diagnostic::Diagnostic;
+
+/// `A: Real at a = voronoi_area(X)`.
+pub(super) fn mesh(c: &mut Cursor) -> Result<Statement, Diagnostic> {
+    let remedy = "a functional of all sites reads `mesh A: Real at a = voronoi_area(X);`: its values, where they stand, what computes it, and of what";
+    let name = c
+        .name("the name of the values")
+        .map_err(|e| e.help(remedy))?;
+    c.punct(':').map_err(|e| e.help(remedy))?;
+    let shape = kindred(c)?;
+    let at = label::at(c)?;
+    c.punct('=').map_err(|e| e.help(remedy))?;
+    let mut path = c
+        .name("the name of what computes it")
+        .map_err(|e| e.help(remedy))?;
+    path_goes_on(c, &mut path)?;
+    c.delimiter('(').map_err(|e| e.help(remedy))?;
+    let what = "a field, another functional or a parameter, by its name";
+    let mut arguments = vec![c.name(what).map_err(|e| e.help(remedy))?];
+    while c.take_punct(',') {
+        arguments.push(c.name(what).map_err(|e| e.help(remedy))?);
+    }
+    c.delimiter(')')
+        .map_err(|e| e.help("arguments are names: name an expression by a parameter of its own"))?;
+    Ok(Statement::Mesh {
+        name,
+        shape,
+        at,
+        path,
+        arguments,
+    })
+}
+
+/// `on torus(L)`, `on box`, if it comes next.
+pub(super) fn extent(c: &mut Cursor) -> Result<Option<Extent>, Diagnostic> {
+    if !c.take_word("on") {
+        return Ok(None);
+    }
+    let remedy = "places lie on `torus(L)`, L its lengths, or on `box`, whose lengths and walls the case gives";
+    let place = c.place();
+    if c.take_word("box") {
+        return Ok(Some(Extent::Box(place)));
+    }
+    c.word("torus").map_err(|e| e.help(remedy))?;
+    c.delimiter('(').map_err(|e| e.help(remedy))?;
+    let lengths = c
+        .name("the name of the lengths of the torus")
+        .map_err(|e| e.help(remedy))?;
+    c.delimiter(')').map_err(|e| e.help(remedy))?;
+    Ok(Some(Extent::Torus(lengths)))
+}
