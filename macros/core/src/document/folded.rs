@@ -3,7 +3,8 @@
 
 use crate::check;
 use crate::derive::Derivation;
-use crate::expr::symbol::{SymbolId, Symbols};
+use crate::expr::shape::{Shape, Structure};
+use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::lattice::{Choice, Lattice, Unfolded};
 use crate::print::formula::Formula;
@@ -60,7 +61,8 @@ impl<'a> Folded<'a> {
                 (l, expr::letter(&self.symbols, id, l.shift))
             })
             .collect();
-        expr::substitute(&self.symbols, e, &replaced)
+        let e = self.with_functionals(part, e, from);
+        expr::substitute(&self.symbols, &e, &replaced)
     }
 
     /// A letter of a part at an offset in time.
@@ -111,12 +113,28 @@ impl<'a> Folded<'a> {
                 (format!("{}_{{{index}}}", at.name), latex)
             }
         };
-        let key = format!("{name} {:?} {:?}", own.role, own.shape);
+        self.named(
+            &name,
+            (own.shape, own.structure, own.role),
+            typeset,
+            &own.docs,
+        )
+    }
+
+    /// The shared letter of this name.
+    pub(super) fn named(
+        &mut self,
+        name: &str,
+        (shape, structure, role): (Shape, Structure, Role),
+        typeset: Option<String>,
+        docs: &[String],
+    ) -> SymbolId {
+        let key = format!("{name} {role:?} {shape:?}");
         if let Some(id) = self.known.get(&key) {
             return *id;
         }
-        let id = self.symbols.add(&name, own.shape, own.structure, own.role);
-        self.symbols.describe(id, typeset, &own.docs);
+        let id = self.symbols.add(name, shape, structure, role);
+        self.symbols.describe(id, typeset, docs);
         self.known.insert(key, id);
         id
     }

@@ -3,6 +3,7 @@
 
 mod card;
 mod ends;
+mod functionals;
 mod invariants;
 
 use super::folded::{Folded, From, Part};
@@ -51,9 +52,10 @@ pub fn printed_lattice(
     sites(&lattice, &mut doc);
     terms(&mut folded, first, &mut doc);
     constraints(&mut folded, first, &mut doc);
+    functionals::functionals(&mut folded, first, &mut doc);
     interior(&mut folded, first, &mut doc);
     ends::ends(&mut folded, &parts, &mut doc);
-    invariants::invariants(&mut folded, &parts, &mut doc);
+    invariants::invariants(&mut folded, model, &parts, &mut doc);
     certificate(&lattice, &parts, &mut doc);
     let style = Style {
         columns,
@@ -149,6 +151,10 @@ fn sites(lattice: &Lattice, doc: &mut Document) {
     let section = doc.section("Sites");
     for (i, l) in lattice.labels.iter().enumerate() {
         let (index, count) = (&l.index.text, &l.count.text);
+        if l.grid {
+            section.text(&format!("The nodes of a grid are counted by {index}."));
+            continue;
+        }
         if l.set {
             section.text(&format!(
                 "The label {index} counts a set of {count} sites, {index} = 0, ..., {count}-1, which have no neighbours."
@@ -174,18 +180,21 @@ fn sites(lattice: &Lattice, doc: &mut Document) {
             }
         }
     }
-    let listed = |sites: Sites| {
-        let here = lattice.quantities.iter().filter(|q| q.sites == sites);
+    let of_grid = |label: usize| lattice.labels.get(label).is_some_and(|l| l.grid);
+    let listed = |sites: Sites, grid: bool| {
+        let all = lattice.quantities.iter();
+        let here = all.filter(|q| q.sites == sites && of_grid(q.label) == grid);
         let names: Vec<&str> = here.map(|q| q.name.text.as_str()).collect();
         names.join(", ")
     };
     let mut words = Vec::new();
-    for (sites, name) in [
-        (Sites::Nodes, "at nodes"),
-        (Sites::Segments, "at segments"),
-        (Sites::Members, "at the sites of a set"),
+    for (sites, grid, name) in [
+        (Sites::Nodes, false, "at nodes"),
+        (Sites::Segments, false, "at segments"),
+        (Sites::Members, false, "at the sites of a set"),
+        (Sites::Members, true, "at the nodes of a grid"),
     ] {
-        let list = listed(sites);
+        let list = listed(sites, grid);
         if !list.is_empty() {
             words.push(format!("{name}: {list}"));
         }
@@ -210,6 +219,12 @@ fn ranged(lattice: &Lattice, range: Option<Range>, of: Formula) -> Formula {
     let label = range.and_then(|r| lattice.labels.get(r.label).map(|l| (r, l)));
     match label {
         None => of,
+        Some((_, l)) if l.grid => Formula::SumOver {
+            index: l.index.text.clone(),
+            from: None,
+            to: None,
+            of: Box::new(of),
+        },
         Some((range, l)) => Formula::SumOver {
             index: l.index.text.clone(),
             from: Some(range.from.to_string()),

@@ -87,7 +87,15 @@ impl Line {
         let pulls = pull::pulls(&lattice, &representative)?;
         let meshed = meshed::meshed(&lattice, &representative)?;
         let ends = pull::ends(model, &lattice, &representative.choice)?;
-        let totals = total::totals(model, &lattice, &representative)?;
+        let mut totals = total::totals(model, &lattice, &representative)?;
+        if let Some(m) = &meshed {
+            totals.extend(total::beside_functionals(
+                &lattice,
+                &representative,
+                &lone,
+                m,
+            ));
+        }
         let (all, none) = (Rational::integer(1), Rational::integer(0));
         let shares = match representative.d.spec.node_rule {
             NodeRule::Symmetric => [Rational::HALF; 2],

@@ -2,13 +2,14 @@
 //! the lattice that is written out; a quantity that is no such sum is left to it.
 
 use super::site::BASE;
-use super::{Refused, Written};
+use super::{Lone, Meshed, Refused, Written};
 use crate::algebra::Algebra;
 use crate::derive::invariants::Invariant;
 use crate::document::default_choice;
-use crate::expr::symbol::SymbolId;
-use crate::expr::{self, Expr, Node};
-use crate::lattice::{Lattice, Sites};
+use crate::expr::shape::Dim;
+use crate::expr::symbol::{SymbolId, Symbols};
+use crate::expr::{self, Expr, Letter, Node, Shift};
+use crate::lattice::{Lattice, Mesh, Sites, Source};
 use crate::pipeline;
 use crate::syntax::ast::Model;
 use std::collections::BTreeMap;
@@ -41,6 +42,91 @@ pub(super) fn totals(
         d: d.outline(),
     };
     Ok(of_part(lattice, &whole, &d.invariants, part))
+}
+
+/// Totals that functionals of all sites leave as they are: those of the sites alone in which no momentum that
+/// functionals change has another factor than a constant. A functional that equal shifts of all places leave
+/// as it is adds nothing to such a sum; the step is made of the step of each site alone and of what is added.
+pub(super) fn beside_functionals(
+    lattice: &Lattice,
+    part: &Written,
+    lone: &[Lone],
+    meshed: &Meshed,
+) -> Vec<Total> {
+    let mut out = Vec::new();
+    for one in lone {
+        let s = &one.d.letters.symbols;
+        for v in one.d.invariants.iter().filter(|v| v.exact) {
+            let Some(value) = &v.value else { continue };
+            let kept = one.movers.iter().all(|m| {
+                let momentum = Letter {
+                    symbol: one.d.letters.node_momentum[m.index],
+                    shift: Shift::HERE,
+                };
+                let changed = meshed.forces.iter().any(|f| f.on == m.name);
+                !expr::contains(value, momentum)
+                    || !changed
+                    || (is_pushed_evenly(lattice, part, meshed, &m.name)
+                        && has_constant_factor(s, value, momentum))
+            });
+            let moved = kept.then(|| one.in_letters_of(part, value)).flatten();
+            let Some(density) = moved else { continue };
+            out.push(Total {
+                name: v.name.clone(),
+                reason: v.reason.clone(),
+                on: "always".to_owned(),
+                densities: vec![(one.label, one.sites, density)],
+            });
+        }
+    }
+    out
+}
+
+/// Whether everything that functionals add to the momenta of this field has sum zero: they are made of it alike,
+/// and no term holds a place itself.
+fn is_pushed_evenly(lattice: &Lattice, part: &Written, meshed: &Meshed, field: &str) -> bool {
+    let of_field = |m: &Mesh| m.of == Source::Field(field.to_owned());
+    let even = lattice
+        .meshes
+        .iter()
+        .filter(|m| of_field(m))
+        .all(|m| m.is_uniform);
+    let through = |e: &Expr| {
+        let mut all = Vec::new();
+        outside(&part.d.letters.symbols, e, &mut all);
+        all
+    };
+    let place = part.copy(field, 0);
+    let named = |l: &Letter| Some(l.symbol) == place;
+    even && !meshed
+        .terms
+        .iter()
+        .any(|(_, e)| through(e).iter().any(named))
+}
+
+/// The letters of an expression that stand in no functional of all sites.
+fn outside(s: &Symbols, e: &Expr, out: &mut Vec<Letter>) {
+    match e.node() {
+        Node::Letter(l) => out.push(*l),
+        Node::Given(a) | Node::PullBack(a, ..)
+            if s.functional(a.functional).reach == expr::Reach::Sites => {}
+        _ => e.children().into_iter().for_each(|x| outside(s, x, out)),
+    }
+}
+
+/// Whether the derivative of a value by a momentum holds no letter.
+fn has_constant_factor(s: &Symbols, value: &Expr, momentum: Letter) -> bool {
+    let along = match expr::letter(s, momentum.symbol, momentum.shift).shape() {
+        shape if shape.is_scalar() => vec![expr::integer(1)],
+        shape => match shape.rows {
+            Dim::Fixed(n) => (0..n)
+                .map(|axis| expr::unit(shape.rows, axis as u8))
+                .collect(),
+            Dim::Named(_) => return false,
+        },
+    };
+    let by = |u: &Expr| expr::directional(s, value, &[(momentum, u.clone())]);
+    along.iter().all(|u| expr::letters(&by(u)).is_empty())
 }
 
 /// The totals of one lattice in the letters of another.
@@ -162,6 +248,32 @@ fn terms(part: &Written, e: &Expr) -> Vec<Expr> {
             }
         }
         _ => vec![e.clone()],
+    }
+}
+
+impl Lone {
+    /// An expression of the site alone in the letters of its first copy, momenta among them.
+    fn in_letters_of(&self, part: &Written, e: &Expr) -> Option<Expr> {
+        let (own, s) = (&self.d.letters, &part.d.letters.symbols);
+        let momentum_of = |id: SymbolId| {
+            let i = own.node_momentum.iter().position(|m| *m == id)?;
+            let mover = self.movers.iter().find(|m| m.index == i)?;
+            let element = part.copy(&mover.name, 0)?;
+            let mut all = part.d.spec.configurations.iter();
+            let j = all.position(|c| c.element == element)?;
+            part.d.letters.node_momentum.get(j).copied()
+        };
+        let there = |id: SymbolId| {
+            let name = &own.symbols.get(id).name;
+            momentum_of(id)
+                .or_else(|| part.copy(name, 0))
+                .or_else(|| s.find(name))
+        };
+        let mut list = Vec::new();
+        for l in expr::letters(e) {
+            list.push((l, expr::letter(s, there(l.symbol)?, l.shift)));
+        }
+        Some(expr::substitute(s, e, &list))
     }
 }
 

@@ -6,17 +6,22 @@ use crate::derive::invariants::Invariant;
 use crate::document::folded::{Folded, From, Part};
 use crate::expr::{self, Expr, Node};
 use crate::lattice::Lattice;
+use crate::line::Line;
 use crate::print::document::{Document, Inline};
 use crate::print::formula::Formula;
 use crate::print::{Format, Style, expression};
+use crate::syntax::ast::Model;
 
 /// The section on invariants.
-pub(super) fn invariants(folded: &mut Folded, parts: &[Part], doc: &mut Document) {
+pub(super) fn invariants(folded: &mut Folded, model: &Model, parts: &[Part], doc: &mut Document) {
     let section = doc.section("Invariants");
     for part in parts {
         let mut items: Vec<Vec<Inline>> = Vec::new();
         for v in &part.d.invariants {
             items.push(invariant(folded, part, v));
+        }
+        if !folded.lattice.meshes.is_empty() {
+            items.extend(beside_functionals(folded, part, model));
         }
         let words = heading(folded.lattice, part);
         if items.is_empty() {
@@ -31,12 +36,61 @@ pub(super) fn invariants(folded: &mut Folded, parts: &[Part], doc: &mut Document
             energy.0, energy.1
         ));
     }
-    section.text("Fluxes between neighbouring sites, whose differences are the changes of densities, are not sought.");
+    let lines = folded.lattice.line.is_some();
+    if lines {
+        section.text("Fluxes between neighbouring sites, whose differences are the changes of densities, are not sought.");
+    }
     let reversible = parts.iter().all(|p| p.d.reversible);
     section.text(match reversible {
         true => "The scheme is symmetric under time reversal, of even order, and may be composed.",
         false => "The scheme is not symmetric under time reversal: it is of first order and must not be composed.",
     });
+}
+
+/// Totals that functionals of all sites leave as they are.
+fn beside_functionals(folded: &mut Folded, part: &Part, model: &Model) -> Vec<Vec<Inline>> {
+    let Ok(line) = Line::of(model) else {
+        return Vec::new();
+    };
+    let own = &line.representative.d.letters.symbols;
+    let s = &part.d.letters.symbols;
+    let mut items = Vec::new();
+    for t in &line.totals {
+        let mut sums = Vec::new();
+        for (label, _, density) in &t.densities {
+            let letters = expr::letters(density).into_iter();
+            let renamed: Option<Vec<_>> = letters
+                .map(|l| {
+                    Some((
+                        l,
+                        expr::letter(s, s.find(&own.get(l.symbol).name)?, l.shift),
+                    ))
+                })
+                .collect();
+            let Some(renamed) = renamed else { continue };
+            let e = expr::substitute(s, density, &renamed);
+            let of = folded.derived(part, &e, From::Site(0));
+            let Some(l) = folded.lattice.labels.get(*label) else {
+                continue;
+            };
+            sums.push(Formula::SumOver {
+                index: l.index.text.clone(),
+                from: Some("0".to_owned()),
+                to: Some(format!("{}-1", l.count.text)),
+                of: Box::new(of),
+            });
+        }
+        items.push(vec![
+            format!("{}: ", t.name).into(),
+            match <[Formula; 1]>::try_from(sums) {
+                Ok([only]) => only,
+                Err(several) => Formula::Sum(several),
+            }
+            .into(),
+            format!(" (exact: {})", t.reason).into(),
+        ]);
+    }
+    items
 }
 
 /// Which line is meant.
