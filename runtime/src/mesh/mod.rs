@@ -9,4 +9,7 @@ mod voronoi;
 pub use domain::{Domain, Wall};
 pub use error::MeshError;
 pub use functional::{Functional, Setting};
-pub use voronoi::{Counted, Face, Triangle, Voronoi, placement, second_moment, voronoi_area};
+pub use voronoi::{
+    Counted, Face, Triangle, Voronoi, helmholtz_depth, pair_core, placement, second_moment,
+    voronoi_area,
+};

@@ -13,17 +13,6 @@ pub struct Cell {
     pub corners: Vec<Plane>,
 }
 
-/// Random numbers from 0 to 1 (xorshift).
-pub fn numbers(seed: u64) -> impl FnMut() -> f64 {
-    let mut s = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
-    move || {
-        s ^= s << 13;
-        s ^= s >> 7;
-        s ^= s << 17;
-        (s >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
-
 pub fn cell(lengths: [f64; 2], at: &[Plane], a: usize) -> Cell {
     let reach = 2.0 * (lengths[0] + lengths[1]);
     let mut corners: Vec<Plane> = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]

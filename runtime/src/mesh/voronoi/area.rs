@@ -53,7 +53,7 @@ impl<T: Real> Functional<T, 2> for voronoi_area<T> {
         check_count(seed.len(), self.sites())?;
         check_count(out.len(), self.sites())?;
         out.fill(Plane::zeros());
-        self.mesh.add_area_gradient(seed, out);
+        self.mesh.add_area_gradient(|a| seed[a], out);
         Ok(())
     }
 }

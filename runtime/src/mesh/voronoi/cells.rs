@@ -38,11 +38,11 @@ impl<T: Real> Voronoi<T> {
     }
 
     /// Adds to `out` how `sum seed_a A_a` changes with each place.
-    pub(super) fn add_area_gradient(&self, seed: &[T], out: &mut [Plane<T>]) {
+    pub(super) fn add_area_gradient(&self, seed: impl Fn(usize) -> T, out: &mut [Plane<T>]) {
         let half = T::from_f64(0.5);
         for triangle in self.triangles() {
             let [a, b, c] = triangle.sites;
-            let seeds = [seed[a], seed[b], seed[c]];
+            let seeds = [seed(a), seed(b), seed(c)];
             // Of a side, for its two ends; `w left(d)` leads from its middle to the circumcentre.
             let part = |k: usize| {
                 let (d, w) = (triangle.sides[k], triangle.weights[k]);

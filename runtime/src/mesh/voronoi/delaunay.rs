@@ -99,32 +99,31 @@ impl Delaunay {
     /// Brings far sites back by whole periods, and the offsets of their edges with them; whether this can be done.
     fn count_anew(&mut self, at: &impl Fn(usize) -> [f64; 2]) -> bool {
         let lengths = self.torus.lengths;
-        let mut by = vec![[0.0; 2]; self.sites()];
-        for (site, by) in by.iter_mut().enumerate() {
-            let x = at(site);
-            for k in 0..2 {
-                by[k] = ((x[k] - self.turns[site][k] * lengths[k]) / lengths[k]).floor();
-                if by[k].abs() > LARGEST_OFFSET {
-                    return false;
-                }
-            }
+        let beyond = |offset: &f64| offset.abs() > LARGEST_OFFSET;
+        let by: Vec<[f64; 2]> = (0..self.sites())
+            .map(|site| {
+                let (x, turns) = (at(site), self.turns[site]);
+                core::array::from_fn(|k| (x[k] / lengths[k] - turns[k]).floor())
+            })
+            .collect();
+        if by.as_flattened().iter().any(beyond) {
+            return false;
         }
         for e in 0..self.edges.len() {
             let (from, to) = (self.edges.origin[e] as usize, self.edges.target(e));
-            for k in 0..2 {
-                let offset = f64::from(self.edges.offset[e][k]) + by[to][k] - by[from][k];
-                if offset.abs() > LARGEST_OFFSET {
-                    return false;
-                }
-                self.edges.offset[e][k] = offset as i16;
+            let old = self.edges.offset[e];
+            let new: [f64; 2] =
+                core::array::from_fn(|k| f64::from(old[k]) + by[to][k] - by[from][k]);
+            if new.iter().any(beyond) {
+                return false;
             }
+            self.edges.offset[e] = new.map(|offset| offset as i16);
         }
         for (site, by) in by.iter().enumerate() {
             let x = at(site);
-            for k in 0..2 {
-                self.turns[site][k] += by[k];
-            }
-            let local = core::array::from_fn(|k| x[k] - self.turns[site][k] * lengths[k]);
+            let turns = &mut self.turns[site];
+            *turns = [turns[0] + by[0], turns[1] + by[1]];
+            let local = core::array::from_fn(|k| x[k] - turns[k] * lengths[k]);
             self.places[site] = self.torus.place(local);
         }
         true

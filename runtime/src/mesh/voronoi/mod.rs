@@ -4,20 +4,27 @@
 //! Conventions: an edge leads from site `a` to site `b`, along `d = X_b - X_a` of length `R`; the face between their
 //! cells has the length `l`, and its middle is `c`. Triangles go counterclockwise.
 
+mod area;
+mod bins;
+mod cells;
+mod conjugate;
 mod delaunay;
 mod half_edges;
+mod helmholtz;
 mod insertion;
-mod predicates;
-mod torus;
-
-mod area;
-mod cells;
+mod laplacian;
+mod masses;
 mod mesh;
 mod moment;
 pub mod placement;
+mod predicates;
+mod repulsion;
+mod torus;
 
 pub use area::voronoi_area;
 pub use cells::Face;
 pub use delaunay::Counted;
+pub use helmholtz::helmholtz_depth;
 pub use mesh::{Triangle, Voronoi};
 pub use moment::second_moment;
+pub use repulsion::pair_core;
