@@ -12,6 +12,13 @@ pub enum MeshError {
         /// Its number.
         site: usize,
     },
+    /// A particle is so many periods away that its place within one is lost to rounding.
+    TooFar {
+        /// Its number.
+        site: usize,
+        /// How many.
+        periods: f64,
+    },
     /// Two particles are at one place, or so near that no cells lie between them.
     Coincident {
         /// One of them.
@@ -28,6 +35,13 @@ pub enum MeshError {
         /// What was asked for.
         tolerance: f64,
     },
+    /// There are not as many values as sites.
+    Count {
+        /// How many values there are.
+        given: usize,
+        /// How many sites.
+        sites: usize,
+    },
     /// A particle is beyond a wall by more than a reflection puts back.
     Outside {
         /// Its number.
@@ -41,6 +55,10 @@ impl fmt::Display for MeshError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotFinite { site } => write!(f, "particle {site} is at no finite place"),
+            Self::TooFar { site, periods } => write!(
+                f,
+                "particle {site} is {periods:e} periods of the domain away, where rounding loses its place"
+            ),
             Self::Coincident { first, second } => {
                 write!(f, "particles {first} and {second} are at one place")
             }
@@ -52,6 +70,9 @@ impl fmt::Display for MeshError {
                 f,
                 "after {iterations} iterations a residual of {residual:e} is left, and {tolerance:e} is asked for"
             ),
+            Self::Count { given, sites } => {
+                write!(f, "{given} values are given for {sites} sites")
+            }
             Self::Outside { site, by } => {
                 write!(
                     f,

@@ -4,7 +4,12 @@
 mod domain;
 mod error;
 mod functional;
+mod voronoi;
 
 pub use domain::{Domain, Wall};
 pub use error::MeshError;
 pub use functional::{Functional, Setting};
+pub use voronoi::{
+    Counted, Face, Triangle, Voronoi, helmholtz_depth, pair_core, placement, second_moment,
+    voronoi_area,
+};

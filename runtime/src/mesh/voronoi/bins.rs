@@ -1,0 +1,121 @@
+//! Particles sorted into the squares of a grid, to find those that are near. Takes places on a torus; gives, for each
+//! particle, the candidates of its own square and the eight around it, in an order that depends on places alone.
+
+use crate::mesh::MeshError;
+
+/// Squares at least as wide as a radius.
+#[derive(Clone, Debug)]
+pub(super) struct Bins {
+    lengths: [f64; 2],
+    count: [usize; 2],
+    /// Where the particles of each square begin, and those of the last end.
+    start: Vec<u32>,
+    /// Particles by squares.
+    sorted: Vec<u32>,
+    /// Of every particle: its square, and the whole periods taken off its place.
+    square: Vec<[u32; 2]>,
+    turns: Vec<[f64; 2]>,
+}
+
+impl Bins {
+    /// For a radius that is at most half of either length. There are not many more squares than particles, however
+    /// small it is.
+    pub fn new(lengths: [f64; 2], radius: f64, particles: usize) -> Self {
+        let spacing = (lengths[0] * lengths[1] / particles as f64).sqrt();
+        let width = radius.max(0.5 * spacing);
+        let count = lengths.map(|length| ((length / width).floor() as usize).max(1));
+        Self {
+            lengths,
+            count,
+            start: vec![0; count[0] * count[1] + 1],
+            sorted: vec![0; particles],
+            square: vec![[0; 2]; particles],
+            turns: vec![[0.0; 2]; particles],
+        }
+    }
+
+    /// How many particles there are.
+    pub fn particles(&self) -> usize {
+        self.square.len()
+    }
+
+    fn number(&self, [i, j]: [u32; 2]) -> usize {
+        j as usize * self.count[0] + i as usize
+    }
+
+    /// Sorts them.
+    pub fn sort(&mut self, at: impl Fn(usize) -> [f64; 2]) -> Result<(), MeshError> {
+        self.start.fill(0);
+        for site in 0..self.particles() {
+            let x = at(site);
+            if !(x[0].is_finite() && x[1].is_finite()) {
+                return Err(MeshError::NotFinite { site });
+            }
+            for (k, &x) in x.iter().enumerate() {
+                let turns = (x / self.lengths[k]).floor();
+                let share = x / self.lengths[k] - turns;
+                self.turns[site][k] = turns;
+                let last = self.count[k] as u32 - 1;
+                self.square[site][k] = ((share * self.count[k] as f64) as u32).min(last);
+            }
+            let number = self.number(self.square[site]);
+            self.start[number] += 1;
+        }
+        let mut before = 0;
+        for start in &mut self.start {
+            before += *start;
+            *start = before;
+        }
+        for site in (0..self.particles()).rev() {
+            let number = self.number(self.square[site]);
+            self.start[number] -= 1;
+            self.sorted[self.start[number] as usize] = site as u32;
+        }
+        Ok(())
+    }
+
+    /// Calls for every other particle of the squares around a particle, with the whole periods, as a length, that bring
+    /// it there.
+    #[inline]
+    pub fn near(
+        &self,
+        site: usize,
+        mut call: impl FnMut(usize, [f64; 2]) -> Result<(), MeshError>,
+    ) -> Result<(), MeshError> {
+        let own = self.square[site];
+        for j in -1..=1 {
+            for i in -1..=1 {
+                let (square, periods) = self.neighbour(own, [i, j]);
+                let number = self.number(square);
+                let range = self.start[number] as usize..self.start[number + 1] as usize;
+                for &other in &self.sorted[range] {
+                    let other = other as usize;
+                    if other == site {
+                        continue;
+                    }
+                    let shift = core::array::from_fn(|k| {
+                        let turns = self.turns[site][k] - self.turns[other][k] + periods[k];
+                        turns * self.lengths[k]
+                    });
+                    call(other, shift)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// A square next to another, and the periods between it and the one of its number. Where there are only one or two
+    /// squares in a direction the same one is met from several sides, as different copies: at most one copy of a
+    /// particle is within a radius of half a period.
+    fn neighbour(&self, own: [u32; 2], by: [i64; 2]) -> ([u32; 2], [f64; 2]) {
+        let mut square = own;
+        let mut periods = [0.0; 2];
+        for k in 0..2 {
+            let count = self.count[k] as i64;
+            let next = i64::from(own[k]) + by[k];
+            periods[k] = next.div_euclid(count) as f64;
+            square[k] = next.rem_euclid(count) as u32;
+        }
+        (square, periods)
+    }
+}

@@ -1,0 +1,115 @@
+//! Voronoi cells: area, centre of mass and second moment of each, the faces between them, and how areas change
+//! with places. Every formula is a sum over the two right triangles that a side of a Delaunay triangle, its middle
+//! and the circumcentre make with either end; these are signed, so that it holds beyond obtuse angles too.
+
+use super::mesh::{Plane, Voronoi, dot, left};
+use crate::Real;
+use nalgebra::SVector;
+
+/// The face between two cells, and the edge that crosses it.
+#[derive(Clone, Copy, Debug)]
+pub struct Face<T> {
+    /// The sites on either side: from the first to the second leads the edge.
+    pub sites: [usize; 2],
+    /// The edge.
+    pub edge: SVector<T, 2>,
+    /// Length of the face over length of the edge: the weight of the edge in the Laplace operator of finite elements.
+    pub ratio: T,
+    /// Middle of the face, seen from the first site.
+    pub middle: SVector<T, 2>,
+}
+
+impl<T: Real> Voronoi<T> {
+    /// Area of every cell. Their sum is the area of the domain, whatever the mesh.
+    pub fn areas(&self, out: &mut [T]) {
+        out.fill(T::zero());
+        let quarter = T::from_f64(0.25);
+        for triangle in self.triangles() {
+            let [a, b, c] = triangle.sites;
+            let part = |k: usize| {
+                let side = triangle.sides[k];
+                triangle.weights[k] * dot(side, side) * quarter
+            };
+            let (ab, bc, ca) = (part(0), part(1), part(2));
+            out[a] += ca + ab;
+            out[b] += ab + bc;
+            out[c] += bc + ca;
+        }
+    }
+
+    /// Adds to `out` how `sum seed_a A_a` changes with each place.
+    pub(super) fn add_area_gradient(&self, seed: impl Fn(usize) -> T, out: &mut [Plane<T>]) {
+        let half = T::from_f64(0.5);
+        for triangle in self.triangles() {
+            let [a, b, c] = triangle.sites;
+            let seeds = [seed(a), seed(b), seed(c)];
+            // Of a side, for its two ends; `w left(d)` leads from its middle to the circumcentre.
+            let part = |k: usize| {
+                let (d, w) = (triangle.sides[k], triangle.weights[k]);
+                let difference = (seeds[k] - seeds[(k + 1) % 3]) * w * half;
+                let up = left(d) * w;
+                ((d + up) * difference, (d - up) * difference)
+            };
+            let (ab, bc, ca) = (part(0), part(1), part(2));
+            out[a] += ab.0 + ca.1;
+            out[b] += bc.0 + ab.1;
+            out[c] += ca.0 + bc.1;
+        }
+    }
+
+    /// From every site to the centre of mass of its cell.
+    pub fn centroids(&self, areas: &[T], out: &mut [SVector<T, 2>]) {
+        out.fill(Plane::zeros());
+        self.add_first_moments(|_| T::one(), out);
+        for (centre, &area) in out.iter_mut().zip(areas) {
+            *centre /= area;
+        }
+    }
+
+    /// Adds to `out` the integral of `x - X_a` over each cell, times a number.
+    pub(super) fn add_first_moments(&self, factor: impl Fn(usize) -> T, out: &mut [Plane<T>]) {
+        let twelfth = T::from_ratio(1, 12);
+        for triangle in self.triangles() {
+            for k in 0..3 {
+                let (d, w) = (triangle.sides[k], triangle.weights[k]);
+                let (a, b) = (triangle.sites[k], triangle.sites[(k + 1) % 3]);
+                let size = w * dot(d, d) * twelfth;
+                let up = left(d) * w;
+                out[a] += (d + up) * (size * factor(a));
+                out[b] += (up - d) * (size * factor(b));
+            }
+        }
+    }
+
+    /// Integral of `|x - X_a|^2` over every cell.
+    pub fn second_moments(&self, out: &mut [T]) {
+        out.fill(T::zero());
+        let (first, second) = (T::from_ratio(1, 32), T::from_ratio(1, 24));
+        for triangle in self.triangles() {
+            for k in 0..3 {
+                let (d, w) = (triangle.sides[k], triangle.weights[k]);
+                let square = dot(d, d);
+                let part = square * square * w * (first + second * w * w);
+                out[triangle.sites[k]] += part;
+                out[triangle.sites[(k + 1) % 3]] += part;
+            }
+        }
+    }
+
+    /// The faces, three times as many as particles.
+    pub fn faces(&self) -> impl Iterator<Item = Face<T>> + '_ {
+        let half = T::from_f64(0.5);
+        self.edges().map(move |(e, f)| {
+            let (triangle, across) = (self.triangle(e / 3), self.triangle(f / 3));
+            let edge = triangle.sides[e % 3];
+            let (above, below) = (triangle.weights[e % 3], across.weights[f % 3]);
+            let (from, to) = self.ends(e);
+            Face {
+                sites: [from, to],
+                edge,
+                ratio: above + below,
+                middle: (edge + left(edge) * (above - below)) * half,
+            }
+        })
+    }
+}

@@ -1,0 +1,134 @@
+//! Solution of `(A + alpha^2 K) x = b`: by conjugate gradients with the diagonal as preconditioner (Hestenes and
+//! Stiefel, 1952) for plain numbers, and by Chebyshev's iteration for numbers that carry derivatives: it is the same
+//! polynomial for every right side, so that derivatives converge with the values. Takes a start; gives the iterations.
+
+use super::laplacian::Helmholtz;
+use crate::Real;
+use crate::mesh::MeshError;
+
+/// What is left of the right side, in units of the rounding of one operation: 1e-12 in doubles.
+const TOLERANCE: f64 = 1e-12 / (0.5 * f64::EPSILON);
+
+/// Iterations after which it is given up.
+const MOST: usize = 10_000;
+
+/// Vectors of an iteration.
+#[derive(Clone, Debug)]
+pub(super) struct Iteration<T> {
+    residual: Vec<T>,
+    direction: Vec<T>,
+    image: Vec<T>,
+}
+
+impl<T: Real> Iteration<T> {
+    pub fn new(sites: usize) -> Self {
+        let zeros = vec![T::zero(); sites];
+        Self {
+            residual: zeros.clone(),
+            direction: zeros.clone(),
+            image: zeros,
+        }
+    }
+
+    /// Solves, from what `x` holds; gives how many times the operator was applied.
+    pub fn solve(
+        &mut self,
+        operator: &Helmholtz<T>,
+        right: &[T],
+        x: &mut [T],
+    ) -> Result<usize, MeshError> {
+        if T::ORDER == 0 {
+            self.conjugate(operator, right, x)
+        } else {
+            Ok(self.chebyshev(operator, right, x))
+        }
+    }
+
+    fn conjugate(
+        &mut self,
+        operator: &Helmholtz<T>,
+        right: &[T],
+        x: &mut [T],
+    ) -> Result<usize, MeshError> {
+        let tolerance = TOLERANCE * T::EPSILON;
+        let size: f64 = right.iter().map(|b| (*b * *b).value()).sum();
+        let bound = tolerance * tolerance * size;
+        let (mut left, mut sum) = (T::zero(), T::zero());
+        for (a, right) in right.iter().enumerate() {
+            let residual = *right - operator.row(a, x);
+            let step = residual / operator.diagonal[a];
+            self.residual[a] = residual;
+            self.direction[a] = step;
+            left += residual * residual;
+            sum += residual * step;
+        }
+        for products in 1..=MOST {
+            if left.value() <= bound {
+                return Ok(products);
+            }
+            let mut curvature = T::zero();
+            for (a, image) in self.image.iter_mut().enumerate() {
+                *image = operator.row(a, &self.direction);
+                curvature += *image * self.direction[a];
+            }
+            let length = sum / curvature;
+            let before = sum;
+            (left, sum) = (T::zero(), T::zero());
+            for (a, x) in x.iter_mut().enumerate() {
+                *x += length * self.direction[a];
+                let residual = self.residual[a] - length * self.image[a];
+                let step = residual / operator.diagonal[a];
+                self.residual[a] = residual;
+                self.image[a] = step;
+                left += residual * residual;
+                sum += residual * step;
+            }
+            let share = sum / before;
+            for (direction, step) in self.direction.iter_mut().zip(&self.image) {
+                *direction = *step + share * *direction;
+            }
+            if !left.is_finite() {
+                break;
+            }
+        }
+        Err(MeshError::NotConverged {
+            iterations: MOST,
+            residual: (left.value() / size).sqrt(),
+            tolerance,
+        })
+    }
+
+    /// The scaled operator has its eigenvalues between `least` and `2 - least` (Gershgorin): the iteration is as long
+    /// as these ask for, once more for each order of derivatives.
+    fn chebyshev(&mut self, operator: &Helmholtz<T>, right: &[T], x: &mut [T]) -> usize {
+        let shares = operator.areas.iter().zip(&operator.diagonal);
+        let least = shares
+            .map(|(area, diagonal)| (*area / *diagonal).value())
+            .fold(1.0, f64::min);
+        let width = (1.0 - least).max(1e-3);
+        let rate = width / (1.0 + (1.0 - width * width).sqrt());
+        let cycle = ((TOLERANCE * T::EPSILON * 1e-3).ln() / rate.ln()).ceil() as usize;
+        for _ in 0..=T::ORDER {
+            self.direction.fill(T::zero());
+            // Of the three-term recurrence.
+            let mut weight = 0.0;
+            for k in 0..cycle {
+                weight = match k {
+                    0 => 1.0,
+                    1 => 1.0 / (1.0 - width * width / 2.0),
+                    _ => 1.0 / (1.0 - width * width * weight / 4.0),
+                };
+                let (fresh, kept) = (T::from_f64(weight), T::from_f64(weight - 1.0));
+                for (a, residual) in self.residual.iter_mut().enumerate() {
+                    *residual = (right[a] - operator.row(a, x)) / operator.diagonal[a];
+                }
+                for (a, x) in x.iter_mut().enumerate() {
+                    let step = fresh * self.residual[a] + kept * self.direction[a];
+                    self.direction[a] = step;
+                    *x += step;
+                }
+            }
+        }
+        cycle * (T::ORDER as usize + 1)
+    }
+}

@@ -1,0 +1,176 @@
+//! The Delaunay triangulation of sites on a torus: made by insertion, then kept while the sites move, by flips of
+//! edges (Lawson, 1977; on flat surfaces Indermitte, Liebling, Troyanov and Clemencon, 2001), and made anew where
+//! a triangle has turned over. Takes places; gives half-edges. The torus is never cut: there are no copies of
+//! sites, and a few sites, or one, are no special case.
+
+use super::half_edges::{HalfEdges, next, previous};
+use super::predicates::{in_circle, turn};
+use super::torus::{Grains, Torus};
+use crate::mesh::MeshError;
+
+/// A site this many periods or more from where it was counted is counted anew.
+const FAR: f64 = 2.0;
+
+/// Offsets beyond this are no longer kept up.
+const LARGEST_OFFSET: f64 = 4096.0;
+
+/// A Delaunay triangulation that follows its sites.
+#[derive(Clone, Debug)]
+pub(super) struct Delaunay {
+    pub torus: Torus,
+    /// Its edges; none before the first update.
+    pub edges: HalfEdges,
+    /// Whole periods that are taken off each site.
+    pub turns: Vec<[f64; 2]>,
+    pub(super) places: Vec<Grains>,
+    pub(super) suspects: Vec<u32>,
+    /// Edges flipped, and triangulations made anew, since the first update.
+    pub counted: Counted,
+}
+
+/// What the sites' motion has cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counted {
+    /// Edges that were flipped.
+    pub flips: u64,
+    /// Triangulations made from nothing, the first among them.
+    pub rebuilds: u64,
+}
+
+impl Delaunay {
+    /// For as many sites, without edges as yet.
+    pub fn new(torus: Torus, sites: usize) -> Self {
+        Self {
+            torus,
+            edges: HalfEdges::default(),
+            turns: vec![[0.0; 2]; sites],
+            places: vec![[0.0; 2]; sites],
+            suspects: Vec::new(),
+            counted: Counted::default(),
+        }
+    }
+
+    /// How many sites there are.
+    pub fn sites(&self) -> usize {
+        self.places.len()
+    }
+
+    /// An edge, in grains.
+    #[inline(always)]
+    pub(super) fn edge(&self, e: usize) -> Grains {
+        let from = self.places[self.edges.origin[e] as usize];
+        let to = self.places[self.edges.target(e)];
+        self.torus.between(from, to, self.edges.offset[e])
+    }
+
+    /// Makes the triangulation that of these sites, which need not be wrapped.
+    pub fn follow(&mut self, at: impl Fn(usize) -> [f64; 2]) -> Result<(), MeshError> {
+        let kept = !self.edges.origin.is_empty() && self.place(&at)? && self.find_suspects();
+        if kept {
+            self.repair();
+            return Ok(());
+        }
+        let made = self.begin(&at).and_then(|()| self.insert_all());
+        if made.is_err() {
+            // Nothing of what was begun is followed.
+            self.edges = HalfEdges::default();
+        }
+        made
+    }
+
+    /// Puts the sites at their new places; whether the edges still go with them.
+    fn place(&mut self, at: &impl Fn(usize) -> [f64; 2]) -> Result<bool, MeshError> {
+        let lengths = self.torus.lengths;
+        let mut far = false;
+        for (site, (place, turns)) in self.places.iter_mut().zip(&self.turns).enumerate() {
+            let local: [f64; 2] = {
+                let x = at(site);
+                core::array::from_fn(|k| x[k] - turns[k] * lengths[k])
+            };
+            if !(local[0].is_finite() && local[1].is_finite()) {
+                return Err(MeshError::NotFinite { site });
+            }
+            far |= (0..2).any(|k| local[k].abs() >= FAR * lengths[k]);
+            *place = self.torus.place(local);
+        }
+        Ok(!far || self.count_anew(at))
+    }
+
+    /// Brings far sites back by whole periods, and the offsets of their edges with them; whether this can be done.
+    fn count_anew(&mut self, at: &impl Fn(usize) -> [f64; 2]) -> bool {
+        let lengths = self.torus.lengths;
+        let beyond = |offset: &f64| offset.abs() > LARGEST_OFFSET;
+        let by: Vec<[f64; 2]> = (0..self.sites())
+            .map(|site| {
+                let (x, turns) = (at(site), self.turns[site]);
+                core::array::from_fn(|k| (x[k] / lengths[k] - turns[k]).floor())
+            })
+            .collect();
+        if by.as_flattened().iter().any(beyond) {
+            return false;
+        }
+        for e in 0..self.edges.len() {
+            let (from, to) = (self.edges.origin[e] as usize, self.edges.target(e));
+            let old = self.edges.offset[e];
+            let new: [f64; 2] =
+                core::array::from_fn(|k| f64::from(old[k]) + by[to][k] - by[from][k]);
+            if new.iter().any(beyond) {
+                return false;
+            }
+            self.edges.offset[e] = new.map(|offset| offset as i16);
+        }
+        for (site, by) in by.iter().enumerate() {
+            let x = at(site);
+            let turns = &mut self.turns[site];
+            *turns = [turns[0] + by[0], turns[1] + by[1]];
+            let local = core::array::from_fn(|k| x[k] - turns[k] * lengths[k]);
+            self.places[site] = self.torus.place(local);
+        }
+        true
+    }
+
+    /// Collects the edges that are not Delaunay; whether every triangle still turns left.
+    fn find_suspects(&mut self) -> bool {
+        self.suspects.clear();
+        for e in (0..self.edges.len()).step_by(3) {
+            let (first, second) = (self.edge(e), self.edge(e + 1));
+            if turn(first, second) <= 0.0 {
+                return false;
+            }
+            let third = [-first[0] - second[0], -first[1] - second[1]];
+            let sides = [first, second, third];
+            for (k, &side) in sides.iter().enumerate() {
+                let twin = self.edges.twin[e + k] as usize;
+                let before = sides[(k + 2) % 3];
+                if e + k < twin && in_circle(side, [-before[0], -before[1]], self.edge(next(twin)))
+                {
+                    self.suspects.push((e + k) as u32);
+                }
+            }
+        }
+        true
+    }
+
+    /// Whether the circle of an edge's triangle holds the site across it.
+    fn is_bad(&self, e: usize) -> bool {
+        let before = self.edge(previous(e));
+        let across = self.edge(next(self.edges.twin[e] as usize));
+        in_circle(self.edge(e), [-before[0], -before[1]], across)
+    }
+
+    /// Flips suspected edges until all are Delaunay. Ends, because each flip lowers the lifted surface.
+    pub(super) fn repair(&mut self) {
+        while let Some(e) = self.suspects.pop() {
+            if self.is_bad(e as usize) {
+                self.flip(e as usize);
+            }
+        }
+    }
+
+    /// Flips an edge and suspects the four around it.
+    pub(super) fn flip(&mut self, e: usize) {
+        self.counted.flips += 1;
+        let around = self.edges.flip(e);
+        self.suspects.extend(around.map(|e| e as u32));
+    }
+}

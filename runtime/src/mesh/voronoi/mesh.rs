@@ -1,0 +1,218 @@
+//! The mesh that particles carry along: triangles with the vectors of their sides. Takes places; which sites are
+//! neighbours is decided on their leading values, everything else is computed in the scalar of the places.
+
+use super::delaunay::{Counted, Delaunay};
+use super::half_edges::next;
+use super::torus::Torus;
+use crate::mesh::{Domain, MeshError, Wall};
+use crate::{ParameterError, Problem, Real};
+use nalgebra::SVector;
+
+/// A vector in the plane.
+pub(super) type Plane<T> = SVector<T, 2>;
+
+/// The Delaunay triangulation of particles on a torus, and with it their Voronoi diagram.
+#[derive(Clone, Debug)]
+pub struct Voronoi<T> {
+    pub(super) delaunay: Delaunay,
+    /// Places less whole periods.
+    local: Vec<Plane<T>>,
+}
+
+/// A Delaunay triangle, counterclockwise.
+#[derive(Clone, Copy, Debug)]
+pub struct Triangle<T> {
+    /// Its corners.
+    pub sites: [usize; 3],
+    /// Its sides: the first leads from the first corner to the second, and so on.
+    pub sides: [SVector<T, 2>; 3],
+    /// Twice its area.
+    pub twice_area: T,
+    /// Half the cotangent of the angle across each side: what part of the side's length the circumcentre is away
+    /// from the side's middle, into the triangle.
+    pub weights: [T; 3],
+}
+
+/// The vector turned left by a right angle.
+#[inline(always)]
+pub(super) fn left<T: Real>(v: Plane<T>) -> Plane<T> {
+    Plane::new(-v[1], v[0])
+}
+
+/// The product of lengths and the cosine of the angle between.
+#[inline(always)]
+pub(super) fn dot<T: Real>(a: Plane<T>, b: Plane<T>) -> T {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+impl<T: Real> Voronoi<T> {
+    /// The most particles of a mesh: half-edges are numbered with 32 bits.
+    pub const MOST: usize = (u32::MAX / 6) as usize;
+
+    /// For as many particles, which are given by [`Voronoi::update`].
+    ///
+    /// # Errors
+    /// A domain that is not periodic in both directions or has no area, no particle or too many, a scalar of
+    /// several lanes.
+    pub fn new(domain: &Domain<2>, particles: usize) -> Result<Self, ParameterError> {
+        let refused = |problem, remedy| ParameterError {
+            field: "domain",
+            problem,
+            remedy,
+        };
+        if domain.walls != [Wall::Periodic; 2] {
+            let text = "the domain is periodic in both directions";
+            let remedy = "Voronoi meshes have no walls: place the particles on a torus";
+            return Err(refused(Problem::AssumptionFails { text }, remedy));
+        }
+        for (index, &value) in domain.lengths.iter().enumerate() {
+            let remedy = "give the lengths of the two periods";
+            if !value.is_finite() {
+                return Err(refused(Problem::NotFinite { index, value }, remedy));
+            }
+            if value <= 0.0 {
+                return Err(refused(Problem::NotPositive { value }, remedy));
+            }
+        }
+        let ratio = domain.lengths[0] / domain.lengths[1];
+        if ratio.max(1.0 / ratio) > 1e6 {
+            let text = "one period is at most 1e6 times the other";
+            let remedy = "model this domain in one dimension";
+            return Err(refused(Problem::AssumptionFails { text }, remedy));
+        }
+        if particles == 0 || particles > Self::MOST {
+            let value = particles as f64;
+            let problem = if particles == 0 {
+                Problem::NotPositive { value }
+            } else {
+                let text = "there are at most 7e8 particles";
+                Problem::AssumptionFails { text }
+            };
+            return Err(ParameterError {
+                field: "particles",
+                problem,
+                remedy: "place at least one particle, and at most 7e8",
+            });
+        }
+        if T::LANES > 1 {
+            let text = "one mesh stands in a scalar";
+            let remedy = "run the members of an ensemble of meshes one by one";
+            return Err(refused(Problem::AssumptionFails { text }, remedy));
+        }
+        let torus = Torus::new(domain.lengths);
+        Ok(Self {
+            delaunay: Delaunay::new(torus, particles),
+            local: vec![Plane::zeros(); particles],
+        })
+    }
+
+    /// How many particles it has.
+    #[must_use]
+    pub fn sites(&self) -> usize {
+        self.local.len()
+    }
+
+    /// What its motion has cost so far.
+    #[must_use]
+    pub fn counted(&self) -> Counted {
+        self.delaunay.counted
+    }
+
+    /// Length of the periods.
+    #[must_use]
+    pub fn lengths(&self) -> [f64; 2] {
+        self.delaunay.torus.lengths
+    }
+
+    /// Moves the particles, not wrapped or wrapped, and makes the mesh theirs.
+    ///
+    /// # Errors
+    /// [`MeshError::Coincident`] where two particles are nearer than 4e-15 of the longer period,
+    /// [`MeshError::NotFinite`], [`MeshError::Count`]. The mesh is of no use then, until the next update.
+    pub fn update(&mut self, at: &[SVector<T, 2>]) -> Result<(), MeshError> {
+        check_count(at.len(), self.sites())?;
+        self.delaunay.follow(|site| {
+            let x = &at[site];
+            [x[0].value(), x[1].value()]
+        })?;
+        let lengths = self.lengths();
+        let turns = self.delaunay.turns.iter();
+        for ((local, x), turns) in self.local.iter_mut().zip(at).zip(turns) {
+            for k in 0..2 {
+                local[k] = x[k] - T::from_f64(turns[k] * lengths[k]);
+            }
+        }
+        Ok(())
+    }
+
+    /// A particle's place within the domain, or within two periods of it.
+    #[must_use]
+    pub fn place(&self, site: usize) -> SVector<T, 2> {
+        self.local[site]
+    }
+
+    /// The vector of an edge.
+    #[inline(always)]
+    pub(super) fn side(&self, from: usize, to: usize, offset: [i16; 2]) -> Plane<T> {
+        let mut side = self.local[to] - self.local[from];
+        if offset != [0; 2] {
+            let lengths = self.delaunay.torus.lengths;
+            for k in 0..2 {
+                side[k] += T::from_f64(f64::from(offset[k]) * lengths[k]);
+            }
+        }
+        side
+    }
+
+    /// Its triangles, twice as many as particles.
+    #[inline]
+    pub fn triangles(&self) -> impl Iterator<Item = Triangle<T>> + '_ {
+        (0..self.delaunay.edges.len() / 3).map(|t| self.triangle(t))
+    }
+
+    /// One of its triangles.
+    #[inline(always)]
+    pub(super) fn triangle(&self, t: usize) -> Triangle<T> {
+        let edges = &self.delaunay.edges;
+        let origin = &edges.origin[3 * t..3 * t + 3];
+        let offset = &edges.offset[3 * t..3 * t + 3];
+        let sites = [origin[0] as usize, origin[1] as usize, origin[2] as usize];
+        let first = self.side(sites[0], sites[1], offset[0]);
+        let second = self.side(sites[1], sites[2], offset[1]);
+        let third = -(first + second);
+        let twice_area = first[0] * second[1] - first[1] * second[0];
+        let scale = T::from_f64(-0.5) / twice_area;
+        Triangle {
+            sites,
+            sides: [first, second, third],
+            twice_area,
+            weights: [
+                dot(second, third) * scale,
+                dot(third, first) * scale,
+                dot(first, second) * scale,
+            ],
+        }
+    }
+
+    /// The half-edges of every edge once: the one whose number is smaller.
+    pub(super) fn edges(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let twin = self.delaunay.edges.twin.iter().enumerate();
+        twin.filter_map(|(e, &f)| (e < f as usize).then_some((e, f as usize)))
+    }
+
+    /// Where a half-edge leads, and from where.
+    pub(super) fn ends(&self, e: usize) -> (usize, usize) {
+        let edges = &self.delaunay.edges;
+        (edges.origin[e] as usize, edges.origin[next(e)] as usize)
+    }
+}
+
+/// That there is a value for each site.
+#[inline]
+pub(super) fn check_count(given: usize, sites: usize) -> Result<(), MeshError> {
+    if given == sites {
+        Ok(())
+    } else {
+        Err(MeshError::Count { given, sites })
+    }
+}

@@ -1,0 +1,124 @@
+//! Where particles start: rows of a lattice, shifted or not, hexagons, or at random and then spread evenly. Takes a
+//! periodic domain; gives places in it. The random numbers are a linear congruential sequence (Knuth's multiplier), so
+//! that a start is the same everywhere.
+
+use super::mesh::{Plane, Voronoi};
+use crate::mesh::{Domain, MeshError};
+use crate::{ParameterError, Problem};
+use nalgebra::SVector;
+
+/// How uneven a lattice is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jitter {
+    /// The largest displacement along either direction, in units of the square root of the area of a particle.
+    pub size: f64,
+    /// Of the random numbers.
+    pub seed: u64,
+}
+
+impl Jitter {
+    /// None.
+    pub const NONE: Self = Self { size: 0.0, seed: 0 };
+}
+
+/// Random numbers from 0 to 1, in a fixed sequence for each seed.
+#[derive(Clone, Copy, Debug)]
+struct Sequence(u64);
+
+impl Sequence {
+    fn next(&mut self) -> f64 {
+        let next = self.0.wrapping_mul(6_364_136_223_846_793_005);
+        self.0 = next.wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// `columns` particles in each of `rows` rows, every second row shifted by half a column if `shifted`: bricks, or
+/// squares.
+#[must_use]
+pub fn lattice(
+    domain: &Domain<2>,
+    [columns, rows]: [usize; 2],
+    shifted: bool,
+    jitter: Jitter,
+) -> Vec<SVector<f64, 2>> {
+    let [width, height] = domain.lengths;
+    let (n, m) = (columns as f64, rows as f64);
+    let reach = jitter.size * (domain.measure() / (n * m)).sqrt();
+    let mut random = Sequence(jitter.seed);
+    let mut draw = move || reach * (2.0 * random.next() - 1.0);
+    let mut places = Vec::with_capacity(columns * rows);
+    for j in 0..rows {
+        let shift = if shifted && j % 2 == 1 { 0.75 } else { 0.25 };
+        for i in 0..columns {
+            let x = (i as f64 + shift) / n * width + draw();
+            let y = (j as f64 + 0.5) / m * height + draw();
+            places.push(Plane::new(x, y));
+        }
+    }
+    places
+}
+
+/// Shifted rows of `columns` particles, so many of them that cells are as near to regular hexagons as the domain
+/// admits.
+#[must_use]
+pub fn hexagonal(domain: &Domain<2>, columns: usize, jitter: Jitter) -> Vec<SVector<f64, 2>> {
+    let [width, height] = domain.lengths;
+    let spacing = width / columns as f64 * 0.75_f64.sqrt();
+    let rows = 2 * (height / (2.0 * spacing)).round().max(1.0) as usize;
+    lattice(domain, [columns, rows], true, jitter)
+}
+
+/// Particles at random, then moved `sweeps` times to the centres of mass of their cells, all at once (Lloyd, 1982).
+///
+/// # Errors
+/// What a mesh refuses of the domain; more than 2^31 particles.
+pub fn scattered(
+    domain: &Domain<2>,
+    particles: usize,
+    sweeps: usize,
+    seed: u64,
+) -> Result<Vec<SVector<f64, 2>>, ParameterError> {
+    let mut mesh = Voronoi::new(domain, particles)?;
+    let mut random = Sequence(seed);
+    // The numbers after those of a lattice with the same seed.
+    for _ in 0..2 * particles {
+        random.next();
+    }
+    let [width, height] = domain.lengths;
+    let mut places = Vec::with_capacity(particles);
+    for _ in 0..particles {
+        let x = random.next() * width;
+        places.push(Plane::new(x, random.next() * height));
+    }
+    relax(&mut mesh, &mut places, sweeps).map_err(|_| ParameterError {
+        field: "seed",
+        problem: Problem::AssumptionFails {
+            text: "no two particles start at one place",
+        },
+        remedy: "take another seed",
+    })?;
+    Ok(places)
+}
+
+/// Moves particles to the centres of mass of their cells, all at once, `sweeps` times.
+///
+/// # Errors
+/// Those of [`Voronoi::update`].
+pub fn relax(
+    mesh: &mut Voronoi<f64>,
+    places: &mut [SVector<f64, 2>],
+    sweeps: usize,
+) -> Result<(), MeshError> {
+    let mut areas = vec![0.0; mesh.sites()];
+    let mut centres = vec![Plane::zeros(); mesh.sites()];
+    for _ in 0..sweeps {
+        mesh.update(places)?;
+        mesh.areas(&mut areas);
+        mesh.centroids(&areas, &mut centres);
+        for (place, centre) in places.iter_mut().zip(&centres) {
+            *place += centre;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,53 @@
+//! Places on a torus as whole numbers of grains: sums, differences and shifts by periods are exact, so that every
+//! copy of a triangle is judged alike. A grain is 2^-48 of the longer period.
+
+/// Grains of the longer period. A place of a few periods, and differences of such, are exact in a double.
+const GRAINS: f64 = (1_u64 << 48) as f64;
+
+/// Added and subtracted, it leaves the nearest whole number, of numbers below 2^51.
+const ROUND: f64 = 6_755_399_441_055_744.0; // 3 * 2^51
+
+/// A vector in grains.
+pub(super) type Grains = [f64; 2];
+
+/// The periods, and how long a grain is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Torus {
+    /// The periods as lengths.
+    pub lengths: [f64; 2],
+    /// The periods in grains.
+    pub periods: Grains,
+    per_length: f64,
+}
+
+impl Torus {
+    /// The torus of these periods, which are positive and finite.
+    pub fn new(lengths: [f64; 2]) -> Self {
+        let per_length = GRAINS / lengths[0].max(lengths[1]);
+        let periods = lengths.map(|length| (length * per_length).round());
+        Self {
+            lengths,
+            periods,
+            per_length,
+        }
+    }
+
+    /// The nearest place, for coordinates within a few periods of the origin.
+    #[inline(always)]
+    pub fn place(&self, at: [f64; 2]) -> Grains {
+        at.map(|x| (x * self.per_length + ROUND) - ROUND)
+    }
+
+    /// The vector between two places, the second of which is shifted by `offset` periods.
+    #[inline(always)]
+    pub fn between(&self, from: Grains, to: Grains, offset: [i16; 2]) -> Grains {
+        let along = |k: usize| to[k] - from[k] + f64::from(offset[k]) * self.periods[k];
+        [along(0), along(1)]
+    }
+
+    /// How many periods are between two vectors that differ by whole periods.
+    pub fn periods_between(&self, from: Grains, to: Grains) -> [i16; 2] {
+        let along = |k: usize| ((to[k] - from[k]) / self.periods[k]).round() as i16;
+        [along(0), along(1)]
+    }
+}
