@@ -2,6 +2,7 @@
 //! applied to a seed. Takes a field of particles or the values of another functional.
 
 use super::{Domain, MeshError};
+use crate::line::Threads;
 use crate::{ParameterError, Real};
 
 /// What a functional is made for.
@@ -53,4 +54,9 @@ pub trait Functional<T: Real, const D: usize>: Clone + Send + Sync + Sized {
         seed: &[T],
         out: &mut [Self::Argument],
     ) -> Result<(), MeshError>;
+
+    /// Has its loops shared by so many threads from now on. They change no bit of any result.
+    fn share(&mut self, threads: Threads) {
+        let _ = threads;
+    }
 }

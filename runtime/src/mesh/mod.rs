@@ -4,7 +4,9 @@
 mod domain;
 mod error;
 mod functional;
+mod grid;
 
 pub use domain::{Domain, Wall};
 pub use error::MeshError;
 pub use functional::{Functional, Setting};
+pub use grid::{Axis, Nodes, deposit, deposit_quintic, smooth, smooth_isotropic, smoothing_length};
