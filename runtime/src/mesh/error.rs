@@ -49,6 +49,23 @@ pub enum MeshError {
         /// How far.
         by: f64,
     },
+    /// A list does not have one value for each site.
+    Length {
+        /// How many it should have.
+        expected: usize,
+        /// How many it has.
+        found: usize,
+    },
+}
+
+impl MeshError {
+    /// Whether a list has one value for each of so many sites.
+    pub(super) fn unless_of_length<V>(list: &[V], expected: usize) -> Result<(), Self> {
+        match list.len() {
+            found if found == expected => Ok(()),
+            found => Err(Self::Length { expected, found }),
+        }
+    }
 }
 
 impl fmt::Display for MeshError {
@@ -78,6 +95,9 @@ impl fmt::Display for MeshError {
                     f,
                     "particle {site} is {by:e} beyond a wall: take a shorter step"
                 )
+            }
+            Self::Length { expected, found } => {
+                write!(f, "{expected} sites, but {found} values")
             }
         }
     }

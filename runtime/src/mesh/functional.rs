@@ -1,7 +1,12 @@
 //! What a function of all sites is to a stepper: its values at sites, and its derivative, transposed and
 //! applied to a seed. Takes a field of particles or the values of another functional.
 
+<<<<<<< HEAD
 use super::{Domain, MeshError, Wall};
+=======
+use super::{Domain, MeshError};
+use crate::line::Threads;
+>>>>>>> grid
 use crate::{ParameterError, Real};
 
 /// What a functional is made for.
@@ -34,8 +39,8 @@ impl<const D: usize> Setting<D> {
 pub trait Functional<T: Real, const D: usize>:
     Clone + core::fmt::Debug + Send + Sync + Sized
 {
-    /// Value of the argument at one of its sites: of a field of particles `nalgebra::SVector<T, D>`, not wrapped
-    /// around the domain; `T` of another functional.
+    /// Value of the argument at one of its sites: of a field of particles `T` for `D = 1` and
+    /// `nalgebra::SVector<T, D>` otherwise, not wrapped around the domain; `T` of another functional.
     type Argument: Copy + Send + Sync;
     /// Its other arguments, in their order, as a tuple: `&[T]` with one value a site, or `T`; of one argument
     /// `(T,)`, of none `()`.
@@ -67,4 +72,9 @@ pub trait Functional<T: Real, const D: usize>:
         seed: &[T],
         out: &mut [Self::Argument],
     ) -> Result<(), MeshError>;
+
+    /// Has its loops shared by so many threads from now on. They change no bit of any result.
+    fn share(&mut self, threads: Threads) {
+        let _ = threads;
+    }
 }

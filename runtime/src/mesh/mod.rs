@@ -4,11 +4,13 @@
 mod domain;
 mod error;
 mod functional;
+mod grid;
 mod voronoi;
 
 pub use domain::{Domain, Wall};
 pub use error::MeshError;
 pub use functional::{Functional, Setting};
+pub use grid::{Axis, Nodes, deposit, deposit_quintic, smooth, smooth_isotropic, smoothing_length};
 pub use voronoi::{
     Counted, Face, Triangle, Voronoi, helmholtz_depth, pair_core, placement, second_moment,
     voronoi_area,

@@ -213,8 +213,7 @@ impl Plan<'_> {
             };
             let name = format_ident!("{}_here", local(&array.field));
             let all = local(&array.field);
-            let component = self.is_array_of_numbers(array).then(|| quote!([0]));
-            lets.extend(quote!(let #name = #all[site] #component;));
+            lets.extend(quote!(let #name = #all[site];));
             bindings.bind(letter, name);
         }
         let (more, results) = self.l.program(s, values, &bindings);
@@ -227,6 +226,10 @@ impl Plan<'_> {
         match &mesh.of {
             Source::Field(name) => {
                 let (field, count) = (format_ident!("{name}"), self.l.count_of(name));
+                if self.numbers().contains(name) {
+                    let all = local(&format_ident!("numbers_{name}"));
+                    return quote!(&#all[..]);
+                }
                 quote!(&at.#field[..#count])
             }
             Source::Functional(i) => {
@@ -393,6 +396,17 @@ fn written(
         quote!(#f.value(#argument, #all).map_err(|e| (#name, e))?;)
     });
     let values: Vec<TokenStream> = values.collect();
+    let numbers = plan.numbers();
+    let mut opened = TokenStream::new();
+    let mut filled = TokenStream::new();
+    for name in &numbers {
+        let (field, place) = (format_ident!("numbers_{name}"), format_ident!("{name}"));
+        let (own, count) = (local(&field), l.count_of(name));
+        fields.extend(quote!(#field: Vec<T>,));
+        inits.extend(quote!(#field: ::std::vec![T::zero(); #count],));
+        opened.extend(quote!(#field: #own,));
+        filled.extend(quote!(line::fill(self.threads, #own, |site| at.#place[site][0]);));
+    }
     let backs = plan.arrays.iter().filter_map(|a| {
         let mesh = &declared[a.mesh];
         let (f, all) = (
@@ -442,7 +456,8 @@ fn written(
             /// The values of functionals at these places.
             #[allow(unused_variables)]
             fn valued(&self, at: &#places<T>, meshes: &mut #meshes<T>) -> Result<(), (&'static str, mesh::MeshError)> {
-                let #meshes { #(#functionals,)* #(#open,)* .. } = meshes;
+                let #meshes { #(#functionals,)* #(#open,)* #opened .. } = meshes;
+                #filled
                 #(#values)*
                 Ok(())
             }
@@ -452,7 +467,7 @@ fn written(
             fn meshed(&self, #step: T, at: &#places<T>, meshes: &mut #meshes<T>, pulls: &mut #pulls<T>) -> Result<(), (&'static str, mesh::MeshError)> {
                 let _ = #step;
                 self.valued(at, meshes)?;
-                let #meshes { #(#functionals,)* #(#open,)* #(#seeds,)* } = meshes;
+                let #meshes { #(#functionals,)* #(#open,)* #(#seeds,)* #opened } = meshes;
                 #(#backs)*
                 #sums
                 Ok(())
@@ -478,16 +493,19 @@ fn type_of(mesh: &Mesh, directions: &proc_macro2::Literal) -> TokenStream {
 }
 
 impl Plan<'_> {
-    /// Whether elements are numbers that are held as arrays of one.
-    fn is_array_of_numbers(&self, a: &Array) -> bool {
-        let mesh = &self.l.line.lattice.meshes[a.mesh];
-        match (&a.seed, &mesh.of) {
-            (Some(_), Source::Field(name)) => {
-                let m = self.l.moving().find(|m| m.mover.name == *name);
-                m.is_some_and(|m| m.is_number())
+    /// Fields of one component that functionals are made of: places hold arrays of one, functionals take numbers.
+    fn numbers(&self) -> Vec<String> {
+        let mut out: Vec<String> = Vec::new();
+        for a in &self.arrays {
+            let Source::Field(name) = &self.l.line.lattice.meshes[a.mesh].of else {
+                continue;
+            };
+            let is_number = |m: super::Moving| m.mover.name == *name && m.is_number();
+            if self.l.moving().any(is_number) && !out.contains(name) {
+                out.push(name.clone());
             }
-            _ => false,
         }
+        out
     }
 
     /// The type of one element of an array.
@@ -496,7 +514,7 @@ impl Plan<'_> {
         match (&a.seed, &mesh.of) {
             (Some(_), Source::Field(name)) => {
                 let m = self.l.moving().find(|m| m.mover.name == *name);
-                m.map_or_else(|| quote!(T), |m| m.covector())
+                m.map_or_else(|| quote!(T), |m| m.value())
             }
             _ => quote!(T),
         }
@@ -505,7 +523,9 @@ impl Plan<'_> {
     fn zero(&self, a: &Array) -> TokenStream {
         let mesh = &self.l.line.lattice.meshes[a.mesh];
         match (&a.seed, &mesh.of) {
-            (Some(_), Source::Field(_)) => quote!(SMatrix::zeros()),
+            (Some(_), Source::Field(name)) if !self.numbers().contains(name) => {
+                quote!(SMatrix::zeros())
+            }
             _ => quote!(T::zero()),
         }
     }

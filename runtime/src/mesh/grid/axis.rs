@@ -1,0 +1,197 @@
+//! One direction of a uniform grid: where its nodes are, what they weigh, and which of them a node beyond an end is
+//! the image of. Takes a length, a number of intervals and what stands at the ends.
+
+use super::super::{MeshError, Wall};
+use crate::{ParameterError, Problem, Real};
+
+/// A direction of a grid: from 0 to its length in equal intervals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Axis {
+    length: f64,
+    intervals: usize,
+    wall: Wall,
+}
+
+/// Where a coordinate lies on an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Spot<T> {
+    /// Number of the interval.
+    pub cell: usize,
+    /// Position within it, in intervals from 0 to 1.
+    pub fraction: T,
+    /// Whether the coordinate is beyond a wall; `fraction` is that of its mirror image then.
+    pub mirrored: bool,
+}
+
+/// Most intervals of an axis: numbers of intervals fit 30 bits.
+const MOST: usize = 1 << 30;
+
+impl Axis {
+    /// One interval of length 1.
+    pub(super) const UNIT: Self = Self {
+        length: 1.0,
+        intervals: 1,
+        wall: Wall::Periodic,
+    };
+
+    /// An axis.
+    ///
+    /// # Errors
+    /// A length that is no positive number; no interval at all, or more than 2^30.
+    pub fn new(length: f64, intervals: usize, wall: Wall) -> Result<Self, ParameterError> {
+        let refused = |field, problem, remedy| ParameterError {
+            field,
+            problem,
+            remedy,
+        };
+        if !(length > 0.0 && length.is_finite()) {
+            return Err(refused(
+                "domain",
+                Problem::NotPositive { value: length },
+                "give each direction of the domain a positive length",
+            ));
+        }
+        if !(1..=MOST).contains(&intervals) {
+            return Err(refused(
+                "grid",
+                Problem::AssumptionFails {
+                    text: "1 <= intervals along each direction <= 2^30",
+                },
+                "give the grid at least one interval along each direction",
+            ));
+        }
+        Ok(Self {
+            length,
+            intervals,
+            wall,
+        })
+    }
+
+    /// Number of intervals.
+    #[must_use]
+    pub fn intervals(&self) -> usize {
+        self.intervals
+    }
+
+    /// Number of nodes: that of the intervals, and one more between walls.
+    #[must_use]
+    pub fn nodes(&self) -> usize {
+        match self.wall {
+            Wall::Periodic => self.intervals,
+            Wall::Solid => self.intervals + 1,
+        }
+    }
+
+    /// Length of an interval.
+    #[must_use]
+    pub fn spacing(&self) -> f64 {
+        self.length / self.intervals as f64
+    }
+
+    /// What stands at the ends.
+    #[must_use]
+    pub fn wall(&self) -> Wall {
+        self.wall
+    }
+
+    /// Coordinate of a node.
+    #[must_use]
+    pub fn coordinate(&self, node: usize) -> f64 {
+        self.length * (node as f64 / self.intervals as f64)
+    }
+
+    /// Weight of a node in the trapezoid rule: the spacing, half of it on a wall.
+    #[must_use]
+    pub fn weight<T: Real>(&self, node: usize) -> T {
+        let whole = T::from_f64(self.length) / T::from_f64(self.intervals as f64);
+        match self.wall == Wall::Solid && (node == 0 || node == self.intervals) {
+            true => whole * T::from_f64(0.5),
+            false => whole,
+        }
+    }
+
+    /// The node that the place `padded - margin` nodes from the first is an image of: the same one modulo the
+    /// period, or its mirror image in the walls, repeatedly.
+    pub(super) fn image(&self, padded: usize, margin: usize) -> usize {
+        let n = self.intervals;
+        match self.wall {
+            Wall::Periodic => (padded + margin * (n - 1)) % n,
+            Wall::Solid => {
+                // Even, and of period 2n.
+                let turned = (padded + margin * (2 * n - 1)) % (2 * n);
+                turned.min(2 * n - turned)
+            }
+        }
+    }
+
+    /// Intervals per unit of length.
+    #[inline(always)]
+    pub(super) fn density<T: Real>(&self) -> T {
+        T::from_f64(self.intervals as f64) / T::from_f64(self.length)
+    }
+
+    /// The interval that a coordinate lies in, given as a number of intervals from the origin: wrapped around a
+    /// period, mirrored where it is beyond a wall by one interval or less.
+    #[inline(always)]
+    pub(super) fn locate<T: Real>(&self, mut along: T) -> Result<Spot<T>, Beyond> {
+        let n = self.intervals as f64;
+        let mut at = along.value();
+        let mut mirrored = false;
+        if !(at >= 0.0 && at < n) {
+            (along, mirrored) = self.returned(along)?;
+            at = along.value();
+        }
+        let cell = (at as u32).min(self.intervals as u32 - 1);
+        Ok(Spot {
+            cell: cell as usize,
+            fraction: along - T::from_f64(f64::from(cell)),
+            mirrored,
+        })
+    }
+
+    /// The same coordinate within the axis, and whether it is mirrored.
+    #[cold]
+    #[inline(never)]
+    fn returned<T: Real>(&self, along: T) -> Result<(T, bool), Beyond> {
+        let n = self.intervals as f64;
+        let at = along.value();
+        if !at.is_finite() {
+            return Err(Beyond::Nowhere);
+        }
+        match self.wall {
+            Wall::Periodic => {
+                let shift = n * (at / n).floor();
+                // Of a coordinate so far away that the product is not exact, the exact remainder.
+                let shift = match (0.0..=n).contains(&(at - shift)) {
+                    true => shift,
+                    false => at - at.rem_euclid(n),
+                };
+                Ok((along - T::from_f64(shift), false))
+            }
+            Wall::Solid if at == n => Ok((along, false)),
+            Wall::Solid if (-1.0..0.0).contains(&at) => Ok((-along, true)),
+            Wall::Solid if at > n && at <= n + 1.0 => Ok((T::from_f64(2.0 * n) - along, true)),
+            Wall::Solid => Err(Beyond::By(self.spacing() * (-at).max(at - n))),
+        }
+    }
+}
+
+/// Why a coordinate lies in no interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Beyond {
+    /// It is NaN or infinite.
+    Nowhere,
+    /// It is beyond a wall by this length.
+    By(f64),
+}
+
+impl Beyond {
+    /// The same, said of a particle.
+    #[cold]
+    pub(super) fn of(self, site: usize) -> MeshError {
+        match self {
+            Self::Nowhere => MeshError::NotFinite { site },
+            Self::By(by) => MeshError::Outside { site, by },
+        }
+    }
+}

@@ -1,0 +1,291 @@
+//! Depth on a grid: the masses of particles spread over nodes by B-splines, `H_i = Σ_a m_a Φ_i(X_a) / w_i`, where Φ_i is
+//! the spline of node i with its images behind walls, and w_i the weight of the node in the trapezoid rule. Then
+//! `Σ w_i H_i = Σ m_a` to rounding. Takes positions that need not be wrapped; the transposed derivative gathers
+//! `m_a Σ_i seed_i Φ_i'(X_a) / w_i`, the exact gradient.
+
+use super::super::{Functional, MeshError, Setting};
+use super::nodes::Nodes;
+use super::padded::Padded;
+use super::sorted::{Particle, Position, Sorted};
+use super::spline::{Basis, Splines};
+use crate::line::Threads;
+use crate::{ParameterError, Problem, Real};
+use nalgebra::SVector;
+
+/// Rows of a stripe, which one thread deposits. Stripes of even number come first, then those between: where two
+/// overlap, by `K - 1` rows, the order of the sum is fixed.
+const STRIPE: usize = 8;
+
+/// Fewest particles of a thread: with fewer, waking it costs more than it saves.
+const FEWEST: usize = 4096;
+
+/// Most particles: their numbers fit 32 bits.
+const MOST: usize = u32::MAX as usize;
+
+/// Deposit and gather with splines of support `K`.
+#[derive(Clone, Debug)]
+struct Deposit<T, const D: usize, const K: usize> {
+    nodes: Nodes<D>,
+    mass: Vec<T>,
+    sorted: Sorted<T, D>,
+    padded: Padded<T, D>,
+}
+
+impl<T: Real, const D: usize, const K: usize> Deposit<T, D, K>
+where
+    Splines<K>: Basis<K>,
+{
+    fn new(setting: &Setting<D>, mass: &[T]) -> Result<Self, ParameterError> {
+        let nodes = Nodes::new(setting)?;
+        let refused = |problem, remedy| ParameterError {
+            field: "mass",
+            problem,
+            remedy,
+        };
+        if mass.len() != setting.particles || mass.len() > MOST {
+            return Err(refused(
+                Problem::AssumptionFails {
+                    text: "one mass for each particle, of fewer than 2^32",
+                },
+                "give one mass for each particle",
+            ));
+        }
+        if let Some(index) = mass.iter().position(|m| !m.is_finite()) {
+            return Err(refused(
+                Problem::NotFinite {
+                    index,
+                    value: mass[index].value(),
+                },
+                "give finite masses",
+            ));
+        }
+        if T::LANES > 1 {
+            return Err(refused(
+                Problem::AssumptionFails {
+                    text: "a scalar is one number",
+                },
+                "run the members of an ensemble one after another: in each, a particle is in a cell of its own",
+            ));
+        }
+        Ok(Self {
+            nodes,
+            mass: mass.to_vec(),
+            sorted: Sorted::new(mass.len(), nodes.axes()[0].intervals()),
+            padded: Padded::new::<K>(&nodes),
+        })
+    }
+
+    fn share(&mut self, threads: Threads) {
+        let most = if cfg!(feature = "rayon") {
+            threads.0
+        } else {
+            1
+        };
+        self.sorted.share(most.min(self.mass.len() / FEWEST));
+    }
+
+    fn value<A: Position<T, D>>(&mut self, at: &[A], out: &mut [T]) -> Result<(), MeshError> {
+        MeshError::unless_of_length(at, self.mass.len())?;
+        MeshError::unless_of_length(out, self.nodes.count())?;
+        self.sorted.sort(self.nodes.axes(), at, &self.mass)?;
+        let width = self.padded.width();
+        let places = self.padded.cleared();
+        let stripe = STRIPE * width;
+        for parity in 0..2 {
+            let places = places.get_mut(parity * stripe..).unwrap_or_default();
+            let spread = |(pair, places): (usize, &mut [T])| {
+                let first = (2 * pair + parity) * STRIPE;
+                let last = (first + STRIPE).min(self.nodes.axes()[0].intervals());
+                for (row, from) in (first..last).zip((0..).step_by(width)) {
+                    for particles in self.sorted.row(row) {
+                        scatter::<T, D, K>(&mut places[from..from + K * width], width, particles);
+                    }
+                }
+            };
+            #[cfg(feature = "rayon")]
+            if self.sorted.is_shared() {
+                use rayon::prelude::*;
+                let pairs = places.par_chunks_mut(2 * stripe).enumerate();
+                pairs.for_each(spread);
+                continue;
+            }
+            places.chunks_mut(2 * stripe).enumerate().for_each(spread);
+        }
+        self.padded.fold(out);
+        Ok(())
+    }
+
+    fn pull_back<A: Position<T, D>>(&mut self, seed: &[T], out: &mut [A]) -> Result<(), MeshError> {
+        MeshError::unless_of_length(seed, self.nodes.count())?;
+        MeshError::unless_of_length(out, self.mass.len())?;
+        self.padded.extend(seed);
+        let (places, width) = (self.padded.places(), self.padded.width());
+        let density = core::array::from_fn(|d| self.nodes.axes()[d].density());
+        let collect = |(rows, out): (super::sorted::Rows<'_, T, D>, &mut [A])| {
+            for (row, from) in (0..self.nodes.axes()[0].intervals()).zip((0..).step_by(width)) {
+                let places = &places[from..from + K * width];
+                gather::<T, A, D, K>(places, width, &density, rows.row(row), out);
+            }
+        };
+        let ranges = self
+            .sorted
+            .ranges()
+            .zip(out.chunks_mut(self.sorted.range()));
+        #[cfg(feature = "rayon")]
+        if self.sorted.is_shared() {
+            use rayon::prelude::*;
+            let ranges: Vec<_> = ranges.collect();
+            ranges.into_par_iter().for_each(collect);
+            return Ok(());
+        }
+        ranges.for_each(collect);
+        Ok(())
+    }
+}
+
+/// Adds the masses of particles of one row of cells to `K` rows of places.
+#[inline(always)]
+fn scatter<T: Real, const D: usize, const K: usize>(
+    places: &mut [T],
+    width: usize,
+    particles: &[Particle<T, D>],
+) where
+    Splines<K>: Basis<K>,
+{
+    let mut rest = places;
+    let mut rows: [&mut [T]; K] = core::array::from_fn(|_| {
+        let (row, behind) = core::mem::take(&mut rest).split_at_mut(width);
+        rest = behind;
+        row
+    });
+    for particle in particles {
+        let across = Splines::<K>::values(particle.fraction[0]);
+        if D == 1 {
+            for (row, across) in rows.iter_mut().zip(across) {
+                row[0] += particle.mass * across;
+            }
+            continue;
+        }
+        let along = Splines::<K>::values(particle.fraction[D - 1]).map(|w| w * particle.mass);
+        let column = particle.column();
+        for (row, across) in rows.iter_mut().zip(across) {
+            let row = row.get_mut(column..column + K);
+            if let Some(row) = row.and_then(|row| row.first_chunk_mut::<K>()) {
+                for (place, along) in row.iter_mut().zip(along) {
+                    *place += across * along;
+                }
+            }
+        }
+    }
+}
+
+/// The derivatives for particles of one row of cells, from `K` rows of places.
+#[inline(always)]
+fn gather<T: Real, A: Position<T, D>, const D: usize, const K: usize>(
+    places: &[T],
+    width: usize,
+    density: &[T; D],
+    particles: &[Particle<T, D>],
+    out: &mut [A],
+) where
+    Splines<K>: Basis<K>,
+{
+    let mut rest = places;
+    let rows: [&[T]; K] = core::array::from_fn(|_| {
+        let (row, behind) = rest.split_at(width);
+        rest = behind;
+        row
+    });
+    for particle in particles {
+        let slopes = Splines::<K>::slopes(particle.fraction[0]);
+        let mut sum = [T::zero(); D];
+        if D == 1 {
+            for (row, slope) in rows.iter().zip(slopes) {
+                sum[0] += row[0] * slope;
+            }
+        } else {
+            let across = Splines::<K>::values(particle.fraction[0]);
+            let along = Splines::<K>::values(particle.fraction[D - 1]);
+            let along_slopes = Splines::<K>::slopes(particle.fraction[D - 1]);
+            let column = particle.column();
+            for ((row, across), slope) in rows.iter().zip(across).zip(slopes) {
+                let row = row.get(column..column + K);
+                if let Some(row) = row.and_then(|row| row.first_chunk::<K>()) {
+                    let (mut value, mut change) = (T::zero(), T::zero());
+                    for j in 0..K {
+                        value += row[j] * along[j];
+                        change += row[j] * along_slopes[j];
+                    }
+                    sum[0] += slope * value;
+                    sum[D - 1] += across * change;
+                }
+            }
+        }
+        let mut derivative: [T; D] =
+            core::array::from_fn(|d| sum[d] * (density[d] * particle.mass));
+        for (d, component) in derivative.iter_mut().enumerate() {
+            if particle.is_mirrored(d) {
+                *component = -*component;
+            }
+        }
+        if let Some(place) = out.get_mut(particle.number()) {
+            *place = A::of(derivative);
+        }
+    }
+}
+
+/// The functionals that models name, for lines and for the plane.
+macro_rules! named {
+    ($(#[$doc:meta])* $name:ident, $support:literal) => {
+        $(#[$doc])*
+        // Named as models write it.
+        #[allow(non_camel_case_types)]
+        #[derive(Clone, Debug)]
+        pub struct $name<T, const D: usize>(Deposit<T, D, $support>);
+
+        named!($name, 1, T);
+        named!($name, 2, SVector<T, 2>);
+    };
+    ($name:ident, $d:literal, $position:ty) => {
+        impl<T: Real> Functional<T, $d> for $name<T, $d> {
+            type Argument = $position;
+            type Data<'a> = (&'a [T],);
+
+            fn new(setting: &Setting<$d>, (mass,): (&[T],)) -> Result<Self, ParameterError> {
+                Deposit::new(setting, mass).map(Self)
+            }
+
+            fn sites(&self) -> usize {
+                self.0.nodes.count()
+            }
+
+            fn value(&mut self, at: &[$position], out: &mut [T]) -> Result<(), MeshError> {
+                self.0.value(at, out)
+            }
+
+            fn pull_back(
+                &mut self,
+                _: &[$position],
+                seed: &[T],
+                out: &mut [$position],
+            ) -> Result<(), MeshError> {
+                self.0.pull_back(seed, out)
+            }
+
+            fn share(&mut self, threads: Threads) {
+                self.0.share(threads);
+            }
+        }
+    };
+}
+
+named! {
+    /// Depth on a grid by cubic B-splines, `mesh H: Real at n = deposit(X, m);`: its argument is the positions of
+    /// particles, its data their masses.
+    deposit, 4
+}
+
+named! {
+    /// The same by quintic B-splines, with four continuous derivatives.
+    deposit_quintic, 6
+}

@@ -1,0 +1,128 @@
+//! A grid with a margin of places around its nodes, so that splines near an end need no case of their own. What is
+//! summed at a place of the margin belongs to the node it is an image of, around a period or behind a wall: folding
+//! adds it there, and the transposed map copies it back. Walls need no particles of their own.
+
+use super::nodes::Nodes;
+use crate::Real;
+
+/// Places around the nodes of a grid, the rows along the last direction contiguous.
+#[derive(Clone, Debug)]
+pub(super) struct Padded<T, const D: usize> {
+    places: Vec<T>,
+    /// The node that each place along a direction belongs to.
+    images: [Vec<usize>; D],
+    /// Nodes along each direction.
+    nodes: [usize; D],
+    margin: usize,
+    /// Reciprocal weights of nodes.
+    inverse: Vec<T>,
+}
+
+impl<T: Real, const D: usize> Padded<T, D> {
+    /// Room for splines of support `K` on every interval.
+    pub fn new<const K: usize>(nodes: &Nodes<D>) -> Self {
+        let margin = K / 2 - 1;
+        let images = nodes.axes().map(|axis| {
+            let places = axis.intervals() - 1 + K;
+            (0..places).map(|p| axis.image(p, margin)).collect()
+        });
+        let count = images.iter().map(|along: &Vec<usize>| along.len());
+        let inverse = nodes.weights::<T>().into_iter().map(|w| T::one() / w);
+        Self {
+            places: vec![T::zero(); count.product()],
+            images,
+            nodes: nodes.axes().map(|axis| axis.nodes()),
+            margin,
+            inverse: inverse.collect(),
+        }
+    }
+
+    /// Places of a row: one along a line.
+    #[inline(always)]
+    pub fn width(&self) -> usize {
+        match D {
+            1 => 1,
+            _ => self.images[D - 1].len(),
+        }
+    }
+
+    /// All places, row after row.
+    #[inline(always)]
+    pub fn places(&self) -> &[T] {
+        &self.places
+    }
+
+    /// The same, to be summed at, all of them zero.
+    pub fn cleared(&mut self) -> &mut [T] {
+        self.places.fill(T::zero());
+        &mut self.places
+    }
+
+    /// The places of the margin along a direction, each with its node's.
+    fn ghosts(&self, d: usize) -> impl Iterator<Item = (usize, usize)> + use<'_, T, D> {
+        let inside = self.margin..self.margin + self.nodes[d];
+        let all = self.images[d].iter().enumerate();
+        let outside = all.filter(move |(place, _)| !inside.contains(place));
+        outside.map(|(place, image)| (place, self.margin + image))
+    }
+
+    /// Adds what is at the margin to the nodes; gives the sum at each node over its weight.
+    pub fn fold(&mut self, out: &mut [T]) {
+        let (width, margin) = (self.width(), self.margin);
+        let mut places = core::mem::take(&mut self.places);
+        for (from, to) in self.ghosts(0) {
+            for column in 0..width {
+                let more = places[from * width + column];
+                places[to * width + column] += more;
+            }
+        }
+        let rows = places.chunks_exact_mut(width).skip(margin);
+        if D == 1 {
+            let all = rows.zip(out).zip(&self.inverse);
+            all.for_each(|((row, out), inverse)| *out = row[0] * *inverse);
+        } else {
+            let ghosts: Vec<_> = self.ghosts(D - 1).collect();
+            let count = self.nodes[D - 1];
+            let nodes = out
+                .chunks_exact_mut(count)
+                .zip(self.inverse.chunks_exact(count));
+            for (row, (out, inverse)) in rows.zip(nodes) {
+                for (from, to) in &ghosts {
+                    let more = row[*from];
+                    row[*to] += more;
+                }
+                let all = row.iter().skip(margin).zip(out).zip(inverse);
+                all.for_each(|((sum, out), inverse)| *out = *sum * *inverse);
+            }
+        }
+        self.places = places;
+    }
+
+    /// The transpose of [`Padded::fold`]: `seed` at nodes, each over its weight, and at the margin copies of it.
+    pub fn extend(&mut self, seed: &[T]) {
+        let (width, margin) = (self.width(), self.margin);
+        let mut places = core::mem::take(&mut self.places);
+        let rows = places.chunks_exact_mut(width).skip(margin);
+        if D == 1 {
+            let all = rows.zip(seed).zip(&self.inverse);
+            all.for_each(|((row, seed), inverse)| row[0] = *seed * *inverse);
+        } else {
+            let ghosts: Vec<_> = self.ghosts(D - 1).collect();
+            let count = self.nodes[D - 1];
+            let nodes = seed
+                .chunks_exact(count)
+                .zip(self.inverse.chunks_exact(count));
+            for (row, (seed, inverse)) in rows.zip(nodes) {
+                let all = row.iter_mut().skip(margin).zip(seed).zip(inverse);
+                all.for_each(|((place, seed), inverse)| *place = *seed * *inverse);
+                for (to, from) in &ghosts {
+                    row[*to] = row[*from];
+                }
+            }
+        }
+        for (to, from) in self.ghosts(0) {
+            places.copy_within(from * width..(from + 1) * width, to * width);
+        }
+        self.places = places;
+    }
+}

@@ -1,0 +1,255 @@
+//! Particles sorted by the row of the grid that they are in, rows being numbered along the first direction. Within a
+//! row they keep the order of their numbers, so that every sum over the particles of a row has one order. The sort is
+//! a counting sort in two passes; threads share particles by ranges of numbers, each of which is sorted alone.
+
+use super::super::MeshError;
+use super::axis::Axis;
+use crate::Real;
+use core::ops::Range;
+use nalgebra::SVector;
+
+/// The value of a field of particles: a number along a line, a vector in the plane.
+pub trait Position<T, const D: usize>: Copy + Send + Sync {
+    /// Its coordinates.
+    fn coordinates(&self) -> [T; D];
+
+    /// The one with these coordinates.
+    fn of(coordinates: [T; D]) -> Self;
+}
+
+impl<T: Real> Position<T, 1> for T {
+    #[inline(always)]
+    fn coordinates(&self) -> [T; 1] {
+        [*self]
+    }
+
+    #[inline(always)]
+    fn of([x]: [T; 1]) -> Self {
+        x
+    }
+}
+
+impl<T: Real> Position<T, 2> for SVector<T, 2> {
+    #[inline(always)]
+    fn coordinates(&self) -> [T; 2] {
+        [self[0], self[1]]
+    }
+
+    #[inline(always)]
+    fn of([x, y]: [T; 2]) -> Self {
+        SVector::<T, 2>::new(x, y)
+    }
+}
+
+/// What is kept of a particle: all that deposit and gather need.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Particle<T, const D: usize> {
+    /// Position within its cell, from 0 to 1 along each direction.
+    pub fraction: [T; D],
+    /// Its mass.
+    pub mass: T,
+    /// Number of its cell along the last direction, and in the lowest bits the directions it is mirrored in.
+    column: u32,
+    /// Its number, from the first of its range.
+    number: u32,
+}
+
+impl<T: Real, const D: usize> Particle<T, D> {
+    fn none() -> Self {
+        Self {
+            fraction: [T::zero(); D],
+            mass: T::zero(),
+            column: 0,
+            number: 0,
+        }
+    }
+
+    /// Number of its cell along the last direction.
+    #[inline(always)]
+    pub fn column(&self) -> usize {
+        (self.column >> 2) as usize
+    }
+
+    /// Whether it is beyond a wall along a direction.
+    #[inline(always)]
+    pub fn is_mirrored(&self, d: usize) -> bool {
+        self.column >> d & 1 == 1
+    }
+
+    /// Its number, from the first of its range.
+    #[inline(always)]
+    pub fn number(&self) -> usize {
+        self.number as usize
+    }
+}
+
+/// The particles of a field, sorted.
+#[derive(Clone, Debug)]
+pub(super) struct Sorted<T, const D: usize> {
+    particles: Vec<Particle<T, D>>,
+    /// The row of each, in the order of numbers.
+    rows: Vec<u32>,
+    /// Where each row of each range ends, from the first particle of the range.
+    ends: Vec<u32>,
+    /// Particles of a range.
+    share: usize,
+    /// Rows.
+    count: usize,
+}
+
+/// A range of particles while it is sorted.
+struct Part<'a, T, A, const D: usize> {
+    first: usize,
+    at: &'a [A],
+    mass: &'a [T],
+    rows: &'a mut [u32],
+    ends: &'a mut [u32],
+    out: &'a mut [Particle<T, D>],
+}
+
+impl<T: Real, const D: usize> Sorted<T, D> {
+    /// Room for so many particles in so many rows.
+    pub fn new(particles: usize, count: usize) -> Self {
+        Self {
+            particles: vec![Particle::none(); particles],
+            rows: vec![0; particles],
+            ends: vec![0; count],
+            share: particles.max(1),
+            count,
+        }
+    }
+
+    /// How many ranges there are from now on.
+    pub fn share(&mut self, ranges: usize) {
+        self.share = self.particles.len().div_ceil(ranges.max(1)).max(1);
+        let ranges = self.particles.len().div_ceil(self.share).max(1);
+        self.ends.resize(self.count * ranges, 0);
+    }
+
+    /// Whether there are several ranges.
+    #[cfg(feature = "rayon")]
+    pub fn is_shared(&self) -> bool {
+        self.ends.len() > self.count
+    }
+
+    /// Particles of a range.
+    pub fn range(&self) -> usize {
+        self.share
+    }
+
+    /// Sorts.
+    ///
+    /// # Errors
+    /// The first particle in the first range that is in no cell.
+    pub fn sort<A: Position<T, D>>(
+        &mut self,
+        axes: &[Axis; D],
+        at: &[A],
+        mass: &[T],
+    ) -> Result<(), MeshError> {
+        let (share, count) = (self.share, self.count);
+        #[cfg(feature = "rayon")]
+        let is_shared = self.is_shared();
+        let parts = self.particles.chunks_mut(share).enumerate();
+        let parts = parts
+            .zip(self.rows.chunks_mut(share))
+            .zip(self.ends.chunks_mut(count))
+            .zip(at.chunks(share).zip(mass.chunks(share)));
+        let parts = parts.map(|((((k, out), rows), ends), (at, mass))| Part {
+            first: k * share,
+            at,
+            mass,
+            rows,
+            ends,
+            out,
+        });
+        #[cfg(feature = "rayon")]
+        if is_shared {
+            use rayon::prelude::*;
+            let parts: Vec<_> = parts.collect();
+            let all: Vec<_> = parts.into_par_iter().map(|p| p.sort(axes)).collect();
+            return all.into_iter().collect();
+        }
+        let mut parts = parts;
+        parts.try_for_each(|p| p.sort(axes))
+    }
+
+    /// The particles of a row, range by range.
+    #[inline(always)]
+    pub fn row(&self, row: usize) -> impl Iterator<Item = &[Particle<T, D>]> {
+        let ranges = self.particles.chunks(self.share);
+        ranges
+            .zip(self.ends.chunks(self.count))
+            .map(move |(range, ends)| range.get(within(ends, row)).unwrap_or_default())
+    }
+
+    /// The ranges, each with its rows in their order.
+    pub fn ranges(&self) -> impl Iterator<Item = Rows<'_, T, D>> {
+        let ranges = self.particles.chunks(self.share);
+        let both = ranges.zip(self.ends.chunks(self.count));
+        both.map(|(particles, ends)| Rows { particles, ends })
+    }
+}
+
+/// The particles of one range.
+pub(super) struct Rows<'a, T, const D: usize> {
+    particles: &'a [Particle<T, D>],
+    ends: &'a [u32],
+}
+
+impl<T: Real, const D: usize> Rows<'_, T, D> {
+    /// Those of a row.
+    #[inline(always)]
+    pub fn row(&self, row: usize) -> &[Particle<T, D>] {
+        let row = self.particles.get(within(self.ends, row));
+        row.unwrap_or_default()
+    }
+}
+
+/// Where the particles of a row are in their range.
+#[inline(always)]
+fn within(ends: &[u32], row: usize) -> Range<usize> {
+    let first = if row == 0 { 0 } else { ends[row - 1] };
+    first as usize..ends[row] as usize
+}
+
+impl<T: Real, A: Position<T, D>, const D: usize> Part<'_, T, A, D> {
+    /// Counts, then places.
+    fn sort(self, axes: &[Axis; D]) -> Result<(), MeshError> {
+        let density: [T; D] = core::array::from_fn(|d| axes[d].density());
+        self.ends.fill(0);
+        for (i, (at, row)) in self.at.iter().zip(self.rows.iter_mut()).enumerate() {
+            let along = at.coordinates()[0] * density[0];
+            let spot = axes[0].locate(along);
+            let cell = spot.map_err(|why| why.of(self.first + i))?.cell;
+            *row = cell as u32;
+            self.ends[cell] += 1;
+        }
+        let mut first = 0;
+        for end in self.ends.iter_mut() {
+            (*end, first) = (first, first + *end);
+        }
+        let all = self.at.iter().zip(self.mass).zip(self.rows.iter());
+        for (i, ((at, mass), row)) in all.enumerate() {
+            let coordinates = at.coordinates();
+            let mut particle = Particle {
+                mass: *mass,
+                number: i as u32,
+                ..Particle::none()
+            };
+            for d in 0..D {
+                let spot = axes[d].locate(coordinates[d] * density[d]);
+                let spot = spot.map_err(|why| why.of(self.first + i))?;
+                particle.fraction[d] = spot.fraction;
+                particle.column |= u32::from(spot.mirrored) << d;
+                if d > 0 {
+                    particle.column |= (spot.cell as u32) << 2;
+                }
+            }
+            let place = &mut self.ends[*row as usize];
+            self.out[*place as usize] = particle;
+            *place += 1;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,9 @@
+//! Functionals on a grid against formulas of these tests' own: deposit, smoothers, the forces that follow from them, and
+//! particle-mesh shallow water stepped by hand.
+
+mod common;
+mod depth;
+mod forces;
+mod reflection;
+mod smoothers;
+mod verlet;
