@@ -1,12 +1,8 @@
 //! What a function of all sites is to a stepper: its values at sites, and its derivative, transposed and
 //! applied to a seed. Takes a field of particles or the values of another functional.
 
-<<<<<<< HEAD
 use super::{Domain, MeshError, Wall};
-=======
-use super::{Domain, MeshError};
 use crate::line::Threads;
->>>>>>> grid
 use crate::{ParameterError, Real};
 
 /// What a functional is made for.

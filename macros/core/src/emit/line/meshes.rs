@@ -348,7 +348,8 @@ fn written(
         });
         fields.extend(quote!(#field: #ty,));
         made.extend(quote! {
-            let #field = <#ty as mesh::Functional<T, #directions>>::new(&setting, (#(#data,)*))?;
+            let mut #field = <#ty as mesh::Functional<T, #directions>>::new(&setting, (#(#data,)*))?;
+            #field.share(self.threads);
         });
         inits.extend(quote!(#field,));
     }
