@@ -32,9 +32,7 @@ impl<const D: usize> Setting<D> {
 ///
 /// Dot products and sums run in an order that is fixed by the numbers of sites: no result depends on the number of
 /// threads.
-pub trait Functional<T: Real, const D: usize>:
-    Clone + core::fmt::Debug + Send + Sync + Sized
-{
+pub trait Functional<T: Real, const D: usize>: Clone + Send + Sync + Sized {
     /// Value of the argument at one of its sites: of a field of particles `T` for `D = 1` and
     /// `nalgebra::SVector<T, D>` otherwise, not wrapped around the domain; `T` of another functional.
     type Argument: Copy + Send + Sync;

@@ -69,7 +69,7 @@ impl<'a> Lines<'a> {
             return TokenStream::new();
         };
         let d = number(directions);
-        let domain = match extent {
+        match extent {
             Extent::Torus(lengths) => {
                 let name = format_ident!("{}", lengths.text);
                 quote!(#[doc = " The lengths of the torus."] pub #name: [f64; #d],)
@@ -77,8 +77,7 @@ impl<'a> Lines<'a> {
             Extent::Box(_) => {
                 quote!(#[doc = " The box, with its walls."] pub domain: mesh::Domain<#d>,)
             }
-        };
-        domain
+        }
     }
 
     /// `Setting` of the functionals, from the numbers of sites at `of`.
@@ -439,10 +438,17 @@ fn written(
         zeros.extend(quote!(#field: ::std::vec![SMatrix::zeros(); #count],));
     }
     let setting = l.setting();
+    let text = meshes.to_string();
     let items = quote! {
         /// Functionals of all sites, with their values, the seeds of their pull-backs and these.
-        #[derive(Clone, Debug)]
+        #[derive(Clone)]
         struct #meshes<T: Real> { #fields }
+
+        impl<T: Real> ::core::fmt::Debug for #meshes<T> {
+            fn fmt(&self, f: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
+                f.debug_struct(#text).finish_non_exhaustive()
+            }
+        }
 
         impl<T: Real> #model<T> {
             #setting
