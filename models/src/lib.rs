@@ -12,6 +12,7 @@ pub mod coupled_bodies;
 pub mod ellipsoid_convective;
 pub mod ellipsoid_spatial;
 mod ellipsoids;
+pub mod fluids;
 pub mod free_body;
 pub mod free_body_spatial;
 pub mod heavy_top;

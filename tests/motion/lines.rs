@@ -15,11 +15,14 @@ mod action;
 mod laws;
 #[path = "lines/models/mod.rs"]
 mod models;
+#[path = "lines/walls.rs"]
+mod walls;
 
 use action::stationarity;
 use clebsch::BodyMomentum;
 use clebsch::line::LineError;
 use clebsch::nalgebra::{SMatrix, Vector3};
+use clebsch_models::fluids;
 use clebsch_models::lattices::{STATEMENTS, toda_chain::*};
 use models::{Line, Rod, Toda};
 
@@ -75,7 +78,7 @@ fn the_compiled_statements_are_those_of_the_files() {
         let items = clebsch_core::pipeline::emitted_line(&model, "").expect("items");
         items.to_string()
     };
-    for (file, compiled) in STATEMENTS {
+    for (file, compiled) in STATEMENTS.into_iter().chain(fluids::STATEMENTS) {
         assert!(emitted(file) == emitted(compiled), "{file}");
     }
 }

@@ -1,6 +1,8 @@
 //! Where particles live: a box, each direction of which closes on itself or ends in walls.
 //! Positions are kept as they are; what is computed from them wraps.
 
+use crate::Real;
+
 /// What stands at the ends of a direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wall {
@@ -30,6 +32,15 @@ impl<const D: usize> Domain<D> {
     pub fn basin(lengths: [f64; D]) -> Self {
         let walls = [Wall::Solid; D];
         Self { lengths, walls }
+    }
+
+    /// Whether a place is between all walls; directions without walls have no outside.
+    #[inline]
+    pub fn is_inside<T: Real>(&self, place: &[T; D]) -> bool {
+        let each = place.iter().zip(&self.lengths).zip(&self.walls);
+        each.into_iter().all(|((x, length), wall)| {
+            *wall == Wall::Periodic || (0.0..=*length).contains(&x.value())
+        })
     }
 
     /// Its length, area or volume.

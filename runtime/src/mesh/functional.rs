@@ -17,6 +17,18 @@ pub struct Setting<const D: usize> {
 }
 
 impl<const D: usize> Setting<D> {
+    /// Lengths of a cell of the grid along each direction; without a grid those of a box that particles have on average.
+    pub fn cell(&self) -> [f64; D] {
+        let lengths = self.domain.lengths;
+        match self.grid {
+            Some(cells) => core::array::from_fn(|d| lengths[d] / cells[d].max(1) as f64),
+            None => {
+                let share = self.domain.measure() / self.particles.max(1) as f64;
+                [share.powf(1.0 / D as f64); D]
+            }
+        }
+    }
+
     /// How many nodes the grid has: one more than cells between walls, as many around.
     pub fn nodes(&self) -> usize {
         let grid = self.grid.unwrap_or([0; D]);

@@ -3,8 +3,11 @@
 use super::action::{Configuration, D};
 use clebsch::nalgebra::{Matrix3, Vector3};
 
+mod cells;
 mod charges;
 pub mod cloud;
+mod dense;
+pub mod grid;
 mod named;
 mod rod;
 mod sine;
@@ -12,8 +15,10 @@ mod toda;
 mod tops;
 mod water;
 
+pub use cells::{Cells, Smoothed};
 pub use charges::Charges;
 pub use cloud::Cloud;
+pub use grid::{Basin, Plane};
 pub use named::Named;
 pub use rod::Rod;
 pub use sine::Sine;
@@ -45,6 +50,12 @@ pub trait Line {
     fn energy_ratio(&self) -> f64;
     /// The largest mass over the step, by which the rounding of places shows in momenta.
     fn mass_by_step(&self) -> f64;
+
+    /// Whether its potential has two derivatives everywhere. Those of cells jump where neighbours change, and
+    /// particles with nothing between them pair: no bound of the energy is promised then.
+    fn is_smooth(&self) -> bool {
+        true
+    }
 
     /// The action of an edge.
     fn action(&self, a: &Configuration<D>, b: &Configuration<D>) -> D {
@@ -103,7 +114,13 @@ pub fn all(n: usize) -> Vec<Box<dyn Line>> {
         Box::new(Water::new(n)),
         Box::new(Charges::new(n)),
         Box::new(Cloud { n }),
+        Box::new(Plane { n, walls: false }),
     ];
+    // Cells of fewer than five particles meet themselves around the torus.
+    if n >= 5 {
+        out.push(Box::new(Cells { n }));
+        out.push(Box::new(Smoothed { n }));
+    }
     out.push(Box::new(Named { n, end: false }));
     out.push(Box::new(Named { n, end: true }));
     let sine = (0..5).filter(|ends| n > 1 || *ends < 4);

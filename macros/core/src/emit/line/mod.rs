@@ -16,6 +16,7 @@ mod solved;
 mod state;
 mod step;
 mod unique;
+mod walls;
 
 use crate::derive::{Derivation, Outline};
 use crate::groups::Kept;
@@ -47,6 +48,7 @@ pub fn emit_line(line: &Line, source: &str) -> TokenStream {
     let visibility = line.model.public.then(|| quote!(pub));
     let of_meshes = meshes::meshes(&l);
     let of_meshes = of_meshes.as_ref();
+    let walls = walls::walls(&l);
     let paths = super::functional::paths(&line.representative.d.letters.symbols);
     let items = [
         paths,
@@ -54,12 +56,13 @@ pub fn emit_line(line: &Line, source: &str) -> TokenStream {
         items::sites(&l),
         items::model(&l),
         state::state(&l, of_meshes),
-        step::step(&l, of_meshes),
+        step::step(&l, of_meshes, walls.as_ref().map(|w| &w.call)),
         pulls::pulls(&l),
         solved::solved(&l),
         acting::acting(&l),
         energy::energy(&l, of_meshes),
         of_meshes.map(|m| m.items.clone()).unwrap_or_default(),
+        walls.map(|w| w.items).unwrap_or_default(),
     ];
     let about = format!(" The model [`{name}`](struct@{name}) and what belongs to it.");
     quote! {
@@ -76,7 +79,7 @@ pub fn emit_line(line: &Line, source: &str) -> TokenStream {
 
 /// Why no stepper with loops over sites is emitted, if so.
 pub fn refusal_of_line(line: &Line) -> Option<String> {
-    domain::refusal(line)
+    domain::refusal(line).or_else(|| walls::refusal(line))
 }
 
 /// A configuration with the derivation of its site.

@@ -99,6 +99,16 @@ pub(super) fn state(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
         let meshes = l.item("Meshes");
         quote!(meshes: #meshes<T>,)
     });
+    let boxed = matches!(l.extent(), Some((crate::syntax::ast::Extent::Box(_), _)));
+    let reflections = boxed.then(|| quote!(reflections: u64,));
+    let counted = boxed.then(|| {
+        quote! {
+            impl<T: Real> #work<T> {
+                /// How many times particles have been reflected at walls since the workspace was made.
+                pub fn reflections(&self) -> u64 { self.reflections }
+            }
+        }
+    });
     let no_pulls = (p.is_empty() && of_meshes.is_none())
         .then(|| quote!(scalar: ::core::marker::PhantomData<T>));
     quote! {
@@ -155,7 +165,10 @@ pub(super) fn state(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
             edges: #edges<T>,
             pulls: #pulls<T>,
             #meshes
+            #reflections
             #(#v,)*
         }
+
+        #counted
     }
 }

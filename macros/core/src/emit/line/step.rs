@@ -7,7 +7,11 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 /// The functions.
-pub(super) fn step(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
+pub(super) fn step(
+    l: &Lines,
+    of_meshes: Option<&OfMeshes>,
+    walls: Option<&TokenStream>,
+) -> TokenStream {
     let [name, initial, state, work, places, momenta, edges, pulls] = [
         "",
         "Initial",
@@ -63,6 +67,7 @@ pub(super) fn step(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
     });
     let mesh_values = of_meshes.map(|m| &m.zeros);
     let meshes_made = of_meshes.map(|_| quote!(meshes: self.meshes()?,));
+    let none_reflected = walls.map(|_| quote!(reflections: 0,));
     let (fallible, done) = match of_meshes {
         Some(_) => (quote!(-> Result<(), LineError>), quote!(Ok(()))),
         None => (TokenStream::new(), TokenStream::new()),
@@ -170,6 +175,7 @@ pub(super) fn step(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
                     edges: #edges { #(#names: #edge_values),* },
                     pulls: #pulls { #(#pull_values,)* #mesh_values #no_pulls },
                     #meshes_made
+                    #none_reflected
                     #(#velocity_values,)*
                 };
                 self.begin(state, &mut work) #tried;
@@ -192,6 +198,7 @@ pub(super) fn step(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
                 #(#of_systems)*
                 #(#solves)*
                 self.around(&mut work.places);
+                #walls
                 #inside
                 self.pulled(h, &work.places, &mut work.pulls);
                 #meshed

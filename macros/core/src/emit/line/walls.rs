@@ -1,0 +1,126 @@
+//! Reflection at the walls of a box: places that a step brings beyond a wall are put back by their mirror image, and
+//! the momentum of their edge by that of its kinetic part, what a vector potential adds taken at either place.
+
+use super::locals::Places;
+use super::{Lines, Moving, acting, number};
+use crate::expr::{self, Expr, Letter, Shift};
+use crate::line::{How, Line};
+use crate::syntax::ast::Extent;
+use proc_macro2::{Ident, TokenStream};
+use quote::{format_ident, quote};
+
+/// What is emitted of walls.
+pub(super) struct Walls {
+    /// The kernel of the vector potential.
+    pub items: TokenStream,
+    /// What a step does once all places have moved.
+    pub call: TokenStream,
+}
+
+/// The momentum of a configuration at rest, by its place: what its vector potential adds.
+fn at_rest(m: &Moving) -> Option<Expr> {
+    let limit = m.lone.d.limit.as_ref().ok()?;
+    let xi = Letter {
+        symbol: m.lone.d.letters.variation[m.mover.index],
+        shift: Shift::HERE,
+    };
+    let s = &m.lone.outline.letters.symbols;
+    Some(expr::gradient(
+        s,
+        &m.lone.outline.defined(&limit.linear),
+        xi,
+    ))
+}
+
+/// Why walls are not emitted, if so.
+pub(super) fn refusal(line: &Line) -> Option<String> {
+    let boxed = |name: &str| {
+        let q = line.lattice.find(name);
+        q.is_some_and(|q| matches!(q.domain, Some(Extent::Box(_))))
+    };
+    let mut all = line
+        .lone
+        .iter()
+        .flat_map(|lone| lone.movers.iter().map(move |mover| Moving { lone, mover }));
+    let unknown = all.any(|m| boxed(&m.mover.name) && at_rest(&m).is_none());
+    unknown.then(|| "walls turn a kinetic momentum, which is not known where there is no limit of small steps".to_owned())
+}
+
+fn kernel(m: &Moving) -> Ident {
+    format_ident!("at_rest_{}", m.mover.name)
+}
+
+/// The walls of a box, if there is one.
+pub(super) fn walls(l: &Lines) -> Option<Walls> {
+    let (extent, directions) = l.extent()?;
+    if !matches!(extent, Extent::Box(_)) {
+        return None;
+    }
+    let q = l
+        .line
+        .lattice
+        .quantities
+        .iter()
+        .find(|q| q.domain.is_some())?;
+    let m = l.moving().find(|m| m.mover.name == q.name.text)?;
+    let s = &m.lone.outline.letters.symbols;
+    let (name, places, t, count) = (
+        l.item(""),
+        l.item("Places"),
+        m.covector(),
+        l.count_of(&m.mover.name),
+    );
+    let (field, kernel, text, d) = (m.name(), kernel(&m), &m.mover.name, number(directions));
+    let values = [at_rest(&m)?];
+    let (locals, bindings) = l.locals(
+        s,
+        &l.of_site(&m.lone.outline, &values),
+        &Places::of_node(),
+        &quote!(site),
+    );
+    let (lets, results) = l.program(s, &values, &bindings);
+    let value = m.array(results.into_iter().next().unwrap_or_default());
+    let doc = format!(" The momentum of `{text}` at rest, by its place.");
+    let items = quote! {
+        impl<T: Real> #name<T> {
+            #[doc = #doc]
+            #[inline]
+            fn #kernel(&self, site: usize, at: &#places<T>) -> #t {
+                let _ = (site, at);
+                #locals
+                #lets
+                #value
+            }
+        }
+    };
+    let added = matches!(m.mover.how, How::System { .. }).then(|| {
+        let systems = l.systems();
+        let own = systems
+            .iter()
+            .find(|(.., members)| members.iter().any(|o| o.mover.name == *text));
+        let velocities = own.map(|(field, ..)| field.clone());
+        let edge = acting::edge_kernel(&m);
+        quote!(self.#edge(h, site, &state.places, &work.places, &work.#velocities[site]))
+    });
+    let added = added.unwrap_or_else(|| quote!(SMatrix::zeros()));
+    let call = quote! {
+        work.stamp = line::Stamp::none();
+        let (domain, cell) = (self.sites.domain, self.setting().cell());
+        for site in 0..#count {
+            let mut place: [T; #d] = work.places.#field[site].into();
+            if domain.is_inside(&place) {
+                continue;
+            }
+            let kinetic: #t = work.edges.#field[site] + #added - self.#kernel(site, &work.places);
+            let mut turned: [T; #d] = kinetic.into();
+            match domain.reflect(site, &cell, &mut place, &mut turned) {
+                Ok(crossed) => work.reflections += crossed as u64,
+                Err(cause) => return Err(self.refused_by(state, h, #text, cause)),
+            }
+            work.places.#field[site] = place.into();
+            let turned: #t = turned.into();
+            work.edges.#field[site] = turned + self.#kernel(site, &work.places) - #added;
+        }
+    };
+    Some(Walls { items, call })
+}

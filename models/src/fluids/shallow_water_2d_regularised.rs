@@ -1,0 +1,28 @@
+//! Two-dimensional shallow water with a smoothed depth, compiled for every number of particles.
+
+clebsch::model! {
+    /// Rotating shallow water on a doubly periodic plane, as particles: the depth of their Voronoi cells smoothed over a
+    /// length, and a core that keeps particles apart.
+    pub model ShallowWater2DRegularised {
+        time k step dt;
+        label a in 0..N;
+        /// mass of a particle
+        param m: Real at a;
+        /// acceleration of gravity
+        param g: Real;
+        /// Coriolis parameter
+        param f: Real;
+        /// length over which the depth is smoothed
+        param alpha: Real;
+        /// radius of the core
+        param rc: Real;
+        /// strength of the core
+        param kappa: Real;
+        /// place of a particle
+        field X: Vec<2> at a on torus(L);
+        mesh phi: Real at a = helmholtz_depth(X, m, alpha);
+        mesh core: Real at a = pair_core(X, m, rc, kappa);
+        lagrangian = (m/(2*dt))*dot(next(X) - X, next(X) - X) + (m*f/2)*dot(perp(X), next(X))
+            - dt*(g*m*phi/2 + core);
+    }
+}
