@@ -26,6 +26,8 @@ fn cells_are_those_cut_out_of_half_planes() {
             let at = random(lengths, count, seed);
             let mut mesh = Voronoi::<f64>::new(&Domain::torus(lengths), count).unwrap();
             mesh.update(&at).unwrap();
+            // What is made anew has no edge to flip.
+            assert_eq!(mesh.counted().flips, 0);
             let mut areas = vec![0.0; count];
             let mut centres = vec![Plane::zeros(); count];
             let mut moments = vec![0.0; count];

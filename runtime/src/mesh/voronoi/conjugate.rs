@@ -56,7 +56,7 @@ impl<T: Real> Iteration<T> {
         let (mut left, mut sum) = (T::zero(), T::zero());
         for (a, right) in right.iter().enumerate() {
             let residual = *right - operator.row(a, x);
-            let step = residual / operator.diagonal[a];
+            let step = residual * operator.inverse[a];
             self.residual[a] = residual;
             self.direction[a] = step;
             left += residual * residual;
@@ -77,7 +77,7 @@ impl<T: Real> Iteration<T> {
             for (a, x) in x.iter_mut().enumerate() {
                 *x += length * self.direction[a];
                 let residual = self.residual[a] - length * self.image[a];
-                let step = residual / operator.diagonal[a];
+                let step = residual * operator.inverse[a];
                 self.residual[a] = residual;
                 self.image[a] = step;
                 left += residual * residual;
@@ -120,7 +120,7 @@ impl<T: Real> Iteration<T> {
                 };
                 let (fresh, kept) = (T::from_f64(weight), T::from_f64(weight - 1.0));
                 for (a, residual) in self.residual.iter_mut().enumerate() {
-                    *residual = (right[a] - operator.row(a, x)) / operator.diagonal[a];
+                    *residual = (right[a] - operator.row(a, x)) * operator.inverse[a];
                 }
                 for (a, x) in x.iter_mut().enumerate() {
                     let step = fresh * self.residual[a] + kept * self.direction[a];

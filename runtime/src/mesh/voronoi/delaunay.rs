@@ -130,7 +130,7 @@ impl Delaunay {
     }
 
     /// Collects the edges that are not Delaunay; whether every triangle still turns left.
-    fn find_suspects(&mut self) -> bool {
+    pub(super) fn find_suspects(&mut self) -> bool {
         self.suspects.clear();
         for e in (0..self.edges.len()).step_by(3) {
             let (first, second) = (self.edge(e), self.edge(e + 1));
@@ -152,25 +152,21 @@ impl Delaunay {
     }
 
     /// Whether the circle of an edge's triangle holds the site across it.
-    fn is_bad(&self, e: usize) -> bool {
+    pub(super) fn is_bad(&self, e: usize) -> bool {
         let before = self.edge(previous(e));
         let across = self.edge(next(self.edges.twin[e] as usize));
         in_circle(self.edge(e), [-before[0], -before[1]], across)
     }
 
-    /// Flips suspected edges until all are Delaunay. Ends, because each flip lowers the lifted surface.
+    /// Flips suspected edges, and suspects those around them, until all are Delaunay. Ends, because each flip lowers the
+    /// lifted surface.
     pub(super) fn repair(&mut self) {
         while let Some(e) = self.suspects.pop() {
             if self.is_bad(e as usize) {
-                self.flip(e as usize);
+                self.counted.flips += 1;
+                let around = self.edges.flip(e as usize);
+                self.suspects.extend(around.map(|e| e as u32));
             }
         }
-    }
-
-    /// Flips an edge and suspects the four around it.
-    pub(super) fn flip(&mut self, e: usize) {
-        self.counted.flips += 1;
-        let around = self.edges.flip(e);
-        self.suspects.extend(around.map(|e| e as u32));
     }
 }

@@ -16,9 +16,12 @@ mod laplacian;
 mod masses;
 mod mesh;
 mod moment;
+mod operators;
 pub mod placement;
+mod polygons;
 mod predicates;
 mod repulsion;
+mod spacing;
 mod torus;
 
 pub use area::voronoi_area;
@@ -28,3 +31,4 @@ pub use helmholtz::helmholtz_depth;
 pub use mesh::{Triangle, Voronoi};
 pub use moment::second_moment;
 pub use repulsion::pair_core;
+pub use spacing::Between;
