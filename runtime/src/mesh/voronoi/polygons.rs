@@ -36,15 +36,15 @@ impl Voronoi<f64> {
     /// `out[j * columns + i]` is the mass in the box of column `i` and row `j`. No mass is lost.
     ///
     /// # Errors
-    /// [`MeshError::Count`] where there are not as many masses as cells, or numbers as boxes.
+    /// [`MeshError::Length`] where there are not as many masses as cells, or numbers as boxes.
     pub fn rezone(
         &self,
         masses: &[f64],
         [columns, rows]: [usize; 2],
         out: &mut [f64],
     ) -> Result<(), MeshError> {
-        super::mesh::check_count(masses.len(), self.sites())?;
-        super::mesh::check_count(out.len(), columns * rows)?;
+        MeshError::unless_of_length(masses, self.sites())?;
+        MeshError::unless_of_length(out, columns * rows)?;
         let lengths = self.lengths();
         let boxes = Plane::new(lengths[0] / columns as f64, lengths[1] / rows as f64);
         out.fill(0.0);
