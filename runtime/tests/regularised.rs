@@ -4,6 +4,7 @@
 mod derivatives;
 
 use clebsch::Dual;
+use clebsch::line::Threads;
 use clebsch::mesh::placement::{Jitter, hexagonal, lattice, scattered};
 use clebsch::mesh::{
     Domain, Functional, MeshError, Voronoi, helmholtz_depth, pair_core, second_moment, voronoi_area,
@@ -353,29 +354,29 @@ fn steady_shear_keeps_its_order() {
     let before = kinetic(&velocity);
     let dt = 0.2 * spacing;
     let steps = (1.0 / dt).round() as usize;
-    let mut energies = Vec::new();
-    push(&at, &mut velocity, 0.5 * dt);
-    for _ in 0..steps {
-        for (x, v) in at.iter_mut().zip(&velocity) {
-            *x += v * dt;
-        }
-        let potential = push(&at, &mut velocity, 0.5 * dt);
-        energies.push(kinetic(&velocity) + potential);
-        push(&at, &mut velocity, 0.5 * dt);
-    }
-    let order = coherent(&velocity);
-    let spread = energies
-        .iter()
-        .fold(0.0_f64, |w, e| w.max((e - energies[0]).abs()))
-        / before;
     let mut mesh = Voronoi::new(&domain, n * n).unwrap();
-    mesh.update(&at).unwrap();
-    let nearest = mesh.faces().map(|f| f.edge.norm()).fold(1.0, f64::min) / spacing;
-    println!(
-        "coherent {order}, energy {spread:e} of the kinetic, nearest {nearest}, {} products a step",
-        products as f64 / steps as f64
-    );
-    assert!(order >= 0.997, "{order}");
+    let (mut first, mut spread, mut nearest) = (None, 0.0_f64, 1.0_f64);
+    push(&at, &mut velocity, 0.5 * dt);
+    // Each bound is a little beyond what one seed gives; after some time motions of different seeds part.
+    for (from, until, kept) in [(0, 1, 0.997), (1, 2, 0.98), (2, 5, 0.85)] {
+        for _ in from * steps..until * steps {
+            for (x, v) in at.iter_mut().zip(&velocity) {
+                *x += v * dt;
+            }
+            let potential = push(&at, &mut velocity, 0.5 * dt);
+            let energy = kinetic(&velocity) + potential;
+            spread = spread.max((energy - *first.get_or_insert(energy)).abs() / before);
+            push(&at, &mut velocity, 0.5 * dt);
+        }
+        mesh.update(&at).unwrap();
+        nearest = nearest.min(mesh.nearest().value / spacing);
+        let order = coherent(&velocity);
+        println!(
+            "t = {until}: coherent {order}, energy {spread:e} of the kinetic, nearest {nearest}"
+        );
+        assert!(order >= kept, "{until}: {order}");
+    }
+    println!("{} products a step", products as f64 / (5 * steps) as f64);
     assert!(spread < 1e-4, "{spread:e}");
     assert!(nearest >= 0.45, "{nearest}");
 }
@@ -405,4 +406,34 @@ fn second_moments_resist_shear() {
     }
     let speed = (work / norm).sqrt() / k;
     assert!((speed - 0.0704).abs() < 2e-4, "{speed}");
+}
+
+/// Threads change no bit, of depths, derivatives and flips (with the feature `rayon`; without, there is one).
+#[test]
+fn threads_change_no_bit() {
+    let domain = Domain::torus([1.0, 1.0]);
+    let n = 100;
+    let start = lattice(&domain, [n, n], true, Jitter { size: 0.3, seed: 2 });
+    let m = vec![1e-4; n * n];
+    let setting = setting([1.0, 1.0], n * n);
+    let run = |threads: usize| {
+        let mut at = start.clone();
+        let mut depth = helmholtz_depth::<f64>::new(&setting, (&m, 0.02)).unwrap();
+        depth.share(Threads(threads));
+        let mut next = numbers(3);
+        let (mut phi, mut force) = (vec![0.0; n * n], vec![Plane::zeros(); n * n]);
+        for _ in 0..5 {
+            for x in &mut at {
+                *x += Plane::new(next() - 0.5, next() - 0.5) * 5e-4;
+            }
+            depth.value(&at, &mut phi).unwrap();
+            depth.pull_back(&at, &m, &mut force).unwrap();
+        }
+        assert!(depth.mesh().counted().flips > 10);
+        (phi, force, depth.products(), depth.mesh().counted())
+    };
+    let one = run(1);
+    for threads in [2, 3, 5] {
+        assert!(run(threads) == one, "{threads}");
+    }
 }

@@ -26,6 +26,8 @@ fn cells_are_those_cut_out_of_half_planes() {
             let at = random(lengths, count, seed);
             let mut mesh = Voronoi::<f64>::new(&Domain::torus(lengths), count).unwrap();
             mesh.update(&at).unwrap();
+            // What is made anew has no edge to flip.
+            assert_eq!(mesh.counted().flips, 0);
             let mut areas = vec![0.0; count];
             let mut centres = vec![Plane::zeros(); count];
             let mut moments = vec![0.0; count];
@@ -146,7 +148,13 @@ fn degenerate_places_are_refused() {
         assert_eq!(out, before);
     }
     let refused = area.value(&good[..3], &mut out).unwrap_err();
-    assert_eq!(refused, MeshError::Count { given: 3, sites: 4 });
+    assert_eq!(
+        refused,
+        MeshError::Length {
+            found: 3,
+            expected: 4
+        }
+    );
     for lengths in [
         [0.0, 1.0],
         [1.0, -2.0],

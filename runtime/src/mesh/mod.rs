@@ -12,6 +12,6 @@ pub use error::MeshError;
 pub use functional::{Functional, Setting};
 pub use grid::{Axis, Nodes, deposit, deposit_quintic, smooth, smooth_isotropic, smoothing_length};
 pub use voronoi::{
-    Counted, Face, Triangle, Voronoi, helmholtz_depth, pair_core, placement, second_moment,
-    voronoi_area,
+    Between, Counted, Face, Triangle, Voronoi, helmholtz_depth, pair_core, placement,
+    second_moment, voronoi_area,
 };

@@ -1,7 +1,8 @@
 //! The area of each particle's Voronoi cell, `mesh A: Real at a = voronoi_area(X);`: mass over area is the depth of a
 //! layer that particles carry. Takes places on a torus; gives areas and their exact derivatives.
 
-use super::mesh::{Plane, Voronoi, check_count};
+use super::mesh::{Plane, Voronoi};
+use crate::line::Threads;
 use crate::mesh::{Functional, MeshError, Setting};
 use crate::{ParameterError, Real};
 use nalgebra::SVector;
@@ -38,7 +39,7 @@ impl<T: Real> Functional<T, 2> for voronoi_area<T> {
     }
 
     fn value(&mut self, at: &[Self::Argument], out: &mut [T]) -> Result<(), MeshError> {
-        check_count(out.len(), self.sites())?;
+        MeshError::unless_of_length(out, self.sites())?;
         self.mesh.update(at)?;
         self.mesh.areas(out);
         Ok(())
@@ -50,10 +51,14 @@ impl<T: Real> Functional<T, 2> for voronoi_area<T> {
         seed: &[T],
         out: &mut [Self::Argument],
     ) -> Result<(), MeshError> {
-        check_count(seed.len(), self.sites())?;
-        check_count(out.len(), self.sites())?;
+        MeshError::unless_of_length(seed, self.sites())?;
+        MeshError::unless_of_length(out, self.sites())?;
         out.fill(Plane::zeros());
         self.mesh.add_area_gradient(|a| seed[a], out);
         Ok(())
+    }
+
+    fn share(&mut self, threads: Threads) {
+        self.mesh.share(threads);
     }
 }

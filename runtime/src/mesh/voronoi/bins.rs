@@ -7,7 +7,7 @@ use crate::mesh::MeshError;
 #[derive(Clone, Debug)]
 pub(super) struct Bins {
     lengths: [f64; 2],
-    count: [usize; 2],
+    count: [u32; 2],
     /// Where the particles of each square begin, and those of the last end.
     start: Vec<u32>,
     /// Particles by squares.
@@ -23,11 +23,11 @@ impl Bins {
     pub fn new(lengths: [f64; 2], radius: f64, particles: usize) -> Self {
         let spacing = (lengths[0] * lengths[1] / particles as f64).sqrt();
         let width = radius.max(0.5 * spacing);
-        let count = lengths.map(|length| ((length / width).floor() as usize).max(1));
+        let count = lengths.map(|length| ((length / width).floor() as u32).max(1));
         Self {
             lengths,
             count,
-            start: vec![0; count[0] * count[1] + 1],
+            start: vec![0; count[0] as usize * count[1] as usize + 1],
             sorted: vec![0; particles],
             square: vec![[0; 2]; particles],
             turns: vec![[0.0; 2]; particles],
@@ -40,7 +40,7 @@ impl Bins {
     }
 
     fn number(&self, [i, j]: [u32; 2]) -> usize {
-        j as usize * self.count[0] + i as usize
+        j as usize * self.count[0] as usize + i as usize
     }
 
     /// Sorts them.
@@ -55,8 +55,8 @@ impl Bins {
                 let turns = (x / self.lengths[k]).floor();
                 let share = x / self.lengths[k] - turns;
                 self.turns[site][k] = turns;
-                let last = self.count[k] as u32 - 1;
-                self.square[site][k] = ((share * self.count[k] as f64) as u32).min(last);
+                let count = self.count[k];
+                self.square[site][k] = ((share * f64::from(count)) as u32).min(count - 1);
             }
             let number = self.number(self.square[site]);
             self.start[number] += 1;
@@ -111,10 +111,14 @@ impl Bins {
         let mut square = own;
         let mut periods = [0.0; 2];
         for k in 0..2 {
-            let count = self.count[k] as i64;
-            let next = i64::from(own[k]) + by[k];
-            periods[k] = next.div_euclid(count) as f64;
-            square[k] = next.rem_euclid(count) as u32;
+            let count = i64::from(self.count[k]);
+            let mut next = i64::from(own[k]) + by[k];
+            if next < 0 {
+                (next, periods[k]) = (next + count, -1.0);
+            } else if next >= count {
+                (next, periods[k]) = (next - count, 1.0);
+            }
+            square[k] = next as u32;
         }
         (square, periods)
     }

@@ -3,7 +3,9 @@
 //! polynomial for every right side, so that derivatives converge with the values. Takes a start; gives the iterations.
 
 use super::laplacian::Helmholtz;
+use super::shared::Sums;
 use crate::Real;
+use crate::line::Threads;
 use crate::mesh::MeshError;
 
 /// What is left of the right side, in units of the rounding of one operation: 1e-12 in doubles.
@@ -18,6 +20,7 @@ pub(super) struct Iteration<T> {
     residual: Vec<T>,
     direction: Vec<T>,
     image: Vec<T>,
+    sums: Sums<T>,
 }
 
 impl<T: Real> Iteration<T> {
@@ -27,7 +30,13 @@ impl<T: Real> Iteration<T> {
             residual: zeros.clone(),
             direction: zeros.clone(),
             image: zeros,
+            sums: Sums::new(sites),
         }
+    }
+
+    /// Has the loops of conjugate gradients shared by so many threads.
+    pub fn share(&mut self, threads: Threads) {
+        self.sums.share(threads);
     }
 
     /// Solves, from what `x` holds; gives how many times the operator was applied.
@@ -53,40 +62,57 @@ impl<T: Real> Iteration<T> {
         let tolerance = TOLERANCE * T::EPSILON;
         let size: f64 = right.iter().map(|b| (*b * *b).value()).sum();
         let bound = tolerance * tolerance * size;
-        let (mut left, mut sum) = (T::zero(), T::zero());
-        for (a, right) in right.iter().enumerate() {
-            let residual = *right - operator.row(a, x);
-            let step = residual / operator.diagonal[a];
-            self.residual[a] = residual;
-            self.direction[a] = step;
-            left += residual * residual;
-            sum += residual * step;
-        }
+        let Self {
+            residual,
+            direction,
+            image,
+            sums,
+        } = self;
+        let inverse = &operator.inverse;
+        let [mut left, mut sum] = sums.over(residual, direction, |first, residual, direction| {
+            let [mut left, mut sum] = [T::zero(); 2];
+            for (k, (residual, direction)) in residual.iter_mut().zip(direction).enumerate() {
+                let a = first + k;
+                *residual = right[a] - operator.row(a, x);
+                *direction = *residual * inverse[a];
+                left += *residual * *residual;
+                sum += *residual * *direction;
+            }
+            [left, sum]
+        });
         for products in 1..=MOST {
             if left.value() <= bound {
                 return Ok(products);
             }
-            let mut curvature = T::zero();
-            for (a, image) in self.image.iter_mut().enumerate() {
-                *image = operator.row(a, &self.direction);
-                curvature += *image * self.direction[a];
-            }
+            let [curvature, _] = sums.over(image, residual, |first, image, _| {
+                let mut curvature = T::zero();
+                for (k, image) in image.iter_mut().enumerate() {
+                    *image = operator.row(first + k, direction);
+                    curvature += *image * direction[first + k];
+                }
+                [curvature, T::zero()]
+            });
             let length = sum / curvature;
             let before = sum;
-            (left, sum) = (T::zero(), T::zero());
-            for (a, x) in x.iter_mut().enumerate() {
-                *x += length * self.direction[a];
-                let residual = self.residual[a] - length * self.image[a];
-                let step = residual / operator.diagonal[a];
-                self.residual[a] = residual;
-                self.image[a] = step;
-                left += residual * residual;
-                sum += residual * step;
-            }
+            // What the image is of is needed no longer: in its place comes the residual over the diagonal.
+            [left, sum] = sums.over(residual, image, |first, residual, image| {
+                let [mut left, mut sum] = [T::zero(); 2];
+                for (k, (residual, image)) in residual.iter_mut().zip(image).enumerate() {
+                    *residual -= length * *image;
+                    *image = *residual * inverse[first + k];
+                    left += *residual * *residual;
+                    sum += *residual * *image;
+                }
+                [left, sum]
+            });
             let share = sum / before;
-            for (direction, step) in self.direction.iter_mut().zip(&self.image) {
-                *direction = *step + share * *direction;
-            }
+            sums.over(x, direction, |first, x, direction| {
+                for (k, (x, direction)) in x.iter_mut().zip(direction).enumerate() {
+                    *x += length * *direction;
+                    *direction = image[first + k] + share * *direction;
+                }
+                [T::zero(); 2]
+            });
             if !left.is_finite() {
                 break;
             }
@@ -120,7 +146,7 @@ impl<T: Real> Iteration<T> {
                 };
                 let (fresh, kept) = (T::from_f64(weight), T::from_f64(weight - 1.0));
                 for (a, residual) in self.residual.iter_mut().enumerate() {
-                    *residual = (right[a] - operator.row(a, x)) / operator.diagonal[a];
+                    *residual = (right[a] - operator.row(a, x)) * operator.inverse[a];
                 }
                 for (a, x) in x.iter_mut().enumerate() {
                     let step = fresh * self.residual[a] + kept * self.direction[a];

@@ -6,6 +6,7 @@
 use super::half_edges::{HalfEdges, next, previous};
 use super::predicates::{in_circle, turn};
 use super::torus::{Grains, Torus};
+use crate::line::Threads;
 use crate::mesh::MeshError;
 
 /// A site this many periods or more from where it was counted is counted anew.
@@ -26,6 +27,8 @@ pub(super) struct Delaunay {
     pub(super) suspects: Vec<u32>,
     /// Edges flipped, and triangulations made anew, since the first update.
     pub counted: Counted,
+    /// How many threads look for suspects.
+    pub threads: Threads,
 }
 
 /// What the sites' motion has cost.
@@ -47,6 +50,7 @@ impl Delaunay {
             places: vec![[0.0; 2]; sites],
             suspects: Vec::new(),
             counted: Counted::default(),
+            threads: Threads::ONE,
         }
     }
 
@@ -130,47 +134,54 @@ impl Delaunay {
     }
 
     /// Collects the edges that are not Delaunay; whether every triangle still turns left.
-    fn find_suspects(&mut self) -> bool {
-        self.suspects.clear();
-        for e in (0..self.edges.len()).step_by(3) {
-            let (first, second) = (self.edge(e), self.edge(e + 1));
-            if turn(first, second) <= 0.0 {
-                return false;
-            }
-            let third = [-first[0] - second[0], -first[1] - second[1]];
-            let sides = [first, second, third];
-            for (k, &side) in sides.iter().enumerate() {
-                let twin = self.edges.twin[e + k] as usize;
-                let before = sides[(k + 2) % 3];
-                if e + k < twin && in_circle(side, [-before[0], -before[1]], self.edge(next(twin)))
-                {
-                    self.suspects.push((e + k) as u32);
-                }
+    pub(super) fn find_suspects(&mut self) -> bool {
+        let mut suspects = core::mem::take(&mut self.suspects);
+        suspects.clear();
+        let all = 0..self.edges.len() / 3;
+        let left = self
+            .threads
+            .collect(all, &mut suspects, |triangles, found| {
+                triangles.into_iter().all(|t| self.suspect(3 * t, found))
+            });
+        self.suspects = suspects;
+        left
+    }
+
+    /// Collects the edges of a triangle that are not Delaunay; whether it turns left.
+    #[inline(always)]
+    fn suspect(&self, e: usize, found: &mut Vec<u32>) -> bool {
+        let (first, second) = (self.edge(e), self.edge(e + 1));
+        if turn(first, second) <= 0.0 {
+            return false;
+        }
+        let third = [-first[0] - second[0], -first[1] - second[1]];
+        let sides = [first, second, third];
+        for (k, &side) in sides.iter().enumerate() {
+            let twin = self.edges.twin[e + k] as usize;
+            let before = sides[(k + 2) % 3];
+            if e + k < twin && in_circle(side, [-before[0], -before[1]], self.edge(next(twin))) {
+                found.push((e + k) as u32);
             }
         }
         true
     }
 
     /// Whether the circle of an edge's triangle holds the site across it.
-    fn is_bad(&self, e: usize) -> bool {
+    pub(super) fn is_bad(&self, e: usize) -> bool {
         let before = self.edge(previous(e));
         let across = self.edge(next(self.edges.twin[e] as usize));
         in_circle(self.edge(e), [-before[0], -before[1]], across)
     }
 
-    /// Flips suspected edges until all are Delaunay. Ends, because each flip lowers the lifted surface.
+    /// Flips suspected edges, and suspects those around them, until all are Delaunay. Ends, because each flip lowers the
+    /// lifted surface.
     pub(super) fn repair(&mut self) {
         while let Some(e) = self.suspects.pop() {
             if self.is_bad(e as usize) {
-                self.flip(e as usize);
+                self.counted.flips += 1;
+                let around = self.edges.flip(e as usize);
+                self.suspects.extend(around.map(|e| e as u32));
             }
         }
-    }
-
-    /// Flips an edge and suspects the four around it.
-    pub(super) fn flip(&mut self, e: usize) {
-        self.counted.flips += 1;
-        let around = self.edges.flip(e);
-        self.suspects.extend(around.map(|e| e as u32));
     }
 }

@@ -7,14 +7,15 @@
 use super::conjugate::Iteration;
 use super::laplacian::Helmholtz;
 use super::masses::check_masses;
-use super::mesh::{Plane, Voronoi, check_count};
+use super::mesh::{Plane, Voronoi};
+use crate::line::Threads;
 use crate::mesh::{Functional, MeshError, Setting};
 use crate::{ParameterError, Problem, Real};
 use nalgebra::SVector;
 
 /// Depths at the particles, to a relative residual of 1e-12.
 ///
-/// The equation is solved from what the last three values extrapolate to, and not again at the same places. The derivative of `sum seed_a phi_a` takes a
+/// The equation is solved from what the last four values extrapolate to, and not again at the same places. The derivative of `sum seed_a phi_a` takes a
 /// second solution, `(A + alpha^2 K) lambda = seed`, but not where the seed is a multiple of the masses, as that of the
 /// potential energy is: `lambda` is the same multiple of `phi`.
 #[allow(non_camel_case_types)] // Models name it.
@@ -27,7 +28,7 @@ pub struct helmholtz_depth<T> {
     /// Where the last value was taken.
     at: Vec<Plane<T>>,
     /// The last values, the latest first.
-    solutions: [Vec<T>; 3],
+    solutions: [Vec<T>; 4],
     solved: usize,
     adjoint: Vec<T>,
     products: usize,
@@ -57,7 +58,7 @@ impl<T: Real> helmholtz_depth<T> {
         alpha: T,
         depth: &[T],
     ) -> Result<Vec<T>, MeshError> {
-        check_count(depth.len(), mesh.sites())?;
+        MeshError::unless_of_length(depth, mesh.sites())?;
         mesh.update(at)?;
         let mut operator = Helmholtz::new(mesh.sites(), alpha);
         operator.update(mesh);
@@ -77,15 +78,17 @@ impl<T: Real> helmholtz_depth<T> {
 
     /// Puts what the last values extrapolate to in front of them.
     fn extrapolate(&mut self) {
-        let [latest, earlier, earliest] = &mut self.solutions;
-        let three = T::from_f64(3.0);
+        let [latest, earlier, before, earliest] = &mut self.solutions;
+        let (three, six) = (T::from_f64(3.0), T::from_f64(6.0));
+        let four = T::from_f64(4.0);
         for a in 0..latest.len() {
-            let (x, y, z) = (latest[a], earlier[a], earliest[a]);
+            let (x, y, z, w) = (latest[a], earlier[a], before[a], earliest[a]);
             earliest[a] = match self.solved {
                 0 => self.masses[a] / self.operator.areas[a],
                 1 => x,
                 2 => x + (x - y),
-                _ => three * (x - y) + z,
+                3 => three * (x - y) + z,
+                _ => four * (x + z) - six * y - w,
             };
         }
         self.solutions.rotate_right(1);
@@ -115,7 +118,7 @@ impl<T: Real> Functional<T, 2> for helmholtz_depth<T> {
             iteration: Iteration::new(setting.particles),
             masses: masses.to_vec(),
             at: vec![Plane::zeros(); setting.particles],
-            solutions: [zeros.clone(), zeros.clone(), zeros.clone()],
+            solutions: core::array::from_fn(|_| zeros.clone()),
             solved: 0,
             adjoint: zeros,
             products: 0,
@@ -128,7 +131,7 @@ impl<T: Real> Functional<T, 2> for helmholtz_depth<T> {
     }
 
     fn value(&mut self, at: &[Self::Argument], out: &mut [T]) -> Result<(), MeshError> {
-        check_count(out.len(), self.sites())?;
+        MeshError::unless_of_length(out, self.sites())?;
         if self.solved > 0 && self.at == at {
             self.products = 0;
             out.copy_from_slice(&self.solutions[0]);
@@ -146,7 +149,7 @@ impl<T: Real> Functional<T, 2> for helmholtz_depth<T> {
                 return Err(error);
             }
         }
-        self.solved = (self.solved + 1).min(3);
+        self.solved = (self.solved + 1).min(4);
         self.at.copy_from_slice(at);
         out.copy_from_slice(solution);
         Ok(())
@@ -158,8 +161,8 @@ impl<T: Real> Functional<T, 2> for helmholtz_depth<T> {
         seed: &[T],
         out: &mut [Self::Argument],
     ) -> Result<(), MeshError> {
-        check_count(seed.len(), self.sites())?;
-        check_count(out.len(), self.sites())?;
+        MeshError::unless_of_length(seed, self.sites())?;
+        MeshError::unless_of_length(out, self.sites())?;
         let depth = &self.solutions[0];
         let multiple = self.multiple(seed);
         let starts = self.adjoint.iter_mut().zip(depth);
@@ -178,5 +181,10 @@ impl<T: Real> Functional<T, 2> for helmholtz_depth<T> {
         self.operator
             .add_gradient(&self.mesh, &self.adjoint, depth, out);
         Ok(())
+    }
+
+    fn share(&mut self, threads: Threads) {
+        self.mesh.share(threads);
+        self.iteration.share(threads);
     }
 }

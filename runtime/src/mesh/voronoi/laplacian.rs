@@ -11,10 +11,13 @@ use nalgebra::SVector;
 pub(super) struct Helmholtz<T> {
     /// Where each row begins, and the last one ends.
     start: Vec<u32>,
-    /// The neighbours of each site, and `-alpha^2 l/R` of the edges to them.
-    entries: Vec<(u32, T)>,
-    /// Diagonal entries.
+    /// The neighbours of each site,
+    columns: Vec<u32>,
+    /// and `-alpha^2 l/R` of the edges to them.
+    entries: Vec<T>,
+    /// Diagonal entries, and one over them.
     pub diagonal: Vec<T>,
+    pub inverse: Vec<T>,
     /// Areas of the cells.
     pub areas: Vec<T>,
     /// Of each half-edge, half the cotangent of the angle across it.
@@ -26,8 +29,10 @@ impl<T: Real> Helmholtz<T> {
     pub fn new(sites: usize, alpha: T) -> Self {
         Self {
             start: vec![0; sites + 1],
-            entries: vec![(0, T::zero()); 6 * sites],
+            columns: vec![0; 6 * sites],
+            entries: vec![T::zero(); 6 * sites],
             diagonal: vec![T::zero(); sites],
+            inverse: vec![T::zero(); sites],
             areas: vec![T::zero(); sites],
             halves: vec![T::zero(); 6 * sites],
             alpha_squared: alpha * alpha,
@@ -62,17 +67,23 @@ impl<T: Real> Helmholtz<T> {
                 self.alpha_squared * (self.halves[e] + self.halves[twin])
             };
             self.start[a] -= 1;
-            self.entries[self.start[a] as usize] = (b as u32, -flow);
+            let place = self.start[a] as usize;
+            self.columns[place] = b as u32;
+            self.entries[place] = -flow;
             self.diagonal[a] += flow;
+        }
+        for (inverse, diagonal) in self.inverse.iter_mut().zip(&self.diagonal) {
+            *inverse = T::one() / *diagonal;
         }
     }
 
     /// A row applied to `x`.
     #[inline(always)]
     pub fn row(&self, a: usize, x: &[T]) -> T {
-        let entries = &self.entries[self.start[a] as usize..self.start[a + 1] as usize];
+        let range = self.start[a] as usize..self.start[a + 1] as usize;
+        let columns = &self.columns[range.clone()];
         let mut sum = self.diagonal[a] * x[a];
-        for &(b, entry) in entries {
+        for (&b, &entry) in columns.iter().zip(&self.entries[range]) {
             sum += entry * x[b as usize];
         }
         sum

@@ -4,6 +4,7 @@
 use super::delaunay::{Counted, Delaunay};
 use super::half_edges::next;
 use super::torus::Torus;
+use crate::line::Threads;
 use crate::mesh::{Domain, MeshError, Wall};
 use crate::{ParameterError, Problem, Real};
 use nalgebra::SVector;
@@ -106,6 +107,11 @@ impl<T: Real> Voronoi<T> {
         })
     }
 
+    /// Has its edges looked through by so many threads: which are flipped, and in which order, does not depend on it.
+    pub fn share(&mut self, threads: Threads) {
+        self.delaunay.threads = threads;
+    }
+
     /// How many particles it has.
     #[must_use]
     pub fn sites(&self) -> usize {
@@ -128,9 +134,9 @@ impl<T: Real> Voronoi<T> {
     ///
     /// # Errors
     /// [`MeshError::Coincident`] where two particles are nearer than 4e-15 of the longer period,
-    /// [`MeshError::NotFinite`], [`MeshError::Count`]. The mesh is of no use then, until the next update.
+    /// [`MeshError::NotFinite`], [`MeshError::Length`]. The mesh is of no use then, until the next update.
     pub fn update(&mut self, at: &[SVector<T, 2>]) -> Result<(), MeshError> {
-        check_count(at.len(), self.sites())?;
+        MeshError::unless_of_length(at, self.sites())?;
         self.delaunay.follow(|site| {
             let x = &at[site];
             [x[0].value(), x[1].value()]
@@ -204,15 +210,5 @@ impl<T: Real> Voronoi<T> {
     pub(super) fn ends(&self, e: usize) -> (usize, usize) {
         let edges = &self.delaunay.edges;
         (edges.origin[e] as usize, edges.origin[next(e)] as usize)
-    }
-}
-
-/// That there is a value for each site.
-#[inline]
-pub(super) fn check_count(given: usize, sites: usize) -> Result<(), MeshError> {
-    if given == sites {
-        Ok(())
-    } else {
-        Err(MeshError::Count { given, sites })
     }
 }

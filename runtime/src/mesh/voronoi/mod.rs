@@ -16,9 +16,13 @@ mod laplacian;
 mod masses;
 mod mesh;
 mod moment;
+mod operators;
 pub mod placement;
+mod polygons;
 mod predicates;
 mod repulsion;
+mod shared;
+mod spacing;
 mod torus;
 
 pub use area::voronoi_area;
@@ -28,3 +32,4 @@ pub use helmholtz::helmholtz_depth;
 pub use mesh::{Triangle, Voronoi};
 pub use moment::second_moment;
 pub use repulsion::pair_core;
+pub use spacing::Between;

@@ -2,7 +2,8 @@
 //! potential it draws particles to the centres of their cells, at a price: the fluid resists shear like a soft solid.
 //! Takes places on a torus; gives moments and their exact derivatives.
 
-use super::mesh::{Plane, Voronoi, check_count, dot, left};
+use super::mesh::{Plane, Voronoi, dot, left};
+use crate::line::Threads;
 use crate::mesh::{Functional, MeshError, Setting};
 use crate::{ParameterError, Real};
 use nalgebra::SVector;
@@ -29,7 +30,7 @@ impl<T: Real> Functional<T, 2> for second_moment<T> {
     }
 
     fn value(&mut self, at: &[Self::Argument], out: &mut [T]) -> Result<(), MeshError> {
-        check_count(out.len(), self.sites())?;
+        MeshError::unless_of_length(out, self.sites())?;
         self.mesh.update(at)?;
         self.mesh.second_moments(out);
         Ok(())
@@ -41,8 +42,8 @@ impl<T: Real> Functional<T, 2> for second_moment<T> {
         seed: &[T],
         out: &mut [Self::Argument],
     ) -> Result<(), MeshError> {
-        check_count(seed.len(), self.sites())?;
-        check_count(out.len(), self.sites())?;
+        MeshError::unless_of_length(seed, self.sites())?;
+        MeshError::unless_of_length(out, self.sites())?;
         out.fill(Plane::zeros());
         // The integrand moves with the particle,
         let twice = T::from_f64(-2.0);
@@ -62,5 +63,9 @@ impl<T: Real> Functional<T, 2> for second_moment<T> {
             }
         }
         Ok(())
+    }
+
+    fn share(&mut self, threads: Threads) {
+        self.mesh.share(threads);
     }
 }

@@ -4,7 +4,7 @@
 
 use super::bins::Bins;
 use super::masses::check_masses;
-use super::mesh::{Plane, check_count};
+use super::mesh::Plane;
 use crate::mesh::{Functional, MeshError, Setting, Wall};
 use crate::{ParameterError, Problem, Real};
 use nalgebra::SVector;
@@ -101,8 +101,8 @@ impl<T: Real> Functional<T, 2> for pair_core<T> {
     }
 
     fn value(&mut self, at: &[Self::Argument], out: &mut [T]) -> Result<(), MeshError> {
-        check_count(at.len(), self.sites())?;
-        check_count(out.len(), self.sites())?;
+        MeshError::unless_of_length(at, self.sites())?;
+        MeshError::unless_of_length(out, self.sites())?;
         self.bins
             .sort(|site| [at[site][0].value(), at[site][1].value()])?;
         self.pairs.clear();
@@ -143,8 +143,8 @@ impl<T: Real> Functional<T, 2> for pair_core<T> {
         seed: &[T],
         out: &mut [Self::Argument],
     ) -> Result<(), MeshError> {
-        check_count(seed.len(), self.sites())?;
-        check_count(out.len(), self.sites())?;
+        MeshError::unless_of_length(seed, self.sites())?;
+        MeshError::unless_of_length(out, self.sites())?;
         out.fill(Plane::zeros());
         let scale = T::from_f64(1.5) * self.strength / self.radius;
         for pair in &self.pairs {

@@ -1,0 +1,56 @@
+//! How near particles are, and what that asks of the step. Takes a mesh and the speeds of waves; gives distances and
+//! rates, with the sites where they are.
+
+use super::mesh::Voronoi;
+
+/// A number and the two neighbours it belongs to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Between {
+    /// The number.
+    pub value: f64,
+    /// The neighbours.
+    pub sites: [usize; 2],
+}
+
+impl Voronoi<f64> {
+    /// The smallest distance of two particles, or of a particle and its own copy. The nearest are always neighbours.
+    #[must_use]
+    pub fn nearest(&self) -> Between {
+        let mut nearest = Between {
+            value: f64::INFINITY,
+            sites: [0; 2],
+        };
+        for face in self.faces() {
+            let value = face.edge.norm();
+            if value < nearest.value {
+                nearest = Between {
+                    value,
+                    sites: face.sites,
+                };
+            }
+        }
+        nearest
+    }
+
+    /// The largest speed over distance of two neighbours: with `speeds` the wave speeds `sqrt(g h)` at particles, one
+    /// step should be at most about half of its inverse. Waves of a depth that is smoothed over the length `alpha` are
+    /// slower: there `1/alpha` can stand in place of the inverse distance.
+    #[must_use]
+    pub fn fastest(&self, speeds: &[f64]) -> Between {
+        let mut fastest = Between {
+            value: 0.0,
+            sites: [0; 2],
+        };
+        for face in self.faces() {
+            let [a, b] = face.sites;
+            let value = 0.5 * (speeds[a] + speeds[b]) / face.edge.norm();
+            if value > fastest.value || value.is_nan() {
+                fastest = Between {
+                    value,
+                    sites: face.sites,
+                };
+            }
+        }
+        fastest
+    }
+}
