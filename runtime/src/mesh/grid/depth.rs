@@ -153,7 +153,7 @@ fn scatter<T: Real, const D: usize, const K: usize>(
     Splines<K>: Basis<K>,
 {
     let mut rest = places;
-    let mut rows: [&mut [T]; K] = core::array::from_fn(|_| {
+    let rows: [&mut [T]; K] = core::array::from_fn(|_| {
         let (row, behind) = core::mem::take(&mut rest).split_at_mut(width);
         rest = behind;
         row
@@ -161,18 +161,21 @@ fn scatter<T: Real, const D: usize, const K: usize>(
     for particle in particles {
         let across = Splines::<K>::values(particle.fraction[0]);
         if D == 1 {
-            for (row, across) in rows.iter_mut().zip(across) {
-                row[0] += particle.mass * across;
+            for i in 0..K {
+                rows[i][0] += particle.mass * across[i];
             }
             continue;
         }
-        let along = Splines::<K>::values(particle.fraction[D - 1]).map(|w| w * particle.mass);
+        let mut along = Splines::<K>::values(particle.fraction[D - 1]);
+        for weight in &mut along {
+            *weight *= particle.mass;
+        }
         let column = particle.column();
-        for (row, across) in rows.iter_mut().zip(across) {
-            let row = row.get_mut(column..column + K);
+        for i in 0..K {
+            let row = rows[i].get_mut(column..column + K);
             if let Some(row) = row.and_then(|row| row.first_chunk_mut::<K>()) {
-                for (place, along) in row.iter_mut().zip(along) {
-                    *place += across * along;
+                for j in 0..K {
+                    row[j] += across[i] * along[j];
                 }
             }
         }
@@ -200,36 +203,35 @@ fn gather<T: Real, A: Position<T, D>, const D: usize, const K: usize>(
         let slopes = Splines::<K>::slopes(particle.fraction[0]);
         let mut sum = [T::zero(); D];
         if D == 1 {
-            for (row, slope) in rows.iter().zip(slopes) {
-                sum[0] += row[0] * slope;
+            for i in 0..K {
+                sum[0] += rows[i][0] * slopes[i];
             }
         } else {
             let across = Splines::<K>::values(particle.fraction[0]);
             let along = Splines::<K>::values(particle.fraction[D - 1]);
             let along_slopes = Splines::<K>::slopes(particle.fraction[D - 1]);
             let column = particle.column();
-            for ((row, across), slope) in rows.iter().zip(across).zip(slopes) {
-                let row = row.get(column..column + K);
+            for i in 0..K {
+                let row = rows[i].get(column..column + K);
                 if let Some(row) = row.and_then(|row| row.first_chunk::<K>()) {
                     let (mut value, mut change) = (T::zero(), T::zero());
                     for j in 0..K {
                         value += row[j] * along[j];
                         change += row[j] * along_slopes[j];
                     }
-                    sum[0] += slope * value;
-                    sum[D - 1] += across * change;
+                    sum[0] += slopes[i] * value;
+                    sum[D - 1] += across[i] * change;
                 }
             }
         }
-        let mut derivative: [T; D] =
-            core::array::from_fn(|d| sum[d] * (density[d] * particle.mass));
-        for (d, component) in derivative.iter_mut().enumerate() {
+        for d in 0..D {
+            sum[d] *= density[d] * particle.mass;
             if particle.is_mirrored(d) {
-                *component = -*component;
+                sum[d] = -sum[d];
             }
         }
         if let Some(place) = out.get_mut(particle.number()) {
-            *place = A::of(derivative);
+            *place = A::of(sum);
         }
     }
 }
