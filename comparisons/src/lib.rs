@@ -8,3 +8,4 @@ pub mod elliptic;
 pub mod gallery;
 pub mod handwritten;
 pub mod runge_kutta;
+pub mod shallow_water;

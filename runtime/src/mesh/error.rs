@@ -42,21 +42,14 @@ pub enum MeshError {
         /// How far.
         by: f64,
     },
-    /// A list does not have one value for each site.
-    Length {
-        /// How many it should have.
-        expected: usize,
-        /// How many it has.
-        found: usize,
-    },
 }
 
 impl MeshError {
     /// Whether a list has one value for each of so many sites.
-    pub(super) fn unless_of_length<V>(list: &[V], expected: usize) -> Result<(), Self> {
+    pub(super) fn unless_of_length<V>(list: &[V], sites: usize) -> Result<(), Self> {
         match list.len() {
-            found if found == expected => Ok(()),
-            found => Err(Self::Length { expected, found }),
+            given if given == sites => Ok(()),
+            given => Err(Self::Count { given, sites }),
         }
     }
 }
@@ -85,9 +78,6 @@ impl fmt::Display for MeshError {
                     f,
                     "particle {site} is {by:e} beyond a wall: take a shorter step"
                 )
-            }
-            Self::Length { expected, found } => {
-                write!(f, "{expected} sites, but {found} values")
             }
         }
     }

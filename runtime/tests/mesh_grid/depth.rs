@@ -142,13 +142,7 @@ fn what_cannot_be_deposited_is_an_error_with_the_particle() {
         assert_eq!(deposit.value(&at, &mut out), Ok(()));
     }
     let few = deposit.value(&[inside; 2], &mut out);
-    assert_eq!(
-        few,
-        Err(MeshError::Length {
-            expected: 3,
-            found: 2
-        })
-    );
+    assert_eq!(few, Err(MeshError::Count { given: 2, sites: 3 }));
     let no_grid = Setting {
         grid: None,
         ..of.clone()

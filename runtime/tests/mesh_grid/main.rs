@@ -6,4 +6,5 @@ mod depth;
 mod forces;
 mod reflection;
 mod smoothers;
+mod symmetries;
 mod verlet;

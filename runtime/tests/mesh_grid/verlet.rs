@@ -158,7 +158,7 @@ fn energy_along_a_line_stays_within_the_bound_of_its_amplitude() {
 
 /// The inverse of a symmetric matrix of second differences from wall to wall, which a stepper takes for its own
 /// adjoint in the weights.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 struct Naive(f64);
 
 impl Functional<f64, 1> for Naive {

@@ -6,8 +6,9 @@
 use super::super::{Functional, MeshError, Setting};
 use super::nodes::Nodes;
 use super::padded::Padded;
-use super::sorted::{Particle, Position, Sorted};
+use super::sorted::{Position, Rows, Sorted};
 use super::spline::{Basis, Splines};
+use super::stencil::{gather, scatter};
 use crate::line::Threads;
 use crate::{ParameterError, Problem, Real};
 use nalgebra::SVector;
@@ -121,7 +122,7 @@ where
         self.padded.extend(seed);
         let (places, width) = (self.padded.places(), self.padded.width());
         let density = core::array::from_fn(|d| self.nodes.axes()[d].density());
-        let collect = |(rows, out): (super::sorted::Rows<'_, T, D>, &mut [A])| {
+        let collect = |(rows, out): (Rows<'_, T, D>, &mut [A])| {
             for (row, from) in (0..self.nodes.axes()[0].intervals()).zip((0..).step_by(width)) {
                 let places = &places[from..from + K * width];
                 gather::<T, A, D, K>(places, width, &density, rows.row(row), out);
@@ -140,97 +141,6 @@ where
         }
         ranges.for_each(collect);
         Ok(())
-    }
-}
-
-/// Adds the masses of particles of one row of cells to `K` rows of places.
-#[inline(always)]
-fn scatter<T: Real, const D: usize, const K: usize>(
-    places: &mut [T],
-    width: usize,
-    particles: &[Particle<T, D>],
-) where
-    Splines<K>: Basis<K>,
-{
-    let mut rest = places;
-    let mut rows: [&mut [T]; K] = core::array::from_fn(|_| {
-        let (row, behind) = core::mem::take(&mut rest).split_at_mut(width);
-        rest = behind;
-        row
-    });
-    for particle in particles {
-        let across = Splines::<K>::values(particle.fraction[0]);
-        if D == 1 {
-            for (row, across) in rows.iter_mut().zip(across) {
-                row[0] += particle.mass * across;
-            }
-            continue;
-        }
-        let along = Splines::<K>::values(particle.fraction[D - 1]).map(|w| w * particle.mass);
-        let column = particle.column();
-        for (row, across) in rows.iter_mut().zip(across) {
-            let row = row.get_mut(column..column + K);
-            if let Some(row) = row.and_then(|row| row.first_chunk_mut::<K>()) {
-                for (place, along) in row.iter_mut().zip(along) {
-                    *place += across * along;
-                }
-            }
-        }
-    }
-}
-
-/// The derivatives for particles of one row of cells, from `K` rows of places.
-#[inline(always)]
-fn gather<T: Real, A: Position<T, D>, const D: usize, const K: usize>(
-    places: &[T],
-    width: usize,
-    density: &[T; D],
-    particles: &[Particle<T, D>],
-    out: &mut [A],
-) where
-    Splines<K>: Basis<K>,
-{
-    let mut rest = places;
-    let rows: [&[T]; K] = core::array::from_fn(|_| {
-        let (row, behind) = rest.split_at(width);
-        rest = behind;
-        row
-    });
-    for particle in particles {
-        let slopes = Splines::<K>::slopes(particle.fraction[0]);
-        let mut sum = [T::zero(); D];
-        if D == 1 {
-            for (row, slope) in rows.iter().zip(slopes) {
-                sum[0] += row[0] * slope;
-            }
-        } else {
-            let across = Splines::<K>::values(particle.fraction[0]);
-            let along = Splines::<K>::values(particle.fraction[D - 1]);
-            let along_slopes = Splines::<K>::slopes(particle.fraction[D - 1]);
-            let column = particle.column();
-            for ((row, across), slope) in rows.iter().zip(across).zip(slopes) {
-                let row = row.get(column..column + K);
-                if let Some(row) = row.and_then(|row| row.first_chunk::<K>()) {
-                    let (mut value, mut change) = (T::zero(), T::zero());
-                    for j in 0..K {
-                        value += row[j] * along[j];
-                        change += row[j] * along_slopes[j];
-                    }
-                    sum[0] += slope * value;
-                    sum[D - 1] += across * change;
-                }
-            }
-        }
-        let mut derivative: [T; D] =
-            core::array::from_fn(|d| sum[d] * (density[d] * particle.mass));
-        for (d, component) in derivative.iter_mut().enumerate() {
-            if particle.is_mirrored(d) {
-                *component = -*component;
-            }
-        }
-        if let Some(place) = out.get_mut(particle.number()) {
-            *place = A::of(derivative);
-        }
     }
 }
 

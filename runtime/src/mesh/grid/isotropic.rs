@@ -22,7 +22,7 @@ const MOST: usize = 10_000;
 /// is the values of another functional, its data the smoothing length.
 // Named as models write it.
 #[allow(non_camel_case_types)]
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct smooth_isotropic<T, const D: usize> {
     directions: Directions<T, D>,
     weights: Weights<T>,

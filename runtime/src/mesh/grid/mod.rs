@@ -12,6 +12,7 @@ mod reflection;
 mod smoother;
 mod sorted;
 mod spline;
+mod stencil;
 
 pub use axis::Axis;
 pub use depth::{deposit, deposit_quintic};

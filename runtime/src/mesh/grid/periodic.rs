@@ -6,19 +6,20 @@ use super::axis::Axis;
 use super::bounded::BLOCK;
 use crate::Real;
 use core::any::TypeId;
+use core::fmt;
 use realfft::num_complex::Complex;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use std::sync::Arc;
 
 /// The smoother of one periodic direction.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub(super) struct Periodic<T> {
     nodes: usize,
     way: Way<T>,
     block: Vec<T>,
 }
 
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 enum Way<T> {
     Transformed(Box<Transformed>),
     /// `1 - S` as a kernel, and a row to be convolved.
@@ -40,6 +41,14 @@ struct Transformed {
 /// Whether a scalar is a plain number.
 pub(super) fn is_plain<T: 'static>() -> bool {
     TypeId::of::<T>() == TypeId::of::<f64>()
+}
+
+impl fmt::Debug for Transformed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Plans have no representation of their own.
+        let mut all = f.debug_struct("Transformed");
+        all.field("symbol", &self.symbol).finish_non_exhaustive()
+    }
 }
 
 impl<T: Real> Periodic<T> {

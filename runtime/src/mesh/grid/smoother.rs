@@ -10,14 +10,14 @@ use super::periodic::Periodic;
 use crate::{ParameterError, Problem, Real};
 
 /// The smoother of one direction.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 enum Along<T> {
     Bounded(Bounded<T>),
     Periodic(Periodic<T>),
 }
 
 /// One-dimensional smoothers along each direction.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub(super) struct Directions<T, const D: usize> {
     along: [Along<T>; D],
     /// Nodes along each direction.
@@ -111,7 +111,7 @@ impl<T: Real> Weights<T> {
 /// [`smooth_isotropic`](super::smooth_isotropic).
 // Named as models write it.
 #[allow(non_camel_case_types)]
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct smooth<T, const D: usize> {
     directions: Directions<T, D>,
     weights: Weights<T>,

@@ -1,0 +1,221 @@
+//! Regularised shallow water by Fourier components: `h_t + div(h u) = 0`, `u_t + (ζ + f) k x u = -grad(c0² S h + |u|²/2)`,
+//! where S is the inverse of a Helmholtz operator, in a periodic box or in a channel. A channel is half of a periodic box
+//! in which depth is even about the walls and the normal velocity odd. Products are free of aliases (two thirds of the
+//! components are kept); the steps are those of the classical Runge-Kutta method.
+
+use super::fourier::{Complex, Fourier};
+use core::f64::consts::TAU;
+
+/// How depth is smoothed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Smoothing {
+    /// `1 / ((1 + α²k²)(1 + α²l²))`.
+    Split,
+    /// `1 / (1 + α²(k² + l²))`.
+    Isotropic,
+}
+
+/// Depth and velocity at the nodes of the grid, mirrored ones among them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fields {
+    /// Depth.
+    pub h: Vec<f64>,
+    /// Velocity along the first direction.
+    pub u: Vec<f64>,
+    /// Velocity along the second.
+    pub v: Vec<f64>,
+}
+
+/// The equations on a grid.
+#[derive(Clone, Debug)]
+pub struct Spectral {
+    /// Square of the wave speed of unit depth.
+    pub speed_squared: f64,
+    /// Twice the rate of rotation.
+    pub coriolis: f64,
+    /// Lengths of the periodic box.
+    lengths: [f64; 2],
+    nodes: [usize; 2],
+    walls: bool,
+    fourier: Fourier,
+    /// Wave numbers of each component; zero for those that are dropped from products.
+    waves: Vec<[f64; 2]>,
+    /// Whether a component is kept.
+    kept: Vec<bool>,
+    smoothing: Vec<f64>,
+}
+
+impl Spectral {
+    /// Water in a box of these lengths, with walls across the first direction or none, on so many intervals (powers of
+    /// two; none otherwise), its depth smoothed over the length `alpha`.
+    pub fn new(
+        lengths: [f64; 2],
+        walls: bool,
+        intervals: [usize; 2],
+        (alpha, smoothing): (f64, Smoothing),
+        speed_squared: f64,
+        coriolis: f64,
+    ) -> Option<Self> {
+        let factor = if walls { 2 } else { 1 };
+        let nodes = [factor * intervals[0], intervals[1]];
+        let lengths = [factor as f64 * lengths[0], lengths[1]];
+        let fourier = Fourier::new(nodes)?;
+        let along = |d: usize| fourier.waves(d).map(move |k| (k, TAU * k / lengths[d]));
+        let (mut waves, mut kept, mut factors) = (vec![], vec![], vec![]);
+        for (k, one) in along(0) {
+            for (l, other) in along(1) {
+                let keep = 3.0 * k.abs() <= nodes[0] as f64 && 3.0 * l.abs() <= nodes[1] as f64;
+                kept.push(keep);
+                waves.push([one, other]);
+                let [a, b] = [one, other].map(|k| (alpha * k).powi(2));
+                factors.push(match smoothing {
+                    Smoothing::Split => 1.0 / ((1.0 + a) * (1.0 + b)),
+                    Smoothing::Isotropic => 1.0 / (1.0 + a + b),
+                });
+            }
+        }
+        Some(Self {
+            speed_squared,
+            coriolis,
+            lengths,
+            nodes,
+            walls,
+            fourier,
+            waves,
+            kept,
+            smoothing: factors,
+        })
+    }
+
+    /// Fields of this depth and velocity, `[h, u, v]` at a place in the box.
+    pub fn fields(&self, at: impl Fn([f64; 2]) -> [f64; 3]) -> Fields {
+        let count = self.nodes[0] * self.nodes[1];
+        let value = |node: usize| {
+            let index = [node / self.nodes[1], node % self.nodes[1]];
+            let place = |d: usize| self.lengths[d] * index[d] as f64 / self.nodes[d] as f64;
+            let (x, y) = (place(0), place(1));
+            let mirrored = self.walls && 2 * index[0] > self.nodes[0];
+            let [h, u, v] = at([if mirrored { self.lengths[0] - x } else { x }, y]);
+            [h, if mirrored { -u } else { u }, v]
+        };
+        let part = |c: usize| (0..count).map(|node| value(node)[c]).collect();
+        Fields {
+            h: part(0),
+            u: part(1),
+            v: part(2),
+        }
+    }
+
+    fn components(&mut self, values: impl Iterator<Item = f64>) -> Vec<Complex> {
+        let mut all: Vec<Complex> = values.map(|x| [x, 0.0]).collect();
+        self.fourier.forwards(&mut all);
+        all
+    }
+
+    /// Two real fields from the components of both, in one transform.
+    fn both(&mut self, a: impl Fn(usize) -> Complex, b: impl Fn(usize) -> Complex) -> Vec<Complex> {
+        let all = (0..self.waves.len()).map(|k| {
+            let ([a, c], [b, d]) = (a(k), b(k));
+            [a - d, c + b]
+        });
+        let mut all: Vec<Complex> = all.collect();
+        self.fourier.backwards(&mut all);
+        all
+    }
+
+    /// The smoothed depth at the nodes of the box, those on both walls among them, the second direction contiguous.
+    pub fn smoothed(&mut self, fields: &Fields) -> Vec<f64> {
+        let h = self.components(fields.h.iter().copied());
+        let smoothing = self.smoothing.clone();
+        let all = self.both(|k| h[k].map(|x| x * smoothing[k]), |_| [0.0; 2]);
+        let rows = match self.walls {
+            true => self.nodes[0] / 2 + 1,
+            false => self.nodes[0],
+        };
+        all.iter()
+            .map(|x| x[0])
+            .take(rows * self.nodes[1])
+            .collect()
+    }
+
+    /// Kinetic and potential energy of the periodic box: that of a channel twice.
+    pub fn energy(&mut self, fields: &Fields) -> [f64; 2] {
+        let h = self.components(fields.h.iter().copied());
+        let smoothing = self.smoothing.clone();
+        let smoothed = self.both(|k| h[k].map(|x| x * smoothing[k]), |_| [0.0; 2]);
+        let area = self.lengths[0] * self.lengths[1] / self.waves.len() as f64;
+        let (mut kinetic, mut potential) = (0.0, 0.0);
+        for (i, s) in smoothed.iter().enumerate() {
+            let (h, u, v) = (fields.h[i], fields.u[i], fields.v[i]);
+            kinetic += h * (u * u + v * v) / 2.0 * area;
+            potential += self.speed_squared / 2.0 * h * s[0] * area;
+        }
+        [kinetic, potential]
+    }
+
+    /// The rates of change of the fields.
+    fn rates(&mut self, of: &Fields) -> Fields {
+        let all = || of.h.iter().zip(&of.u).zip(&of.v);
+        let h = self.components(of.h.iter().copied());
+        let [u, v] = [&of.u, &of.v].map(|x| self.components(x.iter().copied()));
+        let kinetic = self.components(all().map(|((_, u), v)| (u * u + v * v) / 2.0));
+        let flux = self.components(all().map(|((h, u), _)| h * u));
+        let across = self.components(all().map(|((h, _), v)| h * v));
+        let (waves, kept) = (self.waves.clone(), self.kept.clone());
+        let (smoothing, speed) = (self.smoothing.clone(), self.speed_squared);
+        // The derivative along a direction: i k times the component.
+        let slope = |values: &[Complex], k: usize, d: usize| {
+            let [a, b] = values[k];
+            [-waves[k][d] * b, waves[k][d] * a]
+        };
+        let filtered = |k: usize, x: Complex| if kept[k] { x } else { [0.0; 2] };
+        let head: Vec<Complex> = (0..h.len())
+            .map(|k| [0, 1].map(|c| speed * smoothing[k] * h[k][c] + kinetic[k][c]))
+            .collect();
+        let gradient = self.both(
+            |k| filtered(k, slope(&head, k, 0)),
+            |k| filtered(k, slope(&head, k, 1)),
+        );
+        let rest = self.both(
+            |k| {
+                let (a, b) = (slope(&flux, k, 0), slope(&across, k, 1));
+                filtered(k, [-a[0] - b[0], -a[1] - b[1]])
+            },
+            |k| {
+                let (a, b) = (slope(&v, k, 0), slope(&u, k, 1));
+                filtered(k, [a[0] - b[0], a[1] - b[1]])
+            },
+        );
+        let turning = |i: usize| rest[i][1] + self.coriolis;
+        let count = rest.len();
+        Fields {
+            h: rest.iter().map(|x| x[0]).collect(),
+            u: (0..count)
+                .map(|i| turning(i) * of.v[i] - gradient[i][0])
+                .collect(),
+            v: (0..count)
+                .map(|i| -turning(i) * of.u[i] - gradient[i][1])
+                .collect(),
+        }
+    }
+
+    /// One step of the classical Runge-Kutta method.
+    pub fn step(&mut self, fields: &mut Fields, dt: f64) {
+        let start = fields.clone();
+        let mut stage = fields.clone();
+        for (ahead, share) in [(0.5, 1.0), (0.5, 2.0), (1.0, 2.0), (0.0, 1.0)] {
+            let rates = self.rates(&stage);
+            let parts = [
+                (&mut fields.h, &mut stage.h, &start.h, rates.h),
+                (&mut fields.u, &mut stage.u, &start.u, rates.u),
+                (&mut fields.v, &mut stage.v, &start.v, rates.v),
+            ];
+            for (sum, stage, start, rate) in parts {
+                for i in 0..rate.len() {
+                    sum[i] += dt * share / 6.0 * rate[i];
+                    stage[i] = start[i] + dt * ahead * rate[i];
+                }
+            }
+        }
+    }
+}
