@@ -3,6 +3,7 @@
 
 mod call;
 mod expression;
+mod line;
 mod newton;
 mod statement;
 
@@ -151,7 +152,7 @@ pub fn entry<T: Lowered>(
         let (name, kind) = lower.parameter(parameter)?;
         lower.bind(name, Binding::Place(Code::Place(*given), kind));
     }
-    let body = lower.block(&function.block)?;
+    let body = lower.body(function)?;
     lower.shared.free = lower.next;
     Ok(Routine {
         places: lower.next,
@@ -217,6 +218,10 @@ impl<T: Lowered> Lower<'_, '_, T> {
             syn::Expr::Reference(r) => self.kind(&r.expr),
             syn::Expr::Unary(u) => self.kind(&u.expr),
             syn::Expr::Paren(p) => self.kind(&p.expr),
+            syn::Expr::Struct(s) => match crate::program::named(&s.path).as_str() {
+                "Self" => Some(self.own_type().to_owned()),
+                other => Some(other.to_owned()),
+            },
             syn::Expr::Field(f) => {
                 let syn::Member::Named(field) = &f.member else {
                     return None;
