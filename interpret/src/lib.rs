@@ -18,7 +18,7 @@ mod saved;
 mod sites;
 mod value;
 
-pub use cards::{card, card_and_warnings, card_on_lattice};
+pub use cards::{MOST_BODY_BY_BODY, card, card_and_warnings, card_on_lattice};
 
 use clebsch_core::Errors;
 use core::fmt;

@@ -115,7 +115,7 @@ fn a_step_that_is_refused_is_refused_alike_and_leaves_the_state() {
     let model = LineModel::read(source).expect("is read");
     let case = Case::new(12, None);
     let (_, calm) = compiled::water(&case);
-    let wild = calm.with("momentum_X", |p| p.iter_mut().for_each(|p| *p *= 40.0));
+    let wild = calm.with("momentum_X", |p| p.iter_mut().for_each(|p| *p *= 400.0));
     let mut built = compiled::shallow_water(&case, &wild);
     let mut line = start(&model, source, &case, &wild);
     let refused = (0..1000).find_map(|_| {

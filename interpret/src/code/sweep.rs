@@ -22,6 +22,8 @@ pub enum Kind {
     TryEach,
     /// `sum` and `total`.
     Sum,
+    /// The same of the sizes of their terms: a scale of what is summed.
+    Sizes,
 }
 
 /// A list of sites or part of it.
@@ -134,13 +136,13 @@ impl<T: Real> Sweep<T> {
                 }
                 Ok(Value::Unit)
             }
-            (Kind::Sum, []) => {
+            (Kind::Sum | Kind::Sizes, []) => {
                 let [from, to] = self.whole(places)?;
                 let mut all = Vec::with_capacity(to.saturating_sub(from));
                 for i in from..to {
                     all.push(self.at([site(i)].into_iter(), places)?);
                 }
-                unfit(summed(&unfit(Column::of(all))?))
+                unfit(summed(&unfit(Column::of(all))?, self.kind == Kind::Sizes))
             }
             _ => Err(Exit::Unfit(WRONG)),
         }
@@ -191,12 +193,13 @@ fn site<T: Real>(i: usize) -> Value<T> {
 }
 
 /// The sum of numbers, or of arrays component by component.
-fn summed<T: Real>(all: &Column<T>) -> Option<Value<T>> {
+fn summed<T: Real>(all: &Column<T>, sizes: bool) -> Option<Value<T>> {
+    let of = |x: T| if sizes { x.abs() } else { x };
     Some(match all {
-        Column::Numbers(list) => Value::Real(line::sum(list.len(), |i| list[i])),
+        Column::Numbers(list) => Value::Real(line::sum(list.len(), |i| of(list[i]))),
         Column::Arrays([rows, cols], list) => {
             let size = rows * cols;
-            let sum = |k: usize| line::sum(all.len(), |i| list[i * size + k]);
+            let sum = |k: usize| line::sum(all.len(), |i| of(list[i * size + k]));
             Value::of(Dense {
                 rows: *rows,
                 cols: *cols,

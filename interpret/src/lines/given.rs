@@ -12,7 +12,7 @@ use clebsch::emitted as e;
 use clebsch::line::{LineError, Place};
 use clebsch::linalg::Dense;
 use clebsch::{ParameterError, StartError};
-use clebsch_core::lattice::{Choice, Lattice};
+use clebsch_core::lattice::Choice;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -268,8 +268,7 @@ impl Ends {
 }
 
 /// The numbers of sites by the names of their fields.
-pub fn counts(lattice: &Lattice, choice: &Choice, field: &str) -> Option<Value<f64>> {
-    let mut labels = lattice.labels.iter();
-    let at = labels.position(|l| l.count.text == field)?;
+pub fn counts(names: &[String], choice: &Choice, field: &str) -> Option<Value<f64>> {
+    let at = names.iter().position(|name| name == field)?;
     Some(Value::Int(i64::try_from(choice.count(at)).ok()?))
 }

@@ -1,8 +1,11 @@
 //! Models with labels for every number of sites: the program with loops over sites that is emitted for
 //! them, executed. Takes the text of a model; gives lines that start from data at sites, and run.
 
+mod card;
 mod given;
+mod running;
 
+pub(crate) use card::Carded;
 pub use given::Numbers;
 
 use crate::code::{Exit, Places, Routine};
@@ -74,7 +77,9 @@ type Asked = Vec<(String, Routine<f64>)>;
 pub struct LineModel {
     /// The name of the model.
     name: String,
-    lattice: Lattice,
+    /// The names of the numbers of sites, a label each, and whether one of them is a line.
+    counts: Vec<String>,
+    has_line: bool,
     parameters: Given,
     sites: Given,
     ends: Ends,
@@ -83,7 +88,9 @@ pub struct LineModel {
     start: Routine<f64>,
     step: Routine<f64>,
     energies: Routine<f64>,
+    energy_sizes: Routine<f64>,
     totals: Asked,
+    total_sizes: Asked,
     observers: Asked,
     node: u32,
     places: usize,
@@ -132,10 +139,10 @@ impl LineModel {
             return Err(NoLine::Form(why));
         }
         let program = Program::read(emit::emit_line(&line, source))?;
-        Ok(Self::of(&program, &model.name.text, line.lattice)?)
+        Ok(Self::of(&program, &model.name.text, &line.lattice)?)
     }
 
-    fn of(program: &Program, name: &str, lattice: Lattice) -> Result<Arc<Self>, Refused> {
+    fn of(program: &Program, name: &str, lattice: &Lattice) -> Result<Arc<Self>, Refused> {
         let mut shared = Shared::new(program, BTreeMap::new());
         let item = |suffix: &str| format!("{name}{suffix}");
         let parameters = Given::named(&mut shared, &item("Parameters"))?;
@@ -162,13 +169,23 @@ impl LineModel {
         };
         let totals = asked(name, totals, &[at::MODEL, at::STATE])?;
         let observers = asked(&state, observers, &[at::STATE])?;
+        shared.by_size = true;
+        let of = [at::MODEL, at::STATE];
+        let energy_sizes = entry(&mut shared, (name, "energies"), &of, at::FIRST)?;
+        let sized = totals.iter().map(|(f, _)| {
+            let routine = entry(&mut shared, (name, f), &of, at::FIRST)?;
+            Ok((f.clone(), routine))
+        });
+        let total_sizes = sized.collect::<Result<Asked, Refused>>()?;
         let node = shared.name("node");
-        let of_state = totals.iter().chain(&observers).map(|(_, r)| r.places);
-        let own = [&new, &start, &step, &energies];
+        let of_state = totals.iter().chain(&observers).chain(&total_sizes);
+        let of_state = of_state.map(|(_, r)| r.places);
+        let own = [&new, &start, &step, &energies, &energy_sizes];
         let places = own.into_iter().map(|r| r.places).chain(of_state).max();
         Ok(Arc::new(LineModel {
             name: name.to_owned(),
-            lattice,
+            counts: lattice.labels.iter().map(|l| l.count.text.clone()).collect(),
+            has_line: lattice.line.is_some(),
             parameters,
             sites,
             ends,
@@ -177,7 +194,9 @@ impl LineModel {
             start,
             step,
             energies,
+            energy_sizes,
             totals,
+            total_sizes,
             observers,
             node,
             places: places.unwrap_or(at::FIRST),
@@ -187,11 +206,6 @@ impl LineModel {
     /// The name of the model.
     pub fn name(&self) -> &str {
         &self.name
-    }
-
-    /// Its labels.
-    pub fn lattice(&self) -> &Lattice {
-        &self.lattice
     }
 
     /// The names of conserved totals, as [`LineTrajectory::total`] takes them.
@@ -217,13 +231,13 @@ impl LineModel {
     ) -> Result<LineTrajectory, Unstarted> {
         let mut places = vec![Value::Unit; self.places];
         put(&mut places, at::GIVEN, self.parameters.value(numbers, &|_| None)?);
-        let ends = match self.lattice.line {
-            Some(_) => self.ends.value(choice, numbers)?,
-            None => Value::Unit,
+        let ends = match self.has_line {
+            true => self.ends.value(choice, numbers)?,
+            false => Value::Unit,
         };
         let of_sites = |field: &str| match field {
             "ends" => Some(ends.clone()),
-            field => given::counts(&self.lattice, choice, field),
+            field => given::counts(&self.counts, choice, field),
         };
         put(&mut places, at::OUT, self.sites.value(numbers, &of_sites)?);
         let model = run(&self.new, &mut places).map_err(Failure::line)?;
@@ -314,7 +328,18 @@ impl LineTrajectory {
     /// The kinetic and the potential energy at the node.
     pub fn energies(&mut self) -> Option<[f64; 2]> {
         let model = self.model.clone();
-        match self.ask(&model.energies)? {
+        self.two(&model.energies)
+    }
+
+    /// The sums of the sizes of their terms.
+    pub fn energy_sizes(&mut self) -> Option<[f64; 2]> {
+        let model = self.model.clone();
+        self.two(&model.energy_sizes)
+            .map(|[kinetic, potential]| [kinetic.abs(), potential.abs()])
+    }
+
+    fn two(&mut self, routine: &Routine<f64>) -> Option<[f64; 2]> {
+        match self.ask(routine)? {
             Value::List(both) => match both.as_slice() {
                 [Value::Real(kinetic), Value::Real(potential)] => Some([*kinetic, *potential]),
                 _ => None,
@@ -328,6 +353,14 @@ impl LineTrajectory {
         let model = self.model.clone();
         let (_, routine) = model.totals.iter().find(|(own, _)| own == name)?;
         numbers(&self.ask(routine)?)
+    }
+
+    /// The sums of the sizes of the terms of sites of a conserved total.
+    pub fn total_sizes(&mut self, name: &str) -> Option<Vec<f64>> {
+        let model = self.model.clone();
+        let (_, routine) = model.total_sizes.iter().find(|(own, _)| own == name)?;
+        let all = numbers(&self.ask(routine)?)?;
+        Some(all.into_iter().map(f64::abs).collect())
     }
 
     /// What is observed at all sites, one site after the other, matrices row after row.

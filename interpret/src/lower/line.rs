@@ -74,7 +74,11 @@ impl<T: Lowered> Lower<'_, '_, T> {
             }
             ("line::sum" | "line::total", [sites, body]) => {
                 let range = [whole(0), self.expression(sites, None)?];
-                (Kind::Sum, Vec::new(), Some(range), body)
+                let kind = match self.shared.by_size {
+                    true => Kind::Sizes,
+                    false => Kind::Sum,
+                };
+                (kind, Vec::new(), Some(range), body)
             }
             _ => return Ok(None),
         };

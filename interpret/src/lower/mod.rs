@@ -37,6 +37,8 @@ pub struct Shared<'a, T: Real> {
     pub sizes: BTreeMap<String, usize>,
     names: Rc<RefCell<BTreeMap<String, u32>>>,
     layouts: BTreeMap<String, Arc<Layout>>,
+    /// Whether sums over sites are those of the sizes of their terms.
+    pub by_size: bool,
     /// The first place that no function uses.
     free: usize,
     routines: Routines<T>,
@@ -53,6 +55,7 @@ impl<'a, T: Real> Shared<'a, T> {
                 names.map(|(name, i)| ((*name).to_owned(), i)).collect(),
             )),
             layouts: BTreeMap::new(),
+            by_size: false,
             free: 0,
             routines: BTreeMap::new(),
         }
@@ -72,6 +75,7 @@ impl<'a, T: Real> Shared<'a, T> {
             sizes: self.sizes.clone(),
             names: self.names.clone(),
             layouts: BTreeMap::new(),
+            by_size: self.by_size,
             free: 0,
             routines: BTreeMap::new(),
         }
