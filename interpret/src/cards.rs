@@ -170,10 +170,7 @@ fn card_of_line(
     let (open, _) = *FUNCTIONS.get(list.len()).ok_or(Refused::TooMany { most })?;
     carded.card.open = open;
     let card = carded.card;
-    list.push(Known::Line(
-        crate::text(&key),
-        Box::leak(Box::new(carded)),
-    ));
+    list.push(Known::Line(crate::text(&key), Box::leak(Box::new(carded))));
     Ok((card, warnings))
 }
 

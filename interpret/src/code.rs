@@ -478,7 +478,8 @@ impl<T: Real> Code<T> {
         let site = at.count(places)?;
         let done = match base.place_mut(places) {
             Some(Value::Sites(column)) => {
-                let field = |column, name| Option::and_then(column, |c: &mut Column<T>| c.field_mut(name));
+                let field =
+                    |column, name| Option::and_then(column, |c: &mut Column<T>| c.field_mut(name));
                 let column = fields.into_iter().rev().fold(Some(column), field);
                 column.and_then(|c| c.set(site, &value))
             }

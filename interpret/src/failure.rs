@@ -1,8 +1,8 @@
 //! The errors that steps and starts end with, whatever made them, and their way to the caller.
 
 use clebsch::domain::Contact;
-use clebsch::line::LineError;
 use clebsch::emitted::{LeftFactorError, MoserVeselovError, OpenError, QuaternionError, Unsolved};
+use clebsch::line::LineError;
 use clebsch::solvers::two_sided::SingularFactor;
 use clebsch::{
     NotARigidMotion, NotARotation, NotInvertible, ParameterError, PoinsotError, StartError,

@@ -53,12 +53,13 @@ impl Program {
                 // A variant of an enum is a struct of its full name.
                 syn::Item::Enum(item) => {
                     let order = item.variants.iter().map(|v| v.ident.to_string());
-                    self.variants.insert(item.ident.to_string(), order.collect());
+                    self.variants
+                        .insert(item.ident.to_string(), order.collect());
                     for variant in item.variants {
                         let name = format!("{}::{}", item.ident, variant.ident);
                         let fields = variant.fields.iter();
-                        let fields =
-                            fields.filter_map(|f| Some((f.ident.as_ref()?.to_string(), f.ty.clone())));
+                        let fields = fields
+                            .filter_map(|f| Some((f.ident.as_ref()?.to_string(), f.ty.clone())));
                         self.structs.insert(name, fields.collect());
                     }
                 }

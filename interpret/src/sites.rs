@@ -4,8 +4,8 @@
 use crate::value::{Layout, Struct, Value};
 use clebsch::Real;
 use clebsch::emitted::Edge;
-use clebsch::line::Attitude;
 use clebsch::linalg::Dense;
+use clebsch::line::Attitude;
 use std::ops::Range;
 use std::sync::Arc;
 

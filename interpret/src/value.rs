@@ -9,8 +9,8 @@ use clebsch::emitted::{
     Rotation, TurnedRotation, UnitQuaternion,
 };
 use clebsch::kinetic::KineticWarning;
-use clebsch::line;
 use clebsch::linalg::Dense;
+use clebsch::line;
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 

@@ -1,9 +1,9 @@
 //! What can go wrong: with parameters, at the start of a trajectory, during a step.
 //! Takes the numbers of the failure; gives messages that say what to change.
 
-use crate::line::Place;
 use crate::domain::{Contact, Domain, Function};
 use crate::groups::{NotARigidMotion, NotARotation, NotInvertible};
+use crate::line::Place;
 use crate::said::place;
 use crate::solvers::left_factor::{LeftFactorError, Unsolved};
 use crate::solvers::moser_veselov::{MoserVeselovError, PoinsotError};

@@ -6,8 +6,8 @@ use crate::failure::Failure;
 use crate::sites::Column;
 use crate::value::Value;
 use clebsch::Real;
-use clebsch::line;
 use clebsch::linalg::Dense;
+use clebsch::line;
 
 /// What is done with the values of the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,7 +98,11 @@ impl<T: Real> Slice<T> {
 
 impl<T: Real> Sweep<T> {
     /// The value of the body at a site.
-    fn at(&self, arguments: impl Iterator<Item = Value<T>>, places: &mut Places<T>) -> Evaluated<T> {
+    fn at(
+        &self,
+        arguments: impl Iterator<Item = Value<T>>,
+        places: &mut Places<T>,
+    ) -> Evaluated<T> {
         for (at, value) in self.parameters.iter().zip(arguments) {
             *unfit(places.get_mut(*at))? = value;
         }

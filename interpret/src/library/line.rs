@@ -4,8 +4,8 @@ use crate::code::{Code, Exit, Native, Places, Special, unfit};
 use crate::failure::Failure;
 use crate::sites::Column;
 use crate::value::Value;
-use clebsch::line::{self, Attitude, LineError, Place, Stamp};
 use clebsch::linalg::Dense;
+use clebsch::line::{self, Attitude, LineError, Place, Stamp};
 use clebsch::{Real, StepCause};
 use std::cell::RefCell;
 

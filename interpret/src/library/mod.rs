@@ -3,8 +3,8 @@
 mod algebra;
 mod domain;
 mod functions;
-mod line;
 pub(crate) mod groups;
+mod line;
 mod momenta;
 mod solvers;
 mod special;

@@ -160,10 +160,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
                 Value::Zeros => Some(Vector3::zeros()),
                 a => vector(a),
             };
-            Some(Value::Edge(Edge::new(
-                part(a.first()?)?,
-                part(a.get(1)?)?,
-            )))
+            Some(Value::Edge(Edge::new(part(a.first()?)?, part(a.get(1)?)?)))
         },
         ("space", 1) => |a, _| match a.first()? {
             Value::Edge(edge) => Some(Value::Vector(edge.space())),

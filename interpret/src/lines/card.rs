@@ -71,7 +71,8 @@ impl Carded {
         open: Open,
     ) -> Result<(Self, Vec<Warning>), Refused> {
         let (statement, lattice) = stated;
-        let representative = pipeline::representative(statement, lattice).map_err(Refused::Model)?;
+        let representative =
+            pipeline::representative(statement, lattice).map_err(Refused::Model)?;
         let counts = representative.counts.iter().zip(&choice.counts);
         let short = Choice {
             counts: counts.map(|(n, most)| (*n).max(4).min(*most)).collect(),
@@ -116,8 +117,8 @@ impl Carded {
             formula: text(formula),
             ..*own
         });
-        let (kept, lost): (Vec<Invariant>, Vec<Invariant>) = named
-            .partition(|i| i.name == "energy" || model.totals().any(|t| t == i.name));
+        let (kept, lost): (Vec<Invariant>, Vec<Invariant>) =
+            named.partition(|i| i.name == "energy" || model.totals().any(|t| t == i.name));
         left_out.extend(lost.iter().map(|i| i.name.to_owned()));
         let mut summary = words
             .summary

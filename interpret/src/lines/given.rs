@@ -9,8 +9,8 @@ use crate::value::{Frame, Layout, Struct, Value};
 use crate::{Refused, text};
 use clebsch::card::OpenError;
 use clebsch::emitted as e;
-use clebsch::line::{LineError, Place};
 use clebsch::linalg::Dense;
+use clebsch::line::{LineError, Place};
 use clebsch::{ParameterError, StartError};
 use clebsch_core::lattice::Choice;
 use std::collections::BTreeMap;
@@ -180,9 +180,7 @@ impl Given {
     ) -> Result<Value<f64>, Unstarted> {
         let values = self.fields.iter().map(|(name, read)| match read {
             Read::Marker => Ok(Value::Unit),
-            Read::Count | Read::Ends => {
-                other(name).ok_or_else(|| Unstarted::Missing(name.clone()))
-            }
+            Read::Count | Read::Ends => other(name).ok_or_else(|| Unstarted::Missing(name.clone())),
             read => read.of(name, numbers),
         });
         Ok(Value::Struct(Struct {

@@ -8,13 +8,13 @@ mod running;
 pub(crate) use card::Carded;
 pub use given::Numbers;
 
+use crate::Refused;
 use crate::code::{Exit, Places, Routine};
 use crate::failure::Failure;
 use crate::lower::{Shared, entry};
 use crate::opened::at;
 use crate::program::Program;
 use crate::value::Value;
-use crate::Refused;
 use clebsch::StepCause;
 use clebsch::line::LineError;
 use clebsch::saved::{Saved, Words};
@@ -151,21 +151,24 @@ impl LineModel {
         let ends = Ends::of(&mut shared, name)?;
         let state = item("State");
         let own = |ty: &str, wanted: &dyn Fn(&str) -> bool| -> Vec<String> {
-            let all = program.functions.keys().filter(|(t, f)| t == ty && wanted(f));
+            let all = program
+                .functions
+                .keys()
+                .filter(|(t, f)| t == ty && wanted(f));
             all.map(|(_, f)| f.clone()).collect()
         };
         let totals = own(name, &|f| f.starts_with("total_"));
         let observers = own(&state, &|f| f != "node");
-        let mut lower = |ty: &str, f: &str, given: &[usize]| {
-            entry(&mut shared, (ty, f), given, at::FIRST)
-        };
+        let mut lower =
+            |ty: &str, f: &str, given: &[usize]| entry(&mut shared, (ty, f), given, at::FIRST);
         let new = lower(name, "new", &[at::GIVEN, at::OUT])?;
         let start = lower(name, "start", &[at::MODEL, at::GIVEN, at::STEP])?;
         let step = lower(name, "step", &[at::MODEL, at::STATE, at::WORK])?;
         let energies = lower(name, "energies", &[at::MODEL, at::STATE])?;
         let mut asked = |ty: &str, names: Vec<String>, given: &[usize]| -> Result<Asked, Refused> {
             let all = names.into_iter();
-            all.map(|f| Ok((f.clone(), lower(ty, &f, given)?))).collect()
+            all.map(|f| Ok((f.clone(), lower(ty, &f, given)?)))
+                .collect()
         };
         let totals = asked(name, totals, &[at::MODEL, at::STATE])?;
         let observers = asked(&state, observers, &[at::STATE])?;
@@ -184,7 +187,11 @@ impl LineModel {
         let places = own.into_iter().map(|r| r.places).chain(of_state).max();
         Ok(Arc::new(LineModel {
             name: name.to_owned(),
-            counts: lattice.labels.iter().map(|l| l.count.text.clone()).collect(),
+            counts: lattice
+                .labels
+                .iter()
+                .map(|l| l.count.text.clone())
+                .collect(),
             has_line: lattice.line.is_some(),
             parameters,
             sites,
@@ -230,7 +237,11 @@ impl LineModel {
         numbers: &Numbers<'_>,
     ) -> Result<LineTrajectory, Unstarted> {
         let mut places = vec![Value::Unit; self.places];
-        put(&mut places, at::GIVEN, self.parameters.value(numbers, &|_| None)?);
+        put(
+            &mut places,
+            at::GIVEN,
+            self.parameters.value(numbers, &|_| None)?,
+        );
         let ends = match self.has_line {
             true => self.ends.value(choice, numbers)?,
             false => Value::Unit,
@@ -243,7 +254,11 @@ impl LineModel {
         let model = run(&self.new, &mut places).map_err(Failure::line)?;
         put(&mut places, at::MODEL, model);
         put(&mut places, at::OUT, Value::Unit);
-        put(&mut places, at::GIVEN, self.initial.value(numbers, &|_| None)?);
+        put(
+            &mut places,
+            at::GIVEN,
+            self.initial.value(numbers, &|_| None)?,
+        );
         put(&mut places, at::STEP, Value::Real(h));
         let both = run(&self.start, &mut places).map_err(Failure::line)?;
         put(&mut places, at::GIVEN, Value::Unit);

@@ -81,9 +81,15 @@ impl Carded {
         let mut all = all.clone();
         all.sort_by_key(|(site, _)| *site);
         let size = all.first().map_or(1, |(_, list)| list.len());
-        let whole = self.moving_sites(name).filter(|_| name.contains("momentum_"));
+        let whole = self
+            .moving_sites(name)
+            .filter(|_| name.contains("momentum_"));
         let Some(whole) = whole else {
-            return Some(all.iter().flat_map(|(_, list)| list.iter().copied()).collect());
+            return Some(
+                all.iter()
+                    .flat_map(|(_, list)| list.iter().copied())
+                    .collect(),
+            );
         };
         let mut out = vec![0.0; whole * size];
         for (site, list) in all {

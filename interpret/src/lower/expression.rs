@@ -317,7 +317,9 @@ impl<T: Lowered> Lower<'_, '_, T> {
         self.scopes.push(BTreeMap::new());
         let mut parameters = Vec::new();
         let mut inputs = Vec::new();
-        c.inputs.iter().for_each(|input| named_parts(input, &mut inputs));
+        c.inputs
+            .iter()
+            .for_each(|input| named_parts(input, &mut inputs));
         for input in inputs {
             let at = self.fresh();
             parameters.push(at);

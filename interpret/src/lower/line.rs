@@ -122,31 +122,33 @@ impl<T: Lowered> Lower<'_, '_, T> {
         m: &syn::ExprMethodCall,
     ) -> Result<Option<Code<T>>, Refused> {
         let arguments: Vec<&syn::Expr> = m.args.iter().collect();
-        Ok(Some(match (m.method.to_string().as_str(), arguments.as_slice()) {
-            ("copy_from_slice", [other]) => {
-                let mut all = ends(self.slice(&m.receiver)?);
-                all.push(self.expression(other, None)?);
-                self.special("copy_slice", all, m)?
-            }
-            ("fill", [value]) => {
-                let mut all = ends(self.slice(&m.receiver)?);
-                all.push(self.expression(value, None)?);
-                self.special("fill_slice", all, m)?
-            }
-            ("copy_from", [block]) => {
-                let syn::Expr::MethodCall(view) = &*m.receiver else {
-                    return Ok(None);
-                };
-                if view.method != "fixed_view_mut" {
-                    return Ok(None);
+        Ok(Some(
+            match (m.method.to_string().as_str(), arguments.as_slice()) {
+                ("copy_from_slice", [other]) => {
+                    let mut all = ends(self.slice(&m.receiver)?);
+                    all.push(self.expression(other, None)?);
+                    self.special("copy_slice", all, m)?
                 }
-                let mut all = vec![self.expression(&view.receiver, None)?];
-                all.extend(self.all(view.args.iter())?);
-                all.push(self.expression(block, None)?);
-                self.special("put_block", all, m)?
-            }
-            _ => return Ok(None),
-        }))
+                ("fill", [value]) => {
+                    let mut all = ends(self.slice(&m.receiver)?);
+                    all.push(self.expression(value, None)?);
+                    self.special("fill_slice", all, m)?
+                }
+                ("copy_from", [block]) => {
+                    let syn::Expr::MethodCall(view) = &*m.receiver else {
+                        return Ok(None);
+                    };
+                    if view.method != "fixed_view_mut" {
+                        return Ok(None);
+                    }
+                    let mut all = vec![self.expression(&view.receiver, None)?];
+                    all.extend(self.all(view.args.iter())?);
+                    all.push(self.expression(block, None)?);
+                    self.special("put_block", all, m)?
+                }
+                _ => return Ok(None),
+            },
+        ))
     }
 
     /// `matches!(value, pattern)` and `vec![value; count]`.
@@ -195,7 +197,12 @@ impl<T: Lowered> Lower<'_, '_, T> {
         &mut self,
         s: &syn::ExprStruct,
     ) -> Result<Option<Code<T>>, Refused> {
-        let names: Vec<String> = s.path.segments.iter().map(|p| p.ident.to_string()).collect();
+        let names: Vec<String> = s
+            .path
+            .segments
+            .iter()
+            .map(|p| p.ident.to_string())
+            .collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let (name, order): (&str, &[&str]) = match names.as_slice() {
             [.., "Place"] => ("Place", &["quantity", "site"]),
@@ -242,7 +249,11 @@ impl<T: Lowered> Lower<'_, '_, T> {
             return None;
         };
         let full = format!("{owner}::{name}");
-        self.shared.program.structs.contains_key(&full).then_some(full)
+        self.shared
+            .program
+            .structs
+            .contains_key(&full)
+            .then_some(full)
     }
 }
 

@@ -22,11 +22,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         self.block_of(block, None)
     }
 
-    fn block_of(
-        &mut self,
-        block: &syn::Block,
-        ty: Option<&syn::Type>,
-    ) -> Result<Code<T>, Refused> {
+    fn block_of(&mut self, block: &syn::Block, ty: Option<&syn::Type>) -> Result<Code<T>, Refused> {
         self.scopes.push(BTreeMap::new());
         let all = self.statements_of(&block.stmts, ty);
         self.scopes.pop();

@@ -78,7 +78,10 @@ impl Data {
     }
 
     fn momenta(&self, name: &str) -> Vec<BodyMomentum> {
-        self.arrays::<3, 1>(name).into_iter().map(BodyMomentum).collect()
+        self.arrays::<3, 1>(name)
+            .into_iter()
+            .map(BodyMomentum)
+            .collect()
     }
 }
 
@@ -293,7 +296,10 @@ fn sine(case: &Case) -> Made {
         ("s", vec![0.4]),
         ("k", vec![1.7]),
         ("L", vec![6.0]),
-        ("w", r.list(case.nodes(), 0.2).iter().map(|x| 0.5 + x).collect()),
+        (
+            "w",
+            r.list(case.nodes(), 0.2).iter().map(|x| 0.5 + x).collect(),
+        ),
         ("u", r.list(case.nodes(), 1.0)),
         ("momentum_u", r.list(case.nodes(), 0.5)),
     ]));
@@ -361,7 +367,8 @@ pub fn shallow_water(case: &Case, data: &Data) -> Box<dyn Compiled> {
         g: data.number("g"),
         f: data.number("f"),
     };
-    let model = ShallowWater::new(parameters, ShallowWaterSites { N: case.n, ends }).expect("water");
+    let model =
+        ShallowWater::new(parameters, ShallowWaterSites { N: case.n, ends }).expect("water");
     let initial = ShallowWaterInitial {
         X: data.arrays("X"),
         momentum_X: data.arrays("momentum_X"),
@@ -412,7 +419,13 @@ fn rod(case: &Case) -> Made {
         [0.3 * x, 0.0, 0.0, 0.0, 0.4 * x, 0.0, 0.0, 0.0, 0.5 * x]
     });
     let places = r.list(3 * nodes, 0.1).into_iter().enumerate();
-    let places = places.map(|(k, x)| if k % 3 == 2 { x + 0.5 * (k / 3) as f64 } else { x });
+    let places = places.map(|(k, x)| {
+        if k % 3 == 2 {
+            x + 0.5 * (k / 3) as f64
+        } else {
+            x
+        }
+    });
     let data = Data(BTreeMap::from([
         ("s", vec![0.5]),
         ("m", r.list(nodes, 0.1).iter().map(|x| 0.5 + x).collect()),
@@ -466,8 +479,10 @@ const COUNTS: [usize; 5] = [2, 3, 5, 12, 50];
 
 fn cases(ring: bool, ends: &[[&'static str; 2]]) -> Vec<Case> {
     let ring = ring.then_some(None);
-    let ends: Vec<Option<[&'static str; 2]>> =
-        ring.into_iter().chain(ends.iter().map(|e| Some(*e))).collect();
+    let ends: Vec<Option<[&'static str; 2]>> = ring
+        .into_iter()
+        .chain(ends.iter().map(|e| Some(*e)))
+        .collect();
     let each = COUNTS.iter();
     each.flat_map(|n| ends.iter().map(|e| Case::new(*n, *e)))
         .collect()
@@ -491,10 +506,7 @@ pub fn all() -> Vec<Line> {
         }
     }
     // A ring of shallow water has two neighbours on either side.
-    let water_cases = cases(true, &free)
-        .into_iter()
-        .filter(|c| c.n > 2)
-        .collect();
+    let water_cases = cases(true, &free).into_iter().filter(|c| c.n > 2).collect();
     vec![
         (TODA, toda, cases(true, &free)),
         (TOPS, tops, cases(true, &free)),
