@@ -13,6 +13,9 @@ use clebsch_interpret::Refused;
 use std::io::Write;
 use std::path::Path;
 
+/// More sites than this are not given sample values where a case has its own.
+const LONG: usize = 256;
+
 /// Whether a model's text is meant rather than its name.
 pub(crate) fn is_meant(name: &str) -> bool {
     let path = Path::new(name);
@@ -75,6 +78,10 @@ pub(crate) fn read(
     }
     let cases = match stated.zip(choice) {
         None => vec![sample(&card, &name)],
+        // Of a long line the values are those of a file.
+        Some((_, choice)) if case.is_some() && choice.counts.iter().any(|n| *n > LONG) => {
+            Vec::new()
+        }
         Some((stated, choice)) => {
             // Of a case with values of its own no sample is asked.
             let sample = case_file::write_lattice(&card, &stated, &choice, &name);

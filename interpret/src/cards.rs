@@ -2,21 +2,36 @@
 //! each open model has a number, and each number a function.
 
 use crate::Refused;
+use crate::lines::{Carded, LineModel, NoLine};
 use crate::opened::{Opened, Text};
 use clebsch::card::{Card, Invariant, Open, OpenError, Settings, Trajectory};
 use clebsch_core::derive::warnings::Warning;
 use clebsch_core::lattice::{Choice, Lattice};
+use clebsch_core::syntax::ast::Model;
 use clebsch_core::{document, pipeline};
 use std::cell::RefCell;
 use std::rc::Rc;
-use std::sync::{PoisonError, RwLock};
+use std::sync::{Arc, PoisonError, RwLock};
 
 /// What is open, by number; each stays for as long as the process, as its card may.
-static OPEN: RwLock<Vec<&'static Opened>> = RwLock::new(Vec::new());
+static OPEN: RwLock<Vec<Known>> = RwLock::new(Vec::new());
+
+/// An open model.
+#[derive(Clone, Copy)]
+enum Known {
+    /// One of bodies.
+    Bodies(&'static Opened),
+    /// A line, found by its key.
+    Line(&'static str, &'static Carded),
+}
+
+/// Most segments or sites of a label for which a lattice is derived body by body: the work of that grows
+/// with the square of their number, a second or two here.
+pub const MOST_BODY_BY_BODY: usize = 32;
 
 type Sized = fn(&[usize]) -> Option<Card>;
 
-fn opened(number: usize) -> Option<&'static Opened> {
+fn opened(number: usize) -> Option<Known> {
     let list = OPEN.read().unwrap_or_else(PoisonError::into_inner);
     list.get(number).copied()
 }
@@ -27,7 +42,8 @@ fn open_at<const I: usize>(
     settings: Settings,
 ) -> Result<Box<dyn Trajectory>, OpenError> {
     match opened(I) {
-        Some(model) => model.open(parameters, initial, settings),
+        Some(Known::Bodies(model)) => model.open(parameters, initial, settings),
+        Some(Known::Line(_, line)) => line.open(parameters, initial, settings),
         None => Err(OpenError::Count {
             field: "open models",
             expected: I + 1,
@@ -37,7 +53,9 @@ fn open_at<const I: usize>(
 }
 
 fn sized_at<const I: usize>(sizes: &[usize]) -> Option<Card> {
-    let model = opened(I)?;
+    let Known::Bodies(model) = opened(I)? else {
+        return None;
+    };
     let source = model.source;
     match model.sizes == sizes {
         true => Some(model.card),
@@ -85,6 +103,17 @@ pub fn card_and_warnings(source: &str) -> Result<(Card, Vec<Warning>), Refused> 
 pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warning>), Refused> {
     let model = pipeline::parse_source(source).map_err(Refused::Model)?;
     let lattice = Lattice::read(&model).map_err(Refused::Model)?;
+    let mut written_out = None;
+    if choice.counts.iter().any(|n| *n > MOST_BODY_BY_BODY) {
+        match LineModel::read(source) {
+            Ok(line) => return card_of_line((&model, &lattice), choice, line, source),
+            Err(NoLine::Form(why)) => written_out = Some(why),
+            // What is wrong with a model is said of its bodies too; what is not read of a line is
+            // written out.
+            Err(NoLine::Refused(Refused::Construct(what))) => written_out = Some(what),
+            Err(NoLine::Refused(refused)) => return Err(refused),
+        }
+    }
     let derived = pipeline::derive_lattice(&model, &lattice, choice);
     let (unfolded, d) = derived.map_err(Refused::Model)?;
     // What is open is found by its text; here the choice is part of it.
@@ -106,11 +135,42 @@ pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warni
     let invariants: Vec<Invariant> = invariants.collect();
     let card = Card {
         source: crate::text(source),
-        summary: crate::text(&words.summary),
+        summary: crate::text(&match written_out {
+            None => words.summary,
+            Some(why) => format!(
+                "{}\nprogram              written out body by body, not with loops over sites: {why}",
+                words.summary
+            ),
+        }),
         solver: crate::text(&words.solver),
         invariants: Box::leak(invariants.into_boxed_slice()),
         ..card
     };
+    Ok((card, warnings))
+}
+
+/// The card of a line.
+fn card_of_line(
+    stated: (&Model, &Lattice),
+    choice: &Choice,
+    line: Arc<LineModel>,
+    source: &str,
+) -> Result<(Card, Vec<Warning>), Refused> {
+    let key = format!("{source}\n{choice:?}");
+    let (mut carded, warnings) = Carded::of(stated, choice, line, source, open_at::<0>)?;
+    let mut list = OPEN.write().unwrap_or_else(PoisonError::into_inner);
+    let known = list.iter().find_map(|known| match known {
+        Known::Line(own, line) if *own == key => Some(line.card),
+        _ => None,
+    });
+    if let Some(card) = known {
+        return Ok((card, warnings));
+    }
+    let most = FUNCTIONS.len();
+    let (open, _) = *FUNCTIONS.get(list.len()).ok_or(Refused::TooMany { most })?;
+    carded.card.open = open;
+    let card = carded.card;
+    list.push(Known::Line(crate::text(&key), Box::leak(Box::new(carded))));
     Ok((card, warnings))
 }
 
@@ -147,8 +207,12 @@ fn derived(source: &str) -> Result<Rc<Text>, Refused> {
 /// The card of a model that is open.
 fn known(source: &str, sizes: Option<&[usize]>) -> Option<Card> {
     let list = OPEN.read().unwrap_or_else(PoisonError::into_inner);
-    let same = |m: &Opened| sizes.map_or(m.is_default, |sizes| m.sizes == sizes);
-    let found = list.iter().find(|m| m.source == source && same(m));
+    let same = |m: &&'static Opened| sizes.map_or(m.is_default, |sizes| m.sizes == sizes);
+    let mut of_bodies = list.iter().filter_map(|known| match known {
+        Known::Bodies(model) => Some(model),
+        Known::Line(..) => None,
+    });
+    let found = of_bodies.find(|m| m.source == source && same(m));
     found.map(|m| m.card)
 }
 
@@ -159,6 +223,6 @@ fn opened_now(text: &Text, source: &str, sizes: Option<&[usize]>) -> Result<Card
     let (open, sized) = *FUNCTIONS.get(list.len()).ok_or(Refused::TooMany { most })?;
     (model.card.open, model.card.sized) = (open, sized);
     let card = model.card;
-    list.push(Box::leak(Box::new(model)));
+    list.push(Known::Bodies(Box::leak(Box::new(model))));
     Ok(card)
 }

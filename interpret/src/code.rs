@@ -1,12 +1,15 @@
 //! The operations of a function, read once: a tree over numbered places. Executing it looks no name up.
 
 mod apply;
+mod sweep;
 
 use crate::failure::Failure;
+use crate::sites::Column;
 use crate::value::{Frame, Layout, Value};
 use apply::{apply, called, listed, made, many, matched, one, operation, repeated, two};
 use clebsch::Real;
 use std::sync::{Arc, OnceLock};
+pub use sweep::{Kind, Slice, Sweep};
 
 /// The places of a function that runs: parameters, then locals.
 pub type Places<T> = Vec<Value<T>>;
@@ -79,6 +82,10 @@ pub enum Pattern<T: Real> {
     None,
     /// This value.
     Exactly(Value<T>),
+    /// One of these.
+    Or(Vec<Pattern<T>>),
+    /// A variant of an enum by its full name, and its fields by their numbers.
+    Variant(Arc<str>, Vec<(u32, Pattern<T>)>),
 }
 
 /// An arm of a match.
@@ -142,8 +149,12 @@ pub enum Code<T: Real> {
     If(Box<Code<T>>, Box<Code<T>>, Option<Box<Code<T>>>),
     /// `match`
     Match(Box<Code<T>>, Vec<Arm<T>>),
-    /// `for` over counts.
+    /// `for` over counts, upwards.
     For(usize, Box<Code<T>>, Box<Code<T>>, Box<Code<T>>),
+    /// The same, downwards.
+    Down(usize, Box<Code<T>>, Box<Code<T>>, Box<Code<T>>),
+    /// A loop over sites.
+    Sweep(Arc<Sweep<T>>),
     /// A value put into places: one, or a tuple of them.
     Assign(Vec<Code<T>>, Box<Code<T>>),
     /// A number added to a place.
@@ -186,9 +197,26 @@ impl<T: Real> Pattern<T> {
             Pattern::Done(inner) => {
                 !matches!(value, Value::Failed(_) | Value::None) && inner.meets(value)
             }
-            Pattern::Failed(inner) => matches!(value, Value::Failed(_)) && inner.meets(value),
+            Pattern::Failed(inner) => match value {
+                Value::Failed(e) => match &**e {
+                    // A site and its error.
+                    Failure::At(..) => true,
+                    _ => inner.meets(value),
+                },
+                _ => false,
+            },
             Pattern::None => matches!(value, Value::None),
             Pattern::Exactly(other) => value == other,
+            Pattern::Or(all) => all.iter().any(|p| p.meets(value)),
+            Pattern::Variant(name, fields) => match value {
+                Value::Struct(s) => {
+                    let met = |(number, p): &(u32, Pattern<T>)| {
+                        s.field(*number).is_some_and(|value| p.meets(value))
+                    };
+                    s.layout.name == **name && fields.iter().all(met)
+                }
+                _ => false,
+            },
         }
     }
 
@@ -204,7 +232,28 @@ impl<T: Real> Pattern<T> {
                 let pairs = patterns.iter().zip(list);
                 pairs.for_each(|(p, v)| p.bind(v, places));
             }
+            (Pattern::Failed(inner), Value::Failed(e)) => match *e {
+                Failure::At(site, e) => {
+                    let both = vec![Value::Int(site as i64), Value::Failed(e)];
+                    inner.bind(Value::List(both), places);
+                }
+                Failure::Site(site) => inner.bind(Value::Int(site as i64), places),
+                e => inner.bind(Value::failed(e), places),
+            },
             (Pattern::Done(inner) | Pattern::Failed(inner), value) => inner.bind(value, places),
+            (Pattern::Variant(_, fields), Value::Struct(mut s)) => {
+                for (number, pattern) in fields {
+                    if let Some(value) = s.field_mut(*number) {
+                        let value = std::mem::replace(value, Value::Unit);
+                        pattern.bind(value, places);
+                    }
+                }
+            }
+            (Pattern::Or(all), value) => {
+                if let Some(pattern) = all.iter().find(|p| p.meets(&value)) {
+                    pattern.bind(value, places);
+                }
+            }
             _ => {}
         }
     }
@@ -264,7 +313,7 @@ impl<T: Real> Code<T> {
         }
     }
 
-    fn count(&self, places: &mut Places<T>) -> Result<usize, Exit<T>> {
+    pub(crate) fn count(&self, places: &mut Places<T>) -> Result<usize, Exit<T>> {
         unfit(self.run(places)?.count())
     }
 
@@ -309,7 +358,8 @@ impl<T: Real> Code<T> {
             | Code::Once(..)
             | Code::Assign(..)
             | Code::Increase(..)
-            | Code::For(..) => {
+            | Code::For(..)
+            | Code::Down(..) => {
                 self.follow(places)?;
                 Ok(Value::Unit)
             }
@@ -318,6 +368,7 @@ impl<T: Real> Code<T> {
                 (false, Some(otherwise)) => otherwise.run(places),
                 (false, None) => Ok(Value::Unit),
             },
+            Code::Sweep(sweep) => sweep.run(places),
             Code::Match(value, arms) => matched(value, arms, places),
             Code::Struct(layout, given, base) => made(layout, given, base.as_deref(), places),
             Code::List(all) => listed(all, places),
@@ -367,10 +418,10 @@ impl<T: Real> Code<T> {
             Code::Assign(targets, value) => {
                 let value = value.run(places)?;
                 match (targets.as_slice(), value) {
-                    ([target], value) => *unfit(target.place_mut(places))? = value,
+                    ([target], value) => target.put(value, places)?,
                     (many, Value::List(values)) => {
                         for (target, value) in many.iter().zip(values) {
-                            *unfit(target.place_mut(places))? = value;
+                            target.put(value, places)?;
                         }
                     }
                     _ => return Err(Exit::Unfit(WRONG)),
@@ -379,9 +430,14 @@ impl<T: Real> Code<T> {
             }
             Code::Increase(target, value) => {
                 let value = value.run(places)?;
-                let place = unfit(target.place_mut(places))?;
-                *place = unfit(crate::library::binary(Operator::Add, place, &value))?;
-                Ok(())
+                let sum = match target.place(places) {
+                    Some(place) => crate::library::binary(Operator::Add, place, &value),
+                    None => {
+                        let before = target.run(places)?;
+                        crate::library::binary(Operator::Add, &before, &value)
+                    }
+                };
+                target.put(unfit(sum)?, places)
             }
             Code::For(at, from, to, body) => {
                 for i in from.count(places)?..to.count(places)? {
@@ -390,8 +446,49 @@ impl<T: Real> Code<T> {
                 }
                 Ok(())
             }
+            Code::Down(at, from, to, body) => {
+                for i in (from.count(places)?..to.count(places)?).rev() {
+                    *unfit(places.get_mut(*at))? = Value::Int(i as i64);
+                    body.run(places)?;
+                }
+                Ok(())
+            }
             other => other.run(places).map(|_| ()),
         }
+    }
+
+    /// Puts a value into a place, or at a site of a list.
+    fn put(&self, value: Value<T>, places: &mut Places<T>) -> Result<(), Exit<T>> {
+        if let Some(place) = self.place_mut(places) {
+            *place = value;
+            return Ok(());
+        }
+        let mut fields = Vec::new();
+        let mut list = self;
+        while let Code::Field(base, name) = list {
+            fields.push(*name);
+            list = base;
+        }
+        let Code::Index(base, at) = list else {
+            return Err(Exit::Unfit(WRONG));
+        };
+        let [at] = at.as_slice() else {
+            return Err(Exit::Unfit(WRONG));
+        };
+        let site = at.count(places)?;
+        let done = match base.place_mut(places) {
+            Some(Value::Sites(column)) => {
+                let field =
+                    |column, name| Option::and_then(column, |c: &mut Column<T>| c.field_mut(name));
+                let column = fields.into_iter().rev().fold(Some(column), field);
+                column.and_then(|c| c.set(site, &value))
+            }
+            Some(Value::List(list)) if fields.is_empty() => {
+                list.get_mut(site).map(|place| *place = value)
+            }
+            _ => None,
+        };
+        unfit(done)
     }
 
     #[inline(never)]

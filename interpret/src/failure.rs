@@ -2,6 +2,7 @@
 
 use clebsch::domain::Contact;
 use clebsch::emitted::{LeftFactorError, MoserVeselovError, OpenError, QuaternionError, Unsolved};
+use clebsch::line::LineError;
 use clebsch::solvers::two_sided::SingularFactor;
 use clebsch::{
     NotARigidMotion, NotARotation, NotInvertible, ParameterError, PoinsotError, StartError,
@@ -41,6 +42,12 @@ pub enum Failure {
     Motion(NotARigidMotion),
     /// Of a given map.
     Map(NotInvertible),
+    /// Along a line.
+    Line(LineError),
+    /// Of one site, in a loop over sites.
+    At(usize, Box<Failure>),
+    /// At one site, in a loop over sites.
+    Site(usize),
 }
 
 macro_rules! from {
@@ -69,6 +76,7 @@ from! {
     Rotation: NotARotation,
     Motion: NotARigidMotion,
     Map: NotInvertible,
+    Line: LineError,
 }
 
 /// What is not told by any other error.
@@ -95,6 +103,23 @@ impl Failure {
         match self {
             Failure::Step(e) => e,
             other => other.cause().at_node(node),
+        }
+    }
+
+    /// As the error of a line.
+    pub fn line(self) -> LineError {
+        match self {
+            Failure::Line(e) => e,
+            Failure::Parameter(e) => LineError::Parameter(e),
+            other => LineError::Step {
+                node: 0,
+                at: clebsch::line::Place {
+                    quantity: "line",
+                    site: 0,
+                },
+                cause: other.cause(),
+                works: None,
+            },
         }
     }
 

@@ -7,6 +7,7 @@ mod code;
 mod constants;
 mod failure;
 mod library;
+pub mod lines;
 mod lower;
 mod newton;
 mod opened;
@@ -14,9 +15,10 @@ mod packed;
 mod program;
 mod running;
 mod saved;
+mod sites;
 mod value;
 
-pub use cards::{card, card_and_warnings, card_on_lattice};
+pub use cards::{MOST_BODY_BY_BODY, card, card_and_warnings, card_on_lattice};
 
 use clebsch_core::Errors;
 use core::fmt;

@@ -10,6 +10,8 @@ use std::collections::BTreeMap;
 pub struct Program {
     /// Fields and types of each struct.
     pub structs: BTreeMap<String, Vec<(String, syn::Type)>>,
+    /// The variants of each enum, in order.
+    pub variants: BTreeMap<String, Vec<String>>,
     /// Functions by type and name; those of a trait have its name before theirs.
     pub functions: BTreeMap<(String, String), syn::ImplItemFn>,
     /// Functions that the model is given: the path of each by its name in the model.
@@ -47,6 +49,19 @@ impl Program {
                         .filter_map(|f| Some((f.ident.as_ref()?.to_string(), f.ty.clone())));
                     self.structs
                         .insert(item.ident.to_string(), fields.collect());
+                }
+                // A variant of an enum is a struct of its full name.
+                syn::Item::Enum(item) => {
+                    let order = item.variants.iter().map(|v| v.ident.to_string());
+                    self.variants
+                        .insert(item.ident.to_string(), order.collect());
+                    for variant in item.variants {
+                        let name = format!("{}::{}", item.ident, variant.ident);
+                        let fields = variant.fields.iter();
+                        let fields = fields
+                            .filter_map(|f| Some((f.ident.as_ref()?.to_string(), f.ty.clone())));
+                        self.structs.insert(name, fields.collect());
+                    }
                 }
                 syn::Item::Type(item) => {
                     self.aliases.insert(item.ident.to_string(), *item.ty);

@@ -1,6 +1,7 @@
 //! What moves, written down and made again: the values that a trajectory keeps between its steps.
 
 use crate::library::Factor;
+use crate::sites::Column;
 use crate::value::Value;
 use clebsch::saved::{Saved, Words};
 use std::sync::Arc;
@@ -31,6 +32,8 @@ impl Saved for Value<f64> {
             Value::Free(free) => free.words(words),
             Value::Struct(s) => all(&mut s.values, words),
             Value::List(list) => all(list, words),
+            Value::Sites(column) => column.words(words),
+            Value::Attitude(x) => x.words(words),
             Value::Search(held) => held.words(words),
             // As given with the trajectory, or nothing at all.
             Value::Unit
@@ -42,11 +45,14 @@ impl Saved for Value<f64> {
             | Value::Domain(_)
             | Value::Function(_)
             | Value::Call(_) => {}
+            // What it stands for is put back whole.
+            Value::Stamp(_) => {}
             // No state or workspace holds these.
             Value::Turned(_)
             | Value::Residual(_)
             | Value::Warning(_)
             | Value::Part(..)
+            | Value::At(_)
             | Value::Failed(_) => words.refuse(),
         }
     }
@@ -81,7 +87,24 @@ fn kind(value: &Value<f64>) -> u64 {
         Value::Struct(_) => 17,
         Value::List(_) => 18,
         Value::Search(_) => 19,
+        Value::Sites(_) => 21,
+        Value::Attitude(_) => 22,
         _ => 20,
+    }
+}
+
+impl Saved for Column<f64> {
+    fn words(&mut self, words: &mut Words) {
+        words.same(self.len() as u64);
+        match self {
+            Column::Numbers(list) | Column::Arrays(_, list) => {
+                list.iter_mut().for_each(|x| x.words(words));
+            }
+            Column::Attitudes(list) => list.iter_mut().for_each(|x| x.words(words)),
+            Column::Edges(list) => list.iter_mut().for_each(|x| x.words(words)),
+            Column::Structs(_, fields, _) => fields.iter_mut().for_each(|f| f.words(words)),
+            Column::Values(list) => list.iter_mut().for_each(|x| x.words(words)),
+        }
     }
 }
 

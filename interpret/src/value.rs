@@ -1,6 +1,7 @@
 //! What an expression of a step may be: numbers, matrices, group elements, momenta, prepared solvers.
 
 use crate::failure::Failure;
+use crate::sites::Column;
 use clebsch::Real;
 use clebsch::domain;
 use clebsch::emitted::{
@@ -9,6 +10,7 @@ use clebsch::emitted::{
 };
 use clebsch::kinetic::KineticWarning;
 use clebsch::linalg::Dense;
+use clebsch::line;
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
@@ -156,6 +158,14 @@ pub enum Value<T: Real> {
     Struct(Struct<T>),
     /// An array or a tuple.
     List(Vec<Value<T>>),
+    /// A value for each site of a line.
+    Sites(Column<T>),
+    /// The attitude of a site.
+    Attitude(line::Attitude<T>),
+    /// Which state a workspace was made for.
+    Stamp(line::Stamp),
+    /// A quantity at a site.
+    At(line::Place),
     /// A search for velocities.
     Search(crate::newton::Held),
     /// Part of an array, from an offset on: the place of the array.
@@ -235,6 +245,10 @@ impl<T: Real> PartialEq for Value<T> {
             (Value::Method(a), Value::Method(b)) => a == b,
             (Value::Struct(a), Value::Struct(b)) => a.values == b.values,
             (Value::List(a), Value::List(b)) => a == b,
+            (Value::Sites(a), Value::Sites(b)) => a == b,
+            (Value::Attitude(a), Value::Attitude(b)) => a == b,
+            (Value::Edge(a), Value::Edge(b)) => a == b,
+            (Value::Stamp(a), Value::Stamp(b)) => a == b,
             _ => false,
         }
     }

@@ -3,6 +3,7 @@
 
 use crate::domain::{Contact, Domain, Function};
 use crate::groups::{NotARigidMotion, NotARotation, NotInvertible};
+use crate::line::Place;
 use crate::said::place;
 use crate::solvers::left_factor::{LeftFactorError, Unsolved};
 use crate::solvers::moser_veselov::{MoserVeselovError, PoinsotError};
@@ -401,6 +402,15 @@ pub enum StepCause {
         /// Its name.
         what: &'static str,
     },
+    /// A step along a line of sites is refused at one of them.
+    AtSite {
+        /// Where.
+        at: Place,
+        /// Why.
+        cause: &'static StepCause,
+        /// A shorter step that was tried and works, where one was found.
+        works: Option<f64>,
+    },
     /// A model that is read from its text needs an operation that only a built one has.
     Unread {
         /// What was met.
@@ -465,6 +475,13 @@ impl fmt::Display for StepCause {
                 f,
                 "`{what}` is NaN or infinite; reduce the step size or check the initial values"
             ),
+            Self::AtSite { at, cause, works } => {
+                write!(f, "{at}: {cause}")?;
+                match works {
+                    Some(h) => write!(f, "; a step of {h} can be made"),
+                    None => Ok(()),
+                }
+            }
             Self::Unread { what } => write!(
                 f,
                 "a model that is read from its text does not make this step ({what}); put it into a crate by \
@@ -484,6 +501,7 @@ impl std::error::Error for StepCause {
             Self::Singular(error) => Some(error),
             Self::Newton(error) => Some(error),
             Self::Contact(contact) => Some(contact),
+            Self::AtSite { cause, .. } => Some(*cause),
             Self::NotFinite { .. } | Self::Unread { .. } => None,
         }
     }

@@ -3,18 +3,28 @@
 
 use super::value::numbers;
 use clebsch::card::{Field, Kind};
+use std::collections::HashSet;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// The key under which the inertia may stand beside the field's own: `I` for `J`, `I2` for `J2`.
 /// None where the field is no matrix of second moments, has another letter, or the key is taken.
-pub(super) fn key(field: &Field, fields: &[Field]) -> Option<String> {
+pub(super) fn key(field: &Field, taken: &Taken<'_>) -> Option<String> {
     if field.kind != Kind::SecondMoments {
         return None;
     }
     let key = format!("I{}", field.ascii.strip_prefix('J')?);
-    let taken = fields.iter().any(|other| other.ascii == key);
-    (!taken).then_some(key)
+    (!taken.0.contains(key.as_str())).then_some(key)
+}
+
+/// The names of all fields of a table.
+pub(super) struct Taken<'a>(HashSet<&'a str>);
+
+impl<'a> Taken<'a> {
+    /// Those of these fields.
+    pub(super) fn of(fields: &'a [Field]) -> Self {
+        Taken(fields.iter().map(|field| field.ascii).collect())
+    }
 }
 
 /// The value of a field, and whether it is its inertia: under its own name, as `J = { I = ... }`,
@@ -34,7 +44,7 @@ pub(super) enum Given<'a, 'i> {
 pub(super) fn given<'a, 'i>(
     table: &'a DeTable<'i>,
     field: &Field,
-    fields: &[Field],
+    fields: &Taken<'_>,
 ) -> Given<'a, 'i> {
     let own = table.get(field.ascii);
     let beside = key(field, fields).and_then(|key| table.get(key.as_str()));
@@ -53,7 +63,7 @@ pub(super) fn given<'a, 'i>(
 }
 
 /// What the key of a given field is called in messages: `I` where it is the inertia that was given.
-pub(super) fn shown_key(table: &DeTable<'_>, field: &Field, fields: &[Field]) -> String {
+pub(super) fn shown_key(table: &DeTable<'_>, field: &Field, fields: &Taken<'_>) -> String {
     match given(table, field, fields) {
         Given::Inertia(_) if table.contains_key(field.ascii) => format!("{}.I", field.ascii),
         Given::Inertia(_) => key(field, fields).unwrap_or_else(|| field.ascii.to_owned()),

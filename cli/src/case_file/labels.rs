@@ -2,7 +2,8 @@
 //! expressions in the label, or lists. Gives the same case with a key for every copy, which is read
 //! like any other, and the line that each of its lines came from.
 
-use super::inertia;
+use super::copies::Copies;
+use super::inertia::{self, Taken};
 use super::location::File;
 use super::sites::{self, Site};
 use super::value::expected;
@@ -11,9 +12,10 @@ use crate::plain::shown;
 use crate::suggestion::did_you_mean;
 use clebsch::card::{Card, Field, Kind as FieldKind};
 use clebsch_core::expr::symbol::ascii;
-use clebsch_core::lattice::{Choice, Copied, Kind, Lattice, Unfolded, unfold};
-use clebsch_core::syntax::ast::{Model, Statement};
+use clebsch_core::lattice::{Choice, Lattice};
+use clebsch_core::syntax::ast::Model;
 use clebsch_core::{document, pipeline};
+use std::collections::HashSet;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -63,8 +65,9 @@ impl Stated {
         names.any(|n| n == key || n == bare) || offsets.any(|o| ascii(&o.text) == key)
     }
 
-    fn unfolded(&self, choice: &Choice) -> Option<Unfolded> {
-        unfold(&self.model, &self.lattice, choice).ok()
+    /// The copies of quantities at the sites of a choice.
+    pub(crate) fn copies(&self, choice: &Choice) -> Option<Copies> {
+        Copies::of(self, choice)
     }
 }
 
@@ -217,7 +220,7 @@ pub(crate) fn written_out(
 ) -> Result<WrittenOut, Failure> {
     let choice = choice(name, text, stated)?;
     let file = File::new(name, text);
-    let Some(unfolded) = stated.unfolded(&choice) else {
+    let Some(copies) = stated.copies(&choice) else {
         return Err(file.wrong(None, "the model's lattice cannot be written out"));
     };
     let document = DeTable::parse(text).map_err(|error| {
@@ -245,7 +248,7 @@ pub(crate) fn written_out(
         file: &file,
         stated,
         choice: &choice,
-        unfolded: &unfolded,
+        copies: &copies,
         numbers: sites::numbers(top, parameters),
     };
     writer.fields(&mut out, "parameters", card.parameters, parameters, initial)?;
@@ -284,82 +287,55 @@ pub(crate) struct Base {
     pub is_momentum: bool,
 }
 
-impl Base {
-    fn is_copy(&self, copy: &Copied) -> bool {
-        ascii(&copy.of) == self.of
-    }
-}
-
 /// What a field of a card is a copy of.
-pub(crate) fn base(stated: &Stated, unfolded: &Unfolded, field: &Field) -> Option<Base> {
-    if let Some(only) = the_only_one(stated, unfolded)
+pub(crate) fn base(copies: &Copies, field: &Field) -> Option<Base> {
+    if let Some((of, site, label)) = &copies.only
         && ["momentum", "body_momentum", "spatial_momentum"].contains(&field.ascii)
     {
         // Of a single configuration the momentum is named without it.
-        let of = ascii(&only.of);
         return Some(Base {
             key: format!("{}_{of}", field.ascii),
-            site: only.site,
-            label: stated.lattice.find(&only.of)?.label,
+            site: *site,
+            label: *label,
             end: false,
             given: false,
-            of,
+            of: of.clone(),
             is_momentum: true,
         });
     }
     let (key, digits) = field.ascii.rsplit_once('_')?;
     let site: usize = digits.parse().ok()?;
-    let end = unfolded.end_parameters.iter();
-    if let Some((own, _, _)) = end.clone().find(|(own, ..)| ascii(own) == field.ascii) {
-        let _ = own;
+    if copies.of_ends.iter().any(|own| own == field.ascii) {
         return Some(Base {
             key: key.to_owned(),
             site,
-            label: stated.lattice.line?,
+            label: copies.line?,
             end: true,
             given: false,
             of: key.to_owned(),
             is_momentum: false,
         });
     }
-    let copy = unfolded.copies.iter().find(|c| {
-        let of = ascii(&c.of);
-        c.site == site && (key == of || key.strip_suffix(&of).is_some_and(|k| k.ends_with('_')))
+    let group = copies.groups.iter().find(|g| {
+        let own = key == g.of || key.strip_suffix(&g.of).is_some_and(|k| k.ends_with('_'));
+        own && g.sites.binary_search(&site).is_ok()
     })?;
     Some(Base {
         key: key.to_owned(),
         site,
-        label: stated.lattice.find(&copy.of)?.label,
+        label: group.label?,
         end: false,
-        given: unfolded.given.contains(&copy.name),
-        of: ascii(&copy.of),
-        is_momentum: key != ascii(&copy.of),
+        given: group.moving.binary_search(&site).is_err(),
+        is_momentum: key != group.of,
+        of: group.of.clone(),
     })
-}
-
-/// The configuration of a lattice on which nothing else moves.
-fn the_only_one<'a>(stated: &Stated, unfolded: &'a Unfolded) -> Option<&'a Copied> {
-    let moves = |c: &&Copied| {
-        let own = stated.lattice.find(&c.of);
-        own.is_some_and(|q| q.kind == Kind::Configuration) && !unfolded.given.contains(&c.name)
-    };
-    let whole = unfolded
-        .model
-        .statements
-        .iter()
-        .filter(|s| matches!(s, Statement::Field { .. } | Statement::Group { .. }));
-    let mut moving = unfolded.copies.iter().filter(moves);
-    match (moving.next(), moving.next(), whole.count()) {
-        (Some(only), None, 1) => Some(only),
-        _ => None,
-    }
 }
 
 struct Writer<'a> {
     file: &'a File<'a>,
     stated: &'a Stated,
     choice: &'a Choice,
-    unfolded: &'a Unfolded,
+    copies: &'a Copies,
     numbers: Vec<(String, f64)>,
 }
 
@@ -376,15 +352,16 @@ impl Writer<'_> {
         others: Table<'_, '_>,
     ) -> Result<(), Failure> {
         out.push(&format!("[{name}]"), 0);
-        let mut used: Vec<String> = Vec::new();
+        let taken = Taken::of(fields);
+        let mut used: HashSet<String> = HashSet::new();
         for field in fields {
-            let base = base(self.stated, self.unfolded, field);
+            let base = base(self.copies, field);
             let mut found = None;
-            for (own, site) in self.keys(field, base.as_ref(), fields) {
+            for (own, site) in self.keys(field, base.as_ref(), &taken) {
                 let value = values.and_then(|t| t.get(own.as_str()));
                 let given = base.as_ref().is_some_and(|b| b.given);
                 let other = others.filter(|_| given).and_then(|t| t.get(own.as_str()));
-                used.push(own.clone());
+                used.insert(own.clone());
                 if let Some(value) = value.or(other) {
                     found = Some((own, site, value));
                     break;
@@ -406,7 +383,7 @@ impl Writer<'_> {
                 self.file.wrong(Some(&value.span()), &key)
             })?;
             // The inertia of a copy stands under the key of its own.
-            let inertial = inertia::key(field, fields);
+            let inertial = inertia::key(field, &taken);
             let written = match (
                 &inertial,
                 own.starts_with('I') && field.ascii.starts_with('J'),
@@ -420,9 +397,9 @@ impl Writer<'_> {
     }
 
     /// The keys under which a field may stand, and whether each is that of all sites.
-    fn keys(&self, field: &Field, base: Option<&Base>, fields: &[Field]) -> Vec<(String, bool)> {
+    fn keys(&self, field: &Field, base: Option<&Base>, taken: &Taken<'_>) -> Vec<(String, bool)> {
         let mut keys = vec![(field.ascii.to_owned(), false)];
-        keys.extend(inertia::key(field, fields).map(|k| (k, false)));
+        keys.extend(inertia::key(field, taken).map(|k| (k, false)));
         if let Some(base) = base {
             let count = self.choice.count(base.label);
             if base.site == count
@@ -465,26 +442,15 @@ impl Writer<'_> {
         value: &Spanned<DeValue<'_>>,
     ) -> Result<String, String> {
         // Momenta have no value where their configuration is given; a list may leave these sites out.
-        let copies = self.unfolded.copies.iter();
-        let own = copies.filter(|c| base.is_copy(c));
-        let mut all: Vec<(usize, bool)> = own
-            .map(|c| (c.site, self.unfolded.given.contains(&c.name)))
-            .collect();
-        all.sort_unstable();
-        all.dedup();
-        let left = all
-            .iter()
-            .filter(|(_, given)| !given)
-            .map(|(site, _)| *site);
-        let left: Vec<usize> = left.collect();
-        let place = |list: &[usize]| list.iter().position(|s| *s == base.site).unwrap_or(0);
-        let every: Vec<usize> = all.iter().map(|(site, _)| *site).collect();
+        let group = self.copies.groups.iter().find(|g| g.of == base.of);
+        let (every, left) = group.map_or((&[][..], &[][..]), |g| (&g.sites[..], &g.moving[..]));
+        let place = |list: &[usize]| list.binary_search(&base.site).unwrap_or(0);
         let at = Site {
             field,
-            place: place(&every),
+            place: place(every),
             count: if base.end { 1 } else { every.len() },
             moving: match base.is_momentum {
-                true => Some((place(&left), left.len())),
+                true => Some((place(left), left.len())),
                 false => None,
             },
         };
@@ -508,20 +474,27 @@ impl Writer<'_> {
         self.file.wrong(None, &message)
     }
 
-    fn unknown(&self, name: &str, values: Table<'_, '_>, used: &[String]) -> Result<(), Failure> {
+    fn unknown(
+        &self,
+        name: &str,
+        values: Table<'_, '_>,
+        used: &HashSet<String>,
+    ) -> Result<(), Failure> {
         for (key, value) in values.into_iter().flatten() {
             let asked = key.get_ref().as_ref();
-            if used.iter().any(|u| u == asked) {
+            if used.contains(asked) {
                 continue;
             }
             // Of a configuration whose every copy is given nothing is initial, and of an alternative
             // that is not chosen nothing is asked.
-            let of_given = self.unfolded.copies.iter().any(|c| ascii(&c.of) == asked);
+            let of_given = self.copies.groups.iter().any(|g| g.of == asked);
             let of_other_ends = self.stated.of_other_ends(asked);
             if (name == "initial" && of_given) || (name == "parameters" && of_other_ends) {
                 continue;
             }
-            let hint = did_you_mean(asked, used.iter().map(String::as_str));
+            let mut names: Vec<&str> = used.iter().map(String::as_str).collect();
+            names.sort_unstable();
+            let hint = did_you_mean(asked, names);
             let _ = value;
             return Err(self.file.wrong(
                 Some(&key.span()),

@@ -5,7 +5,7 @@ use super::labels::{Base, Stated, base};
 use crate::plain::shown;
 use clebsch::card::{Card, Field, Kind};
 use clebsch_core::expr::symbol::ascii;
-use clebsch_core::lattice::{Choice, unfold};
+use clebsch_core::lattice::Choice;
 use std::fmt::Write as _;
 
 /// The text of the sample case.
@@ -30,17 +30,17 @@ pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named
         let _ = writeln!(text, "{} = {}     # {what}", l.index.text, choice.count(i));
     }
     ends(&mut text, stated, choice);
-    let Ok(unfolded) = unfold(&stated.model, lattice, choice) else {
+    let Some(copies) = stated.copies(choice) else {
         return text;
     };
     for (table, fields) in [("parameters", card.parameters), ("initial", card.initial)] {
         let _ = writeln!(text, "\n[{table}]");
         let mut told: Vec<String> = Vec::new();
         for field in fields {
-            let base = base(stated, &unfolded, field);
+            let base = base(&copies, field);
             let key = base.as_ref().map_or(field.ascii, |b| b.key.as_str());
             // What is given at an end has its value among those of all sites.
-            if told.iter().any(|t| t == key) || base.as_ref().is_some_and(|b| b.given) {
+            if base.as_ref().is_some_and(|b| b.given) || told.iter().any(|t| t == key) {
                 continue;
             }
             told.push(key.to_owned());

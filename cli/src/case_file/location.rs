@@ -22,6 +22,8 @@ pub struct Located {
 pub(super) struct File<'a> {
     pub name: &'a str,
     pub text: &'a str,
+    /// Where its lines end.
+    ends: Vec<usize>,
     /// Of a text that was written out: the line of the file that each of its lines came from.
     origin: Option<&'a [usize]>,
 }
@@ -32,6 +34,7 @@ impl<'a> File<'a> {
         File {
             name,
             text,
+            ends: ends(text),
             origin: None,
         }
     }
@@ -41,14 +44,14 @@ impl<'a> File<'a> {
         File {
             name,
             text,
+            ends: ends(text),
             origin: Some(origin),
         }
     }
 
     /// Line, from 1, where `span` begins.
     pub fn line(&self, span: &Range<usize>) -> usize {
-        let before = self.text.as_bytes().iter().take(span.start);
-        let line = before.filter(|&&byte| byte == b'\n').count();
+        let line = self.ends.partition_point(|end| *end < span.start);
         match self.origin.and_then(|lines| lines.get(line)) {
             Some(own) => (*own).max(1),
             None => 1 + line,
@@ -62,4 +65,12 @@ impl<'a> File<'a> {
             None => format!("{}: {message}", shown(self.name)),
         })
     }
+}
+
+fn ends(text: &str) -> Vec<usize> {
+    let bytes = text.bytes().enumerate();
+    bytes
+        .filter(|(_, b)| *b == b'\n')
+        .map(|(at, _)| at)
+        .collect()
 }

@@ -1,7 +1,7 @@
 //! Reads a case from a TOML file, for the model whose card is given.
 //! Takes the text; gives the case with the lines of its keys, or the first thing wrong with it.
 
-use super::inertia::{self, Given};
+use super::inertia::{self, Given, Taken};
 use super::location::{File, Located};
 use super::value::{expected, number, numbers};
 use crate::arguments::whole;
@@ -10,7 +10,7 @@ use crate::gallery::Case;
 use crate::plain::shown;
 use crate::suggestion::did_you_mean;
 use clebsch::card::{Card, Field};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -113,9 +113,10 @@ fn known_keys(
     place: &str,
     written: Option<&[Field]>,
 ) -> Result<(), Failure> {
+    let all: HashSet<&str> = known.iter().copied().collect();
     for key in table.keys() {
         let name = key.get_ref().as_ref();
-        if known.contains(&name) {
+        if all.contains(name) {
             continue;
         }
         // `"Λ"` is how the model writes it, but files use the ASCII name.
@@ -239,9 +240,10 @@ fn fields(
             }
         };
     };
+    let taken = Taken::of(fields);
     let inertias: Vec<String> = fields
         .iter()
-        .filter_map(|field| inertia::key(field, fields))
+        .filter_map(|field| inertia::key(field, &taken))
         .collect();
     let known = fields.iter().map(|field| field.ascii);
     let known: Vec<&str> = known.chain(inertias.iter().map(String::as_str)).collect();
@@ -249,7 +251,7 @@ fn fields(
     let mut values = Vec::with_capacity(fields.len());
     for field in fields {
         let key = format!("{name}.{}", field.ascii);
-        let (value, found) = match inertia::given(table, field, fields) {
+        let (value, found) = match inertia::given(table, field, &taken) {
             Given::Own(value) => (value, numbers(field, value.get_ref())),
             Given::Inertia(value) => (value, inertia::second_moments(field, value.get_ref())),
             Given::Twice(value) => (
@@ -262,7 +264,7 @@ fn fields(
             }
         };
         let found = found.map_err(|message| {
-            let shown = inertia::shown_key(table, field, fields);
+            let shown = inertia::shown_key(table, field, &taken);
             file.wrong(Some(&value.span()), &format!("{name}.{shown}: {message}"))
         })?;
         lines.insert(key, file.line(&value.span()));

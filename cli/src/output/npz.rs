@@ -4,8 +4,9 @@
 
 use super::names;
 use super::samples::Rows;
-use super::sites::{AtSites, at_sites};
+use super::sites::at_sites;
 use clebsch::card::Card;
+use std::collections::HashSet;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::ops::Range;
 
@@ -51,18 +52,15 @@ pub(super) fn arrays<'a>(card: &Card, rows: &'a Rows) -> Vec<Array<'a>> {
         array("time", vec![samples], columns(all(1..2), false)),
     ];
     let at_sites = at_sites(card);
+    let of_sites = at_sites.iter().flat_map(|q| &q.members);
+    let of_sites: HashSet<usize> = of_sites.map(|(_, c)| c.start).collect();
     // Where the observables begin in a row.
     let offset = 2;
     let mut from = offset;
     for field in card.observables {
         let here = from..from + field.count();
         from = here.end;
-        let of_a_site = |q: &AtSites<'_>| {
-            q.members
-                .iter()
-                .any(|(_, c)| c.start + offset == here.start)
-        };
-        if !at_sites.iter().any(of_a_site) {
+        if !of_sites.contains(&(here.start - offset)) {
             let shape = shaped(field.rows, field.cols);
             arrays.push(array(field.ascii, shape, columns(all(here), false)));
         }

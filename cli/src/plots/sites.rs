@@ -16,6 +16,9 @@ use std::ops::Range;
 /// Most columns of a map: more are not told apart across a page.
 const COLUMNS: usize = 160;
 
+/// Most sites that have rows of their own: of more, some are shown.
+const ROWS: usize = 240;
+
 /// Most components that have maps of their own: the entries of a rotation are no picture of it.
 const COMPONENTS: usize = 3;
 
@@ -62,10 +65,9 @@ fn panel(q: &AtSites<'_>, component: usize, record: &Record) -> Panel {
     );
     // Of a place what is seen is how far it has moved.
     let change = q.moves && !momentum && (q.grows || q.field.count() > 1);
-    let rows = q
-        .members
-        .iter()
-        .map(|(site, columns): &(usize, Range<usize>)| {
+    let members = q.members.iter();
+    let rows = members.step_by(q.members.len().div_ceil(ROWS).max(1)).map(
+        |(site, columns): &(usize, Range<usize>)| {
             let column: Vec<f64> = record
                 .observables
                 .column(columns.start + component)
@@ -73,7 +75,8 @@ fn panel(q: &AtSites<'_>, component: usize, record: &Record) -> Panel {
             let first = column.first().copied().filter(|_| change).unwrap_or(0.0);
             let values = picked.iter().filter_map(|i| column.get(*i));
             (*site, values.map(|v| v - first).collect::<Vec<f64>>())
-        });
+        },
+    );
     let rows: Vec<(usize, Vec<f64>)> = rows.collect();
     let times = picked.iter().filter_map(|i| record.times.get(*i).copied());
     let letter = match letter(q.field) {

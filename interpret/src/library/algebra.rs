@@ -107,6 +107,9 @@ pub fn entry<T: Real>(a: &Value<T>, at: [usize; 2], indices: usize) -> Option<Va
     if let Value::List(list) = a {
         return list.get(at[0]).cloned();
     }
+    if let Value::Sites(column) = a {
+        return column.get(at[0]);
+    }
     let a = a.dense()?;
     let (i, j) = match indices {
         1 => (at[0] % a.rows, at[0] / a.rows),

@@ -110,6 +110,7 @@ fn matrix<T: Real>(a: &Value<T>) -> Option<Value<T>> {
     Some(match a {
         Value::Rotation(r) => Value::Matrix(r.matrix()),
         Value::Turned(r) => Value::Matrix(r.matrix()),
+        Value::Attitude(x) => Value::Matrix(x.matrix()),
         Value::Quaternion(q) => Value::of(Dense::of(&q.matrix())),
         Value::Motion(g) => Value::of(Dense::of(&g.matrix())),
         Value::Plane(g) => Value::of(Dense::of(&g.matrix())),
@@ -231,6 +232,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         ("rotation", 1) => |a, _| match a.first()? {
             Value::Quaternion(q) => Some(Value::Rotation(q.rotation())),
             Value::Turned(r) => Some(Value::Rotation(r.rotation())),
+            Value::Attitude(x) => Some(Value::Rotation(x.rotation())),
             _ => None,
         },
         ("unit_quaternion", 1) => |a, _| match a.first()? {

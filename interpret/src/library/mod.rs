@@ -4,6 +4,7 @@ mod algebra;
 mod domain;
 mod functions;
 pub(crate) mod groups;
+mod line;
 mod momenta;
 mod solvers;
 mod special;
@@ -34,6 +35,9 @@ pub const NAMES: [&str; 12] = [
 
 /// A field of a type of the runtime.
 pub fn field<T: Real>(value: &Value<T>, name: u32) -> Option<Value<T>> {
+    if let Value::Struct(s) = value {
+        return s.field(name).cloned();
+    }
     match (NAMES.get(name as usize).copied()?, value) {
         ("rotation", Value::Motion(g)) => Some(Value::Rotation(g.rotation)),
         ("translation", Value::Motion(g)) => Some(Value::Vector(g.translation)),
@@ -73,6 +77,7 @@ pub fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
         .or_else(|| solvers::native(name, arguments))
         .or_else(|| domain::native(name, arguments))
         .or_else(|| validate::native(name, arguments))
+        .or_else(|| line::native(name, arguments))
 }
 
 /// The same of those that residuals and tangents call: no solver, no element is moved.
@@ -84,5 +89,5 @@ pub fn kernel<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
 
 /// The same for those that change their first argument, or call back.
 pub fn special<T: Real>(name: &str) -> Option<Special<T>> {
-    special::special(name)
+    special::special(name).or_else(|| line::special(name))
 }

@@ -156,10 +156,11 @@ fn names<T: Real>(a: &Value<T>) -> Option<[&'static str; 2]> {
 pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
     Some(match (name, arguments) {
         ("Edge::new", 2) => |a, _| {
-            Some(Value::Edge(Edge::new(
-                vector(a.first()?)?,
-                vector(a.get(1)?)?,
-            )))
+            let part = |a: &Value<T>| match a {
+                Value::Zeros => Some(Vector3::zeros()),
+                a => vector(a),
+            };
+            Some(Value::Edge(Edge::new(part(a.first()?)?, part(a.get(1)?)?)))
         },
         ("space", 1) => |a, _| match a.first()? {
             Value::Edge(edge) => Some(Value::Vector(edge.space())),

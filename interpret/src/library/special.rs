@@ -3,6 +3,7 @@
 use super::algebra::numbers;
 use crate::code::{Code, Exit, Places, Special, unfit};
 use crate::failure::Failure;
+use crate::sites::Column;
 use crate::value::{Frame, Value};
 use clebsch::linalg::Dense;
 use clebsch::{Real, SpatialMomentum};
@@ -259,6 +260,21 @@ fn map<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
     match value.run(places)? {
         Value::None => Ok(Value::None),
         Value::Failed(e) => Ok(Value::Failed(e)),
+        Value::Sites(list) => {
+            let mut made = Vec::with_capacity(list.len());
+            for value in list.values() {
+                let given = match (value, closure) {
+                    (Value::List(all), Code::Closure(parameters, _))
+                        if parameters.len() == all.len() =>
+                    {
+                        all
+                    }
+                    (value, _) => vec![value],
+                };
+                made.push(closure.call(given, places)?);
+            }
+            Ok(Value::Sites(unfit(Column::of(made))?))
+        }
         value => closure.call(vec![value], places),
     }
 }

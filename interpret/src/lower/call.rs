@@ -56,13 +56,22 @@ impl<T: Lowered> Lower<'_, '_, T> {
     }
 
     /// A closure, given as it is or by name.
-    fn argument(&mut self, e: &syn::Expr) -> Result<Code<T>, Refused> {
+    pub(super) fn argument(&mut self, e: &syn::Expr) -> Result<Code<T>, Refused> {
         if let syn::Expr::Path(p) = e
             && let Some(name) = p.path.get_ident()
             && let Some(Binding::Closure(closure)) = self.find(&name.to_string())
         {
             let closure = closure.clone();
             return self.closure(&closure);
+        }
+        // A function of the runtime by its path.
+        if let syn::Expr::Path(p) = e
+            && let [.., owner, name] = &p.path.segments.iter().collect::<Vec<_>>()[..]
+            && let Some(native) = T::native(&format!("{}::{}", owner.ident, name.ident), 1)
+        {
+            let at = self.fresh();
+            let call = Code::Call(native, vec![Code::Place(at)], Vec::new());
+            return Ok(Code::Closure(vec![at], Box::new(call)));
         }
         self.expression(e, None)
     }
@@ -118,7 +127,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
                 let special = library::special("from_fn").ok_or_else(|| refuse(c))?;
                 return Ok(Code::Special(special, arguments));
             }
-            ["SVector", "new"] => {
+            ["SVector" | "SMatrix", "new"] => {
                 let arguments = self.all(c.args.iter())?;
                 return self
                     .native("single", arguments, sizes)
@@ -136,6 +145,16 @@ impl<T: Lowered> Lower<'_, '_, T> {
                 return Ok(Code::Repeat(Box::new(value), Box::new(count)));
             }
             _ => {}
+        }
+        if let [.., owner, name] = names.as_slice()
+            && let Some(sweep) = self.sweep(&format!("{owner}::{name}"), c)?
+        {
+            return Ok(sweep);
+        }
+        if let [name] = names.as_slice()
+            && let Some(called) = self.called_back(name, c)?
+        {
+            return Ok(called);
         }
         if let Some(frame) = frame(&named(path)) {
             let [inner] = &self.all(c.args.iter())?[..] else {
@@ -212,6 +231,9 @@ impl<T: Lowered> Lower<'_, '_, T> {
                 .native(&format!("{path}::{name}"), arguments, Vec::new())
                 .ok_or_else(missing);
         }
+        if let Some(done) = self.method_of_list(m)? {
+            return Ok(done);
+        }
         let receiver = self.expression(&m.receiver, None)?;
         let sizes = self.generics(m.turbofish.as_ref());
         self.runtime(&name, m.args.iter(), Some(receiver), sizes)?
@@ -268,7 +290,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         }
         // Names of the caller are not seen.
         let outer = std::mem::replace(&mut self.scopes, vec![scope]);
-        let body = self.block(&function.block);
+        let body = self.body(function);
         self.scopes = outer;
         self.within.pop();
         all.push(body?);
@@ -296,7 +318,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
             let (name, kind) = inner.parameter(parameter)?;
             inner.bind(name, Binding::Place(Code::Place(at), kind));
         }
-        let body = inner.block(&function.block)?;
+        let body = inner.body(function)?;
         let places = inner.next;
         let body = Code::Function(Box::new(body));
         // Set once: it was missing a moment ago.

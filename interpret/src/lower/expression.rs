@@ -36,6 +36,9 @@ impl<T: Lowered> Lower<'_, '_, T> {
             syn::Expr::Binary(b) => self.binary(b)?,
             syn::Expr::Field(f) => self.field(f)?,
             syn::Expr::Index(i) => {
+                if let syn::Expr::Range(_) = &*i.index {
+                    return self.part(e);
+                }
                 let base = self.expression(&i.expr, None)?;
                 let at = match &*i.index {
                     syn::Expr::Tuple(t) => self.all(t.elems.iter())?,
@@ -65,7 +68,14 @@ impl<T: Lowered> Lower<'_, '_, T> {
             }
             syn::Expr::Struct(s) => self.made(s)?,
             syn::Expr::Tuple(t) => Code::List(self.all(t.elems.iter())?),
-            syn::Expr::Array(a) => Code::List(self.all(a.elems.iter())?),
+            syn::Expr::Array(a) => {
+                let ty = match ty {
+                    Some(syn::Type::Array(of)) => Some(&*of.elem),
+                    _ => None,
+                };
+                let all = a.elems.iter().map(|e| self.expression(e, ty));
+                Code::List(all.collect::<Result<_, _>>()?)
+            }
             syn::Expr::Repeat(r) => {
                 let (value, count) = (self.expression(&r.expr, None)?, self.size(&r.len));
                 let count = count.ok_or_else(|| refuse(&r.len))?;
@@ -81,6 +91,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
             syn::Expr::Try(t) => Code::Try(Box::new(self.expression(&t.expr, ty)?)),
             syn::Expr::ForLoop(f) => self.counted(f)?,
             syn::Expr::Closure(c) => self.closure(c)?,
+            syn::Expr::Macro(m) => self.macro_call(m)?,
             other => return Err(refuse(other)),
         })
     }
@@ -143,6 +154,8 @@ impl<T: Lowered> Lower<'_, '_, T> {
                 let found = all.into_iter().find(|m| format!("{m:?}") == *name);
                 Value::Method(found.ok_or_else(|| refuse(path))?)
             }
+            // The number of threads changes no result.
+            [.., "Threads", "ONE"] => Value::Int(1),
             ["T", "EPSILON"] => Value::Double(T::EPSILON),
             [.., "Order", "Two"] => Value::Order(Order::Two),
             [.., "Domain", "Positive"] => Value::Domain(domain::Domain::Positive),
@@ -270,7 +283,14 @@ impl<T: Lowered> Lower<'_, '_, T> {
     }
 
     fn counted(&mut self, f: &syn::ExprForLoop) -> Result<Code<T>, Refused> {
-        let (syn::Expr::Range(range), syn::Pat::Ident(name)) = (&*f.expr, &*f.pat) else {
+        let (counts, down) = match &*f.expr {
+            syn::Expr::MethodCall(m) if m.method == "rev" => match &*m.receiver {
+                syn::Expr::Paren(p) => (&*p.expr, true),
+                other => (other, true),
+            },
+            other => (other, false),
+        };
+        let (syn::Expr::Range(range), syn::Pat::Ident(name)) = (counts, &*f.pat) else {
             return Err(refuse(f));
         };
         let (Some(from), Some(to)) = (&range.start, &range.end) else {
@@ -285,20 +305,24 @@ impl<T: Lowered> Lower<'_, '_, T> {
         );
         let body = self.block(&f.body);
         self.scopes.pop();
-        Ok(Code::For(at, Box::new(from), Box::new(to), Box::new(body?)))
+        let (from, to, body) = (Box::new(from), Box::new(to), Box::new(body?));
+        Ok(match down {
+            true => Code::Down(at, from, to, body),
+            false => Code::For(at, from, to, body),
+        })
     }
 
     /// A closure: its parameters at places of their own.
     pub(super) fn closure(&mut self, c: &syn::ExprClosure) -> Result<Code<T>, Refused> {
         self.scopes.push(BTreeMap::new());
         let mut parameters = Vec::new();
-        for input in &c.inputs {
+        let mut inputs = Vec::new();
+        c.inputs
+            .iter()
+            .for_each(|input| named_parts(input, &mut inputs));
+        for input in inputs {
             let at = self.fresh();
             parameters.push(at);
-            let input = match input {
-                syn::Pat::Type(typed) => &*typed.pat,
-                other => other,
-            };
             if let syn::Pat::Ident(name) = input {
                 self.bind(
                     name.ident.to_string(),
@@ -313,6 +337,9 @@ impl<T: Lowered> Lower<'_, '_, T> {
 
     /// A struct literal.
     fn made(&mut self, s: &syn::ExprStruct) -> Result<Code<T>, Refused> {
+        if let Some(error) = self.error_of_line(s)? {
+            return Ok(error);
+        }
         let name = named(&s.path);
         let values: Vec<(String, &syn::Expr)> = s
             .fields
@@ -381,6 +408,17 @@ impl<T: Lowered> Lower<'_, '_, T> {
             None => None,
         };
         Ok(Code::Struct(layout, given, base))
+    }
+}
+
+/// The names in a pattern of a closure, one after the other.
+fn named_parts<'a>(input: &'a syn::Pat, out: &mut Vec<&'a syn::Pat>) {
+    match input {
+        syn::Pat::Type(typed) => named_parts(&typed.pat, out),
+        syn::Pat::Reference(inner) => named_parts(&inner.pat, out),
+        syn::Pat::Paren(inner) => named_parts(&inner.pat, out),
+        syn::Pat::Tuple(all) => all.elems.iter().for_each(|p| named_parts(p, out)),
+        other => out.push(other),
     }
 }
 

@@ -3,6 +3,7 @@
 
 mod call;
 mod expression;
+mod line;
 mod newton;
 mod statement;
 
@@ -36,6 +37,8 @@ pub struct Shared<'a, T: Real> {
     pub sizes: BTreeMap<String, usize>,
     names: Rc<RefCell<BTreeMap<String, u32>>>,
     layouts: BTreeMap<String, Arc<Layout>>,
+    /// Whether sums over sites are those of the sizes of their terms.
+    pub by_size: bool,
     /// The first place that no function uses.
     free: usize,
     routines: Routines<T>,
@@ -52,6 +55,7 @@ impl<'a, T: Real> Shared<'a, T> {
                 names.map(|(name, i)| ((*name).to_owned(), i)).collect(),
             )),
             layouts: BTreeMap::new(),
+            by_size: false,
             free: 0,
             routines: BTreeMap::new(),
         }
@@ -71,6 +75,7 @@ impl<'a, T: Real> Shared<'a, T> {
             sizes: self.sizes.clone(),
             names: self.names.clone(),
             layouts: BTreeMap::new(),
+            by_size: self.by_size,
             free: 0,
             routines: BTreeMap::new(),
         }
@@ -151,7 +156,7 @@ pub fn entry<T: Lowered>(
         let (name, kind) = lower.parameter(parameter)?;
         lower.bind(name, Binding::Place(Code::Place(*given), kind));
     }
-    let body = lower.block(&function.block)?;
+    let body = lower.body(function)?;
     lower.shared.free = lower.next;
     Ok(Routine {
         places: lower.next,
@@ -217,6 +222,10 @@ impl<T: Lowered> Lower<'_, '_, T> {
             syn::Expr::Reference(r) => self.kind(&r.expr),
             syn::Expr::Unary(u) => self.kind(&u.expr),
             syn::Expr::Paren(p) => self.kind(&p.expr),
+            syn::Expr::Struct(s) => match crate::program::named(&s.path).as_str() {
+                "Self" => Some(self.own_type().to_owned()),
+                other => Some(other.to_owned()),
+            },
             syn::Expr::Field(f) => {
                 let syn::Member::Named(field) = &f.member else {
                     return None;

@@ -9,10 +9,22 @@ use clebsch::Real;
 use std::collections::BTreeMap;
 
 impl<T: Lowered> Lower<'_, '_, T> {
+    /// The body of a function, whose type says of what shape its value is.
+    pub(super) fn body(&mut self, function: &syn::ImplItemFn) -> Result<Code<T>, Refused> {
+        match &function.sig.output {
+            syn::ReturnType::Type(_, ty) => self.block_of(&function.block, Some(ty)),
+            syn::ReturnType::Default => self.block(&function.block),
+        }
+    }
+
     /// A block, with a scope of its own.
     pub(super) fn block(&mut self, block: &syn::Block) -> Result<Code<T>, Refused> {
+        self.block_of(block, None)
+    }
+
+    fn block_of(&mut self, block: &syn::Block, ty: Option<&syn::Type>) -> Result<Code<T>, Refused> {
         self.scopes.push(BTreeMap::new());
-        let all = self.statements(&block.stmts);
+        let all = self.statements_of(&block.stmts, ty);
         self.scopes.pop();
         let mut all = all?;
         Ok(match all.len() {
@@ -22,6 +34,15 @@ impl<T: Lowered> Lower<'_, '_, T> {
     }
 
     pub(super) fn statements(&mut self, list: &[syn::Stmt]) -> Result<Vec<Code<T>>, Refused> {
+        self.statements_of(list, None)
+    }
+
+    /// Statements, the last of which has a value of this type.
+    fn statements_of(
+        &mut self,
+        list: &[syn::Stmt],
+        ty: Option<&syn::Type>,
+    ) -> Result<Vec<Code<T>>, Refused> {
         let mut out = Vec::new();
         let mut skipped = false;
         for (i, statement) in list.iter().enumerate() {
@@ -38,7 +59,8 @@ impl<T: Lowered> Lower<'_, '_, T> {
                 // The scalar of a block, a list of names.
                 syn::Stmt::Item(_) => {}
                 syn::Stmt::Expr(e, semicolon) => {
-                    out.push(self.expression(e, None)?);
+                    let last = semicolon.is_none() && i + 1 == list.len();
+                    out.push(self.expression(e, ty.filter(|_| last))?);
                     if semicolon.is_some() && i + 1 == list.len() {
                         out.push(Code::Constant(Value::Unit));
                     }
@@ -159,7 +181,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
                 own.extend(parameters);
                 self.is_steady(body, own)
             }
-            Code::For(at, from, to, body) => {
+            Code::For(at, from, to, body) | Code::Down(at, from, to, body) => {
                 own.push(*at);
                 [from, to, body].iter().all(|c| self.is_steady(c, own))
             }
@@ -216,8 +238,29 @@ impl<T: Lowered> Lower<'_, '_, T> {
                     _ => return Err(refuse(pat)),
                 }
             }
-            syn::Pat::Path(p) => match self.path(&p.path)? {
-                Some(Code::Constant(value)) => Pattern::Exactly(value),
+            syn::Pat::Path(p) => {
+                if let Some(variant) = self.variant(&p.path, &[])? {
+                    return Ok(variant);
+                }
+                match self.path(&p.path)? {
+                    Some(Code::Constant(value)) => Pattern::Exactly(value),
+                    _ => return Err(refuse(pat)),
+                }
+            }
+            syn::Pat::Struct(s) => {
+                let fields: Vec<&syn::FieldPat> = s.fields.iter().collect();
+                self.variant(&s.path, &fields)?.ok_or_else(|| refuse(pat))?
+            }
+            syn::Pat::Or(all) => {
+                let all = all.cases.iter().map(|p| self.pattern(p, None));
+                Pattern::Or(all.collect::<Result<_, _>>()?)
+            }
+            syn::Pat::Slice(all) => {
+                let all = all.elems.iter().map(|p| self.pattern(p, None));
+                Pattern::List(all.collect::<Result<_, _>>()?)
+            }
+            syn::Pat::Lit(lit) => match self.expression(&syn::Expr::Lit(lit.clone()), None)? {
+                Code::Constant(value) => Pattern::Exactly(value),
                 _ => return Err(refuse(pat)),
             },
             other => return Err(refuse(other)),

@@ -1,5 +1,6 @@
 //! The attitude of one site: a rotation with its matrix, which the site and its neighbours read.
 
+use crate::saved::{Saved, Words};
 use crate::{Real, Rotation, TurnedRotation};
 use nalgebra::Matrix3;
 
@@ -38,5 +39,13 @@ impl<T: Real> Attitude<T> {
     #[inline(always)]
     pub fn matrix(&self) -> Matrix3<T> {
         self.matrix
+    }
+}
+
+impl Saved for Attitude<f64> {
+    fn words(&mut self, words: &mut Words) {
+        let Self { rotation, matrix } = self;
+        rotation.words(words);
+        matrix.words(words);
     }
 }

@@ -1,0 +1,145 @@
+//! Which sites the quantities of a lattice have, and at which of them they are given.
+//! Takes a model with labels and a choice; gives the sites of each quantity, in order.
+
+use super::labels::Stated;
+use clebsch_core::expr::symbol::ascii;
+use clebsch_core::lattice::{Choice, Kind, Lattice, Unfolded, unfold};
+use clebsch_core::syntax::ast::Statement;
+use std::collections::HashSet;
+
+/// Most copies for which the lattice is written out to find them: there every statement is heeded.
+const WRITTEN_OUT: usize = 4096;
+
+/// The sites of one quantity.
+#[derive(Clone, Debug)]
+pub(crate) struct Group {
+    /// Its name in ASCII.
+    pub of: String,
+    /// Its label.
+    pub label: Option<usize>,
+    /// Its sites.
+    pub sites: Vec<usize>,
+    /// Those at which it is not given.
+    pub moving: Vec<usize>,
+}
+
+/// The copies of all quantities.
+#[derive(Clone, Debug)]
+pub(crate) struct Copies {
+    /// Quantities in order.
+    pub groups: Vec<Group>,
+    /// Parameters of end conditions, by their names with sites, in ASCII.
+    pub of_ends: Vec<String>,
+    /// The line.
+    pub line: Option<usize>,
+    /// Of a configuration besides which nothing moves: its name in ASCII, its site, its label.
+    pub only: Option<(String, usize, usize)>,
+}
+
+impl Copies {
+    /// Those of a choice; `None` where the lattice cannot be written out.
+    pub(crate) fn of(stated: &Stated, choice: &Choice) -> Option<Self> {
+        let lattice = &stated.lattice;
+        let counts = lattice.quantities.iter();
+        let counts = counts.map(|q| choice.sites_of(lattice, q));
+        match counts.fold(0, usize::saturating_add) <= WRITTEN_OUT {
+            true => Some(Self::of_unfolded(
+                lattice,
+                &unfold(&stated.model, lattice, choice).ok()?,
+            )),
+            false => Some(Self::counted(lattice, choice)),
+        }
+    }
+
+    fn of_unfolded(lattice: &Lattice, unfolded: &Unfolded) -> Self {
+        let given: HashSet<&str> = unfolded.given.iter().map(String::as_str).collect();
+        let mut groups: Vec<Group> = Vec::new();
+        for copy in &unfolded.copies {
+            let of = ascii(&copy.of);
+            let at = match groups.iter().position(|g| g.of == of) {
+                Some(at) => at,
+                None => {
+                    groups.push(Group {
+                        of,
+                        label: lattice.find(&copy.of).map(|q| q.label),
+                        sites: Vec::new(),
+                        moving: Vec::new(),
+                    });
+                    groups.len() - 1
+                }
+            };
+            if let Some(group) = groups.get_mut(at) {
+                group.sites.push(copy.site);
+                if !given.contains(copy.name.as_str()) {
+                    group.moving.push(copy.site);
+                }
+            }
+        }
+        for group in &mut groups {
+            for list in [&mut group.sites, &mut group.moving] {
+                list.sort_unstable();
+                list.dedup();
+            }
+        }
+        let of_ends = unfolded.end_parameters.iter();
+        Copies {
+            groups,
+            of_ends: of_ends.map(|(own, ..)| ascii(own)).collect(),
+            line: lattice.line,
+            only: the_only_one(lattice, unfolded),
+        }
+    }
+
+    /// The same without writing anything out.
+    fn counted(lattice: &Lattice, choice: &Choice) -> Self {
+        let mut of_ends = Vec::new();
+        let mut held: Vec<(&str, bool)> = Vec::new();
+        for (last, list) in lattice.ends.iter().enumerate() {
+            let Some(end) = list.get(choice.ends[last]).filter(|_| !choice.periodic) else {
+                continue;
+            };
+            held.extend(end.given.iter().map(|n| (n.text.as_str(), last == 1)));
+            let site = match last {
+                0 => 0,
+                _ => lattice.line.map_or(0, |line| choice.count(line)),
+            };
+            let names = end.params.iter().flat_map(|(names, _)| names);
+            of_ends.extend(names.map(|n| format!("{}_{site}", ascii(&n.text))));
+        }
+        let groups = lattice.quantities.iter().map(|q| {
+            let count = choice.sites_of(lattice, q);
+            let is_held = |site: usize| {
+                held.iter().any(|(name, last)| {
+                    *name == q.name.text && site == if *last { count - 1 } else { 0 }
+                })
+            };
+            Group {
+                of: ascii(&q.name.text),
+                label: Some(q.label),
+                sites: (0..count).collect(),
+                moving: (0..count).filter(|site| !is_held(*site)).collect(),
+            }
+        });
+        Copies {
+            groups: groups.collect(),
+            of_ends,
+            line: lattice.line,
+            only: None,
+        }
+    }
+}
+
+/// The configuration of a lattice on which nothing else moves.
+fn the_only_one(lattice: &Lattice, unfolded: &Unfolded) -> Option<(String, usize, usize)> {
+    let mut moving = unfolded.copies.iter().filter(|c| {
+        let own = lattice.find(&c.of);
+        own.is_some_and(|q| q.kind == Kind::Configuration) && !unfolded.given.contains(&c.name)
+    });
+    let statements = unfolded.model.statements.iter();
+    let whole =
+        statements.filter(|s| matches!(s, Statement::Field { .. } | Statement::Group { .. }));
+    match (moving.next(), moving.next(), whole.count()) {
+        (Some(only), None, 1) => Some((ascii(&only.of), only.site, lattice.find(&only.of)?.label)),
+        _ => None,
+    }
+}

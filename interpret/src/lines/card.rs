@@ -1,0 +1,266 @@
+//! The card of a line: that of a short line with the same ends, which is derived body by body, its fields
+//! repeated for all sites. Takes a model with labels and a choice; gives what the command reads and starts.
+
+use super::LineModel;
+use crate::constants::Constants;
+use crate::opened::Text;
+use crate::{Refused, text};
+use clebsch::card::{Card, Field, Invariant, Open};
+use clebsch_core::derive::warnings::Warning;
+use clebsch_core::expr::symbol::ascii;
+use clebsch_core::lattice::{Choice, Lattice, Unfolded};
+use clebsch_core::syntax::ast::Model;
+use clebsch_core::{document, pipeline};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Where a field of the card belongs: a quantity of the emitted program, and its site.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The name in the emitted program, such as `momentum_q`, in ASCII.
+    pub key: String,
+    /// The site, of a quantity that has one.
+    pub site: Option<usize>,
+}
+
+/// A line that the command can start: its card, and where its fields belong.
+#[derive(Debug)]
+pub struct Carded {
+    /// The program.
+    pub model: Arc<LineModel>,
+    /// How many sites, and how it ends.
+    pub choice: Choice,
+    /// The card; its functions are put in by who opens it.
+    pub card: Card,
+    /// The places of the parameters.
+    pub parameters: Vec<Place>,
+    /// Those of the initial values.
+    pub initial: Vec<Place>,
+    /// Those of the observables.
+    pub observables: Vec<Place>,
+    /// How many sites each quantity has, by its name.
+    pub sites: BTreeMap<String, usize>,
+}
+
+/// The short line that the card is made of.
+struct Short<'a> {
+    lattice: &'a Lattice,
+    unfolded: &'a Unfolded,
+    short: &'a Choice,
+    whole: &'a Choice,
+}
+
+/// A field with its place, and the label and the quantity that it belongs to.
+struct Placed {
+    field: Field,
+    place: Place,
+    of: String,
+    label: usize,
+}
+
+impl Carded {
+    /// The card of a model with so many sites and these ends, and what is hardly meant.
+    ///
+    /// # Errors
+    /// [`Refused`] where the short line does not derive.
+    pub fn of(
+        stated: (&Model, &Lattice),
+        choice: &Choice,
+        model: Arc<LineModel>,
+        source: &str,
+        open: Open,
+    ) -> Result<(Self, Vec<Warning>), Refused> {
+        let (statement, lattice) = stated;
+        let representative =
+            pipeline::representative(statement, lattice).map_err(Refused::Model)?;
+        let counts = representative.counts.iter().zip(&choice.counts);
+        let short = Choice {
+            counts: counts.map(|(n, most)| (*n).max(4).min(*most)).collect(),
+            ..choice.clone()
+        };
+        let derived = pipeline::derive_lattice(statement, lattice, &short);
+        let (unfolded, d) = derived.map_err(Refused::Model)?;
+        let whole = Text::of_derivation(d)?;
+        let none = BTreeMap::new();
+        let name = whole.derivation.spec.name.clone();
+        let card = Constants::new(&whole.program, &name, &none).card(open, |_| None)?;
+        let warnings = unfolded.told(&short, &whole.derivation.warnings);
+        let expander = Short {
+            lattice,
+            unfolded: &unfolded,
+            short: &short,
+            whole: choice,
+        };
+        let known = |p: &Place| model.observers().any(|o| ascii(o) == p.key);
+        let (parameters, at_parameters) = split(expander.expanded(card.parameters));
+        let (initial, at_initial) = split(expander.expanded(card.initial));
+        let mut observed = expander.expanded(card.observables);
+        let mut left_out: Vec<String> = Vec::new();
+        observed.retain(|(_, p)| {
+            let known = known(p);
+            if !known && !left_out.contains(&p.key) {
+                left_out.push(p.key.clone());
+            }
+            known
+        });
+        let (observables, at_observables) = split(observed);
+        let words = document::card_words(
+            lattice,
+            &short,
+            unfolded.clone(),
+            &whole.derivation,
+            card.solver,
+        );
+        let named = card.invariants.iter().zip(&words.invariants);
+        let named = named.map(|(own, (name, formula))| Invariant {
+            name: text(name),
+            formula: text(formula),
+            ..*own
+        });
+        let (kept, lost): (Vec<Invariant>, Vec<Invariant>) =
+            named.partition(|i| i.name == "energy" || model.totals().any(|t| t == i.name));
+        left_out.extend(lost.iter().map(|i| i.name.to_owned()));
+        let mut summary = words
+            .summary
+            .replace(&short.words(lattice), &choice.words(lattice));
+        summary.push_str(&told(&left_out));
+        let card = Card {
+            source: text(source),
+            summary: text(&summary),
+            solver: text(&words.solver),
+            orders: &[2],
+            solvers: &[],
+            parameters,
+            initial,
+            observables,
+            invariants: Box::leak(kept.into_boxed_slice()),
+            ..card
+        };
+        let quantities = lattice.quantities.iter();
+        let sites = quantities.map(|q| (q.name.text.clone(), choice.sites_of(lattice, q)));
+        let carded = Carded {
+            model,
+            choice: choice.clone(),
+            card,
+            parameters: at_parameters,
+            initial: at_initial,
+            observables: at_observables,
+            sites: sites.collect(),
+        };
+        Ok((carded, warnings))
+    }
+}
+
+/// What a reader is told of how a line is run.
+fn told(left_out: &[String]) -> String {
+    let mut told = String::from(
+        "\nprogram              one for every number of sites, with loops over them; residuals are not computed",
+    );
+    if !left_out.is_empty() {
+        told.push_str("; nor are ");
+        told.push_str(&left_out.join(", "));
+    }
+    told
+}
+
+type Fields = (&'static [Field], Vec<Place>);
+
+fn split(all: Vec<(Field, Place)>) -> Fields {
+    let (fields, places): (Vec<Field>, Vec<Place>) = all.into_iter().unzip();
+    (Box::leak(fields.into_boxed_slice()), places)
+}
+
+impl Short<'_> {
+    /// What a field is a copy of.
+    fn placed(&self, field: &Field) -> Option<Placed> {
+        let (key, digits) = field.ascii.rsplit_once('_')?;
+        let site: usize = digits.parse().ok()?;
+        let place = |key: &str| Place {
+            key: key.to_owned(),
+            site: Some(site),
+        };
+        let mut ends = self.unfolded.end_parameters.iter();
+        if ends.any(|(own, ..)| ascii(own) == field.ascii) {
+            return Some(Placed {
+                field: *field,
+                place: place(key),
+                of: key.to_owned(),
+                label: self.lattice.line?,
+            });
+        }
+        let copy = self.unfolded.copies.iter().find(|c| {
+            let of = ascii(&c.of);
+            c.site == site && (key == of || key.strip_suffix(&of).is_some_and(|k| k.ends_with('_')))
+        })?;
+        Some(Placed {
+            field: *field,
+            place: place(key),
+            of: copy.of.clone(),
+            label: self.lattice.find(&copy.of)?.label,
+        })
+    }
+
+    /// The site of the short line that one of the whole is like.
+    fn like(&self, label: usize, site: usize) -> usize {
+        let (short, whole) = (self.short.count(label), self.whole.count(label));
+        let half = short / 2;
+        match (site <= half, whole.saturating_sub(site) < short - half) {
+            (true, _) => site,
+            (false, true) => short - (whole - site),
+            _ => half,
+        }
+    }
+
+    /// The fields of the whole line, in the order in which those of the short one stand.
+    fn expanded(&self, fields: &[Field]) -> Vec<(Field, Place)> {
+        let mut out = Vec::new();
+        let mut block: Vec<Placed> = Vec::new();
+        for field in fields {
+            let placed = self.placed(field);
+            let goes_on = match (&placed, block.last()) {
+                (Some(here), Some(last)) => here.of == last.of,
+                _ => false,
+            };
+            if !goes_on {
+                self.repeat(&mut block, &mut out);
+            }
+            match placed {
+                Some(placed) => block.push(placed),
+                None => {
+                    let place = Place {
+                        key: field.ascii.to_owned(),
+                        site: None,
+                    };
+                    out.push((*field, place));
+                }
+            }
+        }
+        self.repeat(&mut block, &mut out);
+        out
+    }
+
+    /// Repeats the fields of one quantity for all sites.
+    fn repeat(&self, block: &mut Vec<Placed>, out: &mut Vec<(Field, Place)>) {
+        let Some(label) = block.first().map(|p| p.label) else {
+            return;
+        };
+        for site in 0..=self.whole.count(label) {
+            let like = self.like(label, site);
+            let own = block.iter().filter(|p| p.place.site == Some(like));
+            for p in own {
+                let base = p.field.name.rsplit_once('_').map_or("", |(base, _)| base);
+                let field = Field {
+                    name: text(&format!("{base}_{site}")),
+                    ascii: text(&format!("{}_{site}", p.place.key)),
+                    ..p.field
+                };
+                let place = Place {
+                    key: p.place.key.clone(),
+                    site: Some(site),
+                };
+                out.push((field, place));
+            }
+        }
+        block.clear();
+    }
+}

@@ -1,0 +1,272 @@
+//! What a line is built and started from: the structs of the emitted program, their values taken from
+//! lists of numbers. Takes the types that emission declares; gives values of these types.
+
+use super::Unstarted;
+use crate::lower::Shared;
+use crate::program::type_name;
+use crate::sites::Column;
+use crate::value::{Frame, Layout, Struct, Value};
+use crate::{Refused, text};
+use clebsch::card::OpenError;
+use clebsch::emitted as e;
+use clebsch::linalg::Dense;
+use clebsch::line::{LineError, Place};
+use clebsch::{ParameterError, StartError};
+use clebsch_core::lattice::Choice;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Gives the numbers of a quantity by the name in the emitted code: those of all its sites, one site after
+/// the other, matrices row after row.
+pub type Numbers<'a> = dyn Fn(&str) -> Option<Vec<f64>> + 'a;
+
+/// How a field is read.
+#[derive(Clone, Debug)]
+enum Read {
+    /// An array of rows and columns.
+    Array(usize, usize),
+    /// A number.
+    Number,
+    /// A rotation, from its matrix.
+    Rotation,
+    /// A momentum of three components in the body.
+    Momentum,
+    /// The same of every site.
+    Sites(Box<Read>),
+    /// How the line ends.
+    Ends,
+    /// A number of sites.
+    Count,
+    /// No value.
+    Marker,
+}
+
+/// A struct that is given.
+#[derive(Clone, Debug)]
+pub struct Given {
+    layout: Arc<Layout>,
+    fields: Vec<(String, Read)>,
+}
+
+/// The arguments of a generic type.
+fn arguments(ty: &syn::Type) -> Vec<&syn::GenericArgument> {
+    let syn::Type::Path(path) = ty else {
+        return Vec::new();
+    };
+    match path.path.segments.last().map(|s| &s.arguments) {
+        Some(syn::PathArguments::AngleBracketed(list)) => list.args.iter().collect(),
+        _ => Vec::new(),
+    }
+}
+
+fn read(ty: &syn::Type) -> Option<Read> {
+    let none = BTreeMap::new();
+    let sizes: Vec<usize> = arguments(ty)
+        .into_iter()
+        .filter_map(|a| match a {
+            syn::GenericArgument::Const(e) => crate::lower::constant(e, &none),
+            _ => None,
+        })
+        .collect();
+    Some(match (type_name(ty)?.as_str(), sizes.as_slice()) {
+        ("T" | "f64", _) => Read::Number,
+        ("SMatrix", [rows, cols]) => Read::Array(*rows, *cols),
+        ("SVector", [rows]) => Read::Array(*rows, 1),
+        ("Rotation", _) => Read::Rotation,
+        ("BodyMomentum", _) => Read::Momentum,
+        ("usize", _) => Read::Count,
+        ("PhantomData", _) => Read::Marker,
+        ("Vec", _) => match arguments(ty).first()? {
+            syn::GenericArgument::Type(inner) => Read::Sites(Box::new(read(inner)?)),
+            _ => return None,
+        },
+        (name, _) if name.ends_with("Ends") => Read::Ends,
+        _ => return None,
+    })
+}
+
+impl Read {
+    fn count(&self) -> usize {
+        match self {
+            Read::Array(rows, cols) => rows * cols,
+            Read::Rotation => 9,
+            Read::Momentum => 3,
+            _ => 1,
+        }
+    }
+
+    /// The value of one site, or of all.
+    fn one(&self, name: &'static str, list: &[f64]) -> Result<Value<f64>, ParameterError> {
+        let matrix = |rows, cols| {
+            let entry = |i: usize, j: usize| list.get(i * cols + j).copied().unwrap_or(f64::NAN);
+            Value::of(Dense::from_fn(rows, cols, entry))
+        };
+        Ok(match self {
+            Read::Array(rows, cols) => matrix(*rows, *cols),
+            Read::Number => Value::Real(list.first().copied().unwrap_or(f64::NAN)),
+            Read::Rotation => match e::rotation_of(name, Some(&list.to_vec())) {
+                Ok(rotation) => Value::Rotation(rotation),
+                Err(OpenError::Start(StartError::Initial(e)) | OpenError::Parameter(e)) => {
+                    return Err(e);
+                }
+                Err(_) => clebsch::validate::finite(name, &[f64::NAN]).map(|()| Value::Unit)?,
+            },
+            Read::Momentum => {
+                let v = nalgebra::Vector3::from_fn(|i, _| list.get(i).copied().unwrap_or(f64::NAN));
+                Value::Momentum(Frame::Body, v)
+            }
+            _ => Value::Unit,
+        })
+    }
+
+    fn of(&self, name: &str, numbers: &Numbers<'_>) -> Result<Value<f64>, Unstarted> {
+        let list = numbers(name).ok_or_else(|| Unstarted::Missing(name.to_owned()))?;
+        let fits = |count: usize| match list.len() == count {
+            true => Ok(()),
+            false => Err(Unstarted::Components {
+                quantity: name.to_owned(),
+                components: self.count(),
+                found: list.len(),
+            }),
+        };
+        let Read::Sites(inner) = self else {
+            fits(self.count())?;
+            let value = self.one(text(name), &list);
+            return value.map_err(|e| Unstarted::Line(e.into()));
+        };
+        let size = inner.count();
+        let sites = list.len() / size;
+        fits(sites * size)?;
+        Ok(Value::Sites(match &**inner {
+            Read::Number => Column::Numbers(list),
+            Read::Array(rows, cols) => Column::of_rows([*rows, *cols], &list),
+            inner => {
+                let name = text(name);
+                let mut all = Vec::with_capacity(sites);
+                for (site, one) in list.chunks_exact(size).enumerate() {
+                    let at = Place {
+                        quantity: name,
+                        site,
+                    };
+                    let value = inner.one(name, one);
+                    all.push(value.map_err(|error| LineError::Site { at, error })?);
+                }
+                Column::Values(all)
+            }
+        }))
+    }
+}
+
+impl Given {
+    /// The struct of this name.
+    pub fn named(shared: &mut Shared<'_, f64>, name: &str) -> Result<Self, Refused> {
+        let layout = shared.layout(name)?;
+        let declared = shared.program.structs.get(name);
+        let fields = declared.into_iter().flatten().map(|(field, ty)| {
+            let unknown = || Refused::Construct(format!("the type of `{field}`"));
+            Ok((field.clone(), read(ty).ok_or_else(unknown)?))
+        });
+        Ok(Given {
+            layout,
+            fields: fields.collect::<Result<_, Refused>>()?,
+        })
+    }
+
+    /// Its value; `other` gives what is no numbers.
+    pub fn value(
+        &self,
+        numbers: &Numbers<'_>,
+        other: &dyn Fn(&str) -> Option<Value<f64>>,
+    ) -> Result<Value<f64>, Unstarted> {
+        let values = self.fields.iter().map(|(name, read)| match read {
+            Read::Marker => Ok(Value::Unit),
+            Read::Count | Read::Ends => other(name).ok_or_else(|| Unstarted::Missing(name.clone())),
+            read => read.of(name, numbers),
+        });
+        Ok(Value::Struct(Struct {
+            layout: self.layout.clone(),
+            values: values.collect::<Result<_, _>>()?,
+        }))
+    }
+}
+
+/// The structs of all ways in which a line may end.
+#[derive(Clone, Debug, Default)]
+pub struct Ends {
+    /// The variants of both ends, in order.
+    alternatives: [Vec<Given>; 2],
+    open: Option<Given>,
+    ring: Option<Given>,
+}
+
+impl Ends {
+    /// Those of a model.
+    pub fn of(shared: &mut Shared<'_, f64>, name: &str) -> Result<Self, Refused> {
+        let mut ends = Ends::default();
+        for (at, suffix) in ["First", "Last"].into_iter().enumerate() {
+            let owner = format!("{name}{suffix}");
+            let order = shared.program.variants.get(&owner).cloned();
+            for variant in order.unwrap_or_default() {
+                // A variant that only says which scalars there are is no end condition.
+                if let Ok(given) = Given::named(shared, &format!("{owner}::{variant}")) {
+                    ends.alternatives[at].push(given);
+                }
+            }
+        }
+        let mut variant = |which: &str| {
+            let full = format!("{name}Ends::{which}");
+            let known = shared.program.structs.contains_key(&full);
+            known.then(|| Self::whole(shared, &full)).transpose()
+        };
+        ends.open = variant("Open")?;
+        ends.ring = variant("Ring")?;
+        Ok(ends)
+    }
+
+    /// A variant whose fields are ends or numbers.
+    fn whole(shared: &mut Shared<'_, f64>, name: &str) -> Result<Given, Refused> {
+        let layout = shared.layout(name)?;
+        let declared = shared.program.structs.get(name);
+        let fields = declared.into_iter().flatten().map(|(field, ty)| {
+            let read = read(ty).unwrap_or(Read::Ends);
+            (field.clone(), read)
+        });
+        Ok(Given {
+            layout,
+            fields: fields.collect(),
+        })
+    }
+
+    /// How the line ends by a choice.
+    pub fn value(&self, choice: &Choice, numbers: &Numbers<'_>) -> Result<Value<f64>, Unstarted> {
+        let missing = |what: &str| Unstarted::Missing(what.to_owned());
+        if choice.periodic {
+            let ring = self.ring.as_ref().ok_or_else(|| missing("periodic"))?;
+            return ring.value(numbers, &|_| None);
+        }
+        let chosen = |at: usize| -> Result<Value<f64>, Unstarted> {
+            let given = self.alternatives[at].get(choice.ends[at]);
+            let given = given.ok_or_else(|| missing(["the first end", "the last end"][at]))?;
+            given.value(numbers, &|_| None)
+        };
+        let open = self.open.as_ref().ok_or_else(|| missing("ends"))?;
+        let mut values = Vec::new();
+        for (field, read) in &open.fields {
+            values.push(match (field.as_str(), read) {
+                ("first", _) => chosen(0)?,
+                ("last", _) => chosen(1)?,
+                _ => Value::Unit,
+            });
+        }
+        Ok(Value::Struct(Struct {
+            layout: open.layout.clone(),
+            values,
+        }))
+    }
+}
+
+/// The numbers of sites by the names of their fields.
+pub fn counts(names: &[String], choice: &Choice, field: &str) -> Option<Value<f64>> {
+    let at = names.iter().position(|name| name == field)?;
+    Some(Value::Int(i64::try_from(choice.count(at)).ok()?))
+}

@@ -1,0 +1,415 @@
+//! Models with labels for every number of sites: the program with loops over sites that is emitted for
+//! them, executed. Takes the text of a model; gives lines that start from data at sites, and run.
+
+mod card;
+mod given;
+mod running;
+
+pub(crate) use card::Carded;
+pub use given::Numbers;
+
+use crate::Refused;
+use crate::code::{Exit, Places, Routine};
+use crate::failure::Failure;
+use crate::lower::{Shared, entry};
+use crate::opened::at;
+use crate::program::Program;
+use crate::value::Value;
+use clebsch::StepCause;
+use clebsch::line::LineError;
+use clebsch::saved::{Saved, Words};
+use clebsch_core::lattice::{Choice, Lattice};
+use clebsch_core::line as core_line;
+use clebsch_core::{emit, pipeline};
+use core::fmt;
+use given::{Ends, Given};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Why a line is not started.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Unstarted {
+    /// A quantity is not given.
+    Missing(String),
+    /// A list of numbers is no whole number of values.
+    Components {
+        /// The quantity.
+        quantity: String,
+        /// How many numbers a value has.
+        components: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// A value is not admissible, or the first step is refused.
+    Line(LineError),
+}
+
+impl From<LineError> for Unstarted {
+    fn from(e: LineError) -> Self {
+        Unstarted::Line(e)
+    }
+}
+
+impl fmt::Display for Unstarted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Missing(quantity) => write!(f, "`{quantity}` is not given"),
+            Self::Components {
+                quantity,
+                components,
+                found,
+            } => write!(
+                f,
+                "`{quantity}` takes {components} numbers for each value, and {found} are given"
+            ),
+            Self::Line(e) => write!(f, "{e}"),
+        }
+    }
+}
+
+impl std::error::Error for Unstarted {}
+
+/// What is asked of a state, by name.
+type Asked = Vec<(String, Routine<f64>)>;
+
+/// A model with labels whose lines can be started.
+#[derive(Debug)]
+pub struct LineModel {
+    /// The name of the model.
+    name: String,
+    /// The names of the numbers of sites, a label each, and whether one of them is a line.
+    counts: Vec<String>,
+    has_line: bool,
+    parameters: Given,
+    sites: Given,
+    ends: Ends,
+    initial: Given,
+    new: Routine<f64>,
+    start: Routine<f64>,
+    step: Routine<f64>,
+    energies: Routine<f64>,
+    energy_sizes: Routine<f64>,
+    totals: Asked,
+    total_sizes: Asked,
+    observers: Asked,
+    node: u32,
+    places: usize,
+}
+
+/// Why [`LineModel::read`] gives none: the model is wrong, its form is another, or it needs a build.
+#[derive(Debug)]
+pub enum NoLine {
+    /// The model takes no loops over sites; in words.
+    Form(String),
+    /// Anything else.
+    Refused(Refused),
+}
+
+impl From<Refused> for NoLine {
+    fn from(refused: Refused) -> Self {
+        NoLine::Refused(refused)
+    }
+}
+
+impl fmt::Display for NoLine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Form(why) => write!(f, "{why}"),
+            Self::Refused(refused) => write!(f, "{refused}"),
+        }
+    }
+}
+
+impl std::error::Error for NoLine {}
+
+impl LineModel {
+    /// Reads the text of a model with labels.
+    ///
+    /// # Errors
+    /// [`NoLine::Form`] for models that are solved together along the line, [`NoLine::Refused`] for what
+    /// is no such model.
+    pub fn read(source: &str) -> Result<Arc<Self>, NoLine> {
+        let model = pipeline::parse_source(source).map_err(Refused::Model)?;
+        let line = match core_line::Line::of(&model) {
+            Ok(line) => line,
+            Err(core_line::Refused::Form(why)) => return Err(NoLine::Form(why)),
+            Err(core_line::Refused::Model(errors)) => return Err(Refused::Model(errors).into()),
+        };
+        if let Some(why) = emit::refusal_of_line(&line) {
+            return Err(NoLine::Form(why));
+        }
+        let program = Program::read(emit::emit_line(&line, source))?;
+        Ok(Self::of(&program, &model.name.text, &line.lattice)?)
+    }
+
+    fn of(program: &Program, name: &str, lattice: &Lattice) -> Result<Arc<Self>, Refused> {
+        let mut shared = Shared::new(program, BTreeMap::new());
+        let item = |suffix: &str| format!("{name}{suffix}");
+        let parameters = Given::named(&mut shared, &item("Parameters"))?;
+        let initial = Given::named(&mut shared, &item("Initial"))?;
+        let sites = Given::named(&mut shared, &item("Sites"))?;
+        let ends = Ends::of(&mut shared, name)?;
+        let state = item("State");
+        let own = |ty: &str, wanted: &dyn Fn(&str) -> bool| -> Vec<String> {
+            let all = program
+                .functions
+                .keys()
+                .filter(|(t, f)| t == ty && wanted(f));
+            all.map(|(_, f)| f.clone()).collect()
+        };
+        let totals = own(name, &|f| f.starts_with("total_"));
+        let observers = own(&state, &|f| f != "node");
+        let mut lower =
+            |ty: &str, f: &str, given: &[usize]| entry(&mut shared, (ty, f), given, at::FIRST);
+        let new = lower(name, "new", &[at::GIVEN, at::OUT])?;
+        let start = lower(name, "start", &[at::MODEL, at::GIVEN, at::STEP])?;
+        let step = lower(name, "step", &[at::MODEL, at::STATE, at::WORK])?;
+        let energies = lower(name, "energies", &[at::MODEL, at::STATE])?;
+        let mut asked = |ty: &str, names: Vec<String>, given: &[usize]| -> Result<Asked, Refused> {
+            let all = names.into_iter();
+            all.map(|f| Ok((f.clone(), lower(ty, &f, given)?)))
+                .collect()
+        };
+        let totals = asked(name, totals, &[at::MODEL, at::STATE])?;
+        let observers = asked(&state, observers, &[at::STATE])?;
+        shared.by_size = true;
+        let of = [at::MODEL, at::STATE];
+        let energy_sizes = entry(&mut shared, (name, "energies"), &of, at::FIRST)?;
+        let sized = totals.iter().map(|(f, _)| {
+            let routine = entry(&mut shared, (name, f), &of, at::FIRST)?;
+            Ok((f.clone(), routine))
+        });
+        let total_sizes = sized.collect::<Result<Asked, Refused>>()?;
+        let node = shared.name("node");
+        let of_state = totals.iter().chain(&observers).chain(&total_sizes);
+        let of_state = of_state.map(|(_, r)| r.places);
+        let own = [&new, &start, &step, &energies, &energy_sizes];
+        let places = own.into_iter().map(|r| r.places).chain(of_state).max();
+        Ok(Arc::new(LineModel {
+            name: name.to_owned(),
+            counts: lattice
+                .labels
+                .iter()
+                .map(|l| l.count.text.clone())
+                .collect(),
+            has_line: lattice.line.is_some(),
+            parameters,
+            sites,
+            ends,
+            initial,
+            new,
+            start,
+            step,
+            energies,
+            energy_sizes,
+            totals,
+            total_sizes,
+            observers,
+            node,
+            places: places.unwrap_or(at::FIRST),
+        }))
+    }
+
+    /// The name of the model.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The names of conserved totals, as [`LineTrajectory::total`] takes them.
+    pub fn totals(&self) -> impl Iterator<Item = &str> {
+        self.totals.iter().map(|(name, _)| name.as_str())
+    }
+
+    /// The names of what is observed at sites, as [`LineTrajectory::observe`] takes them.
+    pub fn observers(&self) -> impl Iterator<Item = &str> {
+        self.observers.iter().map(|(name, _)| name.as_str())
+    }
+
+    /// Starts a line with step `h`. `numbers` gives parameters and initial values by their names as the
+    /// model writes them, momenta as `momentum_q` or `body_momentum_Λ`.
+    ///
+    /// # Errors
+    /// [`Unstarted`]: what is missing; the quantity and the site of a value that is not admissible.
+    pub fn start(
+        self: &Arc<Self>,
+        choice: &Choice,
+        h: f64,
+        numbers: &Numbers<'_>,
+    ) -> Result<LineTrajectory, Unstarted> {
+        let mut places = vec![Value::Unit; self.places];
+        put(
+            &mut places,
+            at::GIVEN,
+            self.parameters.value(numbers, &|_| None)?,
+        );
+        let ends = match self.has_line {
+            true => self.ends.value(choice, numbers)?,
+            false => Value::Unit,
+        };
+        let of_sites = |field: &str| match field {
+            "ends" => Some(ends.clone()),
+            field => given::counts(&self.counts, choice, field),
+        };
+        put(&mut places, at::OUT, self.sites.value(numbers, &of_sites)?);
+        let model = run(&self.new, &mut places).map_err(Failure::line)?;
+        put(&mut places, at::MODEL, model);
+        put(&mut places, at::OUT, Value::Unit);
+        put(
+            &mut places,
+            at::GIVEN,
+            self.initial.value(numbers, &|_| None)?,
+        );
+        put(&mut places, at::STEP, Value::Real(h));
+        let both = run(&self.start, &mut places).map_err(Failure::line)?;
+        put(&mut places, at::GIVEN, Value::Unit);
+        let Value::List(both) = both else {
+            return Err(Unstarted::Line(unread().line()));
+        };
+        for (value, place) in both.into_iter().zip([at::STATE, at::WORK]) {
+            put(&mut places, place, value);
+        }
+        Ok(LineTrajectory {
+            model: self.clone(),
+            places,
+            h,
+        })
+    }
+}
+
+fn unread() -> Failure {
+    let what = "the start of a line";
+    Failure::Cause(StepCause::Unread { what })
+}
+
+fn put(places: &mut Places<f64>, at: usize, value: Value<f64>) {
+    if let Some(place) = places.get_mut(at) {
+        *place = value;
+    }
+}
+
+/// Runs a function to its value.
+fn run(routine: &Routine<f64>, places: &mut Places<f64>) -> Result<Value<f64>, Failure> {
+    let value = match routine.body.run(places) {
+        Ok(value) => value,
+        Err(Exit::Return(value)) => *value,
+        Err(Exit::Unfit(what)) => Value::failed(StepCause::Unread { what }),
+    };
+    match value {
+        Value::Failed(e) => Err(*e),
+        value => Ok(value),
+    }
+}
+
+/// A line on its way.
+#[derive(Clone, Debug)]
+pub struct LineTrajectory {
+    model: Arc<LineModel>,
+    places: Places<f64>,
+    h: f64,
+}
+
+impl LineTrajectory {
+    /// The number of the node.
+    pub fn node(&self) -> u64 {
+        match self.places.get(at::STATE) {
+            Some(Value::Struct(s)) => match s.field(self.model.node) {
+                Some(Value::Int(n)) => u64::try_from(*n).unwrap_or(0),
+                _ => 0,
+            },
+            _ => 0,
+        }
+    }
+
+    /// The step size.
+    pub fn h(&self) -> f64 {
+        self.h
+    }
+
+    /// One step.
+    ///
+    /// # Errors
+    /// [`LineError::Step`] names the site; the state is then unchanged.
+    pub fn step(&mut self) -> Result<(), LineError> {
+        let model = self.model.clone();
+        run(&model.step, &mut self.places)
+            .map(|_| ())
+            .map_err(Failure::line)
+    }
+
+    fn ask(&mut self, routine: &Routine<f64>) -> Option<Value<f64>> {
+        run(routine, &mut self.places).ok()
+    }
+
+    /// The kinetic and the potential energy at the node.
+    pub fn energies(&mut self) -> Option<[f64; 2]> {
+        let model = self.model.clone();
+        self.two(&model.energies)
+    }
+
+    /// The sums of the sizes of their terms.
+    pub fn energy_sizes(&mut self) -> Option<[f64; 2]> {
+        let model = self.model.clone();
+        self.two(&model.energy_sizes)
+            .map(|[kinetic, potential]| [kinetic.abs(), potential.abs()])
+    }
+
+    fn two(&mut self, routine: &Routine<f64>) -> Option<[f64; 2]> {
+        match self.ask(routine)? {
+            Value::List(both) => match both.as_slice() {
+                [Value::Real(kinetic), Value::Real(potential)] => Some([*kinetic, *potential]),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// A conserved total by its name.
+    pub fn total(&mut self, name: &str) -> Option<Vec<f64>> {
+        let model = self.model.clone();
+        let (_, routine) = model.totals.iter().find(|(own, _)| own == name)?;
+        numbers(&self.ask(routine)?)
+    }
+
+    /// The sums of the sizes of the terms of sites of a conserved total.
+    pub fn total_sizes(&mut self, name: &str) -> Option<Vec<f64>> {
+        let model = self.model.clone();
+        let (_, routine) = model.total_sizes.iter().find(|(own, _)| own == name)?;
+        let all = numbers(&self.ask(routine)?)?;
+        Some(all.into_iter().map(f64::abs).collect())
+    }
+
+    /// What is observed at all sites, one site after the other, matrices row after row.
+    pub fn observe(&mut self, name: &str) -> Option<Vec<f64>> {
+        let model = self.model.clone();
+        let (_, routine) = model.observers.iter().find(|(own, _)| own == name)?;
+        let Value::Sites(column) = self.ask(routine)? else {
+            return None;
+        };
+        let mut all = Vec::new();
+        for value in column.values() {
+            all.extend(numbers(&value)?);
+        }
+        Some(all)
+    }
+}
+
+/// The numbers of a value, matrices row after row; of rotations those of their matrices.
+fn numbers(value: &Value<f64>) -> Option<Vec<f64>> {
+    Some(match value {
+        Value::Real(x) => vec![*x],
+        Value::Momentum(_, v) => v.as_slice().to_vec(),
+        Value::Rotation(r) => r.matrix().transpose().as_slice().to_vec(),
+        other => other.dense()?.transpose().data,
+    })
+}
+
+impl Saved for LineTrajectory {
+    fn words(&mut self, words: &mut Words) {
+        for at in [at::STATE, at::WORK] {
+            match self.places.get_mut(at) {
+                Some(value) => value.words(words),
+                None => words.refuse(),
+            }
+        }
+    }
+}

@@ -1,0 +1,260 @@
+//! Trajectories of lines as the command runs them: numbers in the order of a card.
+
+use super::card::{Carded, Place};
+use super::{LineTrajectory, Unstarted};
+use crate::text;
+use clebsch::card::{Card, Field, OpenError, Settings, Trajectory, chosen_solver};
+use clebsch::integrate::counted;
+use clebsch::line::LineError;
+use clebsch::saved::{Saved, Words};
+use clebsch::{ParameterError, StartError, StepCause, StepError};
+use clebsch_core::expr::symbol::ascii;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
+/// The error of a step with its site.
+fn cause(e: LineError) -> StepCause {
+    match e {
+        LineError::Step {
+            at, cause, works, ..
+        } => StepCause::AtSite {
+            at,
+            // A run has one such error, with which it ends.
+            cause: Box::leak(Box::new(cause)),
+            works,
+        },
+        _ => StepCause::Unread { what: "a line" },
+    }
+}
+
+impl Carded {
+    /// Starts a trajectory.
+    ///
+    /// # Errors
+    /// As the function of any card.
+    pub fn open(
+        &'static self,
+        parameters: &[Vec<f64>],
+        initial: &[Vec<f64>],
+        settings: Settings,
+    ) -> Result<Box<dyn Trajectory>, OpenError> {
+        let card = &self.card;
+        counted(card, parameters, initial)?;
+        chosen_solver(settings, card.solvers)?;
+        if settings.compensated {
+            return Err(OpenError::Compensation {
+                order: settings.order.unwrap_or(card.order),
+                preprocessed: false,
+            });
+        }
+        if let Some(asked) = settings.order
+            && !card.orders.contains(&asked)
+        {
+            return Err(OpenError::Order {
+                asked,
+                offered: card.orders,
+            });
+        }
+        let mut given: BTreeMap<&str, Sites<'_>> = BTreeMap::new();
+        let of_tables = [(&self.parameters, parameters), (&self.initial, initial)];
+        for (places, lists) in of_tables {
+            for (place, list) in places.iter().zip(lists) {
+                let own = given.entry(place.key.as_str()).or_default();
+                own.push((place.site.unwrap_or(0), list));
+            }
+        }
+        let numbers = |name: &str| {
+            let all = given.get(ascii(name).as_str())?;
+            self.numbers(name, all)
+        };
+        let started = self.model.start(&self.choice, settings.h, &numbers);
+        let line = started.map_err(|e| self.refused(e))?;
+        Ok(Box::new(Running {
+            carded: self,
+            order: self.order(),
+            line: RefCell::new(line),
+        }))
+    }
+
+    /// The numbers of all sites of a quantity: a momentum where its configuration is held is zero.
+    fn numbers(&self, name: &str, all: &Sites<'_>) -> Option<Vec<f64>> {
+        let mut all = all.clone();
+        all.sort_by_key(|(site, _)| *site);
+        let size = all.first().map_or(1, |(_, list)| list.len());
+        let whole = self
+            .moving_sites(name)
+            .filter(|_| name.contains("momentum_"));
+        let Some(whole) = whole else {
+            return Some(
+                all.iter()
+                    .flat_map(|(_, list)| list.iter().copied())
+                    .collect(),
+            );
+        };
+        let mut out = vec![0.0; whole * size];
+        for (site, list) in all {
+            let own = out.get_mut(site * size..(site + 1) * size)?;
+            for (slot, x) in own.iter_mut().zip(list) {
+                *slot = *x;
+            }
+        }
+        Some(out)
+    }
+
+    /// How many sites the configuration of a momentum has.
+    fn moving_sites(&self, name: &str) -> Option<usize> {
+        let (_, of) = name.rsplit_once("momentum_")?;
+        self.sites.get(of).copied()
+    }
+
+    fn refused(&self, e: Unstarted) -> OpenError {
+        let at_start = |e: ParameterError| {
+            let own = |f: &&Field| f.name == e.field || f.ascii == e.field;
+            match self.card.initial.iter().any(|f| own(&f)) {
+                true => OpenError::Start(StartError::Initial(e)),
+                false => OpenError::Parameter(e),
+            }
+        };
+        match e {
+            Unstarted::Line(LineError::Parameter(e)) => at_start(e),
+            Unstarted::Line(LineError::Site { at, error }) => at_start(ParameterError {
+                field: text(&format!("{}_{}", at.quantity, at.site)),
+                ..error
+            }),
+            Unstarted::Line(
+                e @ LineError::Step {
+                    node: _,
+                    at: _,
+                    cause: _,
+                    works: _,
+                },
+            ) => OpenError::Start(StartError::Refused(cause(e))),
+            Unstarted::Line(LineError::Length {
+                quantity,
+                expected,
+                found,
+                ..
+            }) => OpenError::Count {
+                field: quantity,
+                expected,
+                found,
+            },
+            Unstarted::Line(LineError::Count {
+                count,
+                found,
+                least,
+            }) => OpenError::Count {
+                field: count,
+                expected: least,
+                found,
+            },
+            Unstarted::Missing(quantity) => OpenError::Count {
+                field: text(&quantity),
+                expected: 1,
+                found: 0,
+            },
+            Unstarted::Components {
+                quantity,
+                components,
+                found,
+            } => OpenError::Count {
+                field: text(&quantity),
+                expected: components,
+                found,
+            },
+        }
+    }
+
+    /// Of each observable the number of its observer, and the site.
+    fn order(&self) -> Vec<(usize, usize)> {
+        let names: Vec<String> = self.model.observers().map(ascii).collect();
+        let place = |p: &Place| {
+            let observer = names.iter().position(|n| *n == p.key);
+            (observer.unwrap_or(usize::MAX), p.site.unwrap_or(0))
+        };
+        self.observables.iter().map(place).collect()
+    }
+}
+
+/// The values of sites.
+type Sites<'a> = Vec<(usize, &'a Vec<f64>)>;
+
+/// A running trajectory.
+struct Running {
+    carded: &'static Carded,
+    order: Vec<(usize, usize)>,
+    line: RefCell<LineTrajectory>,
+}
+
+impl Running {
+    /// Writes the invariants, or the sums of the sizes of what they are made of.
+    fn sums(&self, out: &mut [f64], sizes: bool) {
+        let mut line = self.line.borrow_mut();
+        let mut out = out.iter_mut();
+        for invariant in self.carded.card.invariants {
+            let values = match (invariant.name, sizes) {
+                ("energy", false) => line.energies().map(|[k, p]| vec![k + p]),
+                ("energy", true) => line.energy_sizes().map(|[k, p]| vec![k + p]),
+                (name, false) => line.total(name),
+                (name, true) => line.total_sizes(name),
+            };
+            let values = values.unwrap_or_default();
+            for i in 0..invariant.rows {
+                if let Some(slot) = out.next() {
+                    *slot = values.get(i).copied().unwrap_or(f64::NAN);
+                }
+            }
+        }
+    }
+}
+
+impl Trajectory for Running {
+    fn node(&self) -> u64 {
+        self.line.borrow().node()
+    }
+
+    fn time(&self) -> f64 {
+        let line = self.line.borrow();
+        line.h() * line.node() as f64
+    }
+
+    fn step(&mut self) -> Result<(), StepError> {
+        let line = self.line.get_mut();
+        let node = line.node();
+        line.step().map_err(|e| cause(e).at_node(node))
+    }
+
+    fn card(&self) -> &'static Card {
+        &self.carded.card
+    }
+
+    fn observe(&self, out: &mut [f64]) {
+        let mut line = self.line.borrow_mut();
+        let names = self.carded.model.observers();
+        let all: Vec<Vec<f64>> = names
+            .map(|name| line.observe(name).unwrap_or_default())
+            .collect();
+        let mut out = out.iter_mut();
+        for ((observer, site), field) in self.order.iter().zip(self.carded.card.observables) {
+            let (list, size) = (all.get(*observer), field.count());
+            for k in 0..size {
+                let x = list.and_then(|l| l.get(site * size + k).copied());
+                if let Some(slot) = out.next() {
+                    *slot = x.unwrap_or(f64::NAN);
+                }
+            }
+        }
+    }
+
+    fn invariants(&self, out: &mut [f64]) {
+        self.sums(out, false);
+    }
+
+    fn scales(&self, out: &mut [f64]) {
+        self.sums(out, true);
+    }
+
+    fn words(&mut self, words: &mut Words) {
+        self.line.get_mut().words(words);
+    }
+}
