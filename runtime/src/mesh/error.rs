@@ -35,6 +35,13 @@ pub enum MeshError {
         /// What was asked for.
         tolerance: f64,
     },
+    /// There are not as many values as sites.
+    Count {
+        /// How many values there are.
+        given: usize,
+        /// How many sites.
+        sites: usize,
+    },
     /// A particle is beyond a wall by more than a reflection puts back.
     Outside {
         /// Its number.
@@ -73,6 +80,9 @@ impl fmt::Display for MeshError {
                 f,
                 "after {iterations} iterations a residual of {residual:e} is left, and {tolerance:e} is asked for"
             ),
+            Self::Count { given, sites } => {
+                write!(f, "{given} values are given for {sites} sites")
+            }
             Self::Outside { site, by } => {
                 write!(
                     f,

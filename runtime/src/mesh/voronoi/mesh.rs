@@ -134,7 +134,7 @@ impl<T: Real> Voronoi<T> {
     ///
     /// # Errors
     /// [`MeshError::Coincident`] where two particles are nearer than 4e-15 of the longer period,
-    /// [`MeshError::NotFinite`], [`MeshError::Length`]. The mesh is of no use then, until the next update.
+    /// [`MeshError::NotFinite`], [`MeshError::Count`]. The mesh is of no use then, until the next update.
     pub fn update(&mut self, at: &[SVector<T, 2>]) -> Result<(), MeshError> {
         MeshError::unless_of_length(at, self.sites())?;
         self.delaunay.follow(|site| {

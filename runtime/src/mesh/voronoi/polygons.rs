@@ -36,7 +36,7 @@ impl Voronoi<f64> {
     /// `out[j * columns + i]` is the mass in the box of column `i` and row `j`. No mass is lost.
     ///
     /// # Errors
-    /// [`MeshError::Length`] where there are not as many masses as cells, or numbers as boxes.
+    /// [`MeshError::Count`] where there are not as many masses as cells, or numbers as boxes.
     pub fn rezone(
         &self,
         masses: &[f64],
