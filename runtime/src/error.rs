@@ -4,6 +4,7 @@
 use crate::domain::{Contact, Domain, Function};
 use crate::groups::{NotARigidMotion, NotARotation, NotInvertible};
 use crate::line::Place;
+use crate::mesh::MeshError;
 use crate::said::place;
 use crate::solvers::left_factor::{LeftFactorError, Unsolved};
 use crate::solvers::moser_veselov::{MoserVeselovError, PoinsotError};
@@ -411,6 +412,15 @@ pub enum StepCause {
         /// A shorter step that was tried and works, where one was found.
         works: Option<f64>,
     },
+    /// A functional of all sites has no value where the step needs it, or no derivative.
+    Functional {
+        /// Its values, as the model names them.
+        quantity: &'static str,
+        /// Why.
+        cause: MeshError,
+        /// A shorter step that was tried and works, where one was found.
+        works: Option<f64>,
+    },
     /// A model that is read from its text needs an operation that only a built one has.
     Unread {
         /// What was met.
@@ -477,10 +487,15 @@ impl fmt::Display for StepCause {
             ),
             Self::AtSite { at, cause, works } => {
                 write!(f, "{at}: {cause}")?;
-                match works {
-                    Some(h) => write!(f, "; a step of {h} can be made"),
-                    None => Ok(()),
-                }
+                shorter(f, *works)
+            }
+            Self::Functional {
+                quantity,
+                cause,
+                works,
+            } => {
+                write!(f, "`{quantity}`: {cause}")?;
+                shorter(f, *works)
             }
             Self::Unread { what } => write!(
                 f,
@@ -488,6 +503,14 @@ impl fmt::Display for StepCause {
                  `model! {{ ... }}`, which builds it"
             ),
         }
+    }
+}
+
+/// Which shorter step can be made.
+fn shorter(f: &mut fmt::Formatter<'_>, works: Option<f64>) -> fmt::Result {
+    match works {
+        Some(h) => write!(f, "; a step of {h} can be made"),
+        None => Ok(()),
     }
 }
 
@@ -502,6 +525,7 @@ impl std::error::Error for StepCause {
             Self::Newton(error) => Some(error),
             Self::Contact(contact) => Some(contact),
             Self::AtSite { cause, .. } => Some(*cause),
+            Self::Functional { cause, .. } => Some(cause),
             Self::NotFinite { .. } | Self::Unread { .. } => None,
         }
     }

@@ -359,11 +359,5 @@ fn boxes_get_the_mass_of_cells() {
     }
     let mesh = mesh_of(UNIT, &bricks(4, 0.1));
     let refused = mesh.rezone(&[1.0; 16], [2, 2], &mut [0.0; 5]);
-    assert_eq!(
-        refused,
-        Err(MeshError::Length {
-            found: 5,
-            expected: 4
-        })
-    );
+    assert_eq!(refused, Err(MeshError::Count { given: 5, sites: 4 }));
 }

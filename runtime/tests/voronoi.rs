@@ -148,13 +148,7 @@ fn degenerate_places_are_refused() {
         assert_eq!(out, before);
     }
     let refused = area.value(&good[..3], &mut out).unwrap_err();
-    assert_eq!(
-        refused,
-        MeshError::Length {
-            found: 3,
-            expected: 4
-        }
-    );
+    assert_eq!(refused, MeshError::Count { given: 3, sites: 4 });
     for lengths in [
         [0.0, 1.0],
         [1.0, -2.0],

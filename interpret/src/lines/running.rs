@@ -23,6 +23,16 @@ fn cause(e: LineError) -> StepCause {
             cause: Box::leak(Box::new(cause)),
             works,
         },
+        LineError::Functional {
+            quantity,
+            cause,
+            works,
+            ..
+        } => StepCause::Functional {
+            quantity,
+            cause,
+            works,
+        },
         _ => StepCause::Unread { what: "a line" },
     }
 }
@@ -122,12 +132,13 @@ impl Carded {
                 ..error
             }),
             Unstarted::Line(
-                e @ LineError::Step {
+                e @ (LineError::Step {
                     node: _,
                     at: _,
                     cause: _,
                     works: _,
-                },
+                }
+                | LineError::Functional { .. }),
             ) => OpenError::Start(StartError::Refused(cause(e))),
             Unstarted::Line(LineError::Length {
                 quantity,
