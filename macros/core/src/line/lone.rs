@@ -267,9 +267,18 @@ fn how(
     let c = &d.spec.configurations[i];
     let moving = |e: &Expr| expr::contains_role(s, e, Role::Velocity);
     let together = || {
-        Err(Refused::Form(format!(
-            "the velocity of `{name}` is found by Newton's method"
-        )))
+        let group = c.group.name(&|n| s.dim_text(n));
+        Err(Refused::Form(match (c.group.kept(), c.side) {
+            (Kept::Rotation | Kept::Field(_), Side::Body) | (Kept::Field(_), _) => {
+                format!("the velocity of `{name}` is found by Newton's method")
+            }
+            (Kept::Rotation, _) => format!(
+                "`{name}` turns seen from space, `next({name}) = ω*{name}`: loops over sites take rotations seen from the body"
+            ),
+            _ => format!(
+                "`{name}` is in {group}: loops over sites take fields and rotations of SO<3> seen from the body"
+            ),
+        }))
     };
     match (c.group.kept(), &d.solve.riccati[i]) {
         (Kept::Rotation, Riccati::Exact(mv)) if c.side == Side::Body && block.len() == 1 => {
