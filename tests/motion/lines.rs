@@ -11,6 +11,8 @@
 
 #[path = "lines/action.rs"]
 mod action;
+#[path = "lines/experiments.rs"]
+mod experiments;
 #[path = "lines/laws.rs"]
 mod laws;
 #[path = "lines/models/mod.rs"]

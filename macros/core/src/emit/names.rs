@@ -49,7 +49,7 @@ pub fn own(d: &Derivation, id: SymbolId) -> Ident {
 }
 
 /// Types, traits and variants that emitted code calls by a plain name: no model can bear one.
-const TYPES: [&str; 58] = [
+const TYPES: [&str; 59] = [
     "AboutBody",
     "Additive",
     "BodyMomentum",
@@ -63,6 +63,7 @@ const TYPES: [&str; 58] = [
     "Field",
     "FieldMomentum",
     "Free",
+    "Functional",
     "Group",
     "InLanes",
     "Invariant",

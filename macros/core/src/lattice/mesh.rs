@@ -1,6 +1,9 @@
 //! Functionals of all sites as a model declares them: what computes each, of which field or other functional,
 //! and of which constants. Mistakes of the declarations are told here.
 
+#[cfg(test)]
+mod tests;
+
 use super::declared::{Kind, Lattice, Sites};
 use crate::diagnostic::{Diagnostic, Errors, closest};
 use crate::syntax::ast::{Model, Name, Statement};

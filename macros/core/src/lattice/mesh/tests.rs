@@ -1,0 +1,201 @@
+//! Functionals of all sites: what is derived of them, what they conserve, and what is refused.
+
+use crate::line::Line;
+use crate::pipeline::{derive_model, emitted_line, parse_source};
+
+const KINETIC: &str = "m*dot(next(X) - X, next(X) - X)/(2*h)";
+
+/// A model of particles with these statements and these terms beside the kinetic one.
+fn model(statements: &str, terms: &str) -> String {
+    format!(
+        "model Particles {{ label a in 0..N; param m: Real at a; param f, k: Real; field X: Vec<2> at a on torus(L);
+         {statements} lagrangian = {KINETIC} {terms}; }}"
+    )
+}
+
+fn line(text: &str) -> Line {
+    match parse_source(text) {
+        Ok(model) => match Line::of(&model) {
+            Ok(line) => line,
+            Err(refused) => panic!("{text}\n{refused:?}"),
+        },
+        Err(errors) => panic!("{text}\n{errors}"),
+    }
+}
+
+fn totals(text: &str) -> Vec<String> {
+    let all = line(text).totals.into_iter();
+    all.map(|t| t.name).collect()
+}
+
+#[test]
+fn a_total_momentum_is_found_where_nothing_singles_out_a_place() {
+    let cells = "mesh A: Real at a = voronoi_area(X);";
+    let kept = vec!["momentum".to_owned()];
+    assert_eq!(totals(&model(cells, "- h*k*m/A")), kept);
+    // On a rotating plane with what the frame adds.
+    let turning = "+ (m*f/2)*dot(perp(X), next(X)) - h*k*m*log(A)";
+    assert_eq!(totals(&model(cells, turning)), kept);
+    // A place beside the functional, or by itself, takes it away.
+    let none: Vec<String> = Vec::new();
+    assert_eq!(totals(&model(cells, "- h*k*m*X[1]/A")), none);
+    let own = totals(&model(cells, "- h*k*m/A - h*m*dot(X, X)"));
+    assert_eq!(own, none);
+    // Of functionals of one's own nothing is known: none is stated.
+    let path = "mesh A: Real at a = crate::area(X);";
+    assert_eq!(totals(&model(path, "- h*k*m/A")), none);
+}
+
+#[test]
+fn a_grid_keeps_no_momentum_and_a_field_beside_it_keeps_its_own() {
+    let text = "model Mesh { label a in 0..N; grid n; param m: Real at a; param w: Real at n; param k: Real;
+        field X: Real at a on box; field Y: Real at a; mesh H: Real at n = deposit(X, m);
+        lagrangian = m*((next(X) - X)^2 + (next(Y) - Y)^2)/(2*h) - h*k*w*H^2; }";
+    let all = totals(text);
+    assert_eq!(all.len(), 1, "{all:?}");
+    let found = &line(text).totals[0];
+    let names: Vec<String> = found
+        .densities
+        .iter()
+        .flat_map(|(.., e)| crate::expr::letters(e))
+        .map(|l| {
+            line(text)
+                .representative
+                .d
+                .letters
+                .symbols
+                .get(l.symbol)
+                .name
+                .clone()
+        })
+        .collect();
+    // The momentum of Y, which no functional sees.
+    assert_eq!(names.len(), 1, "{names:?}");
+}
+
+#[test]
+fn pull_backs_of_one_functional_are_computed_once() {
+    let text = "model Mesh { label a in 0..N; grid n; param m: Real at a; param w: Real at n; param k, c: Real;
+        field X: Vec<2> at a on box; mesh H: Real at n = deposit(X, m); mesh S: Real at n = smooth(H, c);
+        lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) - h*k*w*H*S - h*w*H^2; }";
+    let meshed = line(text).meshed.expect("functionals");
+    let [force] = meshed.forces.as_slice() else {
+        panic!("one field is pushed");
+    };
+    let mut count = 0;
+    count_backs(&force.value, &mut count);
+    // One of the deposit, and in its seed one of the smoother.
+    assert_eq!(count, 2);
+}
+
+fn count_backs(e: &crate::expr::Expr, count: &mut usize) {
+    *count += usize::from(matches!(e.node(), crate::expr::Node::PullBack(..)));
+    e.children().into_iter().for_each(|x| count_backs(x, count));
+}
+
+/// What is said of the statements, by the derivation or by what would be emitted.
+fn said(statements: &str, terms: &str) -> String {
+    let text = model(statements, terms);
+    let read = parse_source(&text);
+    let derived = read.and_then(|m| derive_model(&m).and_then(|_| emitted_line(&m, "")));
+    match derived {
+        Ok(_) => "derived".to_owned(),
+        Err(errors) => errors.to_string(),
+    }
+}
+
+#[test]
+fn mistakes_in_functionals_are_told() {
+    let area = "mesh A: Real at a = voronoi_area(X);";
+    let cases = [
+        (area, "- h*k/A", "derived"),
+        (
+            "mesh A: Real at a = voronoi_aera(X);",
+            "- h*k/A",
+            "did you mean `voronoi_area`?",
+        ),
+        (
+            "mesh A: Real at a = voronoi_area(X, m);",
+            "- h*k/A",
+            "0 parameters behind it",
+        ),
+        (
+            "mesh A: Real at a = helmholtz_depth(X, m);",
+            "- h*k/A",
+            "2 parameters behind it",
+        ),
+        (
+            "mesh A: Real at a = voronoi_area(m);",
+            "- h*k/A",
+            "`m` is neither a field",
+        ),
+        (
+            "mesh A: Real at a = voronoi_area(Q);",
+            "- h*k/A",
+            "`Q` is neither a field",
+        ),
+        (
+            "mesh A: Real = voronoi_area(X);",
+            "- h*k/A",
+            "at which sites",
+        ),
+        (
+            "mesh A: Vec<2> at a = voronoi_area(X);",
+            "- h*k/A[1]",
+            "one number at each site",
+        ),
+        (
+            "mesh A: Real at b = voronoi_area(X);",
+            "- h*k/A",
+            "`b` is no label",
+        ),
+        (
+            "mesh A: Real at a = voronoi_area(2*X);",
+            "- h*k/A",
+            "arguments are names",
+        ),
+        (
+            "mesh B: Real at a = crate::f(A); mesh A: Real at a = voronoi_area(X);",
+            "- h*k/A",
+            "is neither a field",
+        ),
+        (
+            "grid a; mesh A: Real at a = voronoi_area(X);",
+            "- h*k/A",
+            "declared twice",
+        ),
+        (
+            area,
+            "- k*dot(next(X) - X, next(X) - X)/A",
+            "beside a velocity",
+        ),
+        (
+            "field Y: Vec<2> at a on torus(M); mesh A: Real at a = voronoi_area(X);",
+            "+ m*dot(next(Y) - Y, next(Y) - Y)/h - h*k/A",
+            "several domains",
+        ),
+        (
+            "grid n; param w: Real at n; mesh H: Real at n = deposit(X, m);",
+            "- h*w*H*m",
+            "which of them would meet",
+        ),
+        ("mesh A: Real at a = voronoi_area(X) of;", "", "expected"),
+    ];
+    for (statements, terms, expected) in cases {
+        let found = said(statements, terms);
+        assert!(found.contains(expected), "{statements} {terms}\n{found}");
+    }
+    let without = "model P { label a in 0..N; param m, k: Real; field X: Vec<2> at a;
+        mesh A: Real at a = voronoi_area(X); lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) - h*k/A; }";
+    let model = parse_source(without).expect("a model");
+    let told = emitted_line(&model, "").expect_err("no domain").to_string();
+    assert!(told.contains("on torus(L)"), "{told}");
+    for domain in ["on tours(L)", "on torus", "on torus(2)", "on sphere"] {
+        let text = without.replace("Vec<2> at a;", &format!("Vec<2> at a {domain};"));
+        let told = parse_source(&text).expect_err("no such domain").to_string();
+        assert!(
+            told.contains("torus(L)") || told.contains("the lengths of the torus"),
+            "{domain}: {told}"
+        );
+    }
+}
