@@ -8,6 +8,7 @@ mod isotropic;
 mod nodes;
 mod padded;
 mod periodic;
+mod position;
 mod reflection;
 mod smoother;
 mod sorted;
