@@ -4,6 +4,7 @@
 mod common;
 mod depth;
 mod forces;
+mod printed;
 mod reflection;
 mod smoothers;
 mod symmetries;

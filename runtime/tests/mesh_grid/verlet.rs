@@ -145,8 +145,8 @@ where
 
 #[test]
 fn energy_along_a_line_stays_within_the_bound_of_its_amplitude() {
-    // The error is of the size of the square of the amplitude. Over 3e5 steps it is 1.0e-10 and 1.2e-8: it does not drift.
-    for (amplitude, expected) in [(0.01, 1.0e-10), (0.1, 1.2e-8)] {
+    // The error is of the size of the square of the amplitude. Over 3e5 steps it is 1.0e-10, 1.3e-8 and 4.9e-8: it does not drift.
+    for (amplitude, expected) in [(0.01, 1.0e-10), (0.1, 1.2e-8), (0.2, 5.0e-8)] {
         let (worst, crossings) = along_a_line::<smooth<f64, 1>>(amplitude, 10_000);
         assert_eq!(crossings, 0);
         assert!(
