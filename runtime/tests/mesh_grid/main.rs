@@ -9,3 +9,4 @@ mod reflection;
 mod smoothers;
 mod symmetries;
 mod verlet;
+mod waves;

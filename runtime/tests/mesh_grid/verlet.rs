@@ -9,7 +9,7 @@ use clebsch::nalgebra::SVector;
 use core::f64::consts::PI;
 
 /// A run of particles on a grid.
-struct Run<F, S, const D: usize> {
+pub struct Run<F, S, const D: usize> {
     deposit: F,
     smooth: S,
     weights: Vec<f64>,
@@ -29,7 +29,7 @@ where
     F: for<'a> Functional<f64, D, Argument = A, Data<'a> = (&'a [f64],)>,
     S: for<'a> Functional<f64, D, Argument = f64, Data<'a> = (f64,)>,
 {
-    fn new(of: &Setting<D>, alpha: f64, mass: Vec<f64>, speed: f64) -> Self {
+    pub fn new(of: &Setting<D>, alpha: f64, mass: Vec<f64>, speed: f64) -> Self {
         let weights = Nodes::new(of).expect("a grid").weights::<f64>();
         let grid = of.grid.expect("a grid");
         Self {
@@ -46,7 +46,7 @@ where
         }
     }
 
-    fn potential(&mut self, x: &[A]) -> f64 {
+    pub fn potential(&mut self, x: &[A]) -> f64 {
         self.deposit.value(x, &mut self.depth).expect("inside");
         self.smooth
             .value(&self.depth, &mut self.smoothed)
@@ -56,14 +56,14 @@ where
     }
 
     /// Derivatives of the potential at the places of its last evaluation: the smoother is its own adjoint.
-    fn slopes(&mut self, x: &[A], out: &mut [A]) {
+    pub fn slopes(&mut self, x: &[A], out: &mut [A]) {
         let all = self.weights.iter().zip(&self.smoothed);
         let seed: Vec<f64> = all.map(|(w, s)| self.speed * w * s).collect();
         self.deposit.pull_back(x, &seed, out).expect("inside");
     }
 
     /// Half a kick, the flow without potential, half a kick, reflection; `slopes` are those at `x`, before and after.
-    fn step(
+    pub fn step(
         &mut self,
         x: &mut [A],
         u: &mut [A],

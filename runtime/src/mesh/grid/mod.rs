@@ -14,9 +14,11 @@ mod smoother;
 mod sorted;
 mod spline;
 mod stencil;
+mod waves;
 
 pub use axis::Axis;
 pub use depth::{deposit, deposit_quintic};
 pub use isotropic::smooth_isotropic;
 pub use nodes::Nodes;
 pub use smoother::{smooth, smoothing_length};
+pub use waves::fastest_wave;
