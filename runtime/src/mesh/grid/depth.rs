@@ -105,10 +105,10 @@ where
                 }
             };
             #[cfg(feature = "rayon")]
-            if self.sorted.is_shared() {
+            if let Some(least) = self.sorted.least(places.len().div_ceil(2 * stripe)) {
                 use rayon::prelude::*;
                 let pairs = places.par_chunks_mut(2 * stripe).enumerate();
-                pairs.for_each(spread);
+                pairs.with_min_len(least).for_each(spread);
                 continue;
             }
             places.chunks_mut(2 * stripe).enumerate().for_each(spread);
@@ -137,10 +137,11 @@ where
             .ranges()
             .zip(out.chunks_mut(self.sorted.range()));
         #[cfg(feature = "rayon")]
-        if self.sorted.is_shared() {
+        if let Some(least) = self.sorted.least(self.sorted.ranges().count()) {
             use rayon::prelude::*;
             let ranges: Vec<_> = ranges.collect();
-            ranges.into_par_iter().for_each(collect);
+            let ranges = ranges.into_par_iter().with_min_len(least);
+            ranges.for_each(collect);
             return Ok(());
         }
         ranges.for_each(collect);

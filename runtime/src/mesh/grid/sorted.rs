@@ -62,9 +62,9 @@ pub(super) struct Sorted<T, const D: usize> {
     share: usize,
     /// Rows.
     count: usize,
-    /// Whether several threads sort.
+    /// How many threads share the particles.
     #[cfg(feature = "rayon")]
-    is_shared: bool,
+    threads: usize,
 }
 
 /// Most particles of a range, unless rows are so many that their ends would take more room than particles: what is
@@ -91,7 +91,7 @@ impl<T: Real, const D: usize> Sorted<T, D> {
             share: 1,
             count,
             #[cfg(feature = "rayon")]
-            is_shared: false,
+            threads: 1,
         };
         made.share(1);
         made
@@ -105,14 +105,14 @@ impl<T: Real, const D: usize> Sorted<T, D> {
         self.ends.resize(self.count * all.div_ceil(self.share), 0);
         #[cfg(feature = "rayon")]
         {
-            self.is_shared = threads > 1;
+            self.threads = threads.max(1);
         }
     }
 
-    /// Whether several threads sort.
+    /// Of so many pieces of work, the fewest that a thread takes; none if there is one thread.
     #[cfg(feature = "rayon")]
-    pub fn is_shared(&self) -> bool {
-        self.is_shared
+    pub fn least(&self, pieces: usize) -> Option<usize> {
+        (self.threads > 1).then(|| pieces.div_ceil(self.threads))
     }
 
     /// Particles of a range.
@@ -131,6 +131,8 @@ impl<T: Real, const D: usize> Sorted<T, D> {
         mass: &[T],
     ) -> Result<(), MeshError> {
         let (share, count) = (self.share, self.count);
+        #[cfg(feature = "rayon")]
+        let threads = self.threads;
         let parts = self.particles.chunks_mut(share).enumerate();
         let parts = parts
             .zip(self.rows.chunks_mut(share))
@@ -145,10 +147,12 @@ impl<T: Real, const D: usize> Sorted<T, D> {
             out,
         });
         #[cfg(feature = "rayon")]
-        if self.is_shared {
+        if threads > 1 {
             use rayon::prelude::*;
             let parts: Vec<_> = parts.collect();
-            let all: Vec<_> = parts.into_par_iter().map(|p| p.sort(axes)).collect();
+            let least = parts.len().div_ceil(threads);
+            let parts = parts.into_par_iter().with_min_len(least);
+            let all: Vec<_> = parts.map(|p| p.sort(axes)).collect();
             return all.into_iter().collect();
         }
         let mut parts = parts;
