@@ -10,7 +10,9 @@ mod voronoi;
 pub use domain::{Domain, Wall};
 pub use error::MeshError;
 pub use functional::{Functional, Setting};
-pub use grid::{Axis, Nodes, deposit, deposit_quintic, smooth, smooth_isotropic, smoothing_length};
+pub use grid::{
+    Axis, Nodes, deposit, deposit_quintic, fastest_wave, smooth, smooth_isotropic, smoothing_length,
+};
 pub use voronoi::{
     Between, Counted, Face, Triangle, Voronoi, helmholtz_depth, pair_core, placement,
     second_moment, voronoi_area,

@@ -3,6 +3,7 @@
 use clebsch::Real;
 use clebsch::mesh::{Domain, Functional, Setting, Wall};
 use clebsch::nalgebra::SVector;
+pub use clebsch::scalar::largest;
 
 /// Pseudo-random numbers in [0, 1): the high bits of a linear congruential generator (Knuth's constants).
 pub struct Numbers(u64);
@@ -109,16 +110,6 @@ pub fn values<T: Real, const D: usize, F: Functional<T, D>>(
     let mut out = vec![T::zero(); of.sites()];
     of.value(at, &mut out).expect("has a value");
     out
-}
-
-/// The largest absolute value.
-pub fn largest(all: impl IntoIterator<Item = f64>) -> f64 {
-    all.into_iter().fold(
-        0.0,
-        |most, x| {
-            if x.is_nan() { x } else { x.abs().max(most) }
-        },
-    )
 }
 
 /// The sum, in two numbers.

@@ -172,9 +172,9 @@ fn shared(threads: usize, of: &Setting<2>, at: &[SVector<f64, 2>], mass: &[f64])
 
 #[test]
 fn threads_change_no_bit() {
-    // More rows than two stripes, and particles enough for threads to be used at all.
+    // More rows than two stripes, and more particles than one thread sorts at a time.
     for domain in planes() {
-        let of = setting(domain, [37, 20], 40_000);
+        let of = setting(domain, [37, 20], 70_000);
         let at: Vec<_> = places(&of, 5).into_iter().map(SVector::from).collect();
         let mass = Numbers::new(6).list(of.particles);
         let one = shared(1, &of, &at, &mass);

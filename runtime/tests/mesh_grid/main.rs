@@ -4,7 +4,9 @@
 mod common;
 mod depth;
 mod forces;
+mod printed;
 mod reflection;
 mod smoothers;
 mod symmetries;
 mod verlet;
+mod waves;

@@ -9,7 +9,7 @@ use clebsch::nalgebra::SVector;
 use core::f64::consts::PI;
 
 /// A run of particles on a grid.
-struct Run<F, S, const D: usize> {
+pub struct Run<F, S, const D: usize> {
     deposit: F,
     smooth: S,
     weights: Vec<f64>,
@@ -29,7 +29,7 @@ where
     F: for<'a> Functional<f64, D, Argument = A, Data<'a> = (&'a [f64],)>,
     S: for<'a> Functional<f64, D, Argument = f64, Data<'a> = (f64,)>,
 {
-    fn new(of: &Setting<D>, alpha: f64, mass: Vec<f64>, speed: f64) -> Self {
+    pub fn new(of: &Setting<D>, alpha: f64, mass: Vec<f64>, speed: f64) -> Self {
         let weights = Nodes::new(of).expect("a grid").weights::<f64>();
         let grid = of.grid.expect("a grid");
         Self {
@@ -46,7 +46,7 @@ where
         }
     }
 
-    fn potential(&mut self, x: &[A]) -> f64 {
+    pub fn potential(&mut self, x: &[A]) -> f64 {
         self.deposit.value(x, &mut self.depth).expect("inside");
         self.smooth
             .value(&self.depth, &mut self.smoothed)
@@ -56,14 +56,14 @@ where
     }
 
     /// Derivatives of the potential at the places of its last evaluation: the smoother is its own adjoint.
-    fn slopes(&mut self, x: &[A], out: &mut [A]) {
+    pub fn slopes(&mut self, x: &[A], out: &mut [A]) {
         let all = self.weights.iter().zip(&self.smoothed);
         let seed: Vec<f64> = all.map(|(w, s)| self.speed * w * s).collect();
         self.deposit.pull_back(x, &seed, out).expect("inside");
     }
 
     /// Half a kick, the flow without potential, half a kick, reflection; `slopes` are those at `x`, before and after.
-    fn step(
+    pub fn step(
         &mut self,
         x: &mut [A],
         u: &mut [A],
@@ -135,8 +135,8 @@ where
     let (mut worst, mut mass_error) = (0.0_f64, 0.0_f64);
     for _ in 0..steps {
         run.step(&mut x, &mut u, &mut slopes, dt, |x, u| (x + dt * u, u));
-        worst = worst.max((run.energy(&u) / start - 1.0).abs());
-        mass_error = mass_error.max(run.mass_error().abs());
+        worst = largest([worst, run.energy(&u) / start - 1.0]);
+        mass_error = largest([mass_error, run.mass_error()]);
     }
     // Each of 64 nodes is a sum of some twenty values; their errors are of random sign.
     assert!(mass_error < 2e-15, "{mass_error:e}");
@@ -145,8 +145,8 @@ where
 
 #[test]
 fn energy_along_a_line_stays_within_the_bound_of_its_amplitude() {
-    // The error is of the size of the square of the amplitude. Over 3e5 steps it is 1.0e-10 and 1.2e-8: it does not drift.
-    for (amplitude, expected) in [(0.01, 1.0e-10), (0.1, 1.2e-8)] {
+    // The error is of the size of the square of the amplitude. Over 3e5 steps it is 1.0e-10, 1.3e-8 and 4.9e-8: it does not drift.
+    for (amplitude, expected) in [(0.01, 1.0e-10), (0.1, 1.2e-8), (0.2, 5.0e-8)] {
         let (worst, crossings) = along_a_line::<smooth<f64, 1>>(amplitude, 10_000);
         assert_eq!(crossings, 0);
         assert!(
@@ -239,8 +239,8 @@ fn energy_in_a_rotating_channel_falls_with_the_square_of_the_step() {
             run.step(&mut x, &mut u, &mut slopes, dt, |x, u| {
                 (x + moved(u), turn(u))
             });
-            worst = worst.max((run.energy(&u) / start - 1.0).abs());
-            mass_error = mass_error.max(run.mass_error().abs());
+            worst = largest([worst, run.energy(&u) / start - 1.0]);
+            mass_error = largest([mass_error, run.mass_error()]);
         }
         assert!(mass_error < 1e-14);
         errors.push(worst);

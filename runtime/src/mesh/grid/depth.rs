@@ -6,7 +6,8 @@
 use super::super::{Functional, MeshError, Setting};
 use super::nodes::Nodes;
 use super::padded::Padded;
-use super::sorted::{Position, Rows, Sorted};
+use super::position::Position;
+use super::sorted::{Rows, Sorted};
 use super::spline::{Basis, Splines};
 use super::stencil::{gather, scatter};
 use crate::line::Threads;
@@ -98,16 +99,16 @@ where
                 let first = (2 * pair + parity) * STRIPE;
                 let last = (first + STRIPE).min(self.nodes.axes()[0].intervals());
                 for (row, from) in (first..last).zip((0..).step_by(width)) {
-                    for particles in self.sorted.row(row) {
+                    for particles in self.sorted.row(row).filter(|row| !row.is_empty()) {
                         scatter::<T, D, K>(&mut places[from..from + K * width], width, particles);
                     }
                 }
             };
             #[cfg(feature = "rayon")]
-            if self.sorted.is_shared() {
+            if let Some(least) = self.sorted.least(places.len().div_ceil(2 * stripe)) {
                 use rayon::prelude::*;
                 let pairs = places.par_chunks_mut(2 * stripe).enumerate();
-                pairs.for_each(spread);
+                pairs.with_min_len(least).for_each(spread);
                 continue;
             }
             places.chunks_mut(2 * stripe).enumerate().for_each(spread);
@@ -124,8 +125,11 @@ where
         let density = core::array::from_fn(|d| self.nodes.axes()[d].density());
         let collect = |(rows, out): (Rows<'_, T, D>, &mut [A])| {
             for (row, from) in (0..self.nodes.axes()[0].intervals()).zip((0..).step_by(width)) {
-                let places = &places[from..from + K * width];
-                gather::<T, A, D, K>(places, width, &density, rows.row(row), out);
+                let particles = rows.row(row);
+                if !particles.is_empty() {
+                    let places = &places[from..from + K * width];
+                    gather::<T, A, D, K>(places, width, &density, particles, out);
+                }
             }
         };
         let ranges = self
@@ -133,10 +137,11 @@ where
             .ranges()
             .zip(out.chunks_mut(self.sorted.range()));
         #[cfg(feature = "rayon")]
-        if self.sorted.is_shared() {
+        if let Some(least) = self.sorted.least(self.sorted.ranges().count()) {
             use rayon::prelude::*;
             let ranges: Vec<_> = ranges.collect();
-            ranges.into_par_iter().for_each(collect);
+            let ranges = ranges.into_par_iter().with_min_len(least);
+            ranges.for_each(collect);
             return Ok(());
         }
         ranges.for_each(collect);

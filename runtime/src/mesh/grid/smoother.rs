@@ -7,6 +7,7 @@ use super::super::{Functional, MeshError, Setting, Wall};
 use super::bounded::Bounded;
 use super::nodes::Nodes;
 use super::periodic::Periodic;
+use crate::scalar::largest;
 use crate::{ParameterError, Problem, Real};
 
 /// The smoother of one direction.
@@ -74,7 +75,7 @@ impl<T: Real, const D: usize> Directions<T, D> {
 pub fn smoothing_length<const D: usize>(setting: &Setting<D>) -> Result<f64, ParameterError> {
     let nodes = Nodes::new(setting)?;
     let spacings = nodes.axes().iter().map(|axis| axis.spacing());
-    Ok(2.0 * spacings.fold(0.0, f64::max))
+    Ok(2.0 * largest(spacings))
 }
 
 /// The weights of nodes and their reciprocals, by which an operator that is its own adjoint is transposed.

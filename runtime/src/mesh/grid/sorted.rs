@@ -1,45 +1,12 @@
 //! Particles sorted by the row of the grid that they are in, rows being numbered along the first direction. Within a
 //! row they keep the order of their numbers, so that every sum over the particles of a row has one order. The sort is
-//! a counting sort in two passes; threads share particles by ranges of numbers, each of which is sorted alone.
+//! a counting sort in two passes; ranges of numbers are sorted each by itself, by several threads or one after the other.
 
 use super::super::MeshError;
 use super::axis::Axis;
+use super::position::Position;
 use crate::Real;
 use core::ops::Range;
-use nalgebra::SVector;
-
-/// The value of a field of particles: a number along a line, a vector in the plane.
-pub trait Position<T, const D: usize>: Copy + Send + Sync {
-    /// Its coordinates.
-    fn coordinates(&self) -> [T; D];
-
-    /// The one with these coordinates.
-    fn of(coordinates: [T; D]) -> Self;
-}
-
-impl<T: Real> Position<T, 1> for T {
-    #[inline(always)]
-    fn coordinates(&self) -> [T; 1] {
-        [*self]
-    }
-
-    #[inline(always)]
-    fn of([x]: [T; 1]) -> Self {
-        x
-    }
-}
-
-impl<T: Real> Position<T, 2> for SVector<T, 2> {
-    #[inline(always)]
-    fn coordinates(&self) -> [T; 2] {
-        [self[0], self[1]]
-    }
-
-    #[inline(always)]
-    fn of([x, y]: [T; 2]) -> Self {
-        SVector::<T, 2>::new(x, y)
-    }
-}
 
 /// What is kept of a particle: all that deposit and gather need.
 #[derive(Clone, Copy, Debug)]
@@ -95,7 +62,14 @@ pub(super) struct Sorted<T, const D: usize> {
     share: usize,
     /// Rows.
     count: usize,
+    /// How many threads share the particles.
+    #[cfg(feature = "rayon")]
+    threads: usize,
 }
+
+/// Most particles of a range, unless rows are so many that their ends would take more room than particles: what is
+/// known of so many fits the cache, and numbers in no order cost little.
+const RANGE: usize = 1 << 16;
 
 /// A range of particles while it is sorted.
 struct Part<'a, T, A, const D: usize> {
@@ -110,26 +84,35 @@ struct Part<'a, T, A, const D: usize> {
 impl<T: Real, const D: usize> Sorted<T, D> {
     /// Room for so many particles in so many rows.
     pub fn new(particles: usize, count: usize) -> Self {
-        Self {
+        let mut made = Self {
             particles: vec![Particle::none(); particles],
             rows: vec![0; particles],
-            ends: vec![0; count],
-            share: particles.max(1),
+            ends: vec![],
+            share: 1,
             count,
+            #[cfg(feature = "rayon")]
+            threads: 1,
+        };
+        made.share(1);
+        made
+    }
+
+    /// Has so many threads sort from now on.
+    pub fn share(&mut self, threads: usize) {
+        let most = RANGE.max(4 * self.count);
+        let all = self.particles.len();
+        self.share = all.div_ceil(threads.max(1)).clamp(1, most);
+        self.ends.resize(self.count * all.div_ceil(self.share), 0);
+        #[cfg(feature = "rayon")]
+        {
+            self.threads = threads.max(1);
         }
     }
 
-    /// How many ranges there are from now on.
-    pub fn share(&mut self, ranges: usize) {
-        self.share = self.particles.len().div_ceil(ranges.max(1)).max(1);
-        let ranges = self.particles.len().div_ceil(self.share).max(1);
-        self.ends.resize(self.count * ranges, 0);
-    }
-
-    /// Whether there are several ranges.
+    /// Of so many pieces of work, the fewest that a thread takes; none if there is one thread.
     #[cfg(feature = "rayon")]
-    pub fn is_shared(&self) -> bool {
-        self.ends.len() > self.count
+    pub fn least(&self, pieces: usize) -> Option<usize> {
+        (self.threads > 1).then(|| pieces.div_ceil(self.threads))
     }
 
     /// Particles of a range.
@@ -149,7 +132,7 @@ impl<T: Real, const D: usize> Sorted<T, D> {
     ) -> Result<(), MeshError> {
         let (share, count) = (self.share, self.count);
         #[cfg(feature = "rayon")]
-        let is_shared = self.is_shared();
+        let threads = self.threads;
         let parts = self.particles.chunks_mut(share).enumerate();
         let parts = parts
             .zip(self.rows.chunks_mut(share))
@@ -164,10 +147,12 @@ impl<T: Real, const D: usize> Sorted<T, D> {
             out,
         });
         #[cfg(feature = "rayon")]
-        if is_shared {
+        if threads > 1 {
             use rayon::prelude::*;
             let parts: Vec<_> = parts.collect();
-            let all: Vec<_> = parts.into_par_iter().map(|p| p.sort(axes)).collect();
+            let least = parts.len().div_ceil(threads);
+            let parts = parts.into_par_iter().with_min_len(least);
+            let all: Vec<_> = parts.map(|p| p.sort(axes)).collect();
             return all.into_iter().collect();
         }
         let mut parts = parts;

@@ -2,7 +2,8 @@
 //! nodes around each, and the derivatives of what stands at those nodes. Takes the rows of places that the splines of
 //! the row of cells cover. The innermost loops of deposit and gather: indices instead of adaptors, which are not inlined.
 
-use super::sorted::{Particle, Position};
+use super::position::Position;
+use super::sorted::Particle;
 use super::spline::{Basis, Splines};
 use crate::Real;
 

@@ -1,0 +1,37 @@
+//! What fields of particles have in common along a line and in the plane: the coordinates of a value.
+
+use crate::Real;
+use nalgebra::SVector;
+
+/// The value of a field of particles: a number along a line, a vector in the plane.
+pub trait Position<T, const D: usize>: Copy + Send + Sync {
+    /// Its coordinates.
+    fn coordinates(&self) -> [T; D];
+
+    /// The one with these coordinates.
+    fn of(coordinates: [T; D]) -> Self;
+}
+
+impl<T: Real> Position<T, 1> for T {
+    #[inline(always)]
+    fn coordinates(&self) -> [T; 1] {
+        [*self]
+    }
+
+    #[inline(always)]
+    fn of([x]: [T; 1]) -> Self {
+        x
+    }
+}
+
+impl<T: Real> Position<T, 2> for SVector<T, 2> {
+    #[inline(always)]
+    fn coordinates(&self) -> [T; 2] {
+        [self[0], self[1]]
+    }
+
+    #[inline(always)]
+    fn of([x, y]: [T; 2]) -> Self {
+        SVector::<T, 2>::new(x, y)
+    }
+}
