@@ -70,7 +70,7 @@ fn both(one: &mut dyn FnMut(), other: &mut dyn FnMut()) -> (f64, f64) {
     let time = |work: &mut dyn FnMut()| {
         let begin = computed();
         work();
-        (computed() - begin) / WORK as f64 * 1e9
+        (computed() - begin) / WORK as f64
     };
     let (mut a, mut b) = (Vec::new(), Vec::new());
     for _ in 0..BLOCKS {
