@@ -124,8 +124,8 @@ fn four_9_to_four_12_lose_a_half() {
             let mut moved = fixed.clone();
             moved[a] = Dual::variable(x[a], 0);
             let mut potential = Dual::constant(0.0);
-            for b in 0..n {
-                potential += Dual::constant(0.5 * m[b] * m[b]) / width(&moved, b);
+            for (b, m) in m.iter().enumerate() {
+                potential += Dual::constant(0.5 * m * m) / width(&moved, b);
             }
             wanted.push(-potential.dual[0] / m[a]);
             let (before, after) = (depth[(a + n - 1) % n], depth[(a + 1) % n]);

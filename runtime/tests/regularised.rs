@@ -10,6 +10,7 @@ use clebsch::mesh::{
     Domain, Functional, MeshError, Voronoi, helmholtz_depth, pair_core, second_moment, voronoi_area,
 };
 use clebsch::nalgebra::{DMatrix, DVector};
+use clebsch::saved::{Saved, Words};
 use derivatives::{Plane, against_differences, against_duals, numbers, random, seeds, setting};
 
 /// The bricks whose potentials are known.
@@ -435,5 +436,62 @@ fn threads_change_no_bit() {
     let one = run(1);
     for threads in [2, 3, 5] {
         assert!(run(threads) == one, "{threads}");
+    }
+}
+
+/// What is written down and put back into a depth made anew goes on to the same bits; what is no mesh is refused.
+#[test]
+fn a_resumed_mesh_goes_on_to_the_same_bits() {
+    let at = bricks();
+    let m = vec![1.0 / 144.0; 144];
+    let setting = setting([1.0, 1.0], 144);
+    let fresh = || helmholtz_depth::<f64>::new(&setting, (&m, 0.15)).unwrap();
+    let mut next = numbers(3);
+    let velocity: Vec<Plane> = at
+        .iter()
+        .map(|_| Plane::new(next() - 0.3, next() - 0.5))
+        .collect();
+    let place = |step: usize| -> Vec<Plane> {
+        let time = 0.004 * step as f64;
+        at.iter()
+            .zip(&velocity)
+            .map(|(x, v)| x + v * time)
+            .collect()
+    };
+    let run = |depth: &mut helmholtz_depth<f64>, steps: core::ops::Range<usize>| {
+        let (mut phi, mut force) = (vec![0.0; 144], vec![Plane::zeros(); 144]);
+        for step in steps {
+            depth.value(&place(step), &mut phi).unwrap();
+            depth.pull_back(&place(step), &m, &mut force).unwrap();
+        }
+        (phi, force, depth.mesh().counted())
+    };
+    let mut whole = fresh();
+    run(&mut whole, 0..200);
+    let mut words = Words::gathered();
+    whole.words(&mut words);
+    let list = words.into_list().unwrap();
+    let put = |list: Vec<u64>| {
+        let mut resumed = fresh();
+        let mut words = Words::given(list);
+        resumed.words(&mut words);
+        (words.all_put(), resumed)
+    };
+    // The last step once more, and others.
+    for until in [200, 260] {
+        let (fits, mut resumed) = put(list.clone());
+        assert!(fits);
+        let resumed = run(&mut resumed, 199..until);
+        assert!(resumed == run(&mut whole.clone(), 199..until), "{until}");
+        assert!(resumed.2.flips > 100, "{:?}", resumed.2);
+    }
+    for (place, word) in [(0, 6 * 144 - 6), (1, 900), (7, 3), (2, 5), (3, u64::MAX)] {
+        let mut list = list.clone();
+        list[place] = word;
+        let (fits, mut resumed) = put(list);
+        assert!(!fits, "{place}");
+        // Of use all the same.
+        let mut phi = vec![0.0; 144];
+        resumed.value(&at, &mut phi).unwrap();
     }
 }

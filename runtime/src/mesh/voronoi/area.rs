@@ -14,7 +14,7 @@ use nalgebra::SVector;
 #[allow(non_camel_case_types)] // Models name it.
 #[derive(Clone, Debug)]
 pub struct voronoi_area<T> {
-    mesh: Voronoi<T>,
+    pub(super) mesh: Voronoi<T>,
 }
 
 impl<T: Real> voronoi_area<T> {

@@ -13,7 +13,7 @@ use nalgebra::SVector;
 #[allow(non_camel_case_types)] // Models name it.
 #[derive(Clone, Debug)]
 pub struct second_moment<T> {
-    mesh: Voronoi<T>,
+    pub(super) mesh: Voronoi<T>,
 }
 
 impl<T: Real> Functional<T, 2> for second_moment<T> {
