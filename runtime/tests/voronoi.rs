@@ -111,6 +111,34 @@ fn flips_and_making_anew_give_the_same_cells() {
     }
 }
 
+/// Rows of a lattice slide past one another by exact parts of their distance, so that every in-circle test is a tie time
+/// and again: cells are those of a mesh made anew, of equal areas where rows are brought to a lattice.
+#[test]
+fn rows_slide_through_ties() {
+    let n = 8;
+    let mut at = lattice(&Domain::torus([1.0, 1.0]), [n, n], false, Jitter::NONE);
+    let mut followed = voronoi_area::<f64>::new(&setting([1.0, 1.0], n * n), ()).unwrap();
+    let mut out = vec![0.0; n * n];
+    for step in 0..=128 {
+        followed.value(&at, &mut out).unwrap();
+        let anew = areas_of([1.0, 1.0], &at).unwrap();
+        for (a, area) in out.iter().enumerate() {
+            assert!((area - anew[a]).abs() < 1e-14);
+            // Every row has neighbours at the same shift on either side.
+            assert!((area - 1.0 / 64.0).abs() < 1e-14, "{step} {a}: {area}");
+        }
+        for (k, x) in at.iter_mut().enumerate() {
+            x[0] += if (k / n) % 2 == 0 {
+                1.0 / 64.0
+            } else {
+                -1.0 / 64.0
+            };
+        }
+    }
+    let counted = followed.mesh().counted();
+    assert!(counted.flips > 500 && counted.rebuilds == 1, "{counted:?}");
+}
+
 /// Degenerate places are refused with their numbers, and the mesh goes on afterwards.
 #[test]
 fn degenerate_places_are_refused() {
@@ -219,6 +247,12 @@ fn special_positions_are_meshed() {
                 let apart = at[first] - at[second];
                 let apart = apart.map(|x| x - x.round());
                 assert!(apart.norm() < 1e-14, "set {k}: {first} {second}");
+            }
+            Err(MeshError::Flat { sites }) => {
+                // Sides are of a billionth of the domain or less.
+                let [a, b, c] = sites.map(|site| at[site]);
+                let shortest = [a - b, b - c, c - a].map(|x| x.map(|x| x - x.round()).norm());
+                assert!(shortest.iter().any(|x| *x < 1e-8), "set {k}: {shortest:?}");
             }
             Err(other) => panic!("set {k}: {other}"),
         }
