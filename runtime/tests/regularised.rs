@@ -46,7 +46,7 @@ fn the_depth_solves_its_equation() {
         let mut mesh = Voronoi::<f64>::new(&Domain::torus(lengths), count).unwrap();
         mesh.update(&at).unwrap();
         let mut areas = vec![0.0; count];
-        mesh.areas(&mut areas);
+        mesh.areas(&mut areas).unwrap();
         for a in 0..count {
             matrix[(a, a)] += areas[a];
         }

@@ -21,7 +21,7 @@ fn areas_of(lengths: [f64; 2], at: &[Plane]) -> Result<Vec<f64>, MeshError> {
 #[test]
 fn cells_are_those_cut_out_of_half_planes() {
     for count in (1..=20).chain([33, 60]) {
-        for seed in 0..10 {
+        for seed in 0..6 {
             let lengths = [[1.0, 1.0], [3.0, 0.7], [0.2, 2.5]][seed as usize % 3];
             let at = random(lengths, count, seed);
             let mut mesh = Voronoi::<f64>::new(&Domain::torus(lengths), count).unwrap();
@@ -31,9 +31,9 @@ fn cells_are_those_cut_out_of_half_planes() {
             let mut areas = vec![0.0; count];
             let mut centres = vec![Plane::zeros(); count];
             let mut moments = vec![0.0; count];
-            mesh.areas(&mut areas);
-            mesh.centroids(&areas, &mut centres);
-            mesh.second_moments(&mut moments);
+            mesh.areas(&mut areas).unwrap();
+            mesh.centroids(&areas, &mut centres).unwrap();
+            mesh.second_moments(&mut moments).unwrap();
             let whole = lengths[0] * lengths[1];
             let sum: f64 = areas.iter().sum();
             assert!((sum / whole - 1.0).abs() < 1e-13, "{count} {seed}: {sum}");

@@ -151,10 +151,10 @@ impl<T: Real> Voronoi<T> {
         Ok(())
     }
 
-    /// A particle's place within the domain, or within two periods of it.
+    /// The particles' places, within the domain or two periods of it.
     #[must_use]
-    pub fn place(&self, site: usize) -> SVector<T, 2> {
-        self.local[site]
+    pub fn places(&self) -> &[SVector<T, 2>] {
+        &self.local
     }
 
     /// The vector of an edge.
