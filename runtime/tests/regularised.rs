@@ -11,7 +11,9 @@ use clebsch::mesh::{
 };
 use clebsch::nalgebra::{DMatrix, DVector};
 use clebsch::saved::{Saved, Words};
-use derivatives::{Plane, against_differences, against_duals, numbers, random, seeds, setting};
+use derivatives::{
+    Plane, against_differences, against_duals, numbers, random, second_derivatives, seeds, setting,
+};
 
 /// The bricks whose potentials are known.
 fn bricks() -> Vec<Plane> {
@@ -493,5 +495,36 @@ fn a_resumed_mesh_goes_on_to_the_same_bits() {
         // Of use all the same.
         let mut phi = vec![0.0; 144];
         resumed.value(&at, &mut phi).unwrap();
+    }
+}
+
+/// Every functional with particles that move by dual numbers, the smoothed depth with and without a second solution.
+#[test]
+fn second_derivatives_are_symmetric() {
+    let jitter = Jitter { size: 0.3, seed: 8 };
+    let at = lattice(&Domain::torus([1.0, 0.9]), [4, 4], true, jitter);
+    let setting = setting([1.0, 0.9], 16);
+    let mut next = numbers(12);
+    let m: Vec<f64> = at.iter().map(|_| 0.5 + next()).collect();
+    let duals: Vec<_> = m.iter().map(|m| Dual::<1>::constant(*m)).collect();
+    let seed = seeds(16);
+    let constant = Dual::<1>::constant;
+    let mut area = voronoi_area::<f64>::new(&setting, ()).unwrap();
+    let mut dual = voronoi_area::<Dual<1>>::new(&setting, ()).unwrap();
+    second_derivatives(&mut area, &mut dual, &at, &seed, 1e-6);
+    let mut moment = second_moment::<f64>::new(&setting, ()).unwrap();
+    let mut dual = second_moment::<Dual<1>>::new(&setting, ()).unwrap();
+    second_derivatives(&mut moment, &mut dual, &at, &seed, 1e-6);
+    let mut core = pair_core::<f64>::new(&setting, (&m, 0.4, 2.0)).unwrap();
+    let data = (&duals[..], constant(0.4), constant(2.0));
+    let mut dual = pair_core::<Dual<1>>::new(&setting, data).unwrap();
+    second_derivatives(&mut core, &mut dual, &at, &seed, 1e-6);
+    let multiple: Vec<f64> = m.iter().map(|m| -0.37 * m).collect();
+    for seed in [seed, multiple] {
+        let mut depth = helmholtz_depth::<f64>::new(&setting, (&m, 0.2)).unwrap();
+        let data = (&duals[..], constant(0.2));
+        let mut dual = helmholtz_depth::<Dual<1>>::new(&setting, data).unwrap();
+        // What an iteration leaves, over the step of the differences.
+        second_derivatives(&mut depth, &mut dual, &at, &seed, 1e-6);
     }
 }
