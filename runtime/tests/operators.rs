@@ -24,7 +24,7 @@ fn bricks(n: usize, size: f64) -> Vec<Plane> {
 
 fn areas_of(mesh: &Voronoi<f64>) -> Vec<f64> {
     let mut areas = vec![0.0; mesh.sites()];
-    mesh.areas(&mut areas);
+    mesh.areas(&mut areas).unwrap();
     areas
 }
 
@@ -49,11 +49,12 @@ fn gradient_and_curl_are_exact_of_linear_functions() {
     let mut means = gradient.clone();
     let mut curl = vec![0.0; at.len()];
     let mut potential = curl.clone();
-    mesh.gradient(&q, &mut gradient);
-    mesh.gradient_of_means(&q, &mut means);
-    mesh.curl(&u, &mut curl);
+    mesh.gradient(&q, &mut gradient).unwrap();
+    mesh.gradient_of_means(&q, &mut means).unwrap();
+    mesh.curl(&u, &mut curl).unwrap();
     let (f, h) = (vec![5.0; at.len()], vec![2.0; at.len()]);
-    mesh.potential_vorticity(&u, &f, &h, &mut potential);
+    mesh.potential_vorticity(&u, &f, &h, &mut potential)
+        .unwrap();
     let (mut seen, mut worst) = (0, 0.0_f64);
     for (a, x) in at.iter().enumerate() {
         if x.iter().all(|x| (0.2..0.8).contains(x)) {
@@ -79,10 +80,10 @@ fn divergence_is_the_rate_of_areas() {
     let q: Vec<f64> = vectors(60, 4).iter().map(|v| v[0]).collect();
     let (mut divergence, mut of_means) = (vec![0.0; 60], vec![0.0; 60]);
     let (mut gradient, mut by_means) = (vec![Plane::zeros(); 60], vec![Plane::zeros(); 60]);
-    mesh.divergence(&u, &mut divergence);
-    mesh.divergence_of_means(&u, &mut of_means);
-    mesh.gradient(&q, &mut gradient);
-    mesh.gradient_of_means(&q, &mut by_means);
+    mesh.divergence(&u, &mut divergence).unwrap();
+    mesh.divergence_of_means(&u, &mut of_means).unwrap();
+    mesh.gradient(&q, &mut gradient).unwrap();
+    mesh.gradient_of_means(&q, &mut by_means).unwrap();
     for (d, g) in [(&divergence, &gradient), (&of_means, &by_means)] {
         let one: f64 = (0..60).map(|a| areas[a] * q[a] * d[a]).sum();
         let other: f64 = (0..60).map(|a| areas[a] * u[a].dot(&g[a])).sum();
@@ -116,9 +117,9 @@ fn orders_of_consistency() {
             .collect();
         let mut gradient = vec![Plane::zeros(); at.len()];
         if of_means {
-            mesh.gradient_of_means(&q, &mut gradient);
+            mesh.gradient_of_means(&q, &mut gradient).unwrap();
         } else {
-            mesh.gradient(&q, &mut gradient);
+            mesh.gradient(&q, &mut gradient).unwrap();
         }
         let (mut off, mut size) = (0.0, 0.0);
         for (x, g) in at.iter().zip(&gradient) {
@@ -152,11 +153,11 @@ fn the_operator_of_means_is_no_force_of_shallow_water() {
         let depth = |a: usize| m[a] / areas[a];
         if exact {
             let q: Vec<f64> = (0..count).map(|a| 0.5 * depth(a) * depth(a)).collect();
-            mesh.gradient(&q, &mut out);
+            mesh.gradient(&q, &mut out).unwrap();
             (0..count).map(|a| -out[a] * (areas[a] / m[a])).collect()
         } else {
             let q: Vec<f64> = (0..count).map(|a| m[a] * depth(a)).collect();
-            mesh.gradient_of_means(&q, &mut out);
+            mesh.gradient_of_means(&q, &mut out).unwrap();
             (0..count).map(|a| -out[a] / m[a]).collect()
         }
     };
@@ -218,8 +219,8 @@ fn circulation_changes_by_acceleration_alone() {
     let (u, force) = (vectors(count, 6), vectors(count, 7));
     let triangles = 2 * count;
     let (mut circulation, mut rate) = (vec![0.0; triangles], vec![0.0; triangles]);
-    mesh.circulations(&u, &mut circulation);
-    mesh.circulations(&force, &mut rate);
+    mesh.circulations(&u, &mut circulation).unwrap();
+    mesh.circulations(&force, &mut rate).unwrap();
     assert!(circulation.iter().sum::<f64>().abs() < 1e-13);
     let h = 1e-5;
     let later = |h: f64| -> Vec<f64> {
@@ -230,7 +231,7 @@ fn circulation_changes_by_acceleration_alone() {
         mesh.update(&at).unwrap();
         assert_eq!(mesh.counted().flips, 0);
         let mut out = vec![0.0; triangles];
-        mesh.circulations(&u, &mut out);
+        mesh.circulations(&u, &mut out).unwrap();
         out
     };
     let (above, below) = (later(h), later(-h));
@@ -243,7 +244,7 @@ fn circulation_changes_by_acceleration_alone() {
         .iter()
         .map(|x| Plane::new(-3.0 * x[1], 3.0 * x[0]))
         .collect();
-    mesh.circulations(&turning, &mut circulation);
+    mesh.circulations(&turning, &mut circulation).unwrap();
     for (triangle, circulation) in mesh.triangles().zip(&circulation) {
         if triangle
             .sites
@@ -276,7 +277,7 @@ fn the_nearest_are_neighbours() {
             "{count}: {} {nearest}",
             found.value
         );
-        let rate = mesh_of(lengths, &at).fastest(&vec![2.0; count]);
+        let rate = mesh_of(lengths, &at).fastest(&vec![2.0; count]).unwrap();
         assert!((rate.value * nearest - 2.0).abs() < 1e-11);
     }
 }

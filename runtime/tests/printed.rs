@@ -34,7 +34,7 @@ impl Water {
         let mut mesh = Voronoi::new(&domain, 64).unwrap();
         mesh.update(&at).unwrap();
         let mut areas = vec![0.0; 64];
-        mesh.areas(&mut areas);
+        mesh.areas(&mut areas).unwrap();
         Self {
             at,
             u,
@@ -68,7 +68,7 @@ impl Water {
     fn printed_acceleration(&self) -> Vec<Plane> {
         let q: Vec<f64> = (0..64).map(|a| self.m[a] * self.depth(a)).collect();
         let mut out = vec![Plane::zeros(); 64];
-        self.mesh.gradient_of_means(&q, &mut out);
+        self.mesh.gradient_of_means(&q, &mut out).unwrap();
         out.iter().zip(&self.m).map(|(g, m)| -g / *m).collect()
     }
 
@@ -124,8 +124,8 @@ fn four_9_to_four_12_lose_a_half() {
             let mut moved = fixed.clone();
             moved[a] = Dual::variable(x[a], 0);
             let mut potential = Dual::constant(0.0);
-            for b in 0..n {
-                potential += Dual::constant(0.5 * m[b] * m[b]) / width(&moved, b);
+            for (b, m) in m.iter().enumerate() {
+                potential += Dual::constant(0.5 * m * m) / width(&moved, b);
             }
             wanted.push(-potential.dual[0] / m[a]);
             let (before, after) = (depth[(a + n - 1) % n], depth[(a + 1) % n]);
@@ -173,7 +173,10 @@ fn four_29_is_not_the_rate_of_areas() {
         let water = Water::random(seed);
         let wanted = water.rates();
         let (mut printed, mut right) = (vec![0.0; 64], vec![0.0; 64]);
-        water.mesh.divergence_of_means(&water.u, &mut printed);
+        water
+            .mesh
+            .divergence_of_means(&water.u, &mut printed)
+            .unwrap();
         for (found, area) in printed.iter_mut().zip(&water.areas) {
             *found *= area;
         }
@@ -205,7 +208,10 @@ fn four_32_does_not_conserve_the_energy() {
                 .sum()
         };
         let mut printed = vec![0.0; 64];
-        water.mesh.divergence_of_means(&water.u, &mut printed);
+        water
+            .mesh
+            .divergence_of_means(&water.u, &mut printed)
+            .unwrap();
         for (rate, area) in printed.iter_mut().zip(&water.areas) {
             *rate *= area;
         }

@@ -10,7 +10,10 @@ use clebsch::mesh::{
     Domain, Functional, MeshError, Voronoi, helmholtz_depth, pair_core, second_moment, voronoi_area,
 };
 use clebsch::nalgebra::{DMatrix, DVector};
-use derivatives::{Plane, against_differences, against_duals, numbers, random, seeds, setting};
+use clebsch::saved::{Saved, Words};
+use derivatives::{
+    Plane, against_differences, against_duals, numbers, random, second_derivatives, seeds, setting,
+};
 
 /// The bricks whose potentials are known.
 fn bricks() -> Vec<Plane> {
@@ -45,7 +48,7 @@ fn the_depth_solves_its_equation() {
         let mut mesh = Voronoi::<f64>::new(&Domain::torus(lengths), count).unwrap();
         mesh.update(&at).unwrap();
         let mut areas = vec![0.0; count];
-        mesh.areas(&mut areas);
+        mesh.areas(&mut areas).unwrap();
         for a in 0..count {
             matrix[(a, a)] += areas[a];
         }
@@ -435,5 +438,93 @@ fn threads_change_no_bit() {
     let one = run(1);
     for threads in [2, 3, 5] {
         assert!(run(threads) == one, "{threads}");
+    }
+}
+
+/// What is written down and put back into a depth made anew goes on to the same bits; what is no mesh is refused.
+#[test]
+fn a_resumed_mesh_goes_on_to_the_same_bits() {
+    let at = bricks();
+    let m = vec![1.0 / 144.0; 144];
+    let setting = setting([1.0, 1.0], 144);
+    let fresh = || helmholtz_depth::<f64>::new(&setting, (&m, 0.15)).unwrap();
+    let mut next = numbers(3);
+    let velocity: Vec<Plane> = at
+        .iter()
+        .map(|_| Plane::new(next() - 0.3, next() - 0.5))
+        .collect();
+    let place = |step: usize| -> Vec<Plane> {
+        let time = 0.004 * step as f64;
+        at.iter()
+            .zip(&velocity)
+            .map(|(x, v)| x + v * time)
+            .collect()
+    };
+    let run = |depth: &mut helmholtz_depth<f64>, steps: core::ops::Range<usize>| {
+        let (mut phi, mut force) = (vec![0.0; 144], vec![Plane::zeros(); 144]);
+        for step in steps {
+            depth.value(&place(step), &mut phi).unwrap();
+            depth.pull_back(&place(step), &m, &mut force).unwrap();
+        }
+        (phi, force, depth.mesh().counted())
+    };
+    let mut whole = fresh();
+    run(&mut whole, 0..200);
+    let mut words = Words::gathered();
+    whole.words(&mut words);
+    let list = words.into_list().unwrap();
+    let put = |list: Vec<u64>| {
+        let mut resumed = fresh();
+        let mut words = Words::given(list);
+        resumed.words(&mut words);
+        (words.all_put(), resumed)
+    };
+    // The last step once more, and others.
+    for until in [200, 260] {
+        let (fits, mut resumed) = put(list.clone());
+        assert!(fits);
+        let resumed = run(&mut resumed, 199..until);
+        assert!(resumed == run(&mut whole.clone(), 199..until), "{until}");
+        assert!(resumed.2.flips > 100, "{:?}", resumed.2);
+    }
+    for (place, word) in [(0, 6 * 144 - 6), (1, 900), (7, 3), (2, 5), (3, u64::MAX)] {
+        let mut list = list.clone();
+        list[place] = word;
+        let (fits, mut resumed) = put(list);
+        assert!(!fits, "{place}");
+        // Of use all the same.
+        let mut phi = vec![0.0; 144];
+        resumed.value(&at, &mut phi).unwrap();
+    }
+}
+
+/// Every functional with particles that move by dual numbers, the smoothed depth with and without a second solution.
+#[test]
+fn second_derivatives_are_symmetric() {
+    let jitter = Jitter { size: 0.3, seed: 8 };
+    let at = lattice(&Domain::torus([1.0, 0.9]), [4, 4], true, jitter);
+    let setting = setting([1.0, 0.9], 16);
+    let mut next = numbers(12);
+    let m: Vec<f64> = at.iter().map(|_| 0.5 + next()).collect();
+    let duals: Vec<_> = m.iter().map(|m| Dual::<1>::constant(*m)).collect();
+    let seed = seeds(16);
+    let constant = Dual::<1>::constant;
+    let mut area = voronoi_area::<f64>::new(&setting, ()).unwrap();
+    let mut dual = voronoi_area::<Dual<1>>::new(&setting, ()).unwrap();
+    second_derivatives(&mut area, &mut dual, &at, &seed, 1e-6);
+    let mut moment = second_moment::<f64>::new(&setting, ()).unwrap();
+    let mut dual = second_moment::<Dual<1>>::new(&setting, ()).unwrap();
+    second_derivatives(&mut moment, &mut dual, &at, &seed, 1e-6);
+    let mut core = pair_core::<f64>::new(&setting, (&m, 0.4, 2.0)).unwrap();
+    let data = (&duals[..], constant(0.4), constant(2.0));
+    let mut dual = pair_core::<Dual<1>>::new(&setting, data).unwrap();
+    second_derivatives(&mut core, &mut dual, &at, &seed, 1e-6);
+    let multiple: Vec<f64> = m.iter().map(|m| -0.37 * m).collect();
+    for seed in [seed, multiple] {
+        let mut depth = helmholtz_depth::<f64>::new(&setting, (&m, 0.2)).unwrap();
+        let data = (&duals[..], constant(0.2));
+        let mut dual = helmholtz_depth::<Dual<1>>::new(&setting, data).unwrap();
+        // What an iteration leaves, over the step of the differences.
+        second_derivatives(&mut depth, &mut dual, &at, &seed, 1e-6);
     }
 }

@@ -26,6 +26,11 @@ pub enum MeshError {
         /// The other.
         second: usize,
     },
+    /// Three neighbours are so nearly on a line, for their distances, that rounding decides the shape of their cells.
+    Flat {
+        /// They.
+        sites: [usize; 3],
+    },
     /// An iteration did not arrive.
     NotConverged {
         /// Steps taken.
@@ -72,6 +77,10 @@ impl fmt::Display for MeshError {
             Self::Coincident { first, second } => {
                 write!(f, "particles {first} and {second} are at one place")
             }
+            Self::Flat { sites: [a, b, c] } => write!(
+                f,
+                "particles {a}, {b} and {c} are so near and so nearly on a line that rounding decides their cells"
+            ),
             Self::NotConverged {
                 iterations,
                 residual,

@@ -110,3 +110,56 @@ pub fn seeds(count: usize) -> Vec<f64> {
     let mut next = numbers(11);
     (0..count).map(|_| next() - 0.4).collect()
 }
+
+/// Second derivatives, by pulling back dual numbers, are symmetric, and a few are those of differences: what a tangent
+/// map of a step is made of.
+pub fn second_derivatives<R, F>(f: &mut R, dual: &mut F, at: &[Plane], seed: &[f64], tolerance: f64)
+where
+    R: Functional<f64, 2, Argument = Plane>,
+    F: Functional<Dual<1>, 2, Argument = SVector<Dual<1>, 2>>,
+{
+    let count = at.len();
+    let mut moved: Vec<_> = at.iter().map(|x| x.map(Dual::<1>::constant)).collect();
+    let seeds: Vec<_> = seed.iter().map(|s| Dual::<1>::constant(*s)).collect();
+    let mut values = vec![Dual::<1>::constant(0.0); count];
+    let mut gradient = vec![SVector::<Dual<1>, 2>::zeros(); count];
+    let mut rows = Vec::new();
+    for i in 0..2 * count {
+        let (a, k) = (i / 2, i % 2);
+        moved[a][k] = Dual::variable(at[a][k], 0);
+        dual.value(&moved, &mut values).unwrap();
+        dual.pull_back(&moved, &seeds, &mut gradient).unwrap();
+        moved[a][k] = Dual::constant(at[a][k]);
+        let row: Vec<f64> = (0..2 * count)
+            .map(|j| gradient[j / 2][j % 2].dual[0])
+            .collect();
+        rows.push(row);
+    }
+    let size = rows
+        .iter()
+        .flatten()
+        .fold(0.0_f64, |size, x| size.max(x.abs()));
+    for (i, row) in rows.iter().enumerate() {
+        for (j, entry) in row.iter().enumerate() {
+            let off = (entry - rows[j][i]).abs();
+            assert!(off < 1e-10 * size, "{i} {j}: {entry} {}", rows[j][i]);
+        }
+    }
+    let h = 1e-5;
+    let (mut out, mut above) = (vec![0.0; count], vec![Plane::zeros(); count]);
+    let mut below = above.clone();
+    let mut at = at.to_vec();
+    let x = at[1][0];
+    for (shift, gradient) in [(h, &mut above), (-h, &mut below)] {
+        at[1][0] = x + shift;
+        f.value(&at, &mut out).unwrap();
+        f.pull_back(&at, seed, gradient).unwrap();
+    }
+    for (j, entry) in rows[2].iter().enumerate() {
+        let difference = (above[j / 2][j % 2] - below[j / 2][j % 2]) / (2.0 * h);
+        assert!(
+            (entry - difference).abs() < tolerance * size,
+            "{j}: {entry} {difference}"
+        );
+    }
+}

@@ -14,7 +14,7 @@ use nalgebra::SVector;
 #[allow(non_camel_case_types)] // Models name it.
 #[derive(Clone, Debug)]
 pub struct voronoi_area<T> {
-    mesh: Voronoi<T>,
+    pub(super) mesh: Voronoi<T>,
 }
 
 impl<T: Real> voronoi_area<T> {
@@ -41,8 +41,7 @@ impl<T: Real> Functional<T, 2> for voronoi_area<T> {
     fn value(&mut self, at: &[Self::Argument], out: &mut [T]) -> Result<(), MeshError> {
         MeshError::unless_of_length(out, self.sites())?;
         self.mesh.update(at)?;
-        self.mesh.areas(out);
-        Ok(())
+        self.mesh.areas(out)
     }
 
     fn pull_back(

@@ -52,8 +52,9 @@ impl Bins {
                 return Err(MeshError::NotFinite { site });
             }
             for (k, &x) in x.iter().enumerate() {
-                let turns = (x / self.lengths[k]).floor();
-                let share = x / self.lengths[k] - turns;
+                let along = x / self.lengths[k];
+                let turns = along.floor();
+                let share = along - turns;
                 self.turns[site][k] = turns;
                 let count = self.count[k];
                 self.square[site][k] = ((share * f64::from(count)) as u32).min(count - 1);
@@ -83,21 +84,28 @@ impl Bins {
         mut call: impl FnMut(usize, [f64; 2]) -> Result<(), MeshError>,
     ) -> Result<(), MeshError> {
         let own = self.square[site];
+        let mut visit = |first: [u32; 2], squares: usize, periods: [f64; 2]| {
+            let number = self.number(first);
+            let range = self.start[number] as usize..self.start[number + squares] as usize;
+            let turns: [f64; 2] = core::array::from_fn(|k| self.turns[site][k] + periods[k]);
+            for &other in &self.sorted[range] {
+                let other = other as usize;
+                if other != site {
+                    let shift = |k: usize| (turns[k] - self.turns[other][k]) * self.lengths[k];
+                    call(other, [shift(0), shift(1)])?;
+                }
+            }
+            Ok(())
+        };
         for j in -1..=1 {
-            for i in -1..=1 {
-                let (square, periods) = self.neighbour(own, [i, j]);
-                let number = self.number(square);
-                let range = self.start[number] as usize..self.start[number + 1] as usize;
-                for &other in &self.sorted[range] {
-                    let other = other as usize;
-                    if other == site {
-                        continue;
-                    }
-                    let shift = core::array::from_fn(|k| {
-                        let turns = self.turns[site][k] - self.turns[other][k] + periods[k];
-                        turns * self.lengths[k]
-                    });
-                    call(other, shift)?;
+            if own[0] > 0 && own[0] + 1 < self.count[0] {
+                // Three in a row, one after another.
+                let (first, periods) = self.neighbour(own, [-1, j]);
+                visit(first, 3, periods)?;
+            } else {
+                for i in -1..=1 {
+                    let (square, periods) = self.neighbour(own, [i, j]);
+                    visit(square, 1, periods)?;
                 }
             }
         }

@@ -4,6 +4,7 @@
 
 use super::mesh::{Plane, Voronoi, dot, left};
 use crate::Real;
+use crate::mesh::MeshError;
 use nalgebra::SVector;
 
 /// The face between two cells, and the edge that crosses it.
@@ -21,7 +22,17 @@ pub struct Face<T> {
 
 impl<T: Real> Voronoi<T> {
     /// Area of every cell. Their sum is the area of the domain, whatever the mesh.
-    pub fn areas(&self, out: &mut [T]) {
+    ///
+    /// # Errors
+    /// [`MeshError::Count`] where there are not as many numbers as sites, here and below.
+    pub fn areas(&self, out: &mut [T]) -> Result<(), MeshError> {
+        MeshError::unless_of_length(out, self.sites())?;
+        self.sum_areas(out);
+        Ok(())
+    }
+
+    /// The same, of as many numbers as sites.
+    pub(super) fn sum_areas(&self, out: &mut [T]) {
         out.fill(T::zero());
         let quarter = T::from_f64(0.25);
         for triangle in self.triangles() {
@@ -57,13 +68,19 @@ impl<T: Real> Voronoi<T> {
         }
     }
 
-    /// From every site to the centre of mass of its cell.
-    pub fn centroids(&self, areas: &[T], out: &mut [SVector<T, 2>]) {
+    /// From every site to the centre of mass of its cell, whose area is given.
+    ///
+    /// # Errors
+    /// [`MeshError::Count`].
+    pub fn centroids(&self, areas: &[T], out: &mut [SVector<T, 2>]) -> Result<(), MeshError> {
+        MeshError::unless_of_length(areas, self.sites())?;
+        MeshError::unless_of_length(out, self.sites())?;
         out.fill(Plane::zeros());
         self.add_first_moments(|_| T::one(), out);
         for (centre, &area) in out.iter_mut().zip(areas) {
             *centre /= area;
         }
+        Ok(())
     }
 
     /// Adds to `out` the integral of `x - X_a` over each cell, times a number.
@@ -82,7 +99,11 @@ impl<T: Real> Voronoi<T> {
     }
 
     /// Integral of `|x - X_a|^2` over every cell.
-    pub fn second_moments(&self, out: &mut [T]) {
+    ///
+    /// # Errors
+    /// [`MeshError::Count`].
+    pub fn second_moments(&self, out: &mut [T]) -> Result<(), MeshError> {
+        MeshError::unless_of_length(out, self.sites())?;
         out.fill(T::zero());
         let (first, second) = (T::from_ratio(1, 32), T::from_ratio(1, 24));
         for triangle in self.triangles() {
@@ -94,6 +115,7 @@ impl<T: Real> Voronoi<T> {
                 out[triangle.sites[(k + 1) % 3]] += part;
             }
         }
+        Ok(())
     }
 
     /// The faces, three times as many as particles.

@@ -12,6 +12,9 @@ use crate::mesh::MeshError;
 /// A site this many periods or more from where it was counted is counted anew.
 const FAR: f64 = 2.0;
 
+/// How many grains a triangle is high at least: of fewer, its angles are not known to three digits.
+const THINNEST: f64 = 2048.0;
+
 /// Offsets beyond this are no longer kept up.
 const LARGEST_OFFSET: f64 = 4096.0;
 
@@ -71,8 +74,7 @@ impl Delaunay {
     pub fn follow(&mut self, at: impl Fn(usize) -> [f64; 2]) -> Result<(), MeshError> {
         let kept = !self.edges.origin.is_empty() && self.place(&at)? && self.find_suspects();
         if kept {
-            self.repair();
-            return Ok(());
+            return self.repair();
         }
         let made = self.begin(&at).and_then(|()| self.insert_all());
         if made.is_err() {
@@ -147,12 +149,16 @@ impl Delaunay {
         left
     }
 
-    /// Collects the edges of a triangle that are not Delaunay; whether it turns left.
+    /// Collects the edges of a triangle that are not Delaunay, and one of a flat triangle; whether it turns left.
     #[inline(always)]
     fn suspect(&self, e: usize, found: &mut Vec<u32>) -> bool {
         let (first, second) = (self.edge(e), self.edge(e + 1));
-        if turn(first, second) <= 0.0 {
+        let twice_area = turn(first, second);
+        if twice_area <= 0.0 {
             return false;
+        }
+        if flat(twice_area, first, second) {
+            found.extend([e as u32]);
         }
         let third = [-first[0] - second[0], -first[1] - second[1]];
         let sides = [first, second, third];
@@ -175,13 +181,46 @@ impl Delaunay {
 
     /// Flips suspected edges, and suspects those around them, until all are Delaunay. Ends, because each flip lowers the
     /// lifted surface.
-    pub(super) fn repair(&mut self) {
+    pub(super) fn repair(&mut self) -> Result<(), MeshError> {
+        let mut flat = false;
         while let Some(e) = self.suspects.pop() {
-            if self.is_bad(e as usize) {
-                self.counted.flips += 1;
-                let around = self.edges.flip(e as usize);
-                self.suspects.extend(around.map(|e| e as u32));
+            let e = e as usize;
+            if self.is_bad(e) {
+                self.flip(e);
+            } else {
+                flat |= self.is_flat(e / 3);
+            }
+        }
+        if !flat {
+            return Ok(());
+        }
+        // One that was met may be gone by now.
+        match (0..self.edges.len() / 3).find(|&t| self.is_flat(t)) {
+            None => Ok(()),
+            Some(t) => {
+                let sites = [0, 1, 2].map(|k| self.edges.origin[3 * t + k] as usize);
+                Err(MeshError::Flat { sites })
             }
         }
     }
+
+    /// Flips an edge and suspects the four around it.
+    pub(super) fn flip(&mut self, e: usize) {
+        self.counted.flips += 1;
+        let around = self.edges.flip(e);
+        self.suspects.extend(around.map(|e| e as u32));
+    }
+
+    /// Whether rounding decides the shape of a triangle.
+    fn is_flat(&self, t: usize) -> bool {
+        let (first, second) = (self.edge(3 * t), self.edge(3 * t + 1));
+        flat(turn(first, second), first, second)
+    }
+}
+
+/// Whether two sides of a triangle of this doubled area are known too little: their lengths to half a grain each.
+#[inline(always)]
+fn flat(twice_area: f64, first: Grains, second: Grains) -> bool {
+    let reach = first[0].abs() + first[1].abs() + second[0].abs() + second[1].abs();
+    twice_area <= THINNEST * reach
 }

@@ -21,15 +21,17 @@ use nalgebra::SVector;
 #[allow(non_camel_case_types)] // Models name it.
 #[derive(Clone, Debug)]
 pub struct helmholtz_depth<T> {
-    mesh: Voronoi<T>,
+    pub(super) mesh: Voronoi<T>,
     operator: Helmholtz<T>,
     iteration: Iteration<T>,
     masses: Vec<T>,
     /// Where the last value was taken.
-    at: Vec<Plane<T>>,
+    pub(super) at: Vec<Plane<T>>,
     /// The last values, the latest first.
-    solutions: [Vec<T>; 4],
-    solved: usize,
+    pub(super) solutions: [Vec<T>; 4],
+    pub(super) solved: usize,
+    /// Whether mesh and operator are those of the last value.
+    pub(super) ready: bool,
     adjoint: Vec<T>,
     products: usize,
     adjoint_products: usize,
@@ -120,6 +122,7 @@ impl<T: Real> Functional<T, 2> for helmholtz_depth<T> {
             at: vec![Plane::zeros(); setting.particles],
             solutions: core::array::from_fn(|_| zeros.clone()),
             solved: 0,
+            ready: false,
             adjoint: zeros,
             products: 0,
             adjoint_products: 0,
@@ -132,13 +135,18 @@ impl<T: Real> Functional<T, 2> for helmholtz_depth<T> {
 
     fn value(&mut self, at: &[Self::Argument], out: &mut [T]) -> Result<(), MeshError> {
         MeshError::unless_of_length(out, self.sites())?;
-        if self.solved > 0 && self.at == at {
+        let again = self.solved > 0 && self.at == at;
+        if !(again && self.ready) {
+            self.ready = false;
+            self.mesh.update(at)?;
+            self.operator.update(&self.mesh);
+            self.ready = true;
+        }
+        if again {
             self.products = 0;
             out.copy_from_slice(&self.solutions[0]);
             return Ok(());
         }
-        self.mesh.update(at)?;
-        self.operator.update(&self.mesh);
         self.extrapolate();
         let solution = &mut self.solutions[0];
         match self.iteration.solve(&self.operator, &self.masses, solution) {

@@ -36,6 +36,7 @@ impl Delaunay {
     /// Inserts all sites.
     pub(super) fn insert_all(&mut self) -> Result<(), MeshError> {
         self.counted.rebuilds += 1;
+        let flips = self.counted.flips;
         let order = self.order();
         let Some(&first) = order.first() else {
             return Ok(());
@@ -51,10 +52,10 @@ impl Delaunay {
             near = self.insert(site, near)?;
         }
         self.edges.sort_by_sites(self.sites());
-        // Nothing is left to flip; it costs little to see that.
+        self.counted.flips = flips;
+        // Nothing is left to flip, but triangles may be flat.
         self.find_suspects();
-        self.repair();
-        Ok(())
+        self.repair()
     }
 
     /// Inserts a site, looked for from a half-edge; gives a half-edge nearby.
@@ -87,33 +88,15 @@ impl Delaunay {
         self.suspects.extend(sides.map(|e| e as u32));
         if let Some(k) = on.iter().position(|&on| on) {
             // The site is on this side: its triangle is flat, and one flip divides the neighbour as well.
-            self.connect(sides[k]);
+            self.flip(sides[k]);
         }
+        // Edges of the new site as well: on a torus other copies of it may be near.
         while let Some(e) = self.suspects.pop() {
             if self.is_bad(e as usize) {
-                self.connect(e as usize);
+                self.flip(e as usize);
             }
         }
         Ok(e)
-    }
-
-    /// Flips an edge across from the new site, which is then across from two further ones: these are suspect. Edges of
-    /// the new site are none, unless another copy of it is near.
-    fn connect(&mut self, e: usize) {
-        let edges = &self.edges;
-        let twin = edges.twin[e] as usize;
-        let site = edges.origin[previous(e)];
-        let ends = [
-            edges.origin[e],
-            edges.origin[twin],
-            edges.origin[previous(twin)],
-        ];
-        let around = self.edges.flip(e);
-        if ends.contains(&site) {
-            self.suspects.extend(around.map(|e| e as u32));
-        } else {
-            self.suspects.extend([around[0] as u32, around[3] as u32]);
-        }
     }
 
     /// A half-edge of the triangle that holds a site, and the vector from where it leaves to the site.

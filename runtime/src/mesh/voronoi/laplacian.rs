@@ -41,7 +41,7 @@ impl<T: Real> Helmholtz<T> {
 
     /// Makes the rows those of a mesh.
     pub fn update(&mut self, mesh: &Voronoi<T>) {
-        mesh.areas(&mut self.areas);
+        mesh.sum_areas(&mut self.areas);
         self.diagonal.copy_from_slice(&self.areas);
         for (halves, triangle) in self.halves.chunks_exact_mut(3).zip(mesh.triangles()) {
             halves.copy_from_slice(&triangle.weights);

@@ -133,8 +133,8 @@ impl<T: Real> Voronoi<T> {
     /// Moves the particles, not wrapped or wrapped, and makes the mesh theirs.
     ///
     /// # Errors
-    /// [`MeshError::Coincident`] where two particles are nearer than 4e-15 of the longer period,
-    /// [`MeshError::NotFinite`], [`MeshError::Count`]. The mesh is of no use then, until the next update.
+    /// [`MeshError::Coincident`] where two particles are nearer than 1e-15 of the longer period,
+    /// [`MeshError::Flat`] where three are nearly that, [`MeshError::NotFinite`], [`MeshError::TooFar`], [`MeshError::Count`]. The mesh is of no use then, until the next update.
     pub fn update(&mut self, at: &[SVector<T, 2>]) -> Result<(), MeshError> {
         MeshError::unless_of_length(at, self.sites())?;
         self.delaunay.follow(|site| {
@@ -151,10 +151,10 @@ impl<T: Real> Voronoi<T> {
         Ok(())
     }
 
-    /// A particle's place within the domain, or within two periods of it.
+    /// The particles' places, within the domain or two periods of it.
     #[must_use]
-    pub fn place(&self, site: usize) -> SVector<T, 2> {
-        self.local[site]
+    pub fn places(&self) -> &[SVector<T, 2>] {
+        &self.local
     }
 
     /// The vector of an edge.

@@ -21,6 +21,7 @@ pub mod placement;
 mod polygons;
 mod predicates;
 mod repulsion;
+mod saved;
 mod shared;
 mod spacing;
 mod torus;

@@ -13,7 +13,7 @@ use nalgebra::SVector;
 #[allow(non_camel_case_types)] // Models name it.
 #[derive(Clone, Debug)]
 pub struct second_moment<T> {
-    mesh: Voronoi<T>,
+    pub(super) mesh: Voronoi<T>,
 }
 
 impl<T: Real> Functional<T, 2> for second_moment<T> {
@@ -32,8 +32,7 @@ impl<T: Real> Functional<T, 2> for second_moment<T> {
     fn value(&mut self, at: &[Self::Argument], out: &mut [T]) -> Result<(), MeshError> {
         MeshError::unless_of_length(out, self.sites())?;
         self.mesh.update(at)?;
-        self.mesh.second_moments(out);
-        Ok(())
+        self.mesh.second_moments(out)
     }
 
     fn pull_back(

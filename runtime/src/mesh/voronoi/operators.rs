@@ -5,93 +5,127 @@
 use super::cells::Face;
 use super::mesh::{Plane, Voronoi, dot, left};
 use crate::Real;
+use crate::mesh::MeshError;
 use nalgebra::SVector;
 
 impl<T: Real> Voronoi<T> {
     /// `(1/A_a) sum_b (q_b - q_a) (l/R) (c - X_a)`: exact of linear functions on every mesh (Serrano and Espanol, 2001).
-    pub fn gradient(&self, q: &[T], out: &mut [SVector<T, 2>]) {
-        self.per_area(out, |face, add| {
+    ///
+    /// # Errors
+    /// [`MeshError::Count`] where there are not as many values as sites.
+    pub fn gradient(&self, q: &[T], out: &mut [SVector<T, 2>]) -> Result<(), MeshError> {
+        self.per_area(q, out, |face, add| {
             let [a, b] = face.sites;
             let flow = (q[b] - q[a]) * face.ratio;
             add(a, face.middle * flow);
             add(b, (face.edge - face.middle) * flow);
-        });
+        })
     }
 
     /// The relative rate of change of areas, `(1/A_a) dA_a/dt`, of particles with the velocities `u`: the divergence
     /// whose negative adjoint in the areas is [`Voronoi::gradient`].
-    pub fn divergence(&self, u: &[SVector<T, 2>], out: &mut [T]) {
-        self.per_area(out, |face, add| {
+    ///
+    /// # Errors
+    /// [`MeshError::Count`] where there are not as many values as sites.
+    pub fn divergence(&self, u: &[SVector<T, 2>], out: &mut [T]) -> Result<(), MeshError> {
+        self.per_area(u, out, |face, add| {
             let [a, b] = face.sites;
             let seen = face.middle - face.edge;
             let flow = (dot(face.middle, u[a]) - dot(seen, u[b])) * face.ratio;
             add(a, flow);
             add(b, -flow);
-        });
+        })
     }
 
     /// The curl, `d_1 u_2 - d_2 u_1` by [`Voronoi::gradient`]: exact of linear velocities, but its integral is not zero.
-    pub fn curl(&self, u: &[SVector<T, 2>], out: &mut [T]) {
-        self.per_area(out, |face, add| {
+    ///
+    /// # Errors
+    /// [`MeshError::Count`] where there are not as many values as sites.
+    pub fn curl(&self, u: &[SVector<T, 2>], out: &mut [T]) -> Result<(), MeshError> {
+        self.per_area(u, out, |face, add| {
             let [a, b] = face.sites;
             let shear = left(u[a] - u[b]) * face.ratio;
             add(a, dot(face.middle, shear));
             add(b, dot(face.edge - face.middle, shear));
-        });
+        })
     }
 
     /// `(1/A_a) sum_b (q_a + q_b)/2 l n`: of means at the edges' middles, which are not those of the faces. Of linear
     /// functions it is exact on lattices alone, elsewhere its error does not fall with the distance of particles. With
     /// `q = m h` and divided by `-m` it is an operator that has been used for the acceleration of shallow water.
-    pub fn gradient_of_means(&self, q: &[T], out: &mut [SVector<T, 2>]) {
+    ///
+    /// # Errors
+    /// [`MeshError::Count`] where there are not as many values as sites.
+    pub fn gradient_of_means(&self, q: &[T], out: &mut [SVector<T, 2>]) -> Result<(), MeshError> {
         let half = T::from_f64(0.5);
-        self.per_area(out, |face, add| {
+        self.per_area(q, out, |face, add| {
             let [a, b] = face.sites;
             let flow = face.edge * ((q[a] + q[b]) * face.ratio * half);
             add(a, flow);
             add(b, -flow);
-        });
+        })
     }
 
     /// `(1/A_a) sum_b (u_a + u_b)/2 . l n`, the negative adjoint of [`Voronoi::gradient_of_means`].
-    pub fn divergence_of_means(&self, u: &[SVector<T, 2>], out: &mut [T]) {
+    ///
+    /// # Errors
+    /// [`MeshError::Count`] where there are not as many values as sites.
+    pub fn divergence_of_means(&self, u: &[SVector<T, 2>], out: &mut [T]) -> Result<(), MeshError> {
         let half = T::from_f64(0.5);
-        self.per_area(out, |face, add| {
+        self.per_area(u, out, |face, add| {
             let [a, b] = face.sites;
             let flow = dot(face.edge, u[a] + u[b]) * face.ratio * half;
             add(a, flow);
             add(b, -flow);
-        });
+        })
     }
 
     /// `(1/A_a) sum_b (u_a + u_b)/2 . l t`, with `t` along the face: its integral is zero.
-    pub fn curl_of_means(&self, u: &[SVector<T, 2>], out: &mut [T]) {
+    ///
+    /// # Errors
+    /// [`MeshError::Count`] where there are not as many values as sites.
+    pub fn curl_of_means(&self, u: &[SVector<T, 2>], out: &mut [T]) -> Result<(), MeshError> {
         let half = T::from_f64(0.5);
-        self.per_area(out, |face, add| {
+        self.per_area(u, out, |face, add| {
             let [a, b] = face.sites;
             let flow = dot(left(face.edge), u[a] + u[b]) * face.ratio * half;
             add(a, flow);
             add(b, -flow);
-        });
+        })
     }
 
     /// Potential vorticity `(zeta + f)/h` with [`Voronoi::curl`], where the rotation is `f` and the depth `h` at each
     /// particle.
-    pub fn potential_vorticity(&self, u: &[SVector<T, 2>], f: &[T], depth: &[T], out: &mut [T]) {
-        self.curl(u, out);
+    ///
+    /// # Errors
+    /// [`MeshError::Count`] where there are not as many values as sites.
+    pub fn potential_vorticity(
+        &self,
+        u: &[SVector<T, 2>],
+        f: &[T],
+        depth: &[T],
+        out: &mut [T],
+    ) -> Result<(), MeshError> {
+        MeshError::unless_of_length(f, self.sites())?;
+        MeshError::unless_of_length(depth, self.sites())?;
+        self.curl(u, out)?;
         for ((q, f), h) in out.iter_mut().zip(f).zip(depth) {
             *q = (*q + *f) / *h;
         }
+        Ok(())
     }
 
     /// Sums what faces add, over areas.
-    fn per_area<S: Summand<T>>(
+    fn per_area<V, S: Summand<T>>(
         &self,
+        values: &[V],
         out: &mut [S],
         each: impl Fn(&Face<T>, &mut dyn FnMut(usize, S)),
-    ) {
+    ) -> Result<(), MeshError> {
+        MeshError::unless_of_length(values, self.sites())?;
+        MeshError::unless_of_length(out, self.sites())?;
         let mut areas = vec![T::zero(); self.sites()];
-        self.areas(&mut areas);
+        self.sum_areas(&mut areas);
         out.fill(S::nothing());
         for face in self.faces() {
             each(&face, &mut |site, part| out[site].add(part));
@@ -99,18 +133,25 @@ impl<T: Real> Voronoi<T> {
         for (out, area) in out.iter_mut().zip(&areas) {
             out.divide(*area);
         }
+        Ok(())
     }
 
     /// The circulation around every triangle, `sum (u_i + u_j)/2 . (X_j - X_i)`, in the order of
     /// [`Voronoi::triangles`]. Their sum is zero. While a triangle's corners stay neighbours, its circulation changes at
     /// the rate that the same sum gives of the accelerations: what velocities add goes around in a circle.
-    pub fn circulations(&self, u: &[SVector<T, 2>], out: &mut [T]) {
+    ///
+    /// # Errors
+    /// [`MeshError::Count`] where there are not as many velocities as sites, or numbers as triangles: two for each site.
+    pub fn circulations(&self, u: &[SVector<T, 2>], out: &mut [T]) -> Result<(), MeshError> {
+        MeshError::unless_of_length(u, self.sites())?;
+        MeshError::unless_of_length(out, 2 * self.sites())?;
         let half = T::from_f64(0.5);
         for (out, triangle) in out.iter_mut().zip(self.triangles()) {
             let [a, b, c] = triangle.sites.map(|site| u[site]);
             let [ab, bc, ca] = triangle.sides;
             *out = (dot(a + b, ab) + dot(b + c, bc) + dot(c + a, ca)) * half;
         }
+        Ok(())
     }
 }
 

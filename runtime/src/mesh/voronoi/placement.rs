@@ -114,8 +114,8 @@ pub fn relax(
     let mut centres = vec![Plane::zeros(); mesh.sites()];
     for _ in 0..sweeps {
         mesh.update(places)?;
-        mesh.areas(&mut areas);
-        mesh.centroids(&areas, &mut centres);
+        mesh.areas(&mut areas)?;
+        mesh.centroids(&areas, &mut centres)?;
         for (place, centre) in places.iter_mut().zip(&centres) {
             *place += centre;
         }

@@ -53,7 +53,7 @@ impl Voronoi<f64> {
         let mut shares: Vec<(usize, f64)> = Vec::new();
         self.polygons(|site, corners| {
             // In units of boxes.
-            let place = self.place(site);
+            let place = self.places()[site];
             cell.clear();
             cell.extend(corners.iter().map(|c| (place + c).component_div(&boxes)));
             shares.clear();

@@ -2,6 +2,7 @@
 //! rates, with the sites where they are.
 
 use super::mesh::Voronoi;
+use crate::mesh::MeshError;
 
 /// A number and the two neighbours it belongs to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,8 +36,11 @@ impl Voronoi<f64> {
     /// The largest speed over distance of two neighbours: with `speeds` the wave speeds `sqrt(g h)` at particles, one
     /// step should be at most about half of its inverse. Waves of a depth that is smoothed over the length `alpha` are
     /// slower: there `1/alpha` can stand in place of the inverse distance.
-    #[must_use]
-    pub fn fastest(&self, speeds: &[f64]) -> Between {
+    ///
+    /// # Errors
+    /// [`MeshError::Count`].
+    pub fn fastest(&self, speeds: &[f64]) -> Result<Between, MeshError> {
+        MeshError::unless_of_length(speeds, self.sites())?;
         let mut fastest = Between {
             value: 0.0,
             sites: [0; 2],
@@ -51,6 +55,6 @@ impl Voronoi<f64> {
                 };
             }
         }
-        fastest
+        Ok(fastest)
     }
 }

@@ -1,10 +1,10 @@
 //! Places on a torus as whole numbers of grains: sums, differences and shifts by periods are exact, so that every
-//! copy of a triangle is judged alike. A grain is 2^-48 of the longer period.
+//! copy of a triangle is judged alike. A grain is 2^-50 of the longer period.
 
-/// Grains of the longer period. A place of a few periods, and differences of such, are exact in a double.
-const GRAINS: f64 = (1_u64 << 48) as f64;
+/// Grains of the longer period. A place of less than two periods, and differences of such, are exact in a double.
+const GRAINS: f64 = (1_u64 << 50) as f64;
 
-/// Added and subtracted, it leaves the nearest whole number, of numbers below 2^51.
+/// Added and subtracted, it leaves the nearest whole number, of numbers up to 2^51.
 const ROUND: f64 = 6_755_399_441_055_744.0; // 3 * 2^51
 
 /// A vector in grains.
