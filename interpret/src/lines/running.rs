@@ -121,14 +121,6 @@ impl Carded {
                 field: text(&format!("{}_{}", at.quantity, at.site)),
                 ..error
             }),
-            Unstarted::Line(
-                e @ LineError::Step {
-                    node: _,
-                    at: _,
-                    cause: _,
-                    works: _,
-                },
-            ) => OpenError::Start(StartError::Refused(cause(e))),
             Unstarted::Line(LineError::Length {
                 quantity,
                 expected,
@@ -148,6 +140,7 @@ impl Carded {
                 expected: least,
                 found,
             },
+            Unstarted::Line(e) => OpenError::Start(StartError::Refused(cause(e))),
             Unstarted::Missing(quantity) => OpenError::Count {
                 field: text(&quantity),
                 expected: 1,
