@@ -471,7 +471,10 @@ fn range_words(
 
 fn certificate(lattice: &Lattice, parts: &[Part], doc: &mut Document) {
     let section = doc.section("Certificate");
-    section.text("The equations above are those of short lattices, written out body by body, on which the sites shown have all their neighbours and every end has its own equation. Each identity of the derivation is proved there; a longer lattice repeats the equations of the interior.");
+    section.text(match lattice.meshes.is_empty() {
+        false => "One site of each kind is written out, whose letters stand for those of all sites. Each identity of the derivation is proved there, numbers being the same where their sums over all sites are. That the transposed derivative of a functional is the one that is computed is tested, not proved.",
+        true => "The equations above are those of short lattices, written out body by body, on which the sites shown have all their neighbours and every end has its own equation. Each identity of the derivation is proved there; a longer lattice repeats the equations of the interior.",
+    });
     let items = parts.iter().map(|p| {
         let words = format!("{}: {}", p.choice.words(lattice), p.d.certificate.summary());
         vec![words.into()]

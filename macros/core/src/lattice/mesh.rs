@@ -6,7 +6,7 @@ mod tests;
 
 use super::declared::{Kind, Lattice, Sites};
 use crate::diagnostic::{Diagnostic, Errors, closest};
-use crate::syntax::ast::{Model, Name, Statement};
+use crate::syntax::ast::{Extent, Kindred, Model, Name, Size, Statement};
 
 /// What a functional is made of.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -81,6 +81,7 @@ const SUPPLIED: [Supplied; 8] = [
 impl Lattice {
     /// Reads the functionals, once everything that they may be made of is known.
     pub(super) fn functionals(&mut self, model: &Model, errors: &mut Errors) {
+        let parameters = parameters(model);
         for statement in &model.statements {
             let Statement::Mesh {
                 name,
@@ -107,21 +108,101 @@ impl Lattice {
                 );
                 errors.push(d.help(format!("write `mesh {}: Real at ...`", name.text)));
             }
-            let one = std::slice::from_ref(name);
-            self.quantities_at(one, shape, Some(at), Kind::Functional, errors);
-            let on_line = self.find(&name.text).filter(|q| q.sites != Sites::Members);
-            if on_line.is_some() {
+            if let Some(line) = self.line_label() {
                 let d = Diagnostic::new(
-                    at.place,
-                    "functionals of all sites stand at sets of sites and at grids",
+                    name.place,
+                    "functionals of all sites stand at sets of sites and at grids, and this model has a line",
                 );
-                errors.push(d.help(
-                    "along a line write the neighbours out: `2*m/(next(X, i) - prev(X, i))`",
+                errors.push(d.also(line.index.place, "the line is declared here").help(
+                    "along a line write the neighbours out: `2*m/(next(X, i) - prev(X, i))`; of a set write `at a` where its quantities are declared",
                 ));
                 continue;
             }
-            if let Some(mesh) = self.functional(name, path, arguments, errors) {
-                self.meshes.push(mesh);
+            let one = std::slice::from_ref(name);
+            self.quantities_at(one, shape, Some(at), Kind::Functional, errors);
+            if self.find(&name.text).is_none() {
+                continue;
+            }
+            match self.functional(name, path, arguments, &parameters) {
+                Ok(mesh) => self.meshes.push(mesh),
+                Err(d) => errors.push(*d),
+            }
+        }
+        self.domains(model, errors);
+    }
+
+    /// One field has a domain, at a set of sites; nothing holds a functional but the Lagrangian.
+    fn domains(&self, model: &Model, errors: &mut Errors) {
+        let is_mesh = |s: &&Statement| matches!(s, Statement::Mesh { .. });
+        let stated = model.statements.iter().filter(is_mesh).count();
+        let mut with = self.quantities.iter().filter(|q| q.domain.is_some());
+        if let (Some(first), Some(second)) = (with.next(), with.next()) {
+            let d = Diagnostic::new(second.name.place, "a second field lies in a domain");
+            errors.push(
+                d.also(first.name.place, "the first is declared here")
+                    .help("a model has one domain: leave `on ...` out at the other field"),
+            );
+        }
+        for q in self.quantities.iter().filter(|q| q.domain.is_some()) {
+            if q.sites != Sites::Members {
+                let d = Diagnostic::new(
+                    q.name.place,
+                    "places in a domain are those of a set of sites",
+                );
+                errors.push(d.help("along a ring write `offset L` in the place of `on ...`"));
+            } else if stated == self.meshes.len()
+                && !self
+                    .meshes
+                    .iter()
+                    .any(|m| m.of == Source::Field(q.name.text.clone()))
+            {
+                let message = format!(
+                    "no functional is made of `{}`, which lies in a domain",
+                    q.name.text
+                );
+                errors.push(Diagnostic::new(q.name.place, message).help(
+                    "declare one, `mesh A: Real at a = voronoi_area(X);`, or leave `on ...` out",
+                ));
+            }
+            if let Some(Extent::Torus(lengths)) = &q.domain
+                && let Some(twice) = parameters(model)
+                    .iter()
+                    .find(|p| p.name.text == lengths.text)
+            {
+                let message = format!("`{}` is declared twice", lengths.text);
+                errors.push(
+                    Diagnostic::new(twice.name.place, message)
+                        .also(lengths.place, "it is the lengths of the torus here"),
+                );
+            }
+        }
+        let mut grids = self.labels.iter().filter(|l| l.grid);
+        if let (Some(first), Some(second)) = (grids.next(), grids.next()) {
+            let d = Diagnostic::new(second.index.place, "a model has one grid");
+            errors.push(d.also(first.index.place, "it is declared here"));
+        }
+        for statement in &model.statements {
+            let (found, what) = match statement {
+                Statement::Hold { left, right, .. } => {
+                    ([Some(left), Some(right)], "a constraint is held")
+                }
+                Statement::Assume { left, right, .. } => {
+                    ([Some(left), Some(right)], "an assumption is made")
+                }
+                Statement::Constraint { value, .. } => {
+                    ([Some(value), None], "a quantity is carried")
+                }
+                Statement::Advected { definition, .. } => {
+                    ([definition.as_ref(), None], "a quantity is defined")
+                }
+                _ => continue,
+            };
+            if let Some(e) = found.into_iter().flatten().find(|e| self.has_functional(e)) {
+                let message = format!("a functional of all sites stands where {what}");
+                errors.push(
+                    Diagnostic::new(e.place, message)
+                        .help("functionals stand in the Lagrangian, in terms of one node in time"),
+                );
             }
         }
     }
@@ -131,51 +212,46 @@ impl Lattice {
         name: &Name,
         path: &Name,
         arguments: &[Name],
-        errors: &mut Errors,
-    ) -> Option<Mesh> {
-        let first = arguments.first()?;
-        let of = match self.find(&first.text).map(|q| q.kind) {
-            Some(Kind::Configuration) => Source::Field(first.text.clone()),
-            Some(Kind::Functional) => {
-                let known = self.meshes.iter().position(|m| m.name.text == first.text);
-                match known {
-                    Some(i) => Source::Functional(i),
-                    None => {
-                        let message =
-                            format!("`{}` is declared behind what is made of it", first.text);
-                        errors
-                            .push(Diagnostic::new(first.place, message).help("declare it before"));
-                        return None;
-                    }
-                }
-            }
-            _ => {
-                let message = format!(
-                    "`{}` is neither a field at sites nor another functional",
-                    first.text
-                );
-                let d = Diagnostic::new(first.place, message);
-                errors.push(d.help(
-                    "the first argument is what moves: `field X: Vec<2> at a on torus(L);`, then `mesh A: Real at a = voronoi_area(X);`",
-                ));
-                return None;
-            }
+        parameters: &[Parameter],
+    ) -> Checked<Mesh> {
+        let refused = |place, message: String, help: &str| {
+            Err(Box::new(Diagnostic::new(place, message).help(help)))
         };
-        let moving = |n: &&Name| self.moving.contains(&n.text);
-        if let Some(second) = arguments.iter().skip(1).find(moving) {
-            let message = format!("`{}` moves, and only the first argument may", second.text);
-            errors.push(Diagnostic::new(second.place, message).help("the others are parameters"));
-            return None;
+        let Some(first) = arguments.first() else {
+            return refused(
+                path.place,
+                "a functional is made of something".to_owned(),
+                &example(&path.text),
+            );
+        };
+        let of = self.source(first)?;
+        for data in arguments.iter().skip(1) {
+            if self.moving.contains(&data.text) {
+                let message = format!(
+                    "only the first argument may be a field or a functional, and `{}` is one",
+                    data.text
+                );
+                return refused(data.place, message, "the others are parameters");
+            }
+            if !parameters.iter().any(|p| p.name.text == data.text) {
+                let message = format!("`{}` is no parameter", data.text);
+                return refused(
+                    data.place,
+                    message,
+                    "declare it, `param alpha: Real;`, or at each site, `param m: Real at a;`",
+                );
+            }
         }
+        let mesh = |path: String, is_uniform: bool, of_dimension: bool| Mesh {
+            name: name.clone(),
+            path,
+            of: of.clone(),
+            arguments: arguments.to_vec(),
+            is_uniform,
+            of_dimension,
+        };
         if path.text.contains("::") {
-            return Some(Mesh {
-                name: name.clone(),
-                path: path.text.clone(),
-                of,
-                arguments: arguments.to_vec(),
-                is_uniform: false,
-                of_dimension: false,
-            });
+            return Ok(mesh(path.text.clone(), false, false));
         }
         let Some(known) = SUPPLIED.iter().find(|s| s.name == path.text) else {
             let d = Diagnostic::new(
@@ -190,34 +266,191 @@ impl Lattice {
                     names.collect::<Vec<_>>().join(", ")
                 )),
             };
-            errors.push(d.help("one of your own is given by its path, `crate::area(X)`"));
-            return None;
+            return Err(Box::new(
+                d.help("one of your own is given by its path, `crate::area(X)`"),
+            ));
         };
-        let of_grid = matches!(of, Source::Functional(_));
-        let data = known.data;
-        if known.of_functional != of_grid || arguments.len() != data + 1 {
-            let what = match known.of_functional {
-                true => "another functional",
-                false => "a field",
-            };
-            let message = format!(
-                "`{}` is made of {what}, with {data} parameter{} behind it",
-                path.text,
-                if data == 1 { "" } else { "s" }
-            );
-            errors.push(Diagnostic::new(path.place, message).help(example(&path.text)));
-            return None;
+        self.supplied(known, name, path, arguments, &of, parameters)?;
+        Ok(mesh(
+            format!("clebsch::mesh::{}", path.text),
+            known.of_cells,
+            !known.of_cells,
+        ))
+    }
+
+    /// What the first argument is.
+    fn source(&self, first: &Name) -> Checked<Source> {
+        let found = self.find(&first.text);
+        let message = match found.map(|q| (q.kind, q.shape.name.text.as_str())) {
+            Some((Kind::Configuration, "Real" | "Vec")) => {
+                return Ok(Source::Field(first.text.clone()));
+            }
+            Some((Kind::Configuration, _)) => {
+                format!("`{}` is no place: a number or a vector is", first.text)
+            }
+            Some((Kind::Functional, _)) => {
+                let known = self.meshes.iter().position(|m| m.name.text == first.text);
+                match known {
+                    Some(i) => return Ok(Source::Functional(i)),
+                    None => format!("`{}` is used before it is declared", first.text),
+                }
+            }
+            _ => format!(
+                "`{}` is neither a field at sites nor a functional declared before",
+                first.text
+            ),
+        };
+        Err(Box::new(Diagnostic::new(first.place, message).help(
+            "the first argument is what moves: `field X: Vec<2> at a on torus(L);`, then `mesh A: Real at a = voronoi_area(X);`",
+        )))
+    }
+
+    /// Whether a functional of the runtime is made of what it takes, and stands where its values are.
+    fn supplied(
+        &self,
+        known: &Supplied,
+        name: &Name,
+        path: &Name,
+        arguments: &[Name],
+        of: &Source,
+        parameters: &[Parameter],
+    ) -> Checked<()> {
+        let refused = |place, message: String, help: String| {
+            Err(Box::new(Diagnostic::new(place, message).help(help)))
+        };
+        let what = match known.of_functional {
+            true => "another functional",
+            false => "a field",
+        };
+        let write = || example(&path.text);
+        if known.of_functional != matches!(of, Source::Functional(_)) {
+            let message = format!("`{}` is made of {what}", path.text);
+            return refused(path.place, message, write());
         }
-        Some(Mesh {
-            name: name.clone(),
-            path: format!("clebsch::mesh::{}", path.text),
-            of,
-            arguments: arguments.to_vec(),
-            is_uniform: known.of_cells,
-            of_dimension: !known.of_cells,
-        })
+        if arguments.len() != known.data + 1 {
+            let message = match known.data {
+                0 => format!("`{}` takes {what} alone", path.text),
+                1 => format!("`{}` takes {what} and one parameter", path.text),
+                n => format!("`{}` takes {what} and {n} parameters", path.text),
+            };
+            return refused(path.place, message, write());
+        }
+        let label_of = |n: &str| self.find(n).map(|q| q.label);
+        let is_grid = |l: Option<usize>| l.and_then(|l| self.labels.get(l)).is_some_and(|l| l.grid);
+        let (own, theirs) = (label_of(&name.text), label_of(&arguments[0].text));
+        let (first, place) = (&arguments[0], arguments[0].place);
+        match known.of_functional {
+            true if !is_grid(theirs) => {
+                let message = format!("`{}` does not stand at the nodes of a grid", first.text);
+                return refused(place, message, write());
+            }
+            true if own != theirs => {
+                let message = format!(
+                    "the values of `{}` stand where those of `{}` do",
+                    path.text, first.text
+                );
+                return refused(name.place, message, write());
+            }
+            true => {}
+            false => {
+                let q = self.find(&first.text);
+                if q.is_some_and(|q| q.domain.is_none()) {
+                    let message = format!("where the places `{}` lie is not said", first.text);
+                    let help = "write `field X: Vec<2> at a on torus(L);`, or `on box`".to_owned();
+                    return refused(place, message, help);
+                }
+                let sizes = q.map_or(0, |q| directions(&q.shape));
+                if sizes != 2 && (known.of_cells || sizes != 1) {
+                    let message = match known.of_cells {
+                        true => format!(
+                            "`{}` is made of places in the plane, and `{}` has another shape",
+                            path.text, first.text
+                        ),
+                        false => format!(
+                            "`{}` is made of places on a line or in the plane, and `{}` has another shape",
+                            path.text, first.text
+                        ),
+                    };
+                    return refused(
+                        place,
+                        message,
+                        "write `field X: Vec<2> at a on torus(L);`".to_owned(),
+                    );
+                }
+                if known.of_cells && own != theirs {
+                    let message = format!("the values of `{}` stand at the particles", path.text);
+                    return refused(name.place, message, write());
+                }
+                if !known.of_cells && !is_grid(own) {
+                    let message =
+                        format!("the values of `{}` stand at the nodes of a grid", path.text);
+                    return refused(
+                        name.place,
+                        message,
+                        format!("declare it, `grid n;`, and {}", write()),
+                    );
+                }
+            }
+        }
+        if known.name == "smooth_isotropic" {
+            let field = self.quantities.iter().find(|q| q.domain.is_some());
+            if field.is_some_and(|q| directions(&q.shape) != 2) {
+                let message =
+                    "`smooth_isotropic` is of the plane: on a line write `smooth`".to_owned();
+                return refused(path.place, message, write());
+            }
+        }
+        for (i, data) in arguments.iter().enumerate().skip(1) {
+            let masses = !known.of_functional && i == 1;
+            let Some(p) = parameters.iter().find(|p| p.name.text == data.text) else {
+                continue;
+            };
+            let at = label_of(&data.text);
+            if p.shape != "Real" || masses != at.is_some() || (masses && at != theirs) {
+                let message = match masses {
+                    true => format!(
+                        "`{}` is not a number at each particle: here stand their masses",
+                        data.text
+                    ),
+                    false => format!("`{}` is not one number of the model", data.text),
+                };
+                return refused(data.place, message, write());
+            }
+        }
+        Ok(())
     }
 }
+
+/// A parameter of a model.
+struct Parameter {
+    name: Name,
+    shape: String,
+}
+
+fn parameters(model: &Model) -> Vec<Parameter> {
+    let each = model.statements.iter().filter_map(|s| match s {
+        Statement::Param { names, shape, .. } => Some((names, &shape.name.text)),
+        _ => None,
+    });
+    let each = each.flat_map(|(names, shape)| {
+        names.iter().map(move |name| Parameter {
+            name: name.clone(),
+            shape: shape.clone(),
+        })
+    });
+    each.collect()
+}
+
+/// How many components a place has; 0 of what is none.
+fn directions(shape: &Kindred) -> u64 {
+    match (shape.name.text.as_str(), shape.sizes.as_slice()) {
+        ("Real", []) => 1,
+        ("Vec", [Size::Number(n, _)]) => *n,
+        _ => 0,
+    }
+}
+
+type Checked<T> = Result<T, Box<Diagnostic>>;
 
 /// How it is written.
 fn example(name: &str) -> String {

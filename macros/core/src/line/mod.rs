@@ -96,6 +96,11 @@ impl Line {
                 m,
             ));
         }
+        totals.retain(|t| {
+            let mut densities = t.densities.iter();
+            !densities.any(|(.., e)| representative.is_turned_by_walls(&lattice, e))
+        });
+        total::name_apart(&lattice, &mut totals);
         let (all, none) = (Rational::integer(1), Rational::integer(0));
         let shares = match representative.d.spec.node_rule {
             NodeRule::Symmetric => [Rational::HALF; 2],

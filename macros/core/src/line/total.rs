@@ -11,7 +11,7 @@ use crate::expr::symbol::{SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Node, Shift};
 use crate::lattice::{Lattice, Mesh, Sites, Source};
 use crate::pipeline;
-use crate::syntax::ast::Model;
+use crate::syntax::ast::{Extent, Model};
 use std::collections::BTreeMap;
 
 /// A conserved total.
@@ -80,6 +80,27 @@ pub(super) fn beside_functionals(
         }
     }
     out
+}
+
+/// Totals of one name by the labels of their sites as well.
+pub(super) fn name_apart(lattice: &Lattice, totals: &mut [Total]) {
+    for i in 1..totals.len() {
+        let (before, rest) = totals.split_at_mut(i);
+        let Some(own) = rest.first_mut() else { break };
+        if !before.iter().any(|t| t.name == own.name) {
+            continue;
+        }
+        let label = own
+            .densities
+            .first()
+            .and_then(|(l, ..)| lattice.labels.get(*l));
+        let label = label.map_or_else(String::new, |l| crate::expr::symbol::ascii(&l.index.text));
+        let mut name = format!("{}_{label}", own.name);
+        while before.iter().any(|t| t.name == name) {
+            name.push('_');
+        }
+        own.name = name;
+    }
 }
 
 /// Whether everything that functionals add to the momenta of this field has sum zero: they are made of it alike,
@@ -278,6 +299,18 @@ impl Lone {
 }
 
 impl Written {
+    /// Whether walls change a value: it holds the momentum of places in a box.
+    pub(crate) fn is_turned_by_walls(&self, lattice: &Lattice, e: &Expr) -> bool {
+        let mut letters = expr::letters(e).into_iter();
+        letters.any(|l| {
+            let Some(at) = self.sited(l.symbol) else {
+                return false;
+            };
+            let of = at.momentum_of().and_then(|of| lattice.find(of));
+            of.is_some_and(|q| matches!(q.domain, Some(Extent::Box(_))))
+        })
+    }
+
     /// An expression in the letters of another lattice of the same model, copies of equal sites.
     fn in_letters_of(&self, other: &Written, e: &Expr) -> Option<Expr> {
         let (own, s) = (&self.d.letters.symbols, &other.d.letters.symbols);

@@ -2,10 +2,13 @@
 //! as transposed derivatives at what they are made of, without one.
 
 use super::super::folded::{Folded, From, Part};
+use crate::check;
 use crate::expr::shape::Structure;
-use crate::expr::symbol::Role;
+use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Applied, Expr, Node, Reach, Shift};
-use crate::print::document::Document;
+use crate::print::document::{Document, Inline};
+use crate::print::formula::Formula;
+use crate::syntax::ast::Extent;
 
 impl Folded<'_> {
     /// An expression with the values of functionals as letters of their sites.
@@ -49,6 +52,35 @@ impl Folded<'_> {
         }
     }
 
+    /// The value of a functional as a letter, and its pull-back with a seed `s`.
+    fn shown(&mut self, part: &Part, name: &str) -> Option<(Formula, Formula)> {
+        let model = &part.unfolded.model;
+        let mut called = None;
+        for term in &part.unfolded.summands {
+            let found = check::numbers(model, &[&term.shown]).into_iter().next()??;
+            called = called.or_else(|| given_of(&part.d.letters.symbols, &found, name));
+        }
+        let value = called?;
+        let Node::Given(applied) = value.node() else {
+            return None;
+        };
+        let letter = self.with_functionals(part, &value, From::Site(0));
+        let kind = (value.shape(), Structure::General, Role::Parameter);
+        let seed = self.named("s", kind, None, &[]);
+        let arguments = applied
+            .arguments
+            .iter()
+            .map(|x| self.plain(part, x))
+            .collect();
+        let applied = Applied {
+            arguments,
+            ..applied.clone()
+        };
+        let seed = expr::here(&self.symbols, seed);
+        let back = expr::pull_back(&self.symbols, applied, 0, seed);
+        Some((Formula::Expr(letter), Formula::Expr(back)))
+    }
+
     fn is_of_sites(&self, a: &Applied) -> bool {
         self.symbols.functional(a.functional).reach == Reach::Sites
     }
@@ -87,26 +119,50 @@ impl Folded<'_> {
     }
 }
 
+/// The value of a functional in an expression.
+fn given_of(s: &Symbols, e: &Expr, name: &str) -> Option<Expr> {
+    match e.node() {
+        Node::Given(a) if s.functional(a.functional).name == name && a.along.is_empty() => {
+            Some(e.clone())
+        }
+        _ => e.children().into_iter().find_map(|x| given_of(s, x, name)),
+    }
+}
+
 /// The functionals, and what their pull-backs are.
 pub(super) fn functionals(folded: &mut Folded, part: &Part, doc: &mut Document) {
     let meshes = folded.lattice.meshes.clone();
     if meshes.is_empty() {
         return;
     }
-    let section = doc.section("Functionals");
-    let k = &part.d.spec.time_index;
-    for mesh in &meshes {
-        let name = &mesh.name.text;
-        let label = folded.lattice.find(name).map_or(0, |q| q.label);
-        let index = folded.index(part, label, 0, From::Site(0));
+    let mut told: Vec<Vec<Inline>> = Vec::new();
+    let s = part.d.letters.symbols.clone();
+    for f in s.functionals().iter().filter(|f| f.reach == Reach::Sites) {
+        let Some(mesh) = meshes.iter().find(|m| m.name.text == f.name) else {
+            continue;
+        };
+        let Some((value, back)) = folded.shown(part, &f.name) else {
+            continue;
+        };
         let what = mesh.path.rsplit("::").next().unwrap_or(&mesh.path);
         let arguments: Vec<&str> = mesh.arguments.iter().map(|a| a.text.as_str()).collect();
+        let label = folded.lattice.find(&f.name).map_or(0, |q| q.label);
+        let index = folded.index(part, label, 0, From::Site(0));
+        told.push(vec![
+                value.into(),
+                format!(" is the value at {index} of {what}({}), ", arguments.join(", ")).into(),
+                "which is made of all sites; at each of them ".into(),
+                back.into(),
+                " is the derivative of the sum of s times its values, s being held, by what it is made of there".into(),
+        ]);
+    }
+    let section = doc.section("Functionals");
+    section.list(told);
+    let boxed = |q: &crate::lattice::Quantity| matches!(q.domain, Some(Extent::Box(_)));
+    if let Some(q) = folded.lattice.quantities.iter().find(|q| boxed(q)) {
         section.text(&format!(
-            "{name}_{{{index},{k}}} is the value of {what}({}) at {index}, made of all sites at the node {k}.",
-            arguments.join(", ")
+            "Where the domain ends in a wall, a place {} that a step brings beyond it is put back by its mirror image, and the component of the kinetic momentum across the wall is turned. No momentum is listed as conserved. Where the potential has a slope at a wall the step is of first order there, and the energy wanders.",
+            q.name.text
         ));
     }
-    section.text(
-        "Derivatives of such values are kept by name: (DA(X))ᵀ[s] is at each site the derivative of the sum of s A over all sites by X there, s being held.",
-    );
 }

@@ -6,7 +6,7 @@ use crate::derive::invariants::Invariant;
 use crate::document::folded::{Folded, From, Part};
 use crate::expr::{self, Expr, Node};
 use crate::lattice::Lattice;
-use crate::line::Line;
+use crate::line::{Line, Written};
 use crate::print::document::{Document, Inline};
 use crate::print::formula::Formula;
 use crate::print::{Format, Style, expression};
@@ -17,7 +17,18 @@ pub(super) fn invariants(folded: &mut Folded, model: &Model, parts: &[Part], doc
     let section = doc.section("Invariants");
     for part in parts {
         let mut items: Vec<Vec<Inline>> = Vec::new();
-        for v in &part.d.invariants {
+        let written = Written {
+            choice: part.choice.clone(),
+            unfolded: part.unfolded.clone(),
+            d: part.d.outline(),
+        };
+        let by_walls = |v: &&Invariant| {
+            let value = v.value.as_ref();
+            value.is_some_and(|e| written.is_turned_by_walls(folded.lattice, e))
+        };
+        let kept = part.d.invariants.iter().filter(|v| !by_walls(v));
+        let kept: Vec<&Invariant> = kept.collect();
+        for v in kept {
             items.push(invariant(folded, part, v));
         }
         if !folded.lattice.meshes.is_empty() {

@@ -79,7 +79,10 @@ pub fn emit_line(line: &Line, source: &str) -> TokenStream {
 
 /// Why no stepper with loops over sites is emitted, if so.
 pub fn refusal_of_line(line: &Line) -> Option<String> {
-    domain::refusal(line).or_else(|| walls::refusal(line))
+    let names = unique::refusal(line);
+    names
+        .or_else(|| domain::refusal(line))
+        .or_else(|| walls::refusal(line))
 }
 
 /// A configuration with the derivation of its site.

@@ -16,6 +16,26 @@ const KERNEL: [&str; 47] = [
     "to", "turn", "twice", "validate", "velocity",
 ];
 
+/// A name of the model that emitted code has for something else, if so.
+pub(super) fn refusal(line: &Line) -> Option<String> {
+    let part = &line.representative;
+    let step = &part.d.letters.symbols.get(part.d.spec.step).name;
+    if KERNEL.contains(&step.as_str()) && step != "h" {
+        return Some(format!(
+            "the step is called `{step}`, which is a name of emitted code: call it `h` or `dt`"
+        ));
+    }
+    let counts = line.lattice.labels.iter().map(|l| &l.count.text);
+    let mut taken = counts.filter(|n| ["domain", "scalar", "ends"].contains(&n.as_str()));
+    if let Some(name) = taken.next() {
+        return Some(format!(
+            "`{name}` is a name of emitted code: call the number of sites `N`"
+        ));
+    }
+    let scalar = line.model.name.text == "T";
+    scalar.then(|| "`T` is the scalar of emitted code: give the model another name".to_owned())
+}
+
 impl<'a> Lines<'a> {
     /// The names of a line that is emitted.
     pub(super) fn new(line: &'a Line, source: &'a str) -> Lines<'a> {

@@ -3,6 +3,8 @@
 
 use super::locals::Places;
 use super::{Lines, Moving, acting, number};
+use crate::algebra::Algebra;
+use crate::expr::shape::Dim;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::line::{How, Line};
 use crate::syntax::ast::Extent;
@@ -38,12 +40,59 @@ pub(super) fn refusal(line: &Line) -> Option<String> {
         let q = line.lattice.find(name);
         q.is_some_and(|q| matches!(q.domain, Some(Extent::Box(_))))
     };
-    let mut all = line
+    let all = line
         .lone
         .iter()
         .flat_map(|lone| lone.movers.iter().map(move |mover| Moving { lone, mover }));
-    let unknown = all.any(|m| boxed(&m.mover.name) && at_rest(&m).is_none());
-    unknown.then(|| "walls turn a kinetic momentum, which is not known where there is no limit of small steps".to_owned())
+    let mut boxes = all.filter(|m| boxed(&m.mover.name));
+    let m = boxes.next()?;
+    if at_rest(&m).is_none() {
+        return Some("walls turn a kinetic momentum, which is not known where there is no limit of small steps".to_owned());
+    }
+    (!is_turned_by_itself(&m)).then(|| {
+        format!(
+            "the kinetic energy couples the components of `{}` with one another or with other velocities, and a wall turns one of them",
+            m.mover.name
+        )
+    })
+}
+
+/// Whether each component of the momentum at rest belongs to the same component of the velocity alone: then a mirror
+/// image of the momentum is that of the velocity.
+fn is_turned_by_itself(m: &Moving) -> bool {
+    let d = m.d();
+    let Ok(limit) = &d.limit else {
+        return false;
+    };
+    let s = &d.letters.symbols;
+    let algebra = Algebra::new(s);
+    let components = |i: usize| -> Vec<(Letter, Expr)> {
+        let symbol = d.letters.variation[i];
+        let xi = Letter {
+            symbol,
+            shift: Shift::HERE,
+        };
+        let shape = expr::letter(s, symbol, Shift::HERE).shape();
+        match shape.rows {
+            _ if shape.is_scalar() => vec![(xi, expr::integer(1))],
+            Dim::Fixed(n) => (0..n)
+                .map(|k| (xi, expr::unit(shape.rows, k as u8)))
+                .collect(),
+            Dim::Named(_) => Vec::new(),
+        }
+    };
+    let own = components(m.mover.index);
+    let others = (0..d.spec.configurations.len())
+        .filter(|i| *i != m.mover.index && d.spec.configurations[*i].group.is_additive())
+        .flat_map(components);
+    let all: Vec<(Letter, Expr)> = own.iter().cloned().chain(others).collect();
+    own.iter().enumerate().all(|(i, one)| {
+        let along = expr::directional(s, &limit.kinetic, std::slice::from_ref(one));
+        let mut rest = all.iter().enumerate().filter(|(j, _)| *j != i);
+        rest.all(|(_, other)| {
+            algebra.is_zero(&expr::directional(s, &along, std::slice::from_ref(other)))
+        })
+    })
 }
 
 fn kernel(m: &Moving) -> Ident {

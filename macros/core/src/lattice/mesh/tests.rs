@@ -88,6 +88,51 @@ fn pull_backs_of_one_functional_are_computed_once() {
     assert_eq!(count, 2);
 }
 
+#[test]
+fn momenta_that_walls_turn_are_not_listed_and_coupled_ones_are_refused() {
+    let free = |domain: &str| {
+        format!(
+            "model Boxed {{ label a in 0..N; param m: Real at a; param k: Vec<2>; field X: Vec<2> at a {domain};
+             field Z: Vec<2> at a; mesh A: Real at a = crate::waves(X, m, k);
+             lagrangian = {KINETIC} + m*dot(next(Z) - Z, next(Z) - Z)/(2*h) - h*A; }}"
+        )
+    };
+    let in_box = line(&free("on box"));
+    for t in &in_box.totals {
+        let letters = t
+            .densities
+            .iter()
+            .flat_map(|(.., e)| crate::expr::letters(e));
+        for l in letters {
+            let sited = in_box.representative.sited(l.symbol);
+            let of = sited.as_ref().and_then(|at| at.momentum_of());
+            assert_ne!(of, Some("X"), "{}", t.name);
+        }
+    }
+    assert!(!in_box.totals.is_empty());
+    let coupled = "model Coupled { label a in 0..N; grid n; param M: Sym<2>; param m: Real at a; param w: Real at n;
+        field X: Vec<2> at a on box; mesh H: Real at n = deposit(X, m);
+        lagrangian = dot(next(X) - X, M*(next(X) - X))/(2*h) - h*w*H^2; }";
+    let model = parse_source(coupled).expect("a model");
+    let told = emitted_line(&model, "")
+        .map(|_| ())
+        .expect_err("coupled")
+        .to_string();
+    assert!(told.contains("the kinetic energy couples"), "{told}");
+}
+
+#[test]
+fn totals_of_two_sets_have_names_of_their_own() {
+    let two = "model Two { label a in 0..N; label b in 0..M; param m: Real at a; param u: Real at b;
+        field X: Vec<2> at a; field Z: Vec<2> at b;
+        lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) + u*dot(next(Z) - Z, next(Z) - Z)/(2*h); }";
+    let mut names = totals(two);
+    let count = names.len();
+    names.sort();
+    names.dedup();
+    assert_eq!(names.len(), count, "{names:?}");
+}
+
 fn count_backs(e: &crate::expr::Expr, count: &mut usize) {
     *count += usize::from(matches!(e.node(), crate::expr::Node::PullBack(..)));
     e.children().into_iter().for_each(|x| count_backs(x, count));
@@ -117,12 +162,12 @@ fn mistakes_in_functionals_are_told() {
         (
             "mesh A: Real at a = voronoi_area(X, m);",
             "- h*k/A",
-            "0 parameters behind it",
+            "takes a field alone",
         ),
         (
             "mesh A: Real at a = helmholtz_depth(X, m);",
             "- h*k/A",
-            "2 parameters behind it",
+            "a field and 2 parameters",
         ),
         (
             "mesh A: Real at a = voronoi_area(m);",
@@ -152,7 +197,7 @@ fn mistakes_in_functionals_are_told() {
         (
             "mesh A: Real at a = voronoi_area(2*X);",
             "- h*k/A",
-            "arguments are names",
+            "a field, another functional or a parameter",
         ),
         (
             "mesh B: Real at a = crate::f(A); mesh A: Real at a = voronoi_area(X);",
@@ -172,12 +217,73 @@ fn mistakes_in_functionals_are_told() {
         (
             "field Y: Vec<2> at a on torus(M); mesh A: Real at a = voronoi_area(X);",
             "+ m*dot(next(Y) - Y, next(Y) - Y)/h - h*k/A",
-            "several domains",
+            "a second field lies in a domain",
         ),
         (
             "grid n; param w: Real at n; mesh H: Real at n = deposit(X, m);",
             "- h*w*H*m",
             "which of them would meet",
+        ),
+        (
+            "param e: Real; mesh A: Real at a = helmholtz_depth(X, e, m);",
+            "- h*k/A",
+            "here stand their masses",
+        ),
+        (
+            "param e: Real; mesh A: Real at a = helmholtz_depth(X, m, h);",
+            "- h*k/A",
+            "`h` is no parameter",
+        ),
+        (
+            "param e: Real; mesh A: Real at a = helmholtz_depth(X, m, z);",
+            "- h*k/A",
+            "`z` is no parameter",
+        ),
+        (
+            "grid n; mesh A: Real at n = voronoi_area(X);",
+            "- h*k",
+            "stand at the particles",
+        ),
+        (
+            "mesh A: Real at a = deposit(X, m);",
+            "- h*k/A",
+            "stand at the nodes of a grid",
+        ),
+        (
+            "grid n; mesh A: Real at a = voronoi_area(X); mesh S: Real at n = smooth(A, k);",
+            "- h*k/A",
+            "does not stand at the nodes",
+        ),
+        (
+            "grid n; param w: Real at n; mesh H: Real at n = deposit(X, w);",
+            "- h*w*H",
+            "here stand their masses",
+        ),
+        (
+            "field Z: Vec<3> at a; mesh A: Real at a = voronoi_area(Z);",
+            "- h*k/A",
+            "where the places `Z` lie is not said",
+        ),
+        (
+            "mesh A: Real at a = voronoi_area(X); hold u: A = m;",
+            "- h*k/A",
+            "stands where a constraint is held",
+        ),
+        (
+            "param L: Vec<2>; mesh A: Real at a = voronoi_area(X);",
+            "- h*k/A",
+            "`L` is declared twice",
+        ),
+        (
+            "grid n; grid l; mesh A: Real at a = voronoi_area(X);",
+            "- h*k/A",
+            "a model has one grid",
+        ),
+        ("", "- h*k*m", "no functional is made of `X`"),
+        (
+            "label i in 0..K; field q: Real at nodes; mesh A: Real at a = voronoi_area(X);",
+            "- h*k/A + k*(next(q) - q)^2/h",
+            "this model has a line",
         ),
         ("mesh A: Real at a = voronoi_area(X) of;", "", "expected"),
     ];
@@ -188,8 +294,11 @@ fn mistakes_in_functionals_are_told() {
     let without = "model P { label a in 0..N; param m, k: Real; field X: Vec<2> at a;
         mesh A: Real at a = voronoi_area(X); lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) - h*k/A; }";
     let model = parse_source(without).expect("a model");
-    let told = emitted_line(&model, "").expect_err("no domain").to_string();
-    assert!(told.contains("on torus(L)"), "{told}");
+    let told = emitted_line(&model, "")
+        .map(|_| ())
+        .expect_err("no domain")
+        .to_string();
+    assert!(told.contains("where the places `X` lie"), "{told}");
     for domain in ["on tours(L)", "on torus", "on torus(2)", "on sphere"] {
         let text = without.replace("Vec<2> at a;", &format!("Vec<2> at a {domain};"));
         let told = parse_source(&text).expect_err("no such domain").to_string();

@@ -21,12 +21,13 @@ impl Writer<'_> {
             return;
         };
         let sets = self.lattice.labels.iter().zip(&self.choice.counts);
-        if let Some((label, n)) = sets.into_iter().find(|(l, n)| l.set && **n != 1) {
+        if let Some((label, _)) = sets.into_iter().find(|(l, n)| l.set && **n != 1) {
             let message = format!(
-                "with {} = {n} this model is not written out site by site: `{}` is made of all of them at once",
-                label.count.text, name.text
+                "`{}` is made of all sites of `{}` at once: the model is not written out site by site",
+                name.text, label.index.text
             );
-            let d = Diagnostic::new(name.place, message);
+            let d = Diagnostic::new(name.place, message)
+                .help("`model! { ... }` compiles it for every number of sites");
             return self.errors.push(d);
         }
         let own = |n: &Name| match self.lattice.find(&n.text) {
