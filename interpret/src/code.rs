@@ -1,6 +1,8 @@
 //! The operations of a function, read once: a tree over numbered places. Executing it looks no name up.
 
 mod apply;
+mod flat;
+mod known;
 mod sweep;
 
 use crate::failure::Failure;
@@ -8,6 +10,7 @@ use crate::sites::Column;
 use crate::value::{Frame, Layout, Value};
 use apply::{apply, called, listed, made, many, matched, one, operation, repeated, two};
 use clebsch::Real;
+pub use known::Known;
 use std::sync::{Arc, OnceLock};
 pub use sweep::{Kind, Slice, Sweep};
 
@@ -129,10 +132,10 @@ pub enum Code<T: Real> {
     Negative(Box<Code<T>>),
     /// `!`
     Not(Box<Code<T>>),
-    /// A function of the runtime, with sizes.
-    Call(Native<T>, Vec<Code<T>>, Vec<usize>),
+    /// A function of the runtime, with sizes, and what it is to a loop over sites.
+    Call(Native<T>, Vec<Code<T>>, Vec<usize>, Known),
     /// One that changes places or calls back.
-    Special(Special<T>, Vec<Code<T>>),
+    Special(Special<T>, Vec<Code<T>>, Known),
     /// A function of the model, its parameters given as expressions; changed ones are put back.
     Routine(Arc<OnceLock<Routine<T>>>, Vec<Code<T>>),
     /// A function with parameters at these places, to be called back.
@@ -186,7 +189,7 @@ pub fn unfit<T: Real, V>(value: Option<V>) -> Result<V, Exit<T>> {
 
 impl<T: Real> Pattern<T> {
     /// Whether a value is met.
-    fn meets(&self, value: &Value<T>) -> bool {
+    pub(crate) fn meets(&self, value: &Value<T>) -> bool {
         match self {
             Pattern::Any | Pattern::Place(_) => true,
             Pattern::List(patterns) => match value {
@@ -336,12 +339,12 @@ impl<T: Real> Code<T> {
             },
             Code::Negative(a) => apply(a, places, crate::library::negative),
             Code::Not(a) => Ok(Value::Bool(!a.truth(places)?)),
-            Code::Call(native, arguments, sizes) => match arguments.as_slice() {
+            Code::Call(native, arguments, sizes, _) => match arguments.as_slice() {
                 [a] => one(*native, a, sizes, places),
                 [a, b] => two(*native, a, b, sizes, places),
                 all => many(*native, all, sizes, places),
             },
-            Code::Special(special, arguments) => special(places, arguments),
+            Code::Special(special, arguments, _) => special(places, arguments),
             Code::Routine(routine, arguments) => called(routine, arguments, places),
             Code::Iterate(iterate) => iterate.run(places),
             Code::Closure(..) => Err(Exit::Unfit(WRONG)),

@@ -99,7 +99,17 @@ impl<T: Real> Column<T> {
         })
     }
 
-    /// The list of one field, to be changed.
+    /// The list of one field.
+    pub fn field(&self, name: u32) -> Option<&Column<T>> {
+        match self {
+            Column::Structs(layout, fields, _) => {
+                fields.get(layout.fields.iter().position(|f| *f == name)?)
+            }
+            _ => None,
+        }
+    }
+
+    /// The same, to be changed.
     pub fn field_mut(&mut self, name: u32) -> Option<&mut Column<T>> {
         match self {
             Column::Structs(layout, fields, _) => {

@@ -6,6 +6,8 @@
 #[path = "lines/compiled.rs"]
 mod compiled;
 
+use clebsch::card::{Field, Settings, Trajectory};
+use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::{Choice, Lattice};
 use clebsch_core::pipeline;
 use clebsch_interpret::lines::{LineModel, LineTrajectory};
@@ -126,4 +128,243 @@ fn a_step_that_is_refused_is_refused_alike_and_leaves_the_state() {
     let refused = refused.expect("they meet");
     assert!(refused.contains("at site "), "{refused}");
     same(&mut line, &*built, &model, &refused);
+}
+
+/// The name of a quantity and its site.
+fn split(field: &Field) -> (&str, Option<usize>) {
+    match field.ascii.rsplit_once('_') {
+        Some((key, site)) if site.parse::<usize>().is_ok() => (key, site.parse().ok()),
+        _ => (field.ascii, None),
+    }
+}
+
+/// The values of fields of a card.
+fn values(fields: &[Field], data: &Data) -> Vec<Vec<f64>> {
+    let each = fields.iter().map(|field| {
+        let (key, site) = split(field);
+        let list = data.of_ascii(key).expect("is given");
+        let at = match list.len() == field.count() {
+            // The same at every site, or of an end.
+            true => 0,
+            false => site.expect("has a site") * field.count(),
+        };
+        list[at..at + field.count()].to_vec()
+    });
+    each.collect()
+}
+
+/// Every number that a trajectory shows beside what the line has there; of energies what they have changed
+/// since the start, as the bodies leave out what is constant.
+fn beside(
+    bodies: &dyn Trajectory,
+    line: &mut LineTrajectory,
+    model: &LineModel,
+    energies: [f64; 2],
+) -> Vec<[f64; 2]> {
+    let card = bodies.card();
+    let mut all = vec![0.0; card.observable_count()];
+    bodies.observe(&mut all);
+    let mut pairs = Vec::new();
+    let mut from = 0;
+    for field in card.observables {
+        let (key, site) = split(field);
+        let own = &all[from..from + field.count()];
+        from += field.count();
+        let Some(name) = model.observers().find(|o| ascii(o) == key) else {
+            continue;
+        };
+        let list = line.observe(name).expect("is observed");
+        let at = site.expect("has a site") * field.count();
+        let pair = own.iter().zip(&list[at..at + field.count()]);
+        pairs.extend(pair.map(|(x, y)| [*x, *y]));
+    }
+    let mut sums = vec![0.0; card.invariant_count()];
+    bodies.invariants(&mut sums);
+    let mut from = 0;
+    for invariant in card.invariants {
+        let own = &sums[from..from + invariant.rows];
+        from += invariant.rows;
+        if invariant.name == "energy" {
+            let [kinetic, potential] = line.energies().expect("has energies");
+            pairs.push([own[0] - energies[0], kinetic + potential - energies[1]]);
+            continue;
+        }
+        let Some(values) = line.total(invariant.name) else {
+            // Of one choice of ends only: no total of every line.
+            assert!(!invariant.name.starts_with("total_"), "{}", invariant.name);
+            continue;
+        };
+        pairs.extend(own.iter().zip(&values).map(|(x, y)| [*x, *y]));
+    }
+    pairs
+}
+
+/// The energies of both at the start.
+fn energies(bodies: &dyn Trajectory, line: &mut LineTrajectory) -> [f64; 2] {
+    let card = bodies.card();
+    let mut sums = vec![0.0; card.invariant_count()];
+    bodies.invariants(&mut sums);
+    let before = card.invariants.iter().take_while(|i| i.name != "energy");
+    let at: usize = before.map(|i| i.rows).sum();
+    let [kinetic, potential] = line.energies().expect("has energies");
+    [sums[at], kinetic + potential]
+}
+
+#[test]
+fn every_line_moves_as_its_bodies_do() {
+    for (source, make, cases) in compiled::all() {
+        let model = LineModel::read(source).expect("is read");
+        for case in cases.iter().filter(|c| c.n == 5) {
+            let (_, data) = make(case);
+            let chosen = choice(source, case.n, case.ends);
+            let (card, _) =
+                clebsch_interpret::card_on_lattice(source, &chosen).expect("is written out");
+            let (parameters, initial) =
+                (values(card.parameters, &data), values(card.initial, &data));
+            let settings = Settings::step(case.h);
+            let mut bodies = (card.open)(&parameters, &initial, settings).expect("starts");
+            let mut line = start(&model, source, case, &data);
+            let energies = energies(&*bodies, &mut line);
+            for _ in 0..20 {
+                bodies.step().expect("steps");
+                line.step().expect("steps");
+            }
+            let pairs = beside(&*bodies, &mut line, &model, energies);
+            assert!(pairs.len() > 8, "{case:?}");
+            for [x, y] in pairs {
+                // Twenty steps of a few roundings each, of numbers up to ten.
+                assert!(
+                    (x - y).abs() < 1e-12 * x.abs().max(10.0),
+                    "{case:?}: {x} {y}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_term_that_is_left_out_is_seen() {
+    // The statement without one of its terms of neighbours, run beside the compiled line that has it.
+    let without = [
+        (compiled::TODA, " + a*r)", ")"),
+        (compiled::TODA, "(a/b)*exp(-b*r) + ", ""),
+        (compiled::ROD, "\n        + (h/s)*tr(B*Λ^T*next(Λ, i))", ""),
+    ];
+    for (source, term, rest) in without {
+        let mutated = source.replacen(term, rest, 1);
+        assert_ne!(mutated, source, "{term}");
+        let model = LineModel::read(&mutated).expect("is read");
+        let (_, make, _) = compiled::all()
+            .into_iter()
+            .find(|(own, ..)| *own == source)
+            .expect("is in the gallery");
+        let case = Case::new(5, Some(["free", "free"]));
+        let (mut built, data) = make(&case);
+        let mut line = start(&model, &mutated, &case, &data);
+        for _ in 0..3 {
+            built.step().expect("steps");
+            line.step().expect("steps");
+        }
+        let differs = model.observers().any(|name| {
+            let read = line.observe(name).expect("is observed");
+            bits(&read) != bits(&built.seen(name))
+        });
+        assert!(differs, "{term}");
+    }
+}
+
+#[test]
+fn a_line_is_written_down_and_goes_on_to_the_last_bit() {
+    use clebsch::saved::{Saved, Words};
+    for (source, make, cases) in compiled::all() {
+        let model = LineModel::read(source).expect("is read");
+        let case = cases.last().expect("has cases");
+        let (_, data) = make(case);
+        let mut whole = start(&model, source, case, &data);
+        for _ in 0..20 {
+            whole.step().expect("steps");
+        }
+        let mut words = Words::gathered();
+        whole.words(&mut words);
+        let list = words.into_list().expect("is written down");
+        let mut again = start(&model, source, case, &data);
+        again.words(&mut Words::given(list));
+        assert_eq!(again.node(), 20);
+        for _ in 0..20 {
+            whole.step().expect("steps");
+            again.step().expect("steps");
+        }
+        for name in model.observers() {
+            let (one, other) = (whole.observe(name), again.observe(name));
+            let (one, other) = (one.expect("is there"), other.expect("is there"));
+            assert_eq!(bits(&one), bits(&other), "{}: {name}", model.name());
+        }
+    }
+}
+
+#[test]
+fn what_is_solved_along_the_line_has_no_loops_over_sites() {
+    let source = "model Coupled { label i in 0..N; param m: Real; param k: Real; field q: Real at nodes;
+        lagrangian = m*(next(q) - q)^2/(2*h) + (k/h)*(next(q) - q)*(next(next(q, i)) - next(q, i)); }";
+    let why = LineModel::read(source).expect_err("is no line").to_string();
+    assert!(why.contains("neighbour"), "{why}");
+    let chosen = choice(source, 40, Some(["free", "free"]));
+    let (card, _) = clebsch_interpret::card_on_lattice(source, &chosen).expect("is written out");
+    let told = "written out body by body, not with loops over sites";
+    assert!(card.summary.contains(told), "{}", card.summary);
+    assert!(card.summary.contains(&why), "{}", card.summary);
+}
+
+#[test]
+fn the_card_of_a_long_line_says_what_that_of_its_bodies_says() {
+    // The same observables and invariants, those of given sites left out.
+    for (source, _, cases) in compiled::all() {
+        let model = LineModel::read(source).expect("is read");
+        let observed = |f: &Field| model.observers().any(|o| ascii(o) == split(f).0);
+        for case in cases.iter().filter(|c| c.n == 12) {
+            let card = |n: usize| {
+                let chosen = choice(source, n, case.ends);
+                let card = clebsch_interpret::card_on_lattice(source, &chosen);
+                card.expect("is read").0
+            };
+            let (short, long) = (card(12), card(100));
+            let shifted = |n: usize, field: &Field| {
+                let (key, site) = split(field);
+                let from_end = site.map(|s| if s < 6 { (s, 0) } else { (6, n - s) });
+                (key.to_owned(), from_end, field.kind, field.rows, field.cols)
+            };
+            let of = |n: usize, fields: &[Field]| {
+                let all = fields.iter().map(|f| shifted(n, f));
+                let mut all: Vec<_> = all.filter(|f| f.1.is_none_or(|s| s.1 < 6)).collect();
+                all.dedup();
+                all
+            };
+            for (own, other) in [
+                (short.parameters, long.parameters),
+                (short.initial, long.initial),
+                (
+                    // What is made of others is not observed along a line, and the summary says so.
+                    &short
+                        .observables
+                        .iter()
+                        .copied()
+                        .filter(observed)
+                        .collect::<Vec<Field>>(),
+                    long.observables,
+                ),
+            ] {
+                assert_eq!(of(12, own), of(100, other), "{case:?}");
+            }
+            let all = short.invariants.iter().copied();
+            let kept = all.filter(|i| i.name == "energy" || model.totals().any(|t| t == i.name));
+            assert_eq!(kept.collect::<Vec<_>>(), long.invariants, "{case:?}");
+            let lost = short
+                .invariants
+                .iter()
+                .filter(|i| !long.invariants.contains(i));
+            for invariant in lost {
+                assert!(long.summary.contains(invariant.name), "{}", long.summary);
+            }
+        }
+    }
 }

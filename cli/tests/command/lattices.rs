@@ -219,13 +219,84 @@ fn lists_hold_what_is_given_at_an_end_too() {
         done.code
     };
     assert_eq!(one("i = 1", "\"periodic\"", "N = 1, periodic"), 0);
-    assert_eq!(
-        one("i = 1000000", "\"periodic\"", "too large to be written out"),
-        2
-    );
     let none = head.replace("i = 3", "i = 1") + "[initial]\nu = 0.1\nmomentum_u = 0.0\n";
     let file = folder.write("none.toml", &none);
     let done = clebsch(&["run", &model, "--case", &file]);
     assert_eq!(done.code, 2);
     assert!(done.err.contains("nothing moves"), "{}", done.err);
+}
+
+/// A case of a wave on a ring of Toda's points.
+fn wave(count: usize) -> String {
+    format!(
+        "model = \"toda-chain\"\nname = \"wave\"\nh = 0.05\nsteps = 3\n[labels]\ni = {count}\n\
+         [ends]\ni = \"periodic\"\n[parameters]\nm = 1.0\na = 1.0\nb = 1.0\nL = 0.0\n\
+         [initial]\nq = \"0.3*sin(2*pi*i/N)\"\nmomentum_q = \"0.3*cos(4*pi*i/N)\"\n"
+    )
+}
+
+#[test]
+fn a_line_of_a_hundred_thousand_sites_runs() {
+    let folder = Folder::new("lattices-long");
+    let out = folder.path("out");
+    let (model, case) = (
+        shipped("toda-chain.clebsch"),
+        folder.write("wave.toml", &wave(100_000)),
+    );
+    let done = clebsch(&["run", &model, "--case", &case, "--out", &out]);
+    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
+    for part in [
+        "lattice              N = 100000, periodic",
+        "one for every number of sites, with loops over them; residuals are not computed",
+        "total_momentum",
+        "within bound",
+    ] {
+        assert!(done.out.contains(part), "{part}\n{}", done.out);
+    }
+    let npz = std::fs::read(format!("{out}/trajectory.npz")).expect("is written");
+    let has = |shape: &str| npz.windows(shape.len()).any(|w| w == shape.as_bytes());
+    assert!(has("(4, 100000,)"));
+    // A picture shows some of the sites.
+    let map = std::fs::metadata(format!("{out}/fields.svg")).expect("is written");
+    assert!(map.len() < 1_000_000, "{}", map.len());
+}
+
+#[test]
+fn wrong_data_of_a_long_line_name_their_site() {
+    let folder = Folder::new("lattices-long-wrong");
+    let model = shipped("toda-chain.clebsch");
+    let run = |from: &str, to: &str| {
+        let case = wave(5_000);
+        let wrong = case.replacen(from, to, 1);
+        assert_ne!(wrong, case, "{from}");
+        let file = folder.write("wrong.toml", &wrong);
+        let done = clebsch(&["run", &model, "--case", &file]);
+        (done.code, done.err)
+    };
+    let (code, err) = run("q = \"0.3*sin(2*pi*i/N)\"", "q = \"1/(i - 37)\"");
+    assert_eq!(code, 2, "{err}");
+    assert!(err.contains("initial.q_37: inf"), "{err}");
+    let (code, err) = run("m = 1.0", "m = -0.0");
+    assert!(
+        code != 0 && err.contains("cannot take the first step"),
+        "{err}"
+    );
+    assert!(err.contains("`q` at site 0"), "{err}");
+    let (code, err) = run("q = \"0.3*sin(2*pi*i/N)\"", "q = [1.0, 2.0]");
+    assert_eq!(code, 2);
+    assert!(
+        err.contains("for each of the 5000 sites, and this one has 2"),
+        "{err}"
+    );
+    let (code, err) = run("i = \"periodic\"", "i = \"held\"");
+    assert_eq!(code, 2);
+    assert!(
+        err.contains("the model has no end condition `held`"),
+        "{err}"
+    );
+    let folder = Folder::new("lattices-long-order");
+    let file = folder.write("case.toml", &wave(5_000));
+    let done = clebsch(&["run", &model, "--case", &file, "--order", "4"]);
+    assert_eq!(done.code, 2, "{}", done.err);
+    assert!(done.err.contains("2"), "{}", done.err);
 }

@@ -1,6 +1,7 @@
 //! Loops over sites: a body that is executed at each of them. What it fills is not read by it, so that it
 //! can be taken out for as long as the loop runs.
 
+use super::flat::{Flat, Lists, Stop, traced};
 use super::{Code, Evaluated, Exit, Places, WRONG, unfit};
 use crate::failure::Failure;
 use crate::sites::Column;
@@ -8,6 +9,7 @@ use crate::value::Value;
 use clebsch::Real;
 use clebsch::linalg::Dense;
 use clebsch::line;
+use std::sync::{Arc, OnceLock};
 
 /// What is done with the values of the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,6 +52,8 @@ pub struct Sweep<T: Real> {
     pub parameters: Vec<usize>,
     /// The body.
     pub body: Code<T>,
+    /// The same as operations, made when it is first run; none where it has some that are not known.
+    pub flat: OnceLock<Option<Arc<Flat<T>>>>,
 }
 
 /// A list that is taken out of its place, and its sites.
@@ -133,22 +137,69 @@ impl<T: Real> Sweep<T> {
             }
             (Kind::TryEach, []) => {
                 let [from, to] = self.whole(places)?;
-                for i in from..to {
+                let mut i = from;
+                while i < to {
+                    i = self.quick(places, [i, to], Lists::none());
+                    if i == to {
+                        break;
+                    }
                     if let Value::Failed(e) = self.at([site(i)].into_iter(), places)? {
                         return Ok(Value::failed(Failure::At(i, e)));
                     }
+                    i += 1;
                 }
                 Ok(Value::Unit)
             }
             (Kind::Sum | Kind::Sizes, []) => {
                 let [from, to] = self.whole(places)?;
-                let mut all = Vec::with_capacity(to.saturating_sub(from));
-                for i in from..to {
-                    all.push(self.at([site(i)].into_iter(), places)?);
+                let mut all = Column::Values(Vec::new());
+                let mut i = from;
+                while i < to {
+                    // The first says of what kind they are.
+                    if i > from {
+                        let lists = Lists {
+                            summed: Some(&mut all),
+                            ..Lists::none()
+                        };
+                        i = self.quick(places, [i, to], lists);
+                        if i == to {
+                            break;
+                        }
+                    }
+                    let value = self.at([site(i)].into_iter(), places)?;
+                    if i == from {
+                        all = Column::like(&value);
+                    }
+                    unfit(all.push(&value))?;
+                    i += 1;
                 }
-                unfit(summed(&unfit(Column::of(all))?, self.kind == Kind::Sizes))
+                unfit(summed(&all, self.kind == Kind::Sizes))
             }
             _ => Err(Exit::Unfit(WRONG)),
+        }
+    }
+
+    /// Runs sites by operations, as far as that goes: the next site that is left to the body.
+    fn quick(&self, places: &Places<T>, [from, to]: [usize; 2], mut lists: Lists<'_, T>) -> usize {
+        let flat = self.flat.get_or_init(|| {
+            let kept = lists.kept.as_ref();
+            let kept = kept.and_then(|(column, first)| column.get(*first + from));
+            let shape = |column: &Column<T>| match column {
+                Column::Arrays(dims, _) => Some(*dims),
+                _ => None,
+            };
+            let out = lists.out.iter().map(|(column, _)| shape(column));
+            let kept_shape = lists.kept.iter().map(|(column, _)| shape(column));
+            let summed = lists.summed.iter().map(|column| shape(column));
+            let shapes: Vec<Option<[usize; 2]>> = out.chain(kept_shape).chain(summed).collect();
+            let made = traced(places, &self.parameters, &self.body, from, kept, &shapes);
+            made.map(Arc::new)
+        });
+        let Some(flat) = flat else { return from };
+        match flat.run(places, [from, to], &mut lists) {
+            Stop::Done => to,
+            Stop::Left(site) => site,
+            Stop::Unfit => from,
         }
     }
 
@@ -158,12 +209,22 @@ impl<T: Real> Sweep<T> {
     }
 
     fn filled(&self, taken: &mut Taken<T>, places: &mut Places<T>) -> Evaluated<T> {
-        for i in 0..taken.to - taken.from {
+        let (mut i, to) = (0, taken.to - taken.from);
+        while i < to {
+            let lists = Lists {
+                out: Some((&mut taken.column, taken.from)),
+                ..Lists::none()
+            };
+            i = self.quick(places, [i, to], lists);
+            if i == to {
+                break;
+            }
             let value = self.at([site(i)].into_iter(), places)?;
             if let Value::Failed(e) = value {
                 return Ok(Value::failed(Failure::At(i, e)));
             }
             unfit(taken.column.set(taken.from + i, &value))?;
+            i += 1;
         }
         Ok(Value::Unit)
     }
@@ -174,7 +235,17 @@ impl<T: Real> Sweep<T> {
         kept: &mut Taken<T>,
         places: &mut Places<T>,
     ) -> Evaluated<T> {
-        for i in 0..(out.to - out.from).min(kept.to - kept.from) {
+        let (mut i, to) = (0, (out.to - out.from).min(kept.to - kept.from));
+        while i < to {
+            let lists = Lists {
+                out: Some((&mut out.column, out.from)),
+                kept: Some((&mut kept.column, kept.from)),
+                summed: None,
+            };
+            i = self.quick(places, [i, to], lists);
+            if i == to {
+                break;
+            }
             let keep = unfit(kept.column.get(kept.from + i))?;
             match self.at([site(i), keep].into_iter(), places)? {
                 Value::None => return Ok(Value::failed(Failure::Site(i))),
@@ -187,6 +258,7 @@ impl<T: Real> Sweep<T> {
                 }
                 _ => return Err(Exit::Unfit(WRONG)),
             }
+            i += 1;
         }
         Ok(Value::Unit)
     }

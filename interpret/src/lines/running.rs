@@ -131,15 +131,6 @@ impl Carded {
                 field: text(&format!("{}_{}", at.quantity, at.site)),
                 ..error
             }),
-            Unstarted::Line(
-                e @ (LineError::Step {
-                    node: _,
-                    at: _,
-                    cause: _,
-                    works: _,
-                }
-                | LineError::Functional { .. }),
-            ) => OpenError::Start(StartError::Refused(cause(e))),
             Unstarted::Line(LineError::Length {
                 quantity,
                 expected,
@@ -159,6 +150,7 @@ impl Carded {
                 expected: least,
                 found,
             },
+            Unstarted::Line(e) => OpenError::Start(StartError::Refused(cause(e))),
             Unstarted::Missing(quantity) => OpenError::Count {
                 field: text(&quantity),
                 expected: 1,

@@ -4,7 +4,7 @@ use super::expression::whole;
 use super::statement::is_place;
 use super::{Binding, Lower, Lowered, refuse};
 use crate::Refused;
-use crate::code::{Code, Pattern, Routine};
+use crate::code::{Code, Known, Pattern, Routine};
 use crate::library;
 use crate::program::named;
 use crate::value::{Frame, Value};
@@ -20,7 +20,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         sizes: Vec<usize>,
     ) -> Option<Code<T>> {
         let native = T::native(name, arguments.len())?;
-        Some(Code::Call(native, arguments, sizes))
+        Some(Code::Call(native, arguments, sizes, Known::of(name)))
     }
 
     /// The sizes among generic arguments; the scalar is none of them.
@@ -70,7 +70,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
             && let Some(native) = T::native(&format!("{}::{}", owner.ident, name.ident), 1)
         {
             let at = self.fresh();
-            let call = Code::Call(native, vec![Code::Place(at)], Vec::new());
+            let call = Code::Call(native, vec![Code::Place(at)], Vec::new(), Known::Other);
             return Ok(Code::Closure(vec![at], Box::new(call)));
         }
         self.expression(e, None)
@@ -125,7 +125,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
                     arguments.push(self.argument(a)?);
                 }
                 let special = library::special("from_fn").ok_or_else(|| refuse(c))?;
-                return Ok(Code::Special(special, arguments));
+                return Ok(Code::Special(special, arguments, Known::of("from_fn")));
             }
             ["SVector" | "SMatrix", "new"] => {
                 let arguments = self.all(c.args.iter())?;
@@ -199,7 +199,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         if let Some(special) = library::special(name)
             && (calls_back || T::native(name, arguments.len()).is_none())
         {
-            return Ok(Some(Code::Special(special, arguments)));
+            return Ok(Some(Code::Special(special, arguments, Known::of(name))));
         }
         Ok(self.native(name, arguments, sizes))
     }

@@ -5,7 +5,7 @@ use super::expression::whole;
 use super::statement::is_place;
 use super::{Binding, Lower, Lowered, refuse};
 use crate::Refused;
-use crate::code::{Arm, Code, Kind, Pattern, Slice, Sweep};
+use crate::code::{Arm, Code, Kind, Known, Pattern, Slice, Sweep};
 use crate::program::named;
 use crate::value::Value;
 use std::collections::BTreeMap;
@@ -49,7 +49,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         e: &impl quote::ToTokens,
     ) -> Result<Code<T>, Refused> {
         let special = crate::library::special(name).ok_or_else(|| refuse(e))?;
-        Ok(Code::Special(special, arguments))
+        Ok(Code::Special(special, arguments, Known::of(name)))
     }
 
     /// A loop over sites of the runtime, if a call is one.
@@ -91,6 +91,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
             range,
             parameters,
             body: *body,
+            flat: std::sync::OnceLock::new(),
         }))))
     }
 

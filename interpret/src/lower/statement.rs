@@ -172,11 +172,11 @@ impl<T: Lowered> Lower<'_, '_, T> {
             Code::Index(a, at) => {
                 self.is_steady(a, own) && at.iter().all(|c| self.is_steady(c, own))
             }
-            Code::Call(_, list, _) | Code::List(list) => {
+            Code::Call(_, list, ..) | Code::List(list) => {
                 list.iter().all(|c| self.is_steady(c, own))
             }
             // What they change is given to them.
-            Code::Special(_, list) => list.iter().all(|c| self.is_steady(c, own)),
+            Code::Special(_, list, _) => list.iter().all(|c| self.is_steady(c, own)),
             Code::Closure(parameters, body) => {
                 own.extend(parameters);
                 self.is_steady(body, own)

@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 pub const TODA: &str = include_str!("../../../models/lattices/toda-chain.clebsch");
 const TOPS: &str = include_str!("../../../models/lattices/coupled-tops.clebsch");
 const SINE: &str = include_str!("../../../models/lattices/sine-gordon.clebsch");
-const ROD: &str = include_str!("../../../models/lattices/elastic-rod.clebsch");
+pub const ROD: &str = include_str!("../../../models/lattices/elastic-rod.clebsch");
 pub const WATER: &str = include_str!("../../../models/lattices/shallow-water.clebsch");
 
 /// A number of sites and how the line ends; a ring where that is not said.
@@ -40,6 +40,12 @@ pub struct Data(BTreeMap<&'static str, Vec<f64>>);
 impl Data {
     pub fn get(&self, name: &str) -> Option<Vec<f64>> {
         self.0.get(name).cloned()
+    }
+
+    pub fn of_ascii(&self, name: &str) -> Option<Vec<f64>> {
+        let mut all = self.0.iter();
+        let found = all.find(|(own, _)| clebsch_core::expr::symbol::ascii(own) == name);
+        found.map(|(_, list)| list.clone())
     }
 
     pub fn with(&self, name: &'static str, change: impl Fn(&mut Vec<f64>)) -> Data {
