@@ -51,6 +51,8 @@ pub enum Known {
     MapErr,
     /// The division of a field's momentum by a number.
     Divided,
+    /// `Ok(x)` and `Some(x)`, which are `x`.
+    Done,
     /// How many values a list has.
     Length,
     /// Any other.
@@ -84,6 +86,7 @@ impl Known {
             "from_fn" => Known::FromFn,
             "map" => Known::Map,
             "map_err" => Known::MapErr,
+            "Ok" | "Some" => Known::Done,
             "len" => Known::Length,
             "divided" => Known::Divided,
             _ => Known::Other,

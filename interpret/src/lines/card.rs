@@ -119,10 +119,11 @@ impl Carded {
         });
         let (kept, lost): (Vec<Invariant>, Vec<Invariant>) =
             named.partition(|i| i.name == "energy" || model.totals().any(|t| t == i.name));
-        left_out.extend(lost.iter().map(|i| i.name.to_owned()));
-        let mut summary = words
+        left_out.extend(lost.iter().map(|i| expander.at_its_site(i.name)));
+        let summary = words
             .summary
             .replace(&short.words(lattice), &choice.words(lattice));
+        let mut summary = expander.at_its_site(&summary);
         summary.push_str(&told(&left_out));
         let card = Card {
             source: text(source),
@@ -198,6 +199,18 @@ impl Short<'_> {
             of: copy.of.clone(),
             label: self.lattice.find(&copy.of)?.label,
         })
+    }
+
+    /// A text in which parameters of the last end stand at the last site of the whole line.
+    fn at_its_site(&self, text: &str) -> String {
+        let count = self.lattice.line.map_or(0, |line| self.whole.count(line));
+        let mut out = text.to_owned();
+        for (own, stated, last) in &self.unfolded.end_parameters {
+            if *last {
+                out = out.replace(&ascii(own), &format!("{}_{count}", ascii(stated)));
+            }
+        }
+        out
     }
 
     /// The site of the short line that one of the whole is like.

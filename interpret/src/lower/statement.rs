@@ -116,6 +116,11 @@ impl<T: Lowered> Lower<'_, '_, T> {
             }
             _ => {}
         }
+        if let (syn::Pat::Tuple(names), syn::Expr::Tuple(values)) = (pat, &*init.expr)
+            && self.lent(names, values)?
+        {
+            return Ok(());
+        }
         let kind = self.kind(&init.expr);
         let value = self.expression(&init.expr, ty)?;
         if let syn::Pat::Struct(fields) = pat {
@@ -160,6 +165,26 @@ impl<T: Lowered> Lower<'_, '_, T> {
         let pattern = self.pattern(pat, kind)?;
         out.push(Code::Let(pattern, Box::new(value), otherwise));
         Ok(())
+    }
+
+    /// `let (a, b) = (&x, &y)`: names for what stands somewhere, if all of it does.
+    fn lent(&mut self, names: &syn::PatTuple, values: &syn::ExprTuple) -> Result<bool, Refused> {
+        let mut bound = Vec::new();
+        for (name, value) in names.elems.iter().zip(&values.elems) {
+            let (syn::Pat::Ident(name), syn::Expr::Reference(lent)) = (name, value) else {
+                return Ok(false);
+            };
+            let code = self.expression(&lent.expr, None)?;
+            if !is_place(&code) || name.mutability.is_some() {
+                return Ok(false);
+            }
+            let kind = self.kind(&lent.expr);
+            bound.push((name.ident.to_string(), Binding::Place(code, kind)));
+        }
+        for (name, binding) in bound {
+            self.bind(name, binding);
+        }
+        Ok(names.elems.len() == values.elems.len())
     }
 
     /// Whether a value is made of the model alone: then it is made once. `own` are the places within it.

@@ -734,6 +734,10 @@ impl<T: Real> Tracer<'_, T> {
                 };
                 Some(constant(Value::Bool(true)))
             }
+            (Known::Done, [x]) => match x.value {
+                Value::Failed(_) | Value::None => None,
+                _ => Some(x.clone()),
+            },
             (Known::ThenSome, [truth, value]) => match truth.loc {
                 Loc::One(At::Constant(Value::Bool(true))) => Some(value.clone()),
                 _ => None,
