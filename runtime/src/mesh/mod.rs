@@ -5,6 +5,7 @@ mod domain;
 mod error;
 mod functional;
 mod grid;
+mod length;
 mod voronoi;
 
 pub use domain::{Domain, Wall};

@@ -151,7 +151,7 @@ impl<T: Real> Functional<T, 2> for smooth_isotropic<T, 2> {
         let least = nodes.axes().map(|axis| least_of(&axis, alpha.value()));
         let zeros = || vec![T::zero(); nodes.count()];
         Ok(Self {
-            directions: Directions::new(&nodes, alpha)?,
+            directions: Directions::new(setting, &nodes, alpha)?,
             weights: Weights::new(&nodes),
             least: least[0] + least[1] - least[0] * least[1],
             residual: zeros(),

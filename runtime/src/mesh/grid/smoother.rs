@@ -3,12 +3,13 @@
 //! is its own adjoint in the weights w of nodes, `Σ w a S b = Σ w b S a`: the transposed derivative is `w S w⁻¹`.
 //! Takes values at nodes, gives values at nodes; it keeps `Σ w H` and constants.
 
+use super::super::length::check_length;
 use super::super::{Functional, MeshError, Setting, Wall};
 use super::bounded::Bounded;
 use super::nodes::Nodes;
 use super::periodic::Periodic;
 use crate::scalar::largest;
-use crate::{ParameterError, Problem, Real};
+use crate::{ParameterError, Real};
 
 /// The smoother of one direction.
 #[derive(Clone, Debug)]
@@ -27,21 +28,8 @@ pub(super) struct Directions<T, const D: usize> {
 
 impl<T: Real, const D: usize> Directions<T, D> {
     /// For the smoothing length `alpha`.
-    pub fn new(nodes: &Nodes<D>, alpha: T) -> Result<Self, ParameterError> {
-        let least = alpha.least();
-        if !(alpha.is_finite() && least >= 0.0) {
-            return Err(ParameterError {
-                field: "alpha",
-                problem: match alpha.is_finite() {
-                    true => Problem::AssumptionFails { text: "alpha >= 0" },
-                    false => Problem::NotFinite {
-                        index: 0,
-                        value: alpha.value(),
-                    },
-                },
-                remedy: "give a smoothing length that is zero or positive, such as twice the spacing of the grid",
-            });
-        }
+    pub fn new(setting: &Setting<D>, nodes: &Nodes<D>, alpha: T) -> Result<Self, ParameterError> {
+        check_length(alpha, &setting.domain)?;
         let along = nodes.axes().map(|axis| match axis.wall() {
             Wall::Solid => Along::Bounded(Bounded::new(&axis, alpha)),
             Wall::Periodic => Along::Periodic(Periodic::new(&axis, alpha)),
@@ -133,7 +121,7 @@ impl<T: Real, const D: usize> Functional<T, D> for smooth<T, D> {
     fn new(setting: &Setting<D>, (alpha,): (T,)) -> Result<Self, ParameterError> {
         let nodes = Nodes::new(setting)?;
         Ok(Self {
-            directions: Directions::new(&nodes, alpha)?,
+            directions: Directions::new(setting, &nodes, alpha)?,
             weights: Weights::new(&nodes),
         })
     }

@@ -9,8 +9,9 @@ use super::laplacian::Helmholtz;
 use super::masses::check_masses;
 use super::mesh::{Plane, Voronoi};
 use crate::line::Threads;
+use crate::mesh::length::check_length;
 use crate::mesh::{Functional, MeshError, Setting};
-use crate::{ParameterError, Problem, Real};
+use crate::{ParameterError, Real};
 use nalgebra::SVector;
 
 /// Depths at the particles, to a relative residual of 1e-12.
@@ -105,14 +106,7 @@ impl<T: Real> Functional<T, 2> for helmholtz_depth<T> {
     fn new(setting: &Setting<2>, (masses, alpha): (&[T], T)) -> Result<Self, ParameterError> {
         let mesh = Voronoi::new(&setting.domain, setting.particles)?;
         check_masses(masses, setting.particles)?;
-        let value = alpha.value();
-        if !(alpha.is_finite() && value >= 0.0) {
-            return Err(ParameterError {
-                field: "alpha",
-                problem: Problem::NotPositive { value },
-                remedy: "give the length over which the depth is smoothed, about twice the distance of particles",
-            });
-        }
+        check_length(alpha, &setting.domain)?;
         let zeros = vec![T::zero(); setting.particles];
         Ok(Self {
             mesh,

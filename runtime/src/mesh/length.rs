@@ -1,0 +1,53 @@
+//! Which lengths a depth is smoothed over: from none to a hundred domains. Beyond it only the mean is left, and
+//! the rounding of the square of the length by that of a cell would change the mass.
+
+use super::Domain;
+use crate::{ParameterError, Problem, Real};
+
+/// Most domains that one length takes.
+const MOST: f64 = 100.0;
+
+/// Whether a length is one to smooth over.
+///
+/// # Errors
+/// It is NaN, infinite, negative or too long.
+pub(super) fn check_length<T: Real, const D: usize>(
+    alpha: T,
+    domain: &Domain<D>,
+) -> Result<(), ParameterError> {
+    let value = alpha.value();
+    let longest = domain
+        .lengths
+        .iter()
+        .copied()
+        .fold(0.0, |a: f64, b| a.max(b));
+    let refused = |problem, remedy| {
+        Err(ParameterError {
+            field: "alpha",
+            problem,
+            remedy,
+        })
+    };
+    if !alpha.is_finite() {
+        let index = 0;
+        return refused(
+            Problem::NotFinite { index, value },
+            "give the length over which the depth is smoothed",
+        );
+    }
+    if alpha.least() < 0.0 {
+        return refused(
+            Problem::AssumptionFails { text: "alpha >= 0" },
+            "give a length that is zero or positive, about twice the distance of particles or nodes",
+        );
+    }
+    if value > MOST * longest {
+        return refused(
+            Problem::AssumptionFails {
+                text: "alpha <= 100 L, with L the longest side of the domain",
+            },
+            "a depth that is smoothed over more than the domain is its mean: take a shorter length",
+        );
+    }
+    Ok(())
+}
