@@ -48,6 +48,11 @@ pub enum Refused {
         /// Its path.
         path: String,
     },
+    /// A model with functionals of all sites that no loops over sites take.
+    Form {
+        /// Why, in words.
+        why: String,
+    },
     /// An operation that is not known here.
     Construct(String),
     /// More models than one process holds.
@@ -66,6 +71,7 @@ impl fmt::Display for Refused {
                 "a model file with this method is not run yet: {model} is solved so: {method}; put the \
                  model into a crate by `model! {{ ... }}`, which builds it"
             ),
+            Self::Form { why } => write!(f, "the model is not run with loops over sites: {why}"),
             Self::Functional { path } => write!(
                 f,
                 "the functional `{path}` is Rust code of its own, which needs a build: put the model into a \

@@ -116,7 +116,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             }
             other => Some(listed(&other.dense()?.data)),
         },
-        ("to_vec", 1) => |a, _| Some((*a.first()?).clone()),
+        ("to_vec" | "into_owned", 1) => |a, _| Some((*a.first()?).clone()),
         ("is_err", 1) => |a, _| Some(Value::Bool(matches!(a.first()?, Value::Failed(_)))),
         _ => return None,
     })

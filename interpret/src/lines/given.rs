@@ -222,6 +222,16 @@ impl Given {
         })
     }
 
+    /// The fields that say where particles live, with how many numbers each is.
+    pub fn space(&self) -> impl Iterator<Item = (&str, usize)> {
+        self.fields.iter().filter_map(|(name, read)| match read {
+            Read::Doubles(_) | Read::Cells(_) | Read::Box(_) => {
+                Some((name.as_str(), read.count()))
+            }
+            _ => None,
+        })
+    }
+
     /// The value of one of its fields.
     pub fn one(&self, field: &str, numbers: &Numbers<'_>) -> Result<Value<f64>, Unstarted> {
         let own = self.fields.iter().find(|(name, _)| name == field);

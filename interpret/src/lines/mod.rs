@@ -239,6 +239,12 @@ impl LineModel {
         own.chain(values)
     }
 
+    /// What else is given of a model whose particles live in a domain, by name, with how many numbers it is: the
+    /// lengths of a torus; `domain`, a box; the cells of a grid along each direction.
+    pub fn space(&self) -> impl Iterator<Item = (&str, usize)> {
+        self.sites.space()
+    }
+
     /// The momenta that belong to velocities of a field of places, where the model tells them; lists of one site
     /// after the other.
     ///
