@@ -81,7 +81,8 @@ pub(crate) fn read(
         // Of a long line the values are those of a file.
         Some((stated, choice))
             if case.is_some()
-                && (choice.counts.iter().any(|n| *n > LONG) || !stated.lattice.meshes.is_empty()) =>
+                && (choice.counts.iter().any(|n| *n > LONG)
+                    || !stated.lattice.meshes.is_empty()) =>
         {
             Vec::new()
         }

@@ -60,10 +60,7 @@ fn vectors(list: &[f64]) -> Vec<Vector2<f64>> {
 /// Places of a jittered lattice, masses near that of depth 1, and momenta of velocities of size `speed`.
 fn particles(side: usize, speed: f64) -> Data {
     let domain = Domain::torus([1.0, 1.0]);
-    let jitter = Jitter {
-        size: 0.2,
-        seed: 5,
-    };
+    let jitter = Jitter { size: 0.2, seed: 5 };
     let places = placement::lattice(&domain, [side, side], true, jitter);
     let n = places.len();
     let m = |i: usize| (1.0 + 0.2 * (i as f64).sin()) / n as f64;
@@ -166,7 +163,15 @@ fn cells_equal_the_compiled_ones_to_the_last_bit() {
         momentum_X: vectors(&data["momentum_X"]),
     };
     let model = ShallowWater2D::new(parameters, sites).expect("is made");
-    compared!(2, choice(source(2), n, 1), data, model, initial, ["A" = values_A], []);
+    compared!(
+        2,
+        choice(source(2), n, 1),
+        data,
+        model,
+        initial,
+        ["A" = values_A],
+        []
+    );
 }
 
 #[test]
@@ -291,7 +296,10 @@ fn particles_on_an_interval_equal_the_compiled_ones_to_the_last_bit() {
     };
     let initial = ParticleMesh1DInitial {
         X: data["X"].iter().map(|x| SMatrix::from([[*x]])).collect(),
-        momentum_X: data["momentum_X"].iter().map(|p| SMatrix::from([[*p]])).collect(),
+        momentum_X: data["momentum_X"]
+            .iter()
+            .map(|p| SMatrix::from([[*p]]))
+            .collect(),
     };
     let model = ParticleMesh1D::new(parameters, sites).expect("is made");
     let reflections = compared!(
@@ -322,7 +330,10 @@ fn momenta_of_velocities_are_mass_times_velocity_and_what_rotation_adds() {
         let expected = [m * (v[0] - f / 2.0 * x[1]), m * (v[1] + f / 2.0 * x[0])];
         for (p, q) in momenta[2 * a..].iter().zip(expected) {
             // A few roundings of terms of this size.
-            assert!((p - q).abs() <= 8.0 * f64::EPSILON * m * (1.0 + f), "{a}: {p} {q}");
+            assert!(
+                (p - q).abs() <= 8.0 * f64::EPSILON * m * (1.0 + f),
+                "{a}: {p} {q}"
+            );
         }
     }
 }
@@ -345,7 +356,10 @@ fn what_is_wrong_is_named() {
         let x = d.get_mut("X").expect("is given");
         (x[2], x[3]) = (x[0], x[1]);
     });
-    assert!(twice.contains("particles 0 and 1") || twice.contains("particles 1 and 0"), "{twice}");
+    assert!(
+        twice.contains("particles 0 and 1") || twice.contains("particles 1 and 0"),
+        "{twice}"
+    );
     assert!(twice.contains("`A`"), "{twice}");
     let nowhere = told(&|d| d.get_mut("X").expect("is given")[7] = f64::NAN);
     assert!(nowhere.contains("site 3"), "{nowhere}");
@@ -359,6 +373,11 @@ fn what_is_wrong_is_named() {
 fn a_functional_of_ones_own_needs_a_build() {
     let own = source(2).replace("voronoi_area(X)", "crate::mine::area(X)");
     assert_ne!(own, source(2));
-    let refused = LineModel::read(&own).expect_err("needs a build").to_string();
-    assert!(refused.contains("needs a build") && refused.contains("mine::area"), "{refused}");
+    let refused = LineModel::read(&own)
+        .expect_err("needs a build")
+        .to_string();
+    assert!(
+        refused.contains("needs a build") && refused.contains("mine::area"),
+        "{refused}"
+    );
 }

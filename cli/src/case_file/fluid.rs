@@ -12,7 +12,7 @@ use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::value::SiteData;
 use clebsch_core::lattice::{Choice, Kind, Quantity};
 use clebsch_core::syntax::ast::Size;
-use clebsch_interpret::lines::LineModel;
+use clebsch_interpret::lines::{LineModel, Unstarted};
 use std::collections::BTreeMap;
 use std::collections::HashSet;
 use toml::Spanned;
@@ -103,7 +103,9 @@ impl Fluid {
         }
         let (key, site) = key?;
         let column = self.columns.get(key)?;
-        let own = column.numbers.get(site * column.size..(site + 1) * column.size)?;
+        let own = column
+            .numbers
+            .get(site * column.size..(site + 1) * column.size)?;
         Some((spelt(own), column.line))
     }
 
@@ -173,7 +175,10 @@ impl Reader<'_> {
             _ => {
                 let known = self.numbers.iter().find(|(own, _)| own == name);
                 known.map(|(_, x)| *x).or_else(|| {
-                    let own = lattice.quantities.iter().find(|o| ascii(&o.name.text) == name)?;
+                    let own = lattice
+                        .quantities
+                        .iter()
+                        .find(|o| ascii(&o.name.text) == name)?;
                     let column = self.fluid.columns.get(name)?;
                     let fits = own.label == q.label && column.size == 1;
                     column.numbers.get(site).copied().filter(|_| fits)
@@ -190,7 +195,9 @@ impl Reader<'_> {
         let mut places = self.stated.lattice.quantities.iter();
         let own = places.find(|o| o.domain.is_some())?;
         let column = self.fluid.columns.get(&ascii(&own.name.text))?;
-        let all = column.numbers.get(site * column.size..(site + 1) * column.size)?;
+        let all = column
+            .numbers
+            .get(site * column.size..(site + 1) * column.size)?;
         all.get(d).copied()
     }
 
@@ -200,7 +207,11 @@ impl Reader<'_> {
         let list = match value {
             DeValue::Array(list) => list,
             single if size == 1 => return self.component(q, single),
-            _ => return Err(format!("expected {size} numbers or expressions, or a list with such for each site")),
+            _ => {
+                return Err(format!(
+                    "expected {size} numbers or expressions, or a list with such for each site"
+                ));
+            }
         };
         let nested = list.iter().any(|v| v.get_ref().is_array());
         if !nested && size > 1 && list.len() == size {
@@ -222,7 +233,10 @@ impl Reader<'_> {
                 single => vec![single],
             };
             if own.len() != size {
-                return Err(format!("site {site} has {} numbers, where {size} are taken", own.len()));
+                return Err(format!(
+                    "site {site} has {} numbers, where {size} are taken",
+                    own.len()
+                ));
             }
             for value in own {
                 out.push(self.at(q, value, site)?);
@@ -252,7 +266,11 @@ impl Reader<'_> {
 
     fn keep(&mut self, key: &str, numbers: Vec<f64>, size: usize, value: Given<'_, '_>) {
         let line = value.map_or(0, |v| self.file.line(&v.span()));
-        let column = Column { numbers, size, line };
+        let column = Column {
+            numbers,
+            size,
+            line,
+        };
         self.fluid.columns.insert(key.to_owned(), column);
         self.fluid.used.insert(key.to_owned());
     }
@@ -298,7 +316,10 @@ impl Reader<'_> {
                     let depths = self.read(q, depth.get_ref());
                     depths.map(|all| all.into_iter().map(|d| d * share).collect())
                 }
-                _ => Err("expected { depth = \"an expression of x, y\" }, for a particle's share of it".to_owned()),
+                _ => Err(
+                    "expected { depth = \"an expression of x, y\" }, for a particle's share of it"
+                        .to_owned(),
+                ),
             },
             Some(own) => self.read(q, own),
         };
@@ -326,7 +347,8 @@ impl Reader<'_> {
                 return Err(self.wrong(&format!("initial.{momentum}"), p, &message));
             }
             (None, None) => {
-                let message = format!("missing: give it, or {velocity}, in expressions of the place x, y");
+                let message =
+                    format!("missing: give it, or {velocity}, in expressions of the place x, y");
                 return Err(self.wrong(&format!("initial.{momentum}"), None, &message));
             }
         };
@@ -344,7 +366,12 @@ impl Reader<'_> {
     }
 
     /// The momenta that the model gives to velocities.
-    fn of_velocities(&self, q: &Quantity, velocities: &[f64], source: &str) -> Result<Vec<f64>, String> {
+    fn of_velocities(
+        &self,
+        q: &Quantity,
+        velocities: &[f64],
+        source: &str,
+    ) -> Result<Vec<f64>, String> {
         let model = LineModel::read(source).map_err(|e| e.to_string())?;
         let given = |name: &str| {
             let key = ascii(name);
@@ -357,8 +384,18 @@ impl Reader<'_> {
             column.or_else(whole).or_else(number)
         };
         let found = model.momenta(self.choice, &given, &q.name.text, velocities);
-        let found = found.map_err(|e| e.to_string())?;
-        found.ok_or_else(|| "the model does not tell the momenta of velocities: give momenta".to_owned())
+        let found = found.map_err(|e| match e {
+            Unstarted::Missing(name) => {
+                format!(
+                    "missing key `parameters.{}`, which the momenta of velocities take",
+                    ascii(&name)
+                )
+            }
+            other => other.to_string(),
+        })?;
+        found.ok_or_else(|| {
+            "the model does not tell the momenta of velocities: give momenta".to_owned()
+        })
     }
 }
 

@@ -248,7 +248,14 @@ pub(crate) fn written_out(
         lines: Vec::new(),
     };
     let raw = |span: &Range<usize>| text.get(span.clone()).unwrap_or_default().to_owned();
-    const TABLES: [&str; 6] = ["labels", "domain", "ends", "parameters", "initial", "bounds"];
+    const TABLES: [&str; 6] = [
+        "labels",
+        "domain",
+        "ends",
+        "parameters",
+        "initial",
+        "bounds",
+    ];
     for (key, value) in top {
         if !TABLES.contains(&key.get_ref().as_ref()) {
             let line = format!("{} = {}", key_text(key.get_ref()), raw(&value.span()));

@@ -25,12 +25,20 @@ pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named
     );
     let space = Space::sample(stated);
     for (i, l) in lattice.labels.iter().enumerate() {
-        if let Some(cells) = space.as_ref().and_then(|s| s.cells.as_ref()).filter(|_| l.grid) {
+        if let Some(cells) = space
+            .as_ref()
+            .and_then(|s| s.cells.as_ref())
+            .filter(|_| l.grid)
+        {
             let cells = match cells.as_slice() {
                 [n] => n.to_string(),
                 all => format!("{all:?}"),
             };
-            let _ = writeln!(text, "{} = {cells}     # cells of the grid along each direction", l.index.text);
+            let _ = writeln!(
+                text,
+                "{} = {cells}     # cells of the grid along each direction",
+                l.index.text
+            );
             continue;
         }
         let what = match l.set {

@@ -19,14 +19,21 @@ pub(super) fn domain(text: &mut String, stated: &Stated, space: &Space) {
     );
     if torus.is_none() {
         let walls = vec!["\"periodic\""; d].join(", ");
-        let _ = writeln!(text, "walls = [{walls}]     # \"periodic\" or \"solid\" for each direction");
+        let _ = writeln!(
+            text,
+            "walls = [{walls}]     # \"periodic\" or \"solid\" for each direction"
+        );
     }
 }
 
 /// Parameters and initial values.
 pub(super) fn tables(text: &mut String, card: &Card, stated: &Stated, space: &Space) {
     let quantities = &stated.lattice.quantities;
-    let is_sited = |q: &Quantity, field: &str| field.rsplit_once('_').is_some_and(|(base, _)| base == ascii(&q.name.text));
+    let is_sited = |q: &Quantity, field: &str| {
+        field
+            .rsplit_once('_')
+            .is_some_and(|(base, _)| base == ascii(&q.name.text))
+    };
     let _ = writeln!(text, "\n[parameters]");
     for q in quantities.iter().filter(|q| q.kind == Kind::Parameter) {
         let (name, label) = (ascii(&q.name.text), stated.lattice.labels.get(q.label));
@@ -44,7 +51,11 @@ pub(super) fn tables(text: &mut String, card: &Card, stated: &Stated, space: &Sp
     };
     let of_space = |name: &str| {
         let torus = Space::torus(stated).map(ascii);
-        let grid = stated.lattice.labels.iter().any(|l| l.grid && ascii(&l.index.text) == name);
+        let grid = stated
+            .lattice
+            .labels
+            .iter()
+            .any(|l| l.grid && ascii(&l.index.text) == name);
         grid || name == "domain" || torus.as_deref() == Some(name)
     };
     for field in card.parameters {
@@ -67,6 +78,9 @@ pub(super) fn tables(text: &mut String, card: &Card, stated: &Stated, space: &Sp
             ),
         };
         let _ = writeln!(text, "{name} = {start}");
-        let _ = writeln!(text, "velocity_{name} = {velocity}     # or momentum_{name}");
+        let _ = writeln!(
+            text,
+            "velocity_{name} = {velocity}     # or momentum_{name}"
+        );
     }
 }

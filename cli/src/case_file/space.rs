@@ -67,12 +67,12 @@ impl Space {
             (Some(name), 1) => format!("[domain] with {name} = [1.0]"),
             (Some(name), _) => format!("[domain] with {name} = [1.0, 1.0]"),
             (None, 1) => "[domain] with lengths = [1.0] and walls = [\"solid\"]".to_owned(),
-            (None, _) => {
-                "[domain] with lengths = [1.0, 1.0] and walls = [\"solid\", \"periodic\"]".to_owned()
-            }
+            (None, _) => "[domain] with lengths = [1.0, 1.0] and walls = [\"solid\", \"periodic\"]"
+                .to_owned(),
         };
         let Some(table) = super::labels::table(file, top, "domain")? else {
-            let message = format!("missing table [domain], where particles live: for example {example}");
+            let message =
+                format!("missing table [domain], where particles live: for example {example}");
             return Err(file.wrong(None, &message));
         };
         let keys = ["lengths", torus.unwrap_or("lengths"), "walls", "kind"];
@@ -93,7 +93,11 @@ impl Space {
         };
         let lengths = listed(value.get_ref(), d, |v| number(v).ok().filter(|x| *x > 0.0));
         let lengths = lengths.ok_or_else(|| {
-            wrong(value, "lengths", &format!("expected {d} positive numbers, one for each direction"))
+            wrong(
+                value,
+                "lengths",
+                &format!("expected {d} positive numbers, one for each direction"),
+            )
         })?;
         let walls = walls(table, d, torus.is_some(), &wrong, &example)?;
         Ok(Some(Space {
@@ -117,12 +121,18 @@ impl Space {
         let cells = self.cells.clone().unwrap_or_default();
         match (&self.lengths[..], &self.walls[..], &cells[..]) {
             ([length], [solid], [n]) => of_nodes(Setting {
-                domain: Domain { lengths: [*length], walls: [wall(*solid)] },
+                domain: Domain {
+                    lengths: [*length],
+                    walls: [wall(*solid)],
+                },
                 grid: Some([*n]),
                 particles: 0,
             }),
             ([width, height], [a, b], [n, m]) => of_nodes(Setting {
-                domain: Domain { lengths: [*width, *height], walls: [wall(*a), wall(*b)] },
+                domain: Domain {
+                    lengths: [*width, *height],
+                    walls: [wall(*a), wall(*b)],
+                },
                 grid: Some([*n, *m]),
                 particles: 0,
             }),
@@ -133,7 +143,9 @@ impl Space {
     /// How many nodes the grid has.
     pub(crate) fn count(&self) -> usize {
         let cells = self.cells.iter().flatten().zip(&self.walls);
-        cells.map(|(n, wall)| n.saturating_add(usize::from(*wall))).fold(1, usize::saturating_mul)
+        cells
+            .map(|(n, wall)| n.saturating_add(usize::from(*wall)))
+            .fold(1, usize::saturating_mul)
     }
 
     /// The numbers of the parameter that the model takes: of a torus its lengths, of a box its walls too.
@@ -156,7 +168,11 @@ fn of_nodes<const D: usize>(setting: Setting<D>) -> Result<Placed, String> {
 }
 
 /// A list of so many, or one that stands for it in one dimension.
-fn listed<V>(value: &DeValue<'_>, d: usize, one: impl Fn(&DeValue<'_>) -> Option<V>) -> Option<Vec<V>> {
+fn listed<V>(
+    value: &DeValue<'_>,
+    d: usize,
+    one: impl Fn(&DeValue<'_>) -> Option<V>,
+) -> Option<Vec<V>> {
     match value {
         DeValue::Array(list) if list.len() == d => list.iter().map(|v| one(v.get_ref())).collect(),
         DeValue::Array(_) => None,
@@ -183,7 +199,11 @@ fn walls(
                 _ => None,
             });
             let message = format!("expected \"solid\" or \"periodic\" for each of {d} directions");
-            Some((value, "walls", walls.ok_or_else(|| wrong(value, "walls", &message))?))
+            Some((
+                value,
+                "walls",
+                walls.ok_or_else(|| wrong(value, "walls", &message))?,
+            ))
         }
         (None, Some(value)) => {
             let walls = match value.get_ref().as_str() {
@@ -201,9 +221,11 @@ fn walls(
         (None, None) => None,
     };
     match found {
-        Some((value, key, walls)) if is_torus && walls.contains(&true) => {
-            Err(wrong(value, key, "the model is stated on a torus, which has no walls"))
-        }
+        Some((value, key, walls)) if is_torus && walls.contains(&true) => Err(wrong(
+            value,
+            key,
+            "the model is stated on a torus, which has no walls",
+        )),
         Some((.., walls)) => Ok(walls),
         None if is_torus => Ok(vec![false; d]),
         None => {
@@ -231,19 +253,24 @@ fn cells(
     let example = if d == 1 { "32" } else { "[32, 32]" };
     let labels = super::labels::table(file, top, "labels")?;
     let Some(value) = labels.and_then(|t| t.get(name.as_str())) else {
-        let message =
-            format!("missing key `labels.{name}`, the cells of the grid along each direction: for example {name} = {example}");
+        let message = format!(
+            "missing key `labels.{name}`, the cells of the grid along each direction: for example {name} = {example}"
+        );
         return Err(file.wrong(None, &message));
     };
     let whole = |v: &DeValue<'_>| match v {
-        DeValue::Integer(n) => usize::from_str_radix(n.as_str(), n.radix()).ok().filter(|n| *n > 0),
+        DeValue::Integer(n) => usize::from_str_radix(n.as_str(), n.radix())
+            .ok()
+            .filter(|n| *n > 0),
         _ => None,
     };
     match listed(value.get_ref(), d, whole) {
         Some(cells) => Ok(Some(cells)),
         None => Err(file.wrong(
             Some(&value.span()),
-            &format!("labels.{name}: expected whole numbers of cells, one for each direction: {example}"),
+            &format!(
+                "labels.{name}: expected whole numbers of cells, one for each direction: {example}"
+            ),
         )),
     }
 }

@@ -13,8 +13,15 @@ const SWEEPS: u64 = 20;
 /// The places of `count` particles, one after the other.
 pub(super) fn places(table: &DeTable<'_>, space: &Space, count: usize) -> Result<Vec<f64>, String> {
     const KEYS: [&str; 5] = ["lattice", "jitter", "seed", "columns", "sweeps"];
-    if let Some((key, _)) = table.iter().find(|(k, _)| !KEYS.contains(&k.get_ref().as_ref())) {
-        return Err(format!("unknown key `{}`; known are {}", key.get_ref(), KEYS.join(", ")));
+    if let Some((key, _)) = table
+        .iter()
+        .find(|(k, _)| !KEYS.contains(&k.get_ref().as_ref()))
+    {
+        return Err(format!(
+            "unknown key `{}`; known are {}",
+            key.get_ref(),
+            KEYS.join(", ")
+        ));
     }
     let kinds = "\"brick\", \"square\", \"hex\" or \"random\"";
     let kind = table.get("lattice").and_then(|v| v.get_ref().as_str());
@@ -31,20 +38,33 @@ pub(super) fn places(table: &DeTable<'_>, space: &Space, count: usize) -> Result
             #[allow(clippy::cast_precision_loss)]
             let domain = Domain::torus([*length, *length / count.max(1) as f64]);
             let row = placement::lattice(&domain, [count, 1], false, jitter);
-            row.iter().map(|x| x.x).collect::<Vec<f64>>()
+            row.iter()
+                .map(|x| x.x + centred(*length, count))
+                .collect::<Vec<f64>>()
         }
-        [_] => return Err("on a line particles start on { lattice = \"square\" }, with jitter".to_owned()),
+        [_] => {
+            return Err(
+                "on a line particles start on { lattice = \"square\" }, with jitter".to_owned(),
+            );
+        }
         [width, height] => {
             let domain = Domain::torus([*width, *height]);
             let columns = whole(table, "columns")?;
-            let columns = columns.and_then(|n| usize::try_from(n).ok()).filter(|n| *n > 0);
+            let columns = columns
+                .and_then(|n| usize::try_from(n).ok())
+                .filter(|n| *n > 0);
             let places = match kind {
                 "brick" | "square" => {
                     let columns = columns.unwrap_or_else(|| even(count, width / height));
                     if count % columns != 0 {
                         return Err(format!("{columns} columns do not divide {count} particles"));
                     }
-                    placement::lattice(&domain, [columns, count / columns], kind == "brick", jitter)
+                    let shape = [columns, count / columns];
+                    let mut all = placement::lattice(&domain, shape, kind == "brick", jitter);
+                    if kind == "square" {
+                        all.iter_mut().for_each(|x| x.x += centred(*width, columns));
+                    }
+                    all
                 }
                 "hex" => hexagons(&domain, count, columns, jitter)?,
                 "random" => {
@@ -80,6 +100,12 @@ fn whole(table: &DeTable<'_>, key: &str) -> Result<Option<u64>, String> {
     }
 }
 
+/// From a quarter of a column, where rows begin, to its middle.
+#[allow(clippy::cast_precision_loss)]
+fn centred(width: f64, columns: usize) -> f64 {
+    0.25 * width / columns.max(1) as f64
+}
+
 /// The divisor of `count` whose lattice has cells that are most nearly squares.
 #[allow(clippy::cast_precision_loss)]
 fn even(count: usize, aspect: f64) -> usize {
@@ -88,11 +114,17 @@ fn even(count: usize, aspect: f64) -> usize {
         (columns as f64 / rows as f64 / aspect).ln().abs()
     };
     let divisors = (1..=count).filter(|n| count.is_multiple_of(*n));
-    divisors.min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(1)
+    divisors
+        .min_by(|a, b| off(*a).total_cmp(&off(*b)))
+        .unwrap_or(1)
 }
 
 /// Hexagons: only some numbers of them fill a domain.
-#[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+#[allow(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss
+)]
 fn hexagons(
     domain: &Domain<2>,
     count: usize,
@@ -100,15 +132,22 @@ fn hexagons(
     jitter: Jitter,
 ) -> Result<Vec<clebsch::nalgebra::SVector<f64, 2>>, String> {
     let [width, height] = domain.lengths;
-    let near = (count as f64 * width / height * 0.75_f64.sqrt()).sqrt().round() as usize;
+    let near = (count as f64 * width / height * 0.75_f64.sqrt())
+        .sqrt()
+        .round() as usize;
     let range = match columns {
         Some(columns) => columns..=columns,
         None => near.saturating_sub(3).max(1)..=near + 3,
     };
-    let all: Vec<_> = range.map(|n| placement::hexagonal(domain, n, jitter)).collect();
+    let all: Vec<_> = range
+        .map(|n| placement::hexagonal(domain, n, jitter))
+        .collect();
     let numbers: Vec<String> = all.iter().map(|x| x.len().to_string()).collect();
     let found = all.into_iter().find(|places| places.len() == count);
     found.ok_or_else(|| {
-        format!("{count} hexagons do not fill the domain; numbers near it that do: {}", numbers.join(", "))
+        format!(
+            "{count} hexagons do not fill the domain; numbers near it that do: {}",
+            numbers.join(", ")
+        )
     })
 }

@@ -10,15 +10,13 @@ use crate::output::Finished;
 use crate::output::sites::{AtSites, at_sites};
 use crate::record::Record;
 use clebsch_core::expr::symbol::ascii;
-use plotters::prelude::{
-    Circle, Color, IntoDrawingArea, RGBColor, Rectangle, SVGBackend, WHITE,
-};
+use plotters::prelude::{Circle, Color, IntoDrawingArea, RGBColor, Rectangle, SVGBackend, WHITE};
 
 /// Widest side of a panel, in pixels.
 const SIDE: f64 = 360.0;
 const LEFT: i32 = 44;
 const TOP: i32 = 76;
-const GAP: i32 = 40;
+const GAP: i32 = 56;
 const INK: RGBColor = RGBColor(30, 30, 30);
 const FAINT: RGBColor = RGBColor(110, 110, 110);
 
@@ -33,6 +31,8 @@ struct Snapshot {
     time: f64,
     marks: Vec<Mark>,
     dots: Vec<[f64; 2]>,
+    /// Of a mark, in pixels.
+    radius: f64,
 }
 
 /// The picture; nothing for models that are no fluids.
@@ -41,8 +41,13 @@ pub(crate) fn particles(run: &Finished<'_>, record: &Record) -> Plot {
         return Ok(None);
     };
     let all = at_sites(run.card);
-    let domain = stated.lattice.quantities.iter().find(|q| q.domain.is_some());
-    let Some(places) = domain.and_then(|q| all.iter().find(|s| s.key == ascii(&q.name.text))) else {
+    let domain = stated
+        .lattice
+        .quantities
+        .iter()
+        .find(|q| q.domain.is_some());
+    let Some(places) = domain.and_then(|q| all.iter().find(|s| s.key == ascii(&q.name.text)))
+    else {
         return Ok(None);
     };
     let mut meshes = stated.lattice.meshes.iter();
@@ -75,7 +80,11 @@ fn space(run: &Finished<'_>) -> Option<(Space, Stated)> {
     let mut walls: Vec<bool> = walls.collect();
     walls.resize(d, false);
     let lengths = own.get(..d)?.to_vec();
-    let space = Space { lengths, walls, cells };
+    let space = Space {
+        lengths,
+        walls,
+        cells,
+    };
     Some((space, stated))
 }
 
@@ -106,21 +115,35 @@ fn snapshot(
         _ => (particles.collect(), Vec::new()),
     };
     // On a line the value is the height.
-    let marks = on.iter().zip(&values).map(|(x, value)| Mark {
-        place: match x.as_slice() {
-            [x, y] => [*x, *y],
-            [x] => [*x, *value],
-            _ => [f64::NAN; 2],
-        },
-        value: *value,
-    });
+    let marks: Vec<Mark> = on
+        .iter()
+        .zip(&values)
+        .map(|(x, value)| Mark {
+            place: match x.as_slice() {
+                [x, y] => [*x, *y],
+                [x] => [*x, *value],
+                _ => [f64::NAN; 2],
+            },
+            value: *value,
+        })
+        .collect();
     let dots = dots.iter().filter_map(|x: &Vec<f64>| match x.as_slice() {
         [x, y] => Some([*x, *y]),
         _ => None,
     });
+    let radius = match space.lengths.as_slice() {
+        // As large as the room that each has.
+        [width, height] => {
+            let longest = width.max(*height);
+            let room = width * height * (SIDE / longest).powi(2) / marks.len().max(1) as f64;
+            (0.55 * room.sqrt()).clamp(1.0, 16.0)
+        }
+        _ => 2.5,
+    };
     Snapshot {
+        radius,
         time: record.times.get(sample).copied().unwrap_or(f64::NAN),
-        marks: marks.collect(),
+        marks,
         dots: dots.collect(),
     }
 }
@@ -164,7 +187,11 @@ fn draw(
     let (bottom, top, side) = match space.lengths.as_slice() {
         [width, height] => {
             let longest = width.max(*height);
-            (0.0, *height, [width, height].map(|l| (SIDE * l / longest).max(40.0)))
+            (
+                0.0,
+                *height,
+                [width, height].map(|l| (SIDE * l / longest).max(40.0)),
+            )
         }
         _ => {
             let room = 0.05 * (high - low);
@@ -213,18 +240,27 @@ fn panel(
 ) -> Result<(), Box<dyn std::error::Error>> {
     let unit = fine(1).cast_signed();
     let corner = |d: usize, p: f64| (frame.corner[d] + p * frame.side[d]) as i32;
-    let (left, right, up, down) = (corner(0, 0.0), corner(0, 1.0), corner(1, 0.0), corner(1, 1.0));
+    let (left, right, up, down) = (
+        corner(0, 0.0),
+        corner(0, 1.0),
+        corner(1, 0.0),
+        corner(1, 1.0),
+    );
     let edge = [(left * unit, up * unit), (right * unit, down * unit)];
     root.draw(&Rectangle::new(edge, INK.stroke_width(fine(1))))?;
     let time = format!("t = {}", axis::plain(shot.time));
     text(root, &time, 13, INK, (left, up - 20))?;
     text(root, &axis::plain(frame.low[0]), 11, INK, (left, down + 4))?;
-    text(root, &axis::plain(frame.high[0]), 11, INK, (right - 10, down + 4))?;
+    text(
+        root,
+        &axis::plain(frame.high[0]),
+        11,
+        INK,
+        (right - 10, down + 4),
+    )?;
     text(root, &short(frame.high[1]), 11, INK, (left - 38, up))?;
     text(root, &short(frame.low[1]), 11, INK, (left - 38, down - 12))?;
-    // As large as the room that each has.
-    let room = frame.side[0] * frame.side[1] / shot.marks.len().max(1) as f64;
-    let radius = (0.5 * room.sqrt()).clamp(1.0, 7.0) * f64::from(fine(1));
+    let radius = shot.radius * f64::from(fine(1));
     for mark in &shot.marks {
         if let Some(at) = frame.at(mark.place).filter(|_| mark.value.is_finite()) {
             let fill = color((mark.value - low) / (high - low)).filled();

@@ -39,7 +39,11 @@ fn every_fluid_is_derived_and_runs_its_case() {
         assert_eq!(sample.code, 0, "{}", sample.err);
         let own = folder.write("own.toml", &sample.out);
         let done = clebsch(&["run", &model, "--case", &own, "--steps", "20"]);
-        assert_eq!(done.code, 0, "{name}: {}{}\n{}", done.out, done.err, sample.out);
+        assert_eq!(
+            done.code, 0,
+            "{name}: {}{}\n{}",
+            done.out, done.err, sample.out
+        );
         let same = clebsch(&["run", &model, "--steps", "20"]);
         assert_eq!((done.out, done.err), (same.out, same.err), "{name}");
     }
@@ -49,8 +53,13 @@ fn every_fluid_is_derived_and_runs_its_case() {
 fn arrays_are_by_sample_particle_and_component_and_particles_are_mapped() {
     let folder = Folder::new("fluids-written");
     let out = folder.path("out");
-    let (model, case) = (shipped("particle-mesh-2d.clebsch"), shipped("particle-mesh-2d.toml"));
-    let done = clebsch(&["run", &model, "--case", &case, "--steps", "4", "--out", &out]);
+    let (model, case) = (
+        shipped("particle-mesh-2d.clebsch"),
+        shipped("particle-mesh-2d.toml"),
+    );
+    let done = clebsch(&[
+        "run", &model, "--case", &case, "--steps", "4", "--out", &out,
+    ]);
     assert_eq!(done.code, 0, "{}{}", done.out, done.err);
     let npz = std::fs::read(format!("{out}/trajectory.npz")).expect("is written");
     let has = |shape: &str| npz.windows(shape.len()).any(|w| w == shape.as_bytes());
@@ -68,7 +77,9 @@ fn arrays_are_by_sample_particle_and_component_and_particles_are_mapped() {
 fn velocities_and_momenta_say_the_same() {
     let folder = Folder::new("fluids-momenta");
     let model = shipped("shallow-water-2d.clebsch");
-    let case = text("shallow-water-2d.toml").replace("f = 0.0", "f = 2.0").replace("a = 400", "a = 64");
+    let case = text("shallow-water-2d.toml")
+        .replace("f = 0.0", "f = 2.0")
+        .replace("a = 400", "a = 64");
     let (head, _) = case.split_once("velocity_X").expect("has velocities");
     let run = |line: &str| {
         let file = folder.write("case.toml", &format!("{head}{line}\n"));
@@ -80,8 +91,14 @@ fn velocities_and_momenta_say_the_same() {
     let by_velocity = run("velocity_X = [\"0.1*y\", \"0.2\"]");
     let by_momentum = run("momentum_X = [\"m*(0.1*y - f/2*y)\", \"m*(0.2 + f/2*x)\"]");
     let energy = |out: &str| -> String {
-        let line = out.lines().find(|l| l.trim_start().starts_with("energy")).expect("has energy");
-        line.split_whitespace().take(2).collect::<Vec<_>>().join(" ")
+        let line = out
+            .lines()
+            .find(|l| l.trim_start().starts_with("energy"))
+            .expect("has energy");
+        line.split_whitespace()
+            .take(2)
+            .collect::<Vec<_>>()
+            .join(" ")
     };
     assert_eq!(energy(&by_velocity), energy(&by_momentum));
 }
@@ -105,25 +122,65 @@ fn a_wrong_case_is_told_by_key_and_site() {
     check(
         "particle-mesh-2d",
         &[
-            ("walls = [\"solid\", \"periodic\"]", "", "missing key `domain.walls`"),
-            ("\"periodic\"", "\"open\"", "domain.walls: expected \"solid\" or \"periodic\""),
+            (
+                "walls = [\"solid\", \"periodic\"]",
+                "",
+                "missing key `domain.walls`",
+            ),
+            (
+                "\"periodic\"",
+                "\"open\"",
+                "domain.walls: expected \"solid\" or \"periodic\"",
+            ),
             ("n = [32, 16]", "", "missing key `labels.n`"),
-            ("n = [32, 16]", "n = 32", "labels.n: expected whole numbers of cells"),
-            ("lengths = [2.0, 1.0]", "lengths = [2.0]", "expected 2 positive numbers"),
+            (
+                "n = [32, 16]",
+                "n = 32",
+                "labels.n: expected whole numbers of cells",
+            ),
+            (
+                "lengths = [2.0, 1.0]",
+                "lengths = [2.0]",
+                "expected 2 positive numbers",
+            ),
             ("[domain]", "[space]", "missing table [domain]"),
             ("alpha = 0.1", "", "missing key `parameters.alpha`"),
             ("velocity_X = [0.0, 0.0]", "", "initial.momentum_X: missing"),
-            ("lattice = \"brick\"", "lattice = \"bricks\"", "no lattice is called \"bricks\""),
+            (
+                "lattice = \"brick\"",
+                "lattice = \"bricks\"",
+                "no lattice is called \"bricks\"",
+            ),
         ],
     );
     check(
         "shallow-water-2d",
         &[
-            ("m = { depth = \"1\" }", "m = [1.0, 2.0]", "parameters.m: a list has a value for each of the 400 sites, and this one has 2"),
-            ("m = { depth = \"1\" }", "m = \"z\"", "parameters.m: \"z\": `z` has no value here"),
-            ("X = { lattice = \"brick\", jitter = 0.1, seed = 1 }", "X = [\"0.5\", \"0.5\"]", "at one place"),
-            ("X = { lattice = \"brick\", jitter = 0.1, seed = 1 }", "X = [\"0.01/(a - 7)\", \"a/N\"]", "initial.X_7"),
-            ("L = [1.0, 1.0]", "L = [1.0, 1.0]\nkind = \"channel\"", "which has no walls"),
+            (
+                "m = { depth = \"1\" }",
+                "m = [1.0, 2.0]",
+                "parameters.m: a list has a value for each of the 400 sites, and this one has 2",
+            ),
+            (
+                "m = { depth = \"1\" }",
+                "m = \"z\"",
+                "parameters.m: \"z\": `z` has no value here",
+            ),
+            (
+                "X = { lattice = \"brick\", jitter = 0.1, seed = 1 }",
+                "X = [\"0.5\", \"0.5\"]",
+                "at one place",
+            ),
+            (
+                "X = { lattice = \"brick\", jitter = 0.1, seed = 1 }",
+                "X = [\"0.01/(a - 7)\", \"a/N\"]",
+                "initial.X_7",
+            ),
+            (
+                "L = [1.0, 1.0]",
+                "L = [1.0, 1.0]\nkind = \"channel\"",
+                "which has no walls",
+            ),
         ],
     );
 }

@@ -148,7 +148,12 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             _ => None,
         },
         ("LineError::Functional", 4) => |a, _| match a {
-            [Value::Int(node), Value::Text(quantity), Value::Failed(cause), works] => {
+            [
+                Value::Int(node),
+                Value::Text(quantity),
+                Value::Failed(cause),
+                works,
+            ] => {
                 let Failure::Mesh(cause) = **cause else {
                     return None;
                 };

@@ -97,7 +97,10 @@ impl Carded {
         };
         let known = |p: &Place| model.observers().any(|o| ascii(o) == p.key);
         let mut parameters = expander.expanded(card.parameters);
-        let space: Vec<_> = model.space().map(|(name, count)| of_space(name, count)).collect();
+        let space: Vec<_> = model
+            .space()
+            .map(|(name, count)| of_space(name, count))
+            .collect();
         parameters.retain(|(field, _)| space.iter().all(|(own, _)| own.ascii != field.ascii));
         parameters.extend(space);
         let (parameters, at_parameters) = split(parameters);
@@ -128,6 +131,15 @@ impl Carded {
         });
         let (kept, lost): (Vec<Invariant>, Vec<Invariant>) =
             named.partition(|i| i.name == "energy" || model.totals().any(|t| t == i.name));
+        let mut kept = kept;
+        // What functionals of all sites leave as it is, the short line does not tell.
+        let of_functionals = model.conserved().filter(|_| !lattice.meshes.is_empty());
+        for (name, rows, reason) in of_functionals {
+            if kept.iter().all(|i| i.name != name) {
+                let formula = format!("a sum over all sites; {reason}");
+                kept.push(Invariant::exact(text(name), text(&formula), rows));
+            }
+        }
         left_out.extend(lost.iter().map(|i| i.name.to_owned()));
         let mut summary = words
             .summary

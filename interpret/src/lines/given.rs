@@ -67,15 +67,19 @@ fn arguments(ty: &syn::Type) -> Vec<&syn::GenericArgument> {
     }
 }
 
+/// The sizes among the arguments of a type.
+pub fn sizes(ty: &syn::Type) -> Vec<usize> {
+    let none = BTreeMap::new();
+    let sizes = arguments(ty).into_iter().filter_map(|a| match a {
+        syn::GenericArgument::Const(e) => crate::lower::constant(e, &none),
+        _ => None,
+    });
+    sizes.collect()
+}
+
 fn read(ty: &syn::Type) -> Option<Read> {
     let none = BTreeMap::new();
-    let sizes: Vec<usize> = arguments(ty)
-        .into_iter()
-        .filter_map(|a| match a {
-            syn::GenericArgument::Const(e) => crate::lower::constant(e, &none),
-            _ => None,
-        })
-        .collect();
+    let sizes = sizes(ty);
     if let syn::Type::Array(array) = ty {
         let size = crate::lower::constant(&array.len, &none)?;
         return match type_name(&array.elem)?.as_str() {
@@ -225,9 +229,7 @@ impl Given {
     /// The fields that say where particles live, with how many numbers each is.
     pub fn space(&self) -> impl Iterator<Item = (&str, usize)> {
         self.fields.iter().filter_map(|(name, read)| match read {
-            Read::Doubles(_) | Read::Cells(_) | Read::Box(_) => {
-                Some((name.as_str(), read.count()))
-            }
+            Read::Doubles(_) | Read::Cells(_) | Read::Box(_) => Some((name.as_str(), read.count())),
             _ => None,
         })
     }

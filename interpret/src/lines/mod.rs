@@ -19,7 +19,7 @@ use crate::value::Value;
 use clebsch::StepCause;
 use clebsch::line::LineError;
 use clebsch::saved::{Saved, Words};
-use clebsch_core::lattice::{Choice, Lattice};
+use clebsch_core::lattice::Choice;
 use clebsch_core::line as core_line;
 use clebsch_core::{emit, pipeline};
 use core::fmt;
@@ -95,6 +95,8 @@ pub struct LineModel {
     observers: Asked,
     functionals: Asked,
     momenta: Asked,
+    /// Name, number of components, and why it is conserved.
+    conserved: Vec<(String, usize, String)>,
     node: u32,
     places: usize,
 }
@@ -142,10 +144,11 @@ impl LineModel {
             return Err(NoLine::Form(why));
         }
         let program = Program::read(emit::emit_line(&line, source))?;
-        Ok(Self::of(&program, &model.name.text, &line.lattice)?)
+        Ok(Self::of(&program, &model.name.text, &line)?)
     }
 
-    fn of(program: &Program, name: &str, lattice: &Lattice) -> Result<Arc<Self>, Refused> {
+    fn of(program: &Program, name: &str, line: &core_line::Line) -> Result<Arc<Self>, Refused> {
+        let lattice = &line.lattice;
         let mut shared = Shared::new(program, BTreeMap::new());
         let item = |suffix: &str| format!("{name}{suffix}");
         let parameters = Given::named(&mut shared, &item("Parameters"))?;
@@ -160,7 +163,11 @@ impl LineModel {
                 .filter(|(t, f)| t == ty && wanted(f));
             all.map(|(_, f)| f.clone()).collect()
         };
-        let totals = own(name, &|f| f.starts_with("total_"));
+        let totals = own(name, &|f| line.totals.iter().any(|t| t.name == f));
+        let conserved = line.totals.iter().filter_map(|t| {
+            let rows = rows(&program.function(name, &t.name)?.sig.output)?;
+            Some((t.name.clone(), rows, t.reason.clone()))
+        });
         let observers = own(&state, &|f| f != "node");
         let functionals = own(name, &|f| f.starts_with("values_"));
         let momenta = own(name, &|f| f.starts_with("momenta_of_"));
@@ -215,6 +222,7 @@ impl LineModel {
             observers,
             functionals,
             momenta,
+            conserved: conserved.collect(),
             node,
             places: places.unwrap_or(at::FIRST),
         }))
@@ -228,6 +236,12 @@ impl LineModel {
     /// The names of conserved totals, as [`LineTrajectory::total`] takes them.
     pub fn totals(&self) -> impl Iterator<Item = &str> {
         self.totals.iter().map(|(name, _)| name.as_str())
+    }
+
+    /// Conserved totals with the numbers of their components, and why they are conserved.
+    pub fn conserved(&self) -> impl Iterator<Item = (&str, usize, &str)> {
+        let all = self.conserved.iter();
+        all.map(|(name, rows, reason)| (name.as_str(), *rows, reason.as_str()))
     }
 
     /// The names of what is observed at sites, as [`LineTrajectory::observe`] takes them: what moves and its
@@ -280,7 +294,11 @@ impl LineModel {
         numbers: &Numbers<'_>,
         places: &mut Places<f64>,
     ) -> Result<Value<f64>, Unstarted> {
-        put(places, at::GIVEN, self.parameters.value(numbers, &|_| None)?);
+        put(
+            places,
+            at::GIVEN,
+            self.parameters.value(numbers, &|_| None)?,
+        );
         let ends = match self.has_line {
             true => self.ends.value(choice, numbers)?,
             false => Value::Unit,
@@ -442,6 +460,15 @@ impl LineTrajectory {
             own.or_else(|| model.functionals.iter().find(|(own, _)| *own == values))?;
         columns(&self.ask(routine)?)
     }
+}
+
+/// How many numbers a total has, by its type.
+fn rows(output: &syn::ReturnType) -> Option<usize> {
+    let syn::ReturnType::Type(_, ty) = output else {
+        return None;
+    };
+    let sizes = given::sizes(ty);
+    Some(sizes.into_iter().product())
 }
 
 /// Numbers as arrays of one, which is what states hold.

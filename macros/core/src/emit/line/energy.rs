@@ -178,7 +178,9 @@ fn momenta_of_velocities(l: &Lines) -> Option<TokenStream> {
     let function = format_ident!("momenta_of_{}", m.mover.name);
     let covector = m.covector();
     let (text, given) = (&m.mover.name, format!("velocity_{}", m.mover.name));
-    let doc = format!(" The momenta of `{text}` at places and velocities: those of the limit of small steps.");
+    let doc = format!(
+        " The momenta of `{text}` at places and velocities: those of the limit of small steps."
+    );
     Some(quote! {
         #[doc = #doc]
         ///
