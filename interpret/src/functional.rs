@@ -4,7 +4,9 @@
 use crate::sites::Column;
 use crate::value::Value;
 use clebsch::mesh::{self, Domain, Functional, MeshError, Setting};
+use clebsch::saved::{Saved, Words};
 use clebsch::{ParameterError, Real};
+use core::any::Any;
 use core::fmt;
 use nalgebra::SVector;
 
@@ -111,6 +113,7 @@ trait Computes<T: Real>: Send + Sync {
     fn copied(&self) -> Box<dyn Computes<T>>;
     fn value(&mut self, at: &Column<T>, out: &mut [T]) -> Option<Result<(), MeshError>>;
     fn pull_back(&mut self, at: &Column<T>, seed: &[T]) -> Option<Result<Column<T>, MeshError>>;
+    fn words(&mut self, words: &mut Words);
 }
 
 /// A functional with room for what it is made of.
@@ -149,6 +152,20 @@ where
         let done = own.functional.pull_back(&own.at, seed, &mut own.back);
         Some(done.map(|()| A::written(&own.back)))
     }
+
+    fn words(&mut self, words: &mut Words) {
+        let own: &mut dyn Any = &mut self.0.functional;
+        // Those of grids keep nothing that a later value depends on.
+        if let Some(f) = own.downcast_mut::<mesh::voronoi_area<f64>>() {
+            f.words(words);
+        } else if let Some(f) = own.downcast_mut::<mesh::second_moment<f64>>() {
+            f.words(words);
+        } else if let Some(f) = own.downcast_mut::<mesh::helmholtz_depth<f64>>() {
+            f.words(words);
+        } else if let Some(f) = own.downcast_mut::<mesh::pair_core<f64>>() {
+            f.words(words);
+        }
+    }
 }
 
 /// A functional that is held.
@@ -179,6 +196,12 @@ impl<T: Real> Held<T> {
         seed: &[T],
     ) -> Option<Result<Column<T>, MeshError>> {
         self.0.pull_back(at, seed)
+    }
+}
+
+impl Saved for Held<f64> {
+    fn words(&mut self, words: &mut Words) {
+        self.0.words(words);
     }
 }
 

@@ -6,6 +6,7 @@
 use clebsch::mesh::placement::{self, Jitter};
 use clebsch::mesh::{Domain, Nodes, Setting, Wall};
 use clebsch::nalgebra::{SMatrix, Vector2};
+use clebsch::saved::{Saved, Words};
 use clebsch_core::lattice::{Choice, Lattice};
 use clebsch_core::pipeline;
 use clebsch_interpret::lines::{LineModel, LineTrajectory};
@@ -380,4 +381,31 @@ fn a_functional_of_ones_own_needs_a_build() {
         refused.contains("needs a build") && refused.contains("mine::area"),
         "{refused}"
     );
+}
+
+#[test]
+fn a_fluid_that_is_written_down_goes_on_to_the_same_bits() {
+    let data = particles(8, 0.3);
+    let numbers = |name: &str| data.get(name).cloned();
+    for file in [2, 3] {
+        let model = read(file);
+        let choice = choice(source(file), data["m"].len(), 1);
+        let start = || model.start(&choice, H, &numbers).expect("starts");
+        let mut whole = start();
+        for _ in 0..30 {
+            whole.step().expect("steps");
+        }
+        let mut words = Words::gathered();
+        whole.words(&mut words);
+        let mut words = Words::given(words.into_list().expect("is written down"));
+        let mut again = start();
+        again.words(&mut words);
+        assert!(words.all_put());
+        for _ in 0..30 {
+            whole.step().expect("steps");
+            again.step().expect("steps");
+        }
+        let [one, other] = [&mut whole, &mut again].map(|t| t.observe("X").expect("is seen"));
+        assert_eq!(bits(&one), bits(&other), "{}", model.name());
+    }
 }

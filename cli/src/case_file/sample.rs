@@ -11,6 +11,9 @@ use std::fmt::Write as _;
 /// The table of the domain.
 pub(super) fn domain(text: &mut String, stated: &Stated, space: &Space) {
     let (torus, d) = (Space::torus(stated), space.lengths.len());
+    text.push_str(
+        "# Expressions below may hold the place x, y too, the lengths Lx, Ly of the domain, and what is given at the same sites.\n",
+    );
     let _ = writeln!(
         text,
         "\n[domain]\n{} = {:?}     # along each direction",
