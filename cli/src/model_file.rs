@@ -79,7 +79,11 @@ pub(crate) fn read(
     let cases = match stated.zip(choice) {
         None => vec![sample(&card, &name)],
         // Of a long line the values are those of a file.
-        Some((_, choice)) if case.is_some() && choice.counts.iter().any(|n| *n > LONG) => {
+        Some((stated, choice))
+            if case.is_some()
+                && (choice.counts.iter().any(|n| *n > LONG)
+                    || !stated.lattice.meshes.is_empty()) =>
+        {
             Vec::new()
         }
         Some((stated, choice)) => {

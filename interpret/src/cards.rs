@@ -104,6 +104,14 @@ pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warni
     let model = pipeline::parse_source(source).map_err(Refused::Model)?;
     let lattice = Lattice::read(&model).map_err(Refused::Model)?;
     let mut written_out = None;
+    // Functionals of all sites have no form body by body.
+    if !lattice.meshes.is_empty() {
+        return match LineModel::read(source) {
+            Ok(line) => card_of_line((&model, &lattice), choice, line, source),
+            Err(NoLine::Form(why)) => Err(Refused::Form { why }),
+            Err(NoLine::Refused(refused)) => Err(refused),
+        };
+    }
     if choice.counts.iter().any(|n| *n > MOST_BODY_BY_BODY) {
         match LineModel::read(source) {
             Ok(line) => return card_of_line((&model, &lattice), choice, line, source),

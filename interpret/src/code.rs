@@ -202,8 +202,8 @@ impl<T: Real> Pattern<T> {
             }
             Pattern::Failed(inner) => match value {
                 Value::Failed(e) => match &**e {
-                    // A site and its error.
-                    Failure::At(..) => true,
+                    // A site and its error, a functional and its error.
+                    Failure::At(..) | Failure::Functional(..) => true,
                     _ => inner.meets(value),
                 },
                 _ => false,
@@ -238,6 +238,10 @@ impl<T: Real> Pattern<T> {
             (Pattern::Failed(inner), Value::Failed(e)) => match *e {
                 Failure::At(site, e) => {
                     let both = vec![Value::Int(site as i64), Value::Failed(e)];
+                    inner.bind(Value::List(both), places);
+                }
+                Failure::Functional(name, e) => {
+                    let both = vec![Value::Text(name), Value::failed(e)];
                     inner.bind(Value::List(both), places);
                 }
                 Failure::Site(site) => inner.bind(Value::Int(site as i64), places),

@@ -3,6 +3,7 @@
 use clebsch::domain::Contact;
 use clebsch::emitted::{LeftFactorError, MoserVeselovError, OpenError, QuaternionError, Unsolved};
 use clebsch::line::LineError;
+use clebsch::mesh::MeshError;
 use clebsch::solvers::two_sided::SingularFactor;
 use clebsch::{
     NotARigidMotion, NotARotation, NotInvertible, ParameterError, PoinsotError, StartError,
@@ -42,6 +43,10 @@ pub enum Failure {
     Motion(NotARigidMotion),
     /// Of a given map.
     Map(NotInvertible),
+    /// Of a functional of all sites.
+    Mesh(MeshError),
+    /// The same, with the name of its values.
+    Functional(&'static str, MeshError),
     /// Along a line.
     Line(LineError),
     /// Of one site, in a loop over sites.
@@ -77,6 +82,7 @@ from! {
     Motion: NotARigidMotion,
     Map: NotInvertible,
     Line: LineError,
+    Mesh: MeshError,
 }
 
 /// What is not told by any other error.

@@ -6,6 +6,7 @@ mod cards;
 mod code;
 mod constants;
 mod failure;
+mod functional;
 mod library;
 pub mod lines;
 mod lower;
@@ -42,6 +43,16 @@ pub enum Refused {
         /// Which sizes it has.
         admitted: String,
     },
+    /// A functional of all sites that the runtime does not supply.
+    Functional {
+        /// Its path.
+        path: String,
+    },
+    /// A model with functionals of all sites that no loops over sites take.
+    Form {
+        /// Why, in words.
+        why: String,
+    },
     /// An operation that is not known here.
     Construct(String),
     /// More models than one process holds.
@@ -59,6 +70,12 @@ impl fmt::Display for Refused {
                 f,
                 "a model file with this method is not run yet: {model} is solved so: {method}; put the \
                  model into a crate by `model! {{ ... }}`, which builds it"
+            ),
+            Self::Form { why } => write!(f, "the model is not run with loops over sites: {why}"),
+            Self::Functional { path } => write!(
+                f,
+                "the functional `{path}` is Rust code of its own, which needs a build: put the model into a \
+                 crate by `model! {{ ... }}`"
             ),
             Self::Size { model, admitted } => {
                 write!(f, "{model} has no such size; it has {admitted}")

@@ -47,6 +47,9 @@ impl Saved for Value<f64> {
             | Value::Call(_) => {}
             // What it stands for is put back whole.
             Value::Stamp(_) => {}
+            // Made of the parameters.
+            Value::Extent(_) | Value::Around(_) => {}
+            Value::Functional(held) => held.words(words),
             // No state or workspace holds these.
             Value::Turned(_)
             | Value::Residual(_)

@@ -1,6 +1,7 @@
 //! What an expression of a step may be: numbers, matrices, group elements, momenta, prepared solvers.
 
 use crate::failure::Failure;
+use crate::functional;
 use crate::sites::Column;
 use clebsch::Real;
 use clebsch::domain;
@@ -170,6 +171,12 @@ pub enum Value<T: Real> {
     Search(crate::newton::Held),
     /// Part of an array, from an offset on: the place of the array.
     Part(usize, usize),
+    /// A domain of particles.
+    Extent(functional::Extent),
+    /// What functionals of all sites are made for.
+    Around(Box<functional::Around>),
+    /// A functional of all sites.
+    Functional(functional::Held<T>),
     /// An error.
     Failed(Box<Failure>),
 }

@@ -42,7 +42,9 @@ impl Copies {
         let lattice = &stated.lattice;
         let counts = lattice.quantities.iter();
         let counts = counts.map(|q| choice.sites_of(lattice, q));
-        match counts.fold(0, usize::saturating_add) <= WRITTEN_OUT {
+        let few = counts.fold(0, usize::saturating_add) <= WRITTEN_OUT;
+        // Functionals of all sites are not written out.
+        match few && lattice.meshes.is_empty() {
             true => Some(Self::of_unfolded(
                 lattice,
                 &unfold(&stated.model, lattice, choice).ok()?,

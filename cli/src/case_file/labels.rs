@@ -3,9 +3,11 @@
 //! like any other, and the line that each of its lines came from.
 
 use super::copies::Copies;
+use super::fluid::Fluid;
 use super::inertia::{self, Taken};
 use super::location::File;
 use super::sites::{self, Site};
+use super::space::Space;
 use super::value::expected;
 use crate::failure::Failure;
 use crate::plain::shown;
@@ -22,6 +24,9 @@ use toml::de::{DeTable, DeValue};
 
 /// Number of sites where no case says one.
 const SITES: usize = 8;
+
+/// Number of particles of a fluid where no case says one.
+pub(super) const PARTICLES: usize = 64;
 
 /// A model with labels, as its file states it.
 pub(crate) struct Stated {
@@ -46,6 +51,11 @@ impl Stated {
         let mut choice = document::default_choice(&self.lattice, shortest);
         for count in &mut choice.counts {
             *count = SITES;
+        }
+        if let Some(space) = Space::sample(self) {
+            for (count, label) in choice.counts.iter_mut().zip(&self.lattice.labels) {
+                *count = if label.grid { space.count() } else { PARTICLES };
+            }
         }
         Some(choice)
     }
@@ -100,6 +110,7 @@ pub(crate) fn choice(name: &str, text: &str, stated: &Stated) -> Result<Choice, 
         );
         return Err(file.wrong(None, &message));
     };
+    let space = Space::read(&file, top, stated)?;
     for (key, value) in labels {
         let asked = key.get_ref().as_ref();
         let own = lattice
@@ -108,6 +119,8 @@ pub(crate) fn choice(name: &str, text: &str, stated: &Stated) -> Result<Choice, 
             .find(|l| l.index.text == asked || l.count.text == asked);
         let label = own.map_or(asked, |l| l.index.text.as_str());
         let count = match value.get_ref() {
+            // Of a grid its cells are given.
+            _ if own.is_some_and(|l| l.grid) => space.as_ref().map(Space::count),
             DeValue::Integer(n) => usize::from_str_radix(n.as_str(), n.radix()).ok(),
             _ => None,
         };
@@ -175,7 +188,7 @@ fn ended(
     }
 }
 
-fn table<'a, 'i>(
+pub(super) fn table<'a, 'i>(
     file: &File<'_>,
     top: &'a DeTable<'i>,
     name: &str,
@@ -235,7 +248,14 @@ pub(crate) fn written_out(
         lines: Vec::new(),
     };
     let raw = |span: &Range<usize>| text.get(span.clone()).unwrap_or_default().to_owned();
-    const TABLES: [&str; 5] = ["labels", "ends", "parameters", "initial", "bounds"];
+    const TABLES: [&str; 6] = [
+        "labels",
+        "domain",
+        "ends",
+        "parameters",
+        "initial",
+        "bounds",
+    ];
     for (key, value) in top {
         if !TABLES.contains(&key.get_ref().as_ref()) {
             let line = format!("{} = {}", key_text(key.get_ref()), raw(&value.span()));
@@ -244,7 +264,9 @@ pub(crate) fn written_out(
     }
     let parameters = table(&file, top, "parameters")?;
     let initial = table(&file, top, "initial")?;
+    let fluid = Fluid::read(&file, top, stated, &choice, card.source)?;
     let writer = Writer {
+        fluid: fluid.as_ref(),
         file: &file,
         stated,
         choice: &choice,
@@ -332,6 +354,7 @@ pub(crate) fn base(copies: &Copies, field: &Field) -> Option<Base> {
 }
 
 struct Writer<'a> {
+    fluid: Option<&'a Fluid>,
     file: &'a File<'a>,
     stated: &'a Stated,
     choice: &'a Choice,
@@ -353,9 +376,15 @@ impl Writer<'_> {
     ) -> Result<(), Failure> {
         out.push(&format!("[{name}]"), 0);
         let taken = Taken::of(fields);
-        let mut used: HashSet<String> = HashSet::new();
+        let read = self.fluid.into_iter().flat_map(Fluid::used);
+        let mut used: HashSet<String> = read.map(str::to_owned).collect();
         for field in fields {
             let base = base(self.copies, field);
+            let own = base.as_ref().map(|b| (b.key.as_str(), b.site));
+            if let Some((text, line)) = self.fluid.and_then(|f| f.text(field.ascii, own)) {
+                out.push(&format!("{} = {text}", field.ascii), line);
+                continue;
+            }
             let mut found = None;
             for (own, site) in self.keys(field, base.as_ref(), &taken) {
                 let value = values.and_then(|t| t.get(own.as_str()));

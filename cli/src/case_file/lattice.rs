@@ -2,6 +2,8 @@
 //! Takes a card and the choice it was made for; gives the text of a case file.
 
 use super::labels::{Base, Stated, base};
+use super::sample as fluid;
+use super::space::Space;
 use crate::plain::shown;
 use clebsch::card::{Card, Field, Kind};
 use clebsch_core::expr::symbol::ascii;
@@ -21,8 +23,26 @@ pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named
          h = 0.01     # time step, positive\nsteps = 1000     # number of steps, at least 1\n\n[labels]\n",
         card.kebab, card.kebab
     );
+    let space = Space::sample(stated);
     for (i, l) in lattice.labels.iter().enumerate() {
+        if let Some(cells) = space
+            .as_ref()
+            .and_then(|s| s.cells.as_ref())
+            .filter(|_| l.grid)
+        {
+            let cells = match cells.as_slice() {
+                [n] => n.to_string(),
+                all => format!("{all:?}"),
+            };
+            let _ = writeln!(
+                text,
+                "{} = {cells}     # cells of the grid along each direction",
+                l.index.text
+            );
+            continue;
+        }
         let what = match l.set {
+            true if space.is_some() => "number of particles",
             true => "number of sites",
             false if lattice.periodic.is_some() => "number of segments, of a ring also of nodes",
             false => "number of segments, one less than nodes",
@@ -30,6 +50,11 @@ pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named
         let _ = writeln!(text, "{} = {}     # {what}", l.index.text, choice.count(i));
     }
     ends(&mut text, stated, choice);
+    if let Some(space) = &space {
+        fluid::domain(&mut text, stated, space);
+        fluid::tables(&mut text, card, stated, space);
+        return text;
+    }
     let Some(copies) = stated.copies(choice) else {
         return text;
     };

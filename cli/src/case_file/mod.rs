@@ -3,12 +3,16 @@
 //! and of models with labels `[labels]` and `[ends]`.
 
 mod copies;
+mod fluid;
 mod inertia;
 pub(crate) mod labels;
 mod lattice;
 mod location;
 mod read;
+mod sample;
 mod sites;
+pub(crate) mod space;
+mod start;
 mod value;
 mod write;
 

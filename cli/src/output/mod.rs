@@ -55,7 +55,7 @@ pub struct Finished<'a> {
 }
 
 /// Every file name a run can write, so that a folder with anything else is never replaced.
-pub const FILES: [&str; 12] = [
+pub const FILES: [&str; 13] = [
     "trajectory.csv",
     "trajectory.npz",
     "run.json",
@@ -65,6 +65,7 @@ pub const FILES: [&str; 12] = [
     "fields.svg",
     "attitude.svg",
     "angles.svg",
+    "particles.svg",
     // While it runs, and where it can be gone on with.
     samples::NAME,
     checkpoint::NAME,
@@ -91,6 +92,7 @@ pub fn write(
         fields,
         attitude,
         angles,
+        particles,
         ..,
     ] = FILES;
     staging.write(csv, |file| csv::write(file, run.card, rows))?;
@@ -109,6 +111,7 @@ pub fn write(
         (fields, plots::fields(run, samples)),
         (attitude, plots::attitude(run, samples)),
         (angles, plots::angles(run, samples)),
+        (particles, plots::particles(run, record)),
     ];
     for (name, plot) in drawn {
         let plot = plot.map_err(|error| Failure::Failed(format!("cannot draw {name}: {error}")))?;

@@ -28,7 +28,7 @@ const SCALE: [(u8, u8, u8); 5] = [
 ];
 
 /// The colour of a part of the range, 0 to 1.
-fn color(part: f64) -> RGBColor {
+pub(super) fn color(part: f64) -> RGBColor {
     let at = part.clamp(0.0, 1.0) * (SCALE.len() - 1) as f64;
     let below = (at.floor() as usize).min(SCALE.len() - 2);
     let rest = at - below as f64;
@@ -39,7 +39,7 @@ fn color(part: f64) -> RGBColor {
 
 impl Map {
     /// The smallest and the largest value; a range of one around values that are all alike.
-    fn range(&self) -> (f64, f64) {
+    pub(super) fn range(&self) -> (f64, f64) {
         let values = self.rows.iter().flat_map(|(_, row)| row);
         let finite = values.copied().filter(|v| v.is_finite());
         let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| {

@@ -7,6 +7,7 @@ mod comparison;
 pub mod curve;
 pub mod figure;
 pub mod map;
+mod particles;
 pub(crate) mod reduce;
 mod sites;
 mod sphere;
@@ -14,6 +15,7 @@ mod window;
 
 pub(crate) use attitude::{angles, attitude};
 pub(crate) use comparison::comparison;
+pub(crate) use particles::particles;
 
 use crate::output::Finished;
 use crate::record::{Record, Samples};

@@ -7,6 +7,7 @@ mod comparisons;
 mod elastic;
 mod exit_codes;
 mod figures;
+mod fluids;
 mod lattices;
 mod model_files;
 mod names;

@@ -53,7 +53,12 @@ pub fn binary<T: Real>(operator: Operator, a: &Value<T>, b: &Value<T>) -> Option
 }
 
 fn sum<T: Real>(a: &Value<T>, b: &Value<T>, f: impl Fn(T, T) -> T) -> Option<Value<T>> {
-    let (x, y) = (a.dense()?, b.dense()?);
+    // Zeros are of the shape of what they stand beside.
+    let like = |z: &Value<T>, of: &Value<T>| match z {
+        Value::Zeros => Some(of.dense()?.map(|_| T::zero())),
+        own => own.dense(),
+    };
+    let (x, y) = (like(a, b)?, like(b, a)?);
     x.fits(&y).then(|| Value::of(x.zip(&y, f)))
 }
 

@@ -147,13 +147,28 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             },
             _ => None,
         },
+        ("LineError::Functional", 4) => |a, _| match a {
+            [
+                Value::Int(node),
+                Value::Text(quantity),
+                Value::Failed(cause),
+                works,
+            ] => {
+                let Failure::Mesh(cause) = **cause else {
+                    return None;
+                };
+                Some(Value::failed(LineError::Functional {
+                    node: u64::try_from(*node).ok()?,
+                    quantity,
+                    cause,
+                    works: shorter_step(works)?,
+                }))
+            }
+            _ => None,
+        },
         ("LineError::Step", 4) => |a, _| match a {
             [Value::Int(node), Value::At(at), Value::Failed(cause), works] => {
-                let works = match works {
-                    Value::Double(h) => Some(*h),
-                    Value::None => None,
-                    _ => return None,
-                };
+                let works = shorter_step(works)?;
                 Some(Value::failed(LineError::Step {
                     node: u64::try_from(*node).ok()?,
                     at: *at,
@@ -165,6 +180,16 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         },
         _ => return None,
     })
+}
+
+/// The shorter step that can be made, if there is one.
+#[allow(clippy::option_option)] // A value of another kind is no answer.
+fn shorter_step<T: Real>(works: &Value<T>) -> Option<Option<f64>> {
+    match works {
+        Value::Double(h) => Some(Some(*h)),
+        Value::None => Some(None),
+        _ => None,
+    }
 }
 
 fn missing<T: Real>() -> Exit<T> {

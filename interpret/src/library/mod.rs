@@ -5,6 +5,7 @@ mod domain;
 mod functions;
 pub(crate) mod groups;
 mod line;
+mod mesh;
 mod momenta;
 mod solvers;
 mod special;
@@ -78,6 +79,7 @@ pub fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
         .or_else(|| domain::native(name, arguments))
         .or_else(|| validate::native(name, arguments))
         .or_else(|| line::native(name, arguments))
+        .or_else(|| mesh::native(name, arguments))
 }
 
 /// The same of those that residuals and tangents call: no solver, no element is moved.
@@ -89,5 +91,7 @@ pub fn kernel<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
 
 /// The same for those that change their first argument, or call back.
 pub fn special<T: Real>(name: &str) -> Option<Special<T>> {
-    special::special(name).or_else(|| line::special(name))
+    special::special(name)
+        .or_else(|| line::special(name))
+        .or_else(|| mesh::special(name))
 }

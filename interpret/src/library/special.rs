@@ -247,7 +247,17 @@ fn map_err<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
         return Err(missing());
     };
     match value.run(places)? {
-        Value::Failed(e) => closure.call(vec![Value::Failed(e)], places),
+        Value::Failed(e) => {
+            let told = closure.call(vec![Value::Failed(e)], places)?;
+            // The name of a functional beside its error.
+            if let Value::List(both) = &told
+                && let [Value::Text(name), Value::Failed(e)] = both.as_slice()
+                && let Failure::Mesh(e) = **e
+            {
+                return Ok(Value::failed(Failure::Functional(name, e)));
+            }
+            Ok(told)
+        }
         value => Ok(value),
     }
 }

@@ -5,10 +5,10 @@ use super::LineModel;
 use crate::constants::Constants;
 use crate::opened::Text;
 use crate::{Refused, text};
-use clebsch::card::{Card, Field, Invariant, Open};
+use clebsch::card::{Card, Field, Invariant, Kind, Open};
 use clebsch_core::derive::warnings::Warning;
 use clebsch_core::expr::symbol::ascii;
-use clebsch_core::lattice::{Choice, Lattice, Unfolded};
+use clebsch_core::lattice::{Choice, Kind as QuantityKind, Lattice, Unfolded};
 use clebsch_core::syntax::ast::Model;
 use clebsch_core::{document, pipeline};
 use std::collections::BTreeMap;
@@ -75,7 +75,11 @@ impl Carded {
             pipeline::representative(statement, lattice).map_err(Refused::Model)?;
         let counts = representative.counts.iter().zip(&choice.counts);
         let short = Choice {
-            counts: counts.map(|(n, most)| (*n).max(4).min(*most)).collect(),
+            // Of functionals one site stands for all.
+            counts: match lattice.meshes.is_empty() {
+                true => counts.map(|(n, most)| (*n).max(4).min(*most)).collect(),
+                false => representative.counts.clone(),
+            },
             ..choice.clone()
         };
         let derived = pipeline::derive_lattice(statement, lattice, &short);
@@ -92,7 +96,14 @@ impl Carded {
             whole: choice,
         };
         let known = |p: &Place| model.observers().any(|o| ascii(o) == p.key);
-        let (parameters, at_parameters) = split(expander.expanded(card.parameters));
+        let mut parameters = expander.expanded(card.parameters);
+        let space: Vec<_> = model
+            .space()
+            .map(|(name, count)| of_space(name, count))
+            .collect();
+        parameters.retain(|(field, _)| space.iter().all(|(own, _)| own.ascii != field.ascii));
+        parameters.extend(space);
+        let (parameters, at_parameters) = split(parameters);
         let (initial, at_initial) = split(expander.expanded(card.initial));
         let mut observed = expander.expanded(card.observables);
         let mut left_out: Vec<String> = Vec::new();
@@ -103,6 +114,7 @@ impl Carded {
             }
             known
         });
+        observed.extend(expander.functionals());
         let (observables, at_observables) = split(observed);
         let words = document::card_words(
             lattice,
@@ -119,6 +131,15 @@ impl Carded {
         });
         let (kept, lost): (Vec<Invariant>, Vec<Invariant>) =
             named.partition(|i| i.name == "energy" || model.totals().any(|t| t == i.name));
+        let mut kept = kept;
+        // What functionals of all sites leave as it is, the short line does not tell.
+        let of_functionals = model.conserved().filter(|_| !lattice.meshes.is_empty());
+        for (name, rows, reason) in of_functionals {
+            if kept.iter().all(|i| i.name != name) {
+                let formula = format!("a sum over all sites; {reason}");
+                kept.push(Invariant::exact(text(name), text(&formula), rows));
+            }
+        }
         left_out.extend(lost.iter().map(|i| expander.at_its_site(i.name)));
         let summary = words
             .summary
@@ -152,6 +173,21 @@ impl Carded {
     }
 }
 
+/// A parameter of the space of a fluid, `count` numbers.
+fn of_space(name: &str, count: usize) -> (Field, Place) {
+    let doc = match name {
+        "domain" => "lengths of the box, then 1 for each direction with walls, 0 for each without",
+        _ => "along each direction",
+    };
+    let kind = match count {
+        1 => Kind::Scalar,
+        _ => Kind::Vector,
+    };
+    let key = ascii(name);
+    let field = kind.field(text(name), [count, 1], doc);
+    (field.spelt(text(&key)), Place { key, site: None })
+}
+
 /// What a reader is told of how a line is run.
 fn told(left_out: &[String]) -> String {
     let mut told = String::from(
@@ -172,8 +208,51 @@ fn split(all: Vec<(Field, Place)>) -> Fields {
 }
 
 impl Short<'_> {
+    /// The momentum of a single configuration on the short line, which is named without it.
+    fn alone(&self, field: &Field) -> Option<Placed> {
+        if !["momentum", "body_momentum", "spatial_momentum"].contains(&field.ascii) {
+            return None;
+        }
+        let all = self.lattice.quantities.iter();
+        let mut moving = all.filter(|q| q.kind == QuantityKind::Configuration);
+        let (own, None) = (moving.next()?, moving.next()) else {
+            return None;
+        };
+        Some(Placed {
+            field: *field,
+            place: Place {
+                key: format!("{}_{}", field.ascii, ascii(&own.name.text)),
+                site: Some(0),
+            },
+            of: own.name.text.clone(),
+            label: own.label,
+        })
+    }
+
+    /// The values of functionals at all of their sites.
+    fn functionals(&self) -> Vec<(Field, Place)> {
+        let all = self.lattice.quantities.iter();
+        let own = all.filter(|q| q.kind == QuantityKind::Functional);
+        let each = own.flat_map(|q| {
+            let key = ascii(&q.name.text);
+            (0..self.whole.sites_of(self.lattice, q)).map(move |site| {
+                let name = text(&format!("{}_{site}", q.name.text));
+                let field = Kind::Scalar.field(name, [1, 1], "a functional of all sites");
+                let place = Place {
+                    key: key.clone(),
+                    site: Some(site),
+                };
+                (field.spelt(text(&format!("{key}_{site}"))), place)
+            })
+        });
+        each.collect()
+    }
+
     /// What a field is a copy of.
     fn placed(&self, field: &Field) -> Option<Placed> {
+        if let Some(alone) = self.alone(field) {
+            return Some(alone);
+        }
         let (key, digits) = field.ascii.rsplit_once('_')?;
         let site: usize = digits.parse().ok()?;
         let place = |key: &str| Place {
@@ -261,7 +340,8 @@ impl Short<'_> {
             let like = self.like(label, site);
             let own = block.iter().filter(|p| p.place.site == Some(like));
             for p in own {
-                let base = p.field.name.rsplit_once('_').map_or("", |(base, _)| base);
+                let base = p.field.name.rsplit_once('_');
+                let base = base.map_or(p.place.key.as_str(), |(base, _)| base);
                 let field = Field {
                     name: text(&format!("{base}_{site}")),
                     ascii: text(&format!("{}_{site}", p.place.key)),

@@ -2,6 +2,7 @@
 //! lists of numbers. Takes the types that emission declares; gives values of these types.
 
 use super::Unstarted;
+use crate::functional::Extent;
 use crate::lower::Shared;
 use crate::program::type_name;
 use crate::sites::Column;
@@ -11,6 +12,7 @@ use clebsch::card::OpenError;
 use clebsch::emitted as e;
 use clebsch::linalg::Dense;
 use clebsch::line::{LineError, Place};
+use clebsch::mesh::{Domain, Wall};
 use clebsch::{ParameterError, StartError};
 use clebsch_core::lattice::Choice;
 use std::collections::BTreeMap;
@@ -37,6 +39,12 @@ enum Read {
     Ends,
     /// A number of sites.
     Count,
+    /// Numbers that are f64 whatever the scalar.
+    Doubles(usize),
+    /// Cells along each direction.
+    Cells(usize),
+    /// A box with its walls: lengths along each direction, then 1 for each with walls, 0 for each without.
+    Box(usize),
     /// No value.
     Marker,
 }
@@ -59,16 +67,29 @@ fn arguments(ty: &syn::Type) -> Vec<&syn::GenericArgument> {
     }
 }
 
+/// The sizes among the arguments of a type.
+pub fn sizes(ty: &syn::Type) -> Vec<usize> {
+    let none = BTreeMap::new();
+    let sizes = arguments(ty).into_iter().filter_map(|a| match a {
+        syn::GenericArgument::Const(e) => crate::lower::constant(e, &none),
+        _ => None,
+    });
+    sizes.collect()
+}
+
 fn read(ty: &syn::Type) -> Option<Read> {
     let none = BTreeMap::new();
-    let sizes: Vec<usize> = arguments(ty)
-        .into_iter()
-        .filter_map(|a| match a {
-            syn::GenericArgument::Const(e) => crate::lower::constant(e, &none),
+    let sizes = sizes(ty);
+    if let syn::Type::Array(array) = ty {
+        let size = crate::lower::constant(&array.len, &none)?;
+        return match type_name(&array.elem)?.as_str() {
+            "f64" => Some(Read::Doubles(size)),
+            "usize" => Some(Read::Cells(size)),
             _ => None,
-        })
-        .collect();
+        };
+    }
     Some(match (type_name(ty)?.as_str(), sizes.as_slice()) {
+        ("Domain", [size]) => Read::Box(*size),
         ("T" | "f64", _) => Read::Number,
         ("SMatrix", [rows, cols]) => Read::Array(*rows, *cols),
         ("SVector", [rows]) => Read::Array(*rows, 1),
@@ -85,12 +106,33 @@ fn read(ty: &syn::Type) -> Option<Read> {
     })
 }
 
+/// A box of one or two directions.
+fn extent(lengths: &[f64], walls: &[f64]) -> Option<Extent> {
+    let wall = |x: &f64| match *x == 0.0 {
+        true => Wall::Periodic,
+        false => Wall::Solid,
+    };
+    Some(match (lengths, walls) {
+        ([length], [w]) => Extent::Line(Domain {
+            lengths: [*length],
+            walls: [wall(w)],
+        }),
+        ([width, height], [w, v]) => Extent::Plane(Domain {
+            lengths: [*width, *height],
+            walls: [wall(w), wall(v)],
+        }),
+        _ => return None,
+    })
+}
+
 impl Read {
     fn count(&self) -> usize {
         match self {
             Read::Array(rows, cols) => rows * cols,
             Read::Rotation => 9,
             Read::Momentum => 3,
+            Read::Doubles(size) | Read::Cells(size) => *size,
+            Read::Box(size) => 2 * size,
             _ => 1,
         }
     }
@@ -114,6 +156,18 @@ impl Read {
             Read::Momentum => {
                 let v = nalgebra::Vector3::from_fn(|i, _| list.get(i).copied().unwrap_or(f64::NAN));
                 Value::Momentum(Frame::Body, v)
+            }
+            Read::Doubles(_) => Value::List(list.iter().map(|x| Value::Double(*x)).collect()),
+            Read::Cells(_) => {
+                let cells = list.iter().map(|x| Value::Int(*x as i64));
+                Value::List(cells.collect())
+            }
+            Read::Box(size) => {
+                let (lengths, walls) = list.split_at((*size).min(list.len()));
+                match extent(lengths, walls) {
+                    Some(extent) => Value::Extent(extent),
+                    None => Value::Unit,
+                }
             }
             _ => Value::Unit,
         })
@@ -170,6 +224,23 @@ impl Given {
             layout,
             fields: fields.collect::<Result<_, Refused>>()?,
         })
+    }
+
+    /// The fields that say where particles live, with how many numbers each is.
+    pub fn space(&self) -> impl Iterator<Item = (&str, usize)> {
+        self.fields.iter().filter_map(|(name, read)| match read {
+            Read::Doubles(_) | Read::Cells(_) | Read::Box(_) => Some((name.as_str(), read.count())),
+            _ => None,
+        })
+    }
+
+    /// The value of one of its fields.
+    pub fn one(&self, field: &str, numbers: &Numbers<'_>) -> Result<Value<f64>, Unstarted> {
+        let own = self.fields.iter().find(|(name, _)| name == field);
+        match own {
+            Some((name, read)) => read.of(name, numbers),
+            None => Err(Unstarted::Missing(field.to_owned())),
+        }
     }
 
     /// Its value; `other` gives what is no numbers.

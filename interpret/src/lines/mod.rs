@@ -14,11 +14,12 @@ use crate::failure::Failure;
 use crate::lower::{Shared, entry};
 use crate::opened::at;
 use crate::program::Program;
+use crate::sites::Column;
 use crate::value::Value;
 use clebsch::StepCause;
 use clebsch::line::LineError;
 use clebsch::saved::{Saved, Words};
-use clebsch_core::lattice::{Choice, Lattice};
+use clebsch_core::lattice::Choice;
 use clebsch_core::line as core_line;
 use clebsch_core::{emit, pipeline};
 use core::fmt;
@@ -92,6 +93,10 @@ pub struct LineModel {
     totals: Asked,
     total_sizes: Asked,
     observers: Asked,
+    functionals: Asked,
+    momenta: Asked,
+    /// Name, number of components, and why it is conserved.
+    conserved: Vec<(String, usize, String)>,
     node: u32,
     places: usize,
 }
@@ -139,10 +144,11 @@ impl LineModel {
             return Err(NoLine::Form(why));
         }
         let program = Program::read(emit::emit_line(&line, source))?;
-        Ok(Self::of(&program, &model.name.text, &line.lattice)?)
+        Ok(Self::of(&program, &model.name.text, &line)?)
     }
 
-    fn of(program: &Program, name: &str, lattice: &Lattice) -> Result<Arc<Self>, Refused> {
+    fn of(program: &Program, name: &str, line: &core_line::Line) -> Result<Arc<Self>, Refused> {
+        let lattice = &line.lattice;
         let mut shared = Shared::new(program, BTreeMap::new());
         let item = |suffix: &str| format!("{name}{suffix}");
         let parameters = Given::named(&mut shared, &item("Parameters"))?;
@@ -157,8 +163,14 @@ impl LineModel {
                 .filter(|(t, f)| t == ty && wanted(f));
             all.map(|(_, f)| f.clone()).collect()
         };
-        let totals = own(name, &|f| f.starts_with("total_"));
+        let totals = own(name, &|f| line.totals.iter().any(|t| t.name == f));
+        let conserved = line.totals.iter().filter_map(|t| {
+            let rows = rows(&program.function(name, &t.name)?.sig.output)?;
+            Some((t.name.clone(), rows, t.reason.clone()))
+        });
         let observers = own(&state, &|f| f != "node");
+        let functionals = own(name, &|f| f.starts_with("values_"));
+        let momenta = own(name, &|f| f.starts_with("momenta_of_"));
         let mut lower =
             |ty: &str, f: &str, given: &[usize]| entry(&mut shared, (ty, f), given, at::FIRST);
         let new = lower(name, "new", &[at::GIVEN, at::OUT])?;
@@ -172,6 +184,8 @@ impl LineModel {
         };
         let totals = asked(name, totals, &[at::MODEL, at::STATE])?;
         let observers = asked(&state, observers, &[at::STATE])?;
+        let functionals = asked(name, functionals, &[at::MODEL, at::STATE])?;
+        let momenta = asked(name, momenta, &[at::MODEL, at::GIVEN, at::OUT])?;
         shared.by_size = true;
         let of = [at::MODEL, at::STATE];
         let energy_sizes = entry(&mut shared, (name, "energies"), &of, at::FIRST)?;
@@ -182,6 +196,7 @@ impl LineModel {
         let total_sizes = sized.collect::<Result<Asked, Refused>>()?;
         let node = shared.name("node");
         let of_state = totals.iter().chain(&observers).chain(&total_sizes);
+        let of_state = of_state.chain(&functionals).chain(&momenta);
         let of_state = of_state.map(|(_, r)| r.places);
         let own = [&new, &start, &step, &energies, &energy_sizes];
         let places = own.into_iter().map(|r| r.places).chain(of_state).max();
@@ -205,6 +220,9 @@ impl LineModel {
             totals,
             total_sizes,
             observers,
+            functionals,
+            momenta,
+            conserved: conserved.collect(),
             node,
             places: places.unwrap_or(at::FIRST),
         }))
@@ -220,9 +238,79 @@ impl LineModel {
         self.totals.iter().map(|(name, _)| name.as_str())
     }
 
-    /// The names of what is observed at sites, as [`LineTrajectory::observe`] takes them.
+    /// Conserved totals with the numbers of their components, and why they are conserved.
+    pub fn conserved(&self) -> impl Iterator<Item = (&str, usize, &str)> {
+        let all = self.conserved.iter();
+        all.map(|(name, rows, reason)| (name.as_str(), *rows, reason.as_str()))
+    }
+
+    /// The names of what is observed at sites, as [`LineTrajectory::observe`] takes them: what moves and its
+    /// momenta, then the values of functionals of all sites.
     pub fn observers(&self) -> impl Iterator<Item = &str> {
-        self.observers.iter().map(|(name, _)| name.as_str())
+        let functionals = self.functionals.iter();
+        let values = functionals.map(|(name, _)| name.strip_prefix("values_").unwrap_or(name));
+        let own = self.observers.iter().map(|(name, _)| name.as_str());
+        own.chain(values)
+    }
+
+    /// What else is given of a model whose particles live in a domain, by name, with how many numbers it is: the
+    /// lengths of a torus; `domain`, a box; the cells of a grid along each direction.
+    pub fn space(&self) -> impl Iterator<Item = (&str, usize)> {
+        self.sites.space()
+    }
+
+    /// The momenta that belong to velocities of a field of places, where the model tells them; lists of one site
+    /// after the other.
+    ///
+    /// # Errors
+    /// As [`LineModel::start`].
+    pub fn momenta(
+        &self,
+        choice: &Choice,
+        numbers: &Numbers<'_>,
+        field: &str,
+        velocities: &[f64],
+    ) -> Result<Option<Vec<f64>>, Unstarted> {
+        let name = format!("momenta_of_{field}");
+        let Some((_, routine)) = self.momenta.iter().find(|(own, _)| *own == name) else {
+            return Ok(None);
+        };
+        let mut places = vec![Value::Unit; self.places];
+        let model = self.built(choice, numbers, &mut places)?;
+        put(&mut places, at::MODEL, model);
+        let velocities = |_: &str| Some(velocities.to_vec());
+        let own = as_arrays(self.initial.one(field, numbers)?);
+        put(&mut places, at::GIVEN, own);
+        let own = as_arrays(self.initial.one(field, &velocities)?);
+        put(&mut places, at::OUT, own);
+        let all = run(routine, &mut places).map_err(Failure::line)?;
+        Ok(Some(columns(&all).ok_or_else(|| unread().line())?))
+    }
+
+    /// The model with its parameters.
+    fn built(
+        &self,
+        choice: &Choice,
+        numbers: &Numbers<'_>,
+        places: &mut Places<f64>,
+    ) -> Result<Value<f64>, Unstarted> {
+        put(
+            places,
+            at::GIVEN,
+            self.parameters.value(numbers, &|_| None)?,
+        );
+        let ends = match self.has_line {
+            true => self.ends.value(choice, numbers)?,
+            false => Value::Unit,
+        };
+        let of_sites = |field: &str| match field {
+            "ends" => Some(ends.clone()),
+            field => given::counts(&self.counts, choice, field),
+        };
+        put(places, at::OUT, self.sites.value(numbers, &of_sites)?);
+        let model = run(&self.new, places).map_err(Failure::line)?;
+        put(places, at::OUT, Value::Unit);
+        Ok(model)
     }
 
     /// Starts a line with step `h`. `numbers` gives parameters and initial values by their names as the
@@ -237,23 +325,8 @@ impl LineModel {
         numbers: &Numbers<'_>,
     ) -> Result<LineTrajectory, Unstarted> {
         let mut places = vec![Value::Unit; self.places];
-        put(
-            &mut places,
-            at::GIVEN,
-            self.parameters.value(numbers, &|_| None)?,
-        );
-        let ends = match self.has_line {
-            true => self.ends.value(choice, numbers)?,
-            false => Value::Unit,
-        };
-        let of_sites = |field: &str| match field {
-            "ends" => Some(ends.clone()),
-            field => given::counts(&self.counts, choice, field),
-        };
-        put(&mut places, at::OUT, self.sites.value(numbers, &of_sites)?);
-        let model = run(&self.new, &mut places).map_err(Failure::line)?;
+        let model = self.built(choice, numbers, &mut places)?;
         put(&mut places, at::MODEL, model);
-        put(&mut places, at::OUT, Value::Unit);
         put(
             &mut places,
             at::GIVEN,
@@ -381,16 +454,41 @@ impl LineTrajectory {
     /// What is observed at all sites, one site after the other, matrices row after row.
     pub fn observe(&mut self, name: &str) -> Option<Vec<f64>> {
         let model = self.model.clone();
-        let (_, routine) = model.observers.iter().find(|(own, _)| own == name)?;
-        let Value::Sites(column) = self.ask(routine)? else {
-            return None;
-        };
-        let mut all = Vec::new();
-        for value in column.values() {
-            all.extend(numbers(&value)?);
-        }
-        Some(all)
+        let values = format!("values_{name}");
+        let own = model.observers.iter().find(|(own, _)| own == name);
+        let (_, routine) =
+            own.or_else(|| model.functionals.iter().find(|(own, _)| *own == values))?;
+        columns(&self.ask(routine)?)
     }
+}
+
+/// How many numbers a total has, by its type.
+fn rows(output: &syn::ReturnType) -> Option<usize> {
+    let syn::ReturnType::Type(_, ty) = output else {
+        return None;
+    };
+    let sizes = given::sizes(ty);
+    Some(sizes.into_iter().product())
+}
+
+/// Numbers as arrays of one, which is what states hold.
+fn as_arrays(value: Value<f64>) -> Value<f64> {
+    match value {
+        Value::Sites(Column::Numbers(list)) => Value::Sites(Column::Arrays([1, 1], list)),
+        other => other,
+    }
+}
+
+/// The numbers of all sites, one site after the other.
+fn columns(value: &Value<f64>) -> Option<Vec<f64>> {
+    let Value::Sites(column) = value else {
+        return None;
+    };
+    let mut all = Vec::new();
+    for value in column.values() {
+        all.extend(numbers(&value)?);
+    }
+    Some(all)
 }
 
 /// The numbers of a value, matrices row after row; of rotations those of their matrices.

@@ -84,6 +84,13 @@ impl<T: Lowered> Lower<'_, '_, T> {
         let syn::Expr::Path(path) = &*c.func else {
             return Err(refuse(c));
         };
+        if let (Some(of), [.., owner, made]) = (
+            &path.qself,
+            &path.path.segments.iter().collect::<Vec<_>>()[..],
+        ) && (owner.ident == "Functional" && made.ident == "new")
+        {
+            return self.functional(&of.ty, c);
+        }
         let path = &path.path;
         let sizes = self.sizes_of(path);
         let names: Vec<String> = path.segments.iter().map(|s| s.ident.to_string()).collect();
@@ -179,6 +186,27 @@ impl<T: Lowered> Lower<'_, '_, T> {
             [] => return Err(refuse(c)),
         };
         self.runtime(&name, c.args.iter(), None, sizes)?
+            .ok_or_else(|| refuse(c))
+    }
+
+    /// A functional of all sites that is made: those of the runtime are known here.
+    fn functional(&mut self, of: &syn::Type, c: &syn::ExprCall) -> Result<Code<T>, Refused> {
+        let syn::Type::Path(of) = of else {
+            return Err(refuse(c));
+        };
+        let names = of.path.segments.iter().map(|s| s.ident.to_string());
+        let names: Vec<String> = names.collect();
+        let name = match names.as_slice() {
+            [first, module, name] if first == "clebsch" && module == "mesh" => name,
+            own => {
+                return Err(Refused::Functional {
+                    path: own.join("::"),
+                });
+            }
+        };
+        let mut all = vec![Code::Constant(Value::Text(crate::text(name)))];
+        all.extend(self.all(c.args.iter())?);
+        self.native("Functional::new", all, Vec::new())
             .ok_or_else(|| refuse(c))
     }
 

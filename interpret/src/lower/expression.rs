@@ -157,6 +157,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
             // The number of threads changes no result.
             [.., "Threads", "ONE"] => Value::Int(1),
             ["T", "EPSILON"] => Value::Double(T::EPSILON),
+            ["f64", "NAN"] => Value::Double(f64::NAN),
             [.., "Order", "Two"] => Value::Order(Order::Two),
             [.., "Domain", "Positive"] => Value::Domain(domain::Domain::Positive),
             [.., "Domain", "NotNegative"] => Value::Domain(domain::Domain::NotNegative),
@@ -290,8 +291,11 @@ impl<T: Lowered> Lower<'_, '_, T> {
             },
             other => (other, false),
         };
-        let (syn::Expr::Range(range), syn::Pat::Ident(name)) = (counts, &*f.pat) else {
+        let syn::Pat::Ident(name) = &*f.pat else {
             return Err(refuse(f));
+        };
+        let syn::Expr::Range(range) = counts else {
+            return self.each(f, &name.ident);
         };
         let (Some(from), Some(to)) = (&range.start, &range.end) else {
             return Err(refuse(f));
@@ -310,6 +314,28 @@ impl<T: Lowered> Lower<'_, '_, T> {
             true => Code::Down(at, from, to, body),
             false => Code::For(at, from, to, body),
         })
+    }
+
+    /// A loop over the elements of an array.
+    fn each(&mut self, f: &syn::ExprForLoop, name: &syn::Ident) -> Result<Code<T>, Refused> {
+        let (list, i, own) = (self.fresh(), self.fresh(), self.fresh());
+        let all = self.expression(&f.expr, None)?;
+        let length = self.native("len", vec![Code::Place(list)], Vec::new());
+        let length = length.ok_or_else(|| refuse(f))?;
+        self.scopes.push(BTreeMap::new());
+        self.bind(name.to_string(), Binding::Place(Code::Place(own), None));
+        let body = self.block(&f.body);
+        self.scopes.pop();
+        let one = Code::Index(Box::new(Code::Place(list)), vec![Code::Place(i)]);
+        let body = Code::Block(vec![
+            Code::Let(Pattern::Place(own), Box::new(one), None),
+            body?,
+        ]);
+        let (from, to) = (Box::new(whole(0)), Box::new(length));
+        Ok(Code::Block(vec![
+            Code::Let(Pattern::Place(list), Box::new(all), None),
+            Code::For(i, from, to, Box::new(body)),
+        ]))
     }
 
     /// A closure: its parameters at places of their own.

@@ -208,6 +208,11 @@ impl<T: Lowered> Lower<'_, '_, T> {
         let (name, order): (&str, &[&str]) = match names.as_slice() {
             [.., "Place"] => ("Place", &["quantity", "site"]),
             [.., "LineError", "Site"] => ("LineError::Site", &["at", "error"]),
+            [.., "mesh", "Setting"] => ("Setting", &["domain", "grid", "particles"]),
+            [.., "LineError", "Functional"] => (
+                "LineError::Functional",
+                &["node", "quantity", "cause", "works"],
+            ),
             [.., "LineError", "Step"] => ("LineError::Step", &["node", "at", "cause", "works"]),
             _ => return Ok(None),
         };

@@ -108,7 +108,10 @@ impl<T: Lowered> Lower<'_, '_, T> {
             return Err(refuse(local));
         };
         match (pat, &*init.expr) {
-            (syn::Pat::Wild(_), syn::Expr::Path(_) | syn::Expr::Tuple(_)) => return Ok(()),
+            (
+                syn::Pat::Wild(_),
+                syn::Expr::Path(_) | syn::Expr::Tuple(_) | syn::Expr::Reference(_),
+            ) => return Ok(()),
             (syn::Pat::Ident(name), syn::Expr::Closure(closure)) => {
                 let binding = Binding::Closure(Box::new(closure.clone()));
                 self.bind(name.ident.to_string(), binding);

@@ -9,7 +9,7 @@ use crate::derive::limit::Limit;
 use crate::emit::element;
 use crate::emit::energy::twice_kinetic;
 use crate::expr::symbol::Role;
-use crate::expr::{self, Expr};
+use crate::expr::{self, Expr, Letter, Shift};
 use crate::line::{Lone, Total};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -18,8 +18,9 @@ use quote::{format_ident, quote};
 pub(super) fn energy(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
     let name = l.item("");
     let energies = energies(l, of_meshes).unwrap_or_default();
+    let momenta = momenta_of_velocities(l);
     let totals = l.line.totals.iter().map(|t| total(l, t));
-    quote!(impl<T: Real> #name<T> { #energies #(#totals)* })
+    quote!(impl<T: Real> #name<T> { #energies #momenta #(#totals)* })
 }
 
 /// `energies` and `energy`, where every part has a limit of small steps.
@@ -144,6 +145,62 @@ fn kinetic_of_site(l: &Lines, lone: &Lone, limit: &Limit) -> TokenStream {
         #twice
         twice * T::from_f64(0.5)
     }
+}
+
+/// The momenta that belong to velocities, where one field of places moves: those of the limit of small steps, what
+/// a vector potential adds included.
+fn momenta_of_velocities(l: &Lines) -> Option<TokenStream> {
+    l.extent()?;
+    let mut all = l.moving();
+    let (m, none) = (all.next()?, all.next());
+    if none.is_some() {
+        return None;
+    }
+    let (d, outline) = (&m.lone.d, &m.lone.outline);
+    let (s, limit) = (&outline.letters.symbols, d.limit.as_ref().ok()?);
+    let xi = Letter {
+        symbol: d.letters.variation[m.mover.index],
+        shift: Shift::HERE,
+    };
+    let action = expr::add(limit.linear.clone(), limit.kinetic.clone());
+    let values = [expr::gradient(s, &outline.defined(&action), xi)];
+    let mut letters = l.of_site(outline, &values);
+    letters.retain(|k| k.letter != xi);
+    let (locals, mut bindings) = l.locals(s, &letters, &Places::of_node(), &quote!(site));
+    let velocity = match m.is_number() {
+        true => quote!(velocities[site][0]),
+        false => quote!(velocities[site]),
+    };
+    bindings.bind(xi, format_ident!("velocity"));
+    let (lets, results) = l.program(s, &values, &bindings);
+    let value = m.array(results.into_iter().next().unwrap_or_default());
+    let (name, places, count) = (m.name(), l.item("Places"), l.count_of(&m.mover.name));
+    let function = format_ident!("momenta_of_{}", m.mover.name);
+    let covector = m.covector();
+    let (text, given) = (&m.mover.name, format!("velocity_{}", m.mover.name));
+    let doc = format!(
+        " The momenta of `{text}` at places and velocities: those of the limit of small steps."
+    );
+    Some(quote! {
+        #[doc = #doc]
+        ///
+        /// # Errors
+        /// Lists of another length than there are sites.
+        pub fn #function(&self, #name: &[#covector], velocities: &[#covector]) -> Result<Vec<#covector>, LineError> {
+            line::length_of(#text, #name, #count, "sites")?;
+            line::length_of(#given, velocities, #count, "sites")?;
+            let at = #places { #name: #name.to_vec() };
+            let _ = &at;
+            let mut momenta = ::std::vec![SMatrix::zeros(); #count];
+            line::fill(self.threads, &mut momenta, |site| {
+                let velocity = #velocity;
+                #locals
+                #lets
+                #value
+            });
+            Ok(momenta)
+        }
+    })
 }
 
 /// The momentum of a site in the frame of its side.

@@ -438,6 +438,7 @@ fn written(
         zeros.extend(quote!(#field: ::std::vec![SMatrix::zeros(); #count],));
     }
     let setting = l.setting();
+    let asked = plan.asked();
     let text = meshes.to_string();
     let items = quote! {
         /// Functionals of all sites, with their values, the seeds of their pull-backs and these.
@@ -452,6 +453,8 @@ fn written(
 
         impl<T: Real> #model<T> {
             #setting
+
+            #asked
 
             /// Functionals that have not been computed yet.
             fn meshes(&self) -> Result<#meshes<T>, LineError> {
@@ -535,6 +538,30 @@ impl Plan<'_> {
             }
             _ => quote!(T::zero()),
         }
+    }
+
+    /// What is asked of a state: the values of each functional.
+    fn asked(&self) -> TokenStream {
+        let state = self.l.item("State");
+        let each = self.arrays.iter().filter(|a| a.seed.is_none()).map(|a| {
+            let name = &self.l.line.lattice.meshes[a.mesh].name.text;
+            let (function, field) = (format_ident!("values_{name}"), &a.field);
+            let doc = format!(" The values of `{name}` at the places of a state, one for each of its sites.");
+            quote! {
+                #[doc = #doc]
+                ///
+                /// # Errors
+                /// Names the functional that has no value there, and why.
+                pub fn #function(&self, state: &#state<T>) -> Result<Vec<T>, LineError> {
+                    let mut meshes = self.meshes()?;
+                    if let Err((quantity, cause)) = self.valued(&state.places, &mut meshes) {
+                        return Err(LineError::Functional { node: state.node, quantity, cause, works: None });
+                    }
+                    Ok(meshes.#field)
+                }
+            }
+        });
+        each.collect()
     }
 
     /// The terms as energies: the functionals' values at the places of a state, then sums over sites.

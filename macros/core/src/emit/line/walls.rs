@@ -157,18 +157,17 @@ pub(super) fn walls(l: &Lines) -> Option<Walls> {
         let (domain, cell) = (self.sites.domain, self.setting().cell());
         for site in 0..#count {
             let mut place: [T; #d] = work.places.#field[site].into();
-            if domain.is_inside(&place) {
-                continue;
+            if !domain.is_inside(&place) {
+                let kinetic: #t = work.edges.#field[site] + #added - self.#kernel(site, &work.places);
+                let mut turned: [T; #d] = kinetic.into();
+                match domain.reflect(site, &cell, &mut place, &mut turned) {
+                    Ok(crossed) => work.reflections += crossed as u64,
+                    Err(cause) => return Err(self.refused_by(state, h, #text, cause)),
+                }
+                work.places.#field[site] = place.into();
+                let turned: #t = turned.into();
+                work.edges.#field[site] = turned + self.#kernel(site, &work.places) - #added;
             }
-            let kinetic: #t = work.edges.#field[site] + #added - self.#kernel(site, &work.places);
-            let mut turned: [T; #d] = kinetic.into();
-            match domain.reflect(site, &cell, &mut place, &mut turned) {
-                Ok(crossed) => work.reflections += crossed as u64,
-                Err(cause) => return Err(self.refused_by(state, h, #text, cause)),
-            }
-            work.places.#field[site] = place.into();
-            let turned: #t = turned.into();
-            work.edges.#field[site] = turned + self.#kernel(site, &work.places) - #added;
         }
     };
     Some(Walls { items, call })

@@ -1,0 +1,153 @@
+//! Where the particles of a fluid start: `{ lattice = "brick", jitter = 0.1, seed = 1 }`. Takes the table and the
+//! domain; gives so many places in it.
+
+use super::space::Space;
+use super::value::number;
+use clebsch::mesh::Domain;
+use clebsch::mesh::placement::{self, Jitter};
+use toml::de::{DeTable, DeValue};
+
+/// Times that places at random are moved to the centres of their cells, where no number is given.
+const SWEEPS: u64 = 20;
+
+/// The places of `count` particles, one after the other.
+pub(super) fn places(table: &DeTable<'_>, space: &Space, count: usize) -> Result<Vec<f64>, String> {
+    const KEYS: [&str; 5] = ["lattice", "jitter", "seed", "columns", "sweeps"];
+    if let Some((key, _)) = table
+        .iter()
+        .find(|(k, _)| !KEYS.contains(&k.get_ref().as_ref()))
+    {
+        return Err(format!(
+            "unknown key `{}`; known are {}",
+            key.get_ref(),
+            KEYS.join(", ")
+        ));
+    }
+    let kinds = "\"brick\", \"square\", \"hex\" or \"random\"";
+    let kind = table.get("lattice").and_then(|v| v.get_ref().as_str());
+    let kind = kind.ok_or_else(|| format!("expected {{ lattice = {kinds} }}"))?;
+    let size = match table.get("jitter") {
+        None => 0.0,
+        Some(v) => number(v.get_ref()).map_err(|why| format!("jitter: {why}"))?,
+    };
+    let seed = whole(table, "seed")?.unwrap_or(1);
+    let jitter = Jitter { size, seed };
+    let mut all = match space.lengths.as_slice() {
+        // A row: its height is what a particle takes of its length.
+        [length] if kind == "square" => {
+            #[allow(clippy::cast_precision_loss)]
+            let domain = Domain::torus([*length, *length / count.max(1) as f64]);
+            let row = placement::lattice(&domain, [count, 1], false, jitter);
+            row.iter()
+                .map(|x| x.x + centred(*length, count))
+                .collect::<Vec<f64>>()
+        }
+        [_] => {
+            return Err(
+                "on a line particles start on { lattice = \"square\" }, with jitter".to_owned(),
+            );
+        }
+        [width, height] => {
+            let domain = Domain::torus([*width, *height]);
+            let columns = whole(table, "columns")?;
+            let columns = columns
+                .and_then(|n| usize::try_from(n).ok())
+                .filter(|n| *n > 0);
+            let places = match kind {
+                "brick" | "square" => {
+                    let columns = columns.unwrap_or_else(|| even(count, width / height));
+                    if count % columns != 0 {
+                        return Err(format!("{columns} columns do not divide {count} particles"));
+                    }
+                    let shape = [columns, count / columns];
+                    let mut all = placement::lattice(&domain, shape, kind == "brick", jitter);
+                    if kind == "square" {
+                        all.iter_mut().for_each(|x| x.x += centred(*width, columns));
+                    }
+                    all
+                }
+                "hex" => hexagons(&domain, count, columns, jitter)?,
+                "random" => {
+                    let sweeps = whole(table, "sweeps")?.unwrap_or(SWEEPS);
+                    let sweeps = usize::try_from(sweeps).unwrap_or(usize::MAX);
+                    let found = placement::scattered(&domain, count, sweeps, seed);
+                    found.map_err(|e| e.to_string())?
+                }
+                other => return Err(format!("no lattice is called \"{other}\": write {kinds}")),
+            };
+            places.iter().flat_map(|x| [x.x, x.y]).collect()
+        }
+        _ => return Err("places on lattices are those of one or two dimensions".to_owned()),
+    };
+    // Walls end the room that jitter has.
+    let lengths = space.lengths.iter().zip(&space.walls).cycle();
+    for (x, (length, solid)) in all.iter_mut().zip(lengths) {
+        if *solid {
+            *x = x.clamp(0.0, *length);
+        }
+    }
+    Ok(all)
+}
+
+fn whole(table: &DeTable<'_>, key: &str) -> Result<Option<u64>, String> {
+    match table.get(key).map(|v| v.get_ref()) {
+        None => Ok(None),
+        Some(DeValue::Integer(n)) => match u64::from_str_radix(n.as_str(), n.radix()) {
+            Ok(n) => Ok(Some(n)),
+            Err(_) => Err(format!("{key}: expected a whole number, 0 or more")),
+        },
+        Some(_) => Err(format!("{key}: expected a whole number")),
+    }
+}
+
+/// From a quarter of a column, where rows begin, to its middle.
+#[allow(clippy::cast_precision_loss)]
+fn centred(width: f64, columns: usize) -> f64 {
+    0.25 * width / columns.max(1) as f64
+}
+
+/// The divisor of `count` whose lattice has cells that are most nearly squares.
+#[allow(clippy::cast_precision_loss)]
+fn even(count: usize, aspect: f64) -> usize {
+    let off = |columns: usize| {
+        let rows = count / columns;
+        (columns as f64 / rows as f64 / aspect).ln().abs()
+    };
+    let divisors = (1..=count).filter(|n| count.is_multiple_of(*n));
+    divisors
+        .min_by(|a, b| off(*a).total_cmp(&off(*b)))
+        .unwrap_or(1)
+}
+
+/// Hexagons: only some numbers of them fill a domain.
+#[allow(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss
+)]
+fn hexagons(
+    domain: &Domain<2>,
+    count: usize,
+    columns: Option<usize>,
+    jitter: Jitter,
+) -> Result<Vec<clebsch::nalgebra::SVector<f64, 2>>, String> {
+    let [width, height] = domain.lengths;
+    let near = (count as f64 * width / height * 0.75_f64.sqrt())
+        .sqrt()
+        .round() as usize;
+    let range = match columns {
+        Some(columns) => columns..=columns,
+        None => near.saturating_sub(3).max(1)..=near + 3,
+    };
+    let all: Vec<_> = range
+        .map(|n| placement::hexagonal(domain, n, jitter))
+        .collect();
+    let numbers: Vec<String> = all.iter().map(|x| x.len().to_string()).collect();
+    let found = all.into_iter().find(|places| places.len() == count);
+    found.ok_or_else(|| {
+        format!(
+            "{count} hexagons do not fill the domain; numbers near it that do: {}",
+            numbers.join(", ")
+        )
+    })
+}

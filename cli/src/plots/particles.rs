@@ -1,0 +1,282 @@
+//! A map of the particles of a fluid at the first and the last sample, coloured by a functional of all sites: at
+//! particles, or at the nodes of a grid below them. Takes a run; gives an SVG.
+
+use super::figure::{Area, fine, text};
+use super::map::{Map, color};
+use super::{Plot, axis};
+use crate::case_file::labels::Stated;
+use crate::case_file::space::Space;
+use crate::output::Finished;
+use crate::output::sites::{AtSites, at_sites};
+use crate::record::Record;
+use clebsch_core::expr::symbol::ascii;
+use plotters::prelude::{Circle, Color, IntoDrawingArea, RGBColor, Rectangle, SVGBackend, WHITE};
+
+/// Widest side of a panel, in pixels.
+const SIDE: f64 = 360.0;
+const LEFT: i32 = 44;
+const TOP: i32 = 76;
+const GAP: i32 = 56;
+const INK: RGBColor = RGBColor(30, 30, 30);
+const FAINT: RGBColor = RGBColor(110, 110, 110);
+
+/// A colour at a place.
+struct Mark {
+    place: [f64; 2],
+    value: f64,
+}
+
+/// The state at one sample: what is coloured, and particles above it.
+struct Snapshot {
+    time: f64,
+    marks: Vec<Mark>,
+    dots: Vec<[f64; 2]>,
+    /// Of a mark, in pixels.
+    radius: f64,
+}
+
+/// The picture; nothing for models that are no fluids.
+pub(crate) fn particles(run: &Finished<'_>, record: &Record) -> Plot {
+    let Some((space, stated)) = space(run) else {
+        return Ok(None);
+    };
+    let all = at_sites(run.card);
+    let domain = stated
+        .lattice
+        .quantities
+        .iter()
+        .find(|q| q.domain.is_some());
+    let Some(places) = domain.and_then(|q| all.iter().find(|s| s.key == ascii(&q.name.text)))
+    else {
+        return Ok(None);
+    };
+    let mut meshes = stated.lattice.meshes.iter();
+    let Some(shown) = meshes.find_map(|m| all.iter().find(|s| s.key == ascii(&m.name.text))) else {
+        return Ok(None);
+    };
+    let count = record.times.len();
+    let picked = [0, count.saturating_sub(1)];
+    let shots = picked.map(|sample| snapshot(record, sample, &space, places, shown));
+    draw(run, &space, &shown.name, &shots).map(Some)
+}
+
+/// Where the particles of a run live.
+fn space(run: &Finished<'_>) -> Option<(Space, Stated)> {
+    let stated = Stated::read(run.card.source)?;
+    let sample = Space::sample(&stated)?;
+    let d = sample.lengths.len();
+    let of = |key: &str| {
+        let at = run.card.parameters.iter().position(|f| f.ascii == key)?;
+        run.plan.case.parameters.get(at).cloned()
+    };
+    let torus = Space::torus(&stated).map(ascii);
+    let own = of(torus.as_deref().unwrap_or("domain"))?;
+    let grid = stated.lattice.labels.iter().find(|l| l.grid);
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let cells = grid.and_then(|l| of(&ascii(&l.index.text)));
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let cells = cells.map(|n| n.iter().map(|x| *x as usize).collect());
+    let walls = own.get(d..).unwrap_or_default().iter().map(|w| *w != 0.0);
+    let mut walls: Vec<bool> = walls.collect();
+    walls.resize(d, false);
+    let lengths = own.get(..d)?.to_vec();
+    let space = Space {
+        lengths,
+        walls,
+        cells,
+    };
+    Some((space, stated))
+}
+
+fn snapshot(
+    record: &Record,
+    sample: usize,
+    space: &Space,
+    places: &AtSites<'_>,
+    shown: &AtSites<'_>,
+) -> Snapshot {
+    let at = |column: usize| {
+        let mut own = record.observables.column(column);
+        own.nth(sample).unwrap_or(f64::NAN)
+    };
+    let values: Vec<f64> = shown.members.iter().map(|(_, c)| at(c.start)).collect();
+    let place = |columns: &std::ops::Range<usize>| -> Vec<f64> {
+        let each = columns.clone().zip(&space.lengths).zip(&space.walls);
+        each.map(|((c, length), solid)| match solid {
+            true => at(c),
+            false => at(c).rem_euclid(*length),
+        })
+        .collect()
+    };
+    let particles = places.members.iter().map(|(_, c)| place(c));
+    let nodes = (shown.index != places.index).then(|| space.nodes().map(|(x, _)| x));
+    let (on, dots) = match nodes {
+        Some(Ok(nodes)) => (nodes, particles.collect()),
+        _ => (particles.collect(), Vec::new()),
+    };
+    // On a line the value is the height.
+    let marks: Vec<Mark> = on
+        .iter()
+        .zip(&values)
+        .map(|(x, value)| Mark {
+            place: match x.as_slice() {
+                [x, y] => [*x, *y],
+                [x] => [*x, *value],
+                _ => [f64::NAN; 2],
+            },
+            value: *value,
+        })
+        .collect();
+    let dots = dots.iter().filter_map(|x: &Vec<f64>| match x.as_slice() {
+        [x, y] => Some([*x, *y]),
+        _ => None,
+    });
+    let radius = match space.lengths.as_slice() {
+        // As large as the room that each has.
+        [width, height] => {
+            let longest = width.max(*height);
+            let room = width * height * (SIDE / longest).powi(2) / marks.len().max(1) as f64;
+            (0.55 * room.sqrt()).clamp(1.0, 16.0)
+        }
+        _ => 2.5,
+    };
+    Snapshot {
+        radius,
+        time: record.times.get(sample).copied().unwrap_or(f64::NAN),
+        marks,
+        dots: dots.collect(),
+    }
+}
+
+/// The box of a panel: its corner and its sides in pixels, and the ranges it shows.
+struct Frame {
+    corner: [f64; 2],
+    side: [f64; 2],
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+impl Frame {
+    #[allow(clippy::cast_possible_truncation)]
+    fn at(&self, place: [f64; 2]) -> Option<(i32, i32)> {
+        let part = |d: usize| (place[d] - self.low[d]) / (self.high[d] - self.low[d]);
+        let (x, y) = (part(0), 1.0 - part(1));
+        let inside = |p: f64| (-0.01..=1.01).contains(&p);
+        let unit = f64::from(fine(1));
+        (inside(x) && inside(y)).then(|| {
+            let at = |d: usize, p: f64| ((self.corner[d] + p * self.side[d]) * unit).round() as i32;
+            (at(0, x), at(1, y))
+        })
+    }
+}
+
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+fn draw(
+    run: &Finished<'_>,
+    space: &Space,
+    name: &str,
+    shots: &[Snapshot; 2],
+) -> Result<String, String> {
+    let values = shots.iter().flat_map(|s| s.marks.iter().map(|m| m.value));
+    let map = Map {
+        times: Vec::new(),
+        end: 0.0,
+        rows: vec![(0, values.collect())],
+    };
+    let (low, high) = map.range();
+    let (bottom, top, side) = match space.lengths.as_slice() {
+        [width, height] => {
+            let longest = width.max(*height);
+            (
+                0.0,
+                *height,
+                [width, height].map(|l| (SIDE * l / longest).max(40.0)),
+            )
+        }
+        _ => {
+            let room = 0.05 * (high - low);
+            (low - room, high + room, [SIDE, 0.6 * SIDE])
+        }
+    };
+    let length = space.lengths.first().copied().unwrap_or(1.0);
+    let wide = LEFT * 2 + GAP + 2 * side[0] as i32 + 90;
+    let tall = TOP + side[1] as i32 + 44;
+    let (wide, tall) = (wide as u32, tall as u32);
+    let mut svg = String::new();
+    {
+        let root = SVGBackend::with_string(&mut svg, (fine(wide), fine(tall))).into_drawing_area();
+        let all = || -> Result<(), Box<dyn std::error::Error>> {
+            root.fill(&WHITE)?;
+            let title = format!("{}, case {}: {name}", run.card.name, run.plan.case.name);
+            text(&root, &title, 16, INK, (16, 10))?;
+            for (k, shot) in shots.iter().enumerate() {
+                let left = f64::from(LEFT) + k as f64 * (side[0] + f64::from(GAP));
+                let frame = Frame {
+                    corner: [left, f64::from(TOP)],
+                    side,
+                    low: [0.0, bottom],
+                    high: [length, top],
+                };
+                panel(&root, &frame, shot, [low, high])?;
+            }
+            let (_, right) = root.split_horizontally(fine(wide - 90));
+            let (_, right) = right.split_vertically(fine(TOP as u32 - 30));
+            map.legend(&right)?;
+            root.present()?;
+            Ok(())
+        };
+        all().map_err(|e| e.to_string())?;
+    }
+    let large = format!("width=\"{}\" height=\"{}\"", fine(wide), fine(tall));
+    Ok(svg.replacen(&large, &format!("width=\"{wide}\" height=\"{tall}\""), 1))
+}
+
+#[allow(clippy::cast_possible_truncation)]
+fn panel(
+    root: &Area<'_>,
+    frame: &Frame,
+    shot: &Snapshot,
+    [low, high]: [f64; 2],
+) -> Result<(), Box<dyn std::error::Error>> {
+    let unit = fine(1).cast_signed();
+    let corner = |d: usize, p: f64| (frame.corner[d] + p * frame.side[d]) as i32;
+    let (left, right, up, down) = (
+        corner(0, 0.0),
+        corner(0, 1.0),
+        corner(1, 0.0),
+        corner(1, 1.0),
+    );
+    let edge = [(left * unit, up * unit), (right * unit, down * unit)];
+    root.draw(&Rectangle::new(edge, INK.stroke_width(fine(1))))?;
+    let time = format!("t = {}", axis::plain(shot.time));
+    text(root, &time, 13, INK, (left, up - 20))?;
+    text(root, &axis::plain(frame.low[0]), 11, INK, (left, down + 4))?;
+    text(
+        root,
+        &axis::plain(frame.high[0]),
+        11,
+        INK,
+        (right - 10, down + 4),
+    )?;
+    text(root, &short(frame.high[1]), 11, INK, (left - 38, up))?;
+    text(root, &short(frame.low[1]), 11, INK, (left - 38, down - 12))?;
+    let radius = shot.radius * f64::from(fine(1));
+    for mark in &shot.marks {
+        if let Some(at) = frame.at(mark.place).filter(|_| mark.value.is_finite()) {
+            let fill = color((mark.value - low) / (high - low)).filled();
+            root.draw(&Circle::new(at, radius as i32, fill))?;
+        }
+    }
+    for dot in &shot.dots {
+        if let Some(at) = frame.at(*dot) {
+            root.draw(&Circle::new(at, unit, FAINT.filled()))?;
+        }
+    }
+    Ok(())
+}
+
+/// A number with at most four digits.
+fn short(x: f64) -> String {
+    let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(x);
+    axis::plain(rounded)
+}

@@ -1,0 +1,186 @@
+//! Fluids on the command line: derived, run from cases with domains, lattices and expressions of the place, wrong
+//! cases told by key and site.
+
+use crate::common::{Folder, clebsch};
+
+/// The model files that the project ships, each with its case.
+const SHIPPED: [&str; 4] = [
+    "particle-mesh-1d",
+    "particle-mesh-2d",
+    "shallow-water-2d",
+    "shallow-water-2d-regularised",
+];
+
+fn shipped(file: &str) -> String {
+    format!("{}/../models/fluids/{file}", env!("CARGO_MANIFEST_DIR"))
+}
+
+fn text(file: &str) -> String {
+    std::fs::read_to_string(shipped(file)).expect("is shipped")
+}
+
+#[test]
+fn every_fluid_is_derived_and_runs_its_case() {
+    for name in SHIPPED {
+        let (model, case) = (
+            shipped(&format!("{name}.clebsch")),
+            shipped(&format!("{name}.toml")),
+        );
+        for format in ["text", "latex", "markdown", "json"] {
+            let done = clebsch(&["derive", &model, "--format", format]);
+            assert_eq!(done.code, 0, "{name} {format}: {}", done.err);
+        }
+        let done = clebsch(&["run", &model, "--case", &case, "--steps", "20"]);
+        assert_eq!(done.code, 0, "{name}: {}{}", done.out, done.err);
+        assert!(done.out.contains("energy"), "{}", done.out);
+        // The case that is printed for it runs.
+        let folder = Folder::new(&format!("fluids-{name}"));
+        let sample = clebsch(&["case", &model]);
+        assert_eq!(sample.code, 0, "{}", sample.err);
+        let own = folder.write("own.toml", &sample.out);
+        let done = clebsch(&["run", &model, "--case", &own, "--steps", "20"]);
+        assert_eq!(
+            done.code, 0,
+            "{name}: {}{}\n{}",
+            done.out, done.err, sample.out
+        );
+        let same = clebsch(&["run", &model, "--steps", "20"]);
+        assert_eq!((done.out, done.err), (same.out, same.err), "{name}");
+    }
+}
+
+#[test]
+fn arrays_are_by_sample_particle_and_component_and_particles_are_mapped() {
+    let folder = Folder::new("fluids-written");
+    let out = folder.path("out");
+    let (model, case) = (
+        shipped("particle-mesh-2d.clebsch"),
+        shipped("particle-mesh-2d.toml"),
+    );
+    let done = clebsch(&[
+        "run", &model, "--case", &case, "--steps", "4", "--out", &out,
+    ]);
+    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
+    let npz = std::fs::read(format!("{out}/trajectory.npz")).expect("is written");
+    let has = |shape: &str| npz.windows(shape.len()).any(|w| w == shape.as_bytes());
+    // Nodes are one more than cells across the channel, and as many along it.
+    for shape in ["(5, 1800, 2,)", "(5, 528,)", "momentum_X.npy", "H.npy"] {
+        assert!(has(shape), "{shape}");
+    }
+    let map = std::fs::read_to_string(format!("{out}/particles.svg")).expect("is written");
+    let circles = map.matches("<circle").count();
+    // Nodes and particles, twice.
+    assert_eq!(circles, 2 * (528 + 1800), "{circles}");
+}
+
+#[test]
+fn velocities_and_momenta_say_the_same() {
+    let folder = Folder::new("fluids-momenta");
+    let model = shipped("shallow-water-2d.clebsch");
+    let case = text("shallow-water-2d.toml")
+        .replace("f = 0.0", "f = 2.0")
+        .replace("a = 400", "a = 64");
+    let (head, _) = case.split_once("velocity_X").expect("has velocities");
+    let run = |line: &str| {
+        let file = folder.write("case.toml", &format!("{head}{line}\n"));
+        let done = clebsch(&["run", &model, "--case", &file, "--steps", "5"]);
+        assert_eq!(done.code, 0, "{}{}", done.out, done.err);
+        done.out
+    };
+    // The momentum of a particle in a rotating frame is m v + (m f/2) perp(X).
+    let by_velocity = run("velocity_X = [\"0.1*y\", \"0.2\"]");
+    let by_momentum = run("momentum_X = [\"m*(0.1*y - f/2*y)\", \"m*(0.2 + f/2*x)\"]");
+    let energy = |out: &str| -> String {
+        let line = out
+            .lines()
+            .find(|l| l.trim_start().starts_with("energy"))
+            .expect("has energy");
+        line.split_whitespace()
+            .take(2)
+            .collect::<Vec<_>>()
+            .join(" ")
+    };
+    assert_eq!(energy(&by_velocity), energy(&by_momentum));
+}
+
+#[test]
+fn a_wrong_case_is_told_by_key_and_site() {
+    let folder = Folder::new("fluids-wrong");
+    let check = |model: &str, changes: &[(&str, &str, &str)]| {
+        let case = text(&format!("{model}.toml"));
+        for (from, to, expected) in changes {
+            let wrong = case.replacen(from, to, 1);
+            assert_ne!(wrong, case, "{from}");
+            let file = folder.write("wrong.toml", &wrong);
+            let model = shipped(&format!("{model}.clebsch"));
+            let done = clebsch(&["run", &model, "--case", &file, "--steps", "2"]);
+            assert_ne!(done.code, 0, "{to}: {}{}", done.out, done.err);
+            assert!(done.err.contains(expected), "{to}: {}", done.err);
+            assert!(!done.err.contains("panicked"), "{to}: {}", done.err);
+        }
+    };
+    check(
+        "particle-mesh-2d",
+        &[
+            (
+                "walls = [\"solid\", \"periodic\"]",
+                "",
+                "missing key `domain.walls`",
+            ),
+            (
+                "\"periodic\"",
+                "\"open\"",
+                "domain.walls: expected \"solid\" or \"periodic\"",
+            ),
+            ("n = [32, 16]", "", "missing key `labels.n`"),
+            (
+                "n = [32, 16]",
+                "n = 32",
+                "labels.n: expected whole numbers of cells",
+            ),
+            (
+                "lengths = [2.0, 1.0]",
+                "lengths = [2.0]",
+                "expected 2 positive numbers",
+            ),
+            ("[domain]", "[space]", "missing table [domain]"),
+            ("alpha = 0.1", "", "missing key `parameters.alpha`"),
+            ("velocity_X = [0.0, 0.0]", "", "initial.momentum_X: missing"),
+            (
+                "lattice = \"brick\"",
+                "lattice = \"bricks\"",
+                "no lattice is called \"bricks\"",
+            ),
+        ],
+    );
+    check(
+        "shallow-water-2d",
+        &[
+            (
+                "m = { depth = \"1\" }",
+                "m = [1.0, 2.0]",
+                "parameters.m: a list has a value for each of the 400 sites, and this one has 2",
+            ),
+            (
+                "m = { depth = \"1\" }",
+                "m = \"z\"",
+                "parameters.m: \"z\": `z` has no value here",
+            ),
+            (
+                "X = { lattice = \"brick\", jitter = 0.1, seed = 1 }",
+                "X = [\"0.5\", \"0.5\"]",
+                "at one place",
+            ),
+            (
+                "X = { lattice = \"brick\", jitter = 0.1, seed = 1 }",
+                "X = [\"0.01/(a - 7)\", \"a/N\"]",
+                "initial.X_7",
+            ),
+            (
+                "L = [1.0, 1.0]",
+                "L = [1.0, 1.0]\nkind = \"channel\"",
+                "which has no walls",
+            ),
+        ],
+    );
+}

@@ -1,0 +1,264 @@
+//! Functionals of all sites: those of the runtime, held behind one interface whatever they compute. Takes the name
+//! by which a model states one, with its setting and constants; gives values and pull-backs over lists of sites.
+
+use crate::sites::Column;
+use crate::value::Value;
+use clebsch::mesh::{self, Domain, Functional, MeshError, Setting};
+use clebsch::saved::{Saved, Words};
+use clebsch::{ParameterError, Real};
+use core::any::Any;
+use core::fmt;
+use nalgebra::SVector;
+
+/// A domain of one or two dimensions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Extent {
+    /// An interval, or a circle.
+    Line(Domain<1>),
+    /// A rectangle.
+    Plane(Domain<2>),
+}
+
+/// What a functional is made for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Around {
+    /// On an interval.
+    Line(Setting<1>),
+    /// On a rectangle.
+    Plane(Setting<2>),
+}
+
+impl Around {
+    /// A domain with a grid, if there is one, and so many particles.
+    pub fn new(extent: Extent, grid: Option<&[usize]>, particles: usize) -> Option<Self> {
+        Some(match extent {
+            Extent::Line(domain) => Around::Line(Setting {
+                domain,
+                grid: grid.map(<[usize; 1]>::try_from).transpose().ok()?,
+                particles,
+            }),
+            Extent::Plane(domain) => Around::Plane(Setting {
+                domain,
+                grid: grid.map(<[usize; 2]>::try_from).transpose().ok()?,
+                particles,
+            }),
+        })
+    }
+
+    /// How many nodes the grid has.
+    pub fn nodes(&self) -> usize {
+        match self {
+            Around::Line(setting) => setting.nodes(),
+            Around::Plane(setting) => setting.nodes(),
+        }
+    }
+
+    /// Lengths of a cell along each direction.
+    pub fn cell(&self) -> Vec<f64> {
+        match self {
+            Around::Line(setting) => setting.cell().to_vec(),
+            Around::Plane(setting) => setting.cell().to_vec(),
+        }
+    }
+}
+
+/// What a functional is made of at one site.
+trait Element<T: Real>: Copy + Send + Sync + 'static {
+    const ZERO: fn() -> Self;
+
+    /// Those of a list of sites; nothing where it is one of something else.
+    fn read(list: &Column<T>, out: &mut Vec<Self>) -> Option<()>;
+
+    /// A list of sites.
+    fn written(list: &[Self]) -> Column<T>;
+}
+
+impl<T: Real> Element<T> for T {
+    const ZERO: fn() -> Self = T::zero;
+
+    fn read(list: &Column<T>, out: &mut Vec<Self>) -> Option<()> {
+        let (Column::Numbers(all) | Column::Arrays([1, 1], all)) = list else {
+            return None;
+        };
+        out.clear();
+        out.extend_from_slice(all);
+        Some(())
+    }
+
+    fn written(list: &[Self]) -> Column<T> {
+        Column::Numbers(list.to_vec())
+    }
+}
+
+impl<T: Real> Element<T> for SVector<T, 2> {
+    const ZERO: fn() -> Self = SVector::zeros;
+
+    fn read(list: &Column<T>, out: &mut Vec<Self>) -> Option<()> {
+        let Column::Arrays([2, 1], all) = list else {
+            return None;
+        };
+        out.clear();
+        out.extend(all.chunks_exact(2).map(SVector::from_column_slice));
+        Some(())
+    }
+
+    fn written(list: &[Self]) -> Column<T> {
+        let all = list.iter().flat_map(|x| x.iter().copied());
+        Column::Arrays([2, 1], all.collect())
+    }
+}
+
+/// A functional whatever it is made of.
+trait Computes<T: Real>: Send + Sync {
+    fn copied(&self) -> Box<dyn Computes<T>>;
+    fn value(&mut self, at: &Column<T>, out: &mut [T]) -> Option<Result<(), MeshError>>;
+    fn pull_back(&mut self, at: &Column<T>, seed: &[T]) -> Option<Result<Column<T>, MeshError>>;
+    fn words(&mut self, words: &mut Words);
+}
+
+/// A functional with room for what it is made of.
+#[derive(Clone)]
+struct With<F, A> {
+    functional: F,
+    at: Vec<A>,
+    back: Vec<A>,
+}
+
+/// One for a dimension: types of functionals do not say theirs.
+#[derive(Clone)]
+struct In<F, A, const D: usize>(With<F, A>);
+
+impl<T, F, A, const D: usize> Computes<T> for In<F, A, D>
+where
+    T: Real,
+    A: Element<T>,
+    F: Functional<T, D, Argument = A> + 'static,
+{
+    fn copied(&self) -> Box<dyn Computes<T>> {
+        Box::new(self.clone())
+    }
+
+    fn value(&mut self, at: &Column<T>, out: &mut [T]) -> Option<Result<(), MeshError>> {
+        let own = &mut self.0;
+        A::read(at, &mut own.at)?;
+        Some(own.functional.value(&own.at, out))
+    }
+
+    fn pull_back(&mut self, at: &Column<T>, seed: &[T]) -> Option<Result<Column<T>, MeshError>> {
+        let own = &mut self.0;
+        A::read(at, &mut own.at)?;
+        own.back.clear();
+        own.back.resize(own.at.len(), A::ZERO());
+        let done = own.functional.pull_back(&own.at, seed, &mut own.back);
+        Some(done.map(|()| A::written(&own.back)))
+    }
+
+    fn words(&mut self, words: &mut Words) {
+        let own: &mut dyn Any = &mut self.0.functional;
+        // Those of grids keep nothing that a later value depends on.
+        if let Some(f) = own.downcast_mut::<mesh::voronoi_area<f64>>() {
+            f.words(words);
+        } else if let Some(f) = own.downcast_mut::<mesh::second_moment<f64>>() {
+            f.words(words);
+        } else if let Some(f) = own.downcast_mut::<mesh::helmholtz_depth<f64>>() {
+            f.words(words);
+        } else if let Some(f) = own.downcast_mut::<mesh::pair_core<f64>>() {
+            f.words(words);
+        }
+    }
+}
+
+/// A functional that is held.
+pub struct Held<T: Real>(Box<dyn Computes<T>>);
+
+impl<T: Real> Clone for Held<T> {
+    fn clone(&self) -> Self {
+        Held(self.0.copied())
+    }
+}
+
+impl<T: Real> fmt::Debug for Held<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Held").finish_non_exhaustive()
+    }
+}
+
+impl<T: Real> Held<T> {
+    /// Its values at places, or at the values of another functional.
+    pub fn value(&mut self, at: &Column<T>, out: &mut [T]) -> Option<Result<(), MeshError>> {
+        self.0.value(at, out)
+    }
+
+    /// Its pull-back of a seed.
+    pub fn pull_back(
+        &mut self,
+        at: &Column<T>,
+        seed: &[T],
+    ) -> Option<Result<Column<T>, MeshError>> {
+        self.0.pull_back(at, seed)
+    }
+}
+
+impl Saved for Held<f64> {
+    fn words(&mut self, words: &mut Words) {
+        self.0.words(words);
+    }
+}
+
+type Made<T> = Option<Result<Held<T>, ParameterError>>;
+
+fn held<T, F, A, const D: usize>(setting: &Setting<D>, data: F::Data<'_>) -> Made<T>
+where
+    T: Real,
+    A: Element<T>,
+    F: Functional<T, D, Argument = A> + 'static,
+{
+    let made = F::new(setting, data).map(|functional| {
+        let (at, back) = (Vec::new(), Vec::new());
+        let with = With {
+            functional,
+            at,
+            back,
+        };
+        Held(Box::new(In::<F, A, D>(with)) as Box<dyn Computes<T>>)
+    });
+    Some(made)
+}
+
+/// The functional of this name; nothing where it takes other constants, or there is none.
+pub fn made<T: Real>(name: &str, around: &Around, data: &[Value<T>]) -> Made<T> {
+    use Around::{Line, Plane};
+    let numbers = |value: &Value<T>| match value {
+        Value::Sites(Column::Numbers(list)) => Some(list.clone()),
+        _ => None,
+    };
+    let one = |value: &Value<T>| match value {
+        Value::Real(x) => Some(*x),
+        _ => None,
+    };
+    match (name, around, data) {
+        ("voronoi_area", Plane(s), []) => held::<T, mesh::voronoi_area<T>, _, 2>(s, ()),
+        ("second_moment", Plane(s), []) => held::<T, mesh::second_moment<T>, _, 2>(s, ()),
+        ("helmholtz_depth", Plane(s), [m, alpha]) => {
+            held::<T, mesh::helmholtz_depth<T>, _, 2>(s, (&numbers(m)?, one(alpha)?))
+        }
+        ("pair_core", Plane(s), [m, radius, strength]) => {
+            let data = (&numbers(m)?[..], one(radius)?, one(strength)?);
+            held::<T, mesh::pair_core<T>, _, 2>(s, data)
+        }
+        ("deposit", Line(s), [m]) => held::<T, mesh::deposit<T, 1>, _, 1>(s, (&numbers(m)?,)),
+        ("deposit", Plane(s), [m]) => held::<T, mesh::deposit<T, 2>, _, 2>(s, (&numbers(m)?,)),
+        ("deposit_quintic", Line(s), [m]) => {
+            held::<T, mesh::deposit_quintic<T, 1>, _, 1>(s, (&numbers(m)?,))
+        }
+        ("deposit_quintic", Plane(s), [m]) => {
+            held::<T, mesh::deposit_quintic<T, 2>, _, 2>(s, (&numbers(m)?,))
+        }
+        ("smooth", Line(s), [length]) => held::<T, mesh::smooth<T, 1>, _, 1>(s, (one(length)?,)),
+        ("smooth", Plane(s), [length]) => held::<T, mesh::smooth<T, 2>, _, 2>(s, (one(length)?,)),
+        ("smooth_isotropic", Plane(s), [length]) => {
+            held::<T, mesh::smooth_isotropic<T, 2>, _, 2>(s, (one(length)?,))
+        }
+        _ => None,
+    }
+}
