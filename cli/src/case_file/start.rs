@@ -56,7 +56,7 @@ pub(super) fn places(table: &DeTable<'_>, space: &Space, count: usize) -> Result
             let places = match kind {
                 "brick" | "square" => {
                     let columns = columns.unwrap_or_else(|| even(count, width / height));
-                    if count % columns != 0 {
+                    if !count.is_multiple_of(columns) {
                         return Err(format!("{columns} columns do not divide {count} particles"));
                     }
                     let shape = [columns, count / columns];
