@@ -4,6 +4,7 @@
 use super::invariants::total;
 use super::{ranged, stated_configurations};
 use crate::derive::Derivation;
+use crate::derive::invariants::Kind as InvariantKind;
 use crate::document::folded::{Folded, From, Part};
 use crate::document::riccati_words;
 use crate::expr::{self, Expr, Node};
@@ -70,12 +71,16 @@ pub fn card_words(
             count += 1;
             own = format!("{name}_{count}");
         }
-        let formula = match &v.value {
-            Some(e) => {
+        let formula = match (&v.value, &v.kind) {
+            (Some(e), _) => {
                 let f = total(&mut folded, &part, e);
                 text(&folded, &f)
             }
-            None => "kinetic plus potential energy of the limit".to_owned(),
+            (None, InvariantKind::ConstraintRate(j)) => {
+                let f = total(&mut folded, &part, &part.d.spec.holds[*j].value);
+                format!("rate of change of {}", text(&folded, &f))
+            }
+            (None, _) => "kinetic plus potential energy of the limit".to_owned(),
         };
         invariants.push((own, formula));
     }

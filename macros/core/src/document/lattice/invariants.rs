@@ -2,7 +2,7 @@
 //! sites.
 
 use crate::derive::action::summands;
-use crate::derive::invariants::Invariant;
+use crate::derive::invariants::{Invariant, Kind as InvariantKind};
 use crate::document::folded::{Folded, From, Part};
 use crate::expr::{self, Expr, Node};
 use crate::lattice::Lattice;
@@ -117,9 +117,14 @@ fn heading(lattice: &Lattice, part: &Part) -> String {
 
 fn invariant(folded: &mut Folded, part: &Part, v: &Invariant) -> Vec<Inline> {
     let mut line: Vec<Inline> = vec![format!("{}: ", part.unfolded.plain(&v.name)).into()];
-    match &v.value {
-        Some(e) => line.push(total(folded, part, e).into()),
-        None => line.push("kinetic plus potential energy of the limit".into()),
+    match (&v.value, &v.kind) {
+        (Some(e), _) => line.push(total(folded, part, e).into()),
+        (None, InvariantKind::ConstraintRate(j)) => {
+            let held = part.d.spec.holds[*j].value.clone();
+            line.push("rate of change of ".into());
+            line.push(total(folded, part, &held).into());
+        }
+        (None, _) => line.push("kinetic plus potential energy of the limit".into()),
     }
     let how = if v.exact { "exact" } else { "bounded" };
     line.push(format!(" ({how}: {})", v.reason).into());
