@@ -171,7 +171,7 @@ fn cells_equal_the_compiled_ones_to_the_last_bit() {
         model,
         initial,
         ["A" = values_A],
-        []
+        [momentum]
     );
 }
 
@@ -204,7 +204,7 @@ fn smoothed_cells_equal_the_compiled_ones_to_the_last_bit() {
         model,
         initial,
         ["phi" = values_phi, "core" = values_core],
-        []
+        [momentum]
     );
 }
 
