@@ -210,7 +210,8 @@ fn channel(dt: f64) -> (f64, f64) {
         X: x.clone(),
         momentum_X: momentum.collect(),
     };
-    let weight = |i: usize| if i % cells == 0 { dx / 2.0 } else { dx } * dy;
+    let at_wall = |i: usize| i == 0 || i == cells;
+    let weight = |i: usize| dy * if at_wall(i) { dx / 2.0 } else { dx };
     let parameters = ParticleMesh2DParameters {
         m,
         w: (0..=cells)

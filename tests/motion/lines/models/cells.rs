@@ -76,14 +76,14 @@ fn area(edges: &[(Place, Place, usize, Place)]) -> D {
 fn smoothed(at: &[Place], m: &[f64], alpha: f64) -> Vec<D> {
     let n = at.len();
     let mut a = vec![vec![c(0.0); n]; n];
-    for i in 0..n {
+    for (i, row) in a.iter_mut().enumerate() {
         let edges = cell(at, i);
-        a[i][i] += area(&edges);
+        row[i] += area(&edges);
         for (p, q, j, d) in edges {
             let (along, apart) = (q - p, d.dot(&d));
             let weight = (along.dot(&along) / apart).sqrt() * c(alpha * alpha);
-            a[i][i] += weight;
-            a[i][j] -= weight;
+            row[i] += weight;
+            row[j] -= weight;
         }
     }
     solved(a, m.iter().map(|m| c(*m)).collect())

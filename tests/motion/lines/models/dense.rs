@@ -15,9 +15,9 @@ pub fn solved(mut a: Vec<Vec<D>>, mut b: Vec<D>) -> Vec<D> {
         b.swap(k, pivot);
         for i in k + 1..n {
             let by = a[i][k] / a[k][k];
-            for j in k..n {
-                let known = a[k][j];
-                a[i][j] -= by * known;
+            let pivot_row = a[k].clone();
+            for (entry, known) in a[i].iter_mut().zip(pivot_row).skip(k) {
+                *entry -= by * known;
             }
             let known = b[k];
             b[i] -= by * known;
