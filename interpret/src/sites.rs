@@ -89,7 +89,7 @@ impl<T: Real> Column<T> {
         Some(match self {
             Column::Numbers(all) => Value::Real(*all.get(site)?),
             Column::Arrays(dims, all) => array(*dims, part(*dims, all, site)?),
-            Column::Attitudes(all) => Value::Attitude(*all.get(site)?),
+            Column::Attitudes(all) => Value::Attitude(Box::new(*all.get(site)?)),
             Column::Edges(all) => Value::Edge(*all.get(site)?),
             Column::Structs(layout, fields, _) => Value::Struct(Struct {
                 layout: layout.clone(),
@@ -128,7 +128,7 @@ impl<T: Real> Column<T> {
                 let out = all.get_mut(range(*dims, site)).filter(|o| !o.is_empty())?;
                 put(*dims, out, value)?;
             }
-            (Column::Attitudes(all), Value::Attitude(x)) => *all.get_mut(site)? = *x,
+            (Column::Attitudes(all), Value::Attitude(x)) => *all.get_mut(site)? = **x,
             (Column::Edges(all), Value::Edge(x)) => *all.get_mut(site)? = *x,
             (Column::Structs(_, fields, count), Value::Struct(s)) => {
                 if site >= *count {
@@ -153,7 +153,7 @@ impl<T: Real> Column<T> {
                 all.resize(from + *rows * *cols, T::zero());
                 put([*rows, *cols], all.get_mut(from..)?, value)?;
             }
-            (Column::Attitudes(all), Value::Attitude(x)) => all.push(*x),
+            (Column::Attitudes(all), Value::Attitude(x)) => all.push(**x),
             (Column::Edges(all), Value::Edge(x)) => all.push(*x),
             (Column::Structs(_, fields, count), Value::Struct(s)) => {
                 for (field, value) in fields.iter_mut().zip(&s.values) {

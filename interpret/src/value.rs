@@ -162,7 +162,7 @@ pub enum Value<T: Real> {
     /// A value for each site of a line.
     Sites(Column<T>),
     /// The attitude of a site.
-    Attitude(line::Attitude<T>),
+    Attitude(Box<line::Attitude<T>>),
     /// Which state a workspace was made for.
     Stamp(line::Stamp),
     /// A quantity at a site.

@@ -230,10 +230,8 @@ fn a_lake_stays_at_rest() {
         let mut mesh = Voronoi::new(&domain, at.len()).unwrap();
         let m = helmholtz_depth::masses(&mut mesh, &at, alpha, &vec![1.0; at.len()]).unwrap();
         for alpha in [None, Some(alpha)] {
-            let largest = accelerations(&at, &m, alpha)
-                .iter()
-                .map(|a| a.norm())
-                .fold(0.0, f64::max);
+            let all = accelerations(&at, &m, alpha);
+            let largest = clebsch::scalar::largest(all.iter().map(|a| a.norm()));
             // Rounding of forces of the size of c^2/dx.
             assert!(largest < 1e-12 * n as f64, "{n} {alpha:?}: {largest}");
         }

@@ -74,11 +74,11 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             _ => None,
         },
         ("Attitude::new", 1) => |a, _| match a.first()? {
-            Value::Rotation(r) => Some(Value::Attitude(Attitude::new(*r))),
+            Value::Rotation(r) => Some(Value::Attitude(Box::new(Attitude::new(*r)))),
             _ => None,
         },
         ("Attitude::turned", 1) => |a, _| match a.first()? {
-            Value::Turned(r) => Some(Value::Attitude(Attitude::turned(r))),
+            Value::Turned(r) => Some(Value::Attitude(Box::new(Attitude::turned(r)))),
             _ => None,
         },
         ("LineError::Parameter", 1) => |a, _| match a.first()? {

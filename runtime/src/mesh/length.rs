@@ -2,6 +2,7 @@
 //! the rounding of the square of the length by that of a cell would change the mass.
 
 use super::Domain;
+use crate::scalar::largest;
 use crate::{ParameterError, Problem, Real};
 
 /// Most domains that one length takes.
@@ -16,11 +17,7 @@ pub(super) fn check_length<T: Real, const D: usize>(
     domain: &Domain<D>,
 ) -> Result<(), ParameterError> {
     let value = alpha.value();
-    let longest = domain
-        .lengths
-        .iter()
-        .copied()
-        .fold(0.0, |a: f64, b| a.max(b));
+    let longest = largest(domain.lengths);
     let refused = |problem, remedy| {
         Err(ParameterError {
             field: "alpha",

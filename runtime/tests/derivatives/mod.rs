@@ -53,7 +53,7 @@ pub fn against_differences<F: Functional<f64, 2, Argument = Plane>>(
     let mut gradient = vec![Plane::zeros(); at.len()];
     f.value(at, &mut out).unwrap();
     f.pull_back(at, seed, &mut gradient).unwrap();
-    let size = gradient.iter().map(|g| g.norm()).fold(0.0, f64::max);
+    let size = clebsch::scalar::largest(gradient.iter().map(|g| g.norm()));
     let mut moved = at.to_vec();
     let mut sum = |moved: &[Plane]| -> f64 {
         f.value(moved, &mut out).unwrap();
@@ -91,7 +91,7 @@ where
     let mut gradient = vec![Plane::zeros(); count];
     f.value(at, &mut out).unwrap();
     f.pull_back(at, seed, &mut gradient).unwrap();
-    let size = gradient.iter().map(|g| g.norm()).fold(0.0, f64::max);
+    let size = clebsch::scalar::largest(gradient.iter().map(|g| g.norm()));
     let mut moved: Vec<_> = at.iter().map(|x| x.map(Dual::<1>::constant)).collect();
     let mut values = vec![Dual::<1>::constant(0.0); count];
     for a in 0..count {

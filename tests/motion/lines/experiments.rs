@@ -234,7 +234,8 @@ fn channel(dt: f64) -> (f64, f64) {
     let mut worst = 0.0_f64;
     for k in 0..(3.0 / dt) as usize {
         model.step(&mut state, &mut work).expect("steps");
-        if k % 10 == 9 {
+        // At equal times, whatever the step.
+        if (k + 1) % (0.1 / dt).round() as usize == 0 {
             worst = worst.max((model.energy(&state) - first).abs());
         }
     }

@@ -158,15 +158,8 @@ pub(super) fn elaborated(part: &Written, summand: &Summand) -> Result<Expr, Refu
     if edge.is_zero() {
         return Ok(nodal);
     }
-    let moving = |l: &Letter| l.shift != Shift::HERE || s.get(l.symbol).role == Role::Velocity;
-    let letters = expr::letters(&edge).into_iter().filter(moving);
-    let mut sites: Vec<usize> = letters
-        .filter_map(|l| Some(part.sited(l.symbol)?.site))
-        .collect();
-    sites.sort_unstable();
-    sites.dedup();
-    Err(Refused::Form(match sites.len() {
-        0 | 1 => "a kinetic term stands at some of the sites only: let it stand at all, with masses that are given at each (half of one at an end)".to_owned(),
+    Err(Refused::Form(match summand.letters.len() {
+        1 => "a kinetic term stands at some of the sites only: let it stand at all, with masses that are given at each (half of one at an end)".to_owned(),
         _ => "velocities of neighbours stand in one term: they are solved for together".to_owned(),
     }))
 }
