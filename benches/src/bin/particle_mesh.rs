@@ -250,11 +250,11 @@ impl Plain {
             let (x, m) = (&self.x[a], self.mass[a]);
             let (cell, fraction) = self.locate(x);
             let (one, other) = (values(fraction[0]), values(fraction[1]));
-            for i in 0..4 {
+            for (i, one) in one.iter().enumerate() {
                 let from = (cell[0] + i) * width + cell[1];
                 let row = &mut self.padded[from..from + 4];
-                for j in 0..4 {
-                    row[j] += m * one[i] * other[j];
+                for (place, other) in row.iter_mut().zip(other) {
+                    *place += m * one * other;
                 }
             }
         }
