@@ -5,7 +5,7 @@ use crate::domain::{Contact, Domain, Function};
 use crate::groups::{NotARigidMotion, NotARotation, NotInvertible};
 use crate::line::Place;
 use crate::mesh::MeshError;
-use crate::said::place;
+use crate::said::{self, place};
 use crate::solvers::left_factor::{LeftFactorError, Unsolved};
 use crate::solvers::moser_veselov::{MoserVeselovError, PoinsotError};
 use crate::solvers::newton::NewtonError;
@@ -487,7 +487,7 @@ impl fmt::Display for StepCause {
             ),
             Self::AtSite { at, cause, works } => {
                 write!(f, "{at}: {cause}")?;
-                shorter(f, *works)
+                said::works(f, *works)
             }
             Self::Functional {
                 quantity,
@@ -495,7 +495,7 @@ impl fmt::Display for StepCause {
                 works,
             } => {
                 write!(f, "`{quantity}`: {cause}")?;
-                shorter(f, *works)
+                said::works(f, *works)
             }
             Self::Unread { what } => write!(
                 f,
@@ -503,14 +503,6 @@ impl fmt::Display for StepCause {
                  `model! {{ ... }}`, which builds it"
             ),
         }
-    }
-}
-
-/// Which shorter step can be made.
-fn shorter(f: &mut fmt::Formatter<'_>, works: Option<f64>) -> fmt::Result {
-    match works {
-        Some(h) => write!(f, "; a step of {h} can be made"),
-        None => Ok(()),
     }
 }
 

@@ -91,6 +91,14 @@ pub(crate) fn shorter(f: &mut fmt::Formatter<'_>, steps: Option<(f64, f64)>) -> 
     }
 }
 
+/// Which shorter step has been tried and works, if one was found.
+pub(crate) fn works(f: &mut fmt::Formatter<'_>, step: Option<f64>) -> fmt::Result {
+    match step {
+        Some(h) => write!(f, "; a step of {h} can be made"),
+        None => Ok(()),
+    }
+}
+
 /// An entry of a matrix, from 1 as in files and plots.
 pub(crate) fn place(row: usize, column: usize) -> String {
     format!("({}, {})", row + 1, column + 1)

@@ -11,7 +11,6 @@ use crate::failure::Failure;
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::value::SiteData;
 use clebsch_core::lattice::{Choice, Kind, Quantity};
-use clebsch_core::syntax::ast::Size;
 use clebsch_interpret::lines::{LineModel, Unstarted};
 use std::collections::BTreeMap;
 use std::collections::HashSet;
@@ -81,8 +80,7 @@ impl Fluid {
         };
         reader.whole();
         let quantities = &stated.lattice.quantities;
-        let domain = quantities.iter().find(|q| q.domain.is_some());
-        if let Some(places) = domain {
+        if let Some(places) = stated.lattice.places() {
             let key = ascii(&places.name.text);
             reader.places(places, initial.and_then(|t| t.get(key.as_str())))?;
         }
@@ -136,7 +134,7 @@ impl Reader<'_> {
         let key = torus.map_or_else(|| "domain".to_owned(), ascii);
         let own = self.space.numbers(torus.is_none());
         self.fluid.whole.insert(key, own);
-        let grid = self.stated.lattice.labels.iter().find(|l| l.grid);
+        let grid = self.stated.lattice.grid();
         if let (Some(grid), Some(cells)) = (grid, &self.space.cells) {
             let cells = cells.iter().map(|n| *n as f64).collect();
             self.fluid.whole.insert(ascii(&grid.index.text), cells);
@@ -148,8 +146,7 @@ impl Reader<'_> {
     }
 
     fn is_grid(&self, q: &Quantity) -> bool {
-        let labels = &self.stated.lattice.labels;
-        labels.get(q.label).is_some_and(|l| l.grid)
+        self.stated.lattice.is_grid(q.label)
     }
 
     /// The value of a name at a site.
@@ -192,8 +189,7 @@ impl Reader<'_> {
         if self.is_grid(q) {
             return self.nodes.0.get(site)?.get(d).copied();
         }
-        let mut places = self.stated.lattice.quantities.iter();
-        let own = places.find(|o| o.domain.is_some())?;
+        let own = self.stated.lattice.places()?;
         let column = self.fluid.columns.get(&ascii(&own.name.text))?;
         let all = column
             .numbers
@@ -401,8 +397,5 @@ impl Reader<'_> {
 
 /// How many numbers a quantity has at a site.
 fn size(q: &Quantity) -> usize {
-    match (q.shape.name.text.as_str(), q.shape.sizes.first()) {
-        ("Vec", Some(Size::Number(n, _))) => usize::try_from(*n).unwrap_or(1),
-        _ => 1,
-    }
+    q.shape.components().unwrap_or(1)
 }

@@ -39,8 +39,8 @@ pub(super) fn tables(text: &mut String, card: &Card, stated: &Stated, space: &Sp
     };
     let _ = writeln!(text, "\n[parameters]");
     for q in quantities.iter().filter(|q| q.kind == Kind::Parameter) {
-        let (name, label) = (ascii(&q.name.text), stated.lattice.labels.get(q.label));
-        let _ = match label.is_some_and(|l| l.grid) {
+        let name = ascii(&q.name.text);
+        let _ = match stated.lattice.is_grid(q.label) {
             true => writeln!(text, "# {name}, where it is left out: the trapezoid rule"),
             false => writeln!(
                 text,

@@ -6,7 +6,7 @@ use super::location::File;
 use super::value::number;
 use crate::failure::Failure;
 use clebsch::mesh::{Domain, Nodes, Setting, Wall};
-use clebsch_core::syntax::ast::{Extent, Size};
+use clebsch_core::syntax::ast::Extent;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -24,19 +24,14 @@ pub(crate) struct Space {
 impl Space {
     /// How many dimensions a stated fluid has; nothing for other models.
     pub(crate) fn dimensions(stated: &Stated) -> Option<usize> {
-        let lattice = &stated.lattice;
-        let own = lattice.quantities.iter().find(|q| q.domain.is_some())?;
-        match own.shape.sizes.first() {
-            None => Some(1),
-            Some(Size::Number(n, _)) => usize::try_from(*n).ok().filter(|n| *n <= 2),
-            Some(Size::Name(_)) => None,
-        }
+        let own = stated.lattice.places()?;
+        own.shape.components().filter(|n| *n <= 2)
     }
 
     /// The unit square or interval without walls, with a grid of eight cells along each direction.
     pub(crate) fn sample(stated: &Stated) -> Option<Space> {
         let d = Space::dimensions(stated)?;
-        let has_grid = stated.lattice.labels.iter().any(|l| l.grid);
+        let has_grid = stated.lattice.grid().is_some();
         Some(Space {
             lengths: vec![1.0; d],
             walls: vec![false; d],
@@ -46,11 +41,10 @@ impl Space {
 
     /// The name of the lengths of a torus; nothing of a box.
     pub(crate) fn torus(stated: &Stated) -> Option<&str> {
-        let mut all = stated.lattice.quantities.iter();
-        all.find_map(|q| match &q.domain {
+        match &stated.lattice.places()?.domain {
             Some(Extent::Torus(lengths)) => Some(lengths.text.as_str()),
             _ => None,
-        })
+        }
     }
 
     /// That of a case; nothing for models that are no fluids.
@@ -246,7 +240,7 @@ fn cells(
     stated: &Stated,
     d: usize,
 ) -> Result<Option<Vec<usize>>, Failure> {
-    let Some(grid) = stated.lattice.labels.iter().find(|l| l.grid) else {
+    let Some(grid) = stated.lattice.grid() else {
         return Ok(None);
     };
     let name = &grid.index.text;

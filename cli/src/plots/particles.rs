@@ -41,11 +41,7 @@ pub(crate) fn particles(run: &Finished<'_>, record: &Record) -> Plot {
         return Ok(None);
     };
     let all = at_sites(run.card);
-    let domain = stated
-        .lattice
-        .quantities
-        .iter()
-        .find(|q| q.domain.is_some());
+    let domain = stated.lattice.places();
     let Some(places) = domain.and_then(|q| all.iter().find(|s| s.key == ascii(&q.name.text)))
     else {
         return Ok(None);
@@ -71,7 +67,7 @@ fn space(run: &Finished<'_>) -> Option<(Space, Stated)> {
     };
     let torus = Space::torus(&stated).map(ascii);
     let own = of(torus.as_deref().unwrap_or("domain"))?;
-    let grid = stated.lattice.labels.iter().find(|l| l.grid);
+    let grid = stated.lattice.grid();
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     let cells = grid.and_then(|l| of(&ascii(&l.index.text)));
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]

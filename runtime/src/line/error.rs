@@ -2,6 +2,7 @@
 //! Takes the failure and its site; gives messages that name both.
 
 use crate::mesh::MeshError;
+use crate::said;
 use crate::{ParameterError, StepCause};
 use core::fmt;
 
@@ -115,7 +116,7 @@ impl fmt::Display for LineError {
                 works,
             } => {
                 write!(f, "step from node {node}: `{quantity}`: {cause}")?;
-                shorter(f, *works)
+                said::works(f, *works)
             }
             Self::Step {
                 node,
@@ -124,17 +125,9 @@ impl fmt::Display for LineError {
                 works,
             } => {
                 write!(f, "step from node {node}: {at}: {cause}")?;
-                shorter(f, *works)
+                said::works(f, *works)
             }
         }
-    }
-}
-
-/// Which shorter step can be made.
-fn shorter(f: &mut fmt::Formatter<'_>, works: Option<f64>) -> fmt::Result {
-    match works {
-        Some(h) => write!(f, "; a step of {h} can be made"),
-        None => Ok(()),
     }
 }
 

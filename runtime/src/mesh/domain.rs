@@ -12,6 +12,17 @@ pub enum Wall {
     Solid,
 }
 
+impl Wall {
+    /// How many nodes so many cells have along a direction that ends so: one more between walls, as many around.
+    #[must_use]
+    pub fn nodes(self, cells: usize) -> usize {
+        match self {
+            Self::Periodic => cells,
+            Self::Solid => cells + 1,
+        }
+    }
+}
+
 /// A box from the origin to its lengths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Domain<const D: usize> {

@@ -1,7 +1,7 @@
 //! What a function of all sites is to a stepper: its values at sites, and its derivative, transposed and
 //! applied to a seed. Takes a field of particles or the values of another functional.
 
-use super::{Domain, MeshError, Wall};
+use super::{Domain, MeshError};
 use crate::line::Threads;
 use crate::{ParameterError, Real};
 
@@ -33,9 +33,7 @@ impl<const D: usize> Setting<D> {
     pub fn nodes(&self) -> usize {
         let grid = self.grid.unwrap_or([0; D]);
         let along = grid.iter().zip(&self.domain.walls);
-        along
-            .map(|(n, wall)| n + usize::from(*wall == Wall::Solid))
-            .product()
+        along.map(|(n, wall)| wall.nodes(*n)).product()
     }
 }
 

@@ -5,11 +5,10 @@ use super::messages;
 use super::shapes;
 use super::spec::{Dimension, Group};
 use crate::diagnostic::{Diagnostic, Errors, Place, closest};
-use crate::expr::Expr;
-use crate::expr::functional::{self, Functional};
 use crate::expr::shape::{Shape, Structure};
 use crate::expr::spelling::{seen, seen_typeset, twin};
 use crate::expr::symbol::{Role, SymbolId, Symbols, ascii};
+use crate::expr::{Expr, Reach};
 use crate::groups::Additive;
 use crate::syntax::ast::{Model, Name, Statement};
 use crate::syntax::{FUNCTIONS, HIDEABLE};
@@ -322,25 +321,8 @@ impl Declared {
                 value,
                 path,
             } => {
-                let kind = |k, errors: &mut Errors| {
-                    let (shape, structure) = shapes::shape(&self.symbols, k, errors)?;
-                    Some(functional::Kind { shape, structure })
-                };
-                let arguments: Option<Vec<_>> = arguments.iter().map(|k| kind(k, errors)).collect();
-                let (Some(arguments), Some(value)) = (arguments, kind(value, errors)) else {
-                    self.take(&name.text, name.place);
-                    return;
-                };
-                if self.admit(name, errors) {
-                    self.symbols.add_functional(Functional {
-                        name: name.text.clone(),
-                        arguments,
-                        value,
-                        reach: functional::Reach::Point,
-                        path: path.text.clone(),
-                        typeset: name.latex(),
-                    });
-                }
+                let arguments = arguments.iter().map(|k| self.kind(k, errors)).collect();
+                self.functional(name, arguments, value, (path, Reach::Point), errors);
             }
             Statement::Mesh {
                 name,
@@ -349,27 +331,16 @@ impl Declared {
                 arguments,
                 ..
             } => {
-                let value = shapes::shape(&self.symbols, shape, errors);
-                let kinds: Option<Vec<functional::Kind>> =
+                let kinds: Option<Vec<_>> =
                     arguments.iter().map(|a| self.kind_of(&a.text)).collect();
-                let (Some(arguments), Some((shape, structure))) = (kinds, value) else {
+                if kinds.is_none() {
                     let message = format!("an argument of `{}` is not declared", name.text);
                     let d = Diagnostic::new(name.place, message);
                     errors.push(
                         d.help("declare the field and the parameters that it is made of before it"),
                     );
-                    return self.take(&name.text, name.place);
-                };
-                if self.admit(name, errors) {
-                    self.symbols.add_functional(Functional {
-                        name: name.text.clone(),
-                        arguments,
-                        value: functional::Kind { shape, structure },
-                        reach: functional::Reach::Sites,
-                        path: path.text.clone(),
-                        typeset: name.latex(),
-                    });
                 }
+                self.functional(name, kinds, shape, (path, Reach::Sites), errors);
             }
             Statement::Time { .. }
             | Statement::Grid(_)
@@ -384,17 +355,6 @@ impl Declared {
             | Statement::End { .. }
             | Statement::Lagrangian(_) => {}
         }
-    }
-
-    /// What a letter or a functional gives.
-    fn kind_of(&self, name: &str) -> Option<functional::Kind> {
-        if let Some(id) = self.symbols.find(name) {
-            let symbol = self.symbols.get(id);
-            let (shape, structure) = (symbol.shape, symbol.structure);
-            return Some(functional::Kind { shape, structure });
-        }
-        let mut all = self.symbols.functionals().iter();
-        all.find(|f| f.name == name).map(|f| f.value)
     }
 
     /// Whether the name is free; reports it otherwise.
@@ -461,7 +421,7 @@ impl Declared {
 
     /// Keeps the name from being declared again. How it prints is found once: compared with every
     /// later name, it would be most of the work of a long list of parameters.
-    fn take(&mut self, name: &str, place: Place) {
+    pub(super) fn take(&mut self, name: &str, place: Place) {
         self.taken.push(Taken {
             name: name.to_owned(),
             place,

@@ -4,6 +4,7 @@
 
 mod declare;
 mod elaborate;
+mod functional;
 mod hold;
 mod lets;
 mod members;

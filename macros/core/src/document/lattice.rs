@@ -180,10 +180,9 @@ fn sites(lattice: &Lattice, doc: &mut Document) {
             }
         }
     }
-    let of_grid = |label: usize| lattice.labels.get(label).is_some_and(|l| l.grid);
     let listed = |sites: Sites, grid: bool| {
         let all = lattice.quantities.iter();
-        let here = all.filter(|q| q.sites == sites && of_grid(q.label) == grid);
+        let here = all.filter(|q| q.sites == sites && lattice.is_grid(q.label) == grid);
         let names: Vec<&str> = here.map(|q| q.name.text.as_str()).collect();
         names.join(", ")
     };

@@ -108,6 +108,15 @@ pub fn unit(n: Dim, axis: u8) -> Expr {
     make(Node::Unit(n, axis), Shape::vector(n))
 }
 
+/// A one, or the unit vectors along all axes; nothing of other shapes, and of vectors whose size has only a name.
+pub fn axes(shape: Shape) -> Option<Vec<Expr>> {
+    match (shape.is_scalar(), shape.is_vector(), shape.rows) {
+        (true, ..) => Some(vec![integer(1)]),
+        (_, true, Dim::Fixed(n)) => Some((0..n).map(|axis| unit(shape.rows, axis as u8)).collect()),
+        _ => None,
+    }
+}
+
 /// Sum of terms of one shape; `shape` serves the empty sum. A term and its opposite both go.
 pub fn sum(terms: impl IntoIterator<Item = Expr>, shape: Shape) -> Expr {
     let mut flat: Vec<Expr> = Vec::new();

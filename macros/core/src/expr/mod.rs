@@ -47,7 +47,9 @@ pub use rigid::{
     rows_in_parts, rows_of, stacked, taken_rows, twist, within,
 };
 pub use simpler::simpler;
-pub use substitute::{contains, contains_role, letters, rebuild, shift_time, substitute};
+pub use substitute::{
+    contains, contains_role, letters, rebuild, shift_time, substitute, with_children,
+};
 pub use terms::{Change, changes};
 
 /// Offset of a letter from the node or edge of an equation, in time and along the labels.

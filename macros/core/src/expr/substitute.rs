@@ -97,6 +97,14 @@ fn map_letters(
     mapped
 }
 
+/// The same node with these in the places of its children, in their order.
+pub fn with_children(symbols: &Symbols, e: &Expr, children: Vec<Expr>) -> Expr {
+    let mut each = children.into_iter();
+    rebuild(symbols, e, &mut |x| {
+        each.next().unwrap_or_else(|| x.clone())
+    })
+}
+
 /// The same node with every child replaced; leaves stay.
 pub fn rebuild(symbols: &Symbols, e: &Expr, go: &mut dyn FnMut(&Expr) -> Expr) -> Expr {
     match e.node() {

@@ -108,6 +108,21 @@ impl Lattice {
         self.quantities.iter().find(|q| q.name.text == name)
     }
 
+    /// The field whose values lie in a domain.
+    pub fn places(&self) -> Option<&Quantity> {
+        self.quantities.iter().find(|q| q.domain.is_some())
+    }
+
+    /// The grid.
+    pub fn grid(&self) -> Option<&Label> {
+        self.labels.iter().find(|l| l.grid)
+    }
+
+    /// Whether the sites of a label are the nodes of the grid.
+    pub fn is_grid(&self, label: usize) -> bool {
+        self.labels.get(label).is_some_and(|l| l.grid)
+    }
+
     /// The line.
     pub fn line_label(&self) -> Option<&Label> {
         self.line.and_then(|i| self.labels.get(i))

@@ -4,9 +4,9 @@
 #[cfg(test)]
 mod tests;
 
-use super::declared::{Kind, Lattice, Sites};
+use super::declared::{Kind, Lattice, Quantity, Sites};
 use crate::diagnostic::{Diagnostic, Errors, closest};
-use crate::syntax::ast::{Extent, Kindred, Model, Name, Size, Statement};
+use crate::syntax::ast::{Extent, Model, Name, Statement};
 
 /// What a functional is made of.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -28,10 +28,19 @@ pub struct Mesh {
     pub of: Source,
     /// Its arguments in order, the first being what it is made of; the others are parameters.
     pub arguments: Vec<Name>,
-    /// Whether it stays as it is when all places move by the same amount.
-    pub is_uniform: bool,
-    /// Whether what computes it is made for one dimension of the domain.
-    pub of_dimension: bool,
+    /// What is known of it.
+    pub kind: Known,
+}
+
+/// What is known of a functional.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Known {
+    /// It is one of cells and particles, which stays as it is when all places move by the same amount.
+    Cells,
+    /// It is one of grids, made for the dimension of the domain.
+    Grid,
+    /// Its path alone.
+    Path,
 }
 
 /// What the runtime supplies by a bare name.
@@ -41,29 +50,29 @@ struct Supplied {
     of_functional: bool,
     /// How many parameters it takes.
     data: usize,
-    /// Whether it is one of cells and particles in the plane; otherwise of grids.
-    of_cells: bool,
+    /// Of cells and particles in the plane, or of grids.
+    kind: Known,
 }
 
 /// One of cells in the plane, which equal shifts of all places leave as it is.
 const fn cells(name: &'static str, data: usize) -> Supplied {
-    let (of_functional, of_cells) = (false, true);
+    let (of_functional, kind) = (false, Known::Cells);
     Supplied {
         name,
         of_functional,
         data,
-        of_cells,
+        kind,
     }
 }
 
 /// One of a grid.
 const fn grid(name: &'static str, of_functional: bool) -> Supplied {
-    let (data, of_cells) = (1, false);
+    let (data, kind) = (1, Known::Grid);
     Supplied {
         name,
         of_functional,
         data,
-        of_cells,
+        kind,
     }
 }
 
@@ -128,11 +137,11 @@ impl Lattice {
                 Err(d) => errors.push(*d),
             }
         }
-        self.domains(model, errors);
+        self.domains(model, &parameters, errors);
     }
 
     /// One field has a domain, at a set of sites; nothing holds a functional but the Lagrangian.
-    fn domains(&self, model: &Model, errors: &mut Errors) {
+    fn domains(&self, model: &Model, parameters: &[Parameter], errors: &mut Errors) {
         let is_mesh = |s: &&Statement| matches!(s, Statement::Mesh { .. });
         let stated = model.statements.iter().filter(is_mesh).count();
         let mut with = self.quantities.iter().filter(|q| q.domain.is_some());
@@ -165,9 +174,7 @@ impl Lattice {
                 ));
             }
             if let Some(Extent::Torus(lengths)) = &q.domain
-                && let Some(twice) = parameters(model)
-                    .iter()
-                    .find(|p| p.name.text == lengths.text)
+                && let Some(twice) = parameters.iter().find(|p| p.name.text == lengths.text)
             {
                 let message = format!("`{}` is declared twice", lengths.text);
                 errors.push(
@@ -242,16 +249,15 @@ impl Lattice {
                 );
             }
         }
-        let mesh = |path: String, is_uniform: bool, of_dimension: bool| Mesh {
+        let mesh = |path: String, kind: Known| Mesh {
             name: name.clone(),
             path,
             of: of.clone(),
             arguments: arguments.to_vec(),
-            is_uniform,
-            of_dimension,
+            kind,
         };
         if path.text.contains("::") {
-            return Ok(mesh(path.text.clone(), false, false));
+            return Ok(mesh(path.text.clone(), Known::Path));
         }
         let Some(known) = SUPPLIED.iter().find(|s| s.name == path.text) else {
             let d = Diagnostic::new(
@@ -271,11 +277,7 @@ impl Lattice {
             ));
         };
         self.supplied(known, name, path, arguments, &of, parameters)?;
-        Ok(mesh(
-            format!("clebsch::mesh::{}", path.text),
-            known.of_cells,
-            !known.of_cells,
-        ))
+        Ok(mesh(format!("clebsch::mesh::{}", path.text), known.kind))
     }
 
     /// What the first argument is.
@@ -323,6 +325,7 @@ impl Lattice {
             false => "a field",
         };
         let write = || example(&path.text);
+        let of_cells = known.kind == Known::Cells;
         if known.of_functional != matches!(of, Source::Functional(_)) {
             let message = format!("`{}` is made of {what}", path.text);
             return refused(path.place, message, write());
@@ -336,7 +339,7 @@ impl Lattice {
             return refused(path.place, message, write());
         }
         let label_of = |n: &str| self.find(n).map(|q| q.label);
-        let is_grid = |l: Option<usize>| l.and_then(|l| self.labels.get(l)).is_some_and(|l| l.grid);
+        let is_grid = |l: Option<usize>| l.is_some_and(|l| self.is_grid(l));
         let (own, theirs) = (label_of(&name.text), label_of(&arguments[0].text));
         let (first, place) = (&arguments[0], arguments[0].place);
         match known.of_functional {
@@ -359,9 +362,9 @@ impl Lattice {
                     let help = "write `field X: Vec<2> at a on torus(L);`, or `on box`".to_owned();
                     return refused(place, message, help);
                 }
-                let sizes = q.map_or(0, |q| directions(&q.shape));
-                if sizes != 2 && (known.of_cells || sizes != 1) {
-                    let message = match known.of_cells {
+                let sizes = q.and_then(|q| q.shape.components());
+                if sizes != Some(2) && (of_cells || sizes != Some(1)) {
+                    let message = match of_cells {
                         true => format!(
                             "`{}` is made of places in the plane, and `{}` has another shape",
                             path.text, first.text
@@ -377,11 +380,11 @@ impl Lattice {
                         "write `field X: Vec<2> at a on torus(L);`".to_owned(),
                     );
                 }
-                if known.of_cells && own != theirs {
+                if of_cells && own != theirs {
                     let message = format!("the values of `{}` stand at the particles", path.text);
                     return refused(name.place, message, write());
                 }
-                if !known.of_cells && !is_grid(own) {
+                if !of_cells && !is_grid(own) {
                     let message =
                         format!("the values of `{}` stand at the nodes of a grid", path.text);
                     return refused(
@@ -393,8 +396,8 @@ impl Lattice {
             }
         }
         if known.name == "smooth_isotropic" {
-            let field = self.quantities.iter().find(|q| q.domain.is_some());
-            if field.is_some_and(|q| directions(&q.shape) != 2) {
+            let plane = |q: &Quantity| q.shape.components() == Some(2);
+            if self.places().is_some_and(|q| !plane(q)) {
                 let message =
                     "`smooth_isotropic` is of the plane: on a line write `smooth`".to_owned();
                 return refused(path.place, message, write());
@@ -439,15 +442,6 @@ fn parameters(model: &Model) -> Vec<Parameter> {
         })
     });
     each.collect()
-}
-
-/// How many components a place has; 0 of what is none.
-fn directions(shape: &Kindred) -> u64 {
-    match (shape.name.text.as_str(), shape.sizes.as_slice()) {
-        ("Real", []) => 1,
-        ("Vec", [Size::Number(n, _)]) => *n,
-        _ => 0,
-    }
 }
 
 type Checked<T> = Result<T, Box<Diagnostic>>;

@@ -17,7 +17,7 @@ pub mod value;
 
 pub use choice::{Choice, Refusal};
 pub use declared::{Kind, Label, Lattice, Quantity, Sites};
-pub use mesh::{Mesh, Source};
+pub use mesh::{Known, Mesh, Source};
 pub use names::{Copied, copy_name};
 pub(crate) use put::any_name;
 pub use range::Range;

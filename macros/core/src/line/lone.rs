@@ -336,15 +336,8 @@ fn system(d: &Derivation, i: usize, block: &[usize], name: &str) -> Result<How, 
         if !c.group.is_additive() {
             return refused();
         }
-        let directions = match (shape.is_scalar(), shape.is_vector()) {
-            (true, _) => vec![expr::integer(1)],
-            (_, true) => match shape.rows {
-                crate::expr::shape::Dim::Fixed(n) => (0..n)
-                    .map(|axis| expr::unit(shape.rows, axis as u8))
-                    .collect(),
-                crate::expr::shape::Dim::Named(_) => return refused(),
-            },
-            _ => return refused(),
+        let Some(directions) = expr::axes(shape) else {
+            return refused();
         };
         for direction in directions {
             columns.push(expr::directional(

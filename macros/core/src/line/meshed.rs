@@ -6,9 +6,10 @@
 use super::pull::{Force, elaborated, forces};
 use super::{Refused, Written};
 use crate::algebra::Rational;
+use crate::derive::action::summands;
 use crate::expr::shape::Shape;
 use crate::expr::{self, Applied, Expr, Node};
-use crate::lattice::{Lattice, Sites};
+use crate::lattice::Lattice;
 
 /// Terms with functionals.
 #[derive(Clone, Debug)]
@@ -38,17 +39,9 @@ pub(super) fn meshed(lattice: &Lattice, part: &Written) -> Result<Option<Meshed>
     if terms.is_empty() {
         return Ok(None);
     }
-    let on_line = |q: &crate::lattice::Quantity| q.sites != Sites::Members;
-    if lattice.quantities.iter().any(on_line) {
+    if lattice.places().is_none() {
         return Err(Refused::Form(
-            "functionals of all sites stand beside a line".to_owned(),
-        ));
-    }
-    let domains = lattice.quantities.iter().filter(|q| q.domain.is_some());
-    if domains.count() != 1 {
-        return Err(Refused::Form(
-            "places lie in several domains, or in none: one field is stated `on torus(L)` or `on box`"
-                .to_owned(),
+            "no field of places is stated `on torus(L)` or `on box`".to_owned(),
         ));
     }
     let whole = terms.iter().map(|(_, e)| e.clone()).reduce(expr::add);
@@ -85,14 +78,6 @@ fn gathered(part: &Written, e: &Expr) -> Expr {
         expr::pull_back(s, a, which, seed)
     });
     expr::sum(rest.into_iter().chain(backs).collect::<Vec<_>>(), e.shape())
-}
-
-fn summands(e: &Expr) -> Vec<Expr> {
-    match e.node() {
-        Node::Sum(list) => list.iter().flat_map(summands).collect(),
-        Node::Neg(a) => summands(a).into_iter().map(expr::neg).collect(),
-        _ => vec![e.clone()],
-    }
 }
 
 /// A pull-back of a number with an exact number before it.

@@ -4,7 +4,7 @@
 use super::{Line, Lone, Mover, Refused};
 use crate::algebra::Algebra;
 use crate::expr::shape::Shape;
-use crate::expr::{self, Expr, Letter, Shift};
+use crate::expr::{self, Expr, Shift};
 use crate::lattice::Sites;
 
 impl Line {
@@ -42,7 +42,7 @@ impl Line {
             .position(|c| c.element == element)
             .ok_or_else(refused)?;
         let (whole, own) = (&d.balances[i], &lone.d.balances[mover.index]);
-        let here = |e: &Expr| self.renamed(lone, e, site).ok_or_else(refused);
+        let here = |e: &Expr| part.of_site(lone, e, site).ok_or_else(refused);
         let pulled = self.pulled(&mover.name, site).ok_or_else(refused)?;
         let next = expr::shift_time(s, &pulled, Shift::NEXT.time);
         let [arriving, leaving] = self.shares;
@@ -78,18 +78,5 @@ impl Line {
             shape = lone.d.balances[mover.index].outgoing.shape();
         }
         Some(expr::sum(terms, shape))
-    }
-
-    /// An expression of one site in the letters of a copy of it.
-    fn renamed(&self, lone: &Lone, e: &Expr, site: usize) -> Option<Expr> {
-        let part = &self.representative;
-        let s = &part.d.letters.symbols;
-        let mut list: Vec<(Letter, Expr)> = Vec::new();
-        for l in expr::letters(e) {
-            let name = &lone.d.letters.symbols.get(l.symbol).name;
-            let there = part.copy(name, site).or_else(|| s.find(name))?;
-            list.push((l, expr::letter(s, there, l.shift)));
-        }
-        Some(expr::substitute(s, e, &list))
     }
 }

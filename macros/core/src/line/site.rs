@@ -1,6 +1,6 @@
 //! Letters of a lattice that is written out, by the quantity and the site they are copies of.
 
-use super::Written;
+use super::{Lone, Written};
 use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr, Letter};
 use crate::lattice::copy_name;
@@ -62,6 +62,26 @@ impl Written {
         let mut all = self.d.spec.configurations.iter();
         let i = all.position(|c| c.element == element)?;
         self.d.letters.node_momentum.get(i).copied()
+    }
+
+    /// An expression of one site by itself in the letters of a copy of it, momenta among them.
+    pub fn of_site(&self, lone: &Lone, e: &Expr, site: usize) -> Option<Expr> {
+        let s = &self.d.letters.symbols;
+        let own = &lone.d.letters;
+        let mut list: Vec<(Letter, Expr)> = Vec::new();
+        for l in expr::letters(e) {
+            let mut movers = lone.movers.iter();
+            let mover = movers.find(|m| own.node_momentum.get(m.index) == Some(&l.symbol));
+            let there = match mover {
+                Some(m) => self.copy(&format!("{MOMENTUM}{}", m.name), site)?,
+                None => {
+                    let name = &own.symbols.get(l.symbol).name;
+                    self.copy(name, site).or_else(|| s.find(name))?
+                }
+            };
+            list.push((l, expr::letter(s, there, l.shift)));
+        }
+        Some(expr::substitute(s, e, &list))
     }
 
     /// An expression moved along the line; none where a copy does not exist there.

@@ -6,10 +6,9 @@ use super::{Lone, Meshed, Refused, Written};
 use crate::algebra::Algebra;
 use crate::derive::invariants::Invariant;
 use crate::document::default_choice;
-use crate::expr::shape::Dim;
 use crate::expr::symbol::{SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Node, Shift};
-use crate::lattice::{Lattice, Mesh, Sites, Source};
+use crate::lattice::{Known, Lattice, Mesh, Sites, Source};
 use crate::pipeline;
 use crate::syntax::ast::{Extent, Model};
 use std::collections::BTreeMap;
@@ -69,7 +68,7 @@ pub(super) fn beside_functionals(
                     || (is_pushed_evenly(lattice, part, meshed, &m.name)
                         && has_constant_factor(s, value, momentum))
             });
-            let moved = kept.then(|| one.in_letters_of(part, value)).flatten();
+            let moved = kept.then(|| part.of_site(one, value, 0)).flatten();
             let Some(density) = moved else { continue };
             out.push(Total {
                 name: v.name.clone(),
@@ -111,7 +110,7 @@ fn is_pushed_evenly(lattice: &Lattice, part: &Written, meshed: &Meshed, field: &
         .meshes
         .iter()
         .filter(|m| of_field(m))
-        .all(|m| m.is_uniform);
+        .all(|m| m.kind == Known::Cells);
     let through = |e: &Expr| {
         let mut all = Vec::new();
         outside(&part.d.letters.symbols, e, &mut all);
@@ -137,17 +136,9 @@ fn outside(s: &Symbols, e: &Expr, out: &mut Vec<Letter>) {
 
 /// Whether the derivative of a value by a momentum holds no letter.
 fn has_constant_factor(s: &Symbols, value: &Expr, momentum: Letter) -> bool {
-    let along = match expr::letter(s, momentum.symbol, momentum.shift).shape() {
-        shape if shape.is_scalar() => vec![expr::integer(1)],
-        shape => match shape.rows {
-            Dim::Fixed(n) => (0..n)
-                .map(|axis| expr::unit(shape.rows, axis as u8))
-                .collect(),
-            Dim::Named(_) => return false,
-        },
-    };
+    let shape = expr::letter(s, momentum.symbol, momentum.shift).shape();
     let by = |u: &Expr| expr::directional(s, value, &[(momentum, u.clone())]);
-    along.iter().all(|u| expr::letters(&by(u)).is_empty())
+    expr::axes(shape).is_some_and(|all| all.iter().all(|u| expr::letters(&by(u)).is_empty()))
 }
 
 /// The totals of one lattice in the letters of another.
@@ -272,32 +263,6 @@ fn terms(part: &Written, e: &Expr) -> Vec<Expr> {
     }
 }
 
-impl Lone {
-    /// An expression of the site alone in the letters of its first copy, momenta among them.
-    fn in_letters_of(&self, part: &Written, e: &Expr) -> Option<Expr> {
-        let (own, s) = (&self.d.letters, &part.d.letters.symbols);
-        let momentum_of = |id: SymbolId| {
-            let i = own.node_momentum.iter().position(|m| *m == id)?;
-            let mover = self.movers.iter().find(|m| m.index == i)?;
-            let element = part.copy(&mover.name, 0)?;
-            let mut all = part.d.spec.configurations.iter();
-            let j = all.position(|c| c.element == element)?;
-            part.d.letters.node_momentum.get(j).copied()
-        };
-        let there = |id: SymbolId| {
-            let name = &own.symbols.get(id).name;
-            momentum_of(id)
-                .or_else(|| part.copy(name, 0))
-                .or_else(|| s.find(name))
-        };
-        let mut list = Vec::new();
-        for l in expr::letters(e) {
-            list.push((l, expr::letter(s, there(l.symbol)?, l.shift)));
-        }
-        Some(expr::substitute(s, e, &list))
-    }
-}
-
 impl Written {
     /// Whether walls change a value: it holds the momentum of places in a box.
     pub(crate) fn is_turned_by_walls(&self, lattice: &Lattice, e: &Expr) -> bool {
@@ -312,7 +277,7 @@ impl Written {
     }
 
     /// An expression in the letters of another lattice of the same model, copies of equal sites.
-    fn in_letters_of(&self, other: &Written, e: &Expr) -> Option<Expr> {
+    pub(crate) fn in_letters_of(&self, other: &Written, e: &Expr) -> Option<Expr> {
         let (own, s) = (&self.d.letters.symbols, &other.d.letters.symbols);
         let there = |id: SymbolId| match self.sited(id) {
             Some(at) => other.copy(&at.of, at.site),

@@ -77,6 +77,15 @@ pub struct Kindred {
 }
 
 impl Kindred {
+    /// How many components a number or a vector of known size has; nothing of other shapes.
+    pub fn components(&self) -> Option<usize> {
+        match (self.name.text.as_str(), self.sizes.as_slice()) {
+            ("Real", []) => Some(1),
+            ("Vec", [Size::Number(n, _)]) => usize::try_from(*n).ok(),
+            _ => None,
+        }
+    }
+
     /// The shape of a number, at this place.
     pub fn number(place: Place) -> Kindred {
         Kindred {

@@ -76,10 +76,7 @@ impl Axis {
     /// Number of nodes: that of the intervals, and one more between walls.
     #[must_use]
     pub fn nodes(&self) -> usize {
-        match self.wall {
-            Wall::Periodic => self.intervals,
-            Wall::Solid => self.intervals + 1,
-        }
+        self.wall.nodes(self.intervals)
     }
 
     /// Length of an interval.

@@ -1,7 +1,7 @@
 //! The area of each particle's Voronoi cell, `mesh A: Real at a = voronoi_area(X);`: mass over area is the depth of a
 //! layer that particles carry. Takes places on a torus; gives areas and their exact derivatives.
 
-use super::mesh::{Plane, Voronoi};
+use super::mesh::{Voronoi, cleared};
 use crate::line::Threads;
 use crate::mesh::{Functional, MeshError, Setting};
 use crate::{ParameterError, Real};
@@ -50,9 +50,7 @@ impl<T: Real> Functional<T, 2> for voronoi_area<T> {
         seed: &[T],
         out: &mut [Self::Argument],
     ) -> Result<(), MeshError> {
-        MeshError::unless_of_length(seed, self.sites())?;
-        MeshError::unless_of_length(out, self.sites())?;
-        out.fill(Plane::zeros());
+        cleared(seed, out, self.sites())?;
         self.mesh.add_area_gradient(|a| seed[a], out);
         Ok(())
     }

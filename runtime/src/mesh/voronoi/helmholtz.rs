@@ -7,7 +7,7 @@
 use super::conjugate::Iteration;
 use super::laplacian::Helmholtz;
 use super::masses::check_masses;
-use super::mesh::{Plane, Voronoi};
+use super::mesh::{Plane, Voronoi, cleared};
 use crate::line::Threads;
 use crate::mesh::length::check_length;
 use crate::mesh::{Functional, MeshError, Setting};
@@ -163,8 +163,7 @@ impl<T: Real> Functional<T, 2> for helmholtz_depth<T> {
         seed: &[T],
         out: &mut [Self::Argument],
     ) -> Result<(), MeshError> {
-        MeshError::unless_of_length(seed, self.sites())?;
-        MeshError::unless_of_length(out, self.sites())?;
+        cleared(seed, out, self.sites())?;
         let depth = &self.solutions[0];
         let multiple = self.multiple(seed);
         let starts = self.adjoint.iter_mut().zip(depth);
@@ -179,7 +178,6 @@ impl<T: Real> Functional<T, 2> for helmholtz_depth<T> {
                 self.adjoint_products = self.iteration.solve(&self.operator, seed, adjoint)?;
             }
         }
-        out.fill(Plane::zeros());
         self.operator
             .add_gradient(&self.mesh, &self.adjoint, depth, out);
         Ok(())

@@ -34,6 +34,21 @@ pub struct Triangle<T> {
     pub weights: [T; 3],
 }
 
+/// Makes `out` zero, a vector for each particle.
+///
+/// # Errors
+/// [`MeshError::Count`] if `seed` or `out` has another length.
+pub(super) fn cleared<T: Real>(
+    seed: &[T],
+    out: &mut [Plane<T>],
+    sites: usize,
+) -> Result<(), MeshError> {
+    MeshError::unless_of_length(seed, sites)?;
+    MeshError::unless_of_length(out, sites)?;
+    out.fill(Plane::zeros());
+    Ok(())
+}
+
 /// The vector turned left by a right angle.
 #[inline(always)]
 pub(super) fn left<T: Real>(v: Plane<T>) -> Plane<T> {

@@ -2,7 +2,7 @@
 //! potential it draws particles to the centres of their cells, at a price: the fluid resists shear like a soft solid.
 //! Takes places on a torus; gives moments and their exact derivatives.
 
-use super::mesh::{Plane, Voronoi, dot, left};
+use super::mesh::{Voronoi, cleared, dot, left};
 use crate::line::Threads;
 use crate::mesh::{Functional, MeshError, Setting};
 use crate::{ParameterError, Real};
@@ -41,9 +41,7 @@ impl<T: Real> Functional<T, 2> for second_moment<T> {
         seed: &[T],
         out: &mut [Self::Argument],
     ) -> Result<(), MeshError> {
-        MeshError::unless_of_length(seed, self.sites())?;
-        MeshError::unless_of_length(out, self.sites())?;
-        out.fill(Plane::zeros());
+        cleared(seed, out, self.sites())?;
         // The integrand moves with the particle,
         let twice = T::from_f64(-2.0);
         self.mesh.add_first_moments(|a| twice * seed[a], out);

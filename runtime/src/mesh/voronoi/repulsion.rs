@@ -4,7 +4,7 @@
 
 use super::bins::Bins;
 use super::masses::check_masses;
-use super::mesh::Plane;
+use super::mesh::{Plane, cleared};
 use crate::mesh::{Functional, MeshError, Setting, Wall};
 use crate::{ParameterError, Problem, Real};
 use nalgebra::SVector;
@@ -143,9 +143,7 @@ impl<T: Real> Functional<T, 2> for pair_core<T> {
         seed: &[T],
         out: &mut [Self::Argument],
     ) -> Result<(), MeshError> {
-        MeshError::unless_of_length(seed, self.sites())?;
-        MeshError::unless_of_length(out, self.sites())?;
-        out.fill(Plane::zeros());
+        cleared(seed, out, self.sites())?;
         let scale = T::from_f64(1.5) * self.strength / self.radius;
         for pair in &self.pairs {
             let (first, second) = (pair.first as usize, pair.second as usize);

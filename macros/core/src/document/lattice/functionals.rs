@@ -43,11 +43,7 @@ impl Folded<'_> {
                 for child in e.children() {
                     children.push(self.with_functionals(part, child, from));
                 }
-                let mut each = children.into_iter();
-                let symbols = self.symbols.clone();
-                expr::rebuild(&symbols, e, &mut |x| {
-                    each.next().unwrap_or_else(|| x.clone())
-                })
+                expr::with_children(&self.symbols, e, children)
             }
         }
     }

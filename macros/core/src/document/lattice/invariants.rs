@@ -32,7 +32,7 @@ pub(super) fn invariants(folded: &mut Folded, model: &Model, parts: &[Part], doc
             items.push(invariant(folded, part, v));
         }
         if !folded.lattice.meshes.is_empty() {
-            items.extend(beside_functionals(folded, part, model));
+            items.extend(beside_functionals(folded, part, &written, model));
         }
         let words = heading(folded.lattice, part);
         if items.is_empty() {
@@ -59,27 +59,22 @@ pub(super) fn invariants(folded: &mut Folded, model: &Model, parts: &[Part], doc
 }
 
 /// Totals that functionals of all sites leave as they are.
-fn beside_functionals(folded: &mut Folded, part: &Part, model: &Model) -> Vec<Vec<Inline>> {
+fn beside_functionals(
+    folded: &mut Folded,
+    part: &Part,
+    written: &Written,
+    model: &Model,
+) -> Vec<Vec<Inline>> {
     let Ok(line) = Line::of(model) else {
         return Vec::new();
     };
-    let own = &line.representative.d.letters.symbols;
-    let s = &part.d.letters.symbols;
     let mut items = Vec::new();
     for t in &line.totals {
         let mut sums = Vec::new();
         for (label, _, density) in &t.densities {
-            let letters = expr::letters(density).into_iter();
-            let renamed: Option<Vec<_>> = letters
-                .map(|l| {
-                    Some((
-                        l,
-                        expr::letter(s, s.find(&own.get(l.symbol).name)?, l.shift),
-                    ))
-                })
-                .collect();
-            let Some(renamed) = renamed else { continue };
-            let e = expr::substitute(s, density, &renamed);
+            let Some(e) = line.representative.in_letters_of(written, density) else {
+                continue;
+            };
             let of = folded.derived(part, &e, From::Site(0));
             let Some(l) = folded.lattice.labels.get(*label) else {
                 continue;

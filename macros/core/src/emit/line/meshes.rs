@@ -7,10 +7,10 @@ use super::pulls::known;
 use super::{Lines, number};
 use crate::algebra::Algebra;
 use crate::emit::functional::path;
-use crate::expr::shape::{Dim, Structure};
+use crate::expr::shape::Structure;
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Node, Reach};
-use crate::lattice::{Mesh, Source};
+use crate::lattice::{Known, Mesh, Sites, Source};
 use crate::line::Meshed;
 use crate::syntax::ast::Extent;
 use proc_macro2::{Ident, TokenStream};
@@ -47,20 +47,8 @@ fn local(field: &Ident) -> Ident {
 impl<'a> Lines<'a> {
     /// The field of places in its domain, and the number of its directions.
     pub(super) fn extent(&self) -> Option<(&Extent, usize)> {
-        let q = self
-            .line
-            .lattice
-            .quantities
-            .iter()
-            .find(|q| q.domain.is_some())?;
-        let m = self.moving().find(|m| m.mover.name == q.name.text)?;
-        let c = &m.d().spec.configurations[m.mover.index];
-        let directions = match c.group.shape().rows {
-            _ if c.group.shape().is_scalar() => 1,
-            Dim::Fixed(n) => usize::try_from(n).ok()?,
-            Dim::Named(_) => return None,
-        };
-        Some((q.domain.as_ref()?, directions))
+        let q = self.line.lattice.places()?;
+        Some((q.domain.as_ref()?, q.shape.components()?))
     }
 
     /// What the numbers of sites say beside: the domain and the grid.
@@ -80,7 +68,7 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// `Setting` of the functionals, from the numbers of sites at `of`.
+    /// The function of the setting of functionals.
     pub(super) fn setting(&self) -> TokenStream {
         let Some((extent, directions)) = self.extent() else {
             return TokenStream::new();
@@ -94,7 +82,7 @@ impl<'a> Lines<'a> {
             Extent::Box(_) => quote!(self.sites.domain),
         };
         let labels = &self.line.lattice.labels;
-        let grid = labels.iter().find(|l| l.grid).map(|l| {
+        let grid = self.line.lattice.grid().map(|l| {
             let name = format_ident!("{}", l.index.text);
             quote!(Some(self.sites.#name))
         });
@@ -141,11 +129,7 @@ impl Plan<'_> {
                 for child in e.children() {
                     children.push(self.placed(child));
                 }
-                let mut each = children.into_iter();
-                let symbols = self.symbols.clone();
-                return expr::rebuild(&symbols, e, &mut |x| {
-                    each.next().unwrap_or_else(|| x.clone())
-                });
+                return expr::with_children(&self.symbols, e, children);
             }
         };
         let Some(mesh) = self.mesh_of(applied) else {
@@ -354,7 +338,7 @@ fn written(
     }
     for a in &plan.arrays {
         let field = &a.field;
-        let count = l.count(a.label, crate::lattice::Sites::Members);
+        let count = l.count(a.label, Sites::Members);
         let element = plan.element(a);
         fields.extend(quote!(#field: Vec<#element>,));
         let zero = plan.zero(a);
@@ -362,7 +346,7 @@ fn written(
         if a.seed.is_some() {
             let seed = format_ident!("seed_{}", a.field);
             let own = plan.labels(&declared[a.mesh]).map_or(a.label, |x| x[0]);
-            let count = l.count(own, crate::lattice::Sites::Members);
+            let count = l.count(own, Sites::Members);
             fields.extend(quote!(#seed: Vec<T>,));
             inits.extend(quote!(#seed: ::std::vec![T::zero(); #count],));
         }
@@ -496,9 +480,9 @@ fn written(
 /// The type of what computes a functional.
 fn type_of(mesh: &Mesh, directions: &proc_macro2::Literal) -> TokenStream {
     let path = path(&mesh.path).unwrap_or_default();
-    match mesh.of_dimension {
-        true => quote!(#path<T, #directions>),
-        false => quote!(#path<T>),
+    match mesh.kind {
+        Known::Grid => quote!(#path<T, #directions>),
+        Known::Cells | Known::Path => quote!(#path<T>),
     }
 }
 
@@ -573,7 +557,7 @@ impl Plan<'_> {
         let l = self.l;
         let [meshes, places] = ["Meshes", "Places"].map(|x| l.item(x));
         let terms = list.iter().map(|(label, e)| {
-            let count = l.count(*label, crate::lattice::Sites::Members);
+            let count = l.count(*label, Sites::Members);
             let (lets, value) = self.computed(e);
             quote!(line::sum(#count, |site| { #lets #value }))
         });

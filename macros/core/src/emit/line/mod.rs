@@ -22,6 +22,7 @@ use crate::derive::{Derivation, Outline};
 use crate::groups::Kept;
 use crate::lattice::{Kind, Sites};
 use crate::line::{How, Line, Lone, Mover};
+use meshes::Emitted as OfMeshes;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 use std::collections::BTreeSet;
@@ -36,9 +37,6 @@ struct Lines<'a> {
     /// Every name that the model states.
     stated: BTreeSet<String>,
 }
-
-/// What is emitted of functionals of all sites.
-use meshes::Emitted as OfMeshes;
 
 /// The items of a model with labels; `source` is its text.
 pub fn emit_line(line: &Line, source: &str) -> TokenStream {
@@ -196,7 +194,7 @@ impl<'a> Lines<'a> {
     /// How many sites a kind has, of the model found at `of`.
     fn count_in(&self, of: TokenStream, label: usize, sites: Sites) -> TokenStream {
         let field = self.count_field(label);
-        if self.line.lattice.labels.get(label).is_some_and(|l| l.grid) {
+        if self.line.lattice.is_grid(label) {
             return quote!(#of.setting().nodes());
         }
         match self.line.lattice.line == Some(label) && sites == Sites::Nodes {

@@ -92,13 +92,8 @@ pub(super) fn step(
         quote! {
             /// Says which functional refuses a step, and which shorter one can be made.
             #[cold]
-            #[inline(never)]
             fn refused_by(&self, state: &#state<T>, h: T, quantity: &'static str, cause: mesh::MeshError) -> LineError {
-                let made = |h: T| {
-                    let mut work = self.workspace(state, h).ok()?;
-                    self.step(&mut state.clone(), &mut work).ok()
-                };
-                LineError::Functional { node: state.node, quantity, cause, works: line::shorter(h, |h| made(h).is_some()) }
+                LineError::Functional { node: state.node, quantity, cause, works: self.shorter(state, h) }
             }
         }
     });
@@ -229,11 +224,18 @@ pub(super) fn step(
             #[cold]
             #[inline(never)]
             fn refused(&self, state: &#state<T>, h: T, at: line::Place, cause: StepCause) -> LineError {
+                LineError::Step { node: state.node, at, cause, works: self.shorter(state, h) }
+            }
+
+            /// The first of the halves of `h` with which a step can be made from a state.
+            #[cold]
+            #[inline(never)]
+            fn shorter(&self, state: &#state<T>, h: T) -> Option<f64> {
                 let made = |h: T| {
                     let mut work = self.workspace(state, h).ok()?;
                     self.step(&mut state.clone(), &mut work).ok()
                 };
-                LineError::Step { node: state.node, at, cause, works: line::shorter(h, |h| made(h).is_some()) }
+                line::shorter(h, |h| made(h).is_some())
             }
 
             #around

@@ -4,7 +4,6 @@
 use super::locals::Places;
 use super::{Lines, Moving, acting, number};
 use crate::algebra::Algebra;
-use crate::expr::shape::Dim;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::line::{How, Line};
 use crate::syntax::ast::Extent;
@@ -66,32 +65,26 @@ fn is_turned_by_itself(m: &Moving) -> bool {
     };
     let s = &d.letters.symbols;
     let algebra = Algebra::new(s);
-    let components = |i: usize| -> Vec<(Letter, Expr)> {
-        let symbol = d.letters.variation[i];
-        let xi = Letter {
-            symbol,
-            shift: Shift::HERE,
-        };
-        let shape = expr::letter(s, symbol, Shift::HERE).shape();
-        match shape.rows {
-            _ if shape.is_scalar() => vec![(xi, expr::integer(1))],
-            Dim::Fixed(n) => (0..n)
-                .map(|k| (xi, expr::unit(shape.rows, k as u8)))
-                .collect(),
-            Dim::Named(_) => Vec::new(),
-        }
+    let xi = |i: usize| Letter {
+        symbol: d.letters.variation[i],
+        shift: Shift::HERE,
     };
-    let own = components(m.mover.index);
-    let others = (0..d.spec.configurations.len())
-        .filter(|i| *i != m.mover.index && d.spec.configurations[*i].group.is_additive())
-        .flat_map(components);
-    let all: Vec<(Letter, Expr)> = own.iter().cloned().chain(others).collect();
-    own.iter().enumerate().all(|(i, one)| {
-        let along = expr::directional(s, &limit.kinetic, std::slice::from_ref(one));
-        let mut rest = all.iter().enumerate().filter(|(j, _)| *j != i);
-        rest.all(|(_, other)| {
-            algebra.is_zero(&expr::directional(s, &along, std::slice::from_ref(other)))
-        })
+    let own = xi(m.mover.index);
+    let Some(axes) = expr::axes(expr::letter(s, own.symbol, own.shift).shape()) else {
+        return false;
+    };
+    let others: Vec<Letter> = (0..d.spec.configurations.len())
+        .filter(|i| *i != m.mover.index)
+        .map(xi)
+        .collect();
+    axes.iter().enumerate().all(|(i, axis)| {
+        let momentum = expr::directional(s, &limit.kinetic, &[(own, axis.clone())]);
+        let by = |u: &Expr| expr::directional(s, &momentum, &[(own, u.clone())]);
+        let mut rest = axes.iter().enumerate().filter(|(j, _)| *j != i);
+        rest.all(|(_, u)| algebra.is_zero(&by(u)))
+            && others
+                .iter()
+                .all(|other| algebra.is_zero(&expr::gradient(s, &momentum, *other)))
     })
 }
 
@@ -105,12 +98,7 @@ pub(super) fn walls(l: &Lines) -> Option<Walls> {
     if !matches!(extent, Extent::Box(_)) {
         return None;
     }
-    let q = l
-        .line
-        .lattice
-        .quantities
-        .iter()
-        .find(|q| q.domain.is_some())?;
+    let q = l.line.lattice.places()?;
     let m = l.moving().find(|m| m.mover.name == q.name.text)?;
     let s = &m.lone.outline.letters.symbols;
     let (name, places, t, count) = (
