@@ -145,7 +145,7 @@ impl Plan {
                 Failure::Usage(format!("--solver {}: {error}", shown(name)))
             }
             OpenError::Compensation { .. } => Failure::Usage(format!("--compensated: {error}")),
-            OpenError::Count { .. } | OpenError::Order { .. } => Failure::Usage(error.to_string()),
+            _ => Failure::Usage(error.to_string()),
         })
     }
 

@@ -348,6 +348,7 @@ pub trait Trajectory: Send {
 
 /// Why [`Card::open`] refuses.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum OpenError {
     /// A parameter is unusable.
     Parameter(ParameterError),

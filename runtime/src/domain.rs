@@ -299,6 +299,7 @@ fn closely<T: Real, R: Fn() -> f64>(
 
 /// What has a domain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Function {
     /// A logarithm.
     Log,
@@ -335,6 +336,7 @@ pub struct Call {
 
 /// What a function asks of its argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Domain {
     /// A logarithm, a root below a quotient: positive.
     Positive,

@@ -27,6 +27,7 @@ pub struct ParameterError {
 /// What is wrong with a parameter. Positions, rows and columns count from 0 here, and from 1 in the
 /// message, as in files and plots.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Problem {
     /// A component is NaN or infinite.
     NotFinite {
@@ -319,6 +320,7 @@ impl NotInvertible {
 
 /// Why a trajectory cannot start.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum StartError {
     /// An initial value, or the step size, is unusable.
     Initial(ParameterError),
@@ -383,6 +385,7 @@ pub struct StepError {
 
 /// Why a step was not taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum StepCause {
     /// The Moser-Veselov equation has no principal solution: the step is too long.
     MoserVeselov(MoserVeselovError),

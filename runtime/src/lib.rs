@@ -1,33 +1,41 @@
 //! Runtime of discrete Clebsch variational integrators: what emitted steppers call, and what a
 //! user needs to run them.
 //!
-//! Write a model with `model!`, which derives the discrete Euler-Lagrange equations and emits a
-//! stepper; this crate supplies the scalars it runs on ([`scalar`]), the groups ([`groups`]), the
-//! solvers of the implicit steps ([`solvers`]), the loop with observers ([`integrate`]) and a
-//! description of every model as data ([`card`]). It knows no models and no symbols.
+//! Write a model with [`model!`], in the [`language`] described there: the macro derives the discrete
+//! Euler-Lagrange equations and emits a stepper. This crate supplies the scalars it runs on ([`scalar`]), the
+//! groups ([`groups`]), the solvers of implicit steps ([`solvers`]), the loop with observers ([`integrate`]),
+//! loops over lines of sites ([`mod@line`]), meshes and grids of particles ([`mesh`]) and a description of every
+//! model as data ([`card`]). [`prelude`] has what most programs need, [`Error`] collects all errors.
 //!
 //! Conventions everywhere: a rotation `R` maps body to space; `hat(v) w = v x w`; `J` is the
 //! Poinsot (second-moment) matrix and `I = tr(J) 1 - J` the moment of inertia; node `k` carries
 //! configurations and momenta, edge `k -> k+1` carries discrete velocities
 //! `Omega = R_k^T R_{k+1}`.
 
+mod any_error;
 pub mod card;
 pub mod domain;
+#[doc(hidden)]
 pub mod emitted;
 pub mod error;
 pub mod functions;
 pub mod groups;
 pub mod integrate;
 pub mod kinetic;
+pub mod language;
 pub mod linalg;
 pub mod line;
 pub mod mesh;
+pub mod prelude;
+pub mod record;
 mod said;
 pub mod saved;
 pub mod scalar;
+mod snapshot;
 pub mod solvers;
 pub mod validate;
 
+pub use any_error::Error;
 pub use domain::{Contact, Met};
 pub use error::{ParameterError, Problem, StartError, StepCause, StepError};
 pub use groups::{
@@ -38,6 +46,7 @@ pub use groups::{
     UnitQuaternion,
 };
 pub use scalar::{DoubleDouble, Dual, Lanes, OfScalars, Real};
+pub use snapshot::{Snapshot, SnapshotError};
 pub use solvers::moser_veselov::{MoserVeselovError, Order, Poinsot, PoinsotError};
 pub use solvers::newton::NewtonError;
 

@@ -4,9 +4,10 @@
 
 use crate::failure::Failure;
 use crate::plan::Plan;
-use crate::record::{Record, Recorder, Table};
+use crate::record::Recorder;
 use clebsch::card::{Card, Settings, Trajectory};
 use clebsch::integrate::{self, Drift};
+use clebsch::record::{Record, Table};
 use clebsch::scalar::largest;
 use clebsch_comparisons::gallery::{Offer, Problem};
 

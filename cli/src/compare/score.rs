@@ -1,9 +1,9 @@
 //! How a course compares with the reference: errors of the state and drifts of the invariants at every
 //! sample. Takes two records; gives curves against time, and their largest and last values.
 
-use crate::record::Record;
 use clebsch::card::{Card, Field};
 use clebsch::integrate::Drift;
+use clebsch::record::Record;
 use clebsch::scalar::larger;
 use clebsch_comparisons::gallery::Role;
 use serde_json::{Map, Value, json};

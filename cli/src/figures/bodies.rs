@@ -6,7 +6,7 @@ use super::sheet::{
 };
 use crate::failure::Failure;
 use crate::gallery::Gallery;
-use crate::record::Record;
+use clebsch::record::Record;
 
 const ODE45: &str = "ode45";
 

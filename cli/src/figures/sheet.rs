@@ -9,9 +9,9 @@ use crate::plots::axis::{Axis, FLOOR, plain};
 use crate::plots::curve::{Curve, Stroke};
 use crate::plots::figure::{Figure, Panel};
 use crate::plots::reduce;
-use crate::record::Record;
 use crate::run::end;
 use clebsch::card::Card;
+use clebsch::record::Record;
 use clebsch_comparisons::gallery::{Offer, ode45, offers};
 
 /// A quantity at the nodes.

@@ -9,7 +9,7 @@ use crate::plan::Plan;
 use crate::plots::axis::{Axis, FLOOR};
 use crate::plots::curve::Curve;
 use crate::plots::figure::{Figure, Panel};
-use crate::record::Record;
+use clebsch::record::Record;
 use clebsch::scalar;
 use clebsch_comparisons::gallery::{Offer, Problem, offers};
 use std::time::Instant;

@@ -1,10 +1,8 @@
 //! What a run leaves behind: trajectory.csv, trajectory.npz, run.json and plots in one new folder.
 //! Takes a run, finished or stopped in the middle; gives the names of the files. Nothing in them depends on the time of day.
 
-mod csv;
+pub(crate) mod arrays;
 mod interrupted;
-pub(crate) mod names;
-pub(crate) mod npz;
 pub(crate) mod run_json;
 pub(crate) mod samples;
 pub(crate) mod sites;
@@ -20,10 +18,11 @@ use crate::failure::Failure;
 use crate::plain::shown;
 use crate::plan::Plan;
 use crate::plots;
-use crate::record::{Record, Samples};
+use crate::record::Samples;
 use crate::verdict::Outcome;
 use clebsch::card::Card;
 use clebsch::integrate::LargestResidual;
+use clebsch::record::{Record, Rows as _, npz, write_csv};
 use samples::Rows;
 use std::io::Write;
 use std::path::Path;
@@ -84,7 +83,7 @@ pub fn write(
 ) -> Result<Vec<&'static str>, Failure> {
     let [
         csv,
-        npz,
+        archive,
         json,
         momentum,
         invariants,
@@ -95,15 +94,16 @@ pub fn write(
         particles,
         ..,
     ] = FILES;
-    staging.write(csv, |file| csv::write(file, run.card, rows))?;
-    staging.write(npz, |file| npz::write(file, &npz::arrays(run.card, rows)))?;
+    staging.write(csv, |file| write_csv(file, run.card, rows))?;
+    let arrays = arrays::arrays(run.card, rows.count());
+    staging.write(archive, |file| npz::write(file, rows, &arrays))?;
     let record = thinned::record(run.card, rows).map_err(|error| {
         let path = staging.folder().join(samples::NAME);
         Failure::io(&format!("cannot read {}", shown(&path)), &error)
     })?;
     let samples = &Samples { record, opening };
     let record = &samples.record;
-    let mut files = vec![csv, npz, json];
+    let mut files = vec![csv, archive, json];
     let drawn = [
         (momentum, plots::momentum(run, samples)),
         (invariants, plots::invariants(run, record)),

@@ -136,8 +136,7 @@ impl Stream {
 pub(crate) struct Rows {
     path: PathBuf,
     width: usize,
-    /// How many.
-    pub(crate) count: u64,
+    count: u64,
 }
 
 impl Rows {
@@ -149,9 +148,14 @@ impl Rows {
             count,
         }
     }
+}
 
-    /// Shows one row after the other, each as its words: the node, then the bits of all numbers.
-    pub(crate) fn each(&self, mut show: impl FnMut(&[u64]) -> io::Result<()>) -> io::Result<()> {
+impl clebsch::record::Rows for Rows {
+    fn count(&self) -> u64 {
+        self.count
+    }
+
+    fn each(&self, show: &mut dyn FnMut(&[u64]) -> io::Result<()>) -> io::Result<()> {
         let mut file = BufReader::with_capacity(BUFFER, File::open(&self.path)?);
         let mut bytes = vec![0; 8 * self.width];
         let mut row = vec![0; self.width];

@@ -2,8 +2,8 @@
 //! Takes the rows of a run; gives a record of bounded size.
 
 use super::samples::Rows;
-use crate::record::{Record, Table};
 use clebsch::card::Card;
+use clebsch::record::{Record, Rows as _, Table};
 use std::io;
 
 /// Numbers of a record beyond which stretches of samples are drawn by their extremes.
@@ -18,8 +18,8 @@ pub(crate) fn record(card: &Card, rows: &Rows) -> io::Result<Record> {
     let [observables, invariants] = [card.observable_count(), card.invariant_count()];
     let most = (MOST / (2 + observables + invariants) as u64).max(FEWEST);
     // A stretch gives two rows; one of one or two samples gives them as they are.
-    let stretch = (rows.count.saturating_mul(2)).div_ceil(most).max(1);
-    let stretch = if rows.count <= most { 1 } else { stretch };
+    let stretch = (rows.count().saturating_mul(2)).div_ceil(most).max(1);
+    let stretch = if rows.count() <= most { 1 } else { stretch };
     let table = |width| Table {
         width,
         numbers: Vec::new(),
@@ -41,14 +41,14 @@ pub(crate) fn record(card: &Card, rows: &Rows) -> io::Result<Record> {
     };
     let mut here: Option<Stretch> = None;
     let mut met = 0;
-    rows.each(|row| {
+    rows.each(&mut |row| {
         let Some((node, bits)) = row.split_first() else {
             return Ok(());
         };
         let numbers = || bits.iter().map(|x| f64::from_bits(*x));
         met += 1;
         // The first and the last sample stand for themselves: drifts begin at one, and runs end at the other.
-        if stretch == 1 || met == 1 || met == rows.count {
+        if stretch == 1 || met == 1 || met == rows.count() {
             if let Some(done) = here.take() {
                 done.tell(&mut push);
             }

@@ -18,11 +18,12 @@ pub(crate) use comparison::comparison;
 pub(crate) use particles::particles;
 
 use crate::output::Finished;
-use crate::record::{Record, Samples};
+use crate::record::Samples;
 use crate::run::end;
 use axis::{Axis, FLOOR, superscript};
 use clebsch::card::{Field, Kind};
 use clebsch::integrate::Drift;
+use clebsch::record::Record;
 use clebsch::scalar::largest;
 use curve::{Curve, Stroke};
 use figure::{Figure, Panel};

@@ -8,7 +8,7 @@ use crate::case_file::labels::Stated;
 use crate::case_file::space::Space;
 use crate::output::Finished;
 use crate::output::sites::{AtSites, at_sites};
-use crate::record::Record;
+use clebsch::record::Record;
 use clebsch_core::expr::symbol::ascii;
 use plotters::prelude::{Circle, Color, IntoDrawingArea, RGBColor, Rectangle, SVGBackend, WHITE};
 

@@ -1,8 +1,8 @@
 //! Fewer points without hiding anything: extremes of each stretch, or the envelope of a drift.
 //! Takes samples; gives points in the order of time.
 
-use crate::record::Record;
 use clebsch::integrate::Drift;
+use clebsch::record::Record;
 use clebsch::scalar::larger;
 
 /// Stretches of a curve. A plot is about 650 pixels wide and drawn four times finer; two points a

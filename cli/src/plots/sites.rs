@@ -9,8 +9,9 @@ use crate::output::Finished;
 use crate::output::sites::{AtSites, at_sites};
 use crate::plots::Plot;
 use crate::plots::window::Window;
-use crate::record::{Record, Samples};
+use crate::record::Samples;
 use clebsch::card::{Field, Kind};
+use clebsch::record::Record;
 use std::ops::Range;
 
 /// Most columns of a map: more are not told apart across a page.

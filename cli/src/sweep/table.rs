@@ -5,8 +5,9 @@
 use super::vary::Axis;
 use crate::failure::Failure;
 use crate::output::samples::Rows;
-use crate::output::{Staging, names, npz};
+use crate::output::{Staging, arrays};
 use clebsch::card::Card;
+use clebsch::record::{self, Rows as _, npz};
 use serde_json::{Value, json};
 use std::io::{self, Write};
 
@@ -50,7 +51,7 @@ impl Columns {
                 rows => all.extend((1..=rows).map(|row| format!("{name}_{row}"))),
             }
         }
-        let observables = names::columns(card);
+        let observables = record::columns(card);
         all.extend(observables.into_iter().take(card.observable_count()));
         Self { names: all, status }
     }
@@ -97,7 +98,7 @@ pub(super) fn write(staging: &Staging, columns: &Columns, rows: &Rows) -> Result
     let mut tally = Tally::default();
     staging.write(csv, |file| {
         writeln!(file, "{}", columns.names.join(","))?;
-        rows.each(|row| {
+        rows.each(&mut |row| {
             let number = |column: usize| row.get(column).map_or(f64::NAN, |x| f64::from_bits(*x));
             let status = number(columns.status);
             *(match status {
@@ -115,7 +116,7 @@ pub(super) fn write(staging: &Staging, columns: &Columns, rows: &Rows) -> Result
         })
     })?;
     staging.write(npz, |file| {
-        npz::write(file, &npz::columns(&columns.names, rows))
+        npz::write(file, rows, &arrays::columns(&columns.names, rows.count()))
     })?;
     Ok(tally)
 }

@@ -23,6 +23,7 @@ of_scalars!(Linear<N> { matrix });
 
 /// A matrix that is no element of GL(n).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum NotInvertible {
     /// An entry is NaN or infinite.
     NotFinite,

@@ -28,6 +28,7 @@ of_scalars!(RigidMotion {
 
 /// A matrix that is no rigid motion, with the number that shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum NotARigidMotion {
     /// Its upper left block.
     Rotation(NotARotation),

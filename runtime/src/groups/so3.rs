@@ -42,6 +42,7 @@ impl<T: PartialEq> PartialEq for Rotation<T> {
 
 /// A matrix or quaternion that is not a rotation, with the number that shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum NotARotation {
     /// An entry is NaN or infinite.
     NotFinite,

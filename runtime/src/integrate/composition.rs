@@ -17,6 +17,7 @@ use core::fmt;
 
 /// The order of a composition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum CompositionOrder {
     /// Five steps (Suzuki, Phys. Lett. A 146 (1990) 319).
     Four,

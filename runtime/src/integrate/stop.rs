@@ -6,6 +6,7 @@ use core::fmt;
 
 /// What of a trajectory is watched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Watched {
     /// A component of an invariant, looked at on every node.
     Invariant,
@@ -66,6 +67,7 @@ impl std::error::Error for NotFinite {}
 
 /// Why a run stopped before its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum RunError {
     /// A step was not made.
     Step(StepError),

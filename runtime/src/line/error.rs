@@ -23,6 +23,7 @@ impl fmt::Display for Place {
 
 /// Why a line is not built, started or stepped.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum LineError {
     /// Too few sites, or more than can be counted.
     Count {

@@ -3,6 +3,7 @@
 
 /// The instruction set of an ensemble's steps. The results are the same on all of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum InstructionSet {
     /// The best one that the processor has: AVX-512, AVX2 or that of the build.
     #[default]

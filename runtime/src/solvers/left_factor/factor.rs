@@ -58,6 +58,7 @@ impl<const N: usize> Saved for LeftFactor<N, f64> {
 
 /// A matrix that is no left factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum LeftFactorError {
     /// An entry is NaN or infinite.
     NotFinite,

@@ -8,6 +8,7 @@ use core::fmt;
 
 /// What went wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Refusal {
     /// There is no principal solution: the momentum is beyond the exact bound.
     BeyondBound,

@@ -81,6 +81,7 @@ impl<T: Real> Form<T> {
 
 /// Why a matrix is no Poinsot matrix. Rows and columns count from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum PoinsotError {
     /// An entry is NaN or infinite.
     NotFinite {

@@ -13,6 +13,7 @@ use core::fmt;
 
 /// What went wrong.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum NewtonFailure {
     /// The residual is still too large.
     NotConverged,

@@ -1,116 +1,119 @@
-//! The trajectory as npz, which `numpy.load` reads: a zip of stored npy arrays, one per quantity.
+//! Samples as npz, which `numpy.load` reads: a zip of stored npy arrays, one per quantity.
 //! Takes the rows of a run; writes array after array without holding any. Formats: NEP 1 (npy 1.0) and
 //! PKWARE APPNOTE 6.3 (sections 4.3.7, 4.3.12, 4.3.16). Every member is dated 1980-01-01.
 
-use super::names;
-use super::samples::Rows;
-use super::sites::at_sites;
-use clebsch::card::Card;
-use std::collections::HashSet;
+use super::{Rows, names};
+use crate::card::Card;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::ops::Range;
 
-/// A named array whose first index is the sample.
-pub(crate) struct Array<'a> {
+/// A named array, row-major; mostly its first index is the sample.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Array {
     name: String,
     shape: Vec<usize>,
-    entries: Entries<'a>,
+    entries: Entries,
 }
 
-enum Entries<'a> {
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Entries {
     /// Words of every row, one range after the other; whether they are counts.
     Columns {
-        rows: &'a Rows,
         columns: Vec<Range<usize>>,
         counts: bool,
     },
-    /// The numbers of the sites.
+    /// Numbers of their own, the same whatever the rows.
     Numbers(Vec<u64>),
 }
 
-/// All arrays of a run: `node`, `time`, the observables, the invariants.
-pub(super) fn arrays<'a>(card: &Card, rows: &'a Rows) -> Vec<Array<'a>> {
-    let samples = usize::try_from(rows.count).unwrap_or(usize::MAX);
-    let columns = |columns: Vec<Range<usize>>, counts: bool| Entries::Columns {
-        rows,
-        columns,
-        counts,
-    };
-    let array = |name: &str, shape: Vec<usize>, entries: Entries<'a>| Array {
-        name: name.to_owned(),
-        shape,
-        entries,
-    };
-    let shaped = |rows: usize, cols: usize| match (rows, cols) {
-        (1, 1) => vec![samples],
-        (rows, 1) => vec![samples, rows],
-        (rows, cols) => vec![samples, rows, cols],
-    };
-    let all = |range: Range<usize>| vec![range];
-    let mut arrays = vec![
-        array("node", vec![samples], columns(all(0..1), true)),
-        array("time", vec![samples], columns(all(1..2), false)),
-    ];
-    let at_sites = at_sites(card);
-    let of_sites = at_sites.iter().flat_map(|q| &q.members);
-    let of_sites: HashSet<usize> = of_sites.map(|(_, c)| c.start).collect();
-    // Where the observables begin in a row.
-    let offset = 2;
-    let mut from = offset;
-    for field in card.observables {
-        let here = from..from + field.count();
-        from = here.end;
-        if !of_sites.contains(&(here.start - offset)) {
-            let shape = shaped(field.rows, field.cols);
-            arrays.push(array(field.ascii, shape, columns(all(here), false)));
+impl Array {
+    /// Of `samples` times `shape` numbers: words `columns` of every row, one range after the other.
+    #[must_use]
+    pub fn of_columns(
+        name: &str,
+        samples: u64,
+        shape: &[usize],
+        columns: Vec<Range<usize>>,
+    ) -> Self {
+        let samples = usize::try_from(samples).unwrap_or(usize::MAX);
+        let mut whole = vec![samples];
+        whole.extend(shape);
+        Self {
+            name: name.to_owned(),
+            shape: whole,
+            entries: Entries::Columns {
+                columns,
+                counts: false,
+            },
         }
+    }
+
+    /// Of the nodes: the first word of every row, a count.
+    #[must_use]
+    pub fn of_nodes(name: &str, samples: u64) -> Self {
+        let mut array = Self::of_columns(name, samples, &[], std::iter::once(0..1).collect());
+        if let Entries::Columns { counts, .. } = &mut array.entries {
+            *counts = true;
+        }
+        array
+    }
+
+    /// Of counts that no row holds.
+    #[must_use]
+    pub fn of_numbers(name: &str, numbers: Vec<u64>) -> Self {
+        Self {
+            name: name.to_owned(),
+            shape: vec![numbers.len()],
+            entries: Entries::Numbers(numbers),
+        }
+    }
+}
+
+/// The shape of one value: none of a number, the rows of a vector, rows and columns of a matrix.
+#[must_use]
+pub fn shape(rows: usize, cols: usize) -> Vec<usize> {
+    match (rows, cols) {
+        (1, 1) => vec![],
+        (rows, 1) => vec![rows],
+        (rows, cols) => vec![rows, cols],
+    }
+}
+
+/// All arrays of a run: `node`, `time`, the observables, the invariants.
+#[must_use]
+pub fn arrays(card: &Card, samples: u64) -> Vec<Array> {
+    let mut arrays = vec![
+        Array::of_nodes("node", samples),
+        Array::of_columns("time", samples, &[], std::iter::once(1..2).collect()),
+    ];
+    let mut from = 2;
+    let mut next = |count: usize| {
+        let here = from..from + count;
+        from = here.end;
+        std::iter::once(here).collect()
+    };
+    for field in card.observables {
+        let shape = shape(field.rows, field.cols);
+        arrays.push(Array::of_columns(
+            field.ascii,
+            samples,
+            &shape,
+            next(field.count()),
+        ));
     }
     for invariant in card.invariants {
-        let here = from..from + invariant.rows;
-        from = here.end;
-        let (name, shape) = (names::invariant(invariant), shaped(invariant.rows, 1));
-        arrays.push(array(&name, shape, columns(all(here), false)));
-    }
-    for q in at_sites {
-        let (rows, cols) = (q.field.rows, q.field.cols);
-        let mut shape = vec![samples, q.members.len()];
-        shape.extend((rows * cols > 1).then_some(rows));
-        shape.extend((cols > 1).then_some(cols));
-        let whole = q
-            .members
-            .iter()
-            .enumerate()
-            .all(|(i, (site, _))| i == *site);
-        if !whole {
-            // Some site has its value given.
-            let numbers = q.members.iter().map(|(site, _)| *site as u64);
-            let name = format!("sites_of_{}", q.key);
-            let entries = Entries::Numbers(numbers.collect());
-            arrays.push(array(&name, vec![q.members.len()], entries));
-        }
-        let members = q.members.into_iter();
-        let own = members.map(|(_, c)| c.start + offset..c.end + offset);
-        arrays.push(array(&q.key, shape, columns(own.collect(), false)));
+        let (name, shape) = (names::invariant(invariant), shape(invariant.rows, 1));
+        arrays.push(Array::of_columns(
+            &name,
+            samples,
+            &shape,
+            next(invariant.rows),
+        ));
     }
     arrays
 }
 
-/// One array a column, the first of counts.
-pub(crate) fn columns<'a>(names: &[String], rows: &'a Rows) -> Vec<Array<'a>> {
-    let samples = usize::try_from(rows.count).unwrap_or(usize::MAX);
-    let array = |(column, name): (usize, &String)| Array {
-        name: name.clone(),
-        shape: vec![samples],
-        entries: Entries::Columns {
-            rows,
-            columns: std::iter::once(column..column + 1).collect(),
-            counts: column == 0,
-        },
-    };
-    names.iter().enumerate().map(array).collect()
-}
-
-impl Array<'_> {
+impl Array {
     /// The npy header: magic, version 1.0, dictionary padded so that the data are 64-byte aligned.
     fn header(&self) -> Vec<u8> {
         let kind = match self.entries {
@@ -138,10 +141,14 @@ impl Array<'_> {
     }
 
     /// Shows the data, eight bytes at a time.
-    fn each(&self, mut show: impl FnMut(&[u8]) -> io::Result<()>) -> io::Result<()> {
+    fn each(
+        &self,
+        rows: &dyn Rows,
+        mut show: impl FnMut(&[u8]) -> io::Result<()>,
+    ) -> io::Result<()> {
         match &self.entries {
             Entries::Numbers(list) => list.iter().try_for_each(|n| show(&n.to_le_bytes())),
-            Entries::Columns { rows, columns, .. } => rows.each(|row| {
+            Entries::Columns { columns, .. } => rows.each(&mut |row| {
                 let cells = columns
                     .iter()
                     .flat_map(|c| row.get(c.clone()).into_iter().flatten());
@@ -181,11 +188,11 @@ impl Member {
     }
 }
 
-/// Writes `arrays` as the members of an npz.
+/// Writes `arrays` of `rows` as the members of an npz.
 ///
 /// # Errors
-/// Those of `file`, and `InvalidInput` beyond the 4 GiB of a classic zip.
-pub(crate) fn write(file: &mut (impl Write + Seek), arrays: &[Array<'_>]) -> io::Result<()> {
+/// Those of `file` and of the rows, and `InvalidInput` beyond the 4 GiB of a classic zip.
+pub fn write(file: &mut (impl Write + Seek), rows: &dyn Rows, arrays: &[Array]) -> io::Result<()> {
     let too_large = |_| io::Error::new(io::ErrorKind::InvalidInput, "more than 4 GiB");
     let mut members: Vec<Member> = Vec::with_capacity(arrays.len());
     let mut offset = 0_usize;
@@ -204,7 +211,7 @@ pub(crate) fn write(file: &mut (impl Write + Seek), arrays: &[Array<'_>]) -> io:
         file.write_all(&header)?;
         let mut crc = crc32fast::Hasher::new();
         crc.update(&header);
-        array.each(|bytes| {
+        array.each(rows, |bytes| {
             crc.update(bytes);
             file.write_all(bytes)
         })?;

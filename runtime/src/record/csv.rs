@@ -1,22 +1,21 @@
 //! The trajectory as CSV: a header, then one line per sample.
 //! Takes the rows of a run; writes numbers in the shortest form that reads back to the same f64.
 
-use super::names;
-use super::samples::Rows;
-use clebsch::card::Card;
+use super::{Rows, names};
+use crate::card::Card;
 use std::io::{self, Write};
 
 /// Writes node, time, observables and invariants of every sample.
 ///
 /// # Errors
 /// Those of `file`, and of the rows.
-pub(super) fn write(file: &mut dyn Write, card: &Card, rows: &Rows) -> io::Result<()> {
+pub fn write(file: &mut dyn Write, card: &Card, rows: &dyn Rows) -> io::Result<()> {
     write!(file, "node,time")?;
     for name in names::columns(card) {
         write!(file, ",{name}")?;
     }
     writeln!(file)?;
-    rows.each(|row| {
+    rows.each(&mut |row| {
         let Some((node, numbers)) = row.split_first() else {
             return Ok(());
         };

@@ -1,15 +1,17 @@
 //! Names of arrays and columns in files: ASCII, invariants marked as such.
 //! Takes fields and invariants; gives names such as `Gamma_3`, `Lambda_12`, `invariant_energy`.
 
-use clebsch::card::{Card, Field, Invariant};
+use crate::card::{Card, Field, Invariant};
 
 /// Name of an invariant's array. The prefix keeps it apart from an observable of the same name.
-pub(super) fn invariant(invariant: &Invariant) -> String {
+#[must_use]
+pub fn invariant(invariant: &Invariant) -> String {
     format!("invariant_{}", invariant.name)
 }
 
 /// Names of all columns after `node` and `time`.
-pub(crate) fn columns(card: &Card) -> Vec<String> {
+#[must_use]
+pub fn columns(card: &Card) -> Vec<String> {
     let mut names = Vec::new();
     for field in card.observables {
         names.extend(components(field.ascii, field));

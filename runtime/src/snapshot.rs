@@ -1,0 +1,252 @@
+//! A state, a workspace or a whole trajectory kept outside the program that runs it, to go on later to the last bit.
+//! Takes a value that is [`Saved`]; gives words with a checksum, as bytes or, with the feature `serde`, as text.
+//!
+//! The bytes: `clebsch`, a version, the number of words, the words, a checksum of all before; numbers little-endian.
+
+use crate::card::Trajectory;
+use crate::saved::{Saved, Words};
+use core::fmt;
+
+/// How the bytes begin; the last one is the version.
+const HEADER: [u8; 8] = *b"clebsch\x01";
+
+/// What moves along a trajectory, written down.
+///
+/// Kept are the parts that change from step to step. What was given with the model (parameters, the step, the way a
+/// trajectory is stepped) is not, so a snapshot goes into a value started anew from the same data; it then steps as
+/// the one it was taken from, bit for bit. Keep the workspace as well as the state where steps remember earlier ones.
+///
+/// ```
+/// use clebsch::Snapshot;
+/// use clebsch::nalgebra::Vector3;
+///
+/// let mut place = Vector3::new(0.1, 0.2, 0.3);
+/// let kept = Snapshot::of(&place)?.to_bytes(); // into a file
+/// place *= 2.0;
+/// Snapshot::from_bytes(&kept)?.put_into(&mut place)?;
+/// assert_eq!(place, Vector3::new(0.1, 0.2, 0.3));
+/// # Ok::<(), clebsch::SnapshotError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Snapshot {
+    words: Vec<u64>,
+}
+
+/// Why a snapshot cannot be taken, read or put back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SnapshotError {
+    /// The trajectory has parts that cannot be written down.
+    NotSaved,
+    /// It was taken from a value of another kind or another size.
+    Unlike {
+        /// How many words it holds.
+        words: usize,
+    },
+    /// It is not one, or is of a version that this program does not know.
+    Foreign,
+    /// It was changed or cut after it was written.
+    Damaged,
+}
+
+impl fmt::Display for SnapshotError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotSaved => f.write_str(
+                "this trajectory has parts that cannot be written down; implement `Trajectory::words` for it",
+            ),
+            Self::Unlike { words } => write!(
+                f,
+                "the snapshot, of {words} words, was taken from a value of another kind or size; start the model from \
+                 the data that the snapshot was taken with"
+            ),
+            Self::Foreign => f.write_str(
+                "no snapshot of this version: it must begin with `clebsch` and the version 1",
+            ),
+            Self::Damaged => f.write_str(
+                "the snapshot was changed or cut after it was written: its checksum differs; take an earlier one",
+            ),
+        }
+    }
+}
+
+impl std::error::Error for SnapshotError {}
+
+impl Snapshot {
+    /// Takes one.
+    ///
+    /// # Errors
+    /// [`SnapshotError::NotSaved`].
+    pub fn of<S: Saved + Clone>(value: &S) -> Result<Self, SnapshotError> {
+        Self::gathered(|words| value.clone().words(words))
+    }
+
+    /// Takes one of a trajectory whose model is known by its card only.
+    ///
+    /// # Errors
+    /// [`SnapshotError::NotSaved`] of one that does not say what changes.
+    pub fn of_trajectory(running: &mut dyn Trajectory) -> Result<Self, SnapshotError> {
+        Self::gathered(|words| running.words(words))
+    }
+
+    fn gathered(meet: impl FnOnce(&mut Words)) -> Result<Self, SnapshotError> {
+        let mut words = Words::gathered();
+        meet(&mut words);
+        let words = words.into_list().ok_or(SnapshotError::NotSaved)?;
+        Ok(Self { words })
+    }
+
+    /// Puts it into a value started from the same data.
+    ///
+    /// # Errors
+    /// [`SnapshotError::Unlike`]; the value is then unchanged.
+    pub fn put_into<S: Saved + Clone>(&self, value: &mut S) -> Result<(), SnapshotError> {
+        let mut put = value.clone();
+        self.given(|words| put.words(words))?;
+        *value = put;
+        Ok(())
+    }
+
+    /// Puts it into a trajectory opened from the same data.
+    ///
+    /// # Errors
+    /// [`SnapshotError::Unlike`]; open the trajectory anew then, it may have taken a part.
+    pub fn put_into_trajectory(&self, running: &mut dyn Trajectory) -> Result<(), SnapshotError> {
+        self.given(|words| running.words(words))
+    }
+
+    fn given(&self, meet: impl FnOnce(&mut Words)) -> Result<(), SnapshotError> {
+        let mut words = Words::given(self.words.clone());
+        meet(&mut words);
+        match words.all_put() {
+            true => Ok(()),
+            false => Err(SnapshotError::Unlike {
+                words: self.words.len(),
+            }),
+        }
+    }
+
+    /// The bytes to keep.
+    #[must_use]
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut bytes = HEADER.to_vec();
+        bytes.extend((self.words.len() as u64).to_le_bytes());
+        bytes.extend(self.words.iter().flat_map(|word| word.to_le_bytes()));
+        bytes.extend(checksum(&bytes).to_le_bytes());
+        bytes
+    }
+
+    /// That of [`Self::to_bytes`].
+    ///
+    /// # Errors
+    /// [`SnapshotError::Foreign`], [`SnapshotError::Damaged`].
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, SnapshotError> {
+        let rest = bytes.strip_prefix(&HEADER).ok_or(SnapshotError::Foreign)?;
+        let (list, []) = rest.as_chunks::<8>() else {
+            return Err(SnapshotError::Damaged);
+        };
+        let [count, words @ .., sum] = list else {
+            return Err(SnapshotError::Damaged);
+        };
+        let end = bytes.len() - sum.len();
+        let whole = u64::from_le_bytes(*count) == words.len() as u64
+            && u64::from_le_bytes(*sum) == checksum(&bytes[..end]);
+        match whole {
+            true => Ok(Self {
+                words: words.iter().map(|word| u64::from_le_bytes(*word)).collect(),
+            }),
+            false => Err(SnapshotError::Damaged),
+        }
+    }
+}
+
+/// FNV-1a of 64 bits: a change of any single byte changes it.
+fn checksum(bytes: &[u8]) -> u64 {
+    let mixed = |sum: u64, byte: &u8| (sum ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, mixed)
+}
+
+/// As text: the bytes of [`Snapshot::to_bytes`] in hexadecimal digits, whatever the format.
+#[cfg(feature = "serde")]
+mod as_text {
+    use super::Snapshot;
+    use serde::de::{Deserialize, Deserializer, Error};
+    use serde::ser::{Serialize, Serializer};
+
+    impl Serialize for Snapshot {
+        fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+            let digits: String = self.to_bytes().iter().map(|b| format!("{b:02x}")).collect();
+            serializer.serialize_str(&digits)
+        }
+    }
+
+    impl<'de> Deserialize<'de> for Snapshot {
+        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+            let digits = String::deserialize(deserializer)?;
+            let pairs = digits.as_bytes().chunks(2);
+            let byte = |pair: &[u8]| {
+                let text = core::str::from_utf8(pair).ok()?;
+                (text.len() == 2).then(|| u8::from_str_radix(text, 16).ok())?
+            };
+            let bytes: Option<Vec<u8>> = pairs.map(byte).collect();
+            let bytes = bytes.ok_or_else(|| D::Error::custom("not pairs of hexadecimal digits"))?;
+            Self::from_bytes(&bytes).map_err(D::Error::custom)
+        }
+    }
+
+    #[cfg(test)]
+    mod tests {
+        use super::*;
+        use serde::de::IntoDeserializer;
+        use serde::de::value::{Error as ValueError, StrDeserializer};
+
+        fn read(text: &str) -> Result<Snapshot, ValueError> {
+            let from: StrDeserializer<'_, ValueError> = text.into_deserializer();
+            Snapshot::deserialize(from)
+        }
+
+        #[test]
+        fn digits_are_read_back_and_others_refused() {
+            let kept = Snapshot {
+                words: vec![1, u64::MAX, 0x0123_4567_89ab_cdef],
+            };
+            let digits: String = kept.to_bytes().iter().map(|b| format!("{b:02x}")).collect();
+            assert_eq!(read(&digits), Ok(kept));
+            assert!(read(&digits[1..]).is_err());
+            assert!(read(&digits.replace('0', "é")).is_err());
+            assert!(read("").is_err());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_changed_byte_and_every_cut_is_noticed() {
+        let kept = Snapshot::of(&[0.1_f64, -3.0, f64::NAN, 0.0]).unwrap();
+        let bytes = kept.to_bytes();
+        assert_eq!(Snapshot::from_bytes(&bytes), Ok(kept));
+        for at in 0..bytes.len() {
+            let mut changed = bytes.clone();
+            changed[at] ^= 0x10;
+            assert!(Snapshot::from_bytes(&changed).is_err(), "byte {at}");
+            assert!(Snapshot::from_bytes(&bytes[..at]).is_err(), "cut at {at}");
+        }
+    }
+
+    #[test]
+    fn a_value_of_another_size_refuses_and_is_unchanged() {
+        let kept = Snapshot::of(&[1.0_f64, 2.0, 3.0]).unwrap();
+        let mut shorter = [7.0, 8.0];
+        assert_eq!(
+            kept.put_into(&mut shorter),
+            Err(SnapshotError::Unlike { words: 3 })
+        );
+        assert_eq!(shorter, [7.0, 8.0]);
+        let mut longer = [7.0; 4];
+        assert!(kept.put_into(&mut longer).is_err());
+        assert_eq!(longer, [7.0; 4]);
+    }
+}
