@@ -1,6 +1,7 @@
 //! The commands as a user types them: what they print, write and refuse. One binary, since linking is most of what a
 //! test costs.
 
+mod book;
 mod case_files;
 mod common;
 mod comparisons;

@@ -113,7 +113,12 @@ fn alternative(c: &mut Cursor) -> Result<Alternative, Diagnostic> {
             "an end condition has a name: write for example `pinned {{ {given} = given; }}`"
         )));
     }
-    c.delimiter('{')?;
+    c.delimiter('{').map_err(|e| {
+        let given = &out.name.text;
+        e.help(format!(
+            "an end condition reads `{given};` or `{given} {{ φ = given; }}`"
+        ))
+    })?;
     while !c.take_delimiter('}') {
         let word = c.name("`param`, `term` or the name of what is given")?;
         match word.text.as_str() {

@@ -1,0 +1,151 @@
+//! The book, chapter by chapter, as a reader follows it: files are written, commands run in order, what is shown of their
+//! output is in it, and models that are said to be refused are.
+
+use crate::common::{Done, Folder, on};
+use clebsch_cli::gallery::Gallery;
+use std::path::Path;
+
+fn source() -> String {
+    format!("{}/../docs/book/src", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Runs `clebsch` on the models that it ships with.
+fn clebsch(arguments: &[&str]) -> Done {
+    on(&Gallery::shipped(), arguments)
+}
+
+/// A fenced block: its information string and its text.
+fn blocks(page: &str) -> Vec<(String, String)> {
+    let mut blocks = Vec::new();
+    let mut open: Option<(String, String)> = None;
+    for line in page.lines() {
+        open = match (line.strip_prefix("```"), open) {
+            (Some(info), None) => Some((info.to_owned(), String::new())),
+            (Some(_), Some(block)) => {
+                blocks.push(block);
+                None
+            }
+            (None, Some((info, text))) => Some((info, format!("{text}{line}\n"))),
+            (None, None) => None,
+        };
+    }
+    assert!(open.is_none(), "a block is not closed");
+    blocks
+}
+
+/// Runs a command of the book in `folder`; gives all it printed.
+fn run(line: &str, folder: &Folder) -> String {
+    let words = line.split_whitespace().skip(1);
+    let words: Vec<String> = words
+        .map(|word| {
+            match word.starts_with("out/") || word.ends_with(".toml") || word.ends_with(".clebsch")
+            {
+                true => folder.path(word),
+                false => word.to_owned(),
+            }
+        })
+        .collect();
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let done = clebsch(&words);
+    assert_eq!(done.code, 0, "{line}: {}{}", done.out, done.err);
+    done.out + &done.err
+}
+
+fn follow(chapter: &str) {
+    let page = std::fs::read_to_string(format!("{}/{chapter}.md", source())).expect("a chapter");
+    let folder = Folder::new(&format!("book-{chapter}"));
+    std::fs::create_dir_all(folder.path("out")).expect("a folder");
+    let mut printed = String::new();
+    for (info, text) in blocks(&page) {
+        match info.split_once(",file=").unwrap_or((&info, "")) {
+            ("clebsch" | "toml", file) if !file.is_empty() => {
+                folder.write(file, &text);
+                if info.starts_with("clebsch") {
+                    run(&format!("clebsch derive {file}"), &folder);
+                }
+            }
+            ("clebsch,refused", _) => {
+                let path = folder.write("refused.clebsch", &text);
+                let done = clebsch(&["derive", &path]);
+                assert_ne!(done.code, 0, "{text}");
+                printed = done.err;
+            }
+            ("sh", _) => printed = text.lines().map(|line| run(line, &folder)).collect(),
+            ("text", _) => {
+                for line in text.lines() {
+                    assert!(
+                        printed.contains(line),
+                        "{chapter}: `{line}` is not in\n{printed}"
+                    );
+                }
+            }
+            ("console" | "rust", _) => {}
+            _ => panic!("{chapter}: a block of an unknown kind, {info}"),
+        }
+    }
+    for (name, made) in [("swing.svg", "out/swing/fields.svg")] {
+        if page.contains(name) {
+            let shown = std::fs::read(format!("{}/{name}", source())).expect("a picture");
+            let made = std::fs::read(folder.path(made)).expect("a picture");
+            assert!(shown == made, "{name} is not what its command draws");
+        }
+    }
+}
+
+#[test]
+fn fifteen_minutes() {
+    follow("fifteen-minutes");
+}
+
+#[test]
+fn rigid_body() {
+    follow("rigid-body");
+}
+
+#[test]
+fn chains() {
+    follow("chains");
+}
+
+#[test]
+fn fluids() {
+    follow("fluids");
+}
+
+#[test]
+fn long_runs() {
+    follow("long-runs");
+}
+
+/// The programs of the book are the examples, which run as tests of their own.
+#[test]
+fn programs_are_the_examples() {
+    let page = std::fs::read_to_string(format!("{}/programs.md", source())).expect("a chapter");
+    let included: Vec<&str> = page
+        .lines()
+        .filter_map(|line| line.strip_prefix("{{#include ")?.strip_suffix("}}"))
+        .collect();
+    assert_eq!(included.len(), 5);
+    for path in included {
+        assert!(Path::new(&source()).join(path).exists(), "{path}");
+    }
+    assert_eq!(blocks(&page).len(), 5);
+}
+
+#[test]
+fn every_chapter_is_followed() {
+    let summary = std::fs::read_to_string(format!("{}/SUMMARY.md", source())).expect("a summary");
+    let chapters: Vec<&str> = summary
+        .lines()
+        .filter_map(|line| line.split_once("](")?.1.strip_suffix(".md)"))
+        .collect();
+    let followed = [
+        "fifteen-minutes",
+        "rigid-body",
+        "chains",
+        "fluids",
+        "long-runs",
+        "programs",
+    ];
+    assert_eq!(chapters, followed);
+}
