@@ -9,6 +9,8 @@ use crate::plain::shown;
 use crate::suggestion::did_you_mean;
 use clebsch::card::{Card, Field, Kind};
 use clebsch_core::lattice::Choice;
+use clebsch_core::pipeline;
+use clebsch_core::syntax::ast::{Model, Statement};
 use clebsch_interpret::Refused;
 use std::io::Write;
 use std::path::Path;
@@ -123,7 +125,14 @@ fn sample_on_lattice(text: &str, stated: &Stated, card: &Card) -> Result<Case, F
 /// Values that are admissible for most models, and of no further meaning.
 fn sample(card: &Card, file: &str) -> Case {
     let turned = card.initial.iter().any(|f| f.kind == Kind::Rotation);
-    let values = |fields: &[Field]| fields.iter().map(|f| of_field(f, turned)).collect();
+    let held = is_held(card);
+    let values = |fields: &[Field]| {
+        let sample = |f: &Field| match held && is_momentum(f) {
+            true => vec![0.0; f.count()],
+            false => of_field(f, turned),
+        };
+        fields.iter().map(sample).collect()
+    };
     Case {
         name: "sample".to_owned(),
         doc: format!(
@@ -135,6 +144,28 @@ fn sample(card: &Card, file: &str) -> Case {
         initial: values(card.initial),
         bounds: Vec::new(),
     }
+}
+
+/// The same of a card.
+pub(crate) fn is_held(card: &Card) -> bool {
+    pipeline::parse_source(card.source).is_ok_and(|model| has_holds(&model))
+}
+
+/// What a case of such a model is told at its head.
+pub(crate) const OF_HELD: &str = "Constraints are held: the initial configuration must satisfy them, and momenta must belong to velocities along them.";
+
+/// Whether configurations are held by constraints, across which no momentum may point: samples are at rest.
+pub(crate) fn has_holds(model: &Model) -> bool {
+    let mut statements = model.statements.iter();
+    statements.any(|s| matches!(s, Statement::Hold { .. }))
+}
+
+/// Whether it is the momentum of a configuration.
+pub(crate) fn is_momentum(field: &Field) -> bool {
+    matches!(
+        field.kind,
+        Kind::BodyMomentum | Kind::SpatialMomentum | Kind::FieldMomentum
+    )
 }
 
 /// An entry of the sample value of a field without labels' expressions.

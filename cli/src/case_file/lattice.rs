@@ -4,6 +4,7 @@
 use super::labels::{Base, Stated, base};
 use super::sample as fluid;
 use super::space::Space;
+use crate::model_file::{OF_HELD, has_holds, is_momentum, sample_entry};
 use crate::plain::shown;
 use clebsch::card::{Card, Field, Kind};
 use clebsch_core::expr::symbol::ascii;
@@ -14,11 +15,15 @@ use std::fmt::Write as _;
 pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named: &str) -> String {
     let lattice = &stated.lattice;
     let named = shown(named).to_string();
+    let held = match has_holds(&stated.model) {
+        true => format!("# {OF_HELD}\n"),
+        false => String::new(),
+    };
     let mut text = format!(
         "# A case of the model {}; run it with\n#   clebsch run {named} --case THIS-FILE.toml\n\
          # Units: any consistent system. The model fixes none; time is in the unit of h.\n\
          # Site data: a number for all sites, a text with an expression in the label, in its number and in the\n\
-         # numbers below, or a list with an element for each site.\n\
+         # numbers below, or a list with an element for each site.\n{held}\
          model = \"{}\"\nname = \"sample\"\ndoc = \"sample values, to start a case of your own from\"\n\
          h = 0.01     # time step, positive\nsteps = 1000     # number of steps, at least 1\n\n[labels]\n",
         card.kebab, card.kebab
@@ -149,7 +154,11 @@ fn sample(stated: &Stated, field: &Field, base: Option<&Base>, table: &str) -> S
             _ => {}
         }
     }
-    let number = |i: usize, j: usize| crate::model_file::sample_entry(field, i, j);
+    let at_rest = has_holds(&stated.model) && is_momentum(field);
+    let number = |i: usize, j: usize| match at_rest {
+        true => 0.0,
+        false => sample_entry(field, i, j),
+    };
     if rows * cols == 1 {
         return format!("{:?}", number(0, 0));
     }

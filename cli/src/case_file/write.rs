@@ -2,6 +2,7 @@
 //! Takes a card and a case; gives the text, with comments on shape, frame and units.
 
 use crate::gallery::Case;
+use crate::model_file::{OF_HELD, is_held};
 use crate::plain::shown;
 use crate::verdict::DEFAULT_BOUND;
 use clebsch::card::{Card, Conserved, Field, Kind};
@@ -23,6 +24,9 @@ pub fn write(card: &Card, case: &Case, named: &str) -> String {
         &mut text,
         "Units: any consistent system. The model fixes none; time is in the unit of h.",
     );
+    if is_held(card) {
+        comment(&mut text, OF_HELD);
+    }
     let mut line = |key: &str, value: String| {
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{key} = {value}");

@@ -176,3 +176,31 @@ fn multipliers_and_constraints_are_seen() {
         assert!(done.err.contains(wanted), "{}", done.err);
     }
 }
+
+/// Momenta of sample cases point along constraints whatever the configuration: they are zero.
+#[test]
+fn a_sample_of_a_held_model_is_at_rest_and_says_so() {
+    let folder = Folder::new("held-sample");
+    let model = folder.write(
+        "ring.clebsch",
+        "model Ring { param m, k: Real; param c: Vec<2>; field x: Vec<2>; hold λ: dot(x - c, x - c) = 1;
+         lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) - h*k*dot(x, x)/2; }",
+    );
+    let sample = clebsch(&["case", &model]);
+    assert!(
+        sample.out.contains("\nmomentum = [0.0, 0.0]\n"),
+        "{}",
+        sample.out
+    );
+    assert!(sample.out.contains("must satisfy them"), "{}", sample.out);
+    let rod = folder.write(
+        "rod.clebsch",
+        "model Rod { label i in 0..N step s; param m: Real at nodes; field q: Vec<3> at nodes;
+         hold n: dot(next(q, i) - q, next(q, i) - q) = s*s;
+         lagrangian = m*dot(next(q) - q, next(q) - q)/(2*h); }",
+    );
+    let sample = clebsch(&["case", &rod]);
+    let own = folder.write("rod.toml", &sample.out);
+    let done = clebsch(&["run", &rod, "--case", &own, "--steps", "3"]);
+    assert_eq!(done.code, 0, "{}{}", sample.out, done.err);
+}
