@@ -295,6 +295,10 @@ fn derive() -> Command {
             "Prove each step a second time, by equality saturation, which takes longer",
         ))
         .arg(flag(
+            "no-thesis",
+            "Leave out where the equations stand in Dixon's thesis",
+        ))
+        .arg(flag(
             "write",
             "Write the derivations of all models of the gallery to generated/",
         ))

@@ -32,6 +32,7 @@ pub fn derive(
     let proofs = Proofs {
         explain: matches.get_flag("explain"),
         second: matches.get_flag("second-proof"),
+        no_thesis: matches.get_flag("no-thesis"),
     };
     if proofs.second && !cfg!(feature = "second-proof") {
         return Err(Failure::Usage(WITHOUT_PROVER.to_owned()));
@@ -83,13 +84,15 @@ fn source(
     Ok((name.to_owned(), text))
 }
 
-/// What is printed beside a derivation, in all forms but rust and json.
+/// What is printed beside the equations, in all forms but rust and json.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Proofs {
     /// The proof by normal forms.
     pub explain: bool,
     /// What equality saturation makes of each step of it, which takes longer than all the rest.
     pub second: bool,
+    /// The places of equations in the thesis are left out.
+    pub no_thesis: bool,
 }
 
 /// The derivation of the model text `source` (of the file or model `name`) in the form `format`:
@@ -133,7 +136,7 @@ fn derived(
         _ => Format::Text,
     };
     let columns = width.unwrap_or(PAGE).min(PAGE);
-    let mut printed = document::printed_in(&derivation, format, columns);
+    let mut printed = document::printed_telling(&derivation, format, columns, !proofs.no_thesis);
     let proof = explanation(&derivation, proofs);
     match format {
         _ if proof.is_empty() => {}

@@ -20,6 +20,7 @@ mod lines;
 mod list;
 mod model_file;
 mod output;
+mod page;
 mod plain;
 mod plan;
 pub mod plots;

@@ -448,7 +448,7 @@ pub mod kepler {
             doc: "Planet about a fixed sun.",
             source: Self::SOURCE,
             fingerprint: Self::FINGERPRINT,
-            summary: "action of one step   m ΔX_k·ΔX_k/(2 h) + h m k/(2 √(X_k·X_k)) + h m k/(2 √(X_{k+1}·X_{k+1}))\nmomentum of X        m ΔX_k/h\nRiccati form         none; linear, L = m/h, R = 1\ninvariants           energy, momentum_angular\ntime reversal        symmetric: second order\ncertificate          13 identities proved by normal form",
+            summary: "discrete Lagrangian  m ΔX_k·ΔX_k/(2 h) + h m k/(2 √(X_k·X_k)) + h m k/(2 √(X_{k+1}·X_{k+1}))\nmomentum of X        m ΔX_k/h\nRiccati form         none; linear, L = m/h, R = 1\ninvariants           energy, momentum_angular\ntime reversal        symmetric: second order\ncertificate          13 identities proved by normal form",
             solver: "Explicit: the balance is linear: one division",
             order: 2u32,
             orders: &[2, 4, 6, 8],

@@ -15,6 +15,7 @@ pub use staging::{Found, Staging};
 
 use crate::checkpoint;
 use crate::failure::Failure;
+use crate::page;
 use crate::plain::shown;
 use crate::plan::Plan;
 use crate::plots;
@@ -54,7 +55,7 @@ pub struct Finished<'a> {
 }
 
 /// Every file name a run can write, so that a folder with anything else is never replaced.
-pub const FILES: [&str; 13] = [
+pub const FILES: [&str; 14] = [
     "trajectory.csv",
     "trajectory.npz",
     "run.json",
@@ -65,6 +66,7 @@ pub const FILES: [&str; 13] = [
     "attitude.svg",
     "angles.svg",
     "particles.svg",
+    "run.html",
     // While it runs, and where it can be gone on with.
     samples::NAME,
     checkpoint::NAME,
@@ -92,6 +94,7 @@ pub fn write(
         attitude,
         angles,
         particles,
+        html,
         ..,
     ] = FILES;
     staging.write(csv, |file| write_csv(file, run.card, rows))?;
@@ -104,6 +107,7 @@ pub fn write(
     let samples = &Samples { record, opening };
     let record = &samples.record;
     let mut files = vec![csv, archive, json];
+    let mut pictures = Vec::new();
     let drawn = [
         (momentum, plots::momentum(run, samples)),
         (invariants, plots::invariants(run, record)),
@@ -118,8 +122,12 @@ pub fn write(
         if let Some(svg) = plot {
             staging.write(name, |file| file.write_all(svg.as_bytes()))?;
             files.push(name);
+            pictures.push((name, svg));
         }
     }
+    let page = page::page(run, samples, &pictures);
+    staging.write(html, |file| file.write_all(page.as_bytes()))?;
+    files.push(html);
     let text = format!("{:#}\n", run_json::run_json(run, &files));
     staging.write(json, |file| file.write_all(text.as_bytes()))?;
     Ok(files)

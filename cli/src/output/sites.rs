@@ -19,6 +19,8 @@ pub(crate) struct AtSites<'a> {
     pub field: &'a Field,
     /// Whether a momentum of its own shape stands behind it: it is a field.
     pub moves: bool,
+    /// Whether its sites have neighbours.
+    pub on_line: bool,
     /// Whether it grows once around a ring.
     pub grows: bool,
     /// The sites with their columns.
@@ -61,6 +63,7 @@ pub(crate) fn at_sites(card: &Card) -> Vec<AtSites<'_>> {
                     index: label.map_or_else(String::new, |l| l.index.text.clone()),
                     field,
                     moves: behind.is_some_and(|f| f.kind == clebsch::card::Kind::FieldMomentum),
+                    on_line: label.is_some_and(|l| !l.set && !l.grid),
                     grows: own.offset.is_some(),
                     members: vec![(site, columns)],
                 });

@@ -21,7 +21,9 @@ const MOST: usize = 9;
 const SAME_LENGTH: f64 = 1e-9;
 
 /// Observables with their columns.
-fn placed(fields: &'static [Field]) -> impl Iterator<Item = (&'static Field, Range<usize>)> {
+pub(crate) fn placed(
+    fields: &'static [Field],
+) -> impl Iterator<Item = (&'static Field, Range<usize>)> {
     let mut from = 0;
     fields.iter().map(move |field| {
         let columns = from..from + field.count();
@@ -41,7 +43,7 @@ fn rotations(run: &Finished<'_>) -> Vec<(&'static Field, Range<usize>)> {
 }
 
 /// The matrix body -> space of a rotation or a unit quaternion.
-fn matrix(numbers: &[f64]) -> Option<Matrix3<f64>> {
+pub(crate) fn matrix(numbers: &[f64]) -> Option<Matrix3<f64>> {
     match *numbers {
         [w, x, y, z] => Some(Matrix3::new(
             1.0 - 2.0 * (y * y + z * z),

@@ -1,17 +1,17 @@
 //! Plots of a run as SVG: momenta, drift of the invariants, advected vectors, fields.
 //! Takes a finished run and its samples; gives SVG text, or nothing when there is nothing to show.
 
-mod attitude;
+pub(crate) mod attitude;
 pub mod axis;
 mod comparison;
 pub mod curve;
 pub mod figure;
 pub mod map;
-mod particles;
+pub(crate) mod particles;
 pub(crate) mod reduce;
 mod sites;
 mod sphere;
-mod window;
+pub(crate) mod window;
 
 pub(crate) use attitude::{angles, attitude};
 pub(crate) use comparison::comparison;

@@ -57,7 +57,7 @@ pub(crate) fn particles(run: &Finished<'_>, record: &Record) -> Plot {
 }
 
 /// Where the particles of a run live.
-fn space(run: &Finished<'_>) -> Option<(Space, Stated)> {
+pub(crate) fn space(run: &Finished<'_>) -> Option<(Space, Stated)> {
     let stated = Stated::read(run.card.source)?;
     let sample = Space::sample(&stated)?;
     let d = sample.lengths.len();

@@ -17,7 +17,7 @@ const RIPPLE: f64 = 0.05;
 
 /// The samples to draw: those of `record` with index below `count`.
 #[derive(Clone, Copy)]
-pub(super) struct Window<'a> {
+pub(crate) struct Window<'a> {
     pub record: &'a Record,
     pub count: usize,
     /// Whether the run goes on beyond.
@@ -25,7 +25,7 @@ pub(super) struct Window<'a> {
 }
 
 /// Chooses the samples for panels that show the given columns of the observables.
-pub(super) fn window<'a>(samples: &'a Samples, panels: &[Range<usize>]) -> Window<'a> {
+pub(crate) fn window<'a>(samples: &'a Samples, panels: &[Range<usize>]) -> Window<'a> {
     let record = &samples.record;
     let all = Window {
         record,

@@ -14,6 +14,7 @@ mod model_files;
 mod names;
 mod npz;
 mod own_models;
+mod page;
 mod pictures;
 mod rest;
 mod results;

@@ -4,12 +4,13 @@ use super::common::{Folder, clebsch, on};
 use clebsch_cli::gallery::Gallery;
 use std::fs;
 
-const FILES: [&str; 8] = [
+const FILES: [&str; 9] = [
     "advected.svg",
     "angles.svg",
     "attitude.svg",
     "invariants.svg",
     "momentum.svg",
+    "run.html",
     "run.json",
     "trajectory.csv",
     "trajectory.npz",

@@ -10,13 +10,14 @@ mod motion;
 mod outlook;
 mod proof;
 mod quaternionic;
+mod scheme;
 mod sheet;
 mod solution;
 mod source;
 mod structure;
 pub mod thesis;
 
-pub use compose::document;
+pub use compose::{Telling, document, document_telling};
 pub use lattice::{CardWords, Printed, card_words, default_choice, printed_lattice};
 pub use proof::proof;
 #[cfg(feature = "egraph")]
@@ -34,16 +35,26 @@ pub fn style(d: &Derivation) -> Style {
 
 /// The derivation in a format.
 pub fn printed(d: &Derivation, format: Format) -> String {
-    render(&document(d), &d.letters.symbols, &style(d), format)
+    printed_telling(d, format, Style::default().columns, true)
 }
 
-/// The derivation in a format, its plain text in lines of at most so many columns where that can be.
-pub fn printed_in(d: &Derivation, format: Format, columns: usize) -> String {
+/// The derivation in a format, its plain text in lines of at most so many columns where that can be; with the places of
+/// its equations in the thesis, or without. What becomes part of a paper, LaTeX and Markdown, begins with the scheme.
+pub fn printed_telling(d: &Derivation, format: Format, columns: usize, sources: bool) -> String {
     let style = Style {
         columns,
         ..style(d)
     };
-    render(&document(d), &d.letters.symbols, &style, format)
+    let told = Telling {
+        sources,
+        scheme: matches!(format, Format::Latex | Format::Markdown),
+    };
+    render(
+        &document_telling(d, told),
+        &d.letters.symbols,
+        &style,
+        format,
+    )
 }
 
 /// A number that changes when the model's text or the engine's version does (FNV-1a).
@@ -79,7 +90,7 @@ pub fn summary(d: &Derivation) -> String {
         let physical = crate::expr::sum(terms, crate::expr::shape::Shape::SCALAR);
         lines.push(format!("physical             {}", show(&physical)));
     }
-    lines.push(format!("action of one step   {}", show(&d.action.total)));
+    lines.push(format!("discrete Lagrangian  {}", show(&d.action.total)));
     for (c, m) in d.spec.configurations.iter().zip(&d.momenta) {
         let name = &s.get(c.element).name;
         lines.push(format!("momentum of {name:<8} {}", show(&m.reduced)));

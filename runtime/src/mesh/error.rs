@@ -95,7 +95,7 @@ impl fmt::Display for MeshError {
             Self::Outside { site, by } => {
                 write!(
                     f,
-                    "particle {site} is {by:e} beyond a wall: take a shorter step"
+                    "particle {site} is {by:e} beyond a wall, further than a reflection puts back"
                 )
             }
         }

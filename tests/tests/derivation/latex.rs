@@ -37,6 +37,7 @@ const COMMANDS: &[&str] = &[
     "bigr",
     "cdot",
     "chi",
+    "cite",
     "delta",
     "det",
     "diamond",
@@ -47,6 +48,7 @@ const COMMANDS: &[&str] = &[
     "eqref",
     "eta",
     "exp",
+    "footnote",
     "frac",
     "gamma",
     "ge",
@@ -65,6 +67,7 @@ const COMMANDS: &[&str] = &[
     "mathbf",
     "mathit",
     "mathrm",
+    "mathsf",
     "mbox",
     "mu",
     "nabla",
@@ -85,6 +88,7 @@ const COMMANDS: &[&str] = &[
     "sigma",
     "sqrt",
     "subsection",
+    "sum",
     "tau",
     "text",
     "textasciicircum",
@@ -94,6 +98,7 @@ const COMMANDS: &[&str] = &[
     "tfrac",
     "theta",
     "times",
+    "to",
     "ttfamily",
     "upsilon",
     "usepackage",
@@ -142,7 +147,11 @@ fn fault(text: &str) -> Option<String> {
                 Some((_, n)) => *n += 1,
                 None => return Some(format!("line {line}: & outside of an alignment")),
             },
-            '^' | '_' if !open.iter().any(|o| o == "$" || o == "equation") => {
+            '^' | '_'
+                if !open
+                    .iter()
+                    .any(|o| o == "$" || o == "equation" || o == "gather") =>
+            {
                 return Some(format!("line {line}: {c} outside of mathematics"));
             }
             '\\' => {

@@ -82,7 +82,7 @@ fn refused(symbols: &Symbols, name: &Name, value: &Expr, place: Place) -> Option
         .is_none()
     {
         let message = format!(
-            "no configuration stands in the constraint of `{}`: there is nothing that it could hold",
+            "the constraint of `{}` contains no configuration, so it constrains nothing",
             name.text
         );
         return Some(Diagnostic::new(place, message).help(

@@ -42,8 +42,9 @@ pub fn too_much_work(place: Place, excess: Option<String>) -> Diagnostic {
 }
 
 pub fn no_lagrangian(place: Place) -> Diagnostic {
-    Diagnostic::new(place, "the model has no Lagrangian")
-        .help("add `lagrangian = ...;`, the action of one step, for example `-tr(J*Ω)/h`")
+    Diagnostic::new(place, "the model has no Lagrangian").help(
+        "add `lagrangian = ...;`, the discrete Lagrangian of one step, for example `-tr(J*Ω)/h`",
+    )
 }
 
 pub fn second_lagrangian(place: Place) -> Diagnostic {

@@ -221,10 +221,7 @@ pub fn reasons(letters: &Letters, spec: &Spec, blocks: &[Block]) -> String {
         .iter()
         .map(|(reason, list)| format!("{}, {reason}", list.join("; ")));
     let clauses: Vec<String> = each.collect();
-    format!(
-        "every block of velocities by itself: {}",
-        clauses.join("; ")
-    )
+    format!("block by block: {}", clauses.join("; "))
 }
 
 impl Derivation {

@@ -133,6 +133,13 @@ fn reaction(
     spec.configurations[i].group.of_gradient(s, y)
 }
 
+/// The reactions of all constraints on configuration `i` per unit time, as [`reaction`] says.
+pub(crate) fn reactions(d: &Derivation, i: usize) -> Vec<Expr> {
+    let all = d.spec.holds.iter();
+    let all = all.map(|hold| reaction(&d.spec, &d.letters, &d.variations, i, hold));
+    all.filter(|e| !e.is_zero()).collect()
+}
+
 /// The value of a constraint at the end of the edge, by its start and the velocities.
 fn at_the_end(s: &Symbols, spec: &Spec, hold: &Hold) -> Expr {
     let next = expr::shift_time(s, &hold.value, Shift::NEXT.time);

@@ -2,7 +2,7 @@
 //! relations; motion, solution and what follows from them in files of their own.
 
 use super::sheet::{Sheet, references};
-use super::{holds, motion, outlook, solution, source, structure};
+use super::{holds, motion, outlook, scheme, solution, source, structure};
 use crate::check::spec::{Side, Subject};
 use crate::derive::Derivation;
 use crate::derive::clebsch::constraint_terms;
@@ -13,11 +13,29 @@ use crate::print::document::{Document, Inline, Section};
 use crate::print::formula::{Formula, Relation};
 use crate::syntax::ast::NodeRule;
 
+/// What is told of a derivation beside its equations.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Telling {
+    /// Where its equations stand in the thesis, and what is wrong with them there.
+    pub sources: bool,
+    /// The variational principle and the algorithm of a step before all else, as in a paper.
+    pub scheme: bool,
+}
+
 /// The derivation as a document.
 pub fn document(d: &Derivation) -> Document {
+    let told = Telling {
+        sources: true,
+        scheme: false,
+    };
+    document_telling(d, told)
+}
+
+/// The derivation as a document with what is asked for.
+pub fn document_telling(d: &Derivation, told: Telling) -> Document {
     let sheet = Sheet::new(d);
     let mut doc = Document::titled(format!("{}: discrete equations of motion", d.spec.name));
-    model(&sheet, &mut doc);
+    model(&sheet, &mut doc, told.sources);
     warnings(&sheet, &mut doc);
     structure::reduction(&sheet, &mut doc);
     constraints(&sheet, &mut doc);
@@ -33,10 +51,16 @@ pub fn document(d: &Derivation) -> Document {
     structure::lax(&sheet, &mut doc);
     outlook::limit(&sheet, &mut doc);
     outlook::certificate(&sheet, &mut doc);
-    doc
+    if told.scheme {
+        scheme::up_front(&sheet, &mut doc);
+    }
+    match told.sources {
+        true => doc,
+        false => doc.without_sources(),
+    }
 }
 
-fn model(sheet: &Sheet, doc: &mut Document) {
+fn model(sheet: &Sheet, doc: &mut Document, sources: bool) {
     let section = doc.section("Model");
     let docs = sheet.d.spec.docs.iter().map(|l| l.trim());
     let words: Vec<&str> = docs.filter(|l| !l.is_empty()).collect();
@@ -53,10 +77,16 @@ fn model(sheet: &Sheet, doc: &mut Document) {
     if !meanings.is_empty() {
         section.list(meanings);
     }
-    if let Some((number, factor)) = sheet.thesis.section() {
-        section.text(&format!(
-            "By its structure this is the system of section {number} of M. F. Dixon, Geometric integrators for continuum dynamics (2007), the thesis cited below; its Lagrangian and momenta are {factor} times those printed here, and it indexes velocities by the end of the step."
-        ));
+    if let Some((number, factor)) = sheet.thesis.section().filter(|_| sources) {
+        let factor: Inline = match factor.strip_prefix('-') {
+            Some(step) => Formula::neg(Formula::name(step)).into(),
+            None => Formula::name(factor).into(),
+        };
+        section.paragraph([
+            format!("By its structure this is the system of section {number} of M. F. Dixon, Geometric integrators for continuum dynamics (2007), the thesis cited below; its Lagrangian and momenta are ").into(),
+            factor,
+            " times those printed here, and it indexes velocities by the end of the step.".into(),
+        ]);
     }
 }
 
@@ -143,12 +173,9 @@ fn constraints(sheet: &Sheet, doc: &mut Document) {
             let (here, next) = (sheet.here(c.element), sheet.at(c.element, Shift::NEXT));
             section.paragraph([
                 here.clone().into(),
-                format!(
-                    ", {}, is the configuration at node {}; its velocity is the increment ",
-                    sheet.group(c),
-                    spec.time_index
-                )
-                .into(),
+                format!(", {}, is the configuration at node ", sheet.group(c)).into(),
+                Formula::name(&spec.time_index).into(),
+                "; its velocity is the increment ".into(),
                 Formula::equal(
                     sheet.here(c.velocity),
                     Formula::Sum(vec![next.clone(), Formula::neg(here)]),
@@ -185,12 +212,9 @@ fn constraints(sheet: &Sheet, doc: &mut Document) {
         };
         section.paragraph([
             element.into(),
-            format!(
-                " in {} is the configuration at node {}, from {from} to space{frame}",
-                sheet.group(c),
-                spec.time_index
-            )
-            .into(),
+            format!(" in {} is the configuration at node ", sheet.group(c)).into(),
+            Formula::name(&spec.time_index).into(),
+            format!(", from {from} to space{frame}").into(),
             Formula::equal(sheet.here(c.velocity), Formula::Product(velocity)).into(),
             ", on the edge from this node to the next:".into(),
         ]);

@@ -174,7 +174,9 @@ fn origin(lattice: &Lattice, part: &Part, symbol: SymbolId) -> Option<Origin> {
     let name = &d.letters.symbols.get(symbol).name;
     let of_copy = |name: &str, shown: String| {
         let copy = part.unfolded.copy(name)?;
-        let label = lattice.find(&copy.of)?.label;
+        // A multiplier is no quantity that is declared: constraints with neighbours stand on the line.
+        let declared = lattice.find(&copy.of).map(|q| q.label);
+        let label = declared.or(lattice.line).unwrap_or(0);
         Some(Origin {
             name: shown.replace("{}", &copy.of),
             label,

@@ -65,10 +65,10 @@ pub fn held(sheet: &Sheet, doc: &mut Document) {
         let next = |e: &Expr| sheet.math(&expr::shift_time(s, e, Shift::NEXT.time));
         section.equation(Formula::equal(next(&hold.left), next(&hold.right)));
     }
-    section.text("Of several solutions the one is taken that follows from rest, with multipliers that start at zero.");
+    section.text("Among several solutions the principal one is taken, which continues from rest with zero multipliers.");
     let Ok(limit) = &d.limit else {
         section.text(
-            "The momentum at a node is that which the step brings: the velocity that belongs to it is not known in closed form, and it is not projected.",
+            "The momentum is not projected on arrival: the velocity is not known from it in closed form.",
         );
         return;
     };
@@ -111,5 +111,5 @@ pub fn held(sheet: &Sheet, doc: &mut Document) {
         let zero = expr::zero(rate.shape());
         section.equation(Formula::equal(sheet.math(&rate), Formula::Expr(zero)));
     }
-    section.text("The projection changes no configuration: what it takes the multiplier of the next step would have given. The state shows the multiplier of the step that ended there, its impulse on arrival included, which is that of the middle of the step to second order.");
+    section.text("The projection changes no configuration: the multiplier of the next step would supply the same impulse. The multiplier in the state is that of the step that ended at the node, including the impulse of the projection; it approximates the multiplier at the middle of the step to second order.");
 }

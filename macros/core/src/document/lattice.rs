@@ -152,19 +152,19 @@ fn sites(lattice: &Lattice, doc: &mut Document) {
     for (i, l) in lattice.labels.iter().enumerate() {
         let (index, count) = (&l.index.text, &l.count.text);
         if l.grid {
-            section.text(&format!("The nodes of a grid are counted by {index}."));
+            section.text(&format!("The nodes of a grid are indexed by {index}."));
             continue;
         }
         if l.set {
             section.text(&format!(
-                "The label {index} counts a set of {count} sites, {index} = 0, ..., {count}-1, which have no neighbours."
+                "The label {index} indexes a set of {count} sites, {index} = 0, ..., {count}-1, which have no neighbours."
             ));
             continue;
         }
         let spacing = l.step.as_ref();
         let spacing = spacing.map_or_else(String::new, |s| format!("; the spacing is {}", s.text));
         section.text(&format!(
-            "The label {index} counts a line of {count} segments: nodes {index} = 0, ..., {count} and segments {index} = 0, ..., {count}-1; segment {index} joins the nodes {index} and {index}+1{spacing}."
+            "The label {index} indexes a line of {count} segments: nodes {index} = 0, ..., {count} and segments {index} = 0, ..., {count}-1; segment {index} joins the nodes {index} and {index}+1{spacing}."
         ));
         if lattice.periodic.is_some() {
             section.text(&format!(
@@ -199,7 +199,7 @@ fn sites(lattice: &Lattice, doc: &mut Document) {
         }
     }
     section.text(&format!(
-        "What differs from site to site: {}.",
+        "Quantities that vary from site to site: {}.",
         words.join("; ")
     ));
 }
@@ -266,6 +266,12 @@ fn terms(folded: &mut Folded, part: &Part, doc: &mut Document) {
     if !part.d.action.nodal.is_zero() {
         section.text("Terms of a node in time are split evenly between the two adjacent steps.");
     }
+    for stated in stated_holds(part) {
+        let name = stated.name;
+        section.text(&format!(
+            "Beside it the action of a step contains, at every site, the work of the multiplier {name}: the step times {name} paired with what it holds, left side less right side, at the node where the step begins."
+        ));
+    }
 }
 
 fn constraints(folded: &mut Folded, part: &Part, doc: &mut Document) {
@@ -301,6 +307,77 @@ fn constraints(folded: &mut Folded, part: &Part, doc: &mut Document) {
             Err(both) => Formula::List(both),
         });
     }
+    holds(folded, part, section);
+}
+
+/// The constraints that are held at every site, each seen from the middle one.
+fn holds(folded: &mut Folded, part: &Part, section: &mut Section) {
+    for stated in stated_holds(part) {
+        let Some(hold) = part.d.spec.holds.get(stated.shown) else {
+            continue;
+        };
+        let from = From::Site(stated.site);
+        let multiplier = folded.letter(part, hold.multiplier, Shift::HERE, from);
+        let mut line: Vec<Inline> = vec!["The multiplier ".into(), multiplier.into(), " holds".into()];
+        if let Some(l) = folded.lattice.line_label() {
+            let (first, last) = (stated.first, stated.last);
+            let (i, n) = (&l.index.text, &l.count.text);
+            let count = part.choice.counts.first().copied().unwrap_or(0);
+            let by = isize::try_from(last).unwrap_or(0) - isize::try_from(count).unwrap_or(0);
+            line.push(match part.choice.periodic {
+                true => format!(", {i} = 0, ..., {n}-1, indices modulo {n}:").into(),
+                false => format!(", {i} = {first}, ..., {}:", beyond(n, by)).into(),
+            });
+        }
+        section.paragraph(line);
+        let left = folded.expression(part, &hold.left, from);
+        let right = folded.expression(part, &hold.right, from);
+        let math = |e: Expr| Formula::Expr(expr::collect(&folded.symbols, &e));
+        section.equation(Formula::equal(math(left), math(right)));
+    }
+}
+
+/// A constraint as stated, held at several sites.
+pub(super) struct StatedHold {
+    /// The name of its multiplier.
+    pub name: String,
+    /// Number of the copy that is shown, nearest to the middle.
+    pub shown: usize,
+    /// The site of that copy.
+    pub site: usize,
+    /// The first and the last site.
+    first: usize,
+    last: usize,
+}
+
+/// The constraints as stated; of those at one site alone there is none.
+pub(super) fn stated_holds(part: &Part) -> Vec<StatedHold> {
+    let mut out: Vec<StatedHold> = Vec::new();
+    let middle = part.choice.counts.first().copied().unwrap_or(0) / 2;
+    for (j, hold) in part.d.spec.holds.iter().enumerate() {
+        let name = &part.d.letters.symbols.get(hold.multiplier).name;
+        let Some(copy) = part.unfolded.copy(name) else {
+            continue;
+        };
+        let site = copy.site;
+        match out.iter_mut().find(|s| s.name == copy.of) {
+            None => out.push(StatedHold {
+                name: copy.of.clone(),
+                shown: j,
+                site,
+                first: site,
+                last: site,
+            }),
+            Some(s) => {
+                s.first = s.first.min(site);
+                s.last = s.last.max(site);
+                if site.abs_diff(middle) < s.site.abs_diff(middle) {
+                    (s.shown, s.site) = (j, site);
+                }
+            }
+        }
+    }
+    out
 }
 
 /// A configuration as stated, and its copies that move.
@@ -424,7 +501,7 @@ pub(super) fn like_the_middle(folded: &mut Folded, part: &Part, s: &Stated) -> (
 
 fn interior(folded: &mut Folded, part: &Part, doc: &mut Document) {
     let section = doc.section("Equations of a site");
-    section.text("By the momentum at the node in time: the first equation is solved for the velocity, the second gives the momentum at the next node.");
+    section.text("In terms of the momentum at the node in time, the first equation is solved for the velocity, and the second gives the momentum at the next node.");
     for s in stated_configurations(part) {
         let c = &part.d.spec.configurations[s.shown];
         let (first, last) = like_the_middle(folded, part, &s);
@@ -471,7 +548,7 @@ fn range_words(
 fn certificate(lattice: &Lattice, parts: &[Part], doc: &mut Document) {
     let section = doc.section("Certificate");
     section.text(match lattice.meshes.is_empty() {
-        false => "One site of each kind is written out, whose letters stand for those of all sites. Each identity of the derivation is proved there, numbers being the same where their sums over all sites are. That the transposed derivative of a functional is the one that is computed is tested, not proved.",
+        false => "One site of each kind is written out; its symbols stand for those of all sites. Each identity of the derivation is proved on it, scalars being identified when their sums over all sites are equal. That the transposed derivative of a functional is computed correctly is tested, not proved.",
         true => "The equations above are those of short lattices, written out body by body, on which the sites shown have all their neighbours and every end has its own equation. Each identity of the derivation is proved there; a longer lattice repeats the equations of the interior.",
     });
     let items = parts.iter().map(|p| {

@@ -177,6 +177,10 @@ fn definitions(sheet: &Sheet, section: &mut Section) {
         );
         words.extend(references(&labels));
     }
+    words.push(
+        "; it is the diamond of Holm, Marsden and Ratiu (1998), for whom the variation is ".into(),
+    );
+    words.push(Formula::neg(Formula::Product(vec![free("ξ"), free("a")])).into());
     words.push(if moved.is_empty() {
         ".".into()
     } else {
@@ -322,7 +326,7 @@ fn of_field(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize) {
     let momentum = sheet.edge_momentum(i, Shift::HERE);
     section.equation(Formula::equal(momentum.clone(), Formula::Sum(terms)));
     section.labelled(&format!("start {i}"));
-    section.text("and by itself the momentum at its end:");
+    section.text("and, without further substitution, the momentum at its end:");
     section.equation(Formula::equal(momentum, sheet.lifted(i, 1)));
     section.labelled(&format!("end {i}"));
 }

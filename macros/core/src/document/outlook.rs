@@ -3,6 +3,7 @@
 
 use super::sheet::{Sheet, references};
 use crate::check::spec::{Configuration, Side};
+use crate::derive::holds;
 use crate::derive::invariants::{Invariant, Kind, Known};
 use crate::derive::limit::STANDING;
 use crate::derive::reversal::Reversal;
@@ -155,7 +156,11 @@ pub fn limit(sheet: &Sheet, doc: &mut Document) {
         .into(),
     ];
     words.extend(references(&labels));
-    words.push(" over the step.".into());
+    words.push(" over the step".into());
+    words.push(match d.spec.holds.is_empty() {
+        true => ".".into(),
+        false => "; the multipliers are determined by the held constraints.".into(),
+    });
     section.paragraph(words);
 }
 
@@ -237,12 +242,16 @@ fn equations(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize, 
             false => Formula::diamond(gradient(element), sheet.here(c.element)),
         });
     }
+    let reactions = holds::reactions(d, i);
+    let reactions = || reactions.iter().map(|e| sheet.derived(e));
+    named.extend(reactions());
     if named.is_empty() {
         named.push(Formula::Expr(expr::zero(
             d.letters.symbols.get(c.element).shape,
         )));
     }
-    let explicit = Formula::Sum(vec![sheet.derived(coadjoint), sheet.derived(force)]);
+    let known = [sheet.derived(coadjoint), sheet.derived(force)];
+    let explicit = Formula::Sum(known.into_iter().chain(reactions()).collect());
     section.sourced(
         steady(Formula::Relation(
             vec![Formula::rate(mu), Formula::Sum(named), explicit],
@@ -267,6 +276,7 @@ fn steady(f: Formula) -> Formula {
 pub fn certificate(sheet: &Sheet, doc: &mut Document) {
     let d = sheet.d;
     let section = doc.section("Certificate");
+    section.appendix = true;
     section.text(&format!("{}:", d.certificate.summary()));
     let items = d.certificate.steps.iter();
     section.list(

@@ -23,7 +23,7 @@ pub fn reduction(sheet: &Sheet, doc: &mut Document) {
         return;
     }
     let section = doc.section("Reduction");
-    section.text("The action is stated by the configuration at both ends of the step. With the reconstruction put in, parameters absorb what is left of the configuration and are carried along:");
+    section.text("The discrete Lagrangian is stated in terms of the configuration at both ends of the step. Substituting the reconstruction turns each parameter multiplied by the remaining configuration into an advected quantity:");
     for a in d.spec.advected.iter().filter(|a| a.found) {
         let own = sheet.here(a.quantity);
         if let Some(definition) = &a.definition {
@@ -34,7 +34,9 @@ pub fn reduction(sheet: &Sheet, doc: &mut Document) {
         Formula::name("ℓ"),
         sheet.math(&d.spec.typed),
     ));
-    section.noted("As stated; with the definitions put in, the reduced action below is this one.");
+    section.noted(
+        "As stated; substituting the definitions gives the reduced discrete Lagrangian below.",
+    );
 }
 
 /// The bracket, row by row.
@@ -62,7 +64,7 @@ pub fn bracket(sheet: &Sheet, doc: &mut Document) {
                 return;
             }
             section.text(&format!(
-                "Its Casimirs were neither counted nor looked for: {why}. Those that there are, are constant all the same."
+                "Its Casimirs were neither counted nor sought: {why}. Whatever they are, they are conserved."
             ));
             return;
         }
@@ -94,7 +96,9 @@ fn number(n: usize) -> String {
 
 fn listed(c: &Count) -> String {
     match c.all() == c.found {
-        true if c.found == 0 => "what is listed below is kept for other reasons".to_owned(),
+        true if c.found == 0 => {
+            "the quantities listed below are conserved for other reasons".to_owned()
+        }
         true if c.found == 1 => "it is listed below".to_owned(),
         true => "all of them are listed below".to_owned(),
         false => format!(

@@ -32,6 +32,8 @@ pub struct Remark {
 pub struct Section {
     /// Title.
     pub title: String,
+    /// Whether a paper has it in its appendix.
+    pub appendix: bool,
     /// Blocks in order.
     pub blocks: Vec<Block>,
 }
@@ -155,6 +157,16 @@ impl Document {
         out
     }
 
+    /// The same without the sources of its equations.
+    pub fn without_sources(mut self) -> Document {
+        for block in self.sections.iter_mut().flat_map(|s| &mut s.blocks) {
+            if let Block::Equation { tag, .. } = block {
+                *tag = None;
+            }
+        }
+        self
+    }
+
     /// An empty document.
     pub fn titled(title: impl Into<String>) -> Document {
         Document {
@@ -168,6 +180,7 @@ impl Document {
     pub fn section(&mut self, title: impl Into<String>) -> &mut Section {
         self.sections.push_mut(Section {
             title: title.into(),
+            appendix: false,
             blocks: Vec::new(),
         })
     }

@@ -48,7 +48,7 @@ fn constraints_that_cannot_be_held_are_told_on_their_tokens() {
     for (hold, wanted) in [
         (
             "hold λ: m = L;",
-            "no configuration stands in the constraint of `λ`",
+            "the constraint of `λ` contains no configuration",
         ),
         ("hold λ: dot(x, next(x)) = L^2;", "stands at one node"),
         (

@@ -194,7 +194,7 @@ pub fn invariants(x: &Inputs) -> (Vec<Invariant>, Integrability) {
     let known = Integrability {
         casimirs: match large {
             _ if elements => Known::NotSought(
-                "the configuration itself stands in the equations, and the bracket is that of its phase space".to_owned(),
+                "the equations contain the configuration itself, and the bracket is that of its phase space".to_owned(),
             ),
             Some(why) => Known::NotSought(why),
             None if work::cut_short() => Known::NotSought(format!(

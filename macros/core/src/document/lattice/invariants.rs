@@ -2,8 +2,9 @@
 //! sites.
 
 use crate::derive::action::summands;
-use crate::derive::invariants::{Invariant, Kind as InvariantKind};
+use crate::derive::invariants::{Family, Invariant, Kind as InvariantKind};
 use crate::document::folded::{Folded, From, Part};
+use crate::document::lattice::stated_holds;
 use crate::expr::{self, Expr, Node};
 use crate::lattice::Lattice;
 use crate::line::{Line, Written};
@@ -26,10 +27,23 @@ pub(super) fn invariants(folded: &mut Folded, model: &Model, parts: &[Part], doc
             let value = v.value.as_ref();
             value.is_some_and(|e| written.is_turned_by_walls(folded.lattice, e))
         };
-        let kept = part.d.invariants.iter().filter(|v| !by_walls(v));
+        // Of constraints with a multiplier at every site one line speaks for all.
+        let at_sites = stated_holds(part);
+        let is_of_site = |v: &&Invariant| v.family == Family::Held && !at_sites.is_empty();
+        let kept = part.d.invariants.iter().filter(|v| !by_walls(v) && !is_of_site(v));
         let kept: Vec<&Invariant> = kept.collect();
         for v in kept {
             items.push(invariant(folded, part, v));
+        }
+        for stated in &at_sites {
+            let Some(hold) = part.d.spec.holds.get(stated.shown) else {
+                continue;
+            };
+            items.push(vec![
+                format!("constraint {}: ", stated.name).into(),
+                folded.derived(part, &hold.value, From::Site(stated.site)).into(),
+                " and its rate of change, at every site (exact: held by the multiplier)".into(),
+            ]);
         }
         if !folded.lattice.meshes.is_empty() {
             items.extend(beside_functionals(folded, part, &written, model));

@@ -90,7 +90,7 @@ const SYMBOLS: [(char, &str); 36] = [
     ('−', "-"),
     ('⟨', "\\langle"),
     ('⟩', "\\rangle"),
-    ('ᵀ', "{}^{T}"),
+    ('ᵀ', "{}^{\\mathsf{T}}"),
     ('⁻', "{}^{-}"),
     ('¹', "{}^{1}"),
     ('²', "{}^{2}"),
@@ -107,6 +107,40 @@ const SYMBOLS: [(char, &str); 36] = [
 pub(super) fn text(s: &str) -> String {
     s.chars().map(|c| symbol_of(c, true)).collect()
 }
+
+/// Words of a sentence, in which arrows and names of groups are mathematics.
+pub(super) fn prose(s: &str) -> String {
+    let mut out = String::new();
+    let mut rest = s;
+    while let Some(c) = rest.chars().next() {
+        if let Some(after) = rest.strip_prefix("->") {
+            out.push_str("$\\to$");
+            rest = after;
+            continue;
+        }
+        // `SO(3)`, `GL(n)`: not behind a letter.
+        let begins = !out.ends_with(|c: char| c.is_ascii_alphanumeric());
+        let group = GROUPS.iter().filter(|_| begins).find_map(|g| {
+            let size = rest.strip_prefix(g)?.strip_prefix('(')?.split_once(')')?.0;
+            let plain = size.chars().all(|c| c.is_ascii_alphanumeric());
+            (plain && !size.is_empty()).then(|| (*g, size))
+        });
+        match group {
+            Some((g, size)) => {
+                out.push_str(&format!("$\\mathrm{{{g}}}({size})$"));
+                rest = rest.get(g.len() + size.len() + 2..).unwrap_or_default();
+            }
+            None => {
+                out.push_str(&symbol_of(c, true));
+                rest = rest.get(c.len_utf8()..).unwrap_or_default();
+            }
+        }
+    }
+    out
+}
+
+/// Groups that sentences name with a size.
+const GROUPS: [&str; 4] = ["SO", "SU", "SE", "GL"];
 
 /// Concatenates, with a space where a command would run into a letter.
 pub(super) fn joined(parts: impl Iterator<Item = String>) -> String {

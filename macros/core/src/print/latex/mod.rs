@@ -2,14 +2,15 @@
 //! nothing else; every character of the output that LaTeX must know is ASCII or a Latin letter.
 
 mod characters;
+mod equations;
 
+use super::Page;
 use super::document::{Block, Document, Inline};
 use super::formula::{Formula, Relation};
 use super::layout::{Fence, Layout, Sign};
 use super::lines::{self, Piece};
-use super::{Page, name};
-use crate::expr::symbol;
-use characters::{identifier, joined, symbol_of, text};
+use characters::{identifier, joined, prose, symbol_of, text};
+use equations::Labels;
 
 /// Whose commands may be used.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -124,7 +125,7 @@ fn word(s: &str, dialect: Dialect) -> String {
     let escaped = text(s);
     match (s, dialect) {
         ("det" | "exp" | "log" | "sin" | "cos" | "sinh" | "cosh" | "tanh", _) => format!("\\{s}"),
-        ("T", _) => "T".to_owned(),
+        ("T", _) => "\\mathsf{T}".to_owned(),
         (
             "tr" | "sym" | "skew" | "diag" | "vee" | "hat" | "Ad" | "ad" | "adj" | "sign",
             Dialect::Amsmath,
@@ -211,45 +212,47 @@ pub(super) fn display(page: &Page, f: &Formula, dialect: Dialect) -> String {
     )
 }
 
-/// A whole document: a section with numbered, labelled equations.
+/// A whole document: a section with labelled equations; those that follow one another without words share a number.
 pub(super) fn document(page: &Page, document: &Document) -> String {
-    let mut out = String::from("% Needs \\usepackage{amsmath}.\n");
+    let mut out = equations::preamble(document);
     out.push_str(&format!("\\section{{{}}}\n", text(&document.title)));
-    let slug = slug(&document.title);
-    let mut number = 0usize;
+    let labels = Labels::of(page, document);
+    let mut number = 1usize;
     for section in &document.sections {
-        out.push_str(&format!("\n\\subsection{{{}}}\n", text(&section.title)));
-        for block in &section.blocks {
-            // An empty line before an equation would end the paragraph it belongs to.
-            if !matches!(block, Block::Equation { .. }) {
+        let title = text(&section.title);
+        out.push_str(&match section.appendix {
+            true => format!("\n\\subsection*{{Appendix: {}}}\n", title.to_lowercase()),
+            false => format!("\n\\subsection{{{title}}}\n"),
+        });
+        let is_equation = |b: &Block| matches!(b, Block::Equation { .. });
+        for run in section
+            .blocks
+            .chunk_by(|a, b| is_equation(a) && is_equation(b))
+        {
+            let Some(block) = run.first() else { continue };
+            // An empty line before an equation would end the paragraph it belongs to, and one behind it a sentence that
+            // goes on.
+            if !is_equation(block) && !goes_on(block) {
                 out.push('\n');
             }
             match block {
                 Block::Paragraph(parts) => {
-                    out.push_str(&format!("{}\n", sentence(page, &slug, parts)))
+                    out.push_str(&format!("{}\n", sentence(page, &labels, parts)))
                 }
                 Block::List(items) => {
                     out.push_str("\\begin{itemize}\n");
                     for item in items {
-                        out.push_str(&format!("  \\item{{}} {}\n", sentence(page, &slug, item)));
+                        out.push_str(&format!("  \\item{{}} {}\n", sentence(page, &labels, item)));
                     }
                     out.push_str("\\end{itemize}\n");
                 }
                 Block::Code(code) => out.push_str(&listing(code)),
-                Block::Equation {
-                    formula, tag, note, ..
-                } => {
-                    number += 1;
-                    out.push_str(&format!(
-                        "\\begin{{equation}}\\label{{eq:{slug}:{number}}}\n{}\n\\end{{equation}}\n",
-                        display(page, formula, Dialect::Amsmath)
-                    ));
-                    let tag = tag.as_ref().map(|t| format!("[{}]", text(t)));
-                    let note = note.as_ref().map(|n| text(n));
-                    let remark: Vec<String> = tag.into_iter().chain(note).collect();
-                    if !remark.is_empty() {
-                        out.push_str(&format!("\\noindent {}\n", remark.join(" ")));
-                    }
+                Block::Equation { .. } => {
+                    // Behind the sentence that leads to the equations.
+                    let end = out.trim_end_matches('\n').len();
+                    out.insert_str(end, &equations::footnote(run, number, &labels));
+                    out.push_str(&equations::displayed(page, run, number, &labels));
+                    number += run.len();
                 }
             }
         }
@@ -257,13 +260,21 @@ pub(super) fn document(page: &Page, document: &Document) -> String {
     out
 }
 
-fn sentence(page: &Page, slug: &str, parts: &[Inline]) -> String {
+/// Whether a paragraph is the rest of a sentence: it begins with a small letter.
+fn goes_on(block: &Block) -> bool {
+    let Block::Paragraph(parts) = block else {
+        return false;
+    };
+    matches!(parts.first(), Some(Inline::Plain(words)) if words.starts_with(char::is_lowercase))
+}
+
+fn sentence(page: &Page, labels: &Labels, parts: &[Inline]) -> String {
     parts
         .iter()
         .map(|part| match part {
-            Inline::Plain(words) | Inline::Notation { page: words, .. } => text(words),
+            Inline::Plain(words) | Inline::Notation { page: words, .. } => prose(words),
             Inline::Code(code) => format!("\\texttt{{{}}}", text(code)),
-            Inline::Reference { number, .. } => format!("\\eqref{{eq:{slug}:{number}}}"),
+            Inline::Reference { number, .. } => format!("\\eqref{{{}}}", labels.name(*number)),
             Inline::Math(f) => format!("${}$", line(&page.stacked(f), Dialect::Amsmath)),
         })
         .collect()
@@ -279,18 +290,4 @@ fn listing(code: &str) -> String {
         "\\begin{{flushleft}}\\ttfamily\n{}\n\\end{{flushleft}}\n",
         rows.join("\\\\\n")
     )
-}
-
-/// The title as part of a label.
-fn slug(title: &str) -> String {
-    let words = symbol::ascii(&name::letter(title)).to_lowercase();
-    let mut out = String::new();
-    for c in words.chars() {
-        if c.is_ascii_alphanumeric() {
-            out.push(c);
-        } else if !out.is_empty() && !out.ends_with('-') {
-            out.push('-');
-        }
-    }
-    out.trim_end_matches('-').to_owned()
 }

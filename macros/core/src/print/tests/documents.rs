@@ -122,16 +122,52 @@ fn latex_is_a_section_with_numbered_equations() {
         assert_eq!(count("begin"), count("end"));
         assert!(count("begin") > 0, "{environment}");
     }
-    assert_eq!(
-        tex.matches("\\label{eq:heavy-top-100-of-lambda-co:")
-            .count(),
-        5
-    );
+    assert_eq!(tex.matches("\\label{eq:heavy-top:").count(), 5);
     assert!(tex.contains("\n&\\quad {} - 4\\,c"), "{tex}");
     // A bracket that ends on another line has a fixed size.
     assert!(tex.contains("\\bigl(") && tex.contains("\\bigr)"));
     assert!(tex.contains("\\item{} [not an argument]"));
     assert!(!tex.contains("\n\n\\begin{equation}"));
+}
+
+/// A bare document: equations that follow one another are one group, their sources a footnote of the sentence before.
+#[test]
+fn equations_in_a_row_share_a_number() {
+    let s = Sample::new();
+    let mut doc = Document::titled("Top: equations");
+    let section = doc.section("Motion");
+    section.text("It moves in SO(3) by");
+    section.cited(
+        Formula::equal(Formula::name("a"), Formula::name("b")),
+        "thesis (2.1)",
+    );
+    section.labelled("first");
+    section.cited(
+        Formula::equal(Formula::name("c"), Formula::name("d")),
+        "thesis (2.2) times -1/h, corrected: there e for d",
+    );
+    section.noted("Variation of c.");
+    section.paragraph(["By ".into(), Inline::reference("first"), ".".into()]);
+    doc.section("Certificate").appendix = true;
+    let tex = render(&doc, &s.symbols, &Style::default(), Format::Latex);
+    let wanted = "It moves in $\\mathrm{SO}(3)$ by\\footnote{\\eqref{eq:top:first}: \\cite[(2.1)]{dixon2007}; \
+         \\eqref{eq:top:motion-2}: \\cite[(2.2)]{dixon2007} times $-1/h$, corrected: there e for d.}\n\
+         \\begin{subequations}\n\\begin{gather}\n\
+         a = b \\label{eq:top:first} \\\\\nc = d \\label{eq:top:motion-2}\n\
+         \\end{gather}\n\\end{subequations}\n\
+         \\noindent \\eqref{eq:top:motion-2}: variation of c.\n\nBy \\eqref{eq:top:first}.\n\n\
+         \\subsection*{Appendix: certificate}\n";
+    assert!(tex.ends_with(wanted), "{tex}\n{wanted}");
+    let plain = render(
+        &doc.without_sources(),
+        &s.symbols,
+        &Style::default(),
+        Format::Latex,
+    );
+    assert!(
+        !plain.contains("cite") && !plain.contains("dixon"),
+        "{plain}"
+    );
 }
 
 #[test]

@@ -59,7 +59,7 @@ fn functionals_read_as_on_paper() {
     assert_eq!(latex[4], "m\\,\\nabla f(X_{k})");
     assert_eq!(
         latex[5],
-        "\\left(\\mathrm{D}_{1}g\\left(\\frac{X_{k} + Y_{k}}{m}, Y_{k}\\right)\\right)^{T}[u]"
+        "\\left(\\mathrm{D}_{1}g\\left(\\frac{X_{k} + Y_{k}}{m}, Y_{k}\\right)\\right)^{\\mathsf{T}}[u]"
     );
     let mathml = print(Format::MathMl);
     assert!(

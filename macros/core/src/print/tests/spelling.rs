@@ -172,7 +172,7 @@ fn latex_spellings() {
     let s = Sample::new();
     let f = |e: Expr| Formula::Expr(e);
     let cases: [(Formula, &str); 11] = [
-        (f(s.t(s.at("Λ1", 1))), "\\Lambda_{1,k+1}^{T}"),
+        (f(s.t(s.at("Λ1", 1))), "\\Lambda_{1,k+1}^{\\mathsf{T}}"),
         (f(s.v("chi")), "\\chi_{k}"),
         (f(expr::inverse(&s.symbols, s.v("Q"))), "Q_{k}^{-1}"),
         (f(expr::hat(s.v("Γ"))), "\\hat{\\Gamma}_{k}"),

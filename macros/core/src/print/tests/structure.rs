@@ -26,7 +26,7 @@ const MODELS: [&str; 4] = [
 ];
 
 /// Commands of LaTeX and amsmath that may appear.
-const KNOWN: [&str; 67] = [
+const KNOWN: [&str; 71] = [
     "Bigg",
     "Biggl",
     "Biggr",
@@ -84,6 +84,10 @@ const KNOWN: [&str; 67] = [
     "xi",
     "zeta",
     "to",
+    "sum",
+    "mathsf",
+    "cite",
+    "footnote",
     "in",
     "wedge",
     "kappa",
@@ -148,7 +152,8 @@ fn print(source: &str, format: Format) -> String {
 fn latex_is_balanced_and_refers_to_what_is_there() {
     for source in MODELS {
         let tex = print(source, Format::Latex);
-        let name: String = tex.lines().nth(1).unwrap_or_default().to_owned();
+        let title = tex.lines().find(|line| line.starts_with("\\section"));
+        let name: String = title.unwrap_or_default().to_owned();
         check(&tex, &name);
         assert!(
             tex.is_ascii() || tex.chars().all(|c| c < '\u{180}'),
@@ -157,7 +162,7 @@ fn latex_is_balanced_and_refers_to_what_is_there() {
         let mut references = 0;
         for part in tex.split("\\eqref{").skip(1) {
             let label = part.split('}').next().unwrap();
-            assert!(!label.ends_with(":0"), "{name}: a reference leads nowhere");
+            assert!(label != "eq:none", "{name}: a reference leads nowhere");
             assert_eq!(
                 tex.matches(&format!("\\label{{{label}}}")).count(),
                 1,

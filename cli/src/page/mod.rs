@@ -1,0 +1,112 @@
+//! One page per run, in a single file that needs no other: a view in space that can be turned and played, the table of
+//! invariants, all pictures. Takes a run and its pictures; gives HTML.
+
+mod scene;
+
+use crate::output::Finished;
+use crate::record::Samples;
+use std::fmt::Write as _;
+
+/// The page.
+pub(crate) fn page(run: &Finished<'_>, samples: &Samples, pictures: &[(&str, String)]) -> String {
+    let case = &run.plan.case;
+    let title = format!("{}, case {}", run.card.kebab, case.name);
+    let mut out = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{0}</title>\n<style>\n{1}</style>\n\
+         </head>\n<body>\n<h1>{0}</h1>\n",
+        escaped(&title),
+        include_str!("page.css")
+    );
+    let about = format!("h = {:?}, {} steps; {}", case.h, case.steps, case.doc);
+    let _ = writeln!(
+        out,
+        "<p class=\"about\">{}</p>",
+        escaped(about.trim_end_matches("; "))
+    );
+    if let Some(stopped) = &run.stopped {
+        let _ = writeln!(
+            out,
+            "<p><b>The run stopped at node {}, time {}:</b> {}</p>",
+            stopped.node,
+            stopped.time,
+            escaped(&stopped.why)
+        );
+    }
+    let scene = scene::scene(run, samples);
+    if scene.is_some() {
+        out.push_str(
+            "<canvas id=\"view\"></canvas>\n<div class=\"controls\"><button id=\"play\">play</button>\
+             <input id=\"time\" type=\"range\" min=\"0\" value=\"0\"><span id=\"clock\"></span></div>\n\
+             <p class=\"about\">Drag to turn, scroll to enlarge.</p>\n",
+        );
+    }
+    invariants(run, &mut out);
+    if !pictures.is_empty() {
+        out.push_str("<h2>Pictures</h2>\n");
+    }
+    for (name, svg) in pictures {
+        // Without the declaration of a file of its own.
+        let svg = svg.find("<svg").and_then(|at| svg.get(at..)).unwrap_or(svg);
+        let _ = writeln!(out, "<figure id=\"{}\">\n{svg}\n</figure>", escaped(name));
+    }
+    if let Some(scene) = scene {
+        // `</` would end the element.
+        let data = scene.to_string().replace("</", "<\\/");
+        let _ = writeln!(
+            out,
+            "<script type=\"application/json\" id=\"scene\">{data}</script>\n<script>\n{}</script>",
+            include_str!("view.js")
+        );
+    }
+    out.push_str("</body>\n</html>\n");
+    out
+}
+
+/// The table of the run's end.
+fn invariants(run: &Finished<'_>, out: &mut String) {
+    if run.outcomes.is_empty() {
+        return;
+    }
+    out.push_str(
+        "<h2>Invariants</h2>\n<div class=\"scrolls\">\n<table>\n<tr><th>invariant</th><th>scale</th><th>max drift</th>\
+         <th>bound</th><th>verdict</th><th>formula</th></tr>\n",
+    );
+    for outcome in run.outcomes {
+        let bound = outcome
+            .bound
+            .map_or_else(|| "-".to_owned(), |b| format!("{b:e}"));
+        let _ = writeln!(
+            out,
+            "<tr><td>{}</td><td class=\"number\">{:.3e}</td><td class=\"number\">{:.3e}</td><td class=\"number\">{bound}</td>\
+             <td>{}</td><td>{}</td></tr>",
+            escaped(outcome.invariant.name),
+            outcome.scale,
+            outcome.worst,
+            outcome.verdict.word(),
+            escaped(outcome.invariant.formula)
+        );
+    }
+    out.push_str("</table>\n</div>\n");
+    if let Some(worst) = run.residual {
+        let _ = writeln!(
+            out,
+            "<p>Discrete Euler-Lagrange equations: max relative residual {:.3e}, at node {}.</p>",
+            worst.relative, worst.node
+        );
+    }
+}
+
+/// Text as HTML shows it.
+fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            _ => out.push(c),
+        }
+    }
+    out
+}
