@@ -181,7 +181,12 @@ pub(crate) fn superscript(number: i32) -> String {
 /// A number for a caption, without the noise of its last digits.
 pub(crate) fn plain(number: f64) -> String {
     let rounded: f64 = format!("{number:.11e}").parse().unwrap_or(number);
-    rounded.to_string()
+    if rounded == 0.0 || (1e-4..1e15).contains(&rounded.abs()) {
+        return rounded.to_string();
+    }
+    // Four digits are enough beside an exponent.
+    let short: f64 = format!("{rounded:.3e}").parse().unwrap_or(rounded);
+    format!("{short:e}")
 }
 
 impl Ranged for Axis {

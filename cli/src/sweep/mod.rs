@@ -74,7 +74,7 @@ struct Sweep<'a> {
     columns: &'a Columns,
 }
 
-/// Runs the command; 0 when every point has its row, however it ended.
+/// Runs the command; 0 when every point has its row, however it ended, if any could be started.
 ///
 /// # Errors
 /// Usage for a wrong request; failed when the file system gives up.
@@ -207,7 +207,18 @@ pub(crate) fn sweep(
     let object = table::describe(&staging, &description, &tally)?;
     staging.commit()?;
     output::remove_what_resumes(target);
-    tell(&object, &tally, target, as_json, streams)
+    let told = tell(&object, &tally, target, as_json, streams)?;
+    let Some(point) = tally.first_refused else {
+        return Ok(told);
+    };
+    let why = format!("the first refused point, {point}: {}", sweep.refusal(point));
+    match tally.done + tally.stopped {
+        0 => Err(Failure::Failed(format!("no point could be started; {why}"))),
+        _ => {
+            let _ = writeln!(streams.err, "clebsch: {why}");
+            Ok(told)
+        }
+    }
 }
 
 /// What came out.
@@ -337,6 +348,21 @@ impl Sweep<'_> {
         }
         let all = made.load(Ordering::Relaxed) == left.len() as u64;
         Ok(listening.asked().filter(|_| !all))
+    }
+
+    /// Why a point is refused, in words.
+    fn refusal(&self, point: u64) -> String {
+        let mut plan = self.plan.clone();
+        for (axis, value) in self.axes.iter().zip(vary::at(self.axes, point)) {
+            axis.put(value, &mut plan.case);
+        }
+        match plan.open(self.card) {
+            Err(failure) => failure.to_string(),
+            Ok(mut trajectory) => match trajectory.step() {
+                Err(error) => error.to_string(),
+                Ok(()) => "what is watched is no number at its start".to_owned(),
+            },
+        }
     }
 
     /// Computes the row of a point; false when `asked` to stop before its end.

@@ -70,6 +70,8 @@ pub(super) struct Tally {
     pub(super) done: u64,
     pub(super) stopped: u64,
     pub(super) refused: u64,
+    /// The number of the first point that was.
+    pub(super) first_refused: Option<u64>,
     pub(super) beyond_bounds: u64,
 }
 
@@ -104,7 +106,10 @@ pub(super) fn write(staging: &Staging, columns: &Columns, rows: &Rows) -> Result
             *(match status {
                 s if s == DONE => &mut tally.done,
                 s if s == STOPPED => &mut tally.stopped,
-                _ => &mut tally.refused,
+                _ => {
+                    tally.first_refused = tally.first_refused.or(row.first().copied());
+                    &mut tally.refused
+                }
             }) += 1;
             tally.beyond_bounds += u64::from(number(columns.status + 3) == 0.0);
             let mut words = row.iter().take(columns.names.len());

@@ -55,6 +55,12 @@ fn a_row_is_the_run_of_its_point() {
         "{}",
         done.out
     );
+    // The step of 5 is the third value of the axis that varies first.
+    assert!(
+        done.err.contains("the first refused point, 2: "),
+        "{}",
+        done.err
+    );
     let values = column(&out, "gU.z");
     assert_eq!(values[..4], [0.0, 0.0, 0.0, 0.25]);
     assert_eq!(column(&out, "h")[..4], [0.1, 0.05, 5.0, 0.1]);
@@ -233,4 +239,28 @@ fn killed_sweeps_go_on_with_what_is_left() {
     assert!(command(&out).status().expect("runs").success());
     same(&whole, &out);
     assert_eq!(folder.names(), ["killed", "whole"]);
+}
+
+#[test]
+fn a_sweep_none_of_whose_points_starts_fails_with_the_reason() {
+    let folder = Folder::new("sweep-refused");
+    let out = folder.path("sweep");
+    let done = clebsch(&[
+        "sweep",
+        "heavy-top",
+        "--vary",
+        "h=5,6",
+        "--steps",
+        "3",
+        "--out",
+        &out,
+    ]);
+    assert_eq!(done.code, 1, "{}{}", done.out, done.err);
+    assert!(
+        done.err
+            .contains("no point could be started; the first refused point, 0: "),
+        "{}",
+        done.err
+    );
+    assert_eq!(column(&out, "status"), [2.0, 2.0]);
 }

@@ -384,6 +384,13 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             };
             Some(Value::of(Dense::from_fn(*rows, *cols, |_, _| x)))
         },
+        ("from_diagonal_element", 1) => |a, sizes| {
+            let (x, [rows, cols]) = (number(a.first()?)?, sizes) else {
+                return None;
+            };
+            let entry = |i, j| if i == j { x } else { T::zero() };
+            Some(Value::of(Dense::from_fn(*rows, *cols, entry)))
+        },
         ("greatest", 1) => |a, _| Some(Value::Double(number(a.first()?)?.greatest())),
         ("least", 1) => |a, _| Some(Value::Double(number(a.first()?)?.least())),
         // Sizes: of the longer, of the shorter.

@@ -302,6 +302,9 @@ fn operand(c: &mut Cursor) -> Parsed {
         _ if c.is_punct('|') => Err(c.unexpected("a quantity, a number or `(`").help(
             "the length of a vector is `sqrt(dot(X, X))`, the magnitude of a number `abs(x)`",
         )),
+        _ if c.is_punct('*') => Err(c
+            .unexpected("a quantity, a number or `(`")
+            .help("a power is written `a^2`")),
         _ => Err(c.unexpected("a quantity, a number or `(`")),
     }
 }

@@ -315,8 +315,8 @@ fn group(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     let group = kindred(c)?;
     typeset(c, std::slice::from_mut(&mut name))?;
     let at = label::at(c)?;
-    c.word("velocity")
-        .map_err(|e| e.help("write for example `group Λ: SO<3> velocity Ω;`"))?;
+    let written = "write for example `group Λ: SO<3> velocity Ω;`";
+    c.word("velocity").map_err(|e| e.help(written))?;
     let mut velocity = c.name("the name of the discrete velocity")?;
     typeset(c, std::slice::from_mut(&mut velocity))?;
     Ok(Statement::Group {

@@ -313,7 +313,15 @@ impl Cursor {
         }
         // The partner of what was not closed in its own statement, where that was told.
         error.follows = matches!(self.peek(), Some(Token::Close(')' | ']')));
-        Err(error.help("every statement ends with `;`"))
+        Err(error.help(match self.peek() {
+            Some(Token::Punct('.', _)) => {
+                "a component of a vector is written `x[1]`, counted from 1"
+            }
+            Some(Token::Open('(')) => "sizes stand in angle brackets, `Vec<3>`, `SO<3>`",
+            Some(Token::Punct('=', _)) => "values stand in the case, not in the model",
+            Some(Token::Punct('#', _)) => "remarks begin with `//`",
+            _ => "every statement ends with `;`",
+        }))
     }
 
     /// Whether the next tokens read as the start of a statement, not as a factor of a product

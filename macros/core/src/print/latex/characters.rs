@@ -123,7 +123,7 @@ pub(super) fn prose(s: &str) -> String {
         let group = GROUPS.iter().filter(|_| begins).find_map(|g| {
             let size = rest.strip_prefix(g)?.strip_prefix('(')?.split_once(')')?.0;
             let plain = size.chars().all(|c| c.is_ascii_alphanumeric());
-            (plain && !size.is_empty()).then(|| (*g, size))
+            (plain && !size.is_empty()).then_some((*g, size))
         });
         match group {
             Some((g, size)) => {
