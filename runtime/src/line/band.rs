@@ -11,6 +11,9 @@ use nalgebra::{SMatrix, SVector};
 #[derive(Clone, Debug)]
 pub struct Band<T, const N: usize> {
     sites: usize,
+    /// Whether derivatives are the same at all places and velocities: they are factored once.
+    constant: bool,
+    factored: bool,
     blocks: Blocks<T>,
     velocity: Vec<T>,
     from: Vec<T>,
@@ -37,7 +40,8 @@ impl<T: Real, const N: usize> Velocities<'_, T, N> {
 #[derive(Debug)]
 pub struct Rows<'a, T, const N: usize> {
     momenta: &'a mut [T],
-    blocks: &'a mut Blocks<T>,
+    /// None where derivatives are known.
+    blocks: Option<&'a mut Blocks<T>>,
 }
 
 impl<T: Real, const N: usize> Rows<'_, T, N> {
@@ -54,8 +58,10 @@ impl<T: Real, const N: usize> Rows<'_, T, N> {
             for (x, y) in own.iter_mut().zip(momenta[i].iter()) {
                 *x += *y;
             }
-            for (j, column) in sites.into_iter().enumerate() {
-                self.blocks.add(row, column, derivatives[i][j].as_slice());
+            if let Some(blocks) = &mut self.blocks {
+                for (j, column) in sites.into_iter().enumerate() {
+                    blocks.add(row, column, derivatives[i][j].as_slice());
+                }
             }
         }
     }
@@ -67,6 +73,8 @@ struct Line<'a, T, A, B, const N: usize> {
     moving: [usize; 2],
     own: A,
     between: B,
+    /// Whether derivatives are known.
+    known: bool,
 }
 
 impl<T: Real, A, B, const N: usize> Momenta<T> for Line<'_, T, A, B, N>
@@ -77,22 +85,31 @@ where
     #[inline(always)]
     fn at(&mut self, velocity: &[T], momenta: &mut [T]) {
         let all = Velocities(velocity);
-        self.blocks.clear();
+        if !self.known {
+            self.blocks.clear();
+        }
         let sites = velocity.len() / N.max(1);
         for site in 0..sites {
             let (own, derivative) = (self.own)(site, &all.at(site));
             momenta[N * site..N * (site + 1)].copy_from_slice(own.as_slice());
-            self.blocks.add(site, site, derivative.as_slice());
+            if !self.known {
+                self.blocks.add(site, site, derivative.as_slice());
+            }
         }
         let mut rows = Rows {
             momenta,
-            blocks: self.blocks,
+            blocks: match self.known {
+                true => None,
+                false => Some(&mut *self.blocks),
+            },
         };
         (self.between)(all, &mut rows);
         let [first, last] = self.moving;
         for site in (0..first).chain(last..sites) {
             momenta[N * site..N * (site + 1)].fill(T::zero());
-            self.blocks.hold(site);
+            if !self.known {
+                self.blocks.hold(site);
+            }
         }
     }
 
@@ -114,12 +131,15 @@ where
 }
 
 impl<T: Real, const N: usize> Band<T, N> {
-    /// Room for so many sites, of a ring or of an open line.
+    /// Room for so many sites, of a ring or of an open line; `constant` where derivatives are the same at all
+    /// places and velocities, for one model and step.
     #[must_use]
-    pub fn new(sites: usize, ring: bool) -> Self {
+    pub fn new(sites: usize, ring: bool, constant: bool) -> Self {
         let list = || vec![T::zero(); N * sites];
         Self {
             sites,
+            constant,
+            factored: false,
             blocks: Blocks::new(N, sites, ring),
             velocity: list(),
             from: list(),
@@ -154,7 +174,28 @@ impl<T: Real, const N: usize> Band<T, N> {
             moving,
             own,
             between,
+            known: self.factored,
         };
+        if self.constant {
+            // Linear: from rest in one step.
+            self.velocity.fill(T::zero());
+            line.at(&self.velocity, &mut self.momenta);
+            line.scales(&mut self.scales);
+            self.factored = self.factored || line.factor();
+            for i in 0..self.known.len() {
+                self.velocity[i] = self.known[i] - self.momenta[i];
+            }
+            if self.factored {
+                line.solve(&mut self.velocity);
+            }
+            let found = self.factored && self.velocity.iter().all(|x| x.is_finite());
+            self.correction.copy_from_slice(&self.velocity);
+            if !found {
+                return Err((self.worst(), NoRoot { share: 0.0 }));
+            }
+            self.put(out);
+            return Ok(());
+        }
         let mut lists = Lists {
             velocity: &mut self.velocity,
             from: &mut self.from,
@@ -166,10 +207,14 @@ impl<T: Real, const N: usize> Band<T, N> {
         if let Err(e) = follow(&self.known, &mut line, &mut lists) {
             return Err((self.worst(), e));
         }
+        self.put(out);
+        Ok(())
+    }
+
+    fn put(&self, out: &mut [SVector<T, N>]) {
         for (site, out) in out.iter_mut().enumerate().take(self.sites) {
             *out = Velocities(&self.velocity).at(site);
         }
-        Ok(())
     }
 
     /// The site of the largest correction, or of the first that is no number.

@@ -318,7 +318,8 @@ fn holds(folded: &mut Folded, part: &Part, section: &mut Section) {
         };
         let from = From::Site(stated.site);
         let multiplier = folded.letter(part, hold.multiplier, Shift::HERE, from);
-        let mut line: Vec<Inline> = vec!["The multiplier ".into(), multiplier.into(), " holds".into()];
+        let mut line: Vec<Inline> =
+            vec!["The multiplier ".into(), multiplier.into(), " holds".into()];
         if let Some(l) = folded.lattice.line_label() {
             let (first, last) = (stated.first, stated.last);
             let (i, n) = (&l.index.text, &l.count.text);

@@ -30,7 +30,11 @@ pub(super) fn invariants(folded: &mut Folded, model: &Model, parts: &[Part], doc
         // Of constraints with a multiplier at every site one line speaks for all.
         let at_sites = stated_holds(part);
         let is_of_site = |v: &&Invariant| v.family == Family::Held && !at_sites.is_empty();
-        let kept = part.d.invariants.iter().filter(|v| !by_walls(v) && !is_of_site(v));
+        let kept = part
+            .d
+            .invariants
+            .iter()
+            .filter(|v| !by_walls(v) && !is_of_site(v));
         let kept: Vec<&Invariant> = kept.collect();
         for v in kept {
             items.push(invariant(folded, part, v));
@@ -41,7 +45,9 @@ pub(super) fn invariants(folded: &mut Folded, model: &Model, parts: &[Part], doc
             };
             items.push(vec![
                 format!("constraint {}: ", stated.name).into(),
-                folded.derived(part, &hold.value, From::Site(stated.site)).into(),
+                folded
+                    .derived(part, &hold.value, From::Site(stated.site))
+                    .into(),
                 " and its rate of change, at every site (exact: held by the multiplier)".into(),
             ]);
         }
