@@ -2,7 +2,7 @@
 
 use clebsch::domain::Contact;
 use clebsch::emitted::{LeftFactorError, MoserVeselovError, OpenError, QuaternionError, Unsolved};
-use clebsch::line::LineError;
+use clebsch::line::{LineError, NoRoot};
 use clebsch::mesh::MeshError;
 use clebsch::solvers::two_sided::SingularFactor;
 use clebsch::{
@@ -33,6 +33,8 @@ pub enum Failure {
     Quaternion(QuaternionError),
     /// Of a linear equation.
     Singular(SingularFactor),
+    /// Of an equation of one site.
+    NoRoot(NoRoot),
     /// Of a domain.
     Contact(Contact),
     /// Of given values.
@@ -76,6 +78,7 @@ from! {
     Unsolved: Unsolved,
     Quaternion: QuaternionError,
     Singular: SingularFactor,
+    NoRoot: NoRoot,
     Contact: Contact,
     Open: OpenError,
     Rotation: NotARotation,
@@ -99,6 +102,7 @@ impl Failure {
             Failure::Unsolved(e) => e.into(),
             Failure::Contact(e) => e.into(),
             Failure::Singular(e) => StepCause::Singular(e),
+            Failure::NoRoot(e) => StepCause::NoRoot(e),
             Failure::LeftFactor(e) => StepCause::Factor(e),
             _ => UNTOLD,
         }

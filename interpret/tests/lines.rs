@@ -51,7 +51,8 @@ fn same(line: &mut LineTrajectory, built: &dyn Compiled, model: &LineModel, what
     let energies = line.energies().expect("has energies");
     assert_eq!(bits(&energies), bits(&built.energies()), "{what}: energies");
     let totals = built.totals();
-    assert_eq!(model.totals().count(), totals.len(), "{what}");
+    let names: Vec<&str> = model.totals().collect();
+    assert_eq!(names.len(), totals.len(), "{what}: {names:?}");
     for (name, total) in totals {
         let read = line.total(name).expect("is conserved");
         assert_eq!(bits(&read), bits(&total), "{what}: {name}");
@@ -60,7 +61,8 @@ fn same(line: &mut LineTrajectory, built: &dyn Compiled, model: &LineModel, what
 
 #[test]
 fn every_line_of_the_gallery_equals_the_compiled_one_to_the_last_bit() {
-    for (source, make, cases) in compiled::all() {
+    let lines = compiled::all().into_iter().chain(compiled::by_newton());
+    for (source, make, cases) in lines {
         let model = LineModel::read(source).expect("is read");
         for case in cases {
             let data = make(&case);
@@ -128,6 +130,30 @@ fn a_step_that_is_refused_is_refused_alike_and_leaves_the_state() {
     let refused = refused.expect("they meet");
     assert!(refused.contains("at site "), "{refused}");
     same(&mut line, &*built, &model, &refused);
+}
+
+#[test]
+fn a_step_beyond_a_fold_is_refused_alike_and_names_its_site() {
+    let source = compiled::newton::Steep::<f64>::SOURCE;
+    let model = LineModel::read(source).expect("is read");
+    let case = Case {
+        h: 0.5,
+        ..Case::new(12, None)
+    };
+    let (_, calm) = compiled::newton::steep(&Case::new(12, None));
+    let wild = calm.with("q", |q| q[7] = 40.0).with("k", |k| k[0] = -0.8);
+    let told = compiled::newton::steep_line(&case, &wild).map(|_| ());
+    let told = told.expect_err("is refused");
+    let choice = choice(source, case.n, case.ends);
+    let started = model.start(&choice, case.h, &|name| wild.get(name));
+    assert_eq!(
+        started.map(|_| ()).expect_err("is refused").to_string(),
+        told
+    );
+    assert!(
+        told.contains("site 7") && told.contains("percent"),
+        "{told}"
+    );
 }
 
 /// The name of a quantity and its site.

@@ -3,7 +3,7 @@
 
 use crate::domain::{Contact, Domain, Function};
 use crate::groups::{NotARigidMotion, NotARotation, NotInvertible};
-use crate::line::Place;
+use crate::line::{NoRoot, Place};
 use crate::mesh::MeshError;
 use crate::said::{self, place};
 use crate::solvers::left_factor::{LeftFactorError, Unsolved};
@@ -399,6 +399,8 @@ pub enum StepCause {
     Singular(SingularFactor),
     /// The Newton iteration failed.
     Newton(NewtonError),
+    /// Along a line, no velocity follows from rest.
+    NoRoot(NoRoot),
     /// The step leaves what the model is defined on.
     Contact(Contact),
     /// A quantity became NaN or infinite.
@@ -483,6 +485,7 @@ impl fmt::Display for StepCause {
             Self::Factor(error) => write!(f, "the left factor of this state: {error}"),
             Self::Singular(error) => write!(f, "{error}"),
             Self::Newton(error) => write!(f, "{error}"),
+            Self::NoRoot(error) => write!(f, "{error}"),
             Self::Contact(contact) => write!(f, "{contact}"),
             Self::NotFinite { what } => write!(
                 f,
@@ -518,6 +521,7 @@ impl std::error::Error for StepCause {
             Self::Factor(error) => Some(error),
             Self::Singular(error) => Some(error),
             Self::Newton(error) => Some(error),
+            Self::NoRoot(error) => Some(error),
             Self::Contact(contact) => Some(contact),
             Self::AtSite { cause, .. } => Some(*cause),
             Self::Functional { cause, .. } => Some(cause),

@@ -241,6 +241,45 @@ fn shorter<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
     })
 }
 
+/// `line::root(&known, |velocity| ...)`
+fn root<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
+    let [known, closure] = a else {
+        return Err(missing());
+    };
+    let known = unfit(known.run(places)?.dense())?;
+    let mut stopped = None;
+    let found = line::root_of(&known.data, |velocity, momenta, derivative| {
+        let velocity = Value::of(Dense::column_of(velocity.to_vec()));
+        let both = closure.call(vec![velocity], places);
+        let told = match &both {
+            Ok(Value::List(both)) => match both.as_slice() {
+                [p, a] => p.dense().zip(a.dense()),
+                _ => None,
+            },
+            _ => None,
+        };
+        let fits = |(p, a): &(Dense<T>, Dense<T>)| {
+            (p.data.len(), a.data.len()) == (momenta.len(), derivative.len())
+        };
+        match told.filter(fits) {
+            Some((p, a)) => {
+                momenta.copy_from_slice(&p.data);
+                derivative.copy_from_slice(&a.data);
+            }
+            None => {
+                // No number is any more.
+                momenta.fill(T::from_f64(f64::NAN));
+                derivative.fill(T::from_f64(f64::NAN));
+                stopped.get_or_insert(both.err().unwrap_or_else(missing));
+            }
+        }
+    });
+    match stopped {
+        Some(exit) => Err(exit),
+        None => Ok(Value::result(found.map(|v| Value::of(Dense::column_of(v))))),
+    }
+}
+
 /// The two ends of a range; the last where none is given.
 fn range<T: Real>(
     places: &mut Places<T>,
@@ -374,6 +413,7 @@ pub(super) fn special<T: Real>(name: &str) -> Option<Special<T>> {
     Some(match name {
         "line::each" => each,
         "line::shorter" => shorter,
+        "line::root" => root,
         "slice" => slice,
         "copy_slice" => copy_slice,
         "fill_slice" => fill_slice,

@@ -327,12 +327,16 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             Value::Failed(e) => Some(Value::failed((**e).clone().cause())),
             _ => None,
         },
-        ("StepCause::Singular", 1) | ("StepCause::Factor", 1) | ("StepCause::LeftFactor", 1) => {
-            |a, _| match a.first()? {
-                Value::Failed(e) => Some(Value::failed((**e).clone().cause())),
-                _ => None,
-            }
-        }
+        (
+            "StepCause::Singular"
+            | "StepCause::Factor"
+            | "StepCause::LeftFactor"
+            | "StepCause::NoRoot",
+            1,
+        ) => |a, _| match a.first()? {
+            Value::Failed(e) => Some(Value::failed((**e).clone().cause())),
+            _ => None,
+        },
         ("StepCause::NotFinite", 1) => |a, _| {
             let what = text(a.first()?)?;
             Some(Value::failed(StepCause::NotFinite { what }))

@@ -129,8 +129,10 @@ impl Carded {
             formula: text(formula),
             ..*own
         });
-        let (kept, lost): (Vec<Invariant>, Vec<Invariant>) =
-            named.partition(|i| i.name == "energy" || model.totals().any(|t| t == i.name));
+        let (kept, lost): (Vec<Invariant>, Vec<Invariant>) = named.partition(|i| match i.name {
+            "energy" => model.has_energies(),
+            name => model.totals().any(|t| t == name),
+        });
         let mut kept = kept;
         // What functionals of all sites leave as it is, the short line does not tell.
         let of_functionals = model.conserved().filter(|_| !lattice.meshes.is_empty());

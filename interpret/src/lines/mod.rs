@@ -88,8 +88,9 @@ pub struct LineModel {
     new: Routine<f64>,
     start: Routine<f64>,
     step: Routine<f64>,
-    energies: Routine<f64>,
-    energy_sizes: Routine<f64>,
+    /// Where the energy of small steps is known.
+    energies: Option<Routine<f64>>,
+    energy_sizes: Option<Routine<f64>>,
     totals: Asked,
     total_sizes: Asked,
     observers: Asked,
@@ -143,6 +144,13 @@ impl LineModel {
         if let Some(why) = emit::refusal_of_line(&line) {
             return Err(NoLine::Form(why));
         }
+        if !line.ties.is_empty() {
+            return Err(NoLine::Form(
+                "velocities of neighbours stand in one term, and are found together: a build does that for every \
+                 number of sites, a file that is run does it for the bodies written out"
+                    .to_owned(),
+            ));
+        }
         let program = Program::read(emit::emit_line(&line, source))?;
         Ok(Self::of(&program, &model.name.text, &line)?)
     }
@@ -176,7 +184,11 @@ impl LineModel {
         let new = lower(name, "new", &[at::GIVEN, at::OUT])?;
         let start = lower(name, "start", &[at::MODEL, at::GIVEN, at::STEP])?;
         let step = lower(name, "step", &[at::MODEL, at::STATE, at::WORK])?;
-        let energies = lower(name, "energies", &[at::MODEL, at::STATE])?;
+        let has_energies = program.function(name, "energies").is_some();
+        let energies = match has_energies {
+            true => Some(lower(name, "energies", &[at::MODEL, at::STATE])?),
+            false => None,
+        };
         let mut asked = |ty: &str, names: Vec<String>, given: &[usize]| -> Result<Asked, Refused> {
             let all = names.into_iter();
             all.map(|f| Ok((f.clone(), lower(ty, &f, given)?)))
@@ -188,7 +200,10 @@ impl LineModel {
         let momenta = asked(name, momenta, &[at::MODEL, at::GIVEN, at::OUT])?;
         shared.by_size = true;
         let of = [at::MODEL, at::STATE];
-        let energy_sizes = entry(&mut shared, (name, "energies"), &of, at::FIRST)?;
+        let energy_sizes = match has_energies {
+            true => Some(entry(&mut shared, (name, "energies"), &of, at::FIRST)?),
+            false => None,
+        };
         let sized = totals.iter().map(|(f, _)| {
             let routine = entry(&mut shared, (name, f), &of, at::FIRST)?;
             Ok((f.clone(), routine))
@@ -198,8 +213,9 @@ impl LineModel {
         let of_state = totals.iter().chain(&observers).chain(&total_sizes);
         let of_state = of_state.chain(&functionals).chain(&momenta);
         let of_state = of_state.map(|(_, r)| r.places);
-        let own = [&new, &start, &step, &energies, &energy_sizes];
-        let places = own.into_iter().map(|r| r.places).chain(of_state).max();
+        let own = [&new, &start, &step].into_iter();
+        let own = own.chain(&energies).chain(&energy_sizes).map(|r| r.places);
+        let places = own.chain(of_state).max();
         Ok(Arc::new(LineModel {
             name: name.to_owned(),
             counts: lattice
@@ -231,6 +247,11 @@ impl LineModel {
     /// The name of the model.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Whether [`LineTrajectory::energies`] gives any.
+    pub fn has_energies(&self) -> bool {
+        self.energies.is_some()
     }
 
     /// The names of conserved totals, as [`LineTrajectory::total`] takes them.
@@ -416,13 +437,13 @@ impl LineTrajectory {
     /// The kinetic and the potential energy at the node.
     pub fn energies(&mut self) -> Option<[f64; 2]> {
         let model = self.model.clone();
-        self.two(&model.energies)
+        self.two(model.energies.as_ref()?)
     }
 
     /// The sums of the sizes of their terms.
     pub fn energy_sizes(&mut self) -> Option<[f64; 2]> {
         let model = self.model.clone();
-        self.two(&model.energy_sizes)
+        self.two(model.energy_sizes.as_ref()?)
             .map(|[kinetic, potential]| [kinetic.abs(), potential.abs()])
     }
 

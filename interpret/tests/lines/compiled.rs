@@ -163,6 +163,9 @@ macro_rules! compiled {
     };
 }
 
+#[path = "newton.rs"]
+pub mod newton;
+
 fn flat<const R: usize>(list: &[SMatrix<f64, R, 1>]) -> Vec<f64> {
     list.iter().flat_map(|x| x.as_slice().to_vec()).collect()
 }
@@ -519,5 +522,22 @@ pub fn all() -> Vec<Line> {
         (SINE, sine, cases(true, &pinned)),
         (ROD, rod, cases(false, &of_rod)),
         (WATER, water, water_cases),
+    ]
+}
+
+/// Those whose sites are solved by Newton's method; cards of lines are few in a process.
+pub fn by_newton() -> Vec<Line> {
+    let free = ["free", "free"];
+    vec![
+        (
+            newton::Beads::<f64>::SOURCE,
+            newton::beads,
+            cases(true, &[free]),
+        ),
+        (
+            newton::Steep::<f64>::SOURCE,
+            newton::steep,
+            cases(true, &[free, ["pinned", "free"]]),
+        ),
     ]
 }

@@ -3,13 +3,19 @@
 //! the site; what moves at a site.
 
 mod attitude;
+mod band;
+mod blocks;
 mod check;
 mod error;
+mod pivots;
+mod root;
 mod stamp;
 mod sweep;
 
 pub use attitude::Attitude;
+pub use band::{Band, Rows, Velocities};
 pub use check::{count_of, each, length_of, repeated, shorter};
 pub use error::{LineError, Place};
+pub use root::{NoRoot, root, root_of};
 pub use stamp::Stamp;
 pub use sweep::{Threads, fill, sum, total, try_each, try_fill, update};

@@ -2,7 +2,40 @@
 //! the way back.
 
 use super::action::momenta;
-use super::models;
+use super::models::{self, Linked, Quartic, Random, Wide};
+use clebsch::nalgebra::SMatrix;
+
+/// By how much the tangent map of a chain of six numbers changes `dq ^ dp`, of its largest entry squared.
+fn change_of_the_form(moved: impl Fn(Vec<Wide>, Vec<Wide>) -> [Vec<Wide>; 2]) -> f64 {
+    let mut r = Random::new(5);
+    let mut list = |from: usize| -> Vec<Wide> {
+        (0..6)
+            .map(|i| Wide::variable(r.number(), from + i))
+            .collect()
+    };
+    let [q, p] = moved(list(0), list(6));
+    let all: Vec<Wide> = q.into_iter().chain(p).collect();
+    assert_eq!(all.len(), 12);
+    let map = SMatrix::<f64, 12, 12>::from_fn(|i, j| all[i].dual[j]);
+    let form = SMatrix::<f64, 12, 12>::from_fn(|i, j| match (i + 6 == j, j + 6 == i) {
+        (true, _) => 1.0,
+        (_, true) => -1.0,
+        _ => 0.0,
+    });
+    (map.transpose() * form * map - form).amax() / map.amax().powi(2)
+}
+
+#[test]
+fn sites_that_newtons_method_solves_keep_the_symplectic_form() {
+    for (n, ends) in [(6, 0), (5, 1)] {
+        let (linked, quartic) = (Linked { n, ends }, Quartic { n, ends });
+        // Sums of some twenty products.
+        let off = change_of_the_form(|q, p| linked.moved(q, p));
+        assert!(off < 1e-14, "linked, ends {ends}: {off:e}");
+        let off = change_of_the_form(|q, p| quartic.moved(q, p));
+        assert!(off < 1e-14, "quartic, ends {ends}: {off:e}");
+    }
+}
 
 #[test]
 fn given_momenta_are_those_of_the_action() {

@@ -2,6 +2,7 @@
 //! other, and how its velocities are found when neighbours add to its momentum.
 
 use super::pull::lone_at;
+use super::tie::Tie;
 use super::{Refused, Written};
 use crate::algebra::Algebra;
 use crate::check::{self, spec::Side};
@@ -69,10 +70,34 @@ pub enum How {
         /// What the edge adds to the momentum, in velocities and both ends.
         added: Expr,
     },
+    /// Fields whose momenta are other functions of the velocities of their block: by Newton's method.
+    Newton {
+        /// The momentum, in the velocities of the block.
+        momentum: Expr,
+        /// Its derivative by each component of each velocity of the block.
+        columns: Vec<Expr>,
+        /// What the edge adds to the momentum, in velocities and both ends.
+        added: Expr,
+    },
+}
+
+impl How {
+    /// What the edge adds to the momentum, where velocities are found together.
+    pub fn added(&self) -> Option<&Expr> {
+        match self {
+            How::System { added, .. } | How::Newton { added, .. } => Some(added),
+            How::Rotation { .. } | How::Field { .. } => None,
+        }
+    }
 }
 
 /// The models of the sites that hold something that moves.
-pub(super) fn lone(model: &Model, lattice: &Lattice, part: &Written) -> Result<Vec<Lone>, Refused> {
+pub(super) fn lone(
+    model: &Model,
+    lattice: &Lattice,
+    part: &Written,
+    ties: &[Tie],
+) -> Result<Vec<Lone>, Refused> {
     let mut kinds: Vec<(usize, Sites)> = Vec::new();
     for q in &lattice.quantities {
         let at = (q.label, q.sites);
@@ -82,14 +107,14 @@ pub(super) fn lone(model: &Model, lattice: &Lattice, part: &Written) -> Result<V
     }
     kinds
         .into_iter()
-        .map(|(label, sites)| one(model, lattice, part, (label, sites)))
+        .map(|(label, sites)| one(model, lattice, (part, ties), (label, sites)))
         .collect()
 }
 
 fn one(
     model: &Model,
     lattice: &Lattice,
-    part: &Written,
+    (part, ties): (&Written, &[Tie]),
     (label, sites): (usize, Sites),
 ) -> Result<Lone, Refused> {
     let terms = part.unfolded.summands.iter().filter(|t| {
@@ -105,6 +130,28 @@ fn one(
     };
     let algebra = Algebra::new(&d.letters.symbols);
     let mut movers = Vec::new();
+    let name = |i: usize| {
+        let element = d.spec.configurations[i].element;
+        d.letters.symbols.get(element).name.as_str()
+    };
+    // What velocities of neighbours stand in is found together, of all sites.
+    let is_tied = |i: &usize| {
+        let mut parts = ties.iter().flat_map(|t| &t.parts);
+        parts.any(|p| p.on == name(*i))
+    };
+    let (tied, mut blocks): (Vec<Vec<usize>>, Vec<Vec<usize>>) =
+        blocks.into_iter().partition(|b| b.iter().any(is_tied));
+    let mut together: Vec<usize> = tied.into_iter().flatten().collect();
+    together.sort_unstable();
+    if !together.is_empty() {
+        for i in &together {
+            movers.push(Mover {
+                how: by_newton(&d, *i, &together)?,
+                name: name(*i).to_owned(),
+                index: *i,
+            });
+        }
+    }
     for block in &blocks {
         for i in block {
             let name = d
@@ -121,6 +168,9 @@ fn one(
         }
     }
     movers.sort_by_key(|m| m.index);
+    if !together.is_empty() {
+        blocks.push(together);
+    }
     Ok(Lone {
         label,
         sites,
@@ -270,7 +320,9 @@ fn how(
         let group = c.group.name(&|n| s.dim_text(n));
         Err(Refused::Form(match (c.group.kept(), c.side) {
             (Kept::Rotation | Kept::Field(_), Side::Body) | (Kept::Field(_), _) => {
-                format!("the velocity of `{name}` is found by Newton's method")
+                format!(
+                    "the velocity of `{name}` is found by Newton's method: loops over sites do that for fields"
+                )
             }
             (Kept::Rotation, _) => format!(
                 "`{name}` turns seen from space, `next({name}) = ω*{name}`: loops over sites take rotations seen from the body"
@@ -307,58 +359,91 @@ fn how(
                     form: form.clone(),
                     arrive: b.node_in.clone(),
                 }),
-                false => system(d, i, block, name),
+                false => system(d, i, block),
             }
         }
-        (Kept::Field(_), _) => system(d, i, block, name),
+        (Kept::Field(_), _) => system(d, i, block),
         _ => together(),
     }
 }
 
-/// The momentum of a field as a linear function of the velocities of its block.
-fn system(d: &Derivation, i: usize, block: &[usize], name: &str) -> Result<How, Refused> {
+/// The momentum of a field as a function of the velocities of its block, linear or not.
+fn system(d: &Derivation, i: usize, block: &[usize]) -> Result<How, Refused> {
     let s = &d.letters.symbols;
-    let refused = || {
-        Err(Refused::Form(format!(
-            "the momentum of `{name}` is not linear in the velocities"
-        )))
-    };
-    let velocity = |j: usize| Letter {
+    let moving = |e: &Expr| expr::contains_role(s, e, Role::Velocity);
+    // All of a block are solved for in one way.
+    for j in block {
+        let (_, columns) = momentum(d, *j, block)?;
+        if columns.iter().any(moving) {
+            return by_newton(d, i, block);
+        }
+    }
+    let (momentum, columns) = momentum(d, i, block)?;
+    let still: Vec<(Letter, Expr)> = block
+        .iter()
+        .map(|j| {
+            let shape = d.spec.configurations[*j].group.shape();
+            (velocity(d, *j), expr::zero(shape))
+        })
+        .collect();
+    Ok(How::System {
+        rest: expr::substitute(s, &momentum, &still),
+        columns,
+        added: added(d, i),
+    })
+}
+
+/// The same as a function whose derivative may depend on the velocities.
+fn by_newton(d: &Derivation, i: usize, block: &[usize]) -> Result<How, Refused> {
+    let (momentum, columns) = momentum(d, i, block)?;
+    Ok(How::Newton {
+        momentum,
+        columns,
+        added: added(d, i),
+    })
+}
+
+/// What the edge adds to a momentum.
+fn added(d: &Derivation, i: usize) -> Expr {
+    match &d.carries[i] {
+        Carry::Kept(added) => added.clone(),
+        Carry::Through { leave, arrive, .. } => expr::add(leave.clone(), arrive.clone()),
+    }
+}
+
+fn velocity(d: &Derivation, j: usize) -> Letter {
+    Letter {
         symbol: d.spec.configurations[j].velocity,
         shift: Shift::HERE,
-    };
+    }
+}
+
+/// The momentum of the edge that leaves a node, in the place at the node and the velocities, and its
+/// derivative by each component of each velocity of a block.
+fn momentum(d: &Derivation, i: usize, block: &[usize]) -> Result<(Expr, Vec<Expr>), Refused> {
+    let s = &d.letters.symbols;
     let momentum = expr::substitute(s, &d.balances[i].outgoing, &d.spec.end_of_edge());
     let mut columns = Vec::new();
-    let mut still = Vec::new();
     for j in block {
         let c = &d.spec.configurations[*j];
-        let shape = c.group.shape();
-        if !c.group.is_additive() {
-            return refused();
-        }
-        let Some(directions) = expr::axes(shape) else {
-            return refused();
+        let directions = match c.group.is_additive() {
+            true => expr::axes(c.group.shape()),
+            false => None,
+        };
+        let Some(directions) = directions else {
+            return Err(Refused::Form(format!(
+                "the velocity of `{}` is found together with that of `{}`: loops over sites take fields so",
+                s.get(d.spec.configurations[i].element).name,
+                s.get(c.element).name
+            )));
         };
         for direction in directions {
             columns.push(expr::directional(
                 s,
                 &momentum,
-                &[(velocity(*j), direction)],
+                &[(velocity(d, *j), direction)],
             ));
         }
-        still.push((velocity(*j), expr::zero(shape)));
     }
-    let moving = |e: &Expr| expr::contains_role(s, e, Role::Velocity);
-    if columns.iter().any(moving) {
-        return refused();
-    }
-    let added = match &d.carries[i] {
-        Carry::Kept(added) => added.clone(),
-        Carry::Through { leave, arrive, .. } => expr::add(leave.clone(), arrive.clone()),
-    };
-    Ok(How::System {
-        rest: expr::substitute(s, &momentum, &still),
-        columns,
-        added,
-    })
+    Ok((momentum, columns))
 }

@@ -10,12 +10,14 @@ mod pull;
 mod site;
 #[cfg(test)]
 mod tests;
+mod tie;
 mod total;
 
 pub use lone::{How, Lone, Mover};
 pub use meshed::Meshed;
 pub use pull::{EndTerm, Force, Pull};
 pub use site::{BASE, Sited};
+pub use tie::{Part, Tie};
 pub use total::Total;
 
 use crate::algebra::Rational;
@@ -37,6 +39,8 @@ pub struct Line {
     pub lone: Vec<Lone>,
     /// What neighbours add to momenta, terms of equal ranges together.
     pub pulls: Vec<Pull>,
+    /// What terms of neighbours in which velocities stand add to momenta.
+    pub ties: Vec<Tie>,
     /// What end conditions add.
     pub ends: Vec<EndTerm>,
     /// What terms with functionals of all sites add.
@@ -83,8 +87,8 @@ impl Line {
         stands_alone(model, &lattice)?;
         let choice = pipeline::representative(model, &lattice)?;
         let representative = written(model, &lattice, choice)?;
-        let lone = lone::lone(model, &lattice, &representative)?;
-        let pulls = pull::pulls(&lattice, &representative)?;
+        let (pulls, ties) = pull::pulls(&lattice, &representative)?;
+        let lone = lone::lone(model, &lattice, &representative, &ties)?;
         let meshed = meshed::meshed(&lattice, &representative)?;
         let ends = pull::ends(model, &lattice, &representative.choice)?;
         let mut totals = total::totals(model, &lattice, &representative)?;
@@ -101,18 +105,14 @@ impl Line {
             !densities.any(|(.., e)| representative.is_turned_by_walls(&lattice, e))
         });
         total::name_apart(&lattice, &mut totals);
-        let (all, none) = (Rational::integer(1), Rational::integer(0));
-        let shares = match representative.d.spec.node_rule {
-            NodeRule::Symmetric => [Rational::HALF; 2],
-            NodeRule::Incoming => [all, none],
-            NodeRule::Outgoing => [none, all],
-        };
+        let shares = representative.shares();
         let line = Line {
             model: model.clone(),
             lattice,
             representative,
             lone,
             pulls,
+            ties,
             ends,
             meshed,
             totals,
@@ -139,7 +139,7 @@ impl Line {
         for (lone, mover) in held.iter().filter_map(|name| self.mover(name)) {
             let block = lone.blocks.iter().find(|b| b.contains(&mover.index));
             let members = block.map_or(1, Vec::len);
-            if matches!(mover.how, How::System { .. }) && members > 1 {
+            if mover.how.added().is_some() && members > 1 {
                 let words = format!(
                     "an end holds `{}`, whose velocity is found together with others",
                     mover.name
@@ -148,6 +148,12 @@ impl Line {
             }
         }
         Ok(())
+    }
+
+    /// Whether velocities of neighbours stand in the momentum of a configuration.
+    pub fn is_tied(&self, name: &str) -> bool {
+        let mut parts = self.ties.iter().flat_map(|t| &t.parts);
+        parts.any(|p| p.on == name)
     }
 
     /// What moves, by name.
@@ -159,7 +165,22 @@ impl Line {
 
     /// How many sites beyond the last one terms look.
     pub fn beyond(&self) -> usize {
-        self.pulls.iter().map(|p| p.width).max().unwrap_or(0)
+        let tied = self.ties.iter().map(|t| t.width);
+        let pulled = self.pulls.iter().map(|p| p.width);
+        pulled.chain(tied).max().unwrap_or(0)
+    }
+}
+
+impl Written {
+    /// What of a nodal term acts at the end of the edge that comes to its node, and what of it at the start
+    /// of the edge that leaves.
+    fn shares(&self) -> [Rational; 2] {
+        let (all, none) = (Rational::integer(1), Rational::integer(0));
+        match self.d.spec.node_rule {
+            NodeRule::Symmetric => [Rational::HALF; 2],
+            NodeRule::Incoming => [all, none],
+            NodeRule::Outgoing => [none, all],
+        }
     }
 }
 

@@ -47,12 +47,47 @@ impl Line {
         let next = expr::shift_time(s, &pulled, Shift::NEXT.time);
         let [arriving, leaving] = self.shares;
         let algebra = Algebra::new(s);
-        let zero = |e: Expr| algebra.is_zero(&d.defined(&e));
+        let tied = self.tied(&mover.name, site).ok_or_else(refused)?;
+        let zero = |e: Expr| {
+            let e = match tied.is_some() {
+                true => expr::substitute(s, &e, &d.spec.end_of_edge()),
+                false => e,
+            };
+            algebra.is_zero(&d.defined(&e))
+        };
+        let without = |e: Expr, own: usize| match &tied {
+            Some(both) => expr::sub(e, both[own].clone()),
+            None => e,
+        };
         let out = expr::sub(whole.outgoing.clone(), here(&own.outgoing)?);
         let into = expr::sub(whole.incoming.clone(), here(&own.incoming)?);
+        let (out, into) = (without(out, 0), without(into, 1));
         let equal = zero(expr::add(out, expr::scale(leaving, pulled)))
             && zero(expr::sub(into, expr::scale(arriving, next)));
         equal.then_some(()).ok_or_else(refused)
+    }
+
+    /// What terms with velocities of neighbours add to the momentum of the edge that leaves, and of the one
+    /// that comes.
+    #[allow(clippy::option_option)] // Outside: whether its letters exist. Inside: whether there are such terms.
+    fn tied(&self, name: &str, site: usize) -> Option<Option<[Expr; 2]>> {
+        let mut out: Option<[Expr; 2]> = None;
+        for own in self
+            .ties
+            .iter()
+            .flat_map(|t| &t.parts)
+            .filter(|p| p.on == name)
+        {
+            let by =
+                isize::try_from(site).ok()? - isize::try_from(own.site + super::site::BASE).ok()?;
+            let moved = |e: &Expr| self.representative.moved(e, by);
+            let (leaving, coming) = (moved(&own.momentum())?, moved(&own.incoming)?);
+            out = Some(match out {
+                None => [leaving, coming],
+                Some([a, b]) => [expr::add(a, leaving), expr::add(b, coming)],
+            });
+        }
+        Some(out)
     }
 
     /// What neighbours add at a site of the representative.

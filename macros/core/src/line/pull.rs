@@ -3,6 +3,7 @@
 //! node in time, on covectors of the side of each configuration.
 
 use super::site::BASE;
+use super::tie::{self, Tie};
 use super::{Refused, Written, written};
 use crate::derive::action;
 use crate::derive::balance::{pairing, shorter};
@@ -73,48 +74,112 @@ pub(super) fn lone_at(summand: &Summand) -> Option<Sites> {
     (range.from == 0 && range.to == last).then_some(*sites)
 }
 
-/// The terms of neighbours.
-pub(super) fn pulls(lattice: &Lattice, part: &Written) -> Result<Vec<Pull>, Refused> {
+/// A term with the range of its sites, letters of the first one at the base of the representative.
+pub(super) struct Placed {
+    /// The label.
+    pub label: usize,
+    /// The first index of an open line.
+    pub from: usize,
+    /// The last one, less the number of segments.
+    pub to: isize,
+    /// How far its letters stand apart.
+    pub width: usize,
+    /// The term.
+    pub term: Expr,
+}
+
+/// The term of a summand in its range; none where it holds no letter of a site, and is constant.
+fn placed(
+    lattice: &Lattice,
+    part: &Written,
+    summand: &Summand,
+    term: &Expr,
+) -> Result<Option<Placed>, Refused> {
+    let Some(range) = summand.range else {
+        return Ok(None);
+    };
+    let first = summand.letters.iter().map(|(_, o)| *o).min().unwrap_or(0);
+    let at = isize::try_from(summand.site).unwrap_or(0) + first;
+    let by = isize::try_from(BASE).unwrap_or(0) - at;
+    let Some(term) = part.moved(term, by) else {
+        return Err(Refused::Form(
+            "a term reaches beyond the sites shown".to_owned(),
+        ));
+    };
+    if first != 0 && lattice.periodic.is_some() && !keeps(lattice, part, &term) {
+        return Err(Refused::Form(
+            "a term of the site before changes when fields grow by their offsets".to_owned(),
+        ));
+    }
+    let from = usize::try_from(range.from + first)
+        .map_err(|_| Refused::Form("a term begins before the line".to_owned()))?;
+    Ok(Some(Placed {
+        label: range.label,
+        from,
+        to: range.to + first,
+        width: summand.width,
+        term,
+    }))
+}
+
+/// The terms of neighbours: those at a node, and those in which velocities stand.
+pub(super) fn pulls(lattice: &Lattice, part: &Written) -> Result<(Vec<Pull>, Vec<Tie>), Refused> {
     let mut out: Vec<Pull> = Vec::new();
+    let mut ties: Vec<Tie> = Vec::new();
     let inner = part.unfolded.summands.iter().filter(|t| t.end.is_none());
     for summand in inner.filter(|t| lone_at(t).is_none() && !t.of_functionals) {
-        // What holds no letter of a site is constant.
-        let Some(range) = summand.range else { continue };
-        let term = elaborated(part, summand)?;
-        let first = summand.letters.iter().map(|(_, o)| *o).min().unwrap_or(0);
-        let at = isize::try_from(summand.site).unwrap_or(0) + first;
-        let by = isize::try_from(BASE).unwrap_or(0) - at;
-        let Some(term) = part.moved(&term, by) else {
-            return Err(Refused::Form(
-                "a term reaches beyond the sites shown".to_owned(),
-            ));
-        };
-        if first != 0 && lattice.periodic.is_some() && !keeps(lattice, part, &term) {
-            return Err(Refused::Form(
-                "a term of the site before changes when fields grow by their offsets".to_owned(),
-            ));
+        let [edge, nodal] = in_two(part, summand)?;
+        if !edge.is_zero()
+            && let Some(placed) = placed(lattice, part, summand, &edge)?
+        {
+            tie::put(&mut ties, part, placed);
         }
-        let from = usize::try_from(range.from + first)
-            .map_err(|_| Refused::Form("a term begins before the line".to_owned()))?;
-        let to = range.to + first;
+        if nodal.is_zero() {
+            continue;
+        }
+        let Some(placed) = placed(lattice, part, summand, &nodal)? else {
+            continue;
+        };
         let known = out
             .iter_mut()
-            .find(|p| p.label == range.label && p.from == from && p.to == to);
+            .find(|p| p.label == placed.label && p.from == placed.from && p.to == placed.to);
         match known {
             Some(pull) => {
-                pull.width = pull.width.max(summand.width);
-                pull.terms = expr::add(pull.terms.clone(), term);
+                pull.width = pull.width.max(placed.width);
+                pull.terms = expr::add(pull.terms.clone(), placed.term);
             }
             None => out.push(Pull {
-                label: range.label,
-                from,
-                to,
-                width: summand.width,
+                label: placed.label,
+                from: placed.from,
+                to: placed.to,
+                width: placed.width,
                 forces: Vec::new(),
-                terms: term,
+                terms: placed.term,
             }),
         }
     }
+    for tie in &mut ties {
+        let same = |p: &Pull| (p.label, p.from, p.to) == (tie.label, tie.from, tie.to);
+        let known = out.iter().position(same);
+        let at_node = tie::settle(part, tie, known.and_then(|i| out.get(i)).map(|p| &p.terms));
+        match known {
+            Some(i) if at_node.is_zero() => {
+                out.remove(i);
+            }
+            Some(i) => out[i].terms = at_node,
+            None if at_node.is_zero() => {}
+            None => out.push(Pull {
+                label: tie.label,
+                from: tie.from,
+                to: tie.to,
+                width: tie.width,
+                forces: Vec::new(),
+                terms: at_node,
+            }),
+        }
+    }
+    ties.retain(|tie| !tie.terms.is_zero());
+    tie::finish(lattice, part, &mut ties)?;
     for pull in &mut out {
         pull.terms = defined(part, &pull.terms)?;
         pull.forces = forces(part, &pull.terms)
@@ -125,7 +190,7 @@ pub(super) fn pulls(lattice: &Lattice, part: &Written) -> Result<Vec<Pull>, Refu
             })
             .collect();
     }
-    Ok(out)
+    Ok((out, ties))
 }
 
 /// Whether a term stays as it is when all copies of a field grow alike, as they do once around a ring.
@@ -147,21 +212,27 @@ fn keeps(lattice: &Lattice, part: &Written, term: &Expr) -> bool {
     })
 }
 
-/// A summand as it is shown, which must stand at one node in time.
-pub(super) fn elaborated(part: &Written, summand: &Summand) -> Result<Expr, Refused> {
+/// A summand as it is shown: its part that stands on the edge, and the one at a node.
+fn in_two(part: &Written, summand: &Summand) -> Result<[Expr; 2], Refused> {
     let found = check::numbers(&part.unfolded.model, &[&summand.shown]);
     let Some(Some(term)) = found.into_iter().next() else {
         return Err(Refused::Form("a term of neighbours is not read".to_owned()));
     };
-    let s = &part.d.letters.symbols;
-    let (edge, nodal) = action::split(s, &term);
-    if edge.is_zero() {
-        return Ok(nodal);
+    let (edge, nodal) = action::split(&part.d.letters.symbols, &term);
+    Ok([edge, nodal])
+}
+
+/// A summand as it is shown, which must stand at one node in time.
+pub(super) fn elaborated(part: &Written, summand: &Summand) -> Result<Expr, Refused> {
+    let [edge, nodal] = in_two(part, summand)?;
+    match edge.is_zero() {
+        true => Ok(nodal),
+        false => Err(Refused::Form(
+            "a kinetic term stands in an end condition: let it stand at all sites, with masses that are given at \
+             each"
+                .to_owned(),
+        )),
     }
-    Err(Refused::Form(match summand.letters.len() {
-        1 => "a kinetic term stands at some of the sites only: let it stand at all, with masses that are given at each (half of one at an end)".to_owned(),
-        _ => "velocities of neighbours stand in one term: they are solved for together".to_owned(),
-    }))
 }
 
 /// Advected quantities by the configurations that carry them.

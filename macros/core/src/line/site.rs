@@ -1,6 +1,7 @@
 //! Letters of a lattice that is written out, by the quantity and the site they are copies of.
 
 use super::{Lone, Written};
+use crate::check::spec::Configuration;
 use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr, Letter};
 use crate::lattice::copy_name;
@@ -12,7 +13,10 @@ pub const BASE: usize = 1;
 /// What stands before the name of a configuration to mean its node momentum.
 const MOMENTUM: &str = "momentum of ";
 
-/// A copy of a quantity, or the node momentum of a configuration.
+/// What stands before the name of a field to mean its velocity.
+const VELOCITY: &str = "velocity of ";
+
+/// A copy of a quantity, the node momentum of a configuration, or the velocity of a field.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Sited {
     /// The name of the quantity as stated.
@@ -24,7 +28,13 @@ pub struct Sited {
 impl Sited {
     /// The name of what is declared.
     pub fn plain(&self) -> &str {
-        self.momentum_of().unwrap_or(&self.of)
+        let of = self.momentum_of().or_else(|| self.velocity_of());
+        of.unwrap_or(&self.of)
+    }
+
+    /// The field whose velocity it is.
+    pub fn velocity_of(&self) -> Option<&str> {
+        self.of.strip_prefix(VELOCITY)
     }
 
     /// The configuration whose momentum it is.
@@ -42,12 +52,19 @@ impl Written {
             return Some(Sited { of, site });
         }
         let momenta = &self.d.letters.node_momentum;
-        let i = momenta.iter().position(|m| *m == symbol)?;
-        let c = self.d.spec.configurations.get(i)?;
+        let all = &self.d.spec.configurations;
+        let (what, i) = match momenta.iter().position(|m| *m == symbol) {
+            Some(i) => (MOMENTUM, i),
+            None => {
+                let is_own = |c: &Configuration| c.velocity == symbol && c.group.is_additive();
+                (VELOCITY, all.iter().position(is_own)?)
+            }
+        };
+        let c = all.get(i)?;
         let element = &self.d.letters.symbols.get(c.element).name;
         let copy = self.unfolded.copy(element)?;
         Some(Sited {
-            of: format!("{MOMENTUM}{}", copy.of),
+            of: format!("{what}{}", copy.of),
             site: copy.site,
         })
     }
@@ -55,13 +72,17 @@ impl Written {
     /// The copy of a quantity at a site.
     pub fn copy(&self, of: &str, site: usize) -> Option<SymbolId> {
         let s = &self.d.letters.symbols;
-        let Some(element) = of.strip_prefix(MOMENTUM) else {
+        let (momentum, velocity) = (of.strip_prefix(MOMENTUM), of.strip_prefix(VELOCITY));
+        let Some(element) = momentum.or(velocity) else {
             return s.find(&copy_name(of, site));
         };
         let element = s.find(&copy_name(element, site))?;
         let mut all = self.d.spec.configurations.iter();
         let i = all.position(|c| c.element == element)?;
-        self.d.letters.node_momentum.get(i).copied()
+        match velocity {
+            Some(_) => Some(self.d.spec.configurations.get(i)?.velocity),
+            None => self.d.letters.node_momentum.get(i).copied(),
+        }
     }
 
     /// An expression of one site by itself in the letters of a copy of it, momenta among them.

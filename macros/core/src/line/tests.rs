@@ -34,13 +34,27 @@ fn shipped_lattices_are_programs() {
 }
 
 #[test]
-fn velocities_of_neighbours_are_refused() {
-    let text = "model Chain { label i in 0..N; param m, k: Real; field q: Real at nodes;
+fn velocities_of_neighbours_are_found_together() {
+    let text = "model Chain { label i in 0..N; periodic; param m, k: Real; field q: Real at nodes;
         lagrangian = m*(next(q) - q)^2/(2*h) + (k/h)*(next(q) - q)*(next(next(q, i)) - next(q, i)); }";
+    match line(text) {
+        Ok(line) => {
+            assert_eq!((line.ties.len(), line.pulls.len()), (1, 0));
+            assert!(matches!(line.lone[0].movers[0].how, How::Newton { .. }));
+        }
+        Err(refused) => panic!("{refused:?}"),
+    }
+}
+
+#[test]
+fn velocities_of_sites_that_are_no_neighbours_are_refused() {
+    let text = "model Chain { label i in 0..N; param m, k: Real; field q: Real at nodes;
+        lagrangian = m*(next(q) - q)^2/(2*h)
+            + (k/h)*(next(prev(q, i)) - prev(q, i))*(next(next(q, i)) - next(q, i)); }";
     let Err(Refused::Form(why)) = line(text) else {
-        panic!("a program of velocities of neighbours");
+        panic!("a program of velocities two sites apart");
     };
-    assert!(why.contains("velocities of neighbours"), "{why}");
+    assert!(why.contains("no neighbours"), "{why}");
 }
 
 #[test]

@@ -9,11 +9,11 @@ use clebsch::nalgebra::Vector2;
 use clebsch_models::fluids::shallow_water_2d::*;
 use clebsch_models::fluids::shallow_water_2d_regularised::*;
 
-type Place = Vector2<D>;
+pub(super) type Place = Vector2<D>;
 
 /// Edges of the cell of a particle on the unit torus: their ends, seen from the particle, the neighbour and how far
 /// it is.
-fn cell(at: &[Place], a: usize) -> Vec<(Place, Place, usize, Place)> {
+pub(super) fn cell(at: &[Place], a: usize) -> Vec<(Place, Place, usize, Place)> {
     let half = c(0.5);
     // Sides of the square belong to no neighbour; none is left where there are enough particles.
     let corner = |x: f64, y: f64| Vector2::new(c(x) * half, c(y) * half);
@@ -65,7 +65,7 @@ fn cell(at: &[Place], a: usize) -> Vec<(Place, Place, usize, Place)> {
     edges
 }
 
-fn area(edges: &[(Place, Place, usize, Place)]) -> D {
+pub(super) fn area(edges: &[(Place, Place, usize, Place)]) -> D {
     let each = edges
         .iter()
         .map(|(p, q, ..)| (p[0] * q[1] - p[1] * q[0]) * c(0.5));
@@ -119,14 +119,14 @@ pub struct Smoothed {
 
 const G: f64 = 0.9;
 const F: f64 = 0.7;
-const DT: f64 = 0.01;
+pub(super) const DT: f64 = 0.01;
 
-fn mass(n: usize, i: usize) -> f64 {
+pub(super) fn mass(n: usize, i: usize) -> f64 {
     (1.0 + 0.2 * (i % 3) as f64) / n as f64
 }
 
 /// Places that are as far apart as they can be drawn.
-fn places(n: usize, r: &mut Random) -> Vec<Vector2<f64>> {
+pub(super) fn places(n: usize, r: &mut Random) -> Vec<Vector2<f64>> {
     let mut out: Vec<Vector2<f64>> = Vec::new();
     let near = 0.6 / (n as f64).sqrt();
     let far = |x: &Vector2<f64>, y: &Vector2<f64>| {
@@ -144,21 +144,21 @@ fn places(n: usize, r: &mut Random) -> Vec<Vector2<f64>> {
     out
 }
 
-fn momenta(n: usize, r: &mut Random) -> Vec<Vector2<f64>> {
+pub(super) fn momenta(n: usize, r: &mut Random) -> Vec<Vector2<f64>> {
     let size = 0.3 / n as f64;
     (0..n)
         .map(|_| Vector2::new(size * r.number(), size * r.number()))
         .collect()
 }
 
-fn seen(x: &[Vector2<f64>]) -> Configuration<f64> {
+pub(super) fn seen(x: &[Vector2<f64>]) -> Configuration<f64> {
     Configuration {
         x: x.iter().flat_map(|x| [x[0], x[1]]).collect(),
         r: Vec::new(),
     }
 }
 
-fn at(q: &[D]) -> Vec<Place> {
+pub(super) fn at(q: &[D]) -> Vec<Place> {
     q.chunks(2).map(|x| Vector2::new(x[0], x[1])).collect()
 }
 

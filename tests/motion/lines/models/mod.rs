@@ -1,30 +1,42 @@
 //! The lines that are tried: their steppers, random states, and their actions as sums typed by hand.
 
 use super::action::{Configuration, D};
+use clebsch::Dual;
 use clebsch::nalgebra::{Matrix3, Vector3};
 
+mod bent;
+mod beta;
 mod cells;
 mod charges;
 pub mod cloud;
 mod dense;
 pub mod grid;
+mod linked;
 mod named;
+mod quartic;
 mod rod;
 mod sine;
 mod toda;
 mod tops;
 mod water;
 
+pub use bent::Bent;
+pub use beta::Beta;
 pub use cells::{Cells, Smoothed};
 pub use charges::Charges;
 pub use cloud::Cloud;
 pub use grid::{Basin, Plane};
+pub use linked::{Linked, Woven};
 pub use named::Named;
+pub use quartic::Quartic;
 pub use rod::Rod;
 pub use sine::Sine;
 pub use toda::Toda;
 pub use tops::Tops;
 pub use water::Water;
+
+/// A number with derivatives by the places and momenta of six sites.
+pub type Wide = Dual<12>;
 
 /// A line that is tried.
 pub trait Line {
@@ -120,7 +132,18 @@ pub fn all(n: usize) -> Vec<Box<dyn Line>> {
     if n >= 5 {
         out.push(Box::new(Cells { n }));
         out.push(Box::new(Smoothed { n }));
+        out.push(Box::new(Beta { n }));
     }
+    for ring in [false, true] {
+        out.push(Box::new(Bent { n, ring }));
+    }
+    let linked = (0..4).map(|ends| Linked { n, ends });
+    out.extend(linked.map(|line| Box::new(line) as Box<dyn Line>));
+    for ring in [false, true] {
+        out.push(Box::new(Woven { n, ring }));
+    }
+    let quartic = (0..4).map(|ends| Quartic { n, ends });
+    out.extend(quartic.map(|line| Box::new(line) as Box<dyn Line>));
     out.push(Box::new(Named { n, end: false }));
     out.push(Box::new(Named { n, end: true }));
     let sine = (0..5).filter(|ends| n > 1 || *ends < 4);

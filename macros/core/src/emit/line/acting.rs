@@ -1,10 +1,11 @@
 //! Kernels of what acts on a site at a node: its own potential and what neighbours add, before the node
 //! and after it; of blocks of fields, what the edge adds.
 
-use super::locals::{Places, step};
+use super::locals::{Known, Places, step};
 use super::pulls::{field, front};
 use super::{Lines, Moving, number};
 use crate::algebra::Rational;
+use crate::emit::expression::Bindings;
 use crate::expr::{self, Expr};
 use crate::line::How;
 use proc_macro2::{Ident, TokenStream};
@@ -27,7 +28,7 @@ fn own(m: &Moving) -> [Expr; 2] {
     match &m.mover.how {
         How::Rotation { leave, arrive, .. } => [at_node(arrive), d.defined(leave)],
         How::Field { form, arrive } => [at_node(arrive), d.defined(&expr::neg(form.rest.clone()))],
-        How::System { .. } => {
+        How::System { .. } | How::Newton { .. } => {
             let shape = d.balances[m.mover.index].outgoing.shape();
             [expr::zero(shape), expr::zero(shape)]
         }
@@ -159,7 +160,7 @@ fn one(l: &Lines, m: Moving) -> TokenStream {
 
 /// What the edge adds to a momentum that is found together with others.
 fn added(l: &Lines, m: Moving) -> TokenStream {
-    let How::System { added, .. } = &m.mover.how else {
+    let Some(added) = m.mover.how.added() else {
         return TokenStream::new();
     };
     let d = m.outline();
@@ -180,27 +181,7 @@ fn added(l: &Lines, m: Moving) -> TokenStream {
     else {
         return TokenStream::new();
     };
-    let mut row = 0;
-    let mut velocities = TokenStream::new();
-    for o in members {
-        let c = &d.spec.configurations[o.mover.index];
-        let letter = expr::Letter {
-            symbol: c.velocity,
-            shift: expr::Shift::HERE,
-        };
-        let (at_row, rows) = (number(row), number(o.components()));
-        row += o.components();
-        if !letters.iter().any(|k| k.letter == letter) {
-            continue;
-        }
-        let local = crate::emit::names::variable(s, c.velocity);
-        let value = match o.is_number() {
-            true => quote!(velocity[#at_row]),
-            false => quote!(velocity.fixed_rows::<#rows>(#at_row).into_owned()),
-        };
-        velocities.extend(quote!(let #local = #value;));
-        bindings.bind(letter, local);
-    }
+    let velocities = velocities(members, &letters, &mut bindings);
     let (lets, results) = l.program(s, &wanted, &bindings);
     let value = m.array(results.into_iter().next().unwrap_or_default());
     let size = number(*n);
@@ -216,4 +197,35 @@ fn added(l: &Lines, m: Moving) -> TokenStream {
             #value
         }
     }
+}
+
+/// Lets that take the velocities of a block apart, those among `letters`, and their bindings.
+pub(super) fn velocities(
+    members: &[Moving],
+    letters: &[Known],
+    bindings: &mut Bindings,
+) -> TokenStream {
+    let mut row = 0;
+    let mut out = TokenStream::new();
+    for o in members {
+        let d = o.outline();
+        let c = &d.spec.configurations[o.mover.index];
+        let letter = expr::Letter {
+            symbol: c.velocity,
+            shift: expr::Shift::HERE,
+        };
+        let (at_row, rows) = (number(row), number(o.components()));
+        row += o.components();
+        if !letters.iter().any(|k| k.letter == letter) {
+            continue;
+        }
+        let local = crate::emit::names::variable(&d.letters.symbols, c.velocity);
+        let value = match o.is_number() {
+            true => quote!(velocity[#at_row]),
+            false => quote!(velocity.fixed_rows::<#rows>(#at_row).into_owned()),
+        };
+        out.extend(quote!(let #local = #value;));
+        bindings.bind(letter, local);
+    }
+    out
 }

@@ -38,6 +38,15 @@ pub(in crate::emit) fn refusal(line: &Line) -> Option<String> {
     if all.any(|found| found.is_none()) {
         return Some("a function of velocities has a domain".to_owned());
     }
+    let tied = |terms: &Expr| {
+        let asked = asked_of(part, std::slice::from_ref(terms));
+        asked.is_none_or(|list| list.iter().any(|t| !t.constant))
+    };
+    if line.ties.iter().any(|t| tied(&t.terms)) {
+        return Some(
+            "a function with a domain stands in one term with velocities of neighbours".to_owned(),
+        );
+    }
     let at_end = |e: &EndTerm| {
         let terms = std::slice::from_ref(&e.terms);
         let asked = tested(&e.symbols, &part.spec.time_index, terms);
@@ -76,7 +85,14 @@ fn asked(l: &Lines) -> Vec<Asked> {
         let quantity = pull.forces.first()?.on.clone();
         let terms = std::slice::from_ref(&pull.terms);
         let letters = |values: &[Expr]| known(l, values);
-        one(l, d, terms, range_of(l, pull), quantity, &letters)
+        one(
+            l,
+            d,
+            terms,
+            range_of(l, pull.label, pull.from, pull.to),
+            quantity,
+            &letters,
+        )
     });
     lone.chain(pulls).collect()
 }
@@ -190,6 +206,9 @@ pub(super) fn of_parameters(l: &Lines) -> TokenStream {
     }
     for pull in &l.line.pulls {
         each(part, std::slice::from_ref(&pull.terms), false);
+    }
+    for tie in &l.line.ties {
+        each(part, std::slice::from_ref(&tie.terms), false);
     }
     out
 }

@@ -26,6 +26,10 @@ pub(super) fn energy(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
 /// `energies` and `energy`, where every part has a limit of small steps.
 fn energies(l: &Lines, of_meshes: Option<&OfMeshes>) -> Option<TokenStream> {
     let [places, momenta, state] = ["Places", "Momenta", "State"].map(|suffix| l.item(suffix));
+    if !l.line.ties.is_empty() {
+        // The velocities of given momenta are those of all sites together.
+        return None;
+    }
     let part = &l.line.representative;
     let mut kernels = TokenStream::new();
     let (mut kinetic, mut potential) = (Vec::new(), Vec::new());
@@ -73,7 +77,7 @@ fn energies(l: &Lines, of_meshes: Option<&OfMeshes>) -> Option<TokenStream> {
                 #(#results)*
             }
         });
-        let range = range_of(l, pull);
+        let range = range_of(l, pull.label, pull.from, pull.to);
         potential.push(quote!({
             #range
             line::sum(last - first, |i| self.#kernel(first + i, at))

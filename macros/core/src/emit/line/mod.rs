@@ -15,6 +15,7 @@ mod pulls;
 mod solved;
 mod state;
 mod step;
+mod tied;
 mod unique;
 mod walls;
 
@@ -57,6 +58,7 @@ pub fn emit_line(line: &Line, source: &str) -> TokenStream {
         step::step(&l, of_meshes, walls.as_ref().map(|w| &w.call)),
         pulls::pulls(&l),
         solved::solved(&l),
+        tied::tied(&l),
         acting::acting(&l),
         energy::energy(&l, of_meshes),
         of_meshes.map(|m| m.items.clone()).unwrap_or_default(),
@@ -162,9 +164,7 @@ impl Moving<'_> {
 
     /// The block that it belongs to, where several velocities or components are found together.
     fn system(&self) -> Option<&[usize]> {
-        if !matches!(self.mover.how, How::System { .. }) {
-            return None;
-        }
+        self.mover.how.added()?;
         let mut blocks = self.lone.blocks.iter();
         let own = blocks.find(|b| b.contains(&self.mover.index))?;
         Some(own.as_slice())

@@ -144,9 +144,9 @@ pub(super) fn known(l: &Lines, values: &[Expr]) -> Vec<Known> {
 }
 
 /// `let (first, last)`: the indices of a term, the one after the last.
-pub(super) fn range_of(l: &Lines, pull: &Pull) -> TokenStream {
-    let count = l.count_field(pull.label);
-    let last = match (pull.to, pull.to.unsigned_abs()) {
+pub(super) fn range_of(l: &Lines, label: usize, from: usize, to: isize) -> TokenStream {
+    let count = l.count_field(label);
+    let last = match (to, to.unsigned_abs()) {
         (-1, _) => quote!(self.sites.#count),
         (..-1, by) => {
             let by = number(by - 1);
@@ -157,21 +157,21 @@ pub(super) fn range_of(l: &Lines, pull: &Pull) -> TokenStream {
             quote!((self.sites.#count + #by))
         }
     };
-    let from = number(pull.from);
+    let start = number(from);
     // A line may be too short for any such term.
-    let last = match pull.from {
+    let last = match from {
         0 => last,
-        _ => quote!(#last.max(#from)),
+        _ => quote!(#last.max(#start)),
     };
-    let of_line = l.line.lattice.line == Some(pull.label);
+    let of_line = l.line.lattice.line == Some(label);
     match (of_line, l.line.lattice.periodic.is_some()) {
         (true, true) => quote! {
             let (first, last) = match self.is_ring() {
                 true => (0, self.sites.#count),
-                false => (#from, #last),
+                false => (#start, #last),
             };
         },
-        (true, false) => quote!(let (first, last) = (#from, #last);),
+        (true, false) => quote!(let (first, last) = (#start, #last);),
         (false, _) => quote!(let (first, last) = (0, self.sites.#count);),
     }
 }
@@ -188,7 +188,7 @@ fn sweep(l: &Lines) -> TokenStream {
         let front = number(front(pull));
         let count = l.count_field(pull.label);
         let of_line = l.line.lattice.line == Some(pull.label);
-        let range = range_of(l, pull);
+        let range = range_of(l, pull.label, pull.from, pull.to);
         let kernel = quote! {
             line::fill(self.threads, &mut pulls.#field[first + #front..last + #front], |i| {
                 self.#field(#step, first + i, at)

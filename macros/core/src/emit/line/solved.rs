@@ -1,12 +1,14 @@
 //! Kernels of the velocities of a site: from the momentum that leaves a node to the place at the next
 //! one.
 
-use super::locals::step;
+use super::acting;
+use super::locals::{Places, step};
 use super::{Lines, Moving, number};
 use crate::emit::blocks::linear_solution;
 use crate::emit::element;
-use crate::expr::Expr;
+use crate::expr::{self, Expr};
 use crate::line::How;
+use crate::schedule;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
@@ -47,11 +49,19 @@ pub(super) fn solved(l: &Lines) -> TokenStream {
     let each = l.moving().map(|m| match &m.mover.how {
         How::Rotation { .. } => rotation(l, m),
         How::Field { form, .. } => field(l, m, &[&form.left, &form.right]),
-        How::System { .. } => TokenStream::new(),
+        How::System { .. } | How::Newton { .. } => TokenStream::new(),
     });
     let each: Vec<TokenStream> = each.collect();
     let systems = l.systems();
-    let systems = systems.iter().map(|(_, n, members)| system(l, *n, members));
+    let systems = systems.iter().map(|(_, n, members)| {
+        let by_newton = members
+            .first()
+            .map(|m| matches!(m.mover.how, How::Newton { .. }));
+        match by_newton {
+            Some(true) => newton(l, *n, members),
+            _ => system(l, *n, members),
+        }
+    });
     quote!(impl<T: Real> #name<T> { #(#each)* #(#systems)* })
 }
 
@@ -174,6 +184,100 @@ fn system(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
             let mut known = SVector::<T, #size>::zeros();
             #fill
             left_sided(&a, &known, #what).map(|x| x.matrix()).map_err(StepCause::Singular)
+        }
+    }
+}
+
+/// The velocities of a block whose momenta are not linear in them, stacked: the kernel, and that of the momenta
+/// with their derivative.
+fn newton(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
+    let Some(first) = members.first() else {
+        return TokenStream::new();
+    };
+    let d = first.outline();
+    let s = &d.letters.symbols;
+    let (kernel, places, edges) = (kernel(first), l.item("Places"), l.item("Edges"));
+    let momenta = format_ident!("edge_momenta_{}", first.mover.name);
+    let h = step(d);
+    let mut values: Vec<Expr> = Vec::new();
+    for m in members {
+        if let How::Newton {
+            columns, momentum, ..
+        } = &m.mover.how
+        {
+            let own = columns.iter().chain([momentum]);
+            values.extend(own.map(|e| expr::factored(s, &schedule::displaced(s, &d.defined(e)))));
+        }
+    }
+    let letters = l.of_site(d, &values);
+    let (locals, mut bindings) = l.locals(s, &letters, &Places::of_node(), &quote!(site));
+    let velocities = acting::velocities(members, &letters, &mut bindings);
+    let (lets, results) = l.program(s, &values, &bindings);
+    let size = number(n);
+    let (mut fill, mut given) = (TokenStream::new(), TokenStream::new());
+    let mut row = 0;
+    let mut results = results.into_iter();
+    for m in members {
+        let count = m.components();
+        let (rows, at_row, name) = (number(count), number(row), m.name());
+        for column in 0..n {
+            let (column, value) = (number(column), results.next().unwrap_or_default());
+            let value = m.array(value);
+            fill.extend(
+                quote!(a.fixed_view_mut::<#rows, 1>(#at_row, #column).copy_from(&(#value));),
+            );
+        }
+        let momentum = m.array(results.next().unwrap_or_default());
+        fill.extend(quote!(made.fixed_view_mut::<#rows, 1>(#at_row, 0).copy_from(&(#momentum));));
+        given.extend(
+            quote!(known.fixed_view_mut::<#rows, 1>(#at_row, 0).copy_from(&edges.#name[site]);),
+        );
+        row += count;
+    }
+    let names: Vec<String> = members.iter().map(|m| m.mover.name.clone()).collect();
+    let names = names.join(", ");
+    let doc = format!(" The velocities of {names}, of the edge that leaves a site.");
+    let of_momenta = format!(
+        " The momenta of {names} at the start of an edge with these velocities, and their derivative by them."
+    );
+    let solved = match super::tied::is_tied(l, members) {
+        true => {
+            let given_of = format_ident!("given_{}", first.mover.name);
+            let doc = format!(" The momenta of {names}, of the edge that leaves a site.");
+            quote! {
+                #[doc = #doc]
+                #[inline(always)]
+                fn #given_of(&self, site: usize, edges: &#edges<T>) -> SVector<T, #size> {
+                    let mut known = SVector::<T, #size>::zeros();
+                    #given
+                    known
+                }
+            }
+        }
+        false => quote! {
+            #[doc = #doc]
+            #[inline(always)]
+            fn #kernel(&self, #h: T, site: usize, at: &#places<T>, edges: &#edges<T>) -> Result<SVector<T, #size>, StepCause> {
+                let mut known = SVector::<T, #size>::zeros();
+                #given
+                line::root(&known, |velocity| self.#momenta(#h, site, at, velocity)).map_err(StepCause::NoRoot)
+            }
+        },
+    };
+    quote! {
+        #solved
+
+        #[doc = #of_momenta]
+        #[inline(always)]
+        fn #momenta(&self, #h: T, site: usize, at: &#places<T>, velocity: &SVector<T, #size>) -> (SVector<T, #size>, SMatrix<T, #size, #size>) {
+            let _ = (#h, site, at);
+            #locals
+            #velocities
+            #lets
+            let mut a = SMatrix::<T, #size, #size>::zeros();
+            let mut made = SVector::<T, #size>::zeros();
+            #fill
+            (made, a)
         }
     }
 }

@@ -94,6 +94,7 @@ pub(super) fn state(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
         quote!(#count: usize)
     });
     let (p, v): (Vec<_>, Vec<_>) = (pull_fields.collect(), velocities.collect());
+    let band = super::tied::band_field(l);
     let of_functionals = of_meshes.map(|m| &m.fields);
     let meshes = of_meshes.map(|_| {
         let meshes = l.item("Meshes");
@@ -167,6 +168,7 @@ pub(super) fn state(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
             #meshes
             #reflections
             #(#v,)*
+            #band
         }
 
         #counted

@@ -2,7 +2,7 @@
 //! neighbours add at the new places, then all momenta; the state changes when everything has worked.
 
 use super::acting::{self, Acting};
-use super::{Lines, Moving, OfMeshes, number, solved};
+use super::{Lines, Moving, OfMeshes, number, solved, tied};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
@@ -39,7 +39,10 @@ pub(super) fn step(
     let systems = l.systems();
     let of_systems = systems
         .iter()
-        .map(|(field, _, members)| solve_system(field, members));
+        .map(|(field, _, members)| match tied::is_tied(l, members) {
+            true => tied::solve(l, field, members),
+            false => solve_system(field, members),
+        });
     let arrivals = moving.iter().map(|m| arrive(l, m));
     let beginnings = moving.iter().map(|m| begin(l, m));
     let count_fields: Vec<_> = moving
@@ -104,6 +107,7 @@ pub(super) fn step(
         let own = members.first().map(Moving::name);
         quote!(#field: ::std::vec![SVector::<T, #n>::zeros(); state.momenta.#own.len()])
     });
+    let band = tied::band_value(l);
     let place_values = moving.iter().map(|m| {
         let own = m.name();
         match m.is_rotation() {
@@ -172,6 +176,7 @@ pub(super) fn step(
                     #meshes_made
                     #none_reflected
                     #(#velocity_values,)*
+                    #band
                 };
                 self.begin(state, &mut work) #tried;
                 Ok(work)
@@ -247,7 +252,7 @@ pub(super) fn step(
 }
 
 /// The name of the function of the sites that move.
-fn range_name(m: &Moving) -> Ident {
+pub(super) fn range_name(m: &Moving) -> Ident {
     format_ident!("moving_{}", m.mover.name)
 }
 
@@ -476,7 +481,8 @@ fn arrive(l: &Lines, m: &Moving) -> TokenStream {
             .find(|(.., members)| members.iter().any(|o| o.mover.name == *text));
         let field = own.map(|(field, ..)| field.clone());
         let kernel = acting::edge_kernel(m);
-        quote!(let edge = edge + self.#kernel(h, site, &state.places, at, &work.#field[site]);)
+        let tied = tied::added(l, m);
+        quote!(let edge = edge + self.#kernel(h, site, &state.places, at, &work.#field[site])#tied;)
     });
     let arrived = arrived(l, m);
     quote! {

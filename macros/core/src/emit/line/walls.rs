@@ -5,7 +5,7 @@ use super::locals::Places;
 use super::{Lines, Moving, acting, number};
 use crate::algebra::Algebra;
 use crate::expr::{self, Expr, Letter, Shift};
-use crate::line::{How, Line};
+use crate::line::Line;
 use crate::syntax::ast::Extent;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
@@ -45,6 +45,11 @@ pub(super) fn refusal(line: &Line) -> Option<String> {
         .flat_map(|lone| lone.movers.iter().map(move |mover| Moving { lone, mover }));
     let mut boxes = all.filter(|m| boxed(&m.mover.name));
     let m = boxes.next()?;
+    if line.is_tied(&m.mover.name) {
+        return Some(
+            "walls turn momenta of one site, and velocities of neighbours stand in them".to_owned(),
+        );
+    }
     if at_rest(&m).is_none() {
         return Some("walls turn a kinetic momentum, which is not known where there is no limit of small steps".to_owned());
     }
@@ -130,7 +135,7 @@ pub(super) fn walls(l: &Lines) -> Option<Walls> {
             }
         }
     };
-    let added = matches!(m.mover.how, How::System { .. }).then(|| {
+    let added = m.mover.how.added().is_some().then(|| {
         let systems = l.systems();
         let own = systems
             .iter()

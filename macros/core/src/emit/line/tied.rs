@@ -1,0 +1,313 @@
+//! Velocities of all sites together, where terms of neighbours hold velocities: kernels of one such term, the
+//! equations of all sites, and what the edge adds to momenta.
+
+use super::locals::{Places, step};
+use super::pulls::{known, range_of};
+use super::step::range_name;
+use super::{Lines, Moving, number};
+use crate::emit::expression::Bindings;
+use crate::expr::symbol::{Role, Symbols};
+use crate::expr::{self, Expr};
+use crate::line::{How, Tie};
+use crate::schedule;
+use proc_macro2::{Ident, TokenStream};
+use quote::{format_ident, quote};
+
+/// Whether velocities of neighbours stand in the momenta of a block.
+pub(super) fn is_tied(l: &Lines, members: &[Moving]) -> bool {
+    members.iter().any(|m| l.line.is_tied(&m.mover.name))
+}
+
+/// The block of those, if there is one: the field of its velocities, its components, its members.
+fn block<'a>(l: &'a Lines) -> Option<(Ident, usize, Vec<Moving<'a>>)> {
+    let mut systems = l.systems().into_iter();
+    systems.find(|(.., members)| is_tied(l, members))
+}
+
+/// Whether terms depend on the places too, so that they add to momenta on the way.
+fn adds(l: &Lines) -> bool {
+    let mut parts = l.line.ties.iter().flat_map(|t| &t.parts);
+    parts.any(|p| !p.added.is_zero())
+}
+
+/// The fields of the workspace.
+pub(super) fn band_field(l: &Lines) -> Option<TokenStream> {
+    let (_, n, _) = block(l)?;
+    let n = number(n);
+    let tied = adds(l).then(|| quote!(tied: Vec<SVector<T, #n>>,));
+    Some(quote!(band: line::Band<T, #n>, #tied))
+}
+
+/// Their values.
+pub(super) fn band_value(l: &Lines) -> Option<TokenStream> {
+    let (_, n, members) = block(l)?;
+    let n = number(n);
+    let first = members.first()?;
+    let (count, ring) = (l.count_of(&first.mover.name), ring(l));
+    let tied = adds(l).then(|| quote!(tied: ::std::vec![SVector::<T, #n>::zeros(); #count],));
+    let constant = is_constant(l, &members);
+    Some(quote!(band: line::Band::new(#count, #ring, #constant), #tied))
+}
+
+/// Whether the derivatives of momenta are the same at all places and velocities: they are factored once.
+fn is_constant(l: &Lines, members: &[Moving]) -> bool {
+    let part = &l.line.representative;
+    let fixed = |s: &Symbols, e: &Expr| {
+        let role = |letter: &expr::Letter| s.get(letter.symbol).role;
+        let mut letters = expr::letters(e).into_iter();
+        letters.all(|x| matches!(role(&x), Role::Parameter | Role::Step))
+    };
+    let own = members.iter().all(|m| match &m.mover.how {
+        How::Newton { columns, .. } => {
+            let d = m.outline();
+            columns
+                .iter()
+                .all(|e| fixed(&d.letters.symbols, &d.defined(e)))
+        }
+        _ => false,
+    });
+    let s = &part.d.letters.symbols;
+    let of_tie = |tie: &Tie| {
+        let mut pairs = tie
+            .parts
+            .iter()
+            .flat_map(|a| tie.parts.iter().map(move |b| (a, b)));
+        pairs.all(|(a, b)| tie.columns(part, a, b).iter().all(|e| fixed(s, e)))
+    };
+    own && l.line.ties.iter().all(of_tie)
+}
+
+fn ring(l: &Lines) -> TokenStream {
+    match l.line.lattice.periodic.is_some() {
+        true => quote!(self.is_ring()),
+        false => quote!(false),
+    }
+}
+
+/// The sites that the term of an index touches, the ring closed.
+fn touched(l: &Lines, tie: &Tie, count: &TokenStream) -> TokenStream {
+    match (tie.width, l.line.lattice.periodic.is_some()) {
+        (0, _) => quote!([site]),
+        (_, false) => quote!([site, site + 1]),
+        (_, true) => quote!([site, if site + 1 < #count { site + 1 } else { 0 }]),
+    }
+}
+
+/// The velocities of all sites.
+pub(super) fn solve(l: &Lines, field: &Ident, members: &[Moving]) -> TokenStream {
+    let Some(first) = members.first() else {
+        return TokenStream::new();
+    };
+    let (range, text) = (range_name(first), &first.mover.name);
+    let [own, given] = ["edge_momenta", "given"].map(|x| format_ident!("{x}_{text}"));
+    let count = l.count_of(text);
+    let each = l.line.ties.iter().enumerate().map(|(n, tie)| {
+        let (kernel, range) = (
+            format_ident!("tied_{}", n + 1),
+            range_of(l, tie.label, tie.from, tie.to),
+        );
+        let touched = touched(l, tie, &count);
+        quote! {
+            #range
+            for site in first..last {
+                let sites = #touched;
+                rows.add(sites, self.#kernel(h, site, at, sites.map(|i| velocities.at(i))));
+            }
+        }
+    });
+    let added =
+        adds(l).then(|| {
+            let each = l.line.ties.iter().enumerate().map(|(n, tie)| {
+            let (kernel, range) =
+                (format_ident!("tied_added_{}", n + 1), range_of(l, tie.label, tie.from, tie.to));
+            let touched = touched(l, tie, &count);
+            quote! {
+                #range
+                for site in first..last {
+                    let sites = #touched;
+                    let added = self.#kernel(h, site, &state.places, sites.map(|i| work.#field[i]));
+                    for (i, value) in sites.into_iter().zip(added) {
+                        work.tied[i] += value;
+                    }
+                }
+            }
+        });
+            quote! {
+                work.tied.fill(SVector::zeros());
+                #({ #each })*
+            }
+        });
+    quote! {
+        {
+            let (at, edges) = (&state.places, &work.edges);
+            let made = work.band.solve(
+                self.#range(),
+                |site| self.#given(site, edges),
+                |site, velocity| self.#own(h, site, at, velocity),
+                |velocities, rows| { #({ #each })* },
+                &mut work.#field,
+            );
+            if let Err((site, cause)) = made {
+                let at = line::Place { quantity: #text, site };
+                return Err(self.refused(state, h, at, StepCause::NoRoot(cause)));
+            }
+            #added
+        }
+    }
+}
+
+/// What those terms add to the momentum of a configuration on the way.
+pub(super) fn added(l: &Lines, m: &Moving) -> Option<TokenStream> {
+    if !adds(l) || !l.line.is_tied(&m.mover.name) {
+        return None;
+    }
+    let (_, _, members) = block(l)?;
+    let before = members.iter().take_while(|o| o.mover.name != m.mover.name);
+    let row = number(before.map(Moving::components).sum());
+    let rows = number(m.components());
+    Some(quote!(+ work.tied[site].fixed_rows::<#rows>(#row)))
+}
+
+/// The kernels.
+pub(super) fn tied(l: &Lines) -> TokenStream {
+    let Some((_, n, members)) = block(l) else {
+        return TokenStream::new();
+    };
+    let name = l.item("");
+    let each = l.line.ties.iter().enumerate();
+    let each = each.map(|(k, tie)| of_tie(l, k + 1, tie, n, &members));
+    quote!(impl<T: Real> #name<T> { #(#each)* })
+}
+
+/// Where the rows of a field begin in its block, and how many there are.
+fn rows_of(members: &[Moving], on: &str) -> (usize, usize) {
+    let before = members.iter().take_while(|o| o.mover.name != on);
+    let own = members.iter().find(|o| o.mover.name == on);
+    (
+        before.map(Moving::components).sum(),
+        own.map_or(0, Moving::components),
+    )
+}
+
+fn of_tie(l: &Lines, k: usize, tie: &Tie, n: usize, members: &[Moving]) -> TokenStream {
+    let part = &l.line.representative;
+    let s = &part.d.letters.symbols;
+    let (places, h) = (l.item("Places"), step(&part.d));
+    let formed = |e: &Expr| expr::factored(s, &schedule::displaced(s, e));
+    let mut values: Vec<Expr> = Vec::new();
+    for of in &tie.parts {
+        values.push(formed(&of.momentum()));
+        for by in &tie.parts {
+            values.extend(tie.columns(part, of, by).iter().map(formed));
+        }
+    }
+    let (lets, results) = computed(l, tie, members, &values);
+    let mut results = results.into_iter();
+    let (size, wide) = (number(n), number(tie.width + 1));
+    let mut fill = TokenStream::new();
+    let array = |on: &str, value: TokenStream| {
+        let own = members.iter().find(|m| m.mover.name == on);
+        own.map_or(value.clone(), |m| m.array(value))
+    };
+    for of in &tie.parts {
+        let (row, rows) = rows_of(members, &of.on);
+        let (at_row, rows, site) = (number(row), number(rows), number(of.site));
+        let value = array(&of.on, results.next().unwrap_or_default());
+        fill.extend(
+            quote!(made[#site].fixed_view_mut::<#rows, 1>(#at_row, 0).copy_from(&(#value));),
+        );
+        for by in &tie.parts {
+            let (column, columns) = rows_of(members, &by.on);
+            let other = number(by.site);
+            for j in column..column + columns {
+                let j = number(j);
+                let Some(value) = results.next() else {
+                    continue;
+                };
+                let value = array(&of.on, value);
+                fill.extend(
+                    quote!(a[#site][#other].fixed_view_mut::<#rows, 1>(#at_row, #j).copy_from(&(#value));),
+                );
+            }
+        }
+    }
+    let kernel = format_ident!("tied_{k}");
+    let doc = " What a term of neighbours adds to the momenta of its sites at the start of an edge, and the \
+               derivatives by their velocities.";
+    let added = adds(l).then(|| added_kernel(l, k, tie, n, members));
+    quote! {
+        #[doc = #doc]
+        #[inline(always)]
+        fn #kernel(&self, #h: T, site: usize, at: &#places<T>, velocities: [SVector<T, #size>; #wide]) -> ([SVector<T, #size>; #wide], [[SMatrix<T, #size, #size>; #wide]; #wide]) {
+            let _ = (#h, site, at, &velocities);
+            #lets
+            let mut made = [SVector::<T, #size>::zeros(); #wide];
+            let mut a = [[SMatrix::<T, #size, #size>::zeros(); #wide]; #wide];
+            #fill
+            (made, a)
+        }
+        #added
+    }
+}
+
+/// Values in places and velocities of the sites of a term.
+fn computed(
+    l: &Lines,
+    tie: &Tie,
+    members: &[Moving],
+    values: &[Expr],
+) -> (TokenStream, Vec<TokenStream>) {
+    let part = &l.line.representative;
+    let s = &part.d.letters.symbols;
+    let letters = known(l, values);
+    let (locals, mut bindings): (TokenStream, Bindings) =
+        l.locals(s, &letters, &Places::of_node(), &quote!(site));
+    let mut used: Vec<String> = Vec::new();
+    let mut lets = locals;
+    for own in &tie.parts {
+        if !letters.iter().any(|k| k.letter == own.velocity) {
+            continue;
+        }
+        let base = format!("change_{}_{}", own.on, own.site);
+        let local = l.unique(&base, &base, &mut used);
+        let (row, rows) = rows_of(members, &own.on);
+        let (row, rows, site) = (number(row), number(rows), number(own.site));
+        let is_number = s.get(own.velocity.symbol).shape.is_scalar();
+        let value = match is_number {
+            true => quote!(velocities[#site][#row]),
+            false => quote!(velocities[#site].fixed_rows::<#rows>(#row).into_owned()),
+        };
+        lets.extend(quote!(let #local = #value;));
+        bindings.bind(own.velocity, local);
+    }
+    let (more, results) = l.program(s, values, &bindings);
+    lets.extend(more);
+    (lets, results)
+}
+
+fn added_kernel(l: &Lines, k: usize, tie: &Tie, n: usize, members: &[Moving]) -> TokenStream {
+    let part = &l.line.representative;
+    let (places, h) = (l.item("Places"), step(&part.d));
+    let values: Vec<Expr> = tie.parts.iter().map(|p| p.added.clone()).collect();
+    let (lets, results) = computed(l, tie, members, &values);
+    let (size, wide) = (number(n), number(tie.width + 1));
+    let fill = tie.parts.iter().zip(results).map(|(own, value)| {
+        let (row, rows) = rows_of(members, &own.on);
+        let (row, rows, site) = (number(row), number(rows), number(own.site));
+        let of = members.iter().find(|m| m.mover.name == own.on);
+        let value = of.map_or(value.clone(), |m| m.array(value));
+        quote!(made[#site].fixed_view_mut::<#rows, 1>(#row, 0).copy_from(&(#value));)
+    });
+    let kernel = format_ident!("tied_added_{k}");
+    quote! {
+        /// What the edge adds to the momenta of the sites of a term of neighbours.
+        #[inline(always)]
+        fn #kernel(&self, #h: T, site: usize, at: &#places<T>, velocities: [SVector<T, #size>; #wide]) -> [SVector<T, #size>; #wide] {
+            let _ = (#h, site, at, &velocities);
+            #lets
+            let mut made = [SVector::<T, #size>::zeros(); #wide];
+            #(#fill)*
+            made
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! Terms of neighbours in which velocities stand: what they add to the momenta of the sites that they touch,
+//! whose velocities are then found together. Letters are those of the lattice that is written out.
+
+use super::pull::Placed;
+use super::{Refused, Written};
+use crate::derive::balance::shorter;
+use crate::expr::shape::Shape;
+use crate::expr::{self, Expr, Letter, Shift};
+use crate::lattice::Lattice;
+use crate::{algebra::Algebra, line::BASE};
+
+/// Terms of one range of sites.
+#[derive(Clone, Debug)]
+pub struct Tie {
+    /// The label.
+    pub label: usize,
+    /// The first index of an open line.
+    pub from: usize,
+    /// The last index of an open line, less the number of segments.
+    pub to: isize,
+    /// How far its letters stand apart.
+    pub width: usize,
+    /// What it adds to momenta, letters of the first site at the base of the representative.
+    pub parts: Vec<Part>,
+    /// The terms of the Lagrangian, in places at the node and velocities.
+    pub terms: Expr,
+}
+
+/// What terms add to the momentum of one configuration.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// The configuration as stated.
+    pub on: String,
+    /// Its site, from the index of the term.
+    pub site: usize,
+    /// Its velocity.
+    pub velocity: Letter,
+    /// To the momentum of the edge where it comes to a node: the derivative by the velocity.
+    pub incoming: Expr,
+    /// By how much that is more than where it leaves one: the derivative by the place.
+    pub added: Expr,
+}
+
+impl Part {
+    /// To the momentum of the edge where it leaves a node.
+    pub fn momentum(&self) -> Expr {
+        expr::sub(self.incoming.clone(), self.added.clone())
+    }
+}
+
+/// Puts a term beside those of its range.
+pub(super) fn put(ties: &mut Vec<Tie>, part: &Written, placed: Placed) {
+    let s = &part.d.letters.symbols;
+    let term = expr::substitute(s, &placed.term, &part.d.spec.end_of_edge());
+    let mut known = ties.iter_mut();
+    match known.find(|t| t.label == placed.label && t.from == placed.from && t.to == placed.to) {
+        Some(tie) => {
+            tie.width = tie.width.max(placed.width);
+            tie.terms = expr::add(tie.terms.clone(), term);
+        }
+        None => ties.push(Tie {
+            label: placed.label,
+            from: placed.from,
+            to: placed.to,
+            width: placed.width,
+            parts: Vec::new(),
+            terms: term,
+        }),
+    }
+}
+
+/// Terms of neighbours, with those of the same range that stand at a node: what of all of them vanishes where
+/// nothing moves is the tie, what is left there stands at a node. So differences are not taken apart.
+pub(super) fn settle(part: &Written, tie: &mut Tie, nodal: Option<&Expr>) -> Expr {
+    let d = &part.d;
+    let s = &d.letters.symbols;
+    let algebra = Algebra::new(s);
+    let [arriving, leaving] = part.shares();
+    let end = d.spec.end_of_edge();
+    let on_edge = |e: &Expr| {
+        let next = expr::shift_time(s, e, Shift::NEXT.time);
+        let next = expr::substitute(s, &next, &end);
+        expr::add(expr::scale(leaving, e.clone()), expr::scale(arriving, next))
+    };
+    let mut whole = tie.terms.clone();
+    if let Some(nodal) = nodal {
+        whole = expr::add(whole, on_edge(nodal));
+    }
+    let configurations = d.spec.configurations.iter();
+    let still: Vec<(Letter, Expr)> = configurations
+        .filter(|c| c.group.is_additive())
+        .map(|c| {
+            let velocity = Letter {
+                symbol: c.velocity,
+                shift: Shift::HERE,
+            };
+            (velocity, expr::zero(c.group.shape()))
+        })
+        .collect();
+    let at_rest = algebra.shortest(&expr::substitute(s, &whole, &still));
+    tie.terms = algebra.shortest(&expr::sub(whole, on_edge(&at_rest)));
+    at_rest
+}
+
+/// Finds what the terms add, which must be to fields of one kind of sites, next to one another.
+pub(super) fn finish(lattice: &Lattice, part: &Written, ties: &mut [Tie]) -> Result<(), Refused> {
+    let d = &part.d;
+    let s = &d.letters.symbols;
+    let algebra = Algebra::new(s);
+    let here = |symbol| Letter {
+        symbol,
+        shift: Shift::HERE,
+    };
+    for tie in ties.iter_mut() {
+        if tie.width > 1 {
+            return Err(Refused::Form(
+                "velocities of sites that are no neighbours stand in one term".to_owned(),
+            ));
+        }
+        if d.spec
+            .advected
+            .iter()
+            .any(|a| expr::contains(&tie.terms, here(a.quantity)))
+        {
+            return Err(Refused::Form(
+                "velocities of neighbours stand in one term with an advected quantity".to_owned(),
+            ));
+        }
+        for c in &d.spec.configurations {
+            let Some(at) = part.sited(c.element) else {
+                continue;
+            };
+            let of = |letter| -> Expr {
+                let gradient = expr::gradient(s, &tie.terms, letter);
+                match gradient.is_zero() {
+                    true => expr::zero(c.group.shape()),
+                    false => shorter(&algebra, gradient),
+                }
+            };
+            if !expr::contains(&tie.terms, here(c.velocity))
+                && !expr::contains(&tie.terms, here(c.element))
+            {
+                continue;
+            }
+            if !c.group.is_additive() {
+                return Err(Refused::Form(format!(
+                    "the velocity of `{}` stands in one term with that of a neighbour: loops over sites take \
+                     fields so",
+                    at.of
+                )));
+            }
+            tie.parts.push(Part {
+                on: at.of,
+                site: at.site - BASE,
+                velocity: here(c.velocity),
+                incoming: of(here(c.velocity)),
+                added: of(here(c.element)),
+            });
+        }
+    }
+    let mut kinds = ties.iter().flat_map(|t| &t.parts);
+    let kind = |on: &str| lattice.find(on).map(|q| (q.label, q.sites));
+    if let Some(first) = kinds.next()
+        && let Some(other) = kinds.find(|p| kind(&p.on) != kind(&first.on))
+    {
+        return Err(Refused::Form(format!(
+            "velocities of sites of two kinds stand in one term: those of `{}` and of `{}`",
+            first.on, other.on
+        )));
+    }
+    Ok(())
+}
+
+impl Tie {
+    /// The derivative of the momentum of one part by each component of the velocity of another.
+    pub fn columns(&self, part: &Written, of: &Part, by: &Part) -> Vec<Expr> {
+        let s = &part.d.letters.symbols;
+        let momentum = of.momentum();
+        let shape: Shape = s.get(by.velocity.symbol).shape;
+        let axes = expr::axes(shape).unwrap_or_default();
+        let along = |axis: Expr| expr::directional(s, &momentum, &[(by.velocity, axis)]);
+        axes.into_iter().map(along).collect()
+    }
+}

@@ -1,0 +1,360 @@
+//! The velocity of one site whose momentum is not linear in it: the root of `P(v) = m` that follows from
+//! rest. Takes the momentum of the edge, and `P` with its derivative; gives the velocity, or how far it
+//! could be followed.
+//!
+//! The curve `P(v) = (1 - τ) P(0) + τ m` begins at rest and ends at the principal root. It is followed in
+//! stages, mostly one, by Newton's method: a stage is taken where its first two corrections by one tangent
+//! fall by a factor of four, which bounds how the tangent changes along it (Deuflhard, Newton Methods for
+//! Nonlinear Problems, 2011, sections 2.1 and 5.1). That is a test at points, not a proof.
+
+// Several lists run along one index.
+#![allow(clippy::needless_range_loop)]
+
+use super::pivots;
+use crate::Real;
+use core::fmt;
+use nalgebra::{SMatrix, SVector};
+
+/// By how much the second correction of a stage is smaller than the first.
+const FALLS: f64 = 0.25;
+
+/// Shortest stage, as a part of the way.
+const SHORTEST: f64 = 1e-9;
+
+/// Most stages on the way.
+const MOST_STAGES: usize = 1000;
+
+/// Most corrections of a stage; they fall quadratically.
+const MOST_CORRECTIONS: usize = 20;
+
+/// A correction so small, of the velocity, leaves rounding when the next would be its square.
+const LAST: f64 = 1e-8;
+
+/// The part of a stage that is tried where corrections do not fall.
+const WORSE: f64 = 0.2;
+
+/// So near the end of a stage another one can begin.
+const NEAR: f64 = 1e-3;
+
+/// Residuals of so many roundings of both sides are none.
+const ROUNDINGS: f64 = 32.0;
+
+/// No velocity that follows from rest has this momentum.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NoRoot {
+    /// The part of the way from rest up to which velocities were found.
+    pub share: f64,
+}
+
+impl fmt::Display for NoRoot {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let percent = 100.0 * self.share;
+        write!(
+            f,
+            "the equation for the velocity has no solution that follows from rest: it could be followed for \
+             {percent:.1} percent of the way to the momentum, up to where the derivative of the momentum by the \
+             velocity is singular or not finite; take a shorter step, or check the parameters of kinetic terms"
+        )
+    }
+}
+
+impl std::error::Error for NoRoot {}
+
+/// Momenta as functions of velocities, with a derivative that is factored where it is wanted.
+pub(super) trait Momenta<T: Real> {
+    /// The momenta of velocities, and the derivative there.
+    fn at(&mut self, velocity: &[T], momenta: &mut [T]);
+    /// A scale of each velocity, by the diagonal of the derivative.
+    fn scales(&self, scales: &mut [f64]);
+    /// Factors the derivative; false where it is singular or not finite.
+    fn factor(&mut self) -> bool;
+    /// `x = A^-1 x` of the derivative that was factored last.
+    fn solve(&mut self, x: &mut [T]);
+}
+
+/// Lists of the length of a velocity.
+pub(super) struct Lists<'a, T> {
+    /// The trial, and the solution in the end.
+    pub velocity: &'a mut [T],
+    /// Where a stage began.
+    pub from: &'a mut [T],
+    /// The momenta of the trial.
+    pub momenta: &'a mut [T],
+    /// What is aimed at, less the momenta at rest.
+    pub whole: &'a mut [T],
+    /// A correction.
+    pub correction: &'a mut [T],
+    /// Of velocities.
+    pub scales: &'a mut [f64],
+}
+
+/// The largest entry in units of scales; NaN if any is.
+#[inline(always)]
+fn largest<T: Real>(x: &[T], scales: &[f64]) -> f64 {
+    let mut most = 0.0;
+    for (x, scale) in x.iter().zip(scales) {
+        let size = x.greatest().abs().max(x.least().abs()) * scale;
+        // NaN is kept, and larger than all.
+        if !(size <= most) {
+            most = size;
+        }
+        if x.magnitude().is_nan() {
+            return f64::NAN;
+        }
+    }
+    most
+}
+
+/// `correction = momenta aimed at, less those there`: `known - (1 - end) whole - momenta`, and whether that
+/// is rounding.
+#[inline(always)]
+fn residual<T: Real>(known: &[T], end: f64, lists: &mut Lists<'_, T>) -> bool {
+    let left = T::from_f64(1.0 - end);
+    let mut rounded = true;
+    for i in 0..known.len() {
+        let aim = match end < 1.0 {
+            true => known[i] - left * lists.whole[i],
+            false => known[i],
+        };
+        let r = aim - lists.momenta[i];
+        let terms = aim.magnitude() + lists.momenta[i].magnitude();
+        rounded &= r.magnitude() <= ROUNDINGS * T::EPSILON * terms;
+        lists.correction[i] = r;
+    }
+    rounded
+}
+
+#[inline(always)]
+fn corrected<T: Real>(velocity: &mut [T], correction: &[T]) {
+    for (v, d) in velocity.iter_mut().zip(correction) {
+        *v += *d;
+    }
+}
+
+/// Follows the curve from rest to its end.
+///
+/// # Errors
+/// The part of the way up to which it could be followed.
+#[inline(always)]
+pub(super) fn follow<T: Real>(
+    known: &[T],
+    equations: &mut impl Momenta<T>,
+    lists: &mut Lists<'_, T>,
+) -> Result<(), NoRoot> {
+    lists.velocity.fill(T::zero());
+    equations.at(lists.velocity, lists.momenta);
+    equations.scales(lists.scales);
+    for i in 0..known.len() {
+        lists.whole[i] = known[i] - lists.momenta[i];
+    }
+    let (mut share, mut length) = (0.0_f64, 1.0_f64);
+    for _ in 0..MOST_STAGES {
+        // Here the trial is the beginning of a stage, with its momenta and their derivative.
+        if !equations.factor() {
+            break;
+        }
+        length = length.min(1.0 - share);
+        if length < SHORTEST {
+            break;
+        }
+        let end = match length >= 1.0 - share {
+            true => 1.0,
+            false => share + length,
+        };
+        lists.from.copy_from_slice(lists.velocity);
+        match stage(known, end, equations, lists) {
+            None if end >= 1.0 => return Ok(()),
+            None => {
+                share = end;
+                length *= 2.0;
+            }
+            Some(shorter) => {
+                length *= shorter;
+                lists.velocity.copy_from_slice(lists.from);
+            }
+        }
+        equations.at(lists.velocity, lists.momenta);
+    }
+    Err(NoRoot { share })
+}
+
+/// Goes to the end of a stage: by what part of it another one should be shorter, if it is too long.
+#[inline(always)]
+fn stage<T: Real>(
+    known: &[T],
+    end: f64,
+    equations: &mut impl Momenta<T>,
+    lists: &mut Lists<'_, T>,
+) -> Option<f64> {
+    let last = end >= 1.0;
+    residual(known, end, lists);
+    equations.solve(lists.correction);
+    let first = largest(lists.correction, lists.scales);
+    corrected(lists.velocity, lists.correction);
+    equations.at(lists.velocity, lists.momenta);
+    // By the derivative at the beginning.
+    let rounded = residual(known, end, lists);
+    equations.solve(lists.correction);
+    let second = largest(lists.correction, lists.scales);
+    if !(first.is_finite() && second.is_finite()) {
+        return Some(WORSE);
+    }
+    if !rounded && second > FALLS * first {
+        return Some((0.8 * FALLS * first / second).clamp(0.1, 0.8));
+    }
+    let small = |own: f64, velocity: &[T], scales: &[f64]| {
+        own <= LAST * largest(velocity, scales) || (!last && own <= NEAR * first)
+    };
+    // That correction was by an older derivative: the next falls by as much as this one did.
+    let linear = second <= LAST * first;
+    let mut done = rounded || linear && small(second, lists.velocity, lists.scales);
+    if done || !last && second <= NEAR * first {
+        corrected(lists.velocity, lists.correction);
+        done = true;
+    }
+    let mut before = first;
+    // Derivatives of the solution are exact to one order more after each further correction.
+    let mut further = if last { T::ORDER } else { 0 };
+    for _ in 0..MOST_CORRECTIONS {
+        if done && further == 0 {
+            return None;
+        }
+        if done {
+            further -= 1;
+            equations.at(lists.velocity, lists.momenta);
+        }
+        let rounded = residual(known, end, lists);
+        if !equations.factor() {
+            break;
+        }
+        equations.solve(lists.correction);
+        let own = largest(lists.correction, lists.scales);
+        corrected(lists.velocity, lists.correction);
+        // Corrections fall at least by half until they are rounding.
+        if !(own <= 0.5 * before || own.is_finite() && (rounded || done)) {
+            break;
+        }
+        before = own;
+        if !done {
+            done = rounded || small(own, lists.velocity, lists.scales);
+            if !done {
+                equations.at(lists.velocity, lists.momenta);
+            }
+        }
+    }
+    Some(WORSE)
+}
+
+/// The equations of one site.
+struct Site<'a, T, F> {
+    n: usize,
+    momenta: F,
+    tangent: &'a mut [T],
+    factors: &'a mut [T],
+    pivots: &'a mut [usize],
+}
+
+impl<T: Real, F: FnMut(&[T], &mut [T], &mut [T])> Momenta<T> for Site<'_, T, F> {
+    #[inline(always)]
+    fn at(&mut self, velocity: &[T], momenta: &mut [T]) {
+        (self.momenta)(velocity, momenta, self.tangent);
+    }
+
+    #[inline(always)]
+    fn scales(&self, scales: &mut [f64]) {
+        scales_of(self.n, self.tangent, scales);
+    }
+
+    #[inline(always)]
+    fn factor(&mut self) -> bool {
+        self.factors.copy_from_slice(self.tangent);
+        pivots::factor(self.n, self.factors, self.pivots)
+    }
+
+    #[inline(always)]
+    fn solve(&mut self, x: &mut [T]) {
+        pivots::solve(self.n, self.factors, self.pivots, x);
+    }
+}
+
+/// Of a diagonal block: velocities times these are all of one unit, the root of an action.
+#[inline(always)]
+pub(super) fn scales_of<T: Real>(n: usize, tangent: &[T], scales: &mut [f64]) {
+    for k in 0..n {
+        let own = tangent[n * k + k].magnitude();
+        let row = (0..n).fold(0.0_f64, |most, j| most.max(tangent[n * j + k].magnitude()));
+        let size = if own > 0.0 { own } else { row };
+        scales[k] = if size > 0.0 { size.sqrt() } else { 1.0 };
+    }
+}
+
+/// The velocity of a site whose momentum is `known`; `momenta` gives momentum and derivative at a velocity.
+///
+/// # Errors
+/// [`NoRoot`] where no velocity follows from rest.
+#[inline]
+pub fn root<T: Real, const N: usize>(
+    known: &SVector<T, N>,
+    momenta: impl Fn(&SVector<T, N>) -> (SVector<T, N>, SMatrix<T, N, N>),
+) -> Result<SVector<T, N>, NoRoot> {
+    let mut lists = [SVector::<T, N>::zeros(); 5];
+    let [velocity, from, at, whole, correction] = &mut lists;
+    let mut matrices = [SMatrix::<T, N, N>::zeros(); 2];
+    let [tangent, factors] = &mut matrices;
+    let (mut scales, mut pivots) = ([0.0; N], [0; N]);
+    let mut site = Site {
+        n: N,
+        momenta: |v: &[T], p: &mut [T], tangent: &mut [T]| {
+            let (found, derivative) = momenta(&SVector::from_column_slice(v));
+            p.copy_from_slice(found.as_slice());
+            tangent.copy_from_slice(derivative.as_slice());
+        },
+        tangent: tangent.as_mut_slice(),
+        factors: factors.as_mut_slice(),
+        pivots: &mut pivots,
+    };
+    let mut lists = Lists {
+        velocity: velocity.as_mut_slice(),
+        from: from.as_mut_slice(),
+        momenta: at.as_mut_slice(),
+        whole: whole.as_mut_slice(),
+        correction: correction.as_mut_slice(),
+        scales: &mut scales,
+    };
+    follow(known.as_slice(), &mut site, &mut lists)?;
+    Ok(*velocity)
+}
+
+/// The same for a number of components that is known when a model is read: `momenta` writes momenta, and their
+/// derivative column after column.
+///
+/// # Errors
+/// As [`root`].
+pub fn root_of<T: Real>(
+    known: &[T],
+    momenta: impl FnMut(&[T], &mut [T], &mut [T]),
+) -> Result<Vec<T>, NoRoot> {
+    let n = known.len();
+    let list = || vec![T::zero(); n];
+    let (mut velocity, mut from, mut at, mut whole, mut correction) =
+        (list(), list(), list(), list(), list());
+    let (mut tangent, mut factors) = (vec![T::zero(); n * n], vec![T::zero(); n * n]);
+    let (mut scales, mut pivots) = (vec![0.0; n], vec![0; n]);
+    let mut site = Site {
+        n,
+        momenta,
+        tangent: &mut tangent,
+        factors: &mut factors,
+        pivots: &mut pivots,
+    };
+    let mut lists = Lists {
+        velocity: &mut velocity,
+        from: &mut from,
+        momenta: &mut at,
+        whole: &mut whole,
+        correction: &mut correction,
+        scales: &mut scales,
+    };
+    follow(known, &mut site, &mut lists)?;
+    Ok(velocity)
+}

@@ -1,0 +1,123 @@
+//! Sites whose velocities are found by Newton's method: beads whose masses change with a place that moves
+//! as well, in a potential that is taken in the middle of the step; stated here.
+
+use super::{Line, Random, c, keeping, stepped};
+use crate::action::{Configuration, D};
+use clebsch::Real;
+use clebsch::nalgebra::{SMatrix, Vector2};
+
+clebsch::model! {
+    /// Beads in the plane, each with a number of its own that its mass depends on.
+    pub model BentChain {
+        label i in 0..N;
+        periodic;
+        param m: Real at nodes;
+        param b, k, e: Real;
+        field q: Real at nodes;
+        field X: Vec<2> at nodes;
+        lagrangian = m*(next(q) - q)^2/(2*h)
+            + m*(1 + b*((q + next(q))/2)^2)*dot(next(X) - X, next(X) - X)/(2*h)
+            + h*k*cos((q + next(q))/2)
+            - h*e*(next(q, i) - q)^2/2 - h*e*dot(next(X, i) - X, next(X, i) - X)/2;
+    }
+}
+
+/// Beads on an open chain, or on a ring.
+pub struct Bent {
+    pub n: usize,
+    pub ring: bool,
+}
+
+impl Bent {
+    fn nodes(&self) -> usize {
+        self.n + usize::from(!self.ring)
+    }
+    fn mass(i: usize) -> f64 {
+        1.0 + 0.3 * (i % 2) as f64
+    }
+    pub fn stepper(&self) -> BentChain {
+        let parameters = BentChainParameters {
+            m: (0..self.nodes()).map(Self::mass).collect(),
+            b: 0.7,
+            k: 0.9,
+            e: 0.4,
+        };
+        let ends = match self.ring {
+            true => BentChainEnds::Ring,
+            false => BentChainEnds::Open,
+        };
+        BentChain::new(parameters, BentChainSites { N: self.n, ends }).expect("beads")
+    }
+    fn initial(&self, seed: u64) -> BentChainInitial {
+        let mut r = Random::new(seed);
+        let n = self.nodes();
+        let mut numbers = |size: f64| (0..n).map(|_| SMatrix::repeat(size * r.number())).collect();
+        let (q, momentum_q) = (numbers(1.0), numbers(0.5));
+        let mut list = |size: f64| {
+            (0..n)
+                .map(|_| Vector2::new(size * r.number(), size * r.number()))
+                .collect()
+        };
+        BentChainInitial {
+            q,
+            momentum_q,
+            X: list(1.0),
+            momentum_X: list(0.5),
+        }
+    }
+    fn seen(&self, s: &BentChainState) -> Configuration<f64> {
+        let q = s.q().iter().map(|q| q[0]);
+        Configuration {
+            x: q.chain(s.X().iter().flat_map(|x| [x[0], x[1]])).collect(),
+            r: Vec::new(),
+        }
+    }
+    keeping!(BentChain, |_, s: &BentChainState| {
+        s.momentum_X().iter().map(|p| p[0]).sum()
+    });
+}
+
+impl Line for Bent {
+    fn name(&self) -> String {
+        format!("bent {} ring {}", self.n, self.ring)
+    }
+    fn terms(&self) -> usize {
+        // The neighbour of a lone site of a ring is itself.
+        if self.ring && self.n == 1 { 3 } else { 5 }
+    }
+    fn weighed(&self, w: &[f64], a: &Configuration<D>, b: &Configuration<D>) -> D {
+        let (h, n) = (0.05, self.nodes());
+        let at = |x: &[D], i: usize| Vector2::new(x[n + 2 * i], x[n + 2 * i + 1]);
+        let mut s = c(0.0);
+        for i in 0..n {
+            let (q, dq) = ((a.x[i] + b.x[i]) * c(0.5), b.x[i] - a.x[i]);
+            let d = at(&b.x, i) - at(&a.x, i);
+            let m = c(Self::mass(i) / (2.0 * h));
+            s += c(w[0]) * m * dq * dq;
+            s += c(w[1]) * m * (c(1.0) + c(0.7) * q * q) * d.dot(&d);
+            s += c(w[2] * h * 0.9) * q.cos();
+        }
+        for x in [&a.x, &b.x].into_iter().filter(|_| self.terms() > 3) {
+            for i in 0..self.n {
+                let j = (i + 1) % n;
+                let (dq, d) = (x[j] - x[i], at(x, j) - at(x, i));
+                s -= c(w[3] * 0.5 * h * 0.4 / 2.0) * dq * dq;
+                s -= c(w[4] * 0.5 * h * 0.4 / 2.0) * d.dot(&d);
+            }
+        }
+        s
+    }
+    fn held(&self, _: usize) -> bool {
+        false
+    }
+    fn given(&self, seed: u64) -> Vec<f64> {
+        let all = self.initial(seed);
+        let q = all.momentum_q.iter().map(|p| p[0]);
+        let x = all.momentum_X.iter().flat_map(|p| [p[0], p[1]]);
+        q.chain(x).collect()
+    }
+    stepped!(0.05, 5e-2);
+    fn mass_by_step(&self) -> f64 {
+        1.3 * 1.7 / 0.05
+    }
+}

@@ -1,0 +1,325 @@
+//! Velocities of neighbours in one term, found together along the line; stated here.
+
+use super::{Line, Random, Wide, c, stepped};
+use crate::action::{Configuration, D};
+use clebsch::Real;
+use clebsch::nalgebra::{SMatrix, Vector2};
+
+clebsch::model! {
+    /// Beads whose velocities are joined as well as their places: rods between beads have masses.
+    pub model LinkedChain {
+        label i in 0..N;
+        end i = 0 { free; pinned { q = given; } }
+        end i = N { free; pinned { q = given; } }
+        periodic;
+        param m: Real at nodes;
+        param c, e: Real;
+        field q: Real at nodes offset L;
+        lagrangian = m*(next(q) - q)^2/(2*h) + c*(next(q) - q)*(next(next(q, i)) - next(q, i))/h
+            - h*e*(next(q, i) - q)^2/2;
+    }
+}
+
+clebsch::model! {
+    /// Beads in the plane with a number each: what joins velocities depends on both and on the places.
+    pub model WovenChain {
+        label i in 0..N;
+        periodic;
+        param m: Real at nodes;
+        param b, c, e: Real;
+        field q: Real at nodes;
+        field X: Vec<2> at nodes;
+        lagrangian = m*(next(q) - q)^2/(2*h) + m*dot(next(X) - X, next(X) - X)/(2*h)
+            + c*(1 + b*cos((q + next(q))/2))*dot(next(X) - X, next(next(X, i)) - next(X, i))/h
+            + c*b*(next(q) - q)^2*(next(next(q, i)) - next(q, i))^2/h^3
+            - h*e*(next(q, i) - q)^2/2 - h*e*dot(next(X, i) - X, next(X, i) - X)/2;
+    }
+}
+
+const H: f64 = 0.05;
+const C: f64 = 0.3;
+const E: f64 = 0.6;
+
+/// The chain of numbers: a ring, free, held first, held last.
+pub struct Linked {
+    pub n: usize,
+    pub ends: usize,
+}
+
+fn mass(i: usize) -> f64 {
+    1.0 + 0.3 * (i % 2) as f64
+}
+
+impl Linked {
+    fn nodes(&self) -> usize {
+        self.n + usize::from(self.ends != 0)
+    }
+    fn links(&self) -> impl Iterator<Item = [usize; 2]> {
+        let nodes = self.nodes();
+        (0..self.n).map(move |i| [i, (i + 1) % nodes])
+    }
+    pub fn stepper(&self) -> LinkedChain {
+        let parameters = LinkedChainParameters {
+            m: (0..self.nodes()).map(mass).collect(),
+            c: C,
+            e: E,
+        };
+        let (first, last) = match self.ends {
+            2 => (LinkedChainFirst::Pinned, LinkedChainLast::Free),
+            3 => (LinkedChainFirst::Free, LinkedChainLast::Pinned),
+            _ => (LinkedChainFirst::Free, LinkedChainLast::Free),
+        };
+        let ends = match self.ends {
+            0 => LinkedChainEnds::Ring { L: 2.0 },
+            _ => LinkedChainEnds::Open { first, last },
+        };
+        LinkedChain::new(parameters, LinkedChainSites { N: self.n, ends }).expect("a chain")
+    }
+    pub fn initial(&self, seed: u64) -> LinkedChainInitial {
+        let mut r = Random::new(seed);
+        let n = self.nodes();
+        let mut list = |size: f64| (0..n).map(|_| SMatrix::repeat(size * r.number())).collect();
+        LinkedChainInitial {
+            q: list(1.0),
+            momentum_q: list(1.0),
+        }
+    }
+    /// Three steps of derivatives by all places and momenta.
+    pub fn moved(&self, q: Vec<Wide>, p: Vec<Wide>) -> [Vec<Wide>; 2] {
+        let k = Wide::constant;
+        let parameters = LinkedChainParameters {
+            m: (0..self.nodes()).map(|i| k(mass(i))).collect(),
+            c: k(C),
+            e: k(E),
+        };
+        let ends = match self.ends {
+            0 => LinkedChainEnds::Ring { L: k(2.0) },
+            _ => LinkedChainEnds::Open {
+                first: LinkedChainFirst::Free,
+                last: LinkedChainLast::Free,
+            },
+        };
+        let model = LinkedChain::new(parameters, LinkedChainSites { N: self.n, ends });
+        let model = model.expect("a chain");
+        let list = |x: Vec<Wide>| x.into_iter().map(SMatrix::repeat).collect();
+        let initial = LinkedChainInitial {
+            q: list(q),
+            momentum_q: list(p),
+        };
+        let (mut state, mut work) = model.start(initial, k(H)).expect("starts");
+        for _ in 0..3 {
+            model.step(&mut state, &mut work).expect("steps");
+        }
+        [state.q(), state.momentum_q()].map(|list| list.iter().map(|x| x[0]).collect())
+    }
+    fn seen(&self, s: &LinkedChainState) -> Configuration<f64> {
+        Configuration {
+            x: s.q().iter().map(|q| q[0]).collect(),
+            r: Vec::new(),
+        }
+    }
+    /// By how much the neighbour of a link is farther than it is stored.
+    fn beyond(&self, [_, j]: [usize; 2]) -> f64 {
+        if self.ends == 0 && j == 0 { 2.0 } else { 0.0 }
+    }
+    /// The energy between two nodes, by the velocity of the edge and the mean of both potentials.
+    fn energy(&self, a: &[f64], b: &[f64], h: f64) -> f64 {
+        let v: Vec<f64> = a.iter().zip(b).map(|(a, b)| (b - a) / h).collect();
+        let own = v.iter().enumerate().map(|(i, v)| mass(i) * v * v / 2.0);
+        let mut e: f64 = own.sum();
+        for [i, j] in self.links() {
+            e += C * v[i] * v[j];
+            for x in [a, b] {
+                let d = x[j] + self.beyond([i, j]) - x[i];
+                e += 0.5 * E * d * d / 2.0;
+            }
+        }
+        e
+    }
+    fn kept_with(&self, h: f64, steps: u64) -> [f64; 2] {
+        let model = self.stepper();
+        let (mut state, mut work) = model.start(self.initial(4), h).expect("starts");
+        let total = |s: &LinkedChainState| s.momentum_q().iter().map(|p| p[0]).sum::<f64>();
+        let (mut before, first) = (self.seen(&state).x, total(&state));
+        let (mut energy, mut worst, mut off) = (None, 0.0_f64, 0.0_f64);
+        for _ in 0..steps {
+            model.step(&mut state, &mut work).expect("steps");
+            let after = self.seen(&state).x;
+            let now = self.energy(&before, &after, h);
+            let start = *energy.get_or_insert(now);
+            worst = worst.max((now - start).abs() / start.abs());
+            if self.ends < 2 {
+                off = off.max((total(&state) - first).abs());
+            }
+            before = after;
+        }
+        [worst, off / (1.0 + first.abs())]
+    }
+}
+
+impl Line for Linked {
+    fn name(&self) -> String {
+        format!("linked {} ends {}", self.n, self.ends)
+    }
+    fn terms(&self) -> usize {
+        // The spring of a lone site of a ring has a constant length.
+        if self.ends == 0 && self.n == 1 { 2 } else { 3 }
+    }
+    fn weighed(&self, w: &[f64], a: &Configuration<D>, b: &Configuration<D>) -> D {
+        let mut s = c(0.0);
+        let d = |i: usize| b.x[i] - a.x[i];
+        for i in 0..self.nodes() {
+            s += c(w[0] * mass(i) / (2.0 * H)) * d(i) * d(i);
+        }
+        for [i, j] in self.links() {
+            s += c(w[1] * C / H) * d(i) * d(j);
+            for x in [&a.x, &b.x].into_iter().filter(|_| self.terms() > 2) {
+                let r = x[j] + c(self.beyond([i, j])) - x[i];
+                s -= c(w[2] * 0.5 * H * E / 2.0) * r * r;
+            }
+        }
+        s
+    }
+    fn held(&self, at: usize) -> bool {
+        self.ends == 2 && at == 0 || self.ends == 3 && at == self.n
+    }
+    fn given(&self, seed: u64) -> Vec<f64> {
+        self.initial(seed).momentum_q.iter().map(|p| p[0]).collect()
+    }
+    stepped!(0.05, 2e-2);
+    fn mass_by_step(&self) -> f64 {
+        1.9 / H
+    }
+}
+
+/// Beads in the plane, open or on a ring.
+pub struct Woven {
+    pub n: usize,
+    pub ring: bool,
+}
+
+const B: f64 = 0.5;
+
+impl Woven {
+    fn nodes(&self) -> usize {
+        self.n + usize::from(!self.ring)
+    }
+    pub fn stepper(&self) -> WovenChain {
+        let parameters = WovenChainParameters {
+            m: (0..self.nodes()).map(mass).collect(),
+            b: B,
+            c: 0.2,
+            e: E,
+        };
+        let ends = match self.ring {
+            true => WovenChainEnds::Ring,
+            false => WovenChainEnds::Open,
+        };
+        WovenChain::new(parameters, WovenChainSites { N: self.n, ends }).expect("beads")
+    }
+    fn initial(&self, seed: u64) -> WovenChainInitial {
+        let mut r = Random::new(seed);
+        let n = self.nodes();
+        let mut numbers = |size: f64| (0..n).map(|_| SMatrix::repeat(size * r.number())).collect();
+        let (q, momentum_q) = (numbers(1.0), numbers(0.5));
+        let mut list = |size: f64| {
+            (0..n)
+                .map(|_| Vector2::new(size * r.number(), size * r.number()))
+                .collect()
+        };
+        WovenChainInitial {
+            q,
+            momentum_q,
+            X: list(1.0),
+            momentum_X: list(0.5),
+        }
+    }
+    fn seen(&self, s: &WovenChainState) -> Configuration<f64> {
+        let q = s.q().iter().map(|q| q[0]);
+        Configuration {
+            x: q.chain(s.X().iter().flat_map(|x| [x[0], x[1]])).collect(),
+            r: Vec::new(),
+        }
+    }
+    fn kept_with(&self, h: f64, steps: u64) -> [f64; 2] {
+        let model = self.stepper();
+        let (mut state, mut work) = model.start(self.initial(4), h).expect("starts");
+        let total = |s: &WovenChainState| s.momentum_X().iter().map(|p| p[0]).sum::<f64>();
+        let (mut before, first) = (self.seen(&state).x, total(&state));
+        let (mut energy, mut worst, mut off) = (None, 0.0_f64, 0.0_f64);
+        for _ in 0..steps {
+            model.step(&mut state, &mut work).expect("steps");
+            let after = self.seen(&state).x;
+            let now = self.energy(&before, &after, h);
+            let start = *energy.get_or_insert(now);
+            worst = worst.max((now - start).abs() / start.abs());
+            off = off.max((total(&state) - first).abs());
+            before = after;
+        }
+        [worst, off / (1.0 + first.abs())]
+    }
+    /// The energy between two nodes, by the velocities of the edge and the mean of both ends.
+    fn energy(&self, a: &[f64], b: &[f64], h: f64) -> f64 {
+        let n = self.nodes();
+        let v: Vec<f64> = a.iter().zip(b).map(|(a, b)| (b - a) / h).collect();
+        let at = |x: &[f64], i: usize| Vector2::new(x[n + 2 * i], x[n + 2 * i + 1]);
+        let own = (0..n).map(|i| mass(i) * (v[i] * v[i] + at(&v, i).norm_squared()) / 2.0);
+        let mut e: f64 = own.sum();
+        for i in 0..self.n {
+            let j = (i + 1) % n;
+            let bend = 1.0 + B * (0.5 * (a[i] + b[i])).cos();
+            e += 0.2 * bend * at(&v, i).dot(&at(&v, j)) + 3.0 * 0.2 * B * (v[i] * v[j]).powi(2);
+            for x in [a, b] {
+                let (d, r) = (x[j] - x[i], at(x, j) - at(x, i));
+                e += 0.5 * E * (d * d + r.norm_squared()) / 2.0;
+            }
+        }
+        e
+    }
+}
+
+impl Line for Woven {
+    fn name(&self) -> String {
+        format!("woven {} ring {}", self.n, self.ring)
+    }
+    fn terms(&self) -> usize {
+        if self.ring && self.n == 1 { 4 } else { 6 }
+    }
+    fn weighed(&self, w: &[f64], a: &Configuration<D>, b: &Configuration<D>) -> D {
+        let n = self.nodes();
+        let at = |x: &[D], i: usize| Vector2::new(x[n + 2 * i], x[n + 2 * i + 1]);
+        let dq = |i: usize| b.x[i] - a.x[i];
+        let dx = |i: usize| at(&b.x, i) - at(&a.x, i);
+        let mut s = c(0.0);
+        for i in 0..n {
+            s += c(w[0] * mass(i) / (2.0 * H)) * dq(i) * dq(i);
+            s += c(w[1] * mass(i) / (2.0 * H)) * dx(i).dot(&dx(i));
+        }
+        for i in 0..self.n {
+            let j = (i + 1) % n;
+            let bend = c(1.0) + c(B) * ((a.x[i] + b.x[i]) * c(0.5)).cos();
+            s += c(w[2] * 0.2 / H) * bend * dx(i).dot(&dx(j));
+            let both = dq(i) * dq(j);
+            s += c(w[3] * 0.2 * B / H.powi(3)) * both * both;
+            for x in [&a.x, &b.x].into_iter().filter(|_| self.terms() > 4) {
+                let (d, r) = (x[j] - x[i], at(x, j) - at(x, i));
+                s -= c(w[4] * 0.5 * H * E / 2.0) * d * d;
+                s -= c(w[5] * 0.5 * H * E / 2.0) * r.dot(&r);
+            }
+        }
+        s
+    }
+    fn held(&self, _: usize) -> bool {
+        false
+    }
+    fn given(&self, seed: u64) -> Vec<f64> {
+        let all = self.initial(seed);
+        let q = all.momentum_q.iter().map(|p| p[0]);
+        let x = all.momentum_X.iter().flat_map(|p| [p[0], p[1]]);
+        q.chain(x).collect()
+    }
+    stepped!(0.05, 1e-1);
+    fn mass_by_step(&self) -> f64 {
+        2.0 / H
+    }
+}

@@ -1,0 +1,167 @@
+//! A chain whose kinetic energy has a fourth power of the velocity, free or held at its ends; stated here.
+
+use super::{Line, Random, Wide, c, stepped};
+use crate::action::{Configuration, D};
+use clebsch::nalgebra::SMatrix;
+
+clebsch::model! {
+    /// Numbers with a kinetic energy of second and fourth order, joined by springs.
+    pub model QuarticChain {
+        label i in 0..N;
+        end i = 0 { free; pinned { q = given; } }
+        end i = N { free; pinned { q = given; } }
+        periodic;
+        param m: Real at nodes;
+        param b, e: Real;
+        field q: Real at nodes;
+        lagrangian = m*(next(q) - q)^2/(2*h) + b*(next(q) - q)^4/(4*h^3) - h*e*(next(q, i) - q)^2/2;
+    }
+}
+
+/// The chain: a ring, free, held first, held last.
+pub struct Quartic {
+    pub n: usize,
+    pub ends: usize,
+}
+
+impl Quartic {
+    fn nodes(&self) -> usize {
+        self.n + usize::from(self.ends != 0)
+    }
+    fn mass(i: usize) -> f64 {
+        1.0 + 0.3 * (i % 2) as f64
+    }
+    pub fn stepper(&self) -> QuarticChain {
+        let parameters = QuarticChainParameters {
+            m: (0..self.nodes()).map(Self::mass).collect(),
+            b: 0.8,
+            e: 0.6,
+        };
+        let (first, last) = match self.ends {
+            2 => (QuarticChainFirst::Pinned, QuarticChainLast::Free),
+            3 => (QuarticChainFirst::Free, QuarticChainLast::Pinned),
+            _ => (QuarticChainFirst::Free, QuarticChainLast::Free),
+        };
+        let ends = match self.ends {
+            0 => QuarticChainEnds::Ring,
+            _ => QuarticChainEnds::Open { first, last },
+        };
+        QuarticChain::new(parameters, QuarticChainSites { N: self.n, ends }).expect("a chain")
+    }
+    fn initial(&self, seed: u64) -> QuarticChainInitial {
+        let mut r = Random::new(seed);
+        let n = self.nodes();
+        let mut list = |size: f64| (0..n).map(|_| SMatrix::repeat(size * r.number())).collect();
+        QuarticChainInitial {
+            q: list(1.0),
+            momentum_q: list(2.0),
+        }
+    }
+    /// Three steps of derivatives by all places and momenta.
+    pub fn moved(&self, q: Vec<Wide>, p: Vec<Wide>) -> [Vec<Wide>; 2] {
+        let k = Wide::constant;
+        let parameters = QuarticChainParameters {
+            m: (0..self.nodes()).map(|i| k(Self::mass(i))).collect(),
+            b: k(0.8),
+            e: k(0.6),
+        };
+        let ends = match self.ends {
+            0 => QuarticChainEnds::Ring,
+            _ => QuarticChainEnds::Open {
+                first: QuarticChainFirst::Free,
+                last: QuarticChainLast::Free,
+            },
+        };
+        let model = QuarticChain::new(parameters, QuarticChainSites { N: self.n, ends });
+        let model = model.expect("a chain");
+        let list = |x: Vec<Wide>| x.into_iter().map(SMatrix::repeat).collect();
+        let initial = QuarticChainInitial {
+            q: list(q),
+            momentum_q: list(p),
+        };
+        let (mut state, mut work) = model.start(initial, k(0.05)).expect("starts");
+        for _ in 0..3 {
+            model.step(&mut state, &mut work).expect("steps");
+        }
+        [state.q(), state.momentum_q()].map(|list| list.iter().map(|x| x[0]).collect())
+    }
+    fn seen(&self, s: &QuarticChainState) -> Configuration<f64> {
+        Configuration {
+            x: s.q().iter().map(|q| q[0]).collect(),
+            r: Vec::new(),
+        }
+    }
+    fn springs(&self) -> bool {
+        self.ends != 0 || self.n > 1
+    }
+    /// The energy between two nodes, by the velocity of the edge and the mean of both potentials.
+    fn energy(&self, a: &[f64], b: &[f64], h: f64) -> f64 {
+        let mut e = 0.0;
+        for i in 0..self.nodes() {
+            let v = (b[i] - a[i]) / h;
+            e += Self::mass(i) * v * v / 2.0 + 0.75 * 0.8 * v.powi(4);
+        }
+        for x in [a, b] {
+            for i in 0..self.n {
+                let d = x[(i + 1) % x.len()] - x[i];
+                e += 0.5 * 0.6 * d * d / 2.0;
+            }
+        }
+        e
+    }
+    fn kept_with(&self, h: f64, steps: u64) -> [f64; 2] {
+        let model = self.stepper();
+        let (mut state, mut work) = model.start(self.initial(4), h).expect("starts");
+        let total = |s: &QuarticChainState| s.momentum_q().iter().map(|p| p[0]).sum::<f64>();
+        let (mut before, first) = (self.seen(&state).x, total(&state));
+        let (mut energy, mut worst, mut off) = (None, 0.0_f64, 0.0_f64);
+        for _ in 0..steps {
+            model.step(&mut state, &mut work).expect("steps");
+            let after = self.seen(&state).x;
+            let now = self.energy(&before, &after, h);
+            let start = *energy.get_or_insert(now);
+            worst = worst.max((now - start).abs() / start);
+            if self.ends < 2 {
+                off = off.max((total(&state) - first).abs());
+            }
+            before = after;
+        }
+        [worst, off / (1.0 + first.abs())]
+    }
+}
+
+impl Line for Quartic {
+    fn name(&self) -> String {
+        format!("quartic {} ends {}", self.n, self.ends)
+    }
+    fn terms(&self) -> usize {
+        if self.springs() { 3 } else { 2 }
+    }
+    fn weighed(&self, w: &[f64], a: &Configuration<D>, b: &Configuration<D>) -> D {
+        let h: f64 = 0.05;
+        let mut s = c(0.0);
+        for i in 0..self.nodes() {
+            let d = b.x[i] - a.x[i];
+            s += c(w[0] * Self::mass(i) / (2.0 * h)) * d * d;
+            s += c(w[1] * 0.8 / (4.0 * h.powi(3))) * d * d * d * d;
+        }
+        for x in [&a.x, &b.x].into_iter().filter(|_| self.springs()) {
+            for i in 0..self.n {
+                let d = x[(i + 1) % x.len()] - x[i];
+                s -= c(w[2] * 0.5 * h * 0.6 / 2.0) * d * d;
+            }
+        }
+        s
+    }
+    fn held(&self, at: usize) -> bool {
+        self.ends == 2 && at == 0 || self.ends == 3 && at == self.n
+    }
+    fn given(&self, seed: u64) -> Vec<f64> {
+        self.initial(seed).momentum_q.iter().map(|p| p[0]).collect()
+    }
+    stepped!(0.05, 2e-2);
+    // At velocities of one, with the derivative of the cube.
+    fn mass_by_step(&self) -> f64 {
+        (1.3 + 3.0 * 0.8) / 0.05
+    }
+}
