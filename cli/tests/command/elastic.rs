@@ -211,7 +211,7 @@ fn a_matrix_field_with_second_moments_runs_from_its_file() {
     let folder = Folder::new("matrix-field");
     let model = folder.write(
         "free.clebsch",
-        "model Free { param I0: Sym<3>; field Q: Mat<3>; lagrangian = tr((next(Q) - Q)*I0*(next(Q) - Q)^T)/(2*h); }",
+        "model Drifting { param I0: Sym<3>; field Q: Mat<3>; lagrangian = tr((next(Q) - Q)*I0*(next(Q) - Q)^T)/(2*h); }",
     );
     let out = folder.path("out");
     let done = clebsch(&["run", &model, "--steps", "10", "--out", &out]);

@@ -95,7 +95,7 @@ fn largest<T: Real>(x: &[T], scales: &[f64]) -> f64 {
     for (x, scale) in x.iter().zip(scales) {
         let size = x.greatest().abs().max(x.least().abs()) * scale;
         // NaN is kept, and larger than all.
-        if !(size <= most) {
+        if size.is_nan() || size > most {
             most = size;
         }
         if x.magnitude().is_nan() {

@@ -108,6 +108,9 @@ fn split_number(text: &str) -> usize {
     i
 }
 
+/// What is told of `x.z`.
+const COMPONENT: &str = "a component of a vector is written `x[1]`, counted from 1";
+
 impl Cursor {
     /// Flattens a token stream.
     pub fn new(stream: TokenStream) -> Result<Cursor, Errors> {
@@ -314,9 +317,7 @@ impl Cursor {
         // The partner of what was not closed in its own statement, where that was told.
         error.follows = matches!(self.peek(), Some(Token::Close(')' | ']')));
         Err(error.help(match self.peek() {
-            Some(Token::Punct('.', _)) => {
-                "a component of a vector is written `x[1]`, counted from 1"
-            }
+            Some(Token::Punct('.', _)) => COMPONENT,
             Some(Token::Open('(')) => "sizes stand in angle brackets, `Vec<3>`, `SO<3>`",
             Some(Token::Punct('=', _)) => "values stand in the case, not in the model",
             Some(Token::Punct('#', _)) => "remarks begin with `//`",
@@ -343,9 +344,11 @@ impl Cursor {
         if self.take_delimiter(c) {
             return Ok(());
         }
-        Err(self
-            .unclosed()
-            .unwrap_or_else(|| self.unexpected(&format!("`{c}`"))))
+        let error = self.unexpected(&format!("`{c}`"));
+        Err(match self.peek() {
+            Some(Token::Punct('.', _)) => error.help(COMPONENT),
+            _ => self.unclosed().unwrap_or(error),
+        })
     }
 
     /// Where a statement ends inside of parentheses, or its other side begins: the innermost opening delimiter, which is not
