@@ -30,6 +30,8 @@ pub mod ellipsoid_convective {
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct EllipsoidConvective<const N: usize, T = f64> {
         parameters: EllipsoidConvectiveParameters<N, T>,
+        inverse_1_left: SMatrix<T, N, N>,
+        inverse_1_right: SMatrix<T, N, N>,
     }
     impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         /// Sizes the model does not admit do not build.
@@ -57,7 +59,14 @@ pub mod ellipsoid_convective {
             validate::finite("b", &[parameters.b])?;
             validate::finite("c", &[parameters.c])?;
             validate::finite("d", &[parameters.d])?;
-            Ok(Self { parameters })
+            let EllipsoidConvectiveParameters { C0, I0, .. } = parameters;
+            let inverse_1_left = inverse_or_nan(&(C0));
+            let inverse_1_right = inverse_or_nan(&(I0));
+            Ok(Self {
+                parameters,
+                inverse_1_left,
+                inverse_1_right,
+            })
         }
         /// The parameters.
         pub fn parameters(&self) -> &EllipsoidConvectiveParameters<N, T> {
@@ -190,20 +199,20 @@ pub mod ellipsoid_convective {
         ) -> Result<(), domain::Contact> {
             domain::invertible("Q", &before.Q, &after.Q, h)?;
             {
-                let (before, after) = (
-                    self.domain_arguments(before, h),
-                    self.domain_arguments(after, h),
-                );
-                domain::Domain::Positive
-                    .at_nodes(
-                        &domain::Call {
-                            function: domain::Function::Log,
-                            argument: "det(C_k)",
-                        },
-                        before[0],
-                        after[0],
-                        h,
-                    )?;
+                let after = self.domain_arguments(after, h);
+                if !(domain::Domain::Positive.admits(after[0])) {
+                    let before = self.domain_arguments(before, h);
+                    domain::Domain::Positive
+                        .at_nodes(
+                            &domain::Call {
+                                function: domain::Function::Log,
+                                argument: "det(C_k)",
+                            },
+                            before[0],
+                            after[0],
+                            h,
+                        )?;
+                }
             }
             let _ = (before, after, h);
             Ok(())
@@ -235,45 +244,30 @@ pub mod ellipsoid_convective {
             let EllipsoidConvectiveParameters { C0, I0, a, b, c, d, .. } = self
                 .parameters;
             let Q = state.Q.matrix();
-            let C = Q.tr_mul(&(C0 * Q));
-            let G = match two_sided(
-                &(C * (T::from_f64(1.0) / h)),
-                &(state.momentum.to_body(&state.Q).0
-                    - (C * (h * a + h * b * C.trace()) - C * C * (h * b)
-                        + SMatrix::<T, N, N>::identity()
-                            * (h * c * determinant(&(C)) - T::from_f64(0.5) * h * d))),
-                &(I0),
+            let Q_seen = C0 * (Q * Q.transpose());
+            let momentum_leaving = state.momentum.0
+                - (Q_seen * (h * a + h * b * Q_seen.trace()) - Q_seen * Q_seen * (h * b)
+                    + SMatrix::<T, N, N>::identity()
+                        * (h * c * determinant(&(Q_seen)) - T::from_f64(0.5) * h * d));
+            let Q_change = match displaced(
+                &state.Q,
+                &(self.inverse_1_left * h),
+                &momentum_leaving,
+                &self.inverse_1_right,
                 &["C_k/h", "I₀"],
             ) {
                 Ok(solved) => solved,
                 Err(e) => return Err(StepCause::Singular(e).at_node(state.node)),
             };
-            let G_matrix = G.matrix();
-            let Q_moved = state.Q * G;
+            let Q_moved = state.Q.changed(&Q_change);
             let Q_next = Q_moved.matrix();
-            let C_next = Q_next.tr_mul(&(C0 * Q_next));
-            let t1 = -(h * a);
-            let t2 = T::from_f64(0.5) * h * d;
-            let momentum_next = state.momentum.0
-                + state
-                    .Q
-                    .covector_to_space(
-                        &(C
-                            * ((G_matrix - SMatrix::<T, N, N>::identity())
-                                * (I0
-                                    * (G_matrix.transpose() - SMatrix::<T, N, N>::identity())))
-                            * (T::from_f64(1.0) / h) + C * (t1 - h * b * C.trace())
-                            + C * C * (h * b)
-                            + SMatrix::<T, N, N>::identity()
-                                * (t2 - h * c * determinant(&(C)))),
-                    )
-                + Q_moved
-                    .covector_to_space(
-                        &(C_next * (t1 - h * b * C_next.trace())
-                            + C_next * C_next * (h * b)
-                            + SMatrix::<T, N, N>::identity()
-                                * (t2 - h * c * determinant(&(C_next)))),
-                    );
+            let Q_seen_next = C0 * (Q_next * Q_next.transpose());
+            let momentum_next = momentum_leaving
+                + C0 * (Q_change * (I0 * Q_change.transpose())) * (T::from_f64(1.0) / h)
+                + Q_seen_next * ((-(h * a)) - h * b * Q_seen_next.trace())
+                + Q_seen_next * Q_seen_next * (h * b)
+                + SMatrix::<T, N, N>::identity()
+                    * (T::from_f64(0.5) * h * d - h * c * determinant(&(Q_seen_next)));
             state.Q = Q_moved;
             state.momentum = SpatialMomentumMatrix(momentum_next);
             state.node += 1;

@@ -30,6 +30,8 @@ pub mod ellipsoid_spatial {
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct EllipsoidSpatial<const N: usize, T = f64> {
         parameters: EllipsoidSpatialParameters<N, T>,
+        inverse_1_left: SMatrix<T, N, N>,
+        inverse_1_right: SMatrix<T, N, N>,
     }
     impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         /// Sizes the model does not admit do not build.
@@ -57,7 +59,14 @@ pub mod ellipsoid_spatial {
             validate::finite("b", &[parameters.b])?;
             validate::finite("c", &[parameters.c])?;
             validate::finite("d", &[parameters.d])?;
-            Ok(Self { parameters })
+            let EllipsoidSpatialParameters { C0, I0, .. } = parameters;
+            let inverse_1_left = inverse_or_nan(&(C0));
+            let inverse_1_right = inverse_or_nan(&(I0));
+            Ok(Self {
+                parameters,
+                inverse_1_left,
+                inverse_1_right,
+            })
         }
         /// The parameters.
         pub fn parameters(&self) -> &EllipsoidSpatialParameters<N, T> {
@@ -190,20 +199,20 @@ pub mod ellipsoid_spatial {
         ) -> Result<(), domain::Contact> {
             domain::invertible("Q", &before.Q, &after.Q, h)?;
             {
-                let (before, after) = (
-                    self.domain_arguments(before, h),
-                    self.domain_arguments(after, h),
-                );
-                domain::Domain::Positive
-                    .at_nodes(
-                        &domain::Call {
-                            function: domain::Function::Log,
-                            argument: "det(S_k)",
-                        },
-                        before[0],
-                        after[0],
-                        h,
-                    )?;
+                let after = self.domain_arguments(after, h);
+                if !(domain::Domain::Positive.admits(after[0])) {
+                    let before = self.domain_arguments(before, h);
+                    domain::Domain::Positive
+                        .at_nodes(
+                            &domain::Call {
+                                function: domain::Function::Log,
+                                argument: "det(S_k)",
+                            },
+                            before[0],
+                            after[0],
+                            h,
+                        )?;
+                }
             }
             let _ = (before, after, h);
             Ok(())
@@ -231,33 +240,29 @@ pub mod ellipsoid_spatial {
             let EllipsoidSpatialParameters { C0, I0, a, b, c, d, .. } = self.parameters;
             let Q = state.Q.matrix();
             let S = Q * (I0 * Q.transpose());
-            let g = match two_sided(
-                &(C0 * (T::from_f64(1.0) / h)),
-                &(state.momentum.0
-                    - (S * (h * a + h * b * S.trace()) - S * S * (h * b)
-                        + SMatrix::<T, N, N>::identity()
-                            * (h * c * determinant(&(S)) - T::from_f64(0.5) * h * d))),
-                &(S),
+            let momentum_leaving = state.momentum.0
+                - (S * (h * a + h * b * S.trace()) - S * S * (h * b)
+                    + SMatrix::<T, N, N>::identity()
+                        * (h * c * determinant(&(S)) - T::from_f64(0.5) * h * d));
+            let Q_change = match displaced(
+                &state.Q,
+                &(self.inverse_1_left * h),
+                &momentum_leaving,
+                &self.inverse_1_right,
                 &["C₀/h", "S_k"],
             ) {
                 Ok(solved) => solved,
                 Err(e) => return Err(StepCause::Singular(e).at_node(state.node)),
             };
-            let g_matrix = g.matrix();
-            let Q_moved = g * state.Q;
+            let Q_moved = state.Q.changed(&Q_change);
             let Q_next = Q_moved.matrix();
             let S_next = Q_next * (I0 * Q_next.transpose());
-            let t1 = -(h * a);
-            let momentum_next = state.momentum.0
-                + C0
-                    * ((g_matrix - SMatrix::<T, N, N>::identity())
-                        * (S * (g_matrix.transpose() - SMatrix::<T, N, N>::identity())))
-                    * (T::from_f64(1.0) / h) + S * (t1 - h * b * S.trace())
-                + S_next * (t1 - h * b * S_next.trace())
-                + (S * S + S_next * S_next) * (h * b)
+            let momentum_next = momentum_leaving
+                + C0 * (Q_change * (I0 * Q_change.transpose())) * (T::from_f64(1.0) / h)
+                + S_next * ((-(h * a)) - h * b * S_next.trace())
+                + S_next * S_next * (h * b)
                 + SMatrix::<T, N, N>::identity()
-                    * (h * d - h * c * determinant(&(S))
-                        - h * c * determinant(&(S_next)));
+                    * (T::from_f64(0.5) * h * d - h * c * determinant(&(S_next)));
             state.Q = Q_moved;
             state.momentum = SpatialMomentumMatrix(momentum_next);
             state.node += 1;

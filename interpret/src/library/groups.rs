@@ -198,6 +198,14 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         ("body_velocity", 2) => |a, _| velocity(a.first()?, a.get(1)?),
         ("spatial_velocity", 2) => |a, _| spatial_velocity(a.first()?, a.get(1)?),
         ("inverse", 1) => |a, _| inverse(a.first()?),
+        ("changed", 2) => |a, _| match a {
+            [Value::Element(Kept::Linear, q), change] => {
+                let change = change.dense()?;
+                let fits = q.fits(&change);
+                fits.then(|| Value::Element(Kept::Linear, q.plus(&change)))
+            }
+            _ => None,
+        },
         ("moved", 3) => moved,
         ("velocity_between", 4) => between,
         ("way", 2) => |a, _| match (a.first()?, a.get(1)?) {

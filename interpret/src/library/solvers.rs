@@ -302,6 +302,25 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
                 solved.map(|x| Value::Element(Kept::Field, x)),
             ))
         },
+        ("displaced", 5) => |a, _| {
+            let [element, left, known, right, label] = a else {
+                return None;
+            };
+            let Value::Element(Kept::Linear, q) = element else {
+                return None;
+            };
+            let (l, m, r) = (left.dense()?, known.dense()?, right.dense()?);
+            let singular = [&l, &r].into_iter().zip(names(label)?);
+            for (inverse, factor) in singular {
+                if !inverse.trace().is_finite() {
+                    return Some(Value::failed(SingularFactor { factor }));
+                }
+            }
+            let seen = m.times(&super::groups::linear_inverse(q).transpose());
+            let change = Value::of(l.times(&seen.times(&r)));
+            let solved: Result<_, SingularFactor> = Ok(change);
+            Some(Value::result(solved))
+        },
         ("left_sided", 3) => |a, _| {
             let (l, m, label) = (a.first()?.dense()?, a.get(1)?.dense()?, text(a.get(2)?)?);
             (l.cols == m.rows).then(|| increment(l.small_solve(&m), label))

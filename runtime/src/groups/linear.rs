@@ -72,6 +72,12 @@ impl<const N: usize, T: Real> Linear<N, T> {
         self.matrix
     }
 
+    /// The map at the end of a step that changes it by this matrix.
+    #[inline]
+    pub fn changed(&self, change: &SMatrix<T, N, N>) -> Self {
+        Self::stepped(self.matrix + change)
+    }
+
     /// The inverse map; all NaN where a step has made the matrix singular, so that what uses it is
     /// refused.
     #[inline]

@@ -1,5 +1,5 @@
-//! The linear equation of a step, `L (Ω - Id) R = M` on GL(n) and `L ΔX R = P` of a field: small linear
-//! systems, one after the other, never one in all entries. Takes the factors and the known side; gives
+//! The linear equation of a step, `L (Ω - Id) R = M` on GL(n), `L ΔQ R Q^T = M` where the factors do not
+//! change, and `L ΔX R = P` of a field: small linear systems, one after the other, never one in all entries. Takes the factors and the known side; gives
 //! the velocity.
 
 use crate::Real;
@@ -42,6 +42,28 @@ pub fn two_sided<T: Real, const N: usize>(
 ) -> Result<Linear<N, T>, SingularFactor> {
     let change = two_sided_increment(left, known, right, names)?;
     Ok(Linear::stepped(SMatrix::identity() + change.matrix()))
+}
+
+/// The solution `ΔQ` of `left ΔQ right Q^T = known`, given the inverses of both factors, with entries that
+/// are not finite where there is none; `names` are those of the factors.
+///
+/// # Errors
+/// [`SingularFactor`] where a factor has no inverse.
+#[inline]
+pub fn displaced<T: Real, const N: usize>(
+    element: &Linear<N, T>,
+    left_inverse: &SMatrix<T, N, N>,
+    known: &SMatrix<T, N, N>,
+    right_inverse: &SMatrix<T, N, N>,
+    names: &[&'static str; 2],
+) -> Result<SMatrix<T, N, N>, SingularFactor> {
+    for (inverse, factor) in [left_inverse, right_inverse].into_iter().zip(names) {
+        if !inverse.trace().is_finite() {
+            return Err(SingularFactor { factor });
+        }
+    }
+    let seen = known * element.inverse().matrix().transpose();
+    Ok(left_inverse * (seen * right_inverse))
 }
 
 /// The solution of `left ΔX right = known`.

@@ -13,6 +13,7 @@ pub mod certificate;
 pub mod clebsch;
 pub mod continuous;
 pub mod convex;
+pub mod displaced;
 pub mod explicit;
 mod far;
 #[cfg(test)]

@@ -6,17 +6,18 @@ use super::element::{self, Family, family};
 use super::expression::{Bindings, program};
 use super::items::{letters_of, parameter_locals, text, with_transports};
 use super::left_factor::default_solver;
-use super::names::{Names, item, tagged, variable};
+use super::names::{Names, item, own, per_configuration, tagged, variable};
 use super::newton::{Together, onwards};
 use super::sizes::Generics;
 use super::step::{at, finish, here, node_momentum, step_signature};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::blocks::Block;
+use crate::derive::displaced::{Displaced, displaced};
 use crate::derive::explicit::Explicit;
 use crate::derive::quaternionic::Quaternionic;
 use crate::derive::recognise::{Method, MoserVeselov, Riccati};
-use crate::expr::{self, Expr, Shift};
+use crate::expr::{self, Expr, Letter, Shift};
 use crate::schedule;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
@@ -51,6 +52,42 @@ fn linear<'a>(d: &'a Derivation, b: &'a Block) -> Option<(usize, &'a Explicit)> 
         Riccati::Linear(form) => Some((*i, form)),
         _ => None,
     }
+}
+
+/// The forms of all configurations in their changes, where they have one.
+fn all_displaced(d: &Derivation) -> Vec<Option<Displaced>> {
+    let is_linear = |i: usize| numbered(d).any(|(_, b)| linear(d, b).is_some_and(|(j, _)| i == j));
+    (0..d.spec.configurations.len())
+        .map(|i| displaced(d, i).filter(|_| is_linear(i)))
+        .collect()
+}
+
+/// The names of the inverses that a model keeps for block `n`.
+fn inverses(n: usize) -> [Ident; 2] {
+    ["left", "right"].map(|side| format_ident!("inverse_{n}_{side}"))
+}
+
+/// What the model keeps of constant factors that meet the change of a configuration.
+pub(super) struct Inverse {
+    /// Its field.
+    pub name: Ident,
+    /// The factor.
+    pub of: Expr,
+}
+
+/// The inverses that the model keeps.
+pub(super) fn kept_inverses(d: &Derivation) -> Vec<Inverse> {
+    if !matches!(d.solve.method, Method::Blocks) {
+        return Vec::new();
+    }
+    let forms = all_displaced(d);
+    let of_block = |(n, b): (usize, &Block)| {
+        let form = changed(d, b, &forms)?;
+        let factors = [form.left.clone(), form.right.clone()];
+        let named = inverses(n).into_iter().zip(factors);
+        Some(named.map(|(name, of)| Inverse { name, of }))
+    };
+    numbered(d).filter_map(of_block).flatten().collect()
 }
 
 /// The configuration and the equation of a block in unit quaternions.
@@ -192,10 +229,16 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
     let work = item(d, "Workspace");
     // What is known at the node, for all blocks together.
     let mut known: Vec<Expr> = Vec::new();
-    let mut needed = onwards(d);
+    let by_change = all_displaced(d);
+    let mut needed: Vec<Letter> = onwards(d, &by_change);
+    let seen = by_change.iter().flatten().filter_map(|f| f.seen.as_ref());
+    needed.extend(letters_of(seen));
     for b in &d.solve.blocks {
-        if let Some((_, form)) = linear(d, b) {
-            known.extend([&form.rest, &form.left, &form.right].map(Expr::clone));
+        if let Some((i, form)) = linear(d, b) {
+            match &by_change[i] {
+                Some(form) => known.push(form.rest.clone()),
+                None => known.extend([&form.rest, &form.left, &form.right].map(Expr::clone)),
+            }
         }
         if let Some((i, q)) = quaternionic(d, b) {
             known.push(q.edge.rest.clone());
@@ -226,6 +269,7 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
     let parameters = parameter_locals(d, quote!(self.parameters), &letters);
     let mut bindings = Bindings::new();
     let locals = here(d, names, &needed, &mut bindings);
+    let seen = from_space(d, names, &by_change, Shift::HERE, &mut bindings);
     let p = schedule::program(s, &known, "b");
     let (lets, values) = program(&p, &bindings);
     let mut values = values.into_iter();
@@ -235,6 +279,28 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
     let mut found: Vec<TokenStream> = vec![TokenStream::new(); d.spec.configurations.len()];
     let mut refuses = false;
     for (n, b) in numbered(d) {
+        if let (Some((i, form)), Some(moved)) = (linear(d, b), changed(d, b, &by_change)) {
+            let c = &d.spec.configurations[i];
+            let rest = values.next().filter(|_| !moved.rest.is_zero());
+            let minus = rest.map(|rest| quote!(- (#rest)));
+            let (element, momentum) = (own(d, c.element), per_configuration(d, "momentum", i));
+            let [left, right] = inverses(n);
+            let labels = [text(d, &form.left), text(d, &form.right)];
+            let leaving = names.local(&format!("{momentum}_leaving"));
+            let change = tagged(d, names, c.element, "change");
+            solves.extend(quote! {
+                let #leaving = state.#momentum.0 #minus;
+                let #change = match displaced(
+                    &state.#element, &(self.#left * #step), &#leaving, &self.#right, &[#(#labels),*],
+                ) {
+                    Ok(solved) => solved,
+                    Err(e) => return Err(StepCause::Singular(e).at_node(state.#node)),
+                };
+            });
+            after.bind(at(d.letters.direction[i], Shift::HERE), change.clone());
+            found[i] = quote!(#change);
+            continue;
+        }
         if let Some((i, form)) = linear(d, b) {
             let rest = values.next().filter(|_| !form.rest.is_zero());
             let (left, right) = (values.next(), values.next());
@@ -328,6 +394,9 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
         let Some(i) = alone.or(linear(d, b).map(|(i, _)| i)) else {
             continue;
         };
+        if by_change[i].is_some() {
+            continue;
+        }
         let velocity = at(d.spec.configurations[i].velocity, Shift::HERE);
         if moving.iter().any(|e| expr::contains(e, velocity)) {
             let omega = &found[i];
@@ -337,13 +406,15 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
             after.bind(velocity, name);
         }
     }
-    let rest = finish(d, names, &mut after, &|i| found[i].clone(), remembered);
+    let solved = |i: usize| found[i].clone();
+    let rest = finish(d, names, &mut after, &solved, &by_change, remembered);
     let step_function = step_signature(
         d,
         quote! {
             let #step = work.h;
             #parameters
             #locals
+            #seen
             #lets
             #solves
             #rest
@@ -358,6 +429,45 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
         )
     });
     (node_types, quote!(#step_function #refused #beside))
+}
+
+/// The locals of quantities that are seen from space at a node, for which letters of variations stand.
+pub(super) fn from_space(
+    d: &Derivation,
+    names: &Names,
+    by_change: &[Option<Displaced>],
+    shift: Shift,
+    bindings: &mut Bindings,
+) -> TokenStream {
+    let s = &d.letters.symbols;
+    let mut out = TokenStream::new();
+    for (i, form) in by_change.iter().enumerate() {
+        let Some(form) = form else { continue };
+        let Some(seen) = form.seen.as_ref() else {
+            continue;
+        };
+        let letter = at(d.letters.variation[i], shift);
+        if !expr::contains(&form.rest, letter) && !expr::contains(&form.added, letter) {
+            continue;
+        }
+        let tag = match shift == Shift::HERE {
+            true => "seen",
+            false => "seen_next",
+        };
+        let name = tagged(d, names, d.spec.configurations[i].element, tag);
+        let value = expr::shift_time(s, seen, shift.time);
+        let p = schedule::program(s, std::slice::from_ref(&value), "m");
+        let (lets, values) = program(&p, bindings);
+        out.extend(quote!(#lets let #name = #(#values)*;));
+        bindings.bind(letter, name);
+    }
+    out
+}
+
+/// The form of a block in the change of its configuration, where it is found by that.
+fn changed<'a>(d: &Derivation, b: &Block, forms: &'a [Option<Displaced>]) -> Option<&'a Displaced> {
+    let (i, _) = linear(d, b)?;
+    forms[i].as_ref()
 }
 
 /// The function of this name that says how far the step is beyond a bound, and which one could be made.

@@ -6,6 +6,7 @@ use super::names::{Names, own, per_configuration, tagged, variable};
 use crate::check::spec::{Configuration, Side};
 use crate::derive::Derivation;
 use crate::derive::carry::Carry;
+use crate::derive::displaced::Displaced;
 use crate::expr::Expr;
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
@@ -84,6 +85,26 @@ pub(super) fn carried(
                 value,
             }
         }
+    }
+}
+
+/// The momentum of configuration `i` where its change was found: what the edge adds to the rest of it.
+pub(super) fn gained(
+    d: &Derivation,
+    names: &Names,
+    i: usize,
+    form: &Displaced,
+    values: &mut impl Iterator<Item = TokenStream>,
+) -> Carried {
+    let field = per_configuration(d, "momentum", i);
+    let [value, leaving] = ["next", "leaving"].map(|tag| names.local(&format!("{field}_{tag}")));
+    let added = values.next().filter(|_| !form.added.is_zero());
+    let added = added.map(|e| quote!(+ #e));
+    let kind = element::kept_name(d, i);
+    Carried {
+        found: quote!(let #value = #leaving #added;),
+        stored: quote!(state.#field = #kind(#value);),
+        value,
     }
 }
 

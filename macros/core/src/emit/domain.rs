@@ -468,10 +468,27 @@ fn at_nodes(d: &Derivation, names: &Names, list: &[Guard]) -> (TokenStream, Toke
         let i = Literal::usize_unsuffixed(i);
         quote!(#domain.at_nodes(#call, #before[#i], #after[#i], #step)?;)
     });
-    let nodes = quote! {{
-        let (#before, #after) = (self.domain_arguments(#before, #step), self.domain_arguments(#after, #step));
-        #(#tests)*
-    }};
+    // Where a step starts has been tested: by the step before, or when its workspace was made. It is asked for where an
+    // argument must not change its sign, and to say when a domain was left.
+    let nodes = match list.iter().any(|g| g.domain == Domain::NotZero) {
+        true => quote! {{
+            let (#before, #after) = (self.domain_arguments(#before, #step), self.domain_arguments(#after, #step));
+            #(#tests)*
+        }},
+        false => {
+            let admits = list.iter().enumerate().map(|(i, g)| {
+                let (domain, i) = (g.domain.tokens(), Literal::usize_unsuffixed(i));
+                quote!(#domain.admits(#after[#i]))
+            });
+            quote! {{
+                let #after = self.domain_arguments(#after, #step);
+                if !(#(#admits)&&*) {
+                    let #before = self.domain_arguments(#before, #step);
+                    #(#tests)*
+                }
+            }}
+        }
+    };
     let (locals, values) = arguments(d, names, list);
     let function = quote! {
         /// The arguments of the functions that the model uses, at the node of this state.

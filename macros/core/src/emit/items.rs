@@ -419,6 +419,7 @@ pub fn model(d: &Derivation, documented: bool) -> TokenStream {
         .flat_map(|a| [&a.left, &a.right])
         .collect();
     let numbers = constant.and_then(|_| real(d));
+    let inverses = super::blocks::kept_inverses(d);
     let in_blocks = super::blocks::factors(d);
     let in_blocks = in_blocks.iter().flat_map(|f| f.made_of());
     let mut needed = letters_of(
@@ -426,7 +427,8 @@ pub fn model(d: &Derivation, documented: bool) -> TokenStream {
             .into_iter()
             .chain(numbers)
             .chain(assumed)
-            .chain(in_blocks),
+            .chain(in_blocks)
+            .chain(inverses.iter().map(|inverse| &inverse.of)),
     );
     let (arguments, inside) = super::domain::of_parameters(d);
     needed.extend(arguments);
@@ -435,14 +437,23 @@ pub fn model(d: &Derivation, documented: bool) -> TokenStream {
     let mut kept: Vec<(Ident, TokenStream, TokenStream)> = Vec::new();
     if let Some(e) = constant {
         let (kind, made) = prepared(d, e);
-        kept.push((format_ident!("factor"), kind, made));
+        kept.push((format_ident!("factor"), kind, quote!(#made?)));
     }
     for f in super::blocks::factors(d) {
         let (kind, made) = match f.real {
             Some(real) => body_of_quaternions(d, f.value, real),
             None => super::left_factor::prepared(d, f.configuration, f.value),
         };
-        kept.push((f.name, kind, made));
+        kept.push((f.name, kind, quote!(#made?)));
+    }
+    for inverse in inverses {
+        let (kind, none) = (ty(&d.letters.symbols, inverse.of.shape()), Bindings::new());
+        let writer = Writer {
+            symbols: &d.letters.symbols,
+            bindings: &none,
+        };
+        let value = writer.write(&inverse.of);
+        kept.push((inverse.name, kind, quote!(inverse_or_nan(&(#value)))));
     }
     let field: TokenStream = kept
         .iter()
@@ -450,7 +461,7 @@ pub fn model(d: &Derivation, documented: bool) -> TokenStream {
         .collect();
     let build: TokenStream = kept
         .iter()
-        .map(|(name, _, made)| quote!(let #name = #made?;))
+        .map(|(name, _, made)| quote!(let #name = #made;))
         .collect();
     let init: TokenStream = kept.iter().map(|(name, _, _)| quote!(#name,)).collect();
     let (solver_field, solver_init, with_solver) = super::left_factor::of_model(d);

@@ -349,6 +349,7 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
         names,
         &mut bindings,
         &|_| quote!(#omega),
+        &[],
         TokenStream::new(),
     );
     let work = item(d, "Workspace");

@@ -12,8 +12,8 @@ use super::sizes::Generics;
 use super::step::{at, finish, here, node_momentum, step_signature};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
-use crate::derive::carry::Carry;
 use crate::derive::convex::convexity;
+use crate::derive::displaced::Displaced;
 use crate::derive::seen_from_body::outgoing;
 use crate::expr::{Expr, Letter, Shift};
 use crate::schedule;
@@ -360,8 +360,13 @@ impl Together<'_> {
 }
 
 /// What the step needs of the node beside the equations: to go on from there.
-pub(super) fn onwards(d: &Derivation) -> Vec<Letter> {
-    let mut needed = letters_of(d.carries.iter().flat_map(Carry::parts));
+pub(super) fn onwards(d: &Derivation, by_change: &[Option<Displaced>]) -> Vec<Letter> {
+    let carries = d.carries.iter().enumerate();
+    let acting = carries.flat_map(|(i, carry)| match by_change.get(i) {
+        Some(Some(form)) => vec![&form.added],
+        _ => carry.parts(),
+    });
+    let mut needed = letters_of(acting);
     needed.extend(letters_of(advanced(d).map(|a| &a.update)));
     needed
 }
@@ -400,7 +405,7 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
     let block = with_all_multipliers(d);
     let all = all(d, &block, names, &members);
     let mut needed = all.needed();
-    needed.extend(onwards(d));
+    needed.extend(onwards(d, &[]));
     let mut letters = with_transports(d, &needed, 0);
     letters.extend(with_transports(d, &needed, 1));
     let parameters = parameter_locals(d, quote!(self.parameters), &letters);
@@ -419,7 +424,7 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
     let matrices = all.matrices(&solved, &mut after);
     let remembered = quote!(work.search.remember(state.#node - 1, &#found););
     let solved_at = |i: usize| all.part(quote!(#solved), i);
-    let rest = finish(d, names, &mut after, &solved_at, remembered);
+    let rest = finish(d, names, &mut after, &solved_at, &[], remembered);
     let step = variable(&d.letters.symbols, d.spec.step);
     let step = step_signature(
         d,

@@ -1,7 +1,7 @@
 //! `step`: the momentum of the edge from that of the node, the solve, the new element, the momentum of
 //! the next node.
 
-use super::carried::carried;
+use super::carried::{carried, gained};
 use super::element::{self, Family, family};
 use super::expression::{Bindings, program};
 use super::items::{self, kept, letters_of, node_locals, parameter_locals, with_transports};
@@ -10,6 +10,7 @@ use super::sizes::Generics;
 use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::carry::Carry;
+use crate::derive::displaced::Displaced;
 use crate::derive::recognise::{Method, Riccati};
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::schedule;
@@ -152,18 +153,29 @@ pub(super) fn node_momentum(d: &Derivation, i: usize, side: Side) -> TokenStream
     }
 }
 
-/// The tail of every step: new elements, next node's quantities, momenta, the finite test.
+/// The tail of every step: new elements, next node's quantities, momenta, the finite test. What was solved
+/// for is the change of a configuration where it has a form in `by_change`.
 pub(super) fn finish(
     d: &Derivation,
     names: &Names,
     bindings: &mut Bindings,
     solved: &dyn Fn(usize) -> TokenStream,
+    by_change: &[Option<Displaced>],
     remembered: TokenStream,
 ) -> TokenStream {
     let s = &d.letters.symbols;
-    let parts = d.carries.iter().flat_map(Carry::parts);
+    let forms = by_change;
+    let by_change = |i: usize| forms.get(i).and_then(Option::as_ref);
+    let parts = d.carries.iter().enumerate();
+    let parts = parts.flat_map(|(i, carry)| match by_change(i) {
+        Some(form) => vec![&form.added],
+        None => carry.parts(),
+    });
     let wanted: Vec<Expr> = parts.cloned().collect();
     let mut needed = letters_of(&wanted);
+    let seen = forms.iter().flatten().filter_map(|form| form.seen.as_ref());
+    let seen: Vec<Expr> = seen.map(|e| expr::shift_time(s, e, 1)).collect();
+    needed.extend(letters_of(&seen));
     let advanced: Vec<_> = items::advanced(d).map(|a| a.quantity).collect();
     needed.extend(advanced.iter().map(|q| at(*q, Shift::NEXT)));
     let mut out = TokenStream::new();
@@ -195,7 +207,10 @@ pub(super) fn finish(
             assignments.extend(quote!(state.#rest = #left;));
             continue;
         }
-        let end = element::advanced(c, side, quote!(state.#element), omega);
+        let end = match by_change(i) {
+            Some(_) => quote!(state.#element.changed(&#omega)),
+            None => element::advanced(c, side, quote!(state.#element), omega),
+        };
         out.extend(quote!(let #moved = #end;));
     }
     let element = |i: usize| {
@@ -227,12 +242,22 @@ pub(super) fn finish(
         .iter()
         .map(|e| expr::factored(s, &schedule::displaced(s, e)))
         .collect();
+    out.extend(super::blocks::from_space(
+        d,
+        names,
+        forms,
+        Shift::NEXT,
+        bindings,
+    ));
     let p = schedule::program(s, &factored, "t");
     let (lets, values) = program(&p, bindings);
     out.extend(lets);
     let mut values = values.into_iter();
     for i in 0..d.spec.configurations.len() {
-        let carried = carried(d, names, i, &mut values);
+        let carried = match by_change(i) {
+            Some(form) => gained(d, names, i, form, &mut values),
+            None => carried(d, names, i, &mut values),
+        };
         let value = carried.value;
         out.extend(carried.found);
         assignments.extend(carried.stored);
