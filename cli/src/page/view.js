@@ -8,6 +8,8 @@ const clock = document.getElementById("clock");
 const play = document.getElementById("play");
 const colours = ["#d55e00", "#009e73", "#0072b2"];
 const last = scene.times.length - 1;
+// Profiles are wider than high.
+const flatter = scene.flat && scene.chains.every(c => c.profile);
 let yaw = scene.flat ? 0 : -0.6, pitch = scene.flat ? Math.PI / 2 : 0.45, zoom = 1;
 let frame = 0, running = false;
 
@@ -43,14 +45,19 @@ function places() {
   for (let j = 0; j < 3; j++) if (all.length) middle[j] = (low[j] + high[j]) / 2;
   for (const p of all) reach = Math.max(reach, Math.hypot(p[0] - middle[0], p[1] - middle[1], p[2] - middle[2]));
 }
-const arm = scene.bodies.length === 0 ? 0 : scene.bodies.some(b => b.small) ? reach / 12 : Math.max(reach / 3, 1);
+const few = scene.bodies.length <= 3;
+const arm = scene.bodies.length === 0 ? 0 : !scene.bodies.some(b => b.small) ? 1 : reach / (few ? 5 : 12);
 reach += 1.15 * arm;
 
+// Pixels of a length of one.
+function unit() {
+  return 0.48 * (flatter ? Math.min(canvas.width, 1.6 * canvas.height) : Math.min(canvas.width, canvas.height)) / reach * zoom;
+}
 function seen(p) {
   const x = p[0] - middle[0], y = p[1] - middle[1], z = p[2] - middle[2];
   const [c, s, d, t] = [Math.cos(yaw), Math.sin(yaw), Math.cos(pitch), Math.sin(pitch)];
   const across = c * x - s * y, away = s * x + c * y;
-  const scale = 0.46 * Math.min(canvas.width, canvas.height) / reach * zoom;
+  const scale = unit();
   return [canvas.width / 2 + scale * across, canvas.height / 2 - scale * (away * t + z * d)];
 }
 function path(list, colour, width) {
@@ -65,6 +72,14 @@ function dot(p, colour, radius) {
   pen.arc(...seen(p), radius * devicePixelRatio, 0, 7);
   pen.fillStyle = colour;
   pen.fill();
+}
+function circle(p) {
+  const at = seen(p);
+  pen.beginPath();
+  pen.arc(at[0], at[1], arm * unit(), 0, 7);
+  pen.strokeStyle = "#dddddd";
+  pen.lineWidth = devicePixelRatio;
+  pen.stroke();
 }
 function tip(body, f, axis) {
   const turn = body.turns[f], p = body.places[f];
@@ -82,8 +97,9 @@ function draw() {
   for (const body of scene.bodies) {
     const trail = [];
     for (let f = from; f <= frame; f++) trail.push(body.small ? body.places[f] : tip(body, f, 2));
-    if (!body.small) path(trail, "#9ecae1", 1.5);
-    for (let axis = 0; axis < 3; axis++) path([body.places[frame], tip(body, frame, axis)], colours[axis], body.small ? 1.2 : 3);
+    if (few || !body.small) path(trail, "#9ecae1", 1.5);
+    if (!body.small) circle(body.places[frame]);
+    for (let axis = 0; axis < 3; axis++) path([body.places[frame], tip(body, frame, axis)], colours[axis], few ? 3 : 1.2);
     if (!body.small) dot(tip(body, frame, 2), colours[2], 4);
   }
   for (const chain of scene.chains) {

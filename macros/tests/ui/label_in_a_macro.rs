@@ -1,11 +1,12 @@
-//! A chain whose velocities are solved for together runs from its file.
+//! A chain of unit quaternions runs from its file.
 
 clebsch::model! {
     model Chain {
         label i in 0..N;
-        param m, k: Real;
-        field q: Real at nodes;
-        lagrangian = m*(next(q) - q)^2/(2*h) + (k/h)*(next(q) - q)*(next(next(q, i)) - next(q, i));
+        param c, w: Real;
+        group q: SU<2> at nodes velocity v;
+        constraint next(q) = q*v;
+        lagrangian = -2*w*re(v)/h - h*c*re(q^T*next(q, i));
     }
 }
 
