@@ -3,40 +3,23 @@
 
 use super::sites::at_sites;
 use clebsch::card::Card;
-use clebsch::record::invariant_name;
-use clebsch::record::npz::{Array, shape};
+use clebsch::record::npz::{self, Array};
 use std::collections::HashSet;
-use std::ops::Range;
 
 /// Where the observables begin in a row, after node and time.
 const OFFSET: usize = 2;
 
-/// All arrays of a run: `node`, `time`, the observables, the invariants, quantities at sites with the site as their
-/// second index.
+/// All arrays of a run: those of the card, quantities at sites with the site as their second index in the place of their
+/// copies.
 pub(super) fn arrays(card: &Card, samples: u64) -> Vec<Array> {
-    let all = |range: Range<usize>| vec![range];
-    let mut arrays = vec![
-        Array::of_nodes("node", samples),
-        Array::of_columns("time", samples, &[], all(1..OFFSET)),
-    ];
     let at_sites = at_sites(card);
-    let of_sites = at_sites.iter().flat_map(|q| &q.members);
-    let of_sites: HashSet<usize> = of_sites.map(|(_, c)| c.start).collect();
-    let mut from = OFFSET;
-    for field in card.observables {
-        let here = from..from + field.count();
-        from = here.end;
-        if !of_sites.contains(&(here.start - OFFSET)) {
-            let shape = shape(field.rows, field.cols);
-            arrays.push(Array::of_columns(field.ascii, samples, &shape, all(here)));
-        }
-    }
-    for invariant in card.invariants {
-        let here = from..from + invariant.rows;
-        from = here.end;
-        let (name, shape) = (invariant_name(invariant), shape(invariant.rows, 1));
-        arrays.push(Array::of_columns(&name, samples, &shape, all(here)));
-    }
+    let copies = at_sites.iter().flat_map(|q| {
+        let sites = q.members.iter().map(|(site, _)| site);
+        sites.map(|site| format!("{}_{site}", q.key))
+    });
+    let copies: HashSet<String> = copies.collect();
+    let mut arrays = npz::arrays(card, samples);
+    arrays.retain(|array| !copies.contains(array.name()));
     for q in at_sites {
         let (rows, cols) = (q.field.rows, q.field.cols);
         let mut shape = vec![q.members.len()];

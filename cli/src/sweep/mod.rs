@@ -350,12 +350,19 @@ impl Sweep<'_> {
         Ok(listening.asked().filter(|_| !all))
     }
 
+    /// What is run at a point, and the values that are varied there.
+    fn at(&self, point: u64) -> (Plan, Vec<f64>) {
+        let values = vary::at(self.axes, point);
+        let mut plan = self.plan.clone();
+        for (axis, value) in self.axes.iter().zip(&values) {
+            axis.put(*value, &mut plan.case);
+        }
+        (plan, values)
+    }
+
     /// Why a point is refused, in words.
     fn refusal(&self, point: u64) -> String {
-        let mut plan = self.plan.clone();
-        for (axis, value) in self.axes.iter().zip(vary::at(self.axes, point)) {
-            axis.put(value, &mut plan.case);
-        }
+        let (plan, _) = self.at(point);
         match plan.open(self.card) {
             Err(failure) => failure.to_string(),
             Ok(mut trajectory) => match trajectory.step() {
@@ -367,11 +374,7 @@ impl Sweep<'_> {
 
     /// Computes the row of a point; false when `asked` to stop before its end.
     fn row(&self, point: u64, row: &mut [u64], asked: &dyn Fn() -> bool) -> bool {
-        let values = vary::at(self.axes, point);
-        let mut plan = self.plan.clone();
-        for (axis, value) in self.axes.iter().zip(&values) {
-            axis.put(*value, &mut plan.case);
-        }
+        let (plan, values) = self.at(point);
         row.fill(f64::NAN.to_bits());
         let mut slots = row.iter_mut();
         if let Some(slot) = slots.next() {

@@ -1,17 +1,11 @@
 //! The book, chapter by chapter, as a reader follows it: files are written, commands run in order, what is shown of their
 //! output is in it, and models that are said to be refused are.
 
-use crate::common::{Done, Folder, on};
-use clebsch_cli::gallery::Gallery;
+use crate::common::{Folder, shipped as clebsch};
 use std::path::Path;
 
 fn source() -> String {
     format!("{}/../docs/book/src", env!("CARGO_MANIFEST_DIR"))
-}
-
-/// Runs `clebsch` on the models that it ships with.
-fn clebsch(arguments: &[&str]) -> Done {
-    on(&Gallery::shipped(), arguments)
 }
 
 /// A fenced block: its information string and its text.

@@ -259,6 +259,11 @@ pub fn clebsch(arguments: &[&str]) -> Done {
     on(&gallery(), arguments)
 }
 
+/// Runs `clebsch` on the models that it ships with.
+pub fn shipped(arguments: &[&str]) -> Done {
+    on(&Gallery::shipped(), arguments)
+}
+
 /// Runs `clebsch` on any gallery.
 pub fn on(gallery: &Gallery, arguments: &[&str]) -> Done {
     with(gallery, arguments, "", None)

@@ -1,14 +1,9 @@
 //! Sweeps: what is varied, and that neither parts nor kills change a byte of the table.
 
-use super::common::{Done, Folder, on};
-use clebsch_cli::gallery::Gallery;
+use super::common::{Done, Folder, shipped as clebsch};
 use std::fs;
 
 const FILES: [&str; 3] = ["sweep.csv", "sweep.json", "sweep.npz"];
-
-fn clebsch(arguments: &[&str]) -> Done {
-    on(&Gallery::shipped(), arguments)
-}
 
 fn sweep(out: &str, more: &[&str]) -> Done {
     let mut all = vec!["sweep", "heavy-top", "--steps", "200", "--out", out];

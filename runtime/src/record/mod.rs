@@ -137,16 +137,13 @@ impl Rows for Record {
 
     fn each(&self, show: &mut dyn FnMut(&[u64]) -> io::Result<()>) -> io::Result<()> {
         let mut row = Vec::new();
-        let part = |table: &'_ Table, at: usize| {
-            let from = at * table.width;
-            let part = table.numbers.get(from..from + table.width);
-            part.unwrap_or_default().to_vec()
-        };
         for (at, (node, time)) in self.nodes.iter().zip(&self.times).enumerate() {
             row.clear();
             row.extend([*node, time.to_bits()]);
             for table in [&self.observables, &self.invariants] {
-                row.extend(part(table, at).into_iter().map(f64::to_bits));
+                let from = at * table.width;
+                let own = table.numbers.get(from..from + table.width);
+                row.extend(own.unwrap_or_default().iter().map(|x| x.to_bits()));
             }
             show(&row)?;
         }

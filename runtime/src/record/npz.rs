@@ -27,6 +27,12 @@ enum Entries {
 }
 
 impl Array {
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
     /// Of `samples` times `shape` numbers: words `columns` of every row, one range after the other.
     #[must_use]
     pub fn of_columns(
@@ -71,7 +77,7 @@ impl Array {
 
 /// The shape of one value: none of a number, the rows of a vector, rows and columns of a matrix.
 #[must_use]
-pub fn shape(rows: usize, cols: usize) -> Vec<usize> {
+fn shape(rows: usize, cols: usize) -> Vec<usize> {
     match (rows, cols) {
         (1, 1) => vec![],
         (rows, 1) => vec![rows],
