@@ -112,6 +112,19 @@ clebsch::model! {
     }
 }
 
+clebsch::model! {
+    /// A matrix in the logarithm of the determinant of its square, a number in an inverse square.
+    model Squared {
+        param m, k: Real;
+        field A: Mat<2>;
+        field u: Real;
+        let d = next(A) - A;
+        let v = next(u) - u;
+        let C = A^T*A;
+        lagrangian = m*tr(d*d^T)/(2*h) + m*v^2/(2*h) + h*k*log(det(C))/2 - h*k/(2*u^2);
+    }
+}
+
 fn contact(error: &StepError) -> Contact {
     match error.cause {
         StepCause::Contact(contact) => contact,
@@ -481,4 +494,28 @@ fn a_root_that_is_left_is_told_before_the_force_that_has_no_value_there() {
         assert!(of_root, "{contact:?}");
         assert!((time - 0.025).abs() < 1e-3, "{time}");
     }
+}
+
+#[test]
+fn what_is_squared_is_not_carried_past_zero() {
+    let model = Squared::new(SquaredParameters { m: 1.0, k: 1e-6 }).unwrap();
+    // One of them falls to zero at time 1, too fast for a barrier that is as weak as this.
+    let start = |a: f64, u: f64| {
+        let initial = SquaredInitial {
+            A: Additive::new(Matrix2::identity()),
+            u: Additive::new(Vector1::new(1.0)),
+            momentum_A: FieldMomentum(-Matrix2::new(a, 0.0, 0.0, 0.2 * a)),
+            momentum_u: FieldMomentum(Vector1::new(-u)),
+        };
+        let (mut state, mut work) = model.start(initial, 0.03).unwrap();
+        let error = refused(&mut state, 1000, |s| model.step(s, &mut work));
+        // The barrier changes the speed by parts of a thousandth.
+        let time = error.contact_time().expect("known");
+        assert!((time - 1.0).abs() < 2e-3, "{time}");
+        error.to_string()
+    };
+    let told = start(1.0, 0.0);
+    assert!(told.contains("`A` loses its inverse"), "{told}");
+    let told = start(0.0, 1.0);
+    assert!(told.contains("domain of a quotient"), "{told}");
 }

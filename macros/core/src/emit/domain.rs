@@ -162,6 +162,34 @@ fn is_square(e: &Expr) -> bool {
     }
 }
 
+/// The numbers whose squares make up this one: `det(Q^T Q)` is that of `det(Q)`.
+fn squared(e: &Expr) -> Option<Vec<Expr>> {
+    match e.node() {
+        Node::Power(a, q) => {
+            let even = q.as_integer().is_some_and(|n| n % 2 == 0);
+            even.then(|| vec![a.clone()])
+        }
+        Node::Det(a) => {
+            let Node::Product(factors) = a.node() else {
+                return None;
+            };
+            let dets: Vec<Expr> = factors.iter().map(|f| expr::det(f.clone())).collect();
+            let even = |x: &Expr| dets.iter().filter(|y| *y == x).count() % 2 == 0;
+            let square = factors.iter().all(|f| f.shape().is_square());
+            (square && dets.iter().all(even)).then(|| {
+                let mut distinct: Vec<Expr> = Vec::new();
+                dets.into_iter().for_each(|x| {
+                    if !distinct.contains(&x) {
+                        distinct.push(x);
+                    }
+                });
+                distinct
+            })
+        }
+        _ => None,
+    }
+}
+
 fn guard(s: &Symbols, domain: Domain, function: Named, argument: &Expr, all: &mut Vec<Guard>) {
     // A product is zero where a factor is.
     if let (Domain::NotZero, Node::Product(factors)) = (domain, argument.node())
@@ -169,6 +197,15 @@ fn guard(s: &Symbols, domain: Domain, function: Named, argument: &Expr, all: &mu
     {
         for f in factors {
             guard(s, domain, function, f, all);
+        }
+        return;
+    }
+    // A square leaves no domain, but a step may carry what is squared past zero, where the function is infinite.
+    if domain != Domain::NotNegative
+        && let Some(squared) = squared(argument)
+    {
+        for f in &squared {
+            guard(s, Domain::NotZero, function, f, all);
         }
         return;
     }
