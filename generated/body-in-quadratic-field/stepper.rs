@@ -613,7 +613,22 @@ pub mod body_in_quadratic_field {
             let out = put(out, [self.Gamma_squared(state)]);
             let _ = (state, out);
         }
-        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
+            let mut enlarged = *state;
+            {
+                type T = f64;
+                let BodyInQuadraticFieldParameters { K, .. } = self.parameters;
+                let Λ = state.Λ.matrix();
+                let Γ_reference = state.Γ;
+                let Γ = Λ.tr_mul(&Γ_reference);
+                let t1 = Γ.dot(&Γ).sqrt();
+                let t2 = T::from_f64(0.5) * (h * h).sqrt() * (K * K).trace().sqrt() * t1
+                    * t1;
+                enlarged.momentum = SpatialMomentum(
+                    not_less(enlarged.momentum.0, (0, 3), t2 + t2),
+                );
+            }
+            let state = &enlarged;
             type T = f64;
             let Λ = state.Λ.matrix();
             let Γ_reference = state.Γ;
@@ -623,7 +638,7 @@ pub mod body_in_quadratic_field {
             let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
             let out = put(out, [μ.dot(&μ).sqrt() * t1; 1usize]);
             let out = put(out, [t1 * t1; 1usize]);
-            let _ = (state, out);
+            let _ = (state, h, out);
         }
     }
     impl BodyInQuadraticField<f64> {

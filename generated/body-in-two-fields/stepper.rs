@@ -623,7 +623,22 @@ pub mod body_in_two_fields {
             let out = put(out, [self.B_squared(state)]);
             let _ = (state, out);
         }
-        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
+            let mut enlarged = *state;
+            {
+                type T = f64;
+                let BodyInTwoFieldsParameters { gU, p, z, b, .. } = self.parameters;
+                let Λ = state.Λ.matrix();
+                let Γ = Λ.tr_mul(&z);
+                let B = Λ.tr_mul(&b);
+                let t1 = (h * h).sqrt();
+                let t2 = T::from_f64(0.5) * t1 * gU.dot(&gU).sqrt() * Γ.dot(&Γ).sqrt();
+                let t3 = T::from_f64(0.5) * t1 * p.dot(&p).sqrt() * B.dot(&B).sqrt();
+                enlarged.momentum = SpatialMomentum(
+                    not_less(enlarged.momentum.0, (0, 3), t2 + t3 + t2 + t3),
+                );
+            }
+            let state = &enlarged;
             type T = f64;
             let BodyInTwoFieldsParameters { z, b, .. } = self.parameters;
             let Λ = state.Λ.matrix();
@@ -635,7 +650,7 @@ pub mod body_in_two_fields {
             let out = put(out, [t1 * t1; 1usize]);
             let out = put(out, [t1 * t2; 1usize]);
             let out = put(out, [t2 * t2; 1usize]);
-            let _ = (state, out);
+            let _ = (state, h, out);
         }
     }
     impl BodyInTwoFields<f64> {

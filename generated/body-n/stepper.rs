@@ -413,7 +413,7 @@ pub mod body_n {
             let out = put(out, [self.trace_momentum8(state)]);
             let _ = (state, out);
         }
-        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
             type T = f64;
             let Λ = state.Λ.matrix();
             let μ = state.body_momentum().0;
@@ -436,7 +436,7 @@ pub mod body_n {
                 out,
                 ::core::iter::repeat_n(t1 * t1 * t1 * t1 * t1 * t1 * t1 * t1, 1usize),
             );
-            let _ = (state, out);
+            let _ = (state, h, out);
         }
     }
     impl<const N: usize> BodyN<N, f64> {

@@ -518,7 +518,7 @@ pub mod cayley_klein_spatial {
             let out = put(out, [self.trace_I3(state)]);
             let _ = (state, out);
         }
-        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
             type T = f64;
             let q = state.q.matrix();
             let I_reference = state.I;
@@ -531,7 +531,7 @@ pub mod cayley_klein_spatial {
             let out = put(out, [T::from_f64(3.0).sqrt() * t1; 1usize]);
             let out = put(out, [t1 * t1; 1usize]);
             let out = put(out, [t1 * t1 * t1; 1usize]);
-            let _ = (state, out);
+            let _ = (state, h, out);
         }
     }
     impl CayleyKleinSpatial<f64> {

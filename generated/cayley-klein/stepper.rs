@@ -444,7 +444,7 @@ pub mod cayley_klein {
             let out = put(out, [self.momentum_squared(state)]);
             let _ = (state, out);
         }
-        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
             type T = f64;
             let q = state.q.matrix();
             let μ = state.body_momentum().0;
@@ -453,7 +453,7 @@ pub mod cayley_klein {
             let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
             let out = put(out, [t1.dot(&t1).sqrt(); 3usize]);
             let out = put(out, [t2 * t2; 1usize]);
-            let _ = (state, out);
+            let _ = (state, h, out);
         }
     }
     impl CayleyKlein<f64> {

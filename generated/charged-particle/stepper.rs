@@ -443,7 +443,21 @@ pub mod charged_particle {
             let out = put(out, rows(self.momentum_across_E(state)));
             let _ = (state, out);
         }
-        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
+            let mut enlarged = *state;
+            {
+                type T = f64;
+                let ChargedParticleParameters { q, E, .. } = self.parameters;
+                enlarged.momentum = FieldMomentum(
+                    not_less(
+                        enlarged.momentum.0,
+                        (0, 3),
+                        T::from_f64(0.5) * (h * h).sqrt() * (q * q).sqrt()
+                            * E.dot(&E).sqrt(),
+                    ),
+                );
+            }
+            let state = &enlarged;
             type T = f64;
             let ChargedParticleParameters { q, B, E, .. } = self.parameters;
             let X = state.X.matrix();
@@ -454,7 +468,7 @@ pub mod charged_particle {
                 out,
                 [t1.dot(&t1).sqrt() + p.dot(&p).sqrt() * E.dot(&E).sqrt(); 3 * 1],
             );
-            let _ = (state, out);
+            let _ = (state, h, out);
         }
     }
     impl ChargedParticle<f64> {

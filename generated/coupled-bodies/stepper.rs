@@ -890,7 +890,7 @@ pub mod coupled_bodies {
             let out = put(out, [self.total_momentum_squared(state)]);
             let _ = (state, out);
         }
-        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
             type T = f64;
             let Λ1 = state.Λ1.matrix();
             let Λ2 = state.Λ2.matrix();
@@ -902,7 +902,7 @@ pub mod coupled_bodies {
             let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
             let out = put(out, [t1.dot(&t1).sqrt() + t2.dot(&t2).sqrt(); 3usize]);
             let out = put(out, [t3 * t3; 1usize]);
-            let _ = (state, out);
+            let _ = (state, h, out);
         }
     }
     impl CoupledBodies<f64> {

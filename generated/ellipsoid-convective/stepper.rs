@@ -645,7 +645,30 @@ pub mod ellipsoid_convective {
             let out = put(out, rows(self.spatial_momentum_skew_C0_inverse(state)));
             let _ = (state, out);
         }
-        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
+            let mut enlarged = *state;
+            {
+                type T = f64;
+                let EllipsoidConvectiveParameters { C0, a, b, c, d, .. } = self
+                    .parameters;
+                let Q = state.Q.matrix();
+                let C = Q.tr_mul(&(C0 * Q));
+                let t1 = (h * h).sqrt();
+                let t2 = (C * C).trace().sqrt();
+                let t3 = (b * b).sqrt();
+                let t4 = determinant(&(C));
+                enlarged.momentum = SpatialMomentumMatrix(
+                    not_less(
+                        enlarged.momentum.0,
+                        (0, N),
+                        t1 * (a * a).sqrt() * t2 + t1 * t3 * t2 * t2
+                            + T::from_f64(2.0) * t1 * t3 * t2 * t2
+                            + t1 * (c * c).sqrt() * (t4 * t4).sqrt()
+                            + T::from_f64(0.5) * t1 * (d * d).sqrt(),
+                    ),
+                );
+            }
+            let state = &enlarged;
             type T = f64;
             let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
             let Q = state.Q.matrix();
@@ -671,7 +694,7 @@ pub mod ellipsoid_convective {
                     N * N,
                 ),
             );
-            let _ = (state, out);
+            let _ = (state, h, out);
         }
     }
     impl<const N: usize> EllipsoidConvective<N, f64> {

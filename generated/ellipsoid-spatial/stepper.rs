@@ -633,7 +633,29 @@ pub mod ellipsoid_spatial {
             let out = put(out, rows(self.body_momentum_skew_I0_inverse_right(state)));
             let _ = (state, out);
         }
-        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
+            let mut enlarged = *state;
+            {
+                type T = f64;
+                let EllipsoidSpatialParameters { I0, a, b, c, d, .. } = self.parameters;
+                let Q = state.Q.matrix();
+                let S = Q * (I0 * Q.transpose());
+                let t1 = (h * h).sqrt();
+                let t2 = (S * S).trace().sqrt();
+                let t3 = (b * b).sqrt();
+                let t4 = determinant(&(S));
+                enlarged.momentum = SpatialMomentumMatrix(
+                    not_less(
+                        enlarged.momentum.0,
+                        (0, N),
+                        t1 * (a * a).sqrt() * t2 + t1 * t3 * t2 * t2
+                            + T::from_f64(2.0) * t1 * t3 * t2 * t2
+                            + t1 * (c * c).sqrt() * (t4 * t4).sqrt()
+                            + T::from_f64(0.5) * t1 * (d * d).sqrt(),
+                    ),
+                );
+            }
+            let state = &enlarged;
             type T = f64;
             let EllipsoidSpatialParameters { I0, .. } = self.parameters;
             let Q = state.Q.matrix();
@@ -659,7 +681,7 @@ pub mod ellipsoid_spatial {
                     N * N,
                 ),
             );
-            let _ = (state, out);
+            let _ = (state, h, out);
         }
     }
     impl<const N: usize> EllipsoidSpatial<N, f64> {

@@ -510,7 +510,7 @@ pub mod free_body_spatial {
             let out = put(out, [self.momentum_quadratic(state)]);
             let _ = (state, out);
         }
-        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
             type T = f64;
             let Λ = state.Λ.matrix();
             let J_reference = state.J;
@@ -525,7 +525,7 @@ pub mod free_body_spatial {
             let out = put(out, [t3 * t3; 1usize]);
             let out = put(out, [t3 * t3 * t3; 1usize]);
             let out = put(out, [t2 * (t1 * t1); 1usize]);
-            let _ = (state, out);
+            let _ = (state, h, out);
         }
     }
     impl FreeBodySpatial<f64> {

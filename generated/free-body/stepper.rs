@@ -433,7 +433,7 @@ pub mod free_body {
             let out = put(out, [self.momentum_quadratic(state)]);
             let _ = (state, out);
         }
-        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
             type T = f64;
             let FreeBodyParameters { J, .. } = self.parameters;
             let Λ = state.Λ.matrix();
@@ -444,7 +444,7 @@ pub mod free_body {
             let out = put(out, [t1.dot(&t1).sqrt(); 3usize]);
             let out = put(out, [t2 * t2; 1usize]);
             let out = put(out, [(J * J).trace() * (t2 * t2); 1usize]);
-            let _ = (state, out);
+            let _ = (state, h, out);
         }
     }
     impl FreeBody<f64> {

@@ -696,7 +696,24 @@ pub mod heavy_top_spatial {
             let out = put(out, [self.momentum_z(state)]);
             let _ = (state, out);
         }
-        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
+            let mut enlarged = *state;
+            {
+                type T = f64;
+                let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
+                let Λ = state.Λ.matrix();
+                let χ_reference = state.χ;
+                let χ = Λ * χ_reference;
+                enlarged.momentum = SpatialMomentum(
+                    not_less(
+                        enlarged.momentum.0,
+                        (0, 3),
+                        T::from_f64(0.5) * (h * h).sqrt() * (w * w).sqrt()
+                            * z.dot(&z).sqrt() * χ.dot(&χ).sqrt(),
+                    ),
+                );
+            }
+            let state = &enlarged;
             type T = f64;
             let HeavyTopSpatialParameters { z, .. } = self.parameters;
             let Λ = state.Λ.matrix();
@@ -715,7 +732,7 @@ pub mod heavy_top_spatial {
             let out = put(out, [t1 * t2 * t1; 1usize]);
             let out = put(out, [t1 * t2 * t2 * t1; 1usize]);
             let out = put(out, [m.dot(&m).sqrt() * z.dot(&z).sqrt(); 1usize]);
-            let _ = (state, out);
+            let _ = (state, h, out);
         }
     }
     impl HeavyTopSpatial<f64> {

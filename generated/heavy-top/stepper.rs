@@ -577,7 +577,20 @@ pub mod heavy_top {
             let out = put(out, [self.Gamma_squared(state)]);
             let _ = (state, out);
         }
-        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
+            let mut enlarged = *state;
+            {
+                type T = f64;
+                let HeavyTopParameters { gU, z, .. } = self.parameters;
+                let Λ = state.Λ.matrix();
+                let Γ = Λ.tr_mul(&z);
+                let t1 = T::from_f64(0.5) * (h * h).sqrt() * gU.dot(&gU).sqrt()
+                    * Γ.dot(&Γ).sqrt();
+                enlarged.momentum = SpatialMomentum(
+                    not_less(enlarged.momentum.0, (0, 3), t1 + t1),
+                );
+            }
+            let state = &enlarged;
             type T = f64;
             let HeavyTopParameters { z, .. } = self.parameters;
             let Λ = state.Λ.matrix();
@@ -587,7 +600,7 @@ pub mod heavy_top {
             let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
             let out = put(out, [μ.dot(&μ).sqrt() * t1; 1usize]);
             let out = put(out, [t1 * t1; 1usize]);
-            let _ = (state, out);
+            let _ = (state, h, out);
         }
     }
     impl HeavyTop<f64> {

@@ -431,13 +431,28 @@ pub mod kepler {
             let out = put(out, rows(self.momentum_angular(state)));
             let _ = (state, out);
         }
-        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
+            let mut enlarged = *state;
+            {
+                type T = f64;
+                let KeplerParameters { m, k, .. } = self.parameters;
+                let X = state.X.matrix();
+                let t1 = X.dot(&X);
+                let t2 = t1.powi(-1);
+                let t3 = t1.powr(-1, 2);
+                let t4 = T::from_f64(0.5) * (h * h).sqrt() * (m * m).sqrt()
+                    * (k * k).sqrt() * (t2 * t2).sqrt() * (t3 * t3).sqrt() * t1.sqrt();
+                enlarged.momentum = FieldMomentum(
+                    not_less(enlarged.momentum.0, (0, 3), t4 + t4),
+                );
+            }
+            let state = &enlarged;
             type T = f64;
             let X = state.X.matrix();
             let p = state.momentum().0;
             let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
             let out = put(out, [p.dot(&p).sqrt() * X.dot(&X).sqrt(); 3 * 1]);
-            let _ = (state, out);
+            let _ = (state, h, out);
         }
     }
     impl Kepler<f64> {

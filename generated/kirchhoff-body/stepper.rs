@@ -1073,7 +1073,24 @@ pub mod kirchhoff_body {
             let out = put(out, [self.spatial_momentum_angular_Z(state)]);
             let _ = (state, out);
         }
-        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
+            let mut enlarged = *state;
+            {
+                type T = f64;
+                let KirchhoffBodyParameters { b, Z, .. } = self.parameters;
+                let G = state.G.matrix();
+                let P = G.tr_mul(&Z);
+                let t1 = T::from_f64(0.5) * (h * h).sqrt() * b.dot(&b).sqrt()
+                    * P.dot(&P).sqrt();
+                let t2 = t1 + t1;
+                enlarged.momentum = CarriedImpulse(
+                    not_less(enlarged.momentum.0, (0, 3), t2),
+                );
+                enlarged.momentum = CarriedImpulse(
+                    not_less(enlarged.momentum.0, (3, 3), t2),
+                );
+            }
+            let state = &enlarged;
             type T = f64;
             let KirchhoffBodyParameters { Z, .. } = self.parameters;
             let G = state.G.matrix();
@@ -1095,7 +1112,7 @@ pub mod kirchhoff_body {
                 out,
                 [(t7.dot(&t7).sqrt() + t8.dot(&t8).sqrt() * t4) * t6; 1usize],
             );
-            let _ = (state, out);
+            let _ = (state, h, out);
         }
     }
     impl KirchhoffBody<f64> {

@@ -1610,7 +1610,60 @@ pub mod mixed_four {
             let out = put(out, [self.total_momentum_angular_g(state)]);
             let _ = (state, out);
         }
-        fn scales(&self, state: &Self::State, out: &mut [f64]) {
+        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
+            let mut enlarged = *state;
+            {
+                type T = f64;
+                let MixedFourParameters { m, k, p, s, e: e_, g, .. } = self.parameters;
+                let R = state.R.matrix();
+                let G = state.G.matrix();
+                let q = state.q.matrix();
+                let X = state.X.matrix();
+                let relative_R_q = R.tr_mul(&quaternion_rotation(&q));
+                let t1 = (h * h).sqrt();
+                let t2 = (k * k).sqrt();
+                let t3 = p.dot(&p).sqrt();
+                let t4 = (R.tr_mul(&R)).trace().sqrt();
+                let t5 = X.dot(&X).sqrt();
+                let t6 = T::from_f64(0.5) * t1 * t2 * t3 * t4 * t5;
+                let t7 = (relative_R_q.tr_mul(&relative_R_q)).trace().sqrt();
+                let t8 = e_.dot(&e_).sqrt();
+                let t9 = T::from_f64(0.5) * t1 * t2 * t3 * t7 * t8;
+                let t10 = s.dot(&s).sqrt();
+                let t11 = motion_rotation(&G);
+                let t12 = (t11.tr_mul(&t11)).trace().sqrt();
+                let t13 = motion_translation(&G);
+                let t14 = t13.dot(&t13).sqrt();
+                let t15 = t14 + t12 * t10 + t5;
+                let t16 = T::from_f64(0.5) * t1 * t2 * t10 * t12 * t15;
+                let t17 = T::from_f64(0.5) * t1 * t2 * t12 * t15;
+                let t18 = T::from_f64(0.5) * t1 * t2 * t7 * t3 * t7 * t8;
+                let t19 = T::from_f64(0.5) * t1 * (m * m).sqrt() * g.dot(&g).sqrt();
+                let t20 = T::from_f64(0.5) * t1 * t2 * t4 * t3;
+                let t21 = t1 * t2 * t5;
+                let t22 = T::from_f64(0.5) * t1 * t2 * t12 * t10;
+                let t23 = T::from_f64(0.5) * t1 * t2 * t14;
+                enlarged.momentum_R = SpatialMomentum(
+                    not_less(enlarged.momentum_R.0, (0, 3), t6 + t9 + t6 + t9),
+                );
+                enlarged.momentum_G = CarriedImpulse(
+                    not_less(enlarged.momentum_G.0, (0, 3), t16 + t16),
+                );
+                enlarged.momentum_G = CarriedImpulse(
+                    not_less(enlarged.momentum_G.0, (3, 3), t17 + t17),
+                );
+                enlarged.momentum_q = SpatialMomentum(
+                    not_less(enlarged.momentum_q.0, (0, 3), t18 + t18),
+                );
+                enlarged.momentum_X = FieldMomentum(
+                    not_less(
+                        enlarged.momentum_X.0,
+                        (0, 3),
+                        t19 + t20 + t21 + t22 + t23 + t19 + t20 + t21 + t22 + t23,
+                    ),
+                );
+            }
+            let state = &enlarged;
             type T = f64;
             let MixedFourParameters { g, .. } = self.parameters;
             let R = state.R.matrix();
@@ -1634,7 +1687,7 @@ pub mod mixed_four {
                     + t6.dot(&t6).sqrt() * t2
                     + p4.dot(&p4).sqrt() * X.dot(&X).sqrt() * t2; 1usize],
             );
-            let _ = (state, out);
+            let _ = (state, h, out);
         }
     }
     impl MixedFour<f64> {

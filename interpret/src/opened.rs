@@ -278,7 +278,7 @@ fn functions(shared: &mut Shared<'_, f64>, name: &str) -> Result<Functions, Refu
         residual: lower("residual", &[MODEL, BEFORE, STATE, STEP])?,
         observe: lower("Described::observe", &[MODEL, STATE, OUT])?,
         invariants: lower("Described::invariants", &[MODEL, STATE, WORK, OUT])?,
-        scales: lower("Described::scales", &[MODEL, STATE, OUT])?,
+        scales: lower("Described::scales", &[MODEL, STATE, STEP, OUT])?,
         kinetic,
     })
 }

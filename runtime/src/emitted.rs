@@ -11,11 +11,11 @@ pub use crate::groups::{
     Placed, PlaneMotion, RigidMotion, Rotation, SpatialImpulse, SpatialMomentum,
     SpatialMomentumMatrix, SpatialPlaneImpulse, TurnedRotation, UnitQuaternion, added,
 };
-pub use crate::integrate::Residual;
 pub use crate::integrate::{
     Model as _, Moving, Reversible, SideBySide, Stepper, Steps, advance_side_by_side, only_size,
     open,
 };
+pub use crate::integrate::{Residual, not_less};
 pub use crate::kinetic::KineticWarning;
 pub use crate::linalg::{
     axial_of_difference, columns_from, crossed, crossing, determinant, even_count, hat, inclusion,

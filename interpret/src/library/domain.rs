@@ -5,7 +5,9 @@ use crate::value::{Kept, Value};
 use clebsch::Real;
 use clebsch::domain;
 use clebsch::emitted::Residual;
+use clebsch::integrate::filled;
 use clebsch::kinetic::KineticWarning;
+use clebsch::linalg::Dense;
 
 fn invertible<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
     let [
@@ -54,6 +56,28 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
                 size: *size,
                 scale: *scale,
             })),
+            _ => None,
+        },
+        // Rows of a momentum, by the impulse that they get.
+        ("not_less", 3) => |a, _| match a {
+            [momentum, Value::List(rows), Value::Real(impulse)] => {
+                let m = momentum.dense()?;
+                let (from, count) = (rows.first()?.count()?, rows.get(1)?.count()?);
+                let within = from..from + count;
+                let entries = within
+                    .clone()
+                    .flat_map(|i| (0..m.cols).map(move |j| (i, j)));
+                let sizes = entries.map(|(i, j)| m.at(i, j).magnitude());
+                let filled = filled(sizes, impulse.value());
+                Some(Value::of(Dense::from_fn(
+                    m.rows,
+                    m.cols,
+                    |i, j| match filled.filter(|_| within.contains(&i)) {
+                        Some(x) => T::from_f64(x),
+                        None => m.at(i, j),
+                    },
+                )))
+            }
             _ => None,
         },
         ("KineticWarning::of", 2) => |a, _| {

@@ -46,8 +46,8 @@ pub trait Described: Model<Scalar = f64, State: Saved, Workspace: Saved> + Sized
     /// All invariants; `work` is the workspace of plain steps.
     fn invariants(&self, state: &Self::State, work: Option<&Self::Workspace>, out: &mut [f64]);
 
-    /// Their sizes, see [`Trajectory::scales`].
-    fn scales(&self, state: &Self::State, out: &mut [f64]);
+    /// Their sizes at `state`, in steps of `h`, see [`Trajectory::scales`].
+    fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]);
 }
 
 /// One trajectory of a model.
@@ -135,7 +135,7 @@ impl<M: Described> Trajectory for Running<M> {
     }
 
     fn scales(&self, out: &mut [f64]) {
-        self.model.scales(&self.state, out);
+        self.model.scales(&self.state, self.h, out);
     }
 
     fn words(&mut self, words: &mut Words) {

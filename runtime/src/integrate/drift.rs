@@ -3,6 +3,7 @@
 
 use crate::saved::{Saved, Words};
 use crate::scalar::larger;
+use nalgebra::SMatrix;
 
 /// The drift of one component of one invariant since the run began.
 ///
@@ -14,7 +15,8 @@ use crate::scalar::larger;
 /// bounded by the product of the lengths of its factors; those of the energy are the kinetic and the
 /// potential energy.
 ///
-/// A body that stays at rest has no momentum to compare with, one without weight no potential: an
+/// A momentum counts as not less than the impulse that forces give it in a step, which at equilibrium cancel to their
+/// rounding. A body that stays at rest without forces has no momentum to compare with, one without weight no potential: an
 /// invariant whose natural scale is zero (or below the smallest normal number, where quotients have
 /// no digits) at every node is measured by its change itself, in its own unit.
 /// [`Drift::is_absolute`] says so.
@@ -47,6 +49,29 @@ impl Drift {
     pub fn is_absolute(&self) -> bool {
         self.scale.abs() < f64::MIN_POSITIVE
     }
+}
+
+/// A momentum as scales take it, in `count` rows from a first one: where these are less than the impulse that they get at a
+/// node, of this size, all of their entries are made as large. What is left of impulses that cancel is rounding.
+#[doc(hidden)]
+#[must_use]
+pub fn not_less<const R: usize, const C: usize>(
+    momentum: SMatrix<f64, R, C>,
+    (from, count): (usize, usize),
+    impulse: f64,
+) -> SMatrix<f64, R, C> {
+    let mut taken = momentum;
+    let rows = momentum.rows(from, count);
+    if let Some(x) = filled(rows.iter().map(|x| x.abs()), impulse) {
+        taken.rows_mut(from, count).fill(x);
+    }
+    taken
+}
+
+/// What all entries of these sizes are taken to be, where they are less than the impulse.
+#[doc(hidden)]
+pub fn filled(mut sizes: impl Iterator<Item = f64>, impulse: f64) -> Option<f64> {
+    (impulse.is_finite() && sizes.all(|x| x < impulse)).then_some(impulse)
 }
 
 /// What was seen of one component so far: its scale is known when the run is over.

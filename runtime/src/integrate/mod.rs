@@ -18,6 +18,8 @@ mod way;
 pub use composition::{Composition, CompositionOrder};
 pub use described::{Described, only_size, open};
 pub use drift::Drift;
+#[doc(hidden)]
+pub use drift::{filled, not_less};
 pub use ensemble::{Ensemble, EnsembleError, InstructionSet, Work};
 pub use model::Model;
 pub use residual::Residual;

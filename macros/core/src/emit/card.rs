@@ -317,6 +317,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
         true => quote!(work),
         false => quote!(_),
     };
+    let enlarged = super::impulses::not_less_than_impulses(d, names);
     let arguments = quote!(parameters: &[Vec<f64>], initial: &[Vec<f64>]);
     quote! {
         impl #bound ::clebsch::integrate::Described for #name #plain {
@@ -341,9 +342,10 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                 #values
                 let _ = (state, out);
             }
-            fn scales(&self, state: &Self::State, out: &mut [f64]) {
+            fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
+                #enlarged
                 #scales
-                let _ = (state, out);
+                let _ = (state, h, out);
             }
         }
 

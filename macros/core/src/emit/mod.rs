@@ -16,6 +16,7 @@ mod forced;
 mod formula;
 mod functional;
 mod holds;
+mod impulses;
 mod invariants;
 mod items;
 mod kinetic;
