@@ -18,8 +18,9 @@ use nalgebra::{SMatrix, SVector};
 /// By how much the second correction of a stage is smaller than the first.
 const FALLS: f64 = 0.25;
 
-/// Shortest stage, as a part of the way.
-const SHORTEST: f64 = 1e-9;
+/// Shortest stage, as a part of the way: of a momentum like `m v + b v^3` the first one is about `m^(3/2)/(b^(1/2) p)`, which
+/// has no bound.
+const SHORTEST: f64 = 1e-100;
 
 /// Most stages on the way.
 const MOST_STAGES: usize = 1000;
@@ -52,8 +53,9 @@ impl fmt::Display for NoRoot {
         write!(
             f,
             "the equation for the velocity has no solution that follows from rest: it could be followed for \
-             {percent:.1} percent of the way to the momentum, up to where the derivative of the momentum by the \
-             velocity is singular or not finite; take a shorter step, or check the parameters of kinetic terms"
+             {percent:.1} percent of the way to the momentum, beyond which the derivative of the momentum by the \
+             velocity is singular or not finite, or turns too fast to be followed; take a shorter step, or check the \
+             parameters of kinetic terms"
         )
     }
 }
@@ -105,16 +107,17 @@ fn largest<T: Real>(x: &[T], scales: &[f64]) -> f64 {
     most
 }
 
-/// `correction = momenta aimed at, less those there`: `known - (1 - end) whole - momenta`, and whether that
-/// is rounding.
+/// `correction = momenta aimed at, less those there`: `known - (1 - end) whole - momenta`, near rest from there, and whether
+/// that is rounding.
 #[inline(always)]
 fn residual<T: Real>(known: &[T], end: f64, lists: &mut Lists<'_, T>) -> bool {
-    let left = T::from_f64(1.0 - end);
+    let (left, gone) = (T::from_f64(1.0 - end), T::from_f64(end));
     let mut rounded = true;
     for i in 0..known.len() {
-        let aim = match end < 1.0 {
-            true => known[i] - left * lists.whole[i],
-            false => known[i],
+        let aim = match end {
+            1.0.. => known[i],
+            0.5.. => known[i] - left * lists.whole[i],
+            _ => (known[i] - lists.whole[i]) + gone * lists.whole[i],
         };
         let r = aim - lists.momenta[i];
         let terms = aim.magnitude() + lists.momenta[i].magnitude();
@@ -161,6 +164,9 @@ pub(super) fn follow<T: Real>(
             true => 1.0,
             false => share + length,
         };
+        if end <= share {
+            break;
+        }
         lists.from.copy_from_slice(lists.velocity);
         match stage(known, end, equations, lists) {
             None if end >= 1.0 => return Ok(()),
@@ -357,4 +363,52 @@ pub fn root_of<T: Real>(
     };
     follow(known, &mut site, &mut lists)?;
     Ok(velocity)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{NoRoot, root};
+    use nalgebra::{SMatrix, SVector};
+
+    fn cubic(m: f64, b: f64, p: f64) -> Result<f64, NoRoot> {
+        let momenta = |v: &SVector<f64, 1>| {
+            let v = v[0];
+            (
+                SVector::from([m * v + b * v * v * v]),
+                SMatrix::from([[m + 3.0 * b * v * v]]),
+            )
+        };
+        root(&SVector::from([p]), momenta).map(|v| v[0])
+    }
+
+    /// However stiff: the derivative is nowhere below m, so that the root is the only one.
+    #[test]
+    fn a_cubic_momentum_is_followed_from_rest_at_any_scale() {
+        for (m, b, p) in [
+            (1.0, 1.0, 3e8),
+            (1.0, 1.0, 1e30),
+            (1e-6, 1.0, 1.0),
+            (1e-8, 1.0, -1e12),
+            (1.0, 1e-20, 1e25),
+            (1e-30, 1e-30, 1e-10),
+            (2.0, 0.0, 1e300),
+        ] {
+            let v = cubic(m, b, p).unwrap_or_else(|e| panic!("{m} {b} {p}: {e}"));
+            let terms = (m * v).abs() + (b * v * v * v).abs();
+            // Rounding of the terms, through a derivative of up to three times their size.
+            assert!(
+                (m * v + b * v * v * v - p).abs() < 8.0 * f64::EPSILON * terms,
+                "{m} {b} {p}: {v}"
+            );
+        }
+    }
+
+    /// One that turns back is not followed past its turn, at |v| = (m/3)^(1/2).
+    #[test]
+    fn what_turns_back_has_no_root_beyond() {
+        let share = cubic(1.0, -1.0, 1.0).expect_err("turns back").share;
+        let top = 2.0 / 27.0_f64.sqrt();
+        // At the turn itself a velocity is known to the root of rounding.
+        assert!((share - top).abs() < 1e-8, "{share} {top}");
+    }
 }
