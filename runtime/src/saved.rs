@@ -204,6 +204,34 @@ given!(
     core::marker::PhantomData<f64>
 );
 
+/// Values of sites, whose number does not change.
+#[doc(hidden)]
+pub fn sites<X: Saved>(list: &mut [X], words: &mut Words) {
+    words.same(list.len() as u64);
+    list.iter_mut().for_each(|x| x.words(words));
+}
+
+/// [`Saved`](crate::saved::Saved) for the state of a line over plain numbers; all lists of its sites are named. The workspace is
+/// made again from it.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! saved_line {
+    ($name:ident { $($list:ident),* $(,)? }) => {
+        impl $crate::saved::Saved for $name<f64> {
+            fn words(&mut self, words: &mut $crate::saved::Words) {
+                $(
+                    $crate::saved::sites(&mut self.places.$list, words);
+                    $crate::saved::sites(&mut self.momenta.$list, words);
+                )*
+                $crate::saved::Saved::words(&mut self.node, words);
+                if words.are_given() {
+                    self.stamp = $crate::line::Stamp::fresh();
+                }
+            }
+        }
+    };
+}
+
 /// A value that may be there or not, put into one that is as it should be or made by `blank`.
 pub(crate) fn optional<X: Saved>(
     value: &mut Option<X>,

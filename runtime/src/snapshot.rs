@@ -14,7 +14,9 @@ const HEADER: [u8; 8] = *b"clebsch\x01";
 ///
 /// Kept are the parts that change from step to step. What was given with the model (parameters, the step, the way a
 /// trajectory is stepped) is not, so a snapshot goes into a value started anew from the same data; it then steps as
-/// the one it was taken from, bit for bit. Keep the workspace as well as the state where steps remember earlier ones.
+/// the one it was taken from, bit for bit. Keep the workspace as well as the state where steps remember earlier ones; along a
+/// line they do not, and the workspace is made again from the state. A trajectory known by its card does not take the snapshot
+/// of another model; a state or a workspace takes any of as many words.
 ///
 /// ```
 /// use clebsch::Snapshot;
@@ -86,7 +88,10 @@ impl Snapshot {
     /// # Errors
     /// [`SnapshotError::NotSaved`] of one that does not say what changes.
     pub fn of_trajectory(running: &mut dyn Trajectory) -> Result<Self, SnapshotError> {
-        Self::gathered(|words| running.words(words))
+        Self::gathered(|words| {
+            words.same(running.card().fingerprint);
+            running.words(words);
+        })
     }
 
     fn gathered(meet: impl FnOnce(&mut Words)) -> Result<Self, SnapshotError> {
@@ -112,7 +117,10 @@ impl Snapshot {
     /// # Errors
     /// [`SnapshotError::Unlike`]; open the trajectory anew then, it may have taken a part.
     pub fn put_into_trajectory(&self, running: &mut dyn Trajectory) -> Result<(), SnapshotError> {
-        self.given(|words| running.words(words))
+        self.given(|words| {
+            words.same(running.card().fingerprint);
+            running.words(words);
+        })
     }
 
     fn given(&self, meet: impl FnOnce(&mut Words)) -> Result<(), SnapshotError> {

@@ -21,12 +21,12 @@ mod models;
 mod walls;
 
 use action::stationarity;
-use clebsch::BodyMomentum;
 use clebsch::line::LineError;
 use clebsch::nalgebra::{SMatrix, Vector3};
+use clebsch::{BodyMomentum, Snapshot, SnapshotError};
 use clebsch_models::fluids;
 use clebsch_models::lattices::{STATEMENTS, toda_chain::*};
-use models::{Line, Rod, Toda};
+use models::{Line, Linked, Rod, Toda};
 
 /// Sizes that are tried: shorter than any stencil, and longer.
 const SIZES: [usize; 6] = [1, 2, 3, 5, 12, 50];
@@ -179,6 +179,54 @@ fn a_workspace_of_another_model_is_made_anew() {
         longer.step(&mut one, &mut own),
         Err(LineError::Length { .. })
     ));
+}
+
+/// A state that is kept and put back goes on to the last bit, with a workspace made for it; one of another number of sites
+/// is refused and left as it was.
+#[test]
+fn a_state_is_kept_and_goes_on_to_the_last_bit() {
+    macro_rules! kept {
+        ($stepper:expr, $initial:expr, $other:expr, $other_initial:expr) => {{
+            let (stepper, initial) = ($stepper, $initial);
+            let (mut state, mut work) = stepper.start(initial.clone(), 0.03).expect("starts");
+            for _ in 0..3 {
+                stepper.step(&mut state, &mut work).expect("steps");
+            }
+            let bytes = Snapshot::of(&state).expect("is kept").to_bytes();
+            let kept = Snapshot::from_bytes(&bytes).expect("is read");
+            for _ in 0..5 {
+                stepper.step(&mut state, &mut work).expect("steps");
+            }
+            let (mut again, _) = stepper.start(initial, 0.03).expect("starts");
+            kept.put_into(&mut again).expect("fits");
+            let mut work = stepper.workspace(&again, 0.03).expect("a workspace");
+            for _ in 0..5 {
+                stepper.step(&mut again, &mut work).expect("steps");
+            }
+            assert!(again == state);
+            let (mut other, _) = $other.start($other_initial, 0.03).expect("starts");
+            let before = other.clone();
+            assert!(matches!(
+                kept.put_into(&mut other),
+                Err(SnapshotError::Unlike { .. })
+            ));
+            assert!(other == before);
+        }};
+    }
+    let (rod, longer) = (Rod::new(8, 0), Rod::new(9, 0));
+    kept!(
+        rod.stepper(),
+        rod.initial(2),
+        longer.stepper(),
+        longer.initial(2)
+    );
+    let (chain, longer) = (Linked { n: 6, ends: 1 }, Linked { n: 7, ends: 1 });
+    kept!(
+        chain.stepper(),
+        chain.initial(3),
+        longer.stepper(),
+        longer.initial(3)
+    );
 }
 
 #[test]

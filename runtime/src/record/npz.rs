@@ -194,12 +194,14 @@ impl Member {
     }
 }
 
-/// Writes `arrays` of `rows` as the members of an npz.
+/// Writes `arrays` of `rows` as the members of an npz, from where `file` stands.
 ///
 /// # Errors
-/// Those of `file` and of the rows, and `InvalidInput` beyond the 4 GiB of a classic zip.
+/// Those of `file` and of the rows, and `InvalidInput` beyond the 4 GiB of a classic zip, and where an array was made for
+/// another number of samples or for longer rows.
 pub fn write(file: &mut (impl Write + Seek), rows: &dyn Rows, arrays: &[Array]) -> io::Result<()> {
     let too_large = |_| io::Error::new(io::ErrorKind::InvalidInput, "more than 4 GiB");
+    let begin = file.stream_position()?;
     let mut members: Vec<Member> = Vec::with_capacity(arrays.len());
     let mut offset = 0_usize;
     for array in arrays {
@@ -217,15 +219,25 @@ pub fn write(file: &mut (impl Write + Seek), rows: &dyn Rows, arrays: &[Array]) 
         file.write_all(&header)?;
         let mut crc = crc32fast::Hasher::new();
         crc.update(&header);
+        let mut written = 0;
         array.each(rows, |bytes| {
             crc.update(bytes);
+            written += bytes.len();
             file.write_all(bytes)
         })?;
+        if written != array.size() {
+            let message = format!(
+                "the array `{}` was made for {} bytes, and the rows have {written}: make it for as many samples",
+                array.name,
+                array.size()
+            );
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+        }
         member.crc = crc.finalize();
-        file.seek(SeekFrom::Start(u64::from(member.offset) + 4))?;
+        file.seek(SeekFrom::Start(begin + u64::from(member.offset) + 4))?;
         file.write_all(&member.common())?;
         offset += 30 + member.name.len() + header.len() + array.size();
-        file.seek(SeekFrom::Start(offset as u64))?;
+        file.seek(SeekFrom::Start(begin + offset as u64))?;
         members.push(member);
     }
     let start = u32::try_from(offset).map_err(too_large)?;
@@ -246,4 +258,47 @@ pub fn write(file: &mut (impl Write + Seek), rows: &dyn Rows, arrays: &[Array]) 
     file.write_all(&u32::try_from(size).map_err(too_large)?.to_le_bytes())?;
     file.write_all(&start.to_le_bytes())?;
     file.write_all(&[0; 2])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Array, Rows, write};
+    use std::io::{self, Cursor, Seek, SeekFrom};
+
+    /// Five rows of a node and a time.
+    struct Five;
+
+    impl Rows for Five {
+        fn count(&self) -> u64 {
+            5
+        }
+
+        fn each(&self, show: &mut dyn FnMut(&[u64]) -> io::Result<()>) -> io::Result<()> {
+            (0..5).try_for_each(|k| show(&[k, (0.5 * k as f64).to_bits()]))
+        }
+    }
+
+    #[test]
+    fn an_archive_begins_where_the_file_stands() {
+        let arrays = [Array::of_nodes("node", 5)];
+        let mut alone = Cursor::new(Vec::new());
+        write(&mut alone, &Five, &arrays).expect("writes");
+        let mut after = Cursor::new(b"before".to_vec());
+        after.seek(SeekFrom::End(0)).expect("seeks");
+        write(&mut after, &Five, &arrays).expect("writes");
+        let after = after.into_inner();
+        assert_eq!(after.split_at(6), (&b"before"[..], &alone.into_inner()[..]));
+    }
+
+    #[test]
+    fn arrays_of_other_lengths_are_refused() {
+        let told = write(
+            &mut Cursor::new(Vec::new()),
+            &Five,
+            &[Array::of_nodes("node", 99)],
+        );
+        let told = told.expect_err("refused");
+        assert_eq!(told.kind(), io::ErrorKind::InvalidInput);
+        assert!(told.to_string().contains("made for 792 bytes"), "{told}");
+    }
 }

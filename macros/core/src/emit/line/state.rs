@@ -149,6 +149,8 @@ pub(super) fn state(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
             pub fn node(&self) -> u64 { self.node }
         }
 
+        ::clebsch::saved_line! { #state { #(#names),* } }
+
         impl<T: Real> PartialEq for #state<T> {
             fn eq(&self, other: &Self) -> bool {
                 self.places == other.places && self.momenta == other.momenta && self.node == other.node
