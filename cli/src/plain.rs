@@ -14,6 +14,14 @@ fn acts(letter: char) -> bool {
         || matches!(letter, '\u{2028}' | '\u{2029}')
 }
 
+/// So many steps, in words.
+pub(crate) fn steps(count: u64) -> String {
+    match count {
+        1 => "1 step".to_owned(),
+        n => format!("{n} steps"),
+    }
+}
+
 /// A name for a message, on one line, every control character written `\u001b`.
 pub(crate) struct Shown(String);
 

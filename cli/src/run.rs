@@ -10,7 +10,7 @@ use crate::gallery::Gallery;
 use crate::list::first_line;
 use crate::output::samples::{self, Stream};
 use crate::output::{self, Finished, Found, Staging, Stopped, run_json};
-use crate::plain::shown;
+use crate::plain::{shown, steps};
 use crate::plan::Plan;
 use crate::plots::axis;
 use crate::record::{LARGEST, Recorder};
@@ -346,9 +346,9 @@ fn below_the_table(run: &Finished<'_>, made: u64) -> Vec<String> {
     });
     let stopped = run.stopped.as_ref().map(|stopped| {
         let time = axis::plain(stopped.time);
-        let steps = run.plan.case.steps;
+        let all = steps(run.plan.case.steps);
         format!(
-            "stopped at node {} (time {time}), after {made} of {steps} steps: these are the results \
+            "stopped at node {} (time {time}), after {made} of {all}: these are the results \
              up to there",
             stopped.node
         )
@@ -416,7 +416,7 @@ fn introduce(
     say(&format!("case {}{colon}{doc}", shown(&case.name)), 2)?;
     let end = end(case.h, case.steps);
     say(
-        &format!("h = {}, {} steps, to time {end}", case.h, case.steps),
+        &format!("h = {}, {}, to time {end}", case.h, steps(case.steps)),
         2,
     )?;
     Ok(())

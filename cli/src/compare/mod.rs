@@ -14,7 +14,7 @@ use crate::failure::{DONE, FAILED, Failure};
 use crate::gallery::Gallery;
 use crate::list::first_line;
 use crate::output::Staging;
-use crate::plain::shown;
+use crate::plain::{shown, steps};
 use crate::plan::Plan;
 use crate::plots;
 use crate::record::LARGEST;
@@ -284,8 +284,9 @@ fn print(
     say(format!("case {}{colon}{doc}", shown(&case.name)))?;
     let end = crate::run::end(case.h, case.steps);
     say(format!(
-        "h = {}, {} steps, to time {end}",
-        case.h, case.steps
+        "h = {}, {}, to time {end}",
+        case.h,
+        steps(case.steps)
     ))?;
     say(format!("reference {}", done.reference))?;
     say(format!(

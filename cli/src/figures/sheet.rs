@@ -4,6 +4,7 @@
 use crate::compare::course::{self, Course};
 use crate::failure::Failure;
 use crate::gallery::{self, Case, Entry, Gallery};
+use crate::plain::steps;
 use crate::plan::Plan;
 use crate::plots::axis::{Axis, FLOOR, plain};
 use crate::plots::curve::{Curve, Stroke};
@@ -148,11 +149,11 @@ impl<'a> Subject<'a> {
         let case = self.case;
         let to = plain(end(case.h, case.steps));
         format!(
-            "{}, case {}; h = {}, {} steps, to time {to}{more}",
+            "{}, case {}; h = {}, {}, to time {to}{more}",
             self.card().kebab,
             case.name,
             case.h,
-            case.steps
+            steps(case.steps)
         )
     }
 

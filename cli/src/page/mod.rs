@@ -4,6 +4,7 @@
 mod scene;
 
 use crate::output::Finished;
+use crate::plain::steps;
 use crate::record::Samples;
 use std::fmt::Write as _;
 
@@ -17,7 +18,7 @@ pub(crate) fn page(run: &Finished<'_>, samples: &Samples, pictures: &[(&str, Str
         escaped(&title),
         include_str!("page.css")
     );
-    let about = format!("h = {:?}, {} steps; {}", case.h, case.steps, case.doc);
+    let about = format!("h = {:?}, {}; {}", case.h, steps(case.steps), case.doc);
     let _ = writeln!(
         out,
         "<p class=\"about\">{}</p>",

@@ -6,7 +6,7 @@ use super::curve::{Curve, Stroke};
 use super::figure::{Figure, Panel};
 use super::reduce;
 use crate::compare::{Comparison, Score};
-use crate::plain::shown;
+use crate::plain::{shown, steps};
 use crate::plan::Plan;
 use crate::run::end;
 use clebsch::card::Card;
@@ -56,9 +56,9 @@ pub(crate) fn comparison(card: &Card, plan: &Plan, done: &Comparison) -> Result<
             shown(&case.name)
         ),
         subtitle: format!(
-            "h = {}, {} steps, to time {}; reference {}",
+            "h = {}, {}, to time {}; reference {}",
             case.h,
-            case.steps,
+            steps(case.steps),
             plain(to),
             done.reference.split(':').next().unwrap_or_default(),
         ),

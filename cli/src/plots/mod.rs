@@ -18,6 +18,7 @@ pub(crate) use comparison::comparison;
 pub(crate) use particles::particles;
 
 use crate::output::Finished;
+use crate::plain::steps;
 use crate::record::Samples;
 use crate::run::end;
 use axis::{Axis, FLOOR, superscript};
@@ -165,9 +166,9 @@ fn titles(run: &Finished<'_>, shown: Window<'_>, what: &str) -> (String, String)
         crate::plain::shown(&case.name)
     );
     let subtitle = format!(
-        "h = {}, {} steps, to time {}; order {}{stopped}{part}",
+        "h = {}, {}, to time {}; order {}{stopped}{part}",
         case.h,
-        case.steps,
+        steps(case.steps),
         axis::plain(end(case.h, case.steps)),
         run.plan.order.unwrap_or(run.card.order)
     );

@@ -3,7 +3,9 @@
 
 use super::figure::{Area, fine, text};
 use super::map::{Map, color};
-use super::{Plot, axis};
+use super::sphere::printed_size;
+use super::window::Window;
+use super::{Plot, axis, titles};
 use crate::case_file::labels::Stated;
 use crate::case_file::space::Space;
 use crate::output::Finished;
@@ -12,11 +14,16 @@ use clebsch::record::Record;
 use clebsch_core::expr::symbol::ascii;
 use plotters::prelude::{Circle, Color, IntoDrawingArea, RGBColor, Rectangle, SVGBackend, WHITE};
 
-/// Widest side of a panel, in pixels.
+/// Widest side of a panel, in pixels; of two in a column of a paper.
 const SIDE: f64 = 360.0;
+const PRINTED: f64 = 118.0;
 const LEFT: i32 = 44;
+/// Where panels begin, below the title if there is one.
 const TOP: i32 = 76;
+const BARE: i32 = 26;
 const GAP: i32 = 56;
+/// Least height, which the bar of colours takes.
+const LEAST: i32 = 170;
 const INK: RGBColor = RGBColor(30, 30, 30);
 const FAINT: RGBColor = RGBColor(110, 110, 110);
 
@@ -52,8 +59,16 @@ pub(crate) fn particles(run: &Finished<'_>, record: &Record) -> Plot {
     };
     let count = record.times.len();
     let picked = [0, count.saturating_sub(1)];
-    let shots = picked.map(|sample| snapshot(record, sample, &space, places, shown));
-    draw(run, &space, &shown.name, &shots).map(Some)
+    let side = if run.plan.paper { PRINTED } else { SIDE };
+    let shots = picked.map(|sample| snapshot(record, sample, &space, (places, shown), side));
+    let window = Window {
+        record,
+        count,
+        cut: false,
+    };
+    let titles = titles(run, window, &shown.name);
+    let titles = (!run.plan.paper).then_some(titles);
+    draw(titles, &space, &shots, side).map(Some)
 }
 
 /// Where the particles of a run live.
@@ -88,8 +103,8 @@ fn snapshot(
     record: &Record,
     sample: usize,
     space: &Space,
-    places: &AtSites<'_>,
-    shown: &AtSites<'_>,
+    (places, shown): (&AtSites<'_>, &AtSites<'_>),
+    side: f64,
 ) -> Snapshot {
     let at = |column: usize| {
         let mut own = record.observables.column(column);
@@ -131,7 +146,7 @@ fn snapshot(
         // As large as the room that each has.
         [width, height] => {
             let longest = width.max(*height);
-            let room = width * height * (SIDE / longest).powi(2) / marks.len().max(1) as f64;
+            let room = width * height * (side / longest).powi(2) / marks.len().max(1) as f64;
             (0.55 * room.sqrt()).clamp(1.0, 16.0)
         }
         _ => 2.5,
@@ -168,10 +183,10 @@ impl Frame {
 
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 fn draw(
-    run: &Finished<'_>,
+    titles: Option<(String, String)>,
     space: &Space,
-    name: &str,
     shots: &[Snapshot; 2],
+    longest_side: f64,
 ) -> Result<String, String> {
     let values = shots.iter().flat_map(|s| s.marks.iter().map(|m| m.value));
     let map = Map {
@@ -186,29 +201,32 @@ fn draw(
             (
                 0.0,
                 *height,
-                [width, height].map(|l| (SIDE * l / longest).max(40.0)),
+                [width, height].map(|l| (longest_side * l / longest).max(40.0)),
             )
         }
         _ => {
             let room = 0.05 * (high - low);
-            (low - room, high + room, [SIDE, 0.6 * SIDE])
+            (low - room, high + room, [longest_side, 0.6 * longest_side])
         }
     };
     let length = space.lengths.first().copied().unwrap_or(1.0);
     let wide = LEFT * 2 + GAP + 2 * side[0] as i32 + 90;
-    let tall = TOP + side[1] as i32 + 44;
+    let above = if titles.is_some() { TOP } else { BARE };
+    let tall = above + (side[1] as i32 + 44).max(LEAST - BARE);
     let (wide, tall) = (wide as u32, tall as u32);
     let mut svg = String::new();
     {
         let root = SVGBackend::with_string(&mut svg, (fine(wide), fine(tall))).into_drawing_area();
         let all = || -> Result<(), Box<dyn std::error::Error>> {
             root.fill(&WHITE)?;
-            let title = format!("{}, case {}: {name}", run.card.name, run.plan.case.name);
-            text(&root, &title, 16, INK, (16, 10))?;
+            if let Some((title, subtitle)) = &titles {
+                text(&root, title, 16, INK, (16, 10))?;
+                text(&root, subtitle, 12, FAINT, (16, 31))?;
+            }
             for (k, shot) in shots.iter().enumerate() {
                 let left = f64::from(LEFT) + k as f64 * (side[0] + f64::from(GAP));
                 let frame = Frame {
-                    corner: [left, f64::from(TOP)],
+                    corner: [left, f64::from(above)],
                     side,
                     low: [0.0, bottom],
                     high: [length, top],
@@ -216,7 +234,7 @@ fn draw(
                 panel(&root, &frame, shot, [low, high])?;
             }
             let (_, right) = root.split_horizontally(fine(wide - 90));
-            let (_, right) = right.split_vertically(fine(TOP as u32 - 30));
+            let (_, right) = right.split_vertically(fine(above as u32 - 26));
             map.legend(&right)?;
             root.present()?;
             Ok(())
@@ -224,7 +242,11 @@ fn draw(
         all().map_err(|e| e.to_string())?;
     }
     let large = format!("width=\"{}\" height=\"{}\"", fine(wide), fine(tall));
-    Ok(svg.replacen(&large, &format!("width=\"{wide}\" height=\"{tall}\""), 1))
+    let printed = match titles {
+        Some(_) => format!("width=\"{wide}\" height=\"{tall}\""),
+        None => printed_size(f64::from(wide), f64::from(tall)),
+    };
+    Ok(svg.replacen(&large, &printed, 1))
 }
 
 #[allow(clippy::cast_possible_truncation)]
