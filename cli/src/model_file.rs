@@ -57,6 +57,13 @@ pub(crate) fn read(
 ) -> Result<Entry, Failure> {
     let text = text(gallery, name)?;
     let name = shown(name).to_string();
+    let in_file = case.filter(|c| Path::new(c).extension().is_some_and(|end| end == "toml"));
+    let of_case = match in_file {
+        Some(file) => Some((file, of_case(file)?)),
+        None => None,
+    };
+    let of_case = of_case.as_ref().map(|(file, text)| (*file, text.as_str()));
+    let text = case_file::functions::put_in(&text, of_case)?;
     let stated = Stated::read(&text);
     let choice = match &stated {
         None => None,
@@ -99,17 +106,22 @@ pub(crate) fn read(
     Ok(Entry { card, cases })
 }
 
+/// The text of a case file.
+fn of_case(file: &str) -> Result<String, Failure> {
+    std::fs::read_to_string(file).map_err(|error| {
+        Failure::Usage(format!(
+            "cannot read the case file {}: {error}",
+            shown(file)
+        ))
+    })
+}
+
 /// How many sites there are and how the line ends: as the case says, if one is given by a file.
 fn chosen(stated: &Stated, case: Option<&str>) -> Result<Option<Choice>, Failure> {
     match case.filter(|c| Path::new(c).extension().is_some_and(|end| end == "toml")) {
         None => Ok(stated.default_choice()),
         Some(file) => {
-            let text = std::fs::read_to_string(file).map_err(|error| {
-                Failure::Usage(format!(
-                    "cannot read the case file {}: {error}",
-                    shown(file)
-                ))
-            })?;
+            let text = of_case(file)?;
             labels::choice(file, &text, stated).map(Some)
         }
     }

@@ -383,7 +383,7 @@ impl Reader<'_> {
         let found = found.map_err(|e| match e {
             Unstarted::Missing(name) => {
                 format!(
-                    "missing key `parameters.{}`, which the momenta of velocities take",
+                    "`parameters.{}`, which the momenta of velocities take, is missing or no finite number",
                     ascii(&name)
                 )
             }

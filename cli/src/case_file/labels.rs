@@ -248,9 +248,10 @@ pub(crate) fn written_out(
         lines: Vec::new(),
     };
     let raw = |span: &Range<usize>| text.get(span.clone()).unwrap_or_default().to_owned();
-    const TABLES: [&str; 6] = [
+    const TABLES: [&str; 7] = [
         "labels",
         "domain",
+        super::functions::TABLE,
         "ends",
         "parameters",
         "initial",

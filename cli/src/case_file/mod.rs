@@ -4,6 +4,7 @@
 
 mod copies;
 mod fluid;
+pub(crate) mod functions;
 mod inertia;
 pub(crate) mod labels;
 mod lattice;

@@ -59,7 +59,11 @@ fn located(file: &File<'_>, card: &Card) -> Result<Located, Failure> {
         )
     })?;
     let top = document.get_ref();
-    known_keys(file, top, &KEYS, "at the top level", None)?;
+    let mut known = KEYS.to_vec();
+    if super::functions::are_given(card.source) {
+        known.push(super::functions::TABLE);
+    }
+    known_keys(file, top, &known, "at the top level", None)?;
     let model = required(
         file,
         top,

@@ -90,7 +90,10 @@ impl Space {
             wrong(
                 value,
                 "lengths",
-                &format!("expected {d} positive numbers, one for each direction"),
+                &match d {
+                    1 => "expected a list of one positive number".to_owned(),
+                    _ => format!("expected {d} positive numbers, one for each direction"),
+                },
             )
         })?;
         let walls = walls(table, d, torus.is_some(), &wrong, &example)?;

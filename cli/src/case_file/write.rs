@@ -39,6 +39,7 @@ pub fn write(card: &Card, case: &Case, named: &str) -> String {
         "steps",
         format!("{}     # number of steps, at least 1", case.steps),
     );
+    super::functions::sample_table(&mut text, card.source, false);
     table(&mut text, "parameters", card.parameters, &case.parameters);
     table(&mut text, "initial", card.initial, &case.initial);
     bounds(&mut text, card, case);

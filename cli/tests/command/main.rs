@@ -9,6 +9,7 @@ mod elastic;
 mod exit_codes;
 mod figures;
 mod fluids;
+mod functions;
 mod lattices;
 mod model_files;
 mod names;

@@ -297,16 +297,23 @@ pub fn closest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
 }
 
 fn edit_distance(a: &str, b: &str) -> usize {
+    let a: Vec<char> = a.chars().take(64).collect();
     let b: Vec<char> = b.chars().take(64).collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.chars().take(64).enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
+    // The distances of the beginnings: of the two rows before and of this one.
+    let mut rows = [Vec::new(), Vec::new(), (0..=b.len()).collect::<Vec<_>>()];
+    for (i, x) in a.iter().enumerate() {
+        rows.rotate_left(1);
+        let mut row = vec![i + 1];
         for (j, y) in b.iter().enumerate() {
-            let cost = diagonal + usize::from(x != *y);
-            diagonal = row[j + 1];
-            row[j + 1] = cost.min(row[j] + 1).min(diagonal + 1);
+            let changed = rows[1][j] + usize::from(x != y);
+            let mut cost = changed.min(row[j] + 1).min(rows[1][j + 1] + 1);
+            // Two letters in the wrong order are one mistake.
+            if i > 0 && j > 0 && *x == b[j - 1] && a[i - 1] == *y {
+                cost = cost.min(rows[0][j - 1] + 1);
+            }
+            row.push(cost);
         }
+        rows[2] = row;
     }
-    row[b.len()]
+    rows[2][b.len()]
 }

@@ -320,7 +320,13 @@ impl Declared {
                 arguments,
                 value,
                 path,
+                components,
+                ..
             } => {
+                if !components.is_empty() {
+                    self.admit(name, errors);
+                    return;
+                }
                 let arguments = arguments.iter().map(|k| self.kind(k, errors)).collect();
                 self.functional(name, arguments, value, (path, Reach::Point), errors);
             }

@@ -315,6 +315,7 @@ fn finish(
         parameters: declared.parameters,
         parameter_places: declared.parameter_places,
         assumptions,
+        formulas: crate::syntax::formula::stated(model),
         configurations,
         advected,
         holds,

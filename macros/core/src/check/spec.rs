@@ -161,6 +161,8 @@ pub struct Spec {
     pub parameter_places: Vec<Place>,
     /// Conditions on them.
     pub assumptions: Vec<Assumption>,
+    /// Functions that are written out, as they are stated: their calls are replaced.
+    pub formulas: Vec<String>,
     /// Configurations in order.
     pub configurations: Vec<Configuration>,
     /// Advected quantities in order.

@@ -2,6 +2,7 @@
 //! diagonals mean what unit vectors say.
 
 mod fields;
+mod formulas;
 mod holds;
 mod motions;
 
@@ -470,6 +471,17 @@ fn what_papers_write_otherwise_is_told_as_the_language_writes_it() {
         ("param u: SO3;", "m", "write `SO<3>`"),
         ("param u: Vec(3);", "m", "sizes stand in angle brackets"),
         ("param u: Real = 1.0;", "m", "values stand in the case"),
+        (
+            "group R: SO(3) velocity w;",
+            "m",
+            "sizes stand in angle brackets",
+        ),
+        ("# a remark\n", "m", "remarks begin with `//`"),
+        ("L = m;", "m", "stated by `lagrangian = ...;`"),
+        ("E = m*g;", "m", "given a name by `let E = ...;`"),
+        ("q: Vec<3>;", "m", "`field q: ...;` moves"),
+        ("", "m/dt^2", "the time step is `h` here"),
+        ("", "m*t", "time itself does not stand"),
         ("", "v.z", "a component of a vector is written `x[1]`"),
         ("", "m**2", "a power is written `a^2`"),
         ("", "|v|", "the length of a vector is `sqrt(dot(X, X))`"),

@@ -72,6 +72,9 @@ pub fn source(d: &Derivation) -> String {
         );
         line(&[], text);
     }
+    for text in &spec.formulas {
+        line(&[], text.clone());
+    }
     for c in &spec.configurations {
         let group = c.group.statement(&|n| spec.symbols.dim_text(n).to_string());
         if c.group.is_additive() {

@@ -3,6 +3,7 @@
 
 use crate::derive::Derivation;
 use crate::diagnostic::Diagnostic;
+use crate::expr::BY_CASE;
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
@@ -142,6 +143,14 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
                 .help(format!("write for example `model {model}Model`")),
         );
     }
+    let functions = d.letters.symbols.functionals();
+    if let Some(open) = functions.iter().find(|f| f.path == BY_CASE) {
+        let name = &open.name;
+        let message = format!("what `{name}` is, the case says: a stepper needs it");
+        return Some(Diagnostic::new(spec.name_place, message).help(format!(
+            "run the model from its file, with [functions] in its case, or write `given {name}(...): ... = \"EXPRESSION\";` or a path of Rust"
+        )));
+    }
     let taken: Vec<&String> = d.invariants.iter().map(|v| &v.name).collect();
     let elements = spec
         .configurations
@@ -159,7 +168,7 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
 
 /// What emitted functions call by a plain name besides [`TYPES`], and what they name themselves: a
 /// local of the model under such a name would hide it. The test of hygiene states a model with all of them.
-const INSIDE: [&str; 121] = [
+const INSIDE: [&str; 122] = [
     "all",
     "all_finite",
     "assembled",
@@ -170,6 +179,7 @@ const INSIDE: [&str; 121] = [
     "chosen_solver",
     "columns_from",
     "count",
+    "not_less",
     "size_of",
     "crossed",
     "crossing",

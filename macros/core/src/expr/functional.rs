@@ -41,6 +41,9 @@ impl Kind {
     }
 }
 
+/// What stands for the path of a function that the case gives.
+pub const BY_CASE: &str = "case";
+
 /// How far a functional sees.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Reach {

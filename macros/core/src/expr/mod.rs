@@ -36,7 +36,9 @@ pub use diagonal::{diagonal, diagonal_of};
 pub use directional::directional;
 pub use factored::{axial_of_outer, factored};
 pub use function::{Function, Parity};
-pub use functional::{Applied, Functional, FunctionalId, Kind, Reach, derived, given, pull_back};
+pub use functional::{
+    Applied, BY_CASE, Functional, FunctionalId, Kind, Reach, derived, given, pull_back,
+};
 pub(crate) use functional::{kind, pairing};
 pub use gradient::gradient;
 pub(crate) use magnitude::{length, magnitude, magnitude_between};

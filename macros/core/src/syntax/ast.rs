@@ -295,7 +295,7 @@ pub enum Statement {
         /// The whole equation.
         place: Place,
     },
-    /// `given f(SHAPE, SHAPE): SHAPE = PATH;`
+    /// `given f(SHAPE, SHAPE): SHAPE = PATH;`, `given f(SHAPE): SHAPE = "EXPRESSION";`, `given f(SHAPE): SHAPE = case;`
     Given {
         /// The name in the model.
         name: Name,
@@ -303,8 +303,14 @@ pub enum Statement {
         arguments: Vec<Kindred>,
         /// What it gives.
         value: Kindred,
-        /// What computes it, a path of Rust.
+        /// What computes it, a path of Rust; its own name where it is written out.
         path: Name,
+        /// What it is, where that is written out: an expression for each component.
+        components: Vec<Expression>,
+        /// The same as it was written, between the quotes.
+        texts: Vec<String>,
+        /// The word `case`, where the case says what it is: with no components before it has.
+        by_case: Option<Place>,
     },
     /// `grid n;`
     Grid(Name),

@@ -96,7 +96,7 @@ pub(super) fn unmatched(source: &str) -> Option<Diagnostic> {
 }
 
 /// The place of one character: that of the only token of a text which is blank up to there.
-fn place(text: &str, at: usize) -> Option<Place> {
+pub(super) fn place(text: &str, at: usize) -> Option<Place> {
     let before = text.get(..at)?.chars();
     let mut blank: String = before.map(|c| if c == '\n' { c } else { ' ' }).collect();
     blank.push(';');

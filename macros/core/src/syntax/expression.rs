@@ -170,7 +170,11 @@ fn indices(c: &mut Cursor) -> Result<Vec<u64>, Diagnostic> {
     let remedy = "components are counted from 1: `v[1]` of a vector, `A[1, 2]` of a matrix";
     let mut list = Vec::new();
     loop {
-        list.push(c.whole_number().map_err(|e| e.help(remedy))?);
+        let of_label = matches!(c.peek(), Some(Token::Name(_)));
+        list.push(c.whole_number().map_err(|e| match of_label {
+            true => e.help(remedy).help("a neighbour along a label `i` is `next(q, i)` or `prev(q, i)`, at the site itself `q`"),
+            false => e.help(remedy),
+        })?);
         if !c.take_punct(',') {
             break;
         }

@@ -2,8 +2,10 @@
 //! function for each statement. Knows no names and no shapes; those are `check`'s.
 
 pub mod ast;
+mod characters;
 mod delimiters;
 mod expression;
+pub mod formula;
 mod label;
 mod mesh;
 mod statement;
@@ -66,6 +68,9 @@ pub fn tokens(source: &str) -> Result<TokenStream, Errors> {
     text.parse().map_err(|e: proc_macro2::LexError| {
         if let Some(unmatched) = delimiters::unmatched(source) {
             return unmatched.into();
+        }
+        if let Some(foreign) = characters::foreign(source) {
+            return foreign.into();
         }
         Errors::from(
             Diagnostic::new(Place::token(e.span()), "unexpected character".to_owned())

@@ -1,11 +1,12 @@
 //! Statements and the model around them, one function for each keyword. A broken statement is
 //! reported and skipped up to its `;`, so that one run shows every mistake.
 
-use super::ast::{Comparison, Kindred, Model, Name, NodeRule, Size, Statement};
+use super::ast::{Comparison, Expression, Kindred, Model, Name, NodeRule, Size, Statement};
 use super::expression::expression;
+use super::formula;
 use super::label;
 use super::mesh;
-use super::token::{Cursor, KEYWORDS, Token};
+use super::token::{Cursor, KEYWORDS, SIZES, Token};
 use super::typeset::typeset;
 use crate::diagnostic::{Diagnostic, Errors, closest};
 
@@ -50,7 +51,7 @@ pub fn model(c: &mut Cursor) -> Result<Model, Errors> {
         );
     }
     errors.propagate()?;
-    Ok(Model {
+    formula::written_out(Model {
         docs,
         public,
         name,
@@ -65,7 +66,8 @@ fn attributes(c: &mut Cursor) -> Result<Vec<String>, Diagnostic> {
     while c.is_punct('#') {
         let start = c.place();
         c.advance();
-        c.delimiter('[')?;
+        c.delimiter('[')
+            .map_err(|e| e.help("remarks begin with `//`, documentation with `///`"))?;
         if !c.take_word("doc") {
             return Err(Diagnostic::new(
                 start.to(c.place()),
@@ -84,7 +86,7 @@ fn attributes(c: &mut Cursor) -> Result<Vec<String>, Diagnostic> {
 }
 
 /// What a string literal of documentation says.
-fn unquoted(literal: &str) -> String {
+pub(super) fn unquoted(literal: &str) -> String {
     let body = literal.trim_start_matches('r').trim_matches('#');
     let body = body.strip_prefix('"').unwrap_or(body);
     let body = body.strip_suffix('"').unwrap_or(body);
@@ -168,20 +170,33 @@ fn statement(c: &mut Cursor) -> Result<Statement, Diagnostic> {
             .help("models with `label`, `grid`, `group`, `field`, `mesh`, `advected`, `constraint`, `hold` and `lagrangian` are derived"));
         }
         other => {
-            let mut e = Diagnostic::new(
+            let e = Diagnostic::new(
                 keyword.place,
                 format!("`{other}` does not start a statement"),
             );
-            if let Some(word) = closest(other, KEYWORDS) {
-                e = e.help(format!("did you mean `{word}`?"));
-            } else {
-                e = e.help("statements start with param, group, field, advected, constraint, hold, let, scale, node, assume or lagrangian");
-            }
-            return Err(e);
+            return Err(e.help(meant(c, other)));
         }
     };
     c.punct(';')?;
     Ok(parsed)
+}
+
+/// What a statement that begins with this word may have been meant to be; the cursor stands after the word.
+fn meant(c: &Cursor, word: &str) -> String {
+    let near = closest(word, KEYWORDS);
+    match (near, c.peek()) {
+        (_, Some(Token::Punct('=', _))) if word == "L" || word == "l" || word == "ℓ" => {
+            "the discrete Lagrangian of a step is stated by `lagrangian = ...;`".to_owned()
+        }
+        (Some(near), _) => format!("did you mean `{near}`?"),
+        (None, Some(Token::Punct('=', _))) => {
+            format!("an expression is given a name by `let {word} = ...;`")
+        }
+        (None, Some(Token::Punct(':' | ',', _))) => format!(
+            "say what it is: `param {word}: ...;` does not move, `field {word}: ...;` moves in a vector space, `group {word}: ... velocity ...;` in a Lie group"
+        ),
+        (None, _) => "statements start with dim, time, label, periodic, end, grid, param, assume, group, field, advected, constraint, hold, given, mesh, let, scale, node or lagrangian".to_owned(),
+    }
 }
 
 fn dim(c: &mut Cursor) -> Result<Statement, Diagnostic> {
@@ -316,7 +331,11 @@ fn group(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     typeset(c, std::slice::from_mut(&mut name))?;
     let at = label::at(c)?;
     let written = "write for example `group Λ: SO<3> velocity Ω;`";
-    c.word("velocity").map_err(|e| e.help(written))?;
+    let opened = matches!(c.peek(), Some(Token::Open('(')));
+    c.word("velocity").map_err(|e| match opened {
+        true => e.help(SIZES).help(written),
+        false => e.help(written),
+    })?;
     let mut velocity = c.name("the name of the discrete velocity")?;
     typeset(c, std::slice::from_mut(&mut velocity))?;
     Ok(Statement::Group {
@@ -410,23 +429,36 @@ fn given(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     c.punct(':').map_err(|e| e.help(remedy))?;
     let value = kindred(c)?;
     c.punct('=').map_err(|e| e.help(remedy))?;
-    let mut path = c
-        .name("the path of what computes it")
-        .map_err(|e| e.help(remedy))?;
-    if path.text == "case" {
-        return Err(Diagnostic::new(
-            path.place,
-            "functions that a case gives as expressions are not read by this version",
-        )
-        .help("write the expression as a `let`, or give the function by a path of Rust")
-        .help(remedy));
-    }
-    path_goes_on(c, &mut path)?;
+    let word = c.place();
+    let by_case = c.take_word("case").then_some(word);
+    let (texts, components) = formula::components(c)?.into_iter().unzip();
+    let components: Vec<Expression> = components;
+    let path = match (components.is_empty(), by_case) {
+        // Its calls are replaced by what it is.
+        (false, _) => name.clone(),
+        (true, Some(place)) => Name {
+            text: crate::expr::BY_CASE.to_owned(),
+            place,
+            typeset: None,
+        },
+        (true, None) => {
+            let mut path = c.name("the path of what computes it").map_err(|e| {
+                e.help(remedy).help(
+                    "or by an expression in quotes, `\"A*cos(2*pi*x)\"`, where x, y, z are the components of its argument; or by `case`, where the case has the expression",
+                )
+            })?;
+            path_goes_on(c, &mut path)?;
+            path
+        }
+    };
     Ok(Statement::Given {
         name,
         arguments,
         value,
         path,
+        components,
+        texts,
+        by_case,
     })
 }
 

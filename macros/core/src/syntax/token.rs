@@ -108,6 +108,9 @@ fn split_number(text: &str) -> usize {
     i
 }
 
+/// How the size of a shape or a group is written.
+pub const SIZES: &str = "sizes stand in angle brackets, `Vec<3>`, `SO<3>`";
+
 /// What is told of `x.z`.
 const COMPONENT: &str = "a component of a vector is written `x[1]`, counted from 1";
 
@@ -318,7 +321,7 @@ impl Cursor {
         error.follows = matches!(self.peek(), Some(Token::Close(')' | ']')));
         Err(error.help(match self.peek() {
             Some(Token::Punct('.', _)) => COMPONENT,
-            Some(Token::Open('(')) => "sizes stand in angle brackets, `Vec<3>`, `SO<3>`",
+            Some(Token::Open('(')) => SIZES,
             Some(Token::Punct('=', _)) => "values stand in the case, not in the model",
             Some(Token::Punct('#', _)) => "remarks begin with `//`",
             _ => "every statement ends with `;`",

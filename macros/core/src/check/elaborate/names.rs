@@ -27,6 +27,12 @@ const OTHERWISE: [(&str, &str); 13] = [
     ("transposed", "A^T"),
 ];
 
+/// What the time step is called elsewhere.
+const STEPS: [&str; 6] = ["dt", "Dt", "Δt", "delta_t", "deltat", "tau"];
+
+/// What time is called.
+const TIMES: [&str; 2] = ["t", "time"];
+
 /// How the language writes what this name means elsewhere.
 pub(super) fn otherwise(name: &str) -> Option<&'static str> {
     let found = OTHERWISE.iter().find(|(other, _)| *other == name);
@@ -132,6 +138,15 @@ impl Elaborator<'_> {
         } else if FUNCTIONS.contains(&n) {
             d = Diagnostic::new(place, format!("`{n}` is a function of the language"))
                 .help(format!("write `{n}(...)`"));
+        } else if STEPS.contains(&n) {
+            let h = &self.names.symbols.get(self.names.step).name;
+            d = d.help(format!(
+                "the time step is `{h}` here; `time k step {n};` at the top calls it `{n}`"
+            ));
+        } else if TIMES.contains(&n) {
+            d = d.help(
+                "time itself does not stand in a Lagrangian, which is the same at every step",
+            );
         } else if let Some(near) = closest(n, declared.into_iter().chain(bound).map(String::as_str))
         {
             d = d.help(format!("did you mean `{near}`?"));

@@ -103,11 +103,6 @@ fn functions_are_given_by_paths() {
             "f(Q*Q^T)",
             "a function is given by its path",
         ),
-        (
-            "given f(Vec<2>): Real = case;",
-            "0",
-            "functions that a case gives",
-        ),
     ] {
         let told = given(statement, potential);
         assert!(told.contains(wanted), "{statement} {potential}\n{told}");

@@ -69,6 +69,9 @@ impl Composer<'_> {
         if den == 1 {
             return Laid::atom(digits(num));
         }
+        if let Some(decimal) = decimal(num, den) {
+            return Laid::atom(Layout::Number(decimal));
+        }
         if self.stacked {
             let fraction = Layout::Fraction(Box::new(digits(num)), Box::new(digits(den)));
             return Laid::new(fraction, Level::Prefix);
@@ -276,6 +279,20 @@ fn subscripted(base: Layout, subs: Vec<Layout>) -> Layout {
         true => base,
         false => base.subscript(Layout::row(row)),
     }
+}
+
+/// A fraction that was written as a decimal number of many digits, as that.
+fn decimal(num: i128, den: i128) -> Option<String> {
+    const LARGEST: i128 = 1_000_000;
+    let mut rest = den;
+    for prime in [2, 5] {
+        while rest % prime == 0 {
+            rest /= prime;
+        }
+    }
+    #[allow(clippy::cast_precision_loss)]
+    let value = num as f64 / den as f64;
+    (den > LARGEST && rest == 1 && (1e-5..1e16).contains(&value)).then(|| value.to_string())
 }
 
 /// The character of a common fraction.

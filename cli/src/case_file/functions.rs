@@ -1,0 +1,262 @@
+//! Functions that a case gives: `[functions]` with `b = "0.1*cos(2*pi*x/Lx)"` for `given b(Vec<2>): Real = case;`.
+//! Takes the text of a model and a case; gives the text with the expressions in it, which the engine differentiates.
+
+use super::labels::{Stated, table};
+use super::location::File;
+use super::space::Space;
+use crate::failure::Failure;
+use crate::plain::shown;
+use crate::suggestion::did_you_mean;
+use clebsch_core::pipeline;
+use clebsch_core::syntax::ast::{Model, Name, Statement};
+use clebsch_core::syntax::formula::{self, Open};
+use std::fmt::Write as _;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// The table of a case.
+pub(super) const TABLE: &str = "functions";
+
+/// The text of a model with what its functions are: by the case in the file `case`, or by samples. Unchanged where the
+/// case gives none, or where the text does not read: what is wrong of it is told later.
+///
+/// # Errors
+/// Usage: a function is missing, unknown, or no expression in its argument.
+pub(crate) fn put_in(text: &str, case: Option<(&str, &str)>) -> Result<String, Failure> {
+    let Ok(model) = pipeline::parse_source(text) else {
+        return Ok(text.to_owned());
+    };
+    let mut open = formula::open(&model).unwrap_or_default();
+    open.retain(|f| !f.is_filled);
+    if open.is_empty() {
+        return Ok(text.to_owned());
+    }
+    let stated = Stated::read(text);
+    let sides = stated.as_ref().and_then(Space::sample).is_some();
+    let written: Vec<Vec<String>> = match case {
+        None => open
+            .iter()
+            .map(|f| {
+                let sample = sample(f.components, f.argument.components().unwrap_or(1), sides);
+                let lengths = sides.then_some(vec![1.0; 3]);
+                let each = sample.iter().map(|e| with_lengths(e, lengths.as_deref()));
+                each.collect()
+            })
+            .collect(),
+        Some((name, case)) => of_case(name, case, &model, &open, stated.as_ref())?,
+    };
+    Ok(replaced(text, &open, &written))
+}
+
+/// The expressions of a case, in the order of the functions.
+fn of_case(
+    name: &str,
+    case: &str,
+    model: &Model,
+    open: &[Open],
+    stated: Option<&Stated>,
+) -> Result<Vec<Vec<String>>, Failure> {
+    let file = File::new(name, case);
+    let document = DeTable::parse(case).map_err(|error| {
+        let message = format!("not TOML: {}", error.message());
+        file.wrong(error.span().as_ref(), &message)
+    })?;
+    let top = document.get_ref();
+    let example = |f: &Open| {
+        let argument = f.argument.components().unwrap_or(1);
+        toml_of(&sample(f.components, argument, false))
+    };
+    let Some(given) = table(&file, top, TABLE)? else {
+        let each = open
+            .iter()
+            .map(|f| format!("{} = {}", f.name.text, example(f)));
+        let message = format!(
+            "missing table [{TABLE}], what the functions of the model are: for example {}",
+            each.collect::<Vec<_>>().join(", ")
+        );
+        return Err(file.wrong(None, &message));
+    };
+    for key in given.keys() {
+        let asked = key.get_ref().as_ref();
+        if !open.iter().any(|f| f.name.text == asked) {
+            let hint = did_you_mean(asked, open.iter().map(|f| f.name.text.as_str()));
+            let message = format!("unknown key `{TABLE}.{}`{hint}", shown(asked));
+            return Err(file.wrong(Some(&key.span()), &message));
+        }
+    }
+    let lengths = match stated {
+        Some(stated) => Space::read(&file, top, stated)?.map(|space| space.lengths),
+        None => None,
+    };
+    let parameters = parameters(model);
+    open.iter()
+        .map(|f| {
+            let key = format!("{TABLE}.{}", f.name.text);
+            let Some(value) = given.get(f.name.text.as_str()) else {
+                let message = format!("missing key `{key}`: for example {}", example(f));
+                return Err(file.wrong(None, &message));
+            };
+            let wrong =
+                |message: &str| file.wrong(Some(&value.span()), &format!("{key}: {message}"));
+            let texts = texts(value).filter(|t| t.len() == f.components);
+            let texts = texts.ok_or_else(|| {
+                wrong(&format!(
+                    "expected {}: for example {}",
+                    match f.components {
+                        1 => "an expression in quotes".to_owned(),
+                        n => format!("a list of {n} expressions in quotes"),
+                    },
+                    example(f)
+                ))
+            })?;
+            let known = |n: &str| parameters.iter().any(|p| p == n);
+            texts
+                .iter()
+                .map(|text| {
+                    let text = with_lengths(text, lengths.as_deref());
+                    match formula::check(&text, &f.argument, &known) {
+                        Ok(()) => Ok(text),
+                        Err(said) => Err(wrong(&said)),
+                    }
+                })
+                .collect()
+        })
+        .collect()
+}
+
+/// One expression, or a list of them.
+fn texts(value: &Spanned<DeValue<'_>>) -> Option<Vec<String>> {
+    let one = |value: &DeValue<'_>| match value {
+        DeValue::String(text) => Some(text.to_string()),
+        DeValue::Float(number) => Some(number.to_string()),
+        DeValue::Integer(number) => Some(number.to_string()),
+        _ => None,
+    };
+    match value.get_ref() {
+        DeValue::Array(list) => list.iter().map(|v| one(v.get_ref())).collect(),
+        other => Some(vec![one(other)?]),
+    }
+}
+
+/// The parameters of a model that are one number.
+fn parameters(model: &Model) -> Vec<String> {
+    let of = |s: &Statement| match s {
+        Statement::Param {
+            names,
+            shape,
+            at: None,
+        } if shape.components() == Some(1) => names.iter().map(|n: &Name| n.text.clone()).collect(),
+        _ => Vec::new(),
+    };
+    model.statements.iter().flat_map(of).collect()
+}
+
+/// A text with the lengths of the domain for `Lx`, `Ly`, `Lz`.
+fn with_lengths(text: &str, lengths: Option<&[f64]>) -> String {
+    let Some(lengths) = lengths else {
+        return text.to_owned();
+    };
+    let mut out = String::with_capacity(text.len());
+    let mut word = String::new();
+    let put = |word: &mut String, out: &mut String| {
+        let which = ["Lx", "Ly", "Lz"].iter().position(|l| *l == word.as_str());
+        match which.and_then(|d| lengths.get(d)) {
+            Some(length) => {
+                let _ = write!(out, "{length:?}");
+            }
+            None => out.push_str(word),
+        }
+        word.clear();
+    };
+    for c in text.chars() {
+        if c.is_alphanumeric() || c == '_' {
+            word.push(c);
+            continue;
+        }
+        put(&mut word, &mut out);
+        out.push(c);
+    }
+    put(&mut word, &mut out);
+    out
+}
+
+/// The text of the model with the expressions after the word `case`, from its end to its beginning, so that places before stay.
+fn replaced(text: &str, open: &[Open], written: &[Vec<String>]) -> String {
+    let mut out = text.to_owned();
+    let mut all: Vec<(usize, String)> = open
+        .iter()
+        .zip(written)
+        .filter_map(|(f, each)| Some((after_word(text, f.at?)?, toml_of(each))))
+        .collect();
+    all.sort_by_key(|(at, _)| std::cmp::Reverse(*at));
+    for (at, list) in all {
+        out.insert_str(at, &format!(" {list}"));
+    }
+    out
+}
+
+/// Where the word `case` that begins at a line and a column ends, in bytes.
+fn after_word(text: &str, (line, column): (usize, usize)) -> Option<usize> {
+    let mut start = 0;
+    for (index, own) in text.split_inclusive('\n').enumerate() {
+        if index + 1 == line {
+            let at = start + own.char_indices().nth(column - 1)?.0;
+            return text.get(at..)?.starts_with("case").then_some(at + 4);
+        }
+        start += own.len();
+    }
+    None
+}
+
+/// One string, or a list of them.
+fn toml_of(each: &[String]) -> String {
+    let quoted: Vec<String> = each.iter().map(|e| format!("{e:?}")).collect();
+    match quoted.as_slice() {
+        [only] => only.clone(),
+        all => format!("[{}]", all.join(", ")),
+    }
+}
+
+/// A function to start from: waves around a domain, or a bowl.
+fn sample(components: usize, argument: usize, domain: bool) -> Vec<String> {
+    let place = ["x", "y", "z"];
+    let wave = |i: usize| {
+        let along = place.get(i % argument.max(1)).copied().unwrap_or("x1");
+        match domain {
+            true => format!("0.1*cos(2*pi*{along}/L{along})"),
+            false => format!("0.1*cos({along})"),
+        }
+    };
+    (0..components).map(wave).collect()
+}
+
+/// Whether a model has functions that its case gives.
+pub(super) fn are_given(source: &str) -> bool {
+    let model = pipeline::parse_source(source).ok();
+    let open = model.and_then(|model| formula::open(&model).ok());
+    open.is_some_and(|open| !open.is_empty())
+}
+
+/// The table with samples, for the case of a model that needs one.
+pub(super) fn sample_table(text: &mut String, source: &str, domain: bool) {
+    let Ok(model) = pipeline::parse_source(source) else {
+        return;
+    };
+    let open = formula::open(&model).unwrap_or_default();
+    if open.is_empty() {
+        return;
+    }
+    let _ = writeln!(
+        text,
+        "\n[{TABLE}]\n# expressions in the components x, y, z of the argument, with parameters of the model and pi"
+    );
+    for f in &open {
+        let argument = f.argument.components().unwrap_or(1);
+        let _ = writeln!(
+            text,
+            "{} = {}",
+            f.name.text,
+            toml_of(&sample(f.components, argument, domain))
+        );
+    }
+}

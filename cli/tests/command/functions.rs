@@ -1,0 +1,132 @@
+//! Functions that a case gives: a run is that of the model with the expression typed in its place, and what is wrong of a
+//! function is told by file and line.
+
+use crate::common::{Folder, clebsch};
+
+const BOWL: &str = "/// A bead in a bowl, carried by a vector potential.
+model Bowl {
+    param m, g, A: Real;
+    given b(Vec<2>): Real = case;
+    given R(Vec<2>): Vec<2> = case;
+    field X: Vec<2>;
+    lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) + m*dot(R((X + next(X))/2), next(X) - X) - h*m*g*b(X);
+}
+";
+
+const FUNCTIONS: &str = "b = \"A*x^2/2 + exp(y)\"\nR = [\"-A*y/2\", \"x*y/3\"]";
+
+fn case(functions: &str) -> String {
+    format!(
+        "model = \"bowl\"\nh = 0.05\nsteps = 50\n{functions}\n[parameters]\nm = 1.2\ng = 0.8\nA = 0.7\n\
+         [initial]\nX = [0.3, -0.2]\nmomentum = [0.1, 0.4]\n"
+    )
+}
+
+fn rows(folder: &Folder, model: &str, case: &str, name: &str) -> String {
+    let (model, case) = (
+        folder.write(&format!("{name}.clebsch"), model),
+        folder.write(&format!("{name}.toml"), case),
+    );
+    let out = folder.path(name);
+    let done = clebsch(&["run", &model, "--case", &case, "--out", &out]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    std::fs::read_to_string(format!("{out}/trajectory.csv")).expect("is written")
+}
+
+#[test]
+fn a_run_is_that_of_the_expression_in_its_place() {
+    let folder = Folder::new("functions");
+    let by_hand = BOWL
+        .replace("    given b(Vec<2>): Real = case;\n", "")
+        .replace(
+            "    given R(Vec<2>): Vec<2> = case;\n",
+            "    let c = (X + next(X))/2;\n",
+        )
+        .replace("R((X + next(X))/2)", "((-A*c[2]/2)*E1 + (c[1]*c[2]/3)*E2)")
+        .replace("b(X)", "(A*X[1]^2/2 + exp(X[2]))");
+    let given = rows(
+        &folder,
+        BOWL,
+        &case(&format!("[functions]\n{FUNCTIONS}")),
+        "given",
+    );
+    assert_eq!(given, rows(&folder, &by_hand, &case(""), "typed"));
+}
+
+#[test]
+fn a_fluid_over_topography_has_the_lengths_of_its_domain() {
+    let folder = Folder::new("functions-fluid");
+    let text = "model Lake {
+        label a in 0..N; param m: Real at a; param g: Real; given b(Vec<2>): Real = case;
+        field X: Vec<2> at a on torus(L); mesh D: Real at a = voronoi_area(X);
+        lagrangian = (m/(2*h))*dot(next(X) - X, next(X) - X) - h*g*m*(m/D/2 + b(X));
+    }";
+    let model = folder.write("lake.clebsch", text);
+    let sample = clebsch(&["case", &model]);
+    assert_eq!(sample.code, 0, "{}", sample.err);
+    assert!(
+        sample.out.contains("b = \"0.1*cos(2*pi*x/Lx)\""),
+        "{}",
+        sample.out
+    );
+    let steps = sample.out.replace("steps = 1000", "steps = 5");
+    let of = |name: &str, model: &str, case: &str| {
+        let own = folder.write(&format!("{name}.toml"), case);
+        let out = folder.path(name);
+        let done = clebsch(&["run", model, "--case", &own, "--out", &out]);
+        assert_eq!(done.code, 0, "{}", done.err);
+        std::fs::read_to_string(format!("{out}/trajectory.csv")).expect("is written")
+    };
+    let wide = steps.replace("L = [1.0, 1.0]", "L = [2.0, 1.0]");
+    let given = of("given", &model, &wide);
+    let by_hand = folder.write(
+        "by-hand.clebsch",
+        &text
+            .replace(" given b(Vec<2>): Real = case;", "")
+            .replace("b(X)", "cos(2*3.141592653589793*X[1]/2.0)/10"),
+    );
+    let bare = wide
+        .replace("b = \"0.1*cos(2*pi*x/Lx)\"", "")
+        .replace("[functions]", "");
+    assert_eq!(given, of("typed", &by_hand, &bare));
+}
+
+#[test]
+fn what_is_wrong_of_a_function_is_told_by_its_line() {
+    let folder = Folder::new("functions-wrong");
+    let model = folder.write("bowl.clebsch", BOWL);
+    for (functions, said) in [
+        ("", "missing table [functions]"),
+        ("[functions]\nb = \"x\"", "missing key `functions.R`"),
+        (
+            "[functions]\nb = \"x\"\nR = \"y\"",
+            ":6: functions.R: expected a list of 2 expressions",
+        ),
+        (
+            "[functions]\nb = \"cos(x\"\nR = [\"x\", \"y\"]",
+            ":5: functions.b: this `(` is not closed",
+        ),
+        (
+            "[functions]\nb = \"q\"\nR = [\"x\", \"y\"]",
+            ":5: functions.b: `q` is not known here",
+        ),
+        (
+            "[functions]\nc = \"x\"\nR = [\"x\", \"y\"]",
+            ":5: unknown key `functions.c`",
+        ),
+    ] {
+        let own = folder.write("own.toml", &case(functions));
+        let done = clebsch(&["run", &model, "--case", &own]);
+        assert_eq!(done.code, 2, "{functions}: {}", done.err);
+        assert!(done.err.contains(said), "{functions}: {}", done.err);
+    }
+    // A model that has none.
+    let other = folder.write("own.toml", &case("[functions]\nb = \"x\""));
+    let plain = BOWL
+        .replace("= case;", "= \"x\";")
+        .replace("Vec<2> = \"x\"", "Vec<2> = [\"x\", \"y\"]");
+    let plain = folder.write("plain.clebsch", &plain);
+    let done = clebsch(&["run", &plain, "--case", &other]);
+    assert_eq!(done.code, 2);
+    assert!(done.err.contains("unknown key `functions`"), "{}", done.err);
+}

@@ -1,0 +1,134 @@
+//! Functions that are written out, or that a case gives: a call is the expression at its argument, and what is no expression
+//! in it is told where it stands.
+
+use crate::algebra::Algebra;
+use crate::pipeline::{derive_source, parse_source};
+use crate::syntax::formula;
+
+fn text(given: &str, term: &str) -> String {
+    format!(
+        "model M {{ param m, g, A, x: Real; {given} field X: Vec<2>; field u: Real; \
+         lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) + m*(next(u) - u)^2/(2*h) - h*({term}); }}"
+    )
+}
+
+/// Asserts that two models are one.
+fn same(given: &str, term: &str, by_hand: &str) {
+    let of = |text: &str| derive_source(text).unwrap_or_else(|e| panic!("{text}\n{e}"));
+    let (a, b) = (of(&text(given, term)), of(&text("", by_hand)));
+    let algebra = Algebra::new(&a.letters.symbols);
+    assert!(
+        algebra.equal(&a.spec.lagrangian, &b.spec.lagrangian),
+        "{given}: {term} is not {by_hand}"
+    );
+}
+
+fn refused(given: &str, term: &str) -> String {
+    let text = text(given, term);
+    match derive_source(&text) {
+        Ok(_) => format!("derives: {text}"),
+        Err(errors) => errors.to_string(),
+    }
+}
+
+#[test]
+fn a_call_is_the_expression_at_its_argument() {
+    let b = "given b(Vec<2>): Real = \"A*cos(2*x)*y^2\";";
+    same(b, "m*g*b(X)", "m*g*A*cos(2*X[1])*X[2]^2");
+    same(b, "b(2*X)", "4*A*cos(4*X[1])*X[2]^2");
+    same(
+        "given b(Vec<2>): Real = \"x1 - x2\";",
+        "b(b(X)*X)",
+        "(X[1] - X[2])^2",
+    );
+    same(
+        "given R(Vec<2>): Vec<2> = [\"-y*g\", \"x\"];",
+        "dot(R(X), X)",
+        "(1 - g)*X[1]*X[2]",
+    );
+    same(
+        "given f(Real): Real = \"tanh(x)\";",
+        "f(u)*f(g*u)",
+        "tanh(u)*tanh(g*u)",
+    );
+    // A component hides a parameter of its name.
+    same("given f(Real): Real = \"A*x\";", "f(u) + u*x - u*x", "A*u");
+    // As a case gave it.
+    same("given f(Real): Real = case \"A*x\";", "f(u)", "A*u");
+}
+
+#[test]
+fn what_is_stored_derives_the_same_model() {
+    let given =
+        "given b(Vec<2>): Real = case \"A*x*y\"; given R(Vec<2>): Vec<2> = [\"pi*y\", \"x\"];";
+    let d = derive_source(&text(given, "b(X) + dot(R(X), X)")).expect("derives");
+    let source = crate::document::source(&d);
+    assert!(
+        source.contains("given b(Vec<2>): Real = case \"A*x*y\";"),
+        "{source}"
+    );
+    assert!(source.contains("= [\"pi*y\", \"x\"];"), "{source}");
+    let again = derive_source(&source).unwrap_or_else(|e| panic!("{source}\n{e}"));
+    assert_eq!(crate::document::source(&again), source);
+}
+
+#[test]
+fn what_the_case_gives_derives_and_is_not_emitted() {
+    let text = text("given b(Vec<2>): Real = case;", "b(X)");
+    let d = derive_source(&text).expect("derives");
+    let told = crate::emit::refusal(&d).expect("refused").message;
+    assert!(told.contains("what `b` is, the case says"), "{told}");
+    let open = formula::open(&parse_source(&text).expect("reads")).expect("readable");
+    assert_eq!(open.len(), 1);
+    assert!(!open[0].is_filled && open[0].components == 1);
+}
+
+#[test]
+fn what_is_no_such_function_is_refused() {
+    for (given, term, said) in [
+        (
+            "given b(Vec<2>): Real = \"A*(x\";",
+            "b(X)",
+            "in this expression: this `(` is not closed",
+        ),
+        (
+            "given b(Vec<2>): Real = \"A x;\";",
+            "b(X)",
+            "in this expression",
+        ),
+        (
+            "given b(Vec<2>): Real = \"q*x\";",
+            "b(X)",
+            "`q` is not declared",
+        ),
+        (
+            "given b(Vec<2>): Real = [\"x\", \"y\"];",
+            "b(X)",
+            "1 components are declared and 2 written",
+        ),
+        (
+            "given b(Mat<2>): Real = \"x\";",
+            "b(X)",
+            "takes one number or vector of known size",
+        ),
+        (
+            "given b(Real, Real): Real = \"x\";",
+            "b(u, u)",
+            "takes one number or vector of known size",
+        ),
+        (
+            "given b(Real): Real = \"x\"; param b: Real;",
+            "b(u)",
+            "`b` is declared twice",
+        ),
+        ("given b(Real): Real = \"x\";", "b(u, u)", "`b`"),
+        (
+            "given b(Vec<2>): Real = 3;",
+            "b(X)",
+            "an expression in quotes",
+        ),
+    ] {
+        let found = refused(given, term);
+        assert!(found.contains(said), "{given}: {found}");
+    }
+}

@@ -1,0 +1,81 @@
+//! Characters that papers have and the language has not: a minus of typesetting, indices below the line, primes. In a file they
+//! are found here, where the text could not be split into tokens.
+
+use super::delimiters::place;
+use super::text;
+use crate::diagnostic::Diagnostic;
+
+/// What a character is in a paper, and how the language writes it.
+fn written(c: char) -> Option<&'static str> {
+    Some(match c {
+        '−' | '–' | '—' | '‐' => "write the minus of the keyboard, `-`",
+        '\'' | '′' | '’' => "write `^T` for a transpose and `next(x)` for the next time level",
+        '·' | '⋅' | '×' | '∙' | '∗' | '∧' | '⊗' => {
+            "write `a*b` for a product, `dot(a, b)` and `cross(a, b)` for those of vectors"
+        }
+        '⟨' | '⟩' | '〈' | '〉' => "write `dot(a, b)`, of matrices `tr(a^T*b)`",
+        '₀'..='₉' => "write an index as `w_0` or `w0`",
+        '²' | '³' | '¹' | '⁰' | '⁴'..='⁹' | '⁻' | 'ᵀ' => {
+            "write `a^2` for a power, `A^T` for a transpose, `A^-1` for an inverse"
+        }
+        '÷' => "write `a/b`",
+        '√' => "write `sqrt(a)`",
+        '≤' | '≥' | '≠' => "write `<=`, `>=`; a condition is stated by `assume`",
+        '½' | '¼' | '¾' | '⅓' | '⅔' => "write `1/2`",
+        '∇' | '∂' => "derivatives are the engine's: state the Lagrangian",
+        '∫' | '∑' | '∏' => "sums over a label are meant by `at nodes` and `at segments`",
+        '“' | '”' | '„' => "write straight quotes, `\"`",
+        '\\' => {
+            "names are written in Unicode or in letters, `Λ` or `Lambda`; LaTeX stands in quotes after `as`"
+        }
+        _ => return None,
+    })
+}
+
+/// The first character outside of remarks and texts that no token has.
+pub(super) fn foreign(source: &str) -> Option<Diagnostic> {
+    let mut found = None;
+    let (text, _) = text::read(source, |at, c| {
+        let known = c.is_ascii() || c.is_alphabetic() || c.is_whitespace();
+        if found.is_none() && (written(c).is_some() || !known) {
+            found = Some((at, c));
+        }
+    });
+    let (at, c) = found?;
+    let d = Diagnostic::new(
+        place(&text, at)?,
+        format!("`{c}` is no character of the language"),
+    );
+    Some(match written(c) {
+        Some(remedy) => d.help(remedy),
+        None => d.help("names are made of letters, digits and `_`"),
+    })
+}
+
+#[cfg(all(test, feature = "locations"))]
+mod tests {
+    use crate::syntax::tokens;
+
+    #[test]
+    fn a_character_of_a_paper_is_pointed_at() {
+        for (source, column, said) in [
+            (
+                "model M { lagrangian = a − b; }",
+                26,
+                "minus of the keyboard",
+            ),
+            ("model M { param ω₀: Real; }", 18, "`w_0`"),
+            ("model M { let a = q' - q; }", 20, "`next(x)`"),
+            ("model M { let a = x²; }", 20, "`a^2`"),
+            ("model M { let a = ⟨x, x⟩; }", 19, "`dot(a, b)`"),
+            ("model M { let a = \u{1f600}; }", 19, "letters, digits"),
+        ] {
+            let errors = tokens(source).map(|_| ()).unwrap_err();
+            let first = errors.iter().next().unwrap();
+            assert_eq!(first.place.line_and_column(), Some((1, column)), "{source}");
+            assert!(errors.to_string().contains(said), "{source}: {errors}");
+        }
+        // In remarks and texts anything may stand.
+        assert!(tokens("model M { // a − b\n let a = m as \"ω₀\"; }").is_ok());
+    }
+}
