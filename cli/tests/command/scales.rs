@@ -180,3 +180,27 @@ fn no_value_is_larger_than_its_scale() {
     }
     assert!(compared > 1000, "{compared}");
 }
+
+/// A top that hangs where nothing moves it, along no axis: the impulses of its weight leave their rounding as its momentum,
+/// by which that is not measured.
+#[test]
+fn a_top_at_equilibrium_is_within_its_bounds() {
+    let mut gallery = Gallery::shipped();
+    gallery.entries.retain(|e| e.card.kebab == "heavy-top");
+    let entry = &mut gallery.entries[0];
+    entry.cases.truncate(1);
+    let case = &mut entry.cases[0];
+    let (down, up) = (vec![0.36, 0.48, -0.8], vec![-0.36, -0.48, 0.8]);
+    case.parameters[1..].clone_from_slice(&[down, up]);
+    case.initial[0] = vec![1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+    case.initial[1] = vec![0.0; 3];
+    let (code, json) = json(
+        &gallery,
+        &["run", "heavy-top", "--h", "0.1", "--steps", "2000"],
+    );
+    assert_eq!(code, 0, "{json}");
+    let vertical = invariant(&json, "momentum_Gamma");
+    // The impulse of a step, h |m g chi|, along each axis.
+    let scale = number(&vertical["scale"]);
+    assert!(scale > 0.1 && scale < 0.2, "{vertical}");
+}

@@ -1,0 +1,13 @@
+//! A stepper needs to know what its functions are.
+use clebsch::model;
+
+model! {
+    model Bowl {
+        param m: Real;
+        given b(Vec<2>): Real = case;
+        field X: Vec<2>;
+        lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) - h*b(X);
+    }
+}
+
+fn main() {}
