@@ -51,6 +51,15 @@ impl<T: Real, const D: usize> Factors<T, D> {
         }
     }
 
+    /// An entry of the diagonal in a lane, where the matrix is kept as it is: its absolute value, else zero.
+    #[must_use]
+    pub fn diagonal(&self, i: usize, lane: usize) -> f64 {
+        match self.blocks {
+            true => 0.0,
+            false => self.columns[i][i].lane(lane).abs(),
+        }
+    }
+
     /// The solution of `A x = b`; `None` where there is no usable pivot.
     #[inline(always)]
     #[must_use]
@@ -301,6 +310,15 @@ impl DenseFactors {
         let done = factor(&mut columns.data.0);
         *matrix = Dense::of(&columns);
         done
+    }
+
+    /// An entry of the diagonal, where the matrix is kept as it is: its absolute value, else zero.
+    #[must_use]
+    pub fn diagonal(&self, i: usize) -> f64 {
+        match self.blocks {
+            true => 0.0,
+            false => self.columns.at(i, i).abs(),
+        }
     }
 
     /// The solution of `A x = b`; `None` where there is no usable pivot.

@@ -18,7 +18,7 @@ use super::principal::{Care, Fold};
 use super::{
     BOUND_ROUNDINGS, CONVERGED_ROUNDINGS, FORESIGHT, LAST_ATTEMPT, LATE, LEAST_SHARE,
     MOST_ITERATIONS, NewtonError, NewtonFailure, OLDEST_SCALE, OLDEST_TANGENT, POLISHED_ROUNDINGS,
-    Progress, REMEMBERED, STAGNATED_ROUNDINGS, Solved, WORTH_KEEPING,
+    Progress, REMEMBERED, STAGNATED_ROUNDINGS, Solved, WORTH_KEEPING, not_below_rounding,
 };
 use crate::linalg::{Dense, DenseFactors};
 use crate::scalar::Real;
@@ -357,6 +357,8 @@ impl<C: Chart> AnyNewton<'_, C> {
             let most = part.fold(0.0, |most: f64, k| most.max(scales[k]));
             scales[i] = scales[i].max(LEAST_SHARE * most);
         }
+        let factors = &self.search.factors;
+        not_below_rounding(&mut scales, |i| factors.diagonal(i));
         for (weight, scale) in self.search.weights.iter_mut().zip(&scales) {
             *weight = (1.0 / scale).min(f64::MAX);
         }
