@@ -7,6 +7,7 @@
 
 mod counted;
 mod elastic;
+mod frames;
 mod groups;
 mod loops;
 mod points;
@@ -25,6 +26,7 @@ use elastic::{
     generated_convective, generated_four, generated_spatial, written_convective, written_four,
     written_spatial,
 };
+use frames::{generated_frames, generated_single_frames};
 use groups::{
     generated_cayley_klein, generated_cayley_klein_spatial, generated_kirchhoff_body,
     written_cayley_klein, written_kirchhoff_body,
@@ -129,6 +131,11 @@ fn main() {
         written_spatial,
     );
     table.row("four joined by springs", generated_four, written_four);
+    table.row(
+        "ten frames, beside ten single ones",
+        generated_frames,
+        generated_single_frames,
+    );
 }
 
 /// What is printed: every case, or those whose names contain a text.

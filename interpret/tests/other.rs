@@ -64,6 +64,25 @@ clebsch::model! {
 }
 
 clebsch::model! {
+    /// Four frames in a row, of which three are alike, each bound to the next.
+    pub model Alike {
+        param J, K: Sym<3>;
+        param a, b: Vec<3>;
+        param c: Real;
+        group P: SO<3> velocity U;
+        group Q: SO<3> velocity V;
+        group R: SO<3> velocity W;
+        group S: SO<3> velocity Y;
+        constraint next(P) = P*U;
+        constraint next(Q) = Q*V;
+        constraint next(R) = R*W;
+        constraint next(S) = S*Y;
+        lagrangian = -tr(J*(U + V + Y))/h - tr(K*W)/h
+            + h*c*(dot(P*a, Q*b) + dot(Q*a, R*b) + dot(R*a, S*b));
+    }
+}
+
+clebsch::model! {
     /// Fractions that no binary number is, assumptions of every kind, and a field of nine components.
     pub model Nine {
         param k, c, e: Real;
@@ -220,6 +239,25 @@ fn different_groups_together() {
     ];
     let initial: [&[f64]; 4] = [&ONE, &[0.1, 0.5, 0.2], &[0.1, 0.0, 0.2], &[0.3, 0.1, 0.0]];
     both(&Hanging::CARD, &case(0.05, &parameters, &initial));
+}
+
+#[test]
+fn bodies_that_are_alike() {
+    let inertia = [0.5, 0.1, 0.0, 0.1, 0.7, 0.0, 0.0, 0.0, 0.9];
+    let another = [0.3, 0.0, 0.0, 0.0, 0.4, 0.0, 0.0, 0.0, 0.6];
+    let (a, b) = ([0.3, 0.1, 0.5], [-0.2, 0.4, 0.1]);
+    let parameters: [&[f64]; 5] = [&inertia, &another, &a, &b, &[0.7]];
+    let initial: [&[f64]; 8] = [
+        &ONE,
+        &[0.1, 0.5, 0.2],
+        &ONE,
+        &[0.3, -0.1, 0.4],
+        &ONE,
+        &[-0.2, 0.1, 0.3],
+        &ONE,
+        &[0.2, 0.3, -0.4],
+    ];
+    both(&Alike::CARD, &case(0.05, &parameters, &initial));
 }
 
 #[test]

@@ -231,6 +231,23 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             }
             _ => None,
         },
+        ("rotations", 3) => |a, _| match a {
+            [
+                Value::LeftFactor(f),
+                Value::List(all),
+                Value::Method(method),
+            ] => {
+                let one = |v: &Value<T>| {
+                    let v = vector(v)?;
+                    Some(with_factor!(f, f => f.rotation(&v, *method)))
+                };
+                let solved: Option<Result<Vec<_>, _>> = all.iter().map(one).collect();
+                let listed =
+                    |all: Vec<_>| Value::List(all.into_iter().map(Value::Rotation).collect());
+                Some(Value::result(solved?.map(listed)))
+            }
+            _ => None,
+        },
         ("reach", 2) => |a, _| match a {
             [Value::LeftFactor(f), v] => {
                 let v = v.dense()?;

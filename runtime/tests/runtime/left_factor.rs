@@ -415,6 +415,36 @@ fn a_turned_body_is_solved_by_vectors_too() {
     }
 }
 
+/// Whether bodies that are solved side by side turn as each by itself, to the last bit, or are refused alike.
+fn side_by_side<T: Real>(factor: &LeftFactor<3, T>, momenta: &[Vector3<T>; 5], method: Method) {
+    let each = momenta.map(|v| factor.rotation(&v, method));
+    let refused = each.iter().find_map(|one| one.err());
+    match (factor.rotations(momenta, method), refused) {
+        (Ok(all), None) => assert_eq!(all.map(Ok), each, "{method}"),
+        (Err(e), Some(first)) => assert_eq!(format!("{e:?}"), format!("{first:?}"), "{method}"),
+        (together, _) => panic!("{method}: {together:?} for {each:?}"),
+    }
+}
+
+#[test]
+fn bodies_that_are_alike_turn_as_each_by_itself() {
+    let mut random = Random(64);
+    for case in 0..60 {
+        let c: Matrix3<f64> = matrix::<3>(&mut random, case);
+        let factor = LeftFactor::new(c).expect("positive");
+        let lanes = LeftFactor::new(c.map(Lanes::<2>::from_f64)).expect("positive");
+        // From what one iteration solves to what nothing does.
+        for size in [1e-3, 0.1, 0.5, 1.0, 4.0] {
+            let momenta = [(); 5].map(|()| Vector3::from_fn(|_, _| size * random.symmetric()));
+            for method in Method::ALL {
+                side_by_side(&factor, &momenta, method);
+            }
+            let momenta = momenta.map(|v| v.map(Lanes::<2>::from_f64));
+            side_by_side(&lanes, &momenta, Method::Kappa);
+        }
+    }
+}
+
 #[test]
 fn methods_have_names() {
     for method in Method::ALL {

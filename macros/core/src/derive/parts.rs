@@ -265,22 +265,13 @@ impl Parts {
         let [before @ .., turn, last] = factors.as_slice() else {
             return e;
         };
-        let (Node::Cross(a, b), true) = (last.node(), self.is_turn(turn)) else {
+        if !matches!(last.node(), Node::Cross(..)) || !self.is_turn(turn) {
             return e;
-        };
-        let (a, b) = match (self.turned(turn, a), self.turned(turn, b)) {
-            (None, None) => return e,
-            (x, y) => {
-                let through = |z: &Expr| expr::mul(turn.clone(), z.clone());
-                (
-                    x.unwrap_or_else(|| through(a)),
-                    y.unwrap_or_else(|| through(b)),
-                )
-            }
-        };
-        let mut word = before.to_vec();
-        word.push(expr::cross(a, b));
-        expr::product(word)
+        }
+        match expr::turned(&self.symbols, turn, last) {
+            Some(last) => expr::product(before.iter().cloned().chain([last])),
+            None => e,
+        }
     }
 
     /// Whether this is a rotation among the velocities, or the inverse of one.
@@ -297,19 +288,5 @@ impl Parts {
             Velocity::Rotation(w) | Velocity::Motion(w, _) => *l == at(*w),
             Velocity::Quaternion(..) => false,
         })
-    }
-
-    /// `R x` for `x = R^T y`, which is `y`.
-    fn turned(&self, turn: &Expr, x: &Expr) -> Option<Expr> {
-        let Node::Product(factors) = x.node() else {
-            return None;
-        };
-        let first = factors.iter().position(|f| !f.shape().is_scalar())?;
-        if factors[first] != expr::transpose(&self.symbols, turn.clone()) {
-            return None;
-        }
-        let mut rest = factors.clone();
-        rest.remove(first);
-        Some(expr::product(rest))
     }
 }

@@ -2,6 +2,8 @@
 //! for all of them, then each block by its own method, then the way to the next node together.
 //! Takes the derivation; gives the factors that the model keeps, the workspace and `step`.
 
+use super::alone::{alone, scaled_momentum};
+use super::carried::seen_from_space;
 use super::element::{self, Family, family};
 use super::expression::{Bindings, program};
 use super::items::{letters_of, parameter_locals, text, with_transports};
@@ -19,8 +21,9 @@ use crate::derive::quaternionic::Quaternionic;
 use crate::derive::recognise::{Method, MoserVeselov, Riccati};
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::schedule;
-use proc_macro2::{Ident, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
+use std::collections::BTreeMap;
 
 /// The blocks with their numbers, from 1.
 fn numbered(d: &Derivation) -> impl Iterator<Item = (usize, &Block)> {
@@ -41,6 +44,19 @@ fn exact<'a>(d: &'a Derivation, b: &'a Block) -> Option<(usize, &'a MoserVeselov
         },
         _ => None,
     }
+}
+
+/// The numbers of the blocks of bodies whose equation has the same constant factor as that of `b`, its own
+/// among them: none of them waits for another, and one call solves all. None where `b` is no such body.
+fn alike(d: &Derivation, b: &Block) -> Vec<usize> {
+    let of_body = |b: &Block| {
+        let own = exact(d, b).filter(|_| matches!(b.method, Method::LeftFactor));
+        own.filter(|(i, _)| family(&d.spec.configurations[*i]) == Family::Rotation)
+            .map(|(_, mv)| mv.factor.clone())
+    };
+    let factor = of_body(b);
+    let all = numbered(d).filter(|(_, other)| factor.is_some() && of_body(other) == factor);
+    all.map(|(n, _)| n).collect()
 }
 
 /// The configuration and the form of a block whose balance is linear.
@@ -130,6 +146,8 @@ pub(super) fn factors(d: &Derivation) -> Vec<Factor<'_>> {
             real,
         };
         match b.method {
+            // Bodies that are alike have one factor.
+            Method::LeftFactor if alike(d, b).first().is_some_and(|first| *first < n) => None,
             Method::LeftFactor => exact(d, b).map(|(i, mv)| own(i, &mv.factor, None)),
             _ => quaternionic(d, b).map(|(i, q)| own(i, &q.edge.factor, Some(&q.real))),
         }
@@ -229,6 +247,8 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
     let work = item(d, "Workspace");
     // What is known at the node, for all blocks together.
     let mut known: Vec<Expr> = Vec::new();
+    // Which of it acts on a body that is solved by itself.
+    let mut acting: Vec<(usize, usize)> = Vec::new();
     let by_change = all_displaced(d);
     let mut needed: Vec<Letter> = onwards(d, &by_change);
     let seen = by_change.iter().flatten().filter_map(|f| f.seen.as_ref());
@@ -245,6 +265,7 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
             needed.push(at(d.spec.configurations[i].element, Shift::HERE));
         }
         let Some((i, mv)) = exact(d, b) else { continue };
+        acting.push((known.len(), i));
         known.push(mv.rest.clone());
         if matches!(b.method, Method::Davenport) {
             known.push(mv.factor.clone());
@@ -254,10 +275,17 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
             needed.push(at(c.element, Shift::HERE));
         }
     }
-    let known: Vec<Expr> = known
+    let mut known: Vec<Expr> = known
         .iter()
         .map(|e| expr::factored(s, &schedule::displaced(s, e)))
         .collect();
+    let mut in_space = Vec::new();
+    for (place, i) in acting {
+        if let Some(seen) = seen_from_space(d, i, Shift::HERE, &known[place]) {
+            known[place] = expr::neg(seen);
+            in_space.push(i);
+        }
+    }
     needed.extend(letters_of(&known));
     for list in each_newton(d, names, |_, t| t.needed()) {
         needed.extend(list);
@@ -278,6 +306,7 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
     let (mut node_types, mut remembered) = (TokenStream::new(), TokenStream::new());
     let mut found: Vec<TokenStream> = vec![TokenStream::new(); d.spec.configurations.len()];
     let mut refuses = false;
+    let mut side_by_side: BTreeMap<usize, Vec<TokenStream>> = BTreeMap::new();
     for (n, b) in numbered(d) {
         if let (Some((i, form)), Some(moved)) = (linear(d, b), changed(d, b, &by_change)) {
             let c = &d.spec.configurations[i];
@@ -330,7 +359,26 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
                 _ => None,
             };
             let omega = variable(s, d.spec.configurations[i].velocity);
-            let solve = alone(d, n, i, rest, factor, &step);
+            let scaled = scaled_momentum(d, i, rest, in_space.contains(&i), &step);
+            let alike = alike(d, b);
+            if let [first, _, ..] = alike.as_slice() {
+                let turns = names.local(&format!("turns_{first}"));
+                let before = side_by_side.entry(*first).or_default();
+                let place = Literal::usize_unsuffixed(before.len());
+                before.push(scaled);
+                if before.len() == alike.len() {
+                    let factor = format_ident!("factor_{first}");
+                    solves.extend(quote! {
+                        let #turns = match self.#factor.rotations(&[#(#before),*], work.method) {
+                            Ok(solved) => solved,
+                            Err(e) => return Err(self.refused(*state, work, e)),
+                        };
+                    });
+                }
+                found[i] = quote!(#turns[#place]);
+                continue;
+            }
+            let solve = alone(d, n, i, &scaled, factor);
             solves.extend(quote! {
                 let #omega = match #solve {
                     Ok(solved) => solved,
@@ -536,26 +584,5 @@ pub(super) fn linear_solution(
             );
             quote!(two_sided_increment(&(#left), &#known, &(#right), &[#(#names),*]))
         }
-    }
-}
-
-/// The solution of a Moser-Veselov equation that is a block by itself.
-fn alone(
-    d: &Derivation,
-    n: usize,
-    i: usize,
-    rest: Option<TokenStream>,
-    factor: Option<TokenStream>,
-    step: &Ident,
-) -> TokenStream {
-    let rotations = family(&d.spec.configurations[i]) == Family::Rotation;
-    let at_node = node_momentum(d, i, d.spec.configurations[i].side);
-    let minus = rest.map(|rest| quote!(- (#rest)));
-    let scaled = quote!(((#at_node #minus) * #step));
-    let prepared = format_ident!("factor_{n}");
-    match (factor, rotations) {
-        (Some(factor), _) => quote!(rotation_at(&(#factor), &#scaled, work.method)),
-        (None, true) => quote!(self.#prepared.rotation(&#scaled, work.method)),
-        (None, false) => quote!(self.#prepared.solve(&skew_part(&#scaled), work.method)),
     }
 }

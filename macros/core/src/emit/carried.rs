@@ -7,9 +7,25 @@ use crate::check::spec::{Configuration, Side};
 use crate::derive::Derivation;
 use crate::derive::carry::Carry;
 use crate::derive::displaced::Displaced;
-use crate::expr::Expr;
+use crate::expr::{self, Expr, Shift};
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
+
+/// The value of what acts at one end of an edge.
+pub(super) struct Acting {
+    pub(super) value: TokenStream,
+    /// Whether it is seen from space, though the momentum is stated in the body.
+    pub(super) in_space: bool,
+}
+
+/// What acts on a rotation stated in the body, seen from space, where less is turned there: `shift` is
+/// the end of the edge.
+pub(super) fn seen_from_space(d: &Derivation, i: usize, shift: Shift, e: &Expr) -> Option<Expr> {
+    let (s, c) = (&d.letters.symbols, &d.spec.configurations[i]);
+    let turns = c.side == Side::Body && family(c) == Family::Rotation;
+    let attitude = expr::shift_time(s, &expr::here(s, c.element), shift.time);
+    turns.then(|| expr::turned(s, &attitude, e)).flatten()
+}
 
 /// The statements of one momentum: those that find it, and those that store it.
 pub(super) struct Carried {
@@ -39,7 +55,7 @@ pub(super) fn carried(
     d: &Derivation,
     names: &Names,
     i: usize,
-    values: &mut impl Iterator<Item = TokenStream>,
+    values: &mut impl Iterator<Item = Acting>,
 ) -> Carried {
     let c = &d.spec.configurations[i];
     let body = Body {
@@ -54,7 +70,7 @@ pub(super) fn carried(
     let value = names.local(&format!("{}_next", body.field));
     let kind = element::kept_name(d, i);
     let (u, field) = (&d.carries[i], &body.field);
-    let parts: Vec<Option<TokenStream>> = u
+    let parts: Vec<Option<Acting>> = u
         .parts()
         .into_iter()
         .map(|e: &Expr| {
@@ -94,12 +110,12 @@ pub(super) fn gained(
     names: &Names,
     i: usize,
     form: &Displaced,
-    values: &mut impl Iterator<Item = TokenStream>,
+    values: &mut impl Iterator<Item = Acting>,
 ) -> Carried {
     let field = per_configuration(d, "momentum", i);
     let [value, leaving] = ["next", "leaving"].map(|tag| names.local(&format!("{field}_{tag}")));
     let added = values.next().filter(|_| !form.added.is_zero());
-    let added = added.map(|e| quote!(+ #e));
+    let added = added.map(|Acting { value, .. }| quote!(+ #value));
     let kind = element::kept_name(d, i);
     Carried {
         found: quote!(let #value = #leaving #added;),
@@ -110,7 +126,9 @@ pub(super) fn gained(
 
 impl Body<'_> {
     /// What is added to a momentum that is kept in two numbers. None where it is not a sum.
-    fn acting(&self, u: &Carry, parts: &[Option<TokenStream>]) -> Option<TokenStream> {
+    fn acting(&self, u: &Carry, parts: &[Option<Acting>]) -> Option<TokenStream> {
+        let values = parts.iter().map(|a| a.as_ref().map(|a| a.value.clone()));
+        let values: Vec<Option<TokenStream>> = values.collect();
         let Body {
             element,
             moved,
@@ -118,12 +136,12 @@ impl Body<'_> {
             velocity,
             ..
         } = self;
-        let present: Vec<&TokenStream> = parts.iter().flatten().collect();
+        let present: Vec<&TokenStream> = values.iter().flatten().collect();
         if self.c.group.is_additive() {
             let acts = quote!(#(#present)+*);
             return (!present.is_empty()).then(|| element::array(self.c, acts));
         }
-        let (Carry::Through { straight, .. }, [leave, arrive]) = (u, parts) else {
+        let (Carry::Through { straight, .. }, [leave, arrive]) = (u, values.as_slice()) else {
             return None;
         };
         let left = leave.is_some().then(|| quote!(leaving));
@@ -147,7 +165,7 @@ impl Body<'_> {
     }
 
     /// The momentum of the next node as a whole.
-    fn whole(&self, u: &Carry, parts: &[Option<TokenStream>]) -> TokenStream {
+    fn whole(&self, u: &Carry, parts: &[Option<Acting>]) -> TokenStream {
         let Body {
             element,
             moved,
@@ -155,21 +173,21 @@ impl Body<'_> {
             c,
             ..
         } = self;
-        let plus = |e: &Option<TokenStream>| e.as_ref().map(|e| quote!(+ #e));
-        let part = |k: usize| parts.get(k).cloned().flatten();
+        let part = |k: usize| parts.get(k).and_then(Option::as_ref);
+        let plus = |e: Option<&Acting>| e.map(|Acting { value, .. }| quote!(+ #value));
         let old = element::value(c, quote!(state.#field.0));
         let value = match (c.side, u) {
             _ if c.group.is_additive() => {
-                let (a, b) = (plus(&part(0)), plus(&part(1)));
+                let (a, b) = (plus(part(0)), plus(part(1)));
                 quote!(#old #a #b)
             }
             (Side::Body, Carry::Through { .. }) => {
-                let left = part(0).map(|e| self.turned(&quote!(state.#element), &self.here, &e));
-                let arrived = part(1).map(|e| self.turned(&quote!(#moved), &self.next, &e));
+                let left = part(0).map(|e| self.turned(&quote!(state.#element), &self.here, e));
+                let arrived = part(1).map(|e| self.turned(&quote!(#moved), &self.next, e));
                 quote!(state.#field.0 #left #arrived)
             }
             (Side::Body, Carry::Kept(_)) => {
-                let added = plus(&part(0));
+                let added = plus(part(0));
                 let (there, back) = match element::about_body(c) {
                     true => (quote!(covector_turned), quote!(covector_turned_back)),
                     false => (quote!(covector_to_space), quote!(covector_to_body)),
@@ -177,11 +195,11 @@ impl Body<'_> {
                 quote!(#moved.#there(&(state.#element.#back(&state.#field.0) #added)))
             }
             (Side::Spatial, Carry::Kept(_)) => {
-                let added = plus(&part(0));
+                let added = plus(part(0));
                 quote!(#old #added)
             }
             (Side::Spatial, Carry::Through { .. }) => {
-                let (left, arrived) = (plus(&part(0)), plus(&part(1)));
+                let (left, arrived) = (plus(part(0)), plus(part(1)));
                 quote! {
                     #moved.covector_to_space(
                         &state.#element.covector_to_body(&(state.#field.0 #left))
@@ -193,8 +211,10 @@ impl Body<'_> {
     }
 
     /// A covector of the body, added in the frame of space.
-    fn turned(&self, element: &TokenStream, matrix: &Ident, value: &TokenStream) -> TokenStream {
+    fn turned(&self, element: &TokenStream, matrix: &Ident, acting: &Acting) -> TokenStream {
+        let Acting { value, in_space } = acting;
         match family(self.c) {
+            _ if *in_space => quote!(+ #value),
             Family::Rotation => quote!(+ #matrix * (#value)),
             Family::Field(_) => quote!(+ #value),
             Family::Orthogonal(_)

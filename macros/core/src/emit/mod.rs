@@ -2,6 +2,7 @@
 //! invariants and the description of the model. Emission makes no decisions and cannot fail; what
 //! this version has no stepper for is refused before, in [`refusal`].
 
+mod alone;
 mod between;
 mod blocks;
 mod card;

@@ -1,7 +1,7 @@
 //! `step`: the momentum of the edge from that of the node, the solve, the new element, the momentum of
 //! the next node.
 
-use super::carried::{carried, gained};
+use super::carried::{Acting, carried, gained, seen_from_space};
 use super::element::{self, Family, family};
 use super::expression::{Bindings, program};
 use super::items::{self, kept, letters_of, node_locals, parameter_locals, with_transports};
@@ -166,12 +166,17 @@ pub(super) fn finish(
     let s = &d.letters.symbols;
     let forms = by_change;
     let by_change = |i: usize| forms.get(i).and_then(Option::as_ref);
+    // What acts, and where it may be seen from space.
     let parts = d.carries.iter().enumerate();
-    let parts = parts.flat_map(|(i, carry)| match by_change(i) {
-        Some(form) => vec![&form.added],
-        None => carry.parts(),
+    let parts = parts.flat_map(|(i, carry)| match (by_change(i), carry) {
+        (Some(form), _) => vec![(None, &form.added)],
+        (None, Carry::Kept(added)) => vec![(None, added)],
+        (None, Carry::Through { leave, arrive, .. }) => vec![
+            (Some((i, Shift::HERE)), leave),
+            (Some((i, Shift::NEXT)), arrive),
+        ],
     });
-    let wanted: Vec<Expr> = parts.cloned().collect();
+    let (places, wanted): (Vec<_>, Vec<Expr>) = parts.map(|(at, e)| (at, e.clone())).unzip();
     let mut needed = letters_of(&wanted);
     let seen = forms.iter().flatten().filter_map(|form| form.seen.as_ref());
     let seen: Vec<Expr> = seen.map(|e| expr::shift_time(s, e, 1)).collect();
@@ -238,10 +243,12 @@ pub(super) fn finish(
     out.extend(node_locals(
         d, names, 1, &needed, &element, &reference, bindings,
     ));
-    let factored: Vec<Expr> = wanted
-        .iter()
-        .map(|e| expr::factored(s, &schedule::displaced(s, e)))
-        .collect();
+    let acting = wanted.iter().zip(places).map(|(e, place)| {
+        let e = expr::factored(s, &schedule::displaced(s, e));
+        let seen = place.and_then(|(i, end)| seen_from_space(d, i, end, &e));
+        (seen.is_some(), seen.unwrap_or(e))
+    });
+    let (in_space, factored): (Vec<bool>, Vec<Expr>) = acting.unzip();
     out.extend(super::blocks::from_space(
         d,
         names,
@@ -252,11 +259,12 @@ pub(super) fn finish(
     let p = schedule::program(s, &factored, "t");
     let (lets, values) = program(&p, bindings);
     out.extend(lets);
-    let mut values = values.into_iter();
+    let acting = values.into_iter().zip(in_space);
+    let mut acting = acting.map(|(value, in_space)| Acting { value, in_space });
     for i in 0..d.spec.configurations.len() {
         let carried = match by_change(i) {
-            Some(form) => gained(d, names, i, form, &mut values),
-            None => carried(d, names, i, &mut values),
+            Some(form) => gained(d, names, i, form, &mut acting),
+            None => carried(d, names, i, &mut acting),
         };
         let value = carried.value;
         out.extend(carried.found);

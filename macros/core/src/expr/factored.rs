@@ -31,7 +31,8 @@ pub fn factored(symbols: &Symbols, e: &Expr) -> Expr {
     }
 }
 
-/// `vee(a b^T)`, which is half of `b x a`, for a product of a column and a row.
+/// `vee(a b^T)`, which is half of `b x a`, for a product of a column and a row, or of a matrix and a
+/// sum of such products: what acts on a body from several sides is a sum of cross products.
 pub fn axial_of_outer(symbols: &Symbols, a: &Expr) -> Option<Expr> {
     let Parts {
         coefficient,
@@ -39,11 +40,26 @@ pub fn axial_of_outer(symbols: &Symbols, a: &Expr) -> Option<Expr> {
         matrices,
         ..
     } = parts(a);
-    let cut = matrices
+    let Some(cut) = matrices
         .iter()
-        .position(|m| m.shape().cols == Dim::Fixed(1))?
-        + 1;
-    let (left, right) = matrices.split_at(cut);
+        .position(|m| m.shape().cols == Dim::Fixed(1))
+    else {
+        let at = matrices
+            .iter()
+            .position(|m| matches!(m.node(), Node::Sum(_)))?;
+        let Node::Sum(terms) = matrices[at].node() else {
+            return None;
+        };
+        let each = terms.iter().map(|t| {
+            let mut word = matrices.clone();
+            word[at] = t.clone();
+            axial_of_outer(symbols, &product(word))
+        });
+        let each: Option<Vec<Expr>> = each.collect();
+        let all = super::sum(each?, Shape::vector(Dim::Fixed(3)));
+        return Some(product([scalar(coefficient, &numbers), all]));
+    };
+    let (left, right) = matrices.split_at(cut + 1);
     if right.first()?.shape().rows != Dim::Fixed(1) {
         return None;
     }

@@ -24,6 +24,7 @@ pub mod symbol;
 mod terms;
 #[cfg(test)]
 mod tests;
+mod turned;
 
 use crate::algebra::Rational;
 use shape::{Dim, Shape};
@@ -53,6 +54,7 @@ pub use substitute::{
     contains, contains_role, letters, rebuild, shift_time, substitute, with_children,
 };
 pub use terms::{Change, changes};
+pub use turned::turned;
 
 /// Offset of a letter from the node or edge of an equation, in time and along the labels.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug, Default)]

@@ -274,6 +274,34 @@ impl<const N: usize, T: Real> LeftFactor<N, T> {
             .map_err(|_| self.unsolved(method, &h_n, Refusal::DoesNotApply))
     }
 
+    /// The principal solutions in three dimensions, for the momentum vectors of bodies that do not wait
+    /// for one another: each is that of [`LeftFactor::rotation`], to the last bit.
+    ///
+    /// # Errors
+    /// As [`LeftFactor::solve`], of the first body that has no solution.
+    // A function of its own: the bodies share its registers, not those of the step.
+    #[inline(never)]
+    pub fn rotations<const COUNT: usize>(
+        &self,
+        h_n: &[Vector3<T>; COUNT],
+        method: Method,
+    ) -> Result<[Rotation<T>; COUNT], Unsolved> {
+        // Numbers with lanes are solved side by side already, lane by lane.
+        if let (Method::Kappa, true, Some((body, _)), 1) =
+            (method, self.symmetric, &self.space, T::LANES)
+        {
+            let (all, found) = crate::solvers::moser_veselov::forced_together(body, h_n);
+            if found {
+                return Ok(all);
+            }
+        }
+        let mut all = [Rotation::identity(); COUNT];
+        for (omega, v) in all.iter_mut().zip(h_n) {
+            *omega = self.rotation(v, method)?;
+        }
+        Ok(all)
+    }
+
     /// A skew matrix of the given frame in the principal one.
     #[inline]
     pub(super) fn framed_momentum(&self, v: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {

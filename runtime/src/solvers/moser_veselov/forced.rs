@@ -53,6 +53,34 @@ pub fn forced<T: Real>(
     }
 }
 
+/// The principal solutions of bodies that are alike, and whether one iteration found the root of each.
+/// There is no branch, so that the bodies are solved side by side. What is not found is of no meaning;
+/// what is found is that of [`forced()`], to the last bit.
+#[inline(always)]
+pub(in crate::solvers) fn forced_together<T: Real, const COUNT: usize>(
+    body: &Poinsot<T>,
+    h_n: &[Vector3<T>; COUNT],
+) -> ([Rotation<T>; COUNT], bool) {
+    match body.diagonal {
+        true => in_a_loop::<T, true, COUNT>(body, h_n),
+        false => in_a_loop::<T, false, COUNT>(body, h_n),
+    }
+}
+
+#[inline(always)]
+fn in_a_loop<T: Real, const DIAGONAL: bool, const COUNT: usize>(
+    body: &Poinsot<T>,
+    h_n: &[Vector3<T>; COUNT],
+) -> ([Rotation<T>; COUNT], bool) {
+    let (mut all, mut found) = ([Rotation::identity(); COUNT], true);
+    for (omega, v) in all.iter_mut().zip(h_n) {
+        let (q, one) = principal_at_once::<T, DIAGONAL>(body, body.scaled(v));
+        *omega = Rotation::normalised(q);
+        found &= one;
+    }
+    (all, found)
+}
+
 /// The quaternion of the principal solution, not normalised, for `u = h N / (2 unit)`.
 #[inline(always)]
 pub(super) fn turn<T: Real>(body: &Poinsot<T>, u: [T; 3]) -> Option<[T; 4]> {

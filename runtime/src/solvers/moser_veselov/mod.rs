@@ -31,6 +31,7 @@ pub use edge::Edge;
 pub use failure::MoserVeselovError;
 pub(in crate::solvers) use failure::{fastest, index};
 pub use forced::forced;
+pub(in crate::solvers) use forced::forced_together;
 pub use free::Free;
 pub(in crate::solvers) use kappa::choose;
 pub(in crate::solvers) use poinsot::symmetric_times;
