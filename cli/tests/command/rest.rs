@@ -104,3 +104,26 @@ fn what_is_no_number_stops_the_run_at_its_node() {
     assert!(done.err.starts_with(words), "{}", done.err);
     assert_eq!(folder.names(), ["large.toml"]);
 }
+
+/// A rod that cannot be stretched, at rest and falling freely: it does not turn, and the equations of its frames have terms of
+/// rounding alone, of which no more can be asked than what solving for all velocities together leaves.
+#[test]
+fn a_held_rod_at_rest_falls() {
+    let folder = Folder::new("held-rod-at-rest");
+    let model = folder.write(
+        "rod.clebsch",
+        "model InextensibleRod {
+            label i in 0..N step s; param m: Real at nodes; param I0: Sym<3> at segments; param C0: Sym<3>; param g: Vec<3>;
+            field phi: Vec<3> at nodes; group Λ: SO<3> at segments velocity Ω; constraint next(Λ) = Λ*Ω;
+            hold n: next(phi, i) - phi = s*Λ*E3;
+            lagrangian = m*dot(next(phi) - phi, next(phi) - phi)/(2*h) + h*m*dot(g, phi) - s*tr(I0*Ω)/h
+                       + (h/s)*tr(C0*Λ^T*next(Λ, i));
+        }",
+    );
+    let sample = clebsch(&["case", &model]);
+    assert_eq!(sample.code, 0, "{}", sample.err);
+    let short = sample.out.replace("i = 8", "i = 2");
+    let case = folder.write("case.toml", &short);
+    let done = clebsch(&["run", &model, "--case", &case, "--steps", "20"]);
+    assert_eq!(done.code, 0, "{}", done.err);
+}
