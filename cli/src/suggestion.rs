@@ -5,6 +5,9 @@
 /// or more scores above 0.8; unrelated names of this project's vocabulary score below 0.65.
 const LIKE: f64 = 0.75;
 
+/// More names than anybody reads; every model of the gallery, and the keys of a case, are fewer.
+const MOST: usize = 40;
+
 /// Gives `; did you mean ...?` for the most similar name, else `; known: ...`, else nothing.
 ///
 /// Case is ignored. Of equally similar names the first is taken.
@@ -22,6 +25,11 @@ pub fn did_you_mean<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -
     match best {
         Some((_, name)) => format!("; did you mean `{name}`?"),
         None if known.is_empty() => String::new(),
+        None if known.len() > MOST => format!(
+            "; known: {}, and {} more",
+            known[..MOST].join(", "),
+            known.len() - MOST
+        ),
         None => format!("; known: {}", known.join(", ")),
     }
 }
@@ -29,6 +37,13 @@ pub fn did_you_mean<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -
 #[cfg(test)]
 mod tests {
     use super::did_you_mean;
+
+    #[test]
+    fn of_many_names_some_are_told() {
+        let names: Vec<String> = (0..1000).map(|i| format!("momentum_q_{i}")).collect();
+        let told = did_you_mean("zzz", names.iter().map(String::as_str));
+        assert!(told.ends_with("momentum_q_39, and 960 more"), "{told}");
+    }
 
     #[test]
     fn nearest_name_or_all_names() {
