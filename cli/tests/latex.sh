@@ -21,7 +21,7 @@ for model in "${models[@]}"; do
   name=$(basename "$model" .clebsch)
   {
     printf '\\documentclass{article}\n\\usepackage{amsmath}\n\\begin{document}\n'
-    clebsch derive "$model" --format latex
+    clebsch derive "$model" --format latex 2>"$out/$name.err" || cat "$out/$name.err" >&2
     printf '\\begin{thebibliography}{1}\\bibitem{dixon2007} M. F. Dixon.\\end{thebibliography}\n\\end{document}\n'
   } >"$out/$name.tex"
   # References are known on the second run.
