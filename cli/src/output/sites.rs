@@ -4,6 +4,7 @@
 use crate::case_file::labels::Stated;
 use clebsch::card::{Card, Field};
 use clebsch_core::expr::symbol::ascii;
+use clebsch_core::lattice::Sites;
 use std::ops::Range;
 
 /// A quantity with a value at each of its sites.
@@ -21,8 +22,12 @@ pub(crate) struct AtSites<'a> {
     pub moves: bool,
     /// Whether its sites have neighbours.
     pub on_line: bool,
+    /// Where on a line its sites are.
+    pub at: Sites,
     /// Whether it grows once around a ring.
     pub grows: bool,
+    /// By which parameter, in ASCII.
+    pub offset: Option<String>,
     /// The sites with their columns.
     pub members: Vec<(usize, Range<usize>)>,
 }
@@ -64,7 +69,9 @@ pub(crate) fn at_sites(card: &Card) -> Vec<AtSites<'_>> {
                     field,
                     moves: behind.is_some_and(|f| f.kind == clebsch::card::Kind::FieldMomentum),
                     on_line: label.is_some_and(|l| !l.set && !l.grid),
+                    at: own.sites,
                     grows: own.offset.is_some(),
+                    offset: own.offset.as_ref().map(|name| ascii(&name.text)),
                     members: vec![(site, columns)],
                 });
             }

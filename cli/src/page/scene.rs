@@ -1,6 +1,7 @@
 //! What of a run is seen in space: bodies by their attitude and place, points and chains, profiles of numbers along a
 //! line. Takes the samples of a run; gives data for the view, at most [`FRAMES`] frames.
 
+use super::places::{Places, Point};
 use crate::output::Finished;
 use crate::output::sites::{AtSites, at_sites};
 use crate::plots::attitude::{matrix, placed};
@@ -12,7 +13,7 @@ use serde_json::{Value, json};
 use std::collections::HashSet;
 use std::ops::Range;
 
-/// Most frames of a page.
+/// Most frames of a page, the last one besides.
 pub(super) const FRAMES: usize = 600;
 
 /// Most numbers of all frames together: about two megabytes.
@@ -40,7 +41,7 @@ enum Place {
     /// In a homogeneous matrix.
     Within,
     /// At a point, or midway between two.
-    At(Range<usize>, Range<usize>),
+    At(Point, Point),
 }
 
 /// The scene as data; nothing where a model has nothing in space.
@@ -54,16 +55,21 @@ pub(super) fn scene(run: &Finished<'_>, samples: &Samples) -> Option<Value> {
     let width: usize = columns.iter().map(Range::len).sum();
     let most = (NUMBERS / width.max(1)).clamp(2, FRAMES);
     let stride = shown.count.div_ceil(most).max(1);
+    // The end of the run is seen, whatever the stride.
+    let last = shown.count.saturating_sub(1);
+    let is_shown = |i: usize| i.is_multiple_of(stride) || i == last;
     let rows = shown.record.observables.rows().take(shown.count);
-    let frames: Vec<&[f64]> = rows.step_by(stride).collect();
-    let times = shown.record.times.iter().take(shown.count).step_by(stride);
+    let rows = rows.enumerate().filter(|(i, _)| is_shown(*i));
+    let frames: Vec<&[f64]> = rows.map(|(_, row)| row).collect();
+    let times = shown.record.times.iter().take(shown.count).enumerate();
+    let times = times.filter(|(i, _)| is_shown(*i)).map(|(_, t)| *t);
     let finite = |x: &f64| if x.is_finite() { *x } else { 0.0 };
     let lengths = space(run).map(|(space, _)| space.lengths);
     let flat = seen
         .iter()
         .all(|s| matches!(s, Seen::Chain { dim, .. } if *dim < 3));
     Some(json!({
-        "times": times.collect::<Vec<_>>(),
+        "times": times.collect::<Vec<f64>>(),
         "flat": flat,
         "box": lengths,
         "bodies": seen.iter().filter_map(|s| body(s, &frames, &finite)).collect::<Vec<_>>(),
@@ -75,7 +81,13 @@ pub(super) fn scene(run: &Finished<'_>, samples: &Samples) -> Option<Value> {
 fn read(seen: &Seen) -> Vec<Range<usize>> {
     match seen {
         Seen::Body { turn, place, .. } => match place {
-            Place::At(a, b) => vec![turn.clone(), a.clone(), b.clone()],
+            Place::At(a, b) => {
+                let moving = [a, b].into_iter().filter_map(|p| match p {
+                    Point::Moving(columns, _) => Some(columns.clone()),
+                    Point::Held(_) => None,
+                });
+                std::iter::once(turn.clone()).chain(moving).collect()
+            }
             _ => vec![turn.clone()],
         },
         Seen::Chain { columns, .. } => columns.clone(),
@@ -90,19 +102,20 @@ fn seen(run: &Finished<'_>) -> Vec<Seen> {
         .flat_map(|q| q.members.iter().map(|(_, c)| c.start))
         .collect();
     let mut out: Vec<Seen> = sites.iter().filter_map(|q| chain_of(q)).collect();
-    let points = sites.iter().find(|q| q.moves && q.field.count() == 3);
-    for q in sites.iter().filter(|q| turns(q.field)) {
-        let count = q.members.len();
-        for (i, (site, turn)) in q.members.iter().enumerate() {
-            let at = |i: usize| {
-                points
-                    .and_then(|p| p.members.get(i))
-                    .map(|(_, c)| c.clone())
-            };
-            let second = points.is_some_and(|p| p.members.len() > count);
-            let place = match (at(i), at(if second { i + 1 } else { i })) {
-                (Some(a), Some(b)) => Place::At(a, b),
-                _ => Place::Row(i),
+    let mut number = 0;
+    for q in sites
+        .iter()
+        .filter(|q| turns(q.field) || is_placed(q.field))
+    {
+        let places = Places::of(run, &sites, q);
+        for (site, turn) in &q.members {
+            let place = match places.as_ref().and_then(|p| p.at(*site)) {
+                _ if is_placed(q.field) => Place::Within,
+                Some((a, b)) => Place::At(a, b),
+                None => {
+                    number += 1;
+                    Place::Row(number - 1)
+                }
             };
             out.push(Seen::Body {
                 name: format!("{}_{site}", q.name),
@@ -112,11 +125,10 @@ fn seen(run: &Finished<'_>) -> Vec<Seen> {
         }
     }
     let alone = placed(run.card.observables).filter(|(_, c)| !of_sites.contains(&c.start));
-    let mut number = 0;
     let alone: Vec<(&Field, Range<usize>)> = alone.collect();
     for (i, (field, columns)) in alone.iter().enumerate() {
         let behind = alone.get(i + 1).map(|(f, _)| f.kind);
-        let within = field.kind == Kind::RigidMotion && field.count() == 16;
+        let within = is_placed(field);
         if turns(field) || within {
             out.push(Seen::Body {
                 name: field.name.to_owned(),
@@ -141,6 +153,11 @@ fn seen(run: &Finished<'_>) -> Vec<Seen> {
         }
     }
     out
+}
+
+/// Whether it is an attitude with its place.
+fn is_placed(field: &Field) -> bool {
+    field.kind == Kind::RigidMotion && field.count() == 16
 }
 
 /// Whether it is an attitude in space.
@@ -185,7 +202,15 @@ fn body(seen: &Seen, frames: &[&[f64]], finite: &dyn Fn(&f64) -> f64) -> Option<
             [3, 7, 11].map(|i| entry(&m, i)).to_vec()
         }
         Place::At(a, b) => {
-            let (a, b) = (numbers(frame, a), numbers(frame, b));
+            let point = |p: &Point| match p {
+                Point::Held(place) => place.clone(),
+                Point::Moving(columns, around) => {
+                    let around = around.iter().copied().chain(std::iter::repeat(0.0));
+                    let here = numbers(frame, columns).into_iter();
+                    here.zip(around).map(|(x, by)| x + by).collect()
+                }
+            };
+            let (a, b): (Vec<f64>, Vec<f64>) = (point(a), point(b));
             a.iter().zip(&b).map(|(x, y)| (x + y) / 2.0).collect()
         }
     });

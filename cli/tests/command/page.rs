@@ -66,6 +66,115 @@ fn points_on_a_line_are_a_chain_and_numbers_a_profile() {
     assert_eq!(chains[0]["frames"][0].as_array().map(Vec::len), Some(3 * 9));
 }
 
+/// Bodies at segments, or at nodes, of a line of points.
+fn rod(statements: &str, bodies: &str) -> String {
+    format!(
+        "model Rod {{ label i in 0..N; {statements} param m, c: Real; param J: Sym<3>;
+         field x: Vec<3> at nodes; group A: SO<3> at {bodies} velocity W; constraint next(A) = A*W;
+         lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) - tr(J*W)/h
+         - h*c*dot(next(x, i) - x - A*E1, next(x, i) - x - A*E1)/2; }}"
+    )
+}
+
+/// The first frame: the places of bodies, and those of points, three numbers each.
+fn first(scene: &serde_json::Value) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
+    let numbers = |v: &serde_json::Value| -> Vec<f64> {
+        let list = v.as_array().expect("a list").iter();
+        list.map(|x| x.as_f64().expect("a number")).collect()
+    };
+    let bodies = scene["bodies"].as_array().expect("bodies").iter();
+    let points = numbers(&scene["chains"][0]["frames"][0]);
+    (
+        bodies.map(|b| numbers(&b["places"][0])).collect(),
+        points.chunks(3).map(<[f64]>::to_vec).collect(),
+    )
+}
+
+fn midway(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(x, y)| (x + y) / 2.0).collect()
+}
+
+#[test]
+fn a_body_of_a_segment_is_midway_between_its_nodes() {
+    for (name, statements, held) in [
+        ("free", "", 0),
+        ("first", "end i = 0 { pinned { x = given; } }", 1),
+        ("last", "end i = N { pinned { x = given; } }", 2),
+        ("ring", "periodic;", 3),
+    ] {
+        let folder = Folder::new(&format!("page-rod-{name}"));
+        let model = folder.write("rod.clebsch", &rod(statements, "segments"));
+        let page = page(&folder, &[&model, "--steps", "5"]);
+        let (bodies, mut points) = first(&data(&page));
+        let run = std::fs::read_to_string(folder.path("out/run.json")).expect("results");
+        let run: serde_json::Value = serde_json::from_str(&run).expect("JSON");
+        let given = |name: String| -> Vec<f64> {
+            let value = run["parameters"][&name].as_array();
+            let value = value.unwrap_or_else(|| panic!("{name}: {run}")).iter();
+            value.map(|x| x.as_f64().expect("a number")).collect()
+        };
+        match held {
+            1 => points.insert(0, given("x_0".to_owned())),
+            2 => points.push(given(format!("x_{}", points.len()))),
+            3 => points.push(points[0].clone()),
+            _ => {}
+        }
+        assert_eq!(points.len(), bodies.len() + 1, "{name}");
+        for (i, body) in bodies.iter().enumerate() {
+            assert_eq!(*body, midway(&points[i], &points[i + 1]), "{name} {i}");
+        }
+    }
+}
+
+#[test]
+fn a_body_of_a_node_is_at_its_point_and_others_stand_in_one_row() {
+    let folder = Folder::new("page-nodes");
+    let ends = "end i = 0 { pinned { x = given; } }";
+    let model = folder.write("rod.clebsch", &rod(ends, "nodes"));
+    let (bodies, points) = first(&data(&page(&folder, &[&model, "--steps", "5"])));
+    assert_eq!(bodies[1..], points[..bodies.len() - 1]);
+    let folder = Folder::new("page-two-groups");
+    let model = folder.write(
+        "tops.clebsch",
+        "model Tops { label i in 0..N; param J: Sym<3>; param c: Real;
+         group A: SO<3> at nodes velocity V; group B: SO<3> at nodes velocity W;
+         constraint next(A) = A*V; constraint next(B) = B*W;
+         lagrangian = -tr(J*V)/h - tr(J*W)/h + h*c*tr(A^T*B) + h*c*tr(A^T*next(A, i)); }",
+    );
+    let scene = data(&page(&folder, &[&model, "--steps", "5"]));
+    let mut places: Vec<String> = scene["bodies"]
+        .as_array()
+        .expect("bodies")
+        .iter()
+        .map(|b| b["places"][0].to_string())
+        .collect();
+    let count = places.len();
+    places.sort();
+    places.dedup();
+    assert_eq!(places.len(), count);
+}
+
+#[test]
+fn the_end_of_a_run_is_shown() {
+    let folder = Folder::new("page-end");
+    let scene = data(&page(&folder, &["harmonic-rotor", "--steps", "1999"]));
+    let times = scene["times"].as_array().expect("times");
+    let run = std::fs::read_to_string(folder.path("out/trajectory.csv")).expect("samples");
+    let rows: Vec<&str> = run.lines().filter(|l| !l.starts_with('#')).collect();
+    let shown = times
+        .last()
+        .and_then(serde_json::Value::as_f64)
+        .expect("a time");
+    let before = times[times.len() - 2].as_f64().expect("a time");
+    // The whole run or the stretch that is drawn: its last sample, nearer than a stride.
+    assert!(shown > before, "{shown} {before}");
+    assert!(
+        rows.iter()
+            .any(|r| r.split(',').any(|x| x.parse() == Ok(shown))),
+        "{shown}"
+    );
+}
+
 #[test]
 fn words_of_a_user_cannot_end_an_element() {
     let folder = Folder::new("page-words");

@@ -28,6 +28,7 @@ const COMMANDS: &[&str] = &[
     "Theta",
     "Upsilon",
     "Xi",
+    "allowdisplaybreaks",
     "alpha",
     "begin",
     "beta",
@@ -43,6 +44,7 @@ const COMMANDS: &[&str] = &[
     "diamond",
     "dot",
     "ell",
+    "emergencystretch",
     "end",
     "epsilon",
     "eqref",
@@ -73,6 +75,7 @@ const COMMANDS: &[&str] = &[
     "nabla",
     "neq",
     "noindent",
+    "notag",
     "nu",
     "omega",
     "operatorname",
@@ -81,6 +84,7 @@ const COMMANDS: &[&str] = &[
     "pi",
     "psi",
     "quad",
+    "raggedright",
     "rangle",
     "rho",
     "right",
@@ -110,6 +114,9 @@ const COMMANDS: &[&str] = &[
     "xi",
     "zeta",
 ];
+
+/// What mathematics stands in.
+const MATHEMATICS: [&str; 6] = ["$", "\\[", "equation", "gather", "align", "align*"];
 
 /// What is wrong with a piece of LaTeX, if anything.
 fn fault(text: &str) -> Option<String> {
@@ -147,11 +154,7 @@ fn fault(text: &str) -> Option<String> {
                 Some((_, n)) => *n += 1,
                 None => return Some(format!("line {line}: & outside of an alignment")),
             },
-            '^' | '_'
-                if !open
-                    .iter()
-                    .any(|o| o == "$" || o == "equation" || o == "gather") =>
-            {
+            '^' | '_' if !open.iter().any(|o| MATHEMATICS.contains(&o.as_str())) => {
                 return Some(format!("line {line}: {c} outside of mathematics"));
             }
             '\\' => {
@@ -164,10 +167,19 @@ fn fault(text: &str) -> Option<String> {
                     // An escaped sign, a space, or the end of a row.
                     let sign = characters.get(i).copied().unwrap_or(' ');
                     i += 1;
+                    match sign {
+                        '[' => open.push("\\[".to_owned()),
+                        ']' => {
+                            if let Some(f) = close(&mut open, "\\[", line) {
+                                return Some(f);
+                            }
+                        }
+                        _ => {}
+                    }
                     if sign == '\\'
                         && let Some((kind, n)) = rows.last_mut()
                     {
-                        if kind == "aligned" && *n != 1 {
+                        if kind != "pmatrix" && *n != 1 {
                             return Some(format!("line {line}: {n} marks in a row"));
                         }
                         *n = 0;
@@ -188,7 +200,8 @@ fn fault(text: &str) -> Option<String> {
                         let end = (i..characters.len()).find(|k| characters[*k] == '}')?;
                         let name: String = characters[i + 1..end].iter().collect();
                         i = end + 1;
-                        let rowed = ["aligned", "pmatrix"].contains(&name.as_str());
+                        let rowed =
+                            ["aligned", "align", "align*", "pmatrix"].contains(&name.as_str());
                         if command == "begin" {
                             rows.extend(rowed.then(|| (name.clone(), 0)));
                             open.push(name);
@@ -196,7 +209,7 @@ fn fault(text: &str) -> Option<String> {
                         }
                         if rowed {
                             match rows.pop() {
-                                Some((kind, n)) if kind == "aligned" && n != 1 => {
+                                Some((kind, n)) if kind != "pmatrix" && n != 1 => {
                                     return Some(format!("line {line}: {n} marks in the last row"));
                                 }
                                 _ => {}

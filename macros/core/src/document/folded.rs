@@ -15,6 +15,8 @@ pub(super) struct Part {
     pub choice: Choice,
     pub unfolded: Unfolded,
     pub d: Derivation,
+    /// The same with more sites, by which what is printed is known for every number of them.
+    pub longer: Option<Box<Part>>,
 }
 
 /// From where indices are read.
@@ -26,6 +28,8 @@ pub(super) enum From {
     First,
     /// From the last node: `N`, `N-1`.
     Last,
+    /// From this site, and what an end holds or has from that end: `i`, and beside it `0` or `N`.
+    End(usize),
 }
 
 /// The letters of a document on a lattice.
@@ -88,21 +92,57 @@ impl<'a> Folded<'a> {
         let Some(l) = self.lattice.labels.get(label) else {
             return String::new();
         };
-        let relative = |name: &str, origin: usize| match site.cmp(&origin) {
+        let relative = |name: &str, site: usize, origin: usize| match site.cmp(&origin) {
             std::cmp::Ordering::Equal => name.to_owned(),
             std::cmp::Ordering::Greater => format!("{name}+{}", site - origin),
             std::cmp::Ordering::Less => format!("{name}-{}", origin - site),
         };
+        let count = part.choice.count(label);
+        // Once around a ring.
+        let around = part.choice.periodic && self.lattice.line == Some(label);
+        let site = match from {
+            From::End(origin) if around && site < origin => site + count,
+            _ => site,
+        };
+        let relative = |name: &str, origin: usize| relative(name, site, origin);
         match from {
             _ if l.set => relative(&l.index.text, part_site(from)),
-            From::Site(origin) => relative(&l.index.text, origin),
+            From::Site(origin) | From::End(origin) => relative(&l.index.text, origin),
             From::First => site.to_string(),
-            From::Last => relative(&l.count.text, part.choice.count(label)),
+            From::Last => relative(&l.count.text, count),
         }
+    }
+
+    /// The label and the site of a letter; none of what an end holds or has.
+    pub(super) fn site(&self, part: &Part, symbol: SymbolId) -> Option<(usize, usize)> {
+        match self.end(part, symbol) {
+            Some(_) => None,
+            None => origin(self.lattice, part, symbol).map(|at| (at.label, at.site)),
+        }
+    }
+
+    /// Which end holds or has a letter, `true` for the last one.
+    fn end(&self, part: &Part, symbol: SymbolId) -> Option<bool> {
+        let name = &part.d.letters.symbols.get(symbol).name;
+        let unfolded = &part.unfolded;
+        if let Some((.., last)) = unfolded.end_parameters.iter().find(|(own, ..)| own == name) {
+            return Some(*last);
+        }
+        let at = origin(self.lattice, part, symbol)?;
+        let given = unfolded.given.contains(name);
+        given.then(|| 2 * at.site > part.choice.count(at.label))
     }
 
     fn symbol(&mut self, part: &Part, symbol: SymbolId, from: From) -> SymbolId {
         let own = part.d.letters.symbols.get(symbol).clone();
+        let from = match from {
+            From::End(_) => match self.end(part, symbol) {
+                Some(true) => From::Last,
+                Some(false) => From::First,
+                None => from,
+            },
+            _ => from,
+        };
         let (name, typeset) = match origin(self.lattice, part, symbol) {
             None => (own.name.clone(), own.typeset.clone()),
             Some(at) => {
@@ -163,7 +203,7 @@ impl<'a> Folded<'a> {
 
 fn part_site(from: From) -> usize {
     match from {
-        From::Site(site) => site,
+        From::Site(site) | From::End(site) => site,
         From::First | From::Last => 0,
     }
 }

@@ -5,6 +5,7 @@ mod card;
 mod ends;
 mod functionals;
 mod invariants;
+mod sums;
 
 use super::folded::{Folded, From, Part};
 use crate::derive::warnings::Warning;
@@ -95,14 +96,28 @@ fn parts(model: &Model, lattice: &Lattice) -> Result<Vec<Part>, Errors> {
     choices
         .into_iter()
         .map(|choice| {
-            let (unfolded, d) = pipeline::derive_lattice(model, lattice, &choice)?;
-            Ok(Part {
-                choice,
-                unfolded,
-                d,
-            })
+            let mut longer = choice.clone();
+            if let Some(count) = lattice.line.and_then(|i| longer.counts.get_mut(i)) {
+                // A ring keeps an odd number of sites.
+                *count += if choice.periodic { 2 } else { 1 };
+            }
+            let mut part = written_out(model, lattice, choice)?;
+            if longer.counts != part.choice.counts {
+                part.longer = Some(Box::new(written_out(model, lattice, longer)?));
+            }
+            Ok(part)
         })
         .collect()
+}
+
+fn written_out(model: &Model, lattice: &Lattice, choice: Choice) -> Result<Part, Errors> {
+    let (unfolded, d) = pipeline::derive_lattice(model, lattice, &choice)?;
+    Ok(Part {
+        choice,
+        unfolded,
+        d,
+        longer: None,
+    })
 }
 
 fn statement(model: &Model, stated: &str, doc: &mut Document) {

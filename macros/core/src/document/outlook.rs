@@ -26,24 +26,31 @@ pub fn invariants(sheet: &Sheet, doc: &mut Document) {
     }
     let energy = &d.integrability.discrete_energy;
     let (how, why) = d.discrete_energy();
-    section.paragraph([
-        "The discrete energy of an edge, ".into(),
-        sheet.derived(&energy.value).into(),
-        format!(", is {how}: {why}.").into(),
-    ]);
+    section
+        .text("The discrete energy of an edge")
+        .equation(sheet.derived(&energy.value))
+        .labelled("energy")
+        .text(&format!("is {how}: {why}."));
     reversal(sheet, section);
 }
 
 /// Whether the step may be composed, and what stands in the way.
 fn reversal(sheet: &Sheet, section: &mut Section) {
-    let symmetric = "The discrete Lagrangian changes sign when the ends of the step are exchanged and h is replaced by -h, that is, it is self-adjoint";
+    let step = sheet.here(sheet.d.spec.step);
+    let symmetric = |ends: &str| -> Vec<Inline> {
+        vec![
+            "The discrete Lagrangian changes sign when the ends of the step are exchanged and ".into(),
+            step.clone().into(),
+            " is replaced by ".into(),
+            Formula::neg(step.clone()).into(),
+            format!(", that is, it is self-adjoint{ends}: the scheme is symmetric under time reversal, of even order, and may be composed.").into(),
+        ]
+    };
     let first = "the scheme is of first order and must not be composed.";
     match &sheet.d.reversal {
-        Reversal::Symmetric => section.text(&format!(
-            "{symmetric}: the scheme is symmetric under time reversal, of even order, and may be composed."
-        )),
-        Reversal::Assumed => section.text(&format!(
-            "{symmetric}, for the parameters that the assumptions admit: the scheme is symmetric under time reversal, of even order, and may be composed."
+        Reversal::Symmetric => section.paragraph(symmetric("")),
+        Reversal::Assumed => section.paragraph(symmetric(
+            ", for the parameters that the assumptions admit",
         )),
         Reversal::Broken(None) => section.text(&format!(
             "The discrete Lagrangian is not self-adjoint: {first}"

@@ -104,7 +104,7 @@ impl<'a> Thesis<'a> {
     pub fn transport(&self, j: usize) -> Option<String> {
         cite(match self.carried.get(j)? {
             Carried::BodyVector if self.system == Some(System::HeavyTop) => {
-                "(2.141); (2.155) prints Ω for Ωᵀ"
+                "(2.141); (2.155) prints $Ω$ for $Ωᵀ$"
             }
             Carried::BodyVector => "(2.141)",
             Carried::SpatialTensor => "(2.120)",
@@ -119,21 +119,21 @@ impl<'a> Thesis<'a> {
     pub fn action(&self) -> Option<String> {
         let potential = match self.d.spec.node_rule {
             NodeRule::Outgoing => "",
-            NodeRule::Symmetric | NodeRule::Incoming => ", which takes the potential at node k",
+            NodeRule::Symmetric | NodeRule::Incoming => ", which takes the potential at node $k$",
         };
         match self.system? {
-            System::FreeBody => cite("(2.29) times -1/h"),
-            System::SpatialBody => cite("(2.37) times -1/h"),
-            System::HeavyTop => cite(&format!("(2.142) times -1/h{potential}")),
+            System::FreeBody => cite("(2.29) times $-1/h$"),
+            System::SpatialBody => cite("(2.37) times $-1/h$"),
+            System::HeavyTop => cite(&format!("(2.142) times $-1/h${potential}")),
             System::CoupledBodies => cite(
-                "(2.166) times -1/h, corrected: there the matrix A of the vector form stands under the trace",
+                "(2.166) times $-1/h$, corrected: there the matrix $A$ of the vector form stands under the trace",
             ),
             System::ConvectiveEllipsoid if self.d.action.nodal.is_zero() => {
-                cite("(3.18) times 1/h")
+                cite("(3.18) times $1/h$")
             }
-            System::ConvectiveEllipsoid => cite("(3.18) times 1/h, with a potential"),
-            System::SpatialEllipsoid if self.d.action.nodal.is_zero() => cite("(3.20) times 1/h"),
-            System::SpatialEllipsoid => cite("(3.20) times 1/h, with a potential"),
+            System::ConvectiveEllipsoid => cite("(3.18) times $1/h$, with a potential"),
+            System::SpatialEllipsoid if self.d.action.nodal.is_zero() => cite("(3.20) times $1/h$"),
+            System::SpatialEllipsoid => cite("(3.20) times $1/h$, with a potential"),
         }
     }
 
@@ -141,7 +141,7 @@ impl<'a> Thesis<'a> {
     pub fn clebsch_action(&self) -> Option<String> {
         cite(match self.system? {
             System::FreeBody => "(2.75)",
-            System::SpatialBody => "(2.101), where the second multiplier carries a factor 1/2",
+            System::SpatialBody => "(2.101), where the second multiplier carries a factor $1/2$",
             System::HeavyTop => "(2.143)",
             System::CoupledBodies => "(2.168)",
             System::ConvectiveEllipsoid => "(3.25)",
@@ -162,18 +162,18 @@ impl<'a> Thesis<'a> {
                 return None;
             }
             return cite(match (self.system, c.group.is_orthogonal(), c.side) {
-                (Some(System::HeavyTop), ..) => "(2.145) corrected: there Ωᵀ P for P Ωᵀ",
+                (Some(System::HeavyTop), ..) => "(2.145) corrected: there $Ωᵀ P$ for $P Ωᵀ$",
                 (Some(System::CoupledBodies), ..) => "(2.170)",
                 (_, true, Side::Body) => "(2.60)",
                 (_, true, Side::Spatial) => "(2.104)",
                 (_, false, Side::Body) => "(3.28)",
-                (_, false, Side::Spatial) => "(3.36), whose solved form prints Γ for γ",
+                (_, false, Side::Spatial) => "(3.36), whose solved form prints $Γ$ for $γ$",
             });
         }
         if spec.configurations.iter().any(is_velocity) {
             return cite(match self.system? {
                 System::FreeBody => "(2.77)",
-                System::SpatialBody => "(2.107) corrected: there Pᵀ Λᵀ for P Λᵀ",
+                System::SpatialBody => "(2.107) corrected: there $Pᵀ Λᵀ$ for $P Λᵀ$",
                 System::HeavyTop => "(2.148)",
                 System::CoupledBodies => "(2.174)",
                 System::ConvectiveEllipsoid => "(3.28)",
@@ -187,7 +187,7 @@ impl<'a> Thesis<'a> {
         cite(match self.carried.get(j)? {
             Carried::BodyVector if self.system == Some(System::HeavyTop) => "(2.145)",
             Carried::BodyVector => "(2.147)",
-            Carried::SpatialTensor => "(2.104), where the multiplier carries a factor 1/2",
+            Carried::SpatialTensor => "(2.104), where the multiplier carries a factor $1/2$",
             Carried::Relative => {
                 "(2.171) corrected: there the terms of the multiplier have the other sign"
             }
@@ -200,13 +200,13 @@ impl<'a> Thesis<'a> {
     /// Of the momentum of the edge.
     pub fn momentum(&self) -> Option<String> {
         cite(match self.system? {
-            System::FreeBody => "(2.86) times -1/h",
-            System::SpatialBody => "(2.109) times -1/h",
-            System::HeavyTop => "(2.156) times -1/h, corrected: there 2/h² skew for 2 skew",
-            System::CoupledBodies => "(2.176) times -1/h",
-            System::ConvectiveEllipsoid => "(3.31) has the gradient alone for M",
+            System::FreeBody => "(2.86) times $-1/h$",
+            System::SpatialBody => "(2.109) times $-1/h$",
+            System::HeavyTop => "(2.156) times $-1/h$, corrected: there $2/h² skew$ for $2 skew$",
+            System::CoupledBodies => "(2.176) times $-1/h$",
+            System::ConvectiveEllipsoid => "(3.31) has the gradient alone for $M$",
             System::SpatialEllipsoid => {
-                "(3.39) has the gradient alone for m, and there the container's metric is missing"
+                "(3.39) has the gradient alone for $m$, and there the container's metric is missing"
             }
         })
     }
@@ -218,7 +218,7 @@ impl<'a> Thesis<'a> {
             System::SpatialBody => "(2.111)",
             System::HeavyTop => "(2.153)",
             System::CoupledBodies => {
-                "(2.180) corrected: there skew for 2 skew in the terms of the multiplier of the relative orientation"
+                "(2.180) corrected: there $skew$ for $2 skew$ in the terms of the multiplier of the relative orientation"
             }
             System::ConvectiveEllipsoid => "(3.32)",
             System::SpatialEllipsoid => "(3.40)",
@@ -259,16 +259,16 @@ impl<'a> Thesis<'a> {
             System::FreeBody => cite("(2.85)"),
             System::SpatialBody => cite("(2.120)"),
             System::HeavyTop => cite(&format!(
-                "(2.155) corrected: there Ad* of Ωᵀ for Ad* of Ω{split}"
+                "(2.155) corrected: there $Ad*$ of $Ωᵀ$ for $Ad*$ of $Ω${split}"
             )),
             System::CoupledBodies => {
-                cite("(2.184); (2.182) and (2.183) print skew for 2 skew in its last term")
+                cite("(2.184); (2.182) and (2.183) print $skew$ for $2 skew$ in its last term")
             }
             System::ConvectiveEllipsoid => cite(
-                "(3.27) is the same for free motion, with the gradient alone for M; with a potential it is not",
+                "(3.27) is the same for free motion, with the gradient alone for $M$; with a potential it is not",
             ),
             System::SpatialEllipsoid => cite(
-                "(3.35) is the same for free motion, with the gradient alone for m; with a potential it is not",
+                "(3.35) is the same for free motion, with the gradient alone for $m$; with a potential it is not",
             ),
         }
     }
@@ -276,7 +276,7 @@ impl<'a> Thesis<'a> {
     /// Of the coupled Riccati equations.
     pub fn riccati(&self) -> Option<String> {
         match self.system? {
-            System::CoupledBodies => cite("(2.187) has the coupling in the factor instead of N"),
+            System::CoupledBodies => cite("(2.187) has the coupling in the factor instead of $N$"),
             System::SpatialBody => {
                 cite("A.3 solves it; there step 6 divides by the new tensor for the old one")
             }
@@ -293,7 +293,7 @@ impl<'a> Thesis<'a> {
             }
             System::HeavyTop => Some("thesis table A.4".to_owned()),
             System::CoupledBodies => {
-                Some("thesis table A.5, whose matrix A belongs to the vector form".to_owned())
+                Some("thesis table A.5, whose matrix $A$ belongs to the vector form".to_owned())
             }
             System::ConvectiveEllipsoid | System::SpatialEllipsoid => None,
         }

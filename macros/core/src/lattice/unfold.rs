@@ -519,11 +519,21 @@ impl Unfolded {
         let mut words: Vec<&str> = Vec::new();
         let mut parts = name.split('_').peekable();
         while let Some(word) = parts.next() {
-            let site = parts.peek().is_some_and(|n| n.parse::<usize>().is_ok());
+            let number = parts.peek().filter(|n| n.parse::<usize>().is_ok());
+            let site = number.is_some();
+            let own = number.map(|n| format!("{word}_{n}"));
+            let of_end = |(name, ..): &(String, String, bool)| Some(ascii(name)) == own;
+            if self.end_parameters.iter().any(of_end) {
+                parts.next();
+                words.push(word);
+                continue;
+            }
+            // A place that a turn is about is named beside the copies that turn.
+            let place = words.last() == Some(&"about");
             let spelt = |c: &Copied| ascii(&c.of) == word || c.of == word;
             if site && self.copies.iter().any(spelt) {
                 parts.next();
-                if !words.contains(&word) {
+                if place || !words.contains(&word) {
                     words.push(word);
                 }
                 continue;

@@ -47,7 +47,7 @@ pub enum Block {
     Equation {
         /// What is displayed.
         formula: Formula,
-        /// Where it comes from, e.g. `thesis (2.85)`.
+        /// Where it comes from, e.g. `thesis (2.85)`; mathematics in it stands between dollar signs.
         tag: Option<String>,
         /// A remark below it.
         note: Option<String>,
@@ -83,6 +83,11 @@ pub enum Inline {
         /// Its number, once the document is printed; 0 before.
         number: usize,
     },
+}
+
+/// A source of an equation in words.
+pub(super) fn plain(tag: &str) -> String {
+    tag.replace('$', "")
 }
 
 impl From<&str> for Inline {

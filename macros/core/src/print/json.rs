@@ -1,7 +1,7 @@
 //! JSON: the structure of a document, every formula as Unicode, LaTeX and MathML. Written by hand
 //! with keys in a fixed order, so that equal documents give equal bytes.
 
-use super::document::{Block, Document, Inline, Remark};
+use super::document::{Block, Document, Inline, Remark, plain};
 use super::formula::Formula;
 use super::latex::{self, Dialect};
 use super::{Page, mathml, unicode};
@@ -91,7 +91,7 @@ fn block(page: &Page, block: &Block, number: &mut usize) -> Value {
             let mut fields = vec![
                 kind("equation"),
                 ("number", Value::Number(*number)),
-                ("tag", optional(tag)),
+                ("tag", optional(&tag.as_deref().map(plain))),
                 ("note", optional(note)),
             ];
             fields.extend(spellings(page, formula));

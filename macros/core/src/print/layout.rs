@@ -97,6 +97,8 @@ pub(super) enum Strength {
     Relation,
     /// Before a plus or minus, after a comma.
     Term,
+    /// Before a further factor: where no term ends.
+    Factor,
 }
 
 impl Layout {
@@ -160,41 +162,6 @@ impl Layout {
             | Layout::Text(_)
             | Layout::Sign(_)
             | Layout::Break(_) => false,
-        }
-    }
-
-    /// About how wide it is when typeset, in tenths of a letter. Scripts are set at 70 percent.
-    pub fn width(&self) -> usize {
-        let small = |a: &Option<Box<Layout>>| a.as_ref().map_or(0, |a| a.width() * 7 / 10);
-        match self {
-            Layout::Identifier(s) | Layout::Number(s) | Layout::Word(s) | Layout::Text(s) => {
-                10 * s.chars().count()
-            }
-            Layout::Sign(sign) => match sign {
-                Sign::Relation(_) => 25,
-                Sign::Plus | Sign::Minus | Sign::Cross | Sign::Diamond | Sign::Sum => 20,
-                Sign::Comma | Sign::Wide | Sign::Dot | Sign::Nabla => 12,
-                Sign::Negative | Sign::Slash | Sign::Delta | Sign::Root | Sign::Star => 10,
-                Sign::Wedge | Sign::Tight(_) => 10,
-                Sign::Bar => 5,
-                Sign::Times | Sign::Operand | Sign::Thin => 3,
-                Sign::Apply => 0,
-            },
-            Layout::Row(parts) => parts.iter().map(Layout::width).sum(),
-            Layout::Script { base, sub, sup } => base.width() + small(sub).max(small(sup)),
-            Layout::Fraction(a, b) => a.width().max(b.width()) + 4,
-            Layout::Root(a) => a.width() + 12,
-            Layout::Hat(a) | Layout::Typeset(_, a) => a.width(),
-            Layout::Fenced(_, a) => a.width() + 14,
-            Layout::Grid(rows) => {
-                let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
-                let widest = |j: usize| {
-                    let entries = rows.iter().filter_map(|r| r.get(j));
-                    entries.map(Layout::width).max().unwrap_or(0) + 10
-                };
-                (0..columns).map(widest).sum::<usize>() + 14
-            }
-            Layout::Break(_) => 0,
         }
     }
 }

@@ -100,12 +100,12 @@ pub(super) fn broken<'a>(layout: &'a Layout, ruler: &Ruler) -> Option<Lines<'a>>
     Some(Lines { left, lines })
 }
 
-/// The formula in lines of so many letters, indented by a quad for each bracket and one more.
-pub(super) fn typeset(layout: &Layout, letters: usize) -> Option<Lines<'_>> {
+/// The formula in lines of so many points, indented by a quad for each bracket and one more.
+pub(super) fn typeset(layout: &Layout, points: usize) -> Option<Lines<'_>> {
     let ruler = Ruler {
-        limit: 10 * letters,
+        limit: 10 * points,
         measure: &|p| p.width(),
-        indent: &|depth, _| 17 * (depth + 1),
+        indent: &|depth, _| 100 * (depth + 1),
     };
     broken(layout, &ruler)
 }
@@ -149,16 +149,21 @@ fn split<'a>(mut rest: Vec<Piece<'a>>, at: &Segment, ruler: &Ruler, out: &mut Ve
         let mut best: Option<(usize, usize, usize)> = None;
         for (i, piece) in rest.iter().enumerate() {
             used += (ruler.measure)(piece);
-            if let Piece::Break(_, deep) = piece
+            if let Piece::Break(strength, deep) = piece
                 && i > 0
             {
+                // A product is torn where nothing else is left.
+                let torn = match strength {
+                    Strength::Factor => ruler.limit / 2,
+                    Strength::Relation | Strength::Term => 0,
+                };
                 // Later is better on the line, earlier beyond its end.
                 let empty = if used <= room {
                     room - used
                 } else {
                     100 * ruler.limit + used
                 };
-                let cost = DEPTH_COST * ruler.limit / 100 * deep + empty;
+                let cost = DEPTH_COST * ruler.limit / 100 * deep + empty + torn;
                 if best.is_none_or(|(c, ..)| cost <= c) {
                     best = Some((cost, i, *deep));
                 }
@@ -188,15 +193,6 @@ fn split<'a>(mut rest: Vec<Piece<'a>>, at: &Segment, ruler: &Ruler, out: &mut Ve
 }
 
 impl Piece<'_> {
-    /// About how wide it is when typeset, in tenths of a letter.
-    pub fn width(&self) -> usize {
-        match self {
-            Piece::Whole(layout) => layout.width(),
-            Piece::Open(..) | Piece::Close(..) => 7,
-            Piece::Break(..) => 0,
-        }
-    }
-
     /// Whether it is a relation sign.
     pub fn is_relation(&self) -> bool {
         matches!(self, Piece::Whole(Layout::Sign(Sign::Relation(_))))

@@ -1,7 +1,7 @@
 //! Markdown documents: with mathematics in LaTeX as GitHub renders it, or in MathML for rustdoc.
 //! One paragraph is one line, so that a change of a word changes one line.
 
-use super::document::{Block, Document, Inline};
+use super::document::{Block, Document, Inline, plain};
 use super::formula::Formula;
 use super::latex::{self, Dialect};
 use super::{Page, mathml};
@@ -46,7 +46,7 @@ pub(super) fn document(page: &Page, document: &Document, math: Math) -> String {
                 } => {
                     number += 1;
                     out.push_str(&equation(page, formula, number, math));
-                    let tag = tag.as_ref().map(|t| format!("\\[{}\\]", text(t)));
+                    let tag = tag.as_ref().map(|t| format!("\\[{}\\]", text(&plain(t))));
                     let note = note.as_ref().map(|n| text(n));
                     let remark: Vec<String> = tag.into_iter().chain(note).collect();
                     if !remark.is_empty() {

@@ -15,7 +15,7 @@ pub(super) fn inline(page: &Page, f: &Formula) -> String {
 /// A displayed formula, as a table if it takes several lines.
 pub(super) fn display(page: &Page, f: &Formula) -> String {
     let layout = page.stacked(f);
-    let body = match lines::typeset(&layout, page.style.letters) {
+    let body = match lines::typeset(&layout, page.style.points) {
         None => element(&layout),
         Some(broken) => {
             let mut rows = String::new();

@@ -13,6 +13,7 @@ mod latex;
 mod layout;
 mod level;
 mod lines;
+mod listing;
 mod markdown;
 mod mathml;
 mod name;
@@ -21,6 +22,7 @@ mod statement;
 mod tests;
 mod tex;
 mod unicode;
+mod width;
 
 use crate::expr::Expr;
 use crate::expr::symbol::Symbols;
@@ -55,8 +57,8 @@ pub struct Style {
     pub label_indices: Vec<String>,
     /// Columns of a line of plain text.
     pub columns: usize,
-    /// Letters of a displayed line in LaTeX, Markdown and MathML: the width of a page.
-    pub letters: usize,
+    /// Points of a displayed line in LaTeX, Markdown and MathML: the width of a page, less the number of an equation.
+    pub points: usize,
 }
 
 impl Default for Style {
@@ -65,7 +67,8 @@ impl Default for Style {
             time_index: "k".to_owned(),
             label_indices: Vec::new(),
             columns: 100,
-            letters: 60,
+            // The lines of the class `article` have 345.
+            points: 310,
         }
     }
 }

@@ -3,7 +3,7 @@
 
 use super::Page;
 use super::compose::parts::equations;
-use super::document::{Block, Document, Inline};
+use super::document::{Block, Document, Inline, plain};
 use super::formula::{Formula, Relation};
 use super::layout::{Fence, Layout, Sign};
 use super::lines::{self, Piece, Ruler};
@@ -242,7 +242,7 @@ pub(super) fn document(page: &Page, document: &Document) -> String {
                         out.push_str(&format!("{first}{row}\n"));
                         first.clone_from(&margin);
                     }
-                    let tag = tag.as_ref().map(|t| format!("[{t}]"));
+                    let tag = tag.as_ref().map(|t| format!("[{}]", plain(t)));
                     let remark = tag.into_iter().chain(note.clone()).collect::<Vec<_>>();
                     if !remark.is_empty() {
                         fill(&mut out, &remark.join(" "), limit, &margin, &margin);

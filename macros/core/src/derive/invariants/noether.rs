@@ -248,7 +248,10 @@ impl<'a, 's> Search<'a, 's> {
                 columns.retain(|c| !self.is_covered(c));
                 let columns = self.distinct(columns, reading);
                 let values: Vec<Expr> = columns.iter().map(|c| self.value(reading, c)).collect();
-                for v in samples.combinations(&values) {
+                let mut combinations = samples.combinations(&values);
+                // Of those that say the same that of the fewest motions is told.
+                combinations.sort_by_key(|v| v.iter().filter(|times| **times != 0).count());
+                for v in combinations {
                     let terms = columns.iter().zip(&v).filter(|(_, times)| **times != 0);
                     let terms = terms.flat_map(|(c, times)| {
                         c.iter().map(|motion| Term {

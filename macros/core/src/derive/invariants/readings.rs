@@ -12,6 +12,9 @@ use crate::expr::{self, Expr, Part};
 /// Most parameters that are tried as axes or forms.
 const AXES: usize = 12;
 
+/// Most parameters of which two have an axis across both.
+const PAIRED: usize = 4;
+
 /// A linear map of momenta of one sort.
 pub(super) struct Reading {
     pub(super) sort: Sort,
@@ -167,6 +170,17 @@ pub(super) fn readings(x: &Inputs, sorts: &[Sort]) -> Vec<Reading> {
                 for a in axes.iter().filter(|a| told(a)) {
                     let across = What::Across(a.value.clone());
                     push(format!("across_{}", a.name), across, a.length.clone());
+                }
+                if sort == Sort::Linear {
+                    let told: Vec<&Axis> = axes.iter().filter(|a| told(a)).take(PAIRED).collect();
+                    for (i, a) in told.iter().enumerate() {
+                        for b in told.iter().skip(i + 1) {
+                            let normal = expr::cross(a.value.clone(), b.value.clone());
+                            let size = expr::mul(a.length.clone(), b.length.clone());
+                            let name = format!("across_{}_{}", a.name, b.name);
+                            push(name, What::Along(normal), size);
+                        }
+                    }
                 }
             }
             Sort::Planes(_) => {

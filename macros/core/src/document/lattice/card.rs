@@ -34,6 +34,7 @@ pub fn card_words(
         choice: choice.clone(),
         unfolded,
         d: d.clone(),
+        longer: None,
     };
     let mut folded = Folded::new(lattice, &part);
     let style = Style::new(&d.spec.time_index);
@@ -73,11 +74,11 @@ pub fn card_words(
         }
         let formula = match (&v.value, &v.kind) {
             (Some(e), _) => {
-                let f = total(&mut folded, &part, e);
+                let f = explicit(&mut folded, &part, e);
                 text(&folded, &f)
             }
             (None, InvariantKind::ConstraintRate(j)) => {
-                let f = total(&mut folded, &part, &part.d.spec.holds[*j].value);
+                let f = explicit(&mut folded, &part, &part.d.spec.holds[*j].value);
                 format!("rate of change of {}", text(&folded, &f))
             }
             (None, _) => "kinetic plus potential energy of the limit".to_owned(),
@@ -99,6 +100,11 @@ pub fn card_words(
         solver: without_sites(&part, solver),
         invariants,
     }
+}
+
+/// A total of this lattice: as sums over sites, or site by site.
+fn explicit(folded: &mut Folded, part: &Part, e: &Expr) -> Formula {
+    total(folded, part, e).unwrap_or_else(|| folded.derived(part, e, From::First))
 }
 
 fn terms(folded: &mut Folded, part: &Part) -> Formula {

@@ -1,16 +1,15 @@
 //! What is conserved on a lattice, for each way to close or hold it, totals written as sums over
 //! sites.
 
-use crate::derive::action::summands;
 use crate::derive::invariants::{Family, Invariant, Kind as InvariantKind};
 use crate::document::folded::{Folded, From, Part};
-use crate::document::lattice::stated_holds;
-use crate::expr::{self, Expr, Node};
+use crate::document::lattice::{stated_holds, sums};
+use crate::expr::{self, Expr};
 use crate::lattice::Lattice;
 use crate::line::{Line, Written};
 use crate::print::document::{Document, Inline};
 use crate::print::formula::Formula;
-use crate::print::{Format, Style, expression};
+use crate::print::{Format, Style, formula};
 use crate::syntax::ast::Model;
 
 /// The section on invariants.
@@ -36,9 +35,8 @@ pub(super) fn invariants(folded: &mut Folded, model: &Model, parts: &[Part], doc
             .iter()
             .filter(|v| !by_walls(v) && !is_of_site(v));
         let kept: Vec<&Invariant> = kept.collect();
-        for v in kept {
-            items.push(invariant(folded, part, v));
-        }
+        let (told, others) = known(folded, part, &kept);
+        items.extend(told.into_iter().map(Known::words));
         for stated in &at_sites {
             let Some(hold) = part.d.spec.holds.get(stated.shown) else {
                 continue;
@@ -60,6 +58,9 @@ pub(super) fn invariants(folded: &mut Folded, model: &Model, parts: &[Part], doc
         } else {
             section.text(&format!("{words}:"));
             section.list(items);
+        }
+        if others {
+            section.text("What else is conserved on the short lattice that was written out is no sum that is known for every number of sites, and is left out.");
         }
         let energy = part.d.discrete_energy();
         section.text(&format!(
@@ -130,115 +131,131 @@ fn heading(lattice: &Lattice, part: &Part) -> String {
     format!("On a line {}", part.choice.held(lattice))
 }
 
-fn invariant(folded: &mut Folded, part: &Part, v: &Invariant) -> Vec<Inline> {
-    let mut line: Vec<Inline> = vec![format!("{}: ", part.unfolded.plain(&v.name)).into()];
-    match (&v.value, &v.kind) {
-        (Some(e), _) => line.push(total(folded, part, e).into()),
-        (None, InvariantKind::ConstraintRate(j)) => {
-            let held = part.d.spec.holds[*j].value.clone();
-            line.push("rate of change of ".into());
-            line.push(total(folded, part, &held).into());
-        }
-        (None, _) => line.push("kinetic plus potential energy of the limit".into()),
-    }
-    let how = if v.exact { "exact" } else { "bounded" };
-    line.push(format!(" ({how}: {})", v.reason).into());
-    line
+/// An invariant that is known for every number of sites.
+struct Known {
+    name: String,
+    value: Vec<Inline>,
+    /// The value as text, by which it is found on a longer line.
+    text: String,
+    how: &'static str,
+    reason: String,
 }
 
-/// A total, terms of the same form collected to sums over sites.
-pub(super) fn total(folded: &mut Folded, part: &Part, e: &Expr) -> Formula {
-    let pair = |a: Formula, b: Formula| (Box::new(a), Box::new(b));
-    match e.node() {
-        Node::Dot(a, b) => {
-            let (a, b) = pair(total(folded, part, a), total(folded, part, b));
-            Formula::Dot(a, b)
-        }
-        Node::Cross(a, b) => {
-            let (a, b) = pair(total(folded, part, a), total(folded, part, b));
-            Formula::Cross(a, b)
-        }
-        Node::Neg(a) => Formula::neg(total(folded, part, a)),
-        _ => summed(folded, part, e),
+impl Known {
+    fn words(self) -> Vec<Inline> {
+        let mut line: Vec<Inline> = vec![format!("{}: ", self.name).into()];
+        line.extend(self.value);
+        line.push(format!(" ({}: {})", self.how, self.reason).into());
+        line
     }
 }
 
-fn summed(folded: &mut Folded, part: &Part, e: &Expr) -> Formula {
-    let style = Style::new(&part.d.spec.time_index);
-    let mut forms: Vec<(String, Expr, Vec<usize>)> = Vec::new();
-    for term in terms(e) {
-        let site = sites(part, &term).into_iter().min();
-        let seen = folded.expression(part, &term, From::Site(site.unwrap_or(0)));
-        let text = expression(&seen, &folded.symbols, &style, Format::Text);
-        match forms
-            .iter_mut()
-            .find(|(t, ..)| *t == text && site.is_some())
-        {
-            Some((.., list)) => list.extend(site),
-            None => forms.push((text, term, site.into_iter().collect())),
-        }
-    }
-    let line = folded.lattice.line.unwrap_or(0);
-    let (index, count) = match folded.lattice.labels.get(line) {
-        Some(l) => (l.index.text.clone(), l.count.text.clone()),
-        None => return folded.derived(part, e, From::First),
+/// The invariants of a part that are the same for every number of sites: those that read alike on a longer lattice.
+/// With them whether there are others.
+fn known(folded: &mut Folded, part: &Part, kept: &[&Invariant]) -> (Vec<Known>, bool) {
+    let (own, others) = of_part(folded, part, kept);
+    // Where the search found nothing on the longer lattice, its draws were too few for so many sites, and nothing is
+    // learnt from it: ranges from end to end stand as they are.
+    let found = |p: &&Part| p.d.invariants.iter().any(|v| v.family == Family::Noether);
+    let Some(longer) = part.longer.as_deref().filter(found) else {
+        return (numbered(own), others);
     };
-    let many = part.choice.count(line);
-    let mut out = Vec::new();
-    for (_, term, mut list) in forms {
-        list.sort_unstable();
-        let whole = list.windows(2).all(|w| w[0] + 1 == w[1]);
-        match (list.first(), list.last()) {
-            (Some(a), Some(b)) if list.len() > 2 && whole => {
-                let by = isize::try_from(*b).unwrap_or(0) - isize::try_from(many).unwrap_or(0);
-                let of = folded.derived(part, &term, From::Site(*a));
-                out.push(Formula::SumOver {
-                    index: index.clone(),
-                    from: Some(a.to_string()),
-                    to: Some(super::beyond(&count, by)),
-                    of: Box::new(of),
-                });
-            }
-            (Some(a), _) if list.len() == 1 => {
-                let from = if 2 * a > many {
-                    From::Last
-                } else {
-                    From::First
-                };
-                out.push(folded.derived(part, &term, from));
-            }
-            (None, _) => out.push(folded.derived(part, &term, From::First)),
-            _ => return folded.derived(part, e, From::First),
+    let all: Vec<&Invariant> = longer.d.invariants.iter().collect();
+    let (there, _) = of_part(folded, longer, &all);
+    let count = own.len();
+    let alike: Vec<Known> = own
+        .into_iter()
+        .filter(|v| there.iter().any(|o| o.text == v.text))
+        .collect();
+    let lost = alike.len() < count;
+    (numbered(alike), others || lost)
+}
+
+/// Those of one name told apart by a number.
+fn numbered(mut list: Vec<Known>) -> Vec<Known> {
+    for i in 1..list.len() {
+        let (before, rest) = list.split_at_mut(i);
+        let Some(own) = rest.first_mut() else { break };
+        let plain = own.name.clone();
+        let mut n = 2;
+        while before.iter().any(|o| o.name == own.name) {
+            own.name = format!("{plain} {n}");
+            n += 1;
         }
     }
-    match <[Formula; 1]>::try_from(out) {
-        Ok([only]) => only,
-        Err(several) => Formula::Sum(several),
-    }
+    list
 }
 
-/// The terms of a sum, of numbers or vectors.
-fn terms(e: &Expr) -> Vec<Expr> {
-    match e.node() {
-        Node::Sum(list) => list.iter().flat_map(terms).collect(),
-        _ => summands(e),
-    }
-}
-
-/// The sites whose letters an expression holds.
-fn sites(part: &Part, e: &Expr) -> Vec<usize> {
-    let letters = expr::letters(e).into_iter();
-    letters
-        .filter_map(|l| {
-            let name = &part.d.letters.symbols.get(l.symbol).name;
-            if let Some(copy) = part.unfolded.copy(name) {
-                return Some(copy.site);
+/// The invariants of one lattice that are sums over sites, and the sum of those that are not where it is one; with them
+/// whether some are no such sums by themselves.
+fn of_part(folded: &mut Folded, part: &Part, kept: &[&Invariant]) -> (Vec<Known>, bool) {
+    let style = Style::new(&part.d.spec.time_index);
+    let mut out: Vec<Known> = Vec::new();
+    let mut untold: Vec<&Invariant> = Vec::new();
+    let mut push = |folded: &Folded, v: &Invariant, before: &str, f: Option<Formula>| {
+        let name = part.unfolded.plain(&v.name);
+        let shown = |f: &Formula| formula(f, &folded.symbols, &style, Format::Text);
+        let text = f.as_ref().map_or_else(String::new, shown);
+        let mut value: Vec<Inline> = vec![before.into()];
+        value.extend(f.map(Inline::Math));
+        out.push(Known {
+            name,
+            value,
+            text: format!("{before}{text}"),
+            how: if v.exact { "exact" } else { "bounded" },
+            reason: v.reason.clone(),
+        });
+    };
+    for v in kept {
+        let (before, e) = match (&v.value, &v.kind) {
+            (Some(e), _) => ("", e),
+            (None, InvariantKind::ConstraintRate(j)) => {
+                ("rate of change of ", &part.d.spec.holds[*j].value)
             }
-            let own = part.d.letters.node_momentum.iter();
-            let i = own.clone().position(|m| *m == l.symbol)?;
-            let c = part.d.spec.configurations.get(i)?;
-            let element = &part.d.letters.symbols.get(c.element).name;
-            part.unfolded.copy(element).map(|c| c.site)
-        })
-        .collect()
+            (None, _) => {
+                push(
+                    folded,
+                    v,
+                    "kinetic plus potential energy of the limit",
+                    None,
+                );
+                continue;
+            }
+        };
+        match total(folded, part, e) {
+            Some(f) => push(folded, v, before, Some(f)),
+            None => untold.push(v),
+        }
+    }
+    let sum = |of: &Invariant| {
+        let alike = untold.iter().filter(|v| v.reason == of.reason);
+        let values: Vec<Expr> = alike.filter_map(|v| v.value.clone()).collect();
+        let shape = of.value.as_ref()?.shape();
+        let several = values.len() > 1 && values.iter().all(|e| e.shape() == shape);
+        several.then(|| expr::sum(values, shape))
+    };
+    for (i, v) in untold.iter().enumerate() {
+        if untold
+            .iter()
+            .take(i)
+            .any(|before| before.reason == v.reason)
+        {
+            continue;
+        }
+        let f = sum(v).and_then(|e| total(folded, part, &e));
+        if f.is_some() {
+            push(folded, v, "", f);
+        }
+    }
+    (out, !untold.is_empty())
+}
+
+/// A total as sums over sites; `None` where it is none that is known for every number of sites.
+pub(super) fn total(folded: &mut Folded, part: &Part, e: &Expr) -> Option<Formula> {
+    let lattice = folded.lattice;
+    match lattice.line.is_some() && lattice.labels.len() == 1 {
+        true => sums::told(folded, part, e),
+        // Of a set one site stands for all, and is told as one.
+        false => Some(folded.derived(part, e, From::First)),
+    }
 }

@@ -5,10 +5,11 @@ use crate::algebra::Rational;
 use crate::expr::{self, Expr, Function, Map, Node, Part};
 use crate::print::layout::{Fence, Layout, Sign};
 use crate::print::level::{Laid, Level};
+use crate::print::width::{Size, width};
 
-/// Width, in tenths of a letter, from which a numerator stands beside its denominator,
+/// Width, in tenths of a point, from which a numerator stands beside its denominator,
 /// `1/h (...)`, so that it can be broken over lines: half a line.
-const WIDEST_NUMERATOR: usize = 300;
+const WIDEST_NUMERATOR: usize = 1600;
 
 impl Composer<'_> {
     /// An expression with its sign.
@@ -241,7 +242,7 @@ impl Composer<'_> {
         let bottom = self.product(below, &under);
         let above = whole(q.numerator());
         let top = self.product(above, &over);
-        if !self.stacked || top.layout.width() <= WIDEST_NUMERATOR {
+        if !self.stacked || width(&top.layout, Size::Text) <= WIDEST_NUMERATOR {
             return self.fraction(top, bottom);
         }
         let front = self.fraction(self.number(above), bottom);

@@ -9,13 +9,14 @@ pub(super) mod parts;
 use super::Style;
 use super::layout::{Fence, Layout, Sign, Strength};
 use super::level::{Laid, Level};
+use super::width::{Size, width};
 use super::{name, tex};
 use crate::algebra::Rational;
 use crate::expr::Letter;
 use crate::expr::symbol::{Role, Symbols};
 
-/// Width, in tenths of a letter, from which a hat is not drawn over its argument any more.
-const WIDEST_HAT: usize = 80;
+/// Width, in tenths of a point, from which a hat is not drawn over its argument any more.
+const WIDEST_HAT: usize = 540;
 
 /// Composes layouts in one style.
 pub(super) struct Composer<'a> {
@@ -115,6 +116,7 @@ impl Composer<'_> {
         let mut row = Vec::new();
         for f in factors {
             if !row.is_empty() {
+                row.push(Layout::Break(Strength::Factor));
                 row.push(Layout::Sign(Sign::Times));
             }
             row.push(f);
@@ -138,7 +140,8 @@ impl Composer<'_> {
 
     /// `a` and `b` with an infix sign between.
     fn infix(&self, a: Laid, sign: Sign, b: Laid, level: Level) -> Laid {
-        let row = vec![a.operand(), Layout::Sign(sign), b.operand()];
+        let at = Layout::Break(Strength::Factor);
+        let row = vec![a.operand(), at, Layout::Sign(sign), b.operand()];
         Laid::new(Layout::Row(row), level)
     }
 
@@ -184,7 +187,7 @@ impl Composer<'_> {
                 sub,
                 sup: None,
             },
-            wide if wide.width() > WIDEST_HAT => {
+            wide if width(&wide, Size::Display) > WIDEST_HAT => {
                 Layout::fenced(Fence::Round, wide).superscript(Layout::Sign(Sign::Wedge))
             }
             narrow => hat(narrow),

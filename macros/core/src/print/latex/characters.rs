@@ -105,7 +105,46 @@ const SYMBOLS: [(char, &str); 36] = [
 
 /// Words of a sentence.
 pub(super) fn text(s: &str) -> String {
-    s.chars().map(|c| symbol_of(c, true)).collect()
+    let signs: String = s.chars().map(|c| symbol_of(c, true)).collect();
+    one_formula(&signs)
+}
+
+/// Signs of mathematics that follow one another stand in one formula; an escaped dollar sign ends none.
+fn one_formula(signs: &str) -> String {
+    let mut parts = signs.split("$$");
+    let mut out = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        if out.ends_with('\\') {
+            out.push_str("$$");
+        } else if out.ends_with(|c: char| c.is_ascii_alphabetic())
+            && part.starts_with(|c: char| c.is_ascii_alphabetic())
+        {
+            out.push(' ');
+        }
+        out.push_str(part);
+    }
+    out
+}
+
+/// Mathematics on a line, as words have it: `2/h² skew`, `Ad*`, `Ωᵀ P`.
+pub(super) fn spelt(s: &str) -> String {
+    let mut out: Vec<String> = Vec::new();
+    let mut rest = s.chars().peekable();
+    while let Some(c) = rest.next() {
+        let mut word = c.to_string();
+        if c.is_ascii_alphabetic() {
+            while let Some(more) = rest.next_if(char::is_ascii_alphabetic) {
+                word.push(more);
+            }
+        }
+        out.push(match (word.as_str(), word.len()) {
+            (" ", _) => "\\,".to_owned(),
+            ("*", _) => "^{*}".to_owned(),
+            (several, 2..) if c.is_ascii_alphabetic() => format!("\\operatorname{{{several}}}"),
+            _ => symbol_of(c, false),
+        });
+    }
+    joined(out.into_iter())
 }
 
 /// Words of a sentence, in which arrows and names of groups are mathematics.
@@ -136,7 +175,7 @@ pub(super) fn prose(s: &str) -> String {
             }
         }
     }
-    out
+    one_formula(&out)
 }
 
 /// Groups that sentences name with a size.

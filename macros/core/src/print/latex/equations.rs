@@ -1,12 +1,13 @@
 //! Displayed equations of a document: one by one, or several in a row as a group under one number, each with a name
 //! that says what it is. Sources in the thesis are footnotes of the sentence before.
 
-use super::characters::{prose, symbol_of};
-use super::{Dialect, display};
+use super::characters::{prose, spelt, symbol_of};
+use super::{Dialect, aligned, rows};
 use crate::expr::symbol;
 use crate::print::Page;
 use crate::print::document::{Block, Document};
 use crate::print::name;
+use unicode_normalization::UnicodeNormalization;
 
 /// The thesis, as `\cite` calls it.
 const KEY: &str = "dixon2007";
@@ -68,7 +69,12 @@ fn called(page: &Page, label: &str) -> String {
 
 /// Words as part of a label: ASCII, small, with hyphens.
 pub(super) fn slug(title: &str) -> String {
-    let words = symbol::ascii(&name::letter(title)).to_lowercase();
+    // Accents are left out, not spelt.
+    let bare: String = title
+        .nfd()
+        .filter(|c| !matches!(c, '\u{300}'..='\u{36f}'))
+        .collect();
+    let words = symbol::ascii(&name::letter(&bare)).to_lowercase();
     let mut out = String::new();
     for c in words.chars() {
         if c.is_ascii_alphanumeric() {
@@ -113,7 +119,7 @@ pub(super) fn footnote(run: &[Block], from: usize, labels: &Labels) -> String {
 /// `thesis (2.145) corrected: ...` as a citation with what is said of it.
 fn cited(tag: &str) -> String {
     let Some(rest) = tag.strip_prefix("thesis ") else {
-        return prose(tag);
+        return said_of(tag);
     };
     let end = rest.find(')').map_or(rest.len(), |at| at + 1);
     let (place, said) = rest.split_at(end);
@@ -121,16 +127,7 @@ fn cited(tag: &str) -> String {
         Some(how) => format!(", corrected{how}"),
         None => said.to_owned(),
     };
-    let said = said
-        .replace("times -1/h", "times $-1/h$")
-        .replace("times -h", "times $-h$");
-    let pieces = said.split('$').enumerate();
-    let said: String = pieces
-        .map(|(i, piece)| match i % 2 {
-            0 => prose(piece),
-            _ => format!("${piece}$"),
-        })
-        .collect();
+    let said = said_of(&said);
     format!(
         "\\cite[{}]{{{KEY}}}{said}",
         place
@@ -140,16 +137,27 @@ fn cited(tag: &str) -> String {
     )
 }
 
+/// Words with mathematics between dollar signs.
+fn said_of(tag: &str) -> String {
+    let pieces = tag.split('$').enumerate();
+    pieces
+        .map(|(i, piece)| match i % 2 {
+            0 => prose(piece),
+            _ => format!("${}$", spelt(piece)),
+        })
+        .collect()
+}
+
 /// Equations in a row, the first of which has the number `from`.
 pub(super) fn displayed(page: &Page, run: &[Block], from: usize, labels: &Labels) -> String {
-    let mut rows = Vec::new();
+    let mut lines = Vec::new();
     let mut notes = Vec::new();
     for (i, block) in run.iter().enumerate() {
         let Block::Equation { formula, note, .. } = block else {
             continue;
         };
         let name = labels.name(from + i);
-        rows.push((display(page, formula, Dialect::Amsmath), name));
+        lines.push((rows(page, formula, Dialect::Amsmath), name));
         if let Some(note) = note {
             let note = prose(note);
             notes.push(match run.len() {
@@ -158,18 +166,22 @@ pub(super) fn displayed(page: &Page, run: &[Block], from: usize, labels: &Labels
             });
         }
     }
-    let mut out = match rows.as_slice() {
-        [(formula, name)] => {
+    let mut out = match lines.as_slice() {
+        [(rows, name)] if rows.len() <= TALL => {
+            let formula = aligned(rows);
             format!("\\begin{{equation}}\\label{{{name}}}\n{formula}\n\\end{{equation}}\n")
         }
-        _ => {
-            let rows = rows
-                .iter()
-                .map(|(formula, name)| format!("{formula} \\label{{{name}}}"));
-            format!(
-                "\\begin{{subequations}}\n\\begin{{gather}}\n{}\n\\end{{gather}}\n\\end{{subequations}}\n",
-                rows.collect::<Vec<_>>().join(" \\\\\n")
-            )
+        [(rows, name)] => format!("{{\\allowdisplaybreaks\n{}}}\n", over_pages(rows, name)),
+        several => {
+            let groups = several.chunk_by(|a, b| a.0.len().max(b.0.len()) <= TALL);
+            let groups: String = groups.map(group).collect();
+            let count: usize = several.iter().map(|(rows, _)| rows.len()).sum();
+            let breaks = if count > TALL {
+                "\\allowdisplaybreaks"
+            } else {
+                ""
+            };
+            format!("\\begin{{subequations}}{breaks}\n{groups}\\end{{subequations}}\n")
         }
     };
     if !notes.is_empty() {
@@ -184,6 +196,45 @@ pub(super) fn displayed(page: &Page, run: &[Block], from: usize, labels: &Labels
         out.push_str(&format!("\\noindent {}{end}\n", notes.join("; ")));
     }
     out
+}
+
+/// Equations below one another, each of which fits on a page, or one that does not.
+fn group(equations: &[(Vec<String>, &str)]) -> String {
+    if let [(rows, name)] = equations
+        && rows.len() > TALL
+    {
+        return over_pages(rows, name);
+    }
+    let rows = equations
+        .iter()
+        .map(|(rows, name)| format!("{} \\label{{{name}}}", aligned(rows)));
+    let rows: Vec<String> = rows.collect();
+    format!(
+        "\\begin{{gather}}\n{}\n\\end{{gather}}\n",
+        rows.join(" \\\\\n")
+    )
+}
+
+/// Lines of a formula from which on a page may end between them: a third of a page of fractions.
+const TALL: usize = 8;
+
+/// An equation that may go on on the next page, numbered at its end.
+fn over_pages(rows: &[String], name: &str) -> String {
+    format!(
+        "\\begin{{align}}\n{} \\label{{{name}}}\n\\end{{align}}\n",
+        rows.join(" \\notag \\\\\n")
+    )
+}
+
+/// A formula of a sentence in lines of its own, with the sign of punctuation behind it.
+pub(super) fn unnumbered(rows: &[String], end: &str) -> String {
+    match rows.len() <= TALL {
+        true => format!("\n\\[\n{}{end}\n\\]\n", aligned(rows)),
+        false => format!(
+            "\n{{\\allowdisplaybreaks\n\\begin{{align*}}\n{}{end}\n\\end{{align*}}}}\n",
+            rows.join(" \\\\\n")
+        ),
+    }
 }
 
 /// A sentence that goes on behind a colon.

@@ -9,6 +9,8 @@ use super::document::{Block, Document, Inline};
 use super::formula::{Formula, Relation};
 use super::layout::{Fence, Layout, Sign};
 use super::lines::{self, Piece};
+use super::listing;
+use super::width::{Size, upright, width};
 use characters::{identifier, joined, prose, symbol_of, text};
 use equations::Labels;
 
@@ -184,9 +186,25 @@ fn parted(side: &str, bracket: &str, tall: bool) -> String {
 
 /// A displayed formula, in an `aligned` environment if it takes several lines.
 pub(super) fn display(page: &Page, f: &Formula, dialect: Dialect) -> String {
+    aligned(&rows(page, f, dialect))
+}
+
+/// Lines of a formula as one block.
+fn aligned(rows: &[String]) -> String {
+    match rows {
+        [only] => only.clone(),
+        several => format!(
+            "\\begin{{aligned}}\n{}\n\\end{{aligned}}",
+            several.join(" \\\\\n")
+        ),
+    }
+}
+
+/// The lines of a displayed formula; several are aligned at `&`.
+fn rows(page: &Page, f: &Formula, dialect: Dialect) -> Vec<String> {
     let layout = page.stacked(f);
-    let Some(broken) = lines::typeset(&layout, page.style.letters) else {
-        return line(&layout, dialect);
+    let Some(broken) = lines::typeset(&layout, page.style.points) else {
+        return vec![line(&layout, dialect)];
     };
     let mut rows = Vec::new();
     for (i, row) in broken.lines.iter().enumerate() {
@@ -206,16 +224,21 @@ pub(super) fn display(page: &Page, f: &Formula, dialect: Dialect) -> String {
         let guard = if left.starts_with('[') { "{}" } else { "" };
         rows.push(format!("{guard}{left} &{start}{text}").trim().to_owned());
     }
-    format!(
-        "\\begin{{aligned}}\n{}\n\\end{{aligned}}",
-        rows.join(" \\\\\n")
-    )
+    rows
 }
 
 /// A whole document: a section with labelled equations; those that follow one another without words share a number.
 pub(super) fn document(page: &Page, document: &Document) -> String {
     let mut out = equations::preamble(document);
-    out.push_str(&format!("\\section{{{}}}\n", text(&document.title)));
+    let title = text(&document.title);
+    let letters = document.title.chars().map(upright).sum::<usize>();
+    // The names of models have no hyphens: a title of several lines is set ragged.
+    out.push_str(
+        &match letters * HEADING / 100 > 10 * (page.style.points + NUMBER) {
+            true => format!("\\section[{title}]{{\\raggedright {title}}}\n"),
+            false => format!("\\section{{{title}}}\n"),
+        },
+    );
     let labels = Labels::of(page, document);
     let mut number = 1usize;
     for section in &document.sections {
@@ -240,13 +263,14 @@ pub(super) fn document(page: &Page, document: &Document) -> String {
                     out.push_str(&format!("{}\n", sentence(page, &labels, parts)))
                 }
                 Block::List(items) => {
-                    out.push_str("\\begin{itemize}\n");
+                    // Items begin with names and formulas, which cannot be parted: lines may be loose.
+                    out.push_str("\\begin{itemize}\\emergencystretch=3em\n");
                     for item in items {
                         out.push_str(&format!("  \\item{{}} {}\n", sentence(page, &labels, item)));
                     }
                     out.push_str("\\end{itemize}\n");
                 }
-                Block::Code(code) => out.push_str(&listing(code)),
+                Block::Code(code) => out.push_str(&listing(page, code)),
                 Block::Equation { .. } => {
                     // Behind the sentence that leads to the equations.
                     let end = out.trim_end_matches('\n').len();
@@ -260,6 +284,9 @@ pub(super) fn document(page: &Page, document: &Document) -> String {
     out
 }
 
+/// The letters of a heading, larger and bold, in percent of those of a sentence; a little is taken off for the number.
+const HEADING: usize = 185;
+
 /// Whether a paragraph is the rest of a sentence: it begins with a small letter.
 fn goes_on(block: &Block) -> bool {
     let Block::Paragraph(parts) = block else {
@@ -269,25 +296,67 @@ fn goes_on(block: &Block) -> bool {
 }
 
 fn sentence(page: &Page, labels: &Labels, parts: &[Inline]) -> String {
-    parts
-        .iter()
-        .map(|part| match part {
-            Inline::Plain(words) | Inline::Notation { page: words, .. } => prose(words),
+    let mut out = String::new();
+    let mut rest = parts.iter().peekable();
+    // A sign of punctuation that stands in a formula already.
+    let mut taken = 0;
+    while let Some(part) = rest.next() {
+        let before = std::mem::take(&mut taken);
+        let said = match part {
+            Inline::Plain(words) | Inline::Notation { page: words, .. } => {
+                prose(words.get(before..).unwrap_or_default())
+            }
             Inline::Code(code) => format!("\\texttt{{{}}}", text(code)),
             Inline::Reference { number, .. } => format!("\\eqref{{{}}}", labels.name(*number)),
-            Inline::Math(f) => format!("${}$", line(&page.stacked(f), Dialect::Amsmath)),
-        })
-        .collect()
+            Inline::Math(f) => {
+                let layout = page.stacked(f);
+                if width(&layout, Size::Text) <= 10 * page.style.points * INLINE / 100 {
+                    format!("${}$", line(&layout, Dialect::Amsmath))
+                } else {
+                    let end = match rest.peek() {
+                        Some(Inline::Plain(words)) if words.starts_with([',', '.', ';', ':']) => {
+                            words.get(..1).unwrap_or_default()
+                        }
+                        _ => "",
+                    };
+                    taken = end.len();
+                    equations::unnumbered(&rows(page, f, Dialect::Amsmath), end)
+                }
+            }
+        };
+        if said.starts_with('\n') {
+            out.truncate(out.trim_end_matches(' ').len());
+        }
+        out.push_str(&said);
+    }
+    out
 }
 
+/// The part of a line, in percent, that mathematics in a sentence may take; what is longer stands in lines of its own.
+const INLINE: usize = 50;
+
 /// Code in a typewriter face; `verbatim` would not know the Greek letters.
-fn listing(code: &str) -> String {
-    let rows: Vec<String> = code
-        .lines()
+fn listing(page: &Page, code: &str) -> String {
+    // The numbers of equations take nothing from lines of text.
+    let limit = 10 * (page.style.points + NUMBER);
+    let rows: Vec<String> = listing::fitted(code, limit, &typewriter)
+        .iter()
         .map(|row| format!("\\mbox{{{}}}", text(row).replace(' ', "~")))
         .collect();
     format!(
         "\\begin{{flushleft}}\\ttfamily\n{}\n\\end{{flushleft}}\n",
         rows.join("\\\\\n")
     )
+}
+
+/// Points that the number of an equation takes.
+const NUMBER: usize = 35;
+
+/// A character of code in tenths of a point; what is no letter of the face is set as mathematics.
+fn typewriter(c: char) -> usize {
+    match c {
+        '<' | '>' | '|' => 78,
+        _ if c.is_ascii() => 53,
+        _ => 79,
+    }
 }

@@ -123,7 +123,7 @@ fn latex_is_a_section_with_numbered_equations() {
         assert!(count("begin") > 0, "{environment}");
     }
     assert_eq!(tex.matches("\\label{eq:heavy-top:").count(), 5);
-    assert!(tex.contains("\n&\\quad {} - 4\\,c"), "{tex}");
+    assert!(tex.contains("\n&\\quad {} + 3\\,c"), "{tex}");
     // A bracket that ends on another line has a fixed size.
     assert!(tex.contains("\\bigl(") && tex.contains("\\bigr)"));
     assert!(tex.contains("\\item{} [not an argument]"));
@@ -144,14 +144,14 @@ fn equations_in_a_row_share_a_number() {
     section.labelled("first");
     section.cited(
         Formula::equal(Formula::name("c"), Formula::name("d")),
-        "thesis (2.2) times -1/h, corrected: there e for d",
+        "thesis (2.2) times $-1/h$, corrected: there $e Ωᵀ$ for $2 skew$",
     );
     section.noted("Variation of c.");
     section.paragraph(["By ".into(), Inline::reference("first"), ".".into()]);
     doc.section("Certificate").appendix = true;
     let tex = render(&doc, &s.symbols, &Style::default(), Format::Latex);
     let wanted = "It moves in $\\mathrm{SO}(3)$ by\\footnote{\\eqref{eq:top:first}: \\cite[(2.1)]{dixon2007}; \
-         \\eqref{eq:top:motion-2}: \\cite[(2.2)]{dixon2007} times $-1/h$, corrected: there e for d.}\n\
+         \\eqref{eq:top:motion-2}: \\cite[(2.2)]{dixon2007} times $-1/h$, corrected: there $e\\,\\Omega{}^{\\mathsf{T}}$ for $2\\,\\operatorname{skew}$.}\n\
          \\begin{subequations}\n\\begin{gather}\n\
          a = b \\label{eq:top:first} \\\\\nc = d \\label{eq:top:motion-2}\n\
          \\end{gather}\n\\end{subequations}\n\
@@ -168,6 +168,65 @@ fn equations_in_a_row_share_a_number() {
         !plain.contains("cite") && !plain.contains("dixon"),
         "{plain}"
     );
+}
+
+/// A sum of so many terms.
+fn sum_of(terms: usize) -> Formula {
+    let letter = |i: usize| Formula::name(&format!("a_{i}"));
+    Formula::Sum((0..terms).map(letter).collect())
+}
+
+#[test]
+fn long_formulas_of_a_sentence_stand_alone_and_go_over_pages() {
+    let s = Sample::new();
+    let mut doc = Document::titled("Top: Euler-Poincaré equations");
+    let section = doc.section("Momentum of Poincaré");
+    let sentence = |terms| ["The sum ".into(), sum_of(terms).into(), ", is long.".into()];
+    section
+        .paragraph(sentence(3))
+        .paragraph(sentence(12))
+        .paragraph(sentence(150));
+    section
+        .equation(sum_of(150))
+        .text("is")
+        .equation(sum_of(4))
+        .equation(sum_of(150));
+    let tex = render(&doc, &s.symbols, &Style::default(), Format::Latex);
+    let count = |part: &str| tex.matches(part).count();
+    assert!(
+        tex.contains("The sum $a_{0} + a_{1} + a_{2}$, is long."),
+        "{tex}"
+    );
+    assert!(tex.contains("The sum\n\\[\na_{0} + "), "{tex}");
+    assert!(tex.contains(" + a_{11},\n\\]\n is long."), "{tex}");
+    assert!(
+        tex.contains(" + a_{149},\n\\end{align*}}\n is long."),
+        "{tex}"
+    );
+    // Lines beyond the first of an equation that goes over pages bear no number.
+    assert_eq!((count("\\begin{align}"), count("\\label")), (2, 3), "{tex}");
+    assert!(count("\\notag \\\\") > 20, "{tex}");
+    assert_eq!(count("\\label{eq:top:momentum-of-poincare-2}"), 1, "{tex}");
+}
+
+#[test]
+fn long_titles_are_ragged_and_statements_fit_on_a_page() {
+    let s = Sample::new();
+    let title = "AnEllipsoidOfManyWords: discrete equations of motion";
+    let mut doc = Document::titled(title);
+    let code = format!("lagrangian = {};", vec!["a*b"; 30].join(" + "));
+    doc.section("Model").code(&*code);
+    let tex = render(&doc, &s.symbols, &Style::default(), Format::Latex);
+    assert!(
+        tex.contains(&format!("\\section[{title}]{{\\raggedright {title}}}")),
+        "{tex}"
+    );
+    let lines: Vec<&str> = tex.lines().filter(|l| l.starts_with("\\mbox")).collect();
+    assert_eq!(lines.len(), 4, "{tex}");
+    assert!(lines[1].starts_with("\\mbox{~~~~+~a*b"), "{tex}");
+    // Text that is copied stays on one line.
+    let text = render(&doc, &s.symbols, &Style::default(), Format::Text);
+    assert!(text.contains(&code), "{text}");
 }
 
 #[test]
@@ -256,7 +315,7 @@ fn degenerate_documents_print() {
     for columns in [0, 1, 100] {
         let style = Style {
             columns,
-            letters: columns,
+            points: 6 * columns,
             ..Style::default()
         };
         for document in [&empty, &sample(&s)] {

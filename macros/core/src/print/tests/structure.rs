@@ -26,7 +26,7 @@ const MODELS: [&str; 4] = [
 ];
 
 /// Commands of LaTeX and amsmath that may appear.
-const KNOWN: [&str; 71] = [
+const KNOWN: [&str; 75] = [
     "Bigg",
     "Biggl",
     "Biggr",
@@ -98,6 +98,10 @@ const KNOWN: [&str; 71] = [
     "textbackslash",
     "rtimes",
     "pm",
+    "allowdisplaybreaks",
+    "emergencystretch",
+    "notag",
+    "raggedright",
 ];
 
 /// Braces, environments, `\left` and `\right`, and the commands of a text.

@@ -1,0 +1,284 @@
+//! Sums over the sites of a line, told for every number of them. Takes an expression of a lattice that is written out;
+//! gives sums over ranges that begin and end at its ends, and terms of the ends themselves. What is no such sum is told
+//! as nothing: on another lattice it is another expression.
+
+use crate::algebra::Rational;
+use crate::document::folded::{Folded, From, Part};
+use crate::expr::{self, Expr, Node};
+use crate::print::formula::Formula;
+use crate::print::{Format, Style, expression};
+
+#[cfg(test)]
+mod tests;
+
+/// Fewest sites of a range, and most of one term: two may be two ends, and three are a site with its neighbours.
+const FEWEST: usize = 3;
+
+/// The same in sums over sites; `None` where it is none that is known for every number of sites.
+pub(super) fn told(folded: &mut Folded, part: &Part, e: &Expr) -> Option<Formula> {
+    match e.node() {
+        Node::Neg(a) => Some(Formula::neg(told(folded, part, a)?)),
+        // What is read of a total along or across something that no site has.
+        Node::Dot(a, b) if !varies(folded, part, b) => {
+            let sum = shortest(folded, part, a, Some(b))?;
+            let axis = folded.derived(part, b, From::End(0));
+            Some(Formula::Dot(Box::new(sum), Box::new(axis)))
+        }
+        Node::Dot(a, b) if !varies(folded, part, a) => {
+            let sum = shortest(folded, part, b, Some(a))?;
+            let axis = folded.derived(part, a, From::End(0));
+            Some(Formula::Dot(Box::new(axis), Box::new(sum)))
+        }
+        Node::Cross(a, b) if !varies(folded, part, a) && matches!(b.node(), Node::Sum(_)) => {
+            let sum = shortest(folded, part, b, None)?;
+            let axis = folded.derived(part, a, From::End(0));
+            Some(Formula::Cross(Box::new(axis), Box::new(sum)))
+        }
+        Node::Sum(list) => match apart(folded, part, list) {
+            Some(sum) => Some(sum),
+            None => shortest(folded, part, e, None),
+        },
+        _ => shortest(folded, part, e, None),
+    }
+}
+
+/// A sum of totals that are read along axes, each by itself, and of other terms.
+fn apart(folded: &mut Folded, part: &Part, list: &[Expr]) -> Option<Formula> {
+    let read = |e: &&Expr| match e.node() {
+        Node::Dot(a, b) | Node::Cross(a, b) => {
+            let fixed = !varies(folded, part, a) || !varies(folded, part, b);
+            let sum = |x: &Expr| matches!(x.node(), Node::Sum(_));
+            fixed && (sum(a) || sum(b))
+        }
+        _ => false,
+    };
+    let (axial, rest): (Vec<&Expr>, Vec<&Expr>) = list.iter().partition(read);
+    let shape = list.first()?.shape();
+    let mut out = Vec::new();
+    for e in &axial {
+        out.push(told(folded, part, e)?);
+    }
+    match (axial.is_empty(), rest.is_empty()) {
+        (true, _) => return None,
+        (false, true) => {}
+        (false, false) => {
+            let rest = expr::sum(rest.into_iter().cloned(), shape);
+            out.push(shortest(folded, part, &rest, None)?);
+        }
+    }
+    Some(Formula::Sum(out))
+}
+
+/// Whether an expression holds a letter of a site.
+fn varies(folded: &Folded, part: &Part, e: &Expr) -> bool {
+    let letters = expr::letters(e).into_iter();
+    let mut sites = letters.filter_map(|l| folded.site(part, l.symbol));
+    sites.next().is_some()
+}
+
+/// As it was found or multiplied out, whichever has fewer sums: what cancels is seen where all is multiplied out.
+/// `axis` is what the sum is read along.
+fn shortest(folded: &mut Folded, part: &Part, e: &Expr, axis: Option<&Expr>) -> Option<Formula> {
+    let ways = [false, true].map(|out| {
+        let terms = terms(e, out, axis);
+        summed(folded, part, terms)
+    });
+    let best = ways.into_iter().flatten().min_by_key(Vec::len)?;
+    Some(match <[Formula; 1]>::try_from(best) {
+        Ok([only]) => only,
+        Err(none) if none.is_empty() => Formula::Expr(expr::zero(e.shape())),
+        Err(several) => Formula::Sum(several),
+    })
+}
+
+/// Terms of one form, each so many times.
+struct Form {
+    text: String,
+    times: Rational,
+    /// The first of them.
+    term: Expr,
+    /// The sites they are seen from; none where no letter of a site occurs.
+    sites: Vec<usize>,
+}
+
+/// Sums of terms; `None` where some are of no range.
+fn summed(folded: &mut Folded, part: &Part, terms: Vec<(Rational, Expr)>) -> Option<Vec<Formula>> {
+    let forms = forms(folded, part, terms)?;
+    let line = folded.lattice.line?;
+    let label = folded.lattice.labels.get(line)?;
+    let (index, count) = (label.index.text.clone(), label.count.text.clone());
+    let many = part.choice.count(line);
+    let mut out = Vec::new();
+    for form in forms {
+        let magnitude = match form.times.is_negative() {
+            true => form.times.negated(),
+            false => form.times,
+        };
+        let term = expr::scale(magnitude, form.term);
+        let whole = form.sites.windows(2).all(|w| w[0] + 1 == w[1]);
+        let of = match (form.sites.as_slice(), form.sites.first(), form.sites.last()) {
+            (list, Some(a), Some(b)) if list.len() >= FEWEST && whole => {
+                let by = isize::try_from(*b).ok()? - isize::try_from(many).ok()?;
+                Formula::SumOver {
+                    index: index.clone(),
+                    from: Some(a.to_string()),
+                    to: Some(super::beyond(&count, by)),
+                    of: Box::new(folded.derived(part, &term, From::End(*a))),
+                }
+            }
+            ([only], ..) if *only <= 1 || *only + 1 >= many => {
+                let from = if 2 * only > many {
+                    From::Last
+                } else {
+                    From::First
+                };
+                folded.derived(part, &term, from)
+            }
+            ([], ..) => folded.derived(part, &term, From::End(0)),
+            _ => return None,
+        };
+        out.push(match form.times.is_negative() {
+            true => Formula::neg(of),
+            false => of,
+        });
+    }
+    Some(out)
+}
+
+/// Terms of equal form collected, those that cancel left out.
+fn forms(folded: &mut Folded, part: &Part, terms: Vec<(Rational, Expr)>) -> Option<Vec<Form>> {
+    let style = Style::new(&part.d.spec.time_index);
+    // Each term at its site, equal ones added.
+    let mut single: Vec<(String, Option<usize>, Rational, Expr)> = Vec::new();
+    for (times, term) in terms {
+        let site = base(folded, part, &term)?;
+        let seen = folded.expression(part, &term, From::End(site.unwrap_or(0)));
+        let text = expression(&seen, &folded.symbols, &style, Format::Text);
+        match single
+            .iter_mut()
+            .find(|(t, at, ..)| *t == text && *at == site)
+        {
+            Some((.., known, _)) => *known = known.plus(times)?,
+            None => single.push((text, site, times, term)),
+        }
+    }
+    let mut out: Vec<Form> = Vec::new();
+    for (text, site, times, term) in single {
+        if times == Rational::ZERO {
+            continue;
+        }
+        let alike = |f: &&mut Form| f.text == text && f.times == times && site.is_some();
+        match out.iter_mut().find(alike) {
+            Some(form) => form.sites.extend(site),
+            None => out.push(Form {
+                text,
+                times,
+                term,
+                sites: site.into_iter().collect(),
+            }),
+        }
+    }
+    for form in &mut out {
+        form.sites.sort_unstable();
+    }
+    Some(out)
+}
+
+/// The site a term is seen from, the first of those that it holds; on a ring the one that has the others next to it.
+/// Outer `None`: it holds sites of something that is no line.
+fn base(folded: &Folded, part: &Part, term: &Expr) -> Option<Option<usize>> {
+    let line = folded.lattice.line?;
+    let mut sites = Vec::new();
+    for l in expr::letters(term) {
+        match folded.site(part, l.symbol) {
+            Some((label, site)) if label == line => sites.push(site),
+            Some(_) => return None,
+            None => {}
+        }
+    }
+    sites.sort_unstable();
+    sites.dedup();
+    if sites.len() > FEWEST {
+        return None;
+    }
+    let count = part.choice.count(line).max(1);
+    let reach = |origin: &usize| {
+        let after = |s: &usize| match part.choice.periodic {
+            true => (s + count - origin % count) % count,
+            false => s.checked_sub(*origin).unwrap_or(count + 1),
+        };
+        sites.iter().map(after).max()
+    };
+    Some(sites.iter().min_by_key(|s| (reach(s), **s)).copied())
+}
+
+/// The terms of a sum, each with its factor; with `out`, products of sums are multiplied out.
+fn terms(e: &Expr, out: bool, axis: Option<&Expr>) -> Vec<(Rational, Expr)> {
+    let all = factors(e, out);
+    // Along an axis nothing is left of what is across it.
+    let across = |e: &Expr| match (e.node(), axis) {
+        (Node::Cross(a, b), Some(axis)) => out && (a == axis || b == axis),
+        _ => false,
+    };
+    all.into_iter().filter(|(_, e)| !across(e)).collect()
+}
+
+fn factors(e: &Expr, out: bool) -> Vec<(Rational, Expr)> {
+    let negative = |list: Vec<(Rational, Expr)>| -> Vec<(Rational, Expr)> {
+        list.into_iter().map(|(n, e)| (n.negated(), e)).collect()
+    };
+    let pairs = |a: &Expr, b: &Expr, with: &dyn Fn(Expr, Expr) -> Expr| {
+        let (a, b) = (factors(a, true), factors(b, true));
+        let mut list = Vec::new();
+        for (n, x) in &a {
+            for (m, y) in &b {
+                match n.times(*m) {
+                    Some(product) => list.push((product, with(x.clone(), y.clone()))),
+                    None => return None,
+                }
+            }
+        }
+        Some(list)
+    };
+    let own = || vec![(Rational::ONE, e.clone())];
+    match e.node() {
+        Node::Sum(list) => list.iter().flat_map(|t| factors(t, out)).collect(),
+        Node::Neg(a) => negative(factors(a, out)),
+        Node::Dot(a, b) if out => pairs(a, b, &expr::dot).unwrap_or_else(own),
+        Node::Cross(a, b) if out => {
+            let list = pairs(a, b, &expr::cross).unwrap_or_else(own);
+            list.into_iter().filter_map(ordered).collect()
+        }
+        Node::Product(list) if out => {
+            let sum = |f: &Expr| matches!(f.node(), Node::Sum(_) | Node::Neg(_) | Node::Cross(..));
+            let Some(i) = list.iter().position(sum) else {
+                return own();
+            };
+            let Some(inner) = list.get(i).map(|f| factors(f, true)) else {
+                return own();
+            };
+            let with = |t: Expr| {
+                let each = list.iter().enumerate();
+                expr::product(each.map(|(j, f)| if i == j { t.clone() } else { f.clone() }))
+            };
+            inner.into_iter().map(|(n, t)| (n, with(t))).collect()
+        }
+        _ => own(),
+    }
+}
+
+/// A cross product in one order, and none of something with itself.
+fn ordered((times, e): (Rational, Expr)) -> Option<(Rational, Expr)> {
+    let Node::Cross(a, b) = e.node() else {
+        return Some((times, e));
+    };
+    let key = |e: &Expr| {
+        let letters = expr::letters(e).into_iter().map(|l| l.symbol.0);
+        (letters.collect::<Vec<_>>(), format!("{e:?}"))
+    };
+    match key(a).cmp(&key(b)) {
+        std::cmp::Ordering::Equal => None,
+        std::cmp::Ordering::Less => Some((times, e)),
+        std::cmp::Ordering::Greater => Some((times.negated(), expr::cross(b.clone(), a.clone()))),
+    }
+}

@@ -1,0 +1,87 @@
+//! Invariants of short and longer lattices, and what is printed of them for every number of sites.
+
+use crate::lattice::Lattice;
+use crate::pipeline;
+use crate::print::Format;
+
+/// The items of the section on invariants, each line of the plain text joined to its item.
+fn items(model: &str) -> Vec<String> {
+    let parsed = pipeline::parse_source(model).unwrap_or_else(|e| panic!("{e}"));
+    let printed = crate::document::printed_lattice(&parsed, model, Format::Text, 1000).unwrap();
+    let text = printed.text;
+    let begin = text.find("Invariants\n").unwrap();
+    let end = text.find("Certificate\n").unwrap();
+    let lines = text[begin..end].lines();
+    lines
+        .filter(|l| l.starts_with("- ") || l.starts_with("What else"))
+        .map(str::to_owned)
+        .collect()
+}
+
+const PINNED: &str = "model M {
+    label i in 0..N;
+    end i = 0 { free; pinned { X = given; } }
+    end i = N { free; pinned { X = given; } load { param F: Vec<3>; term h*dot(F, X); } }
+    param m: Real at nodes; param e: Real; param g: Vec<3>;
+    field X: Vec<3> at nodes;
+    lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) + h*m*dot(g, X)
+        - h*e*dot(next(X, i) - X, next(X, i) - X)^2/2;
+}";
+
+#[test]
+fn what_an_end_holds_is_read_from_that_end() {
+    let list = items(PINNED);
+    let has = |part: &str| list.iter().any(|l| l.contains(part));
+    assert!(
+        has("about X g: (∑_{i=1}^N (X_{i,k} - X₀) × p_{i,k})·g (exact"),
+        "{list:#?}"
+    );
+    assert!(
+        has("(∑_{i=0}^{N-1} (X_{i,k} - X_N) × p_{i,k})·g (exact"),
+        "{list:#?}"
+    );
+    assert!(
+        has("across F g: (∑_{i=0}^N p_{i,k})·(F_N × g) (exact"),
+        "{list:#?}"
+    );
+    // The written-out lattice has four segments.
+    for short in ["_4", "₄", "₂", "_{4", "_{N-2", " 4"] {
+        assert!(!has(short), "{short}: {list:#?}");
+    }
+}
+
+#[test]
+fn parts_over_some_of_the_sites_are_told_together() {
+    // Sites are coupled to the next but one: on a line even and odd ones are two chains.
+    let list = items(
+        "model M { label i in 0..N; param m: Real at nodes; param e: Real; field q: Real at nodes;
+         lagrangian = m*(next(q) - q)^2/(2*h) - h*e*(next(next(q, i), i) - q)^4; }",
+    );
+    let sums = list
+        .iter()
+        .filter(|l| l.contains("∑_{i=0}^N p_{i,k} (exact"));
+    assert_eq!(sums.count(), 1, "{list:#?}");
+    assert!(list.iter().any(|l| l.starts_with("What else")), "{list:#?}");
+    assert!(!list.iter().any(|l| l.contains("p_{0,k}")), "{list:#?}");
+}
+
+#[test]
+fn names_are_those_of_longer_lattices() {
+    let model = pipeline::parse_source(PINNED).unwrap();
+    let lattice = Lattice::read(&model).unwrap();
+    let short = pipeline::representative(&model, &lattice).unwrap();
+    for more in [1, 3] {
+        let mut choice = short.clone().with_end(&lattice, true, "load").unwrap();
+        choice.counts[0] += more;
+        let (unfolded, d) = pipeline::derive_lattice(&model, &lattice, &choice).unwrap();
+        let names: Vec<String> = d
+            .invariants
+            .iter()
+            .map(|v| unfolded.plain(&v.name))
+            .collect();
+        assert!(
+            names.contains(&"total momentum across F g".to_owned()),
+            "{names:?}"
+        );
+    }
+}
