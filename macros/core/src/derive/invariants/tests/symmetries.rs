@@ -335,7 +335,8 @@ fn about_a_place_that_a_parameter_is() {
         "let w = pos(G) - o",
         "let w = pos(G) - p",
         &["spatial_momentum_angular_about_o"],
-        &[],
+        // Turns about the line through both places.
+        &["joint_momentum_linear_across_o_p_angular_o_p"],
     );
 }
 
