@@ -383,7 +383,7 @@ impl Reader<'_> {
         let found = found.map_err(|e| match e {
             Unstarted::Missing(name) => {
                 format!(
-                    "`parameters.{}`, which the momenta of velocities take, is missing or no finite number",
+                    "missing key `parameters.{}`, or no finite number there: the momenta of velocities take it",
                     ascii(&name)
                 )
             }
