@@ -83,7 +83,7 @@ fn a_fluid_over_topography_has_the_lengths_of_its_domain() {
         "by-hand.clebsch",
         &text
             .replace(" given b(Vec<2>): Real = case;", "")
-            .replace("b(X)", "cos(2*3.141592653589793*X[1]/2.0)/10"),
+            .replace("b(X)", "cos(2*(245850922/78256779)*X[1]/2.0)/10"),
     );
     let bare = wide
         .replace("b = \"0.1*cos(2*pi*x/Lx)\"", "")

@@ -15,8 +15,8 @@ use nalgebra::SMatrix;
 /// bounded by the product of the lengths of its factors; those of the energy are the kinetic and the
 /// potential energy.
 ///
-/// A momentum counts as not less than the impulse that forces give it in a step, which at equilibrium cancel to their
-/// rounding. A body that stays at rest without forces has no momentum to compare with, one without weight no potential: an
+/// A momentum that is much less than the impulse that forces give it in a step counts as that: at equilibrium impulses cancel to
+/// their rounding. A body that stays at rest without forces has no momentum to compare with, one without weight no potential: an
 /// invariant whose natural scale is zero (or below the smallest normal number, where quotients have
 /// no digits) at every node is measured by its change itself, in its own unit.
 /// [`Drift::is_absolute`] says so.
@@ -51,8 +51,12 @@ impl Drift {
     }
 }
 
-/// A momentum as scales take it, in `count` rows from a first one: where these are less than the impulse that they get at a
-/// node, of this size, all of their entries are made as large. What is left of impulses that cancel is rounding.
+/// A momentum of less than one part in so many of an impulse is not measured by itself: at one part the rounding of the
+/// impulses of 1e4 steps, adding up like a random walk, is some 1e-12 of the momentum.
+const SHARE: f64 = 64.0;
+
+/// A momentum as scales take it, in `count` rows from a first one: where these are much less than the impulse that they get at
+/// a node, of this size, all of their entries are made as large. What is left of impulses that cancel is rounding.
 #[doc(hidden)]
 #[must_use]
 pub fn not_less<const R: usize, const C: usize>(
@@ -68,10 +72,10 @@ pub fn not_less<const R: usize, const C: usize>(
     taken
 }
 
-/// What all entries of these sizes are taken to be, where they are less than the impulse.
+/// What all entries of these sizes are taken to be, where they are much less than the impulse.
 #[doc(hidden)]
 pub fn filled(mut sizes: impl Iterator<Item = f64>, impulse: f64) -> Option<f64> {
-    (impulse.is_finite() && sizes.all(|x| x < impulse)).then_some(impulse)
+    (impulse.is_finite() && sizes.all(|x| SHARE * x < impulse)).then_some(impulse)
 }
 
 /// What was seen of one component so far: its scale is known when the run is over.

@@ -13,8 +13,9 @@ const OTHERWISE: &str = "give functions of matrices or of several arguments by a
 /// The components of a vector by letters, as a paper calls the place.
 const LETTERS: [&str; 3] = ["x", "y", "z"];
 
-/// The ratio of a circle to its diameter to the digits of a double, which exact arithmetic still squares.
-const PI: (i128, i128) = (3_141_592_653_589_793, 1_000_000_000_000_000);
+/// The ratio of a circle to its diameter: the shortest fraction whose quotient is that of a double. Exact arithmetic holds its
+/// fourth power.
+pub const PI: (i128, i128) = (245_850_922, 78_256_779);
 
 /// After `=`: one expression in quotes, or a list of them for the components of a vector; nothing where a path follows.
 pub(super) fn components(c: &mut Cursor) -> Result<Vec<(String, Expression)>, Diagnostic> {

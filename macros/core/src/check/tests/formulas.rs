@@ -53,6 +53,11 @@ fn a_call_is_the_expression_at_its_argument() {
     );
     // A component hides a parameter of its name.
     same("given f(Real): Real = \"A*x\";", "f(u) + u*x - u*x", "A*u");
+    same(
+        "given f(Real): Real = \"cos(2*pi*x)^2*sin(pi*x)\";",
+        "f(u)",
+        "cos(2*(245850922/78256779)*u)^2*sin((245850922/78256779)*u)",
+    );
     // As a case gave it.
     same("given f(Real): Real = case \"A*x\";", "f(u)", "A*u");
 }

@@ -284,7 +284,7 @@ fn subscripted(base: Layout, subs: Vec<Layout>) -> Layout {
     }
 }
 
-/// A fraction that was written as a decimal number of many digits, as that.
+/// A fraction that was written as a decimal number of many digits, or as a multiple of pi, as such a number.
 fn decimal(num: i128, den: i128) -> Option<String> {
     const LARGEST: i128 = 1_000_000;
     let mut rest = den;
@@ -295,7 +295,9 @@ fn decimal(num: i128, den: i128) -> Option<String> {
     }
     #[allow(clippy::cast_precision_loss)]
     let value = num as f64 / den as f64;
-    (den > LARGEST && rest == 1 && (1e-5..1e16).contains(&value)).then(|| value.to_string())
+    let of_pi = den % crate::syntax::formula::PI.1 == 0;
+    let long = den > LARGEST && (rest == 1 || of_pi);
+    (long && (1e-5..1e16).contains(&value)).then(|| value.to_string())
 }
 
 /// The character of a common fraction.
