@@ -15,7 +15,7 @@ const HEADER: [u8; 8] = *b"clebsch\x01";
 /// Kept are the parts that change from step to step. What was given with the model (parameters, the step, the way a
 /// trajectory is stepped) is not, so a snapshot goes into a value started anew from the same data; it then steps as
 /// the one it was taken from, bit for bit. Keep the workspace as well as the state where steps remember earlier ones; along a
-/// line they do not, and the workspace is made again from the state. A trajectory known by its card does not take the snapshot
+/// line the workspace is made again from the state, which goes on to rounding. A trajectory known by its card does not take the snapshot
 /// of another model; a state or a workspace takes any of as many words.
 ///
 /// ```

@@ -72,10 +72,11 @@ pub fn not_less<const R: usize, const C: usize>(
     taken
 }
 
-/// What all entries of these sizes are taken to be, where they are much less than the impulse.
+/// What all entries of these sizes are taken to be, where they are much less than the impulse; a body at rest has no rounding.
 #[doc(hidden)]
-pub fn filled(mut sizes: impl Iterator<Item = f64>, impulse: f64) -> Option<f64> {
-    (impulse.is_finite() && sizes.all(|x| SHARE * x < impulse)).then_some(impulse)
+pub fn filled(sizes: impl Iterator<Item = f64>, impulse: f64) -> Option<f64> {
+    let most = sizes.fold(0.0, larger);
+    (impulse.is_finite() && most > 0.0 && SHARE * most < impulse).then_some(impulse)
 }
 
 /// What was seen of one component so far: its scale is known when the run is over.

@@ -26,7 +26,7 @@ pub use cells::{Cells, Smoothed};
 pub use charges::Charges;
 pub use cloud::Cloud;
 pub use grid::{Basin, Plane};
-pub use linked::{Linked, Woven};
+pub use linked::{Linked, LinkedChainState, Woven};
 pub use named::Named;
 pub use quartic::Quartic;
 pub use rod::Rod;
