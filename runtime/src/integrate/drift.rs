@@ -51,9 +51,9 @@ impl Drift {
     }
 }
 
-/// A momentum of less than one part in so many of an impulse is not measured by itself: at one part the rounding of the
-/// impulses of 1e4 steps, adding up like a random walk, is some 1e-12 of the momentum.
-const SHARE: f64 = 64.0;
+/// A momentum of less than one part in so many of an impulse is its rounding, which adds up like a random walk: that of 1e12
+/// steps is less. Larger ones are measured by themselves, also where strong impulses nearly cancel.
+const SHARE: f64 = 1e9;
 
 /// A momentum as scales take it, in `count` rows from a first one: where these are much less than the impulse that they get at
 /// a node, of this size, all of their entries are made as large. What is left of impulses that cancel is rounding.
