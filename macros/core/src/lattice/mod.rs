@@ -21,8 +21,8 @@ pub use mesh::{Known, Mesh, Source};
 pub use names::{Copied, copy_name};
 pub(crate) use put::any_name;
 pub use range::Range;
+pub(crate) use unfold::{LARGEST, definitions, inlined};
 pub use unfold::{Summand, Unfolded, unfold};
-pub(crate) use unfold::{definitions, inlined};
 
 use crate::diagnostic::Diagnostic;
 use crate::syntax::ast::{Model, Statement};

@@ -214,26 +214,5 @@ fn named(text: String, e: &Expression) -> Expression {
 
 /// Whether a name in the expression is such a one.
 pub(crate) fn any_name(e: &Expression, is: &dyn Fn(&str) -> bool) -> bool {
-    match &e.kind {
-        Kind::Number(_) => false,
-        Kind::Name(n) => is(n),
-        Kind::Sum(terms) => terms.iter().any(|(_, t)| any_name(t, is)),
-        Kind::Product(list) | Kind::Call(_, list) => list.iter().any(|a| any_name(a, is)),
-        Kind::Quotient(a, b) => any_name(a, is) || any_name(b, is),
-        Kind::Neg(a) | Kind::Transpose(a) | Kind::Power(a, _) | Kind::Component(a, _) => {
-            any_name(a, is)
-        }
-    }
-}
-
-/// How many quantities, numbers and operations an expression has.
-pub(super) fn size(e: &Expression) -> usize {
-    let list = |l: &[Expression]| l.iter().map(size).sum::<usize>();
-    1 + match &e.kind {
-        Kind::Number(_) | Kind::Name(_) => 0,
-        Kind::Sum(terms) => terms.iter().map(|(_, t)| size(t)).sum(),
-        Kind::Product(l) | Kind::Call(_, l) => list(l),
-        Kind::Quotient(a, b) => size(a) + size(b),
-        Kind::Neg(a) | Kind::Transpose(a) | Kind::Power(a, _) | Kind::Component(a, _) => size(a),
-    }
+    e.name_that(is).is_some()
 }

@@ -23,7 +23,7 @@ use std::collections::BTreeMap;
 use warned::without_a_ring;
 
 /// Largest Lagrangian that is written out, in quantities, numbers and operations.
-const LARGEST: usize = 60_000;
+pub(crate) const LARGEST: usize = 60_000;
 
 /// Most copies of quantities that are written out.
 const MOST_COPIES: usize = 20_000;

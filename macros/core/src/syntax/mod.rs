@@ -2,12 +2,14 @@
 //! function for each statement. Knows no names and no shapes; those are `check`'s.
 
 pub mod ast;
+mod called;
 mod characters;
 mod delimiters;
 mod expression;
 pub mod formula;
 mod label;
 mod mesh;
+mod parts;
 mod statement;
 mod text;
 mod token;

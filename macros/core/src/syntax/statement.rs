@@ -2,6 +2,7 @@
 //! reported and skipped up to its `;`, so that one run shows every mistake.
 
 use super::ast::{Comparison, Expression, Kindred, Model, Name, NodeRule, Size, Statement};
+use super::called;
 use super::expression::expression;
 use super::formula;
 use super::label;
@@ -51,7 +52,7 @@ pub fn model(c: &mut Cursor) -> Result<Model, Errors> {
         );
     }
     errors.propagate()?;
-    formula::written_out(Model {
+    called::written_out(Model {
         docs,
         public,
         name,

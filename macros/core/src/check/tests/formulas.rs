@@ -63,6 +63,15 @@ fn a_call_is_the_expression_at_its_argument() {
 }
 
 #[test]
+fn calls_within_calls_do_not_grow_without_bound() {
+    let nested = |deep: usize| (0..deep).fold("u".to_owned(), |e, _| format!("f({e})"));
+    let given = "given f(Real): Real = \"x*x\";";
+    same(given, &nested(4), "u^16");
+    let told = refused(given, &nested(60));
+    assert!(told.contains("too large where they are called"), "{told}");
+}
+
+#[test]
 fn what_is_stored_derives_the_same_model() {
     let given =
         "given b(Vec<2>): Real = case \"A*x*y\"; given R(Vec<2>): Vec<2> = [\"pi*y\", \"x\"];";

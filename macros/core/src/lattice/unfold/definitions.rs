@@ -2,7 +2,7 @@
 
 use super::LARGEST;
 use crate::diagnostic::{Diagnostic, Errors};
-use crate::lattice::put::{any_name, size};
+use crate::lattice::put::any_name;
 use crate::syntax::ast::{Expression, Kind, Model, Name, Statement};
 use std::collections::BTreeMap;
 
@@ -21,7 +21,7 @@ pub(crate) fn definitions(model: &Model) -> Result<BTreeMap<String, Expression>,
     for _ in 0..=stated.len() {
         for (name, value) in &stated {
             let put = inlined(value, &out);
-            if size(&put) > LARGEST {
+            if put.size() > LARGEST {
                 let message = format!("what `{}` stands for is too large", name.text);
                 let d = Diagnostic::new(name.place, message);
                 return Err(d
@@ -40,25 +40,11 @@ pub(crate) fn definitions(model: &Model) -> Result<BTreeMap<String, Expression>,
 
 /// With definitions in the place of their names.
 pub(crate) fn inlined(e: &Expression, lets: &BTreeMap<String, Expression>) -> Expression {
-    let one = |a: &Expression| Box::new(inlined(a, lets));
-    let all = |l: &[Expression]| l.iter().map(|a| inlined(a, lets)).collect();
-    let kind = match &e.kind {
-        Kind::Name(n) => match lets.get(n) {
-            Some(value) => value.kind.clone(),
-            None => e.kind.clone(),
-        },
-        Kind::Number(_) => e.kind.clone(),
-        Kind::Sum(terms) => Kind::Sum(terms.iter().map(|(m, t)| (*m, inlined(t, lets))).collect()),
-        Kind::Product(list) => Kind::Product(all(list)),
-        Kind::Quotient(a, b) => Kind::Quotient(one(a), one(b)),
-        Kind::Neg(a) => Kind::Neg(one(a)),
-        Kind::Transpose(a) => Kind::Transpose(one(a)),
-        Kind::Power(a, q) => Kind::Power(one(a), *q),
-        Kind::Component(a, indices) => Kind::Component(one(a), indices.clone()),
-        Kind::Call(f, list) => Kind::Call(f.clone(), all(list)),
-    };
-    Expression {
-        kind,
-        place: e.place,
-    }
+    e.replaced(&|e| match &e.kind {
+        Kind::Name(n) => lets.get(n).map(|value| Expression {
+            kind: value.kind.clone(),
+            place: e.place,
+        }),
+        _ => None,
+    })
 }

@@ -5,7 +5,7 @@ use super::warned::one_neighbour;
 use super::{LARGEST, Summand, Writer};
 use crate::diagnostic::Diagnostic;
 use crate::lattice::names::copy_name;
-use crate::lattice::put::{Put, size};
+use crate::lattice::put::Put;
 use crate::lattice::range::{of_one_neighbour, reach};
 use crate::lattice::summands::summands;
 use crate::syntax::ast::{Alternative, Expression, Kind, Statement};
@@ -41,7 +41,7 @@ impl Writer<'_> {
                     }
                 }
             }
-            large += copies.iter().map(size).sum::<usize>();
+            large += copies.iter().map(Expression::size).sum::<usize>();
             if large > LARGEST {
                 let words = self.choice.words(self.lattice);
                 let message = format!("this lattice is too large to be written out: {words}");

@@ -1,0 +1,87 @@
+//! What an expression is made of: names in it, its size, and the same expression with parts of it replaced.
+
+use super::ast::{Expression, Kind, Statement};
+
+impl Expression {
+    /// What it is made of directly, in order.
+    fn parts(&self) -> Vec<&Expression> {
+        match &self.kind {
+            Kind::Number(_) | Kind::Name(_) => Vec::new(),
+            Kind::Sum(terms) => terms.iter().map(|(_, t)| t).collect(),
+            Kind::Product(list) | Kind::Call(_, list) => list.iter().collect(),
+            Kind::Quotient(a, b) => vec![a, b],
+            Kind::Neg(a) | Kind::Transpose(a) | Kind::Power(a, _) | Kind::Component(a, _) => {
+                vec![a]
+            }
+        }
+    }
+
+    /// The same, to be changed.
+    pub(super) fn parts_mut(&mut self) -> Vec<&mut Expression> {
+        match &mut self.kind {
+            Kind::Number(_) | Kind::Name(_) => Vec::new(),
+            Kind::Sum(terms) => terms.iter_mut().map(|(_, t)| t).collect(),
+            Kind::Product(list) | Kind::Call(_, list) => list.iter_mut().collect(),
+            Kind::Quotient(a, b) => vec![a, b],
+            Kind::Neg(a) | Kind::Transpose(a) | Kind::Power(a, _) | Kind::Component(a, _) => {
+                vec![a]
+            }
+        }
+    }
+
+    /// The first name of a quantity that is such a one.
+    pub(crate) fn name_that(&self, is: &dyn Fn(&str) -> bool) -> Option<&str> {
+        match &self.kind {
+            Kind::Name(n) => is(n).then_some(n),
+            _ => self.parts().into_iter().find_map(|part| part.name_that(is)),
+        }
+    }
+
+    /// How many quantities, numbers and operations it has.
+    pub(crate) fn size(&self) -> usize {
+        1 + self.parts().into_iter().map(Self::size).sum::<usize>()
+    }
+
+    /// The same with what `of` puts in the place of parts, larger ones first; into what is put in it does not look.
+    pub(crate) fn replaced(&self, of: &dyn Fn(&Expression) -> Option<Expression>) -> Expression {
+        if let Some(put) = of(self) {
+            return put;
+        }
+        let mut out = self.clone();
+        for part in out.parts_mut() {
+            *part = part.replaced(of);
+        }
+        out
+    }
+}
+
+impl Statement {
+    /// Every expression in it, to be changed.
+    pub(super) fn expressions_mut(&mut self) -> Vec<&mut Expression> {
+        match self {
+            Statement::Assume { left, right, .. } | Statement::Hold { left, right, .. } => {
+                vec![left, right]
+            }
+            Statement::Advected { definition, .. } => definition.iter_mut().collect(),
+            Statement::Constraint { value, .. }
+            | Statement::Let { value, .. }
+            | Statement::Scale(value)
+            | Statement::Lagrangian(value) => vec![value],
+            Statement::End { alternatives, .. } => alternatives
+                .iter_mut()
+                .flat_map(|a| a.terms.iter_mut())
+                .collect(),
+            Statement::Label { .. }
+            | Statement::Periodic(_)
+            | Statement::Dim { .. }
+            | Statement::Time { .. }
+            | Statement::Param { .. }
+            | Statement::Group { .. }
+            | Statement::Field { .. }
+            | Statement::Given { .. }
+            | Statement::Grid(_)
+            | Statement::Mesh { .. }
+            | Statement::Node(..) => Vec::new(),
+        }
+    }
+}
