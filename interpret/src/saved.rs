@@ -3,7 +3,7 @@
 use crate::library::Factor;
 use crate::sites::Column;
 use crate::value::Value;
-use clebsch::saved::{Saved, Words};
+use clebsch::saved::{Saved, Words, sites};
 use std::sync::Arc;
 
 /// Parts that change. The kind of a value does not, but for what may be there or not.
@@ -30,8 +30,8 @@ impl Saved for Value<f64> {
             Value::QuaternionBody(body) => Arc::make_mut(body).words(words),
             Value::LeftFactor(factor) => factor.words(words),
             Value::Free(free) => free.words(words),
-            Value::Struct(s) => all(&mut s.values, words),
-            Value::List(list) => all(list, words),
+            Value::Struct(s) => sites(&mut s.values, words),
+            Value::List(list) => sites(list, words),
             Value::Sites(column) => column.words(words),
             Value::Attitude(x) => x.words(words),
             Value::Search(held) => held.words(words),
@@ -59,12 +59,6 @@ impl Saved for Value<f64> {
             | Value::Failed(_) => words.refuse(),
         }
     }
-}
-
-/// The values of a list, whose number does not change.
-pub(crate) fn all(list: &mut [Value<f64>], words: &mut Words) {
-    words.same(list.len() as u64);
-    list.iter_mut().for_each(|value| value.words(words));
 }
 
 /// A number for each kind of value whose words differ.

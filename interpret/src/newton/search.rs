@@ -5,10 +5,9 @@ use super::shape::Shape;
 use super::solve::{self, Solve};
 use crate::code::{Exit, Places, unfit};
 use crate::library::NAMES;
-use crate::saved;
 use crate::value::{Layout, Struct, Value};
 use clebsch::Real;
-use clebsch::saved::Words;
+use clebsch::saved::{Words, sites};
 use clebsch::solvers::newton::{AnySearch, Chart, Purpose, Solved};
 use std::sync::{Arc, OnceLock};
 
@@ -55,7 +54,7 @@ impl Held {
     pub fn words(&mut self, words: &mut Words) {
         let chart = &self.sought.shape;
         self.search.words(words, chart, |element, words| {
-            saved::all(element, words);
+            sites(element, words);
         });
     }
 
