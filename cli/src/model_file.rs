@@ -6,6 +6,7 @@ use crate::case_file::labels::{self, Stated};
 use crate::failure::Failure;
 use crate::gallery::{Case, Entry, Gallery};
 use crate::plain::shown;
+use crate::plan;
 use crate::suggestion::did_you_mean;
 use clebsch::card::{Card, Field, Kind};
 use clebsch_core::lattice::Choice;
@@ -57,17 +58,14 @@ pub(crate) fn read(
 ) -> Result<Entry, Failure> {
     let text = text(gallery, name)?;
     let name = shown(name).to_string();
-    let in_file = case.filter(|c| Path::new(c).extension().is_some_and(|end| end == "toml"));
-    let of_case = match in_file {
-        Some(file) => Some((file, of_case(file)?)),
-        None => None,
-    };
-    let of_case = of_case.as_ref().map(|(file, text)| (*file, text.as_str()));
+    let in_file = case.filter(|c| plan::is_file(c));
+    let case_text = in_file.map(plan::case_text).transpose()?;
+    let of_case = in_file.zip(case_text.as_deref());
     let text = case_file::functions::put_in(&text, of_case)?;
     let stated = Stated::read(&text);
     let choice = match &stated {
         None => None,
-        Some(stated) => chosen(stated, case)?,
+        Some(stated) => chosen(stated, of_case)?,
     };
     let read = match &choice {
         None => clebsch_interpret::card_and_warnings(&text),
@@ -106,24 +104,11 @@ pub(crate) fn read(
     Ok(Entry { card, cases })
 }
 
-/// The text of a case file.
-fn of_case(file: &str) -> Result<String, Failure> {
-    std::fs::read_to_string(file).map_err(|error| {
-        Failure::Usage(format!(
-            "cannot read the case file {}: {error}",
-            shown(file)
-        ))
-    })
-}
-
 /// How many sites there are and how the line ends: as the case says, if one is given by a file.
-fn chosen(stated: &Stated, case: Option<&str>) -> Result<Option<Choice>, Failure> {
-    match case.filter(|c| Path::new(c).extension().is_some_and(|end| end == "toml")) {
+fn chosen(stated: &Stated, case: Option<(&str, &str)>) -> Result<Option<Choice>, Failure> {
+    match case {
         None => Ok(stated.default_choice()),
-        Some(file) => {
-            let text = of_case(file)?;
-            labels::choice(file, &text, stated).map(Some)
-        }
+        Some((file, text)) => labels::choice(file, text, stated).map(Some),
     }
 }
 
@@ -159,7 +144,7 @@ fn sample(card: &Card, file: &str) -> Case {
 }
 
 /// The same of a card.
-pub(crate) fn is_held(card: &Card) -> bool {
+fn is_held(card: &Card) -> bool {
     pipeline::parse_source(card.source).is_ok_and(|model| has_holds(&model))
 }
 

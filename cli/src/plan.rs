@@ -173,19 +173,27 @@ impl Plan {
 }
 
 /// A case file ends in .toml; anything else is the name of a case.
-fn is_file(name: &str) -> bool {
+pub(crate) fn is_file(name: &str) -> bool {
     let extension = std::path::Path::new(name).extension();
     extension.is_some_and(|extension| extension == "toml")
 }
 
-/// The case of a file, by the first card whose fields it fits; the message is that of the first.
-fn read(file: &str, cards: &[Card]) -> Result<Located, Failure> {
-    let text = std::fs::read_to_string(file).map_err(|error| {
+/// The text of a case file.
+///
+/// # Errors
+/// Usage: it cannot be read.
+pub(crate) fn case_text(file: &str) -> Result<String, Failure> {
+    std::fs::read_to_string(file).map_err(|error| {
         Failure::Usage(format!(
             "cannot read the case file {}: {error}",
             shown(file)
         ))
-    })?;
+    })
+}
+
+/// The case of a file, by the first card whose fields it fits; the message is that of the first.
+fn read(file: &str, cards: &[Card]) -> Result<Located, Failure> {
+    let text = case_text(file)?;
     let mut first = None;
     for card in cards {
         let located = match Stated::read(card.source) {

@@ -12,7 +12,7 @@ use clebsch_core::syntax::ast::{Model, Name, Statement};
 use clebsch_core::syntax::formula::{self, Open};
 use std::fmt::Write as _;
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::DeValue;
 
 /// The table of a case.
 pub(super) const TABLE: &str = "functions";
@@ -57,14 +57,11 @@ fn of_case(
     stated: Option<&Stated>,
 ) -> Result<Vec<Vec<String>>, Failure> {
     let file = File::new(name, case);
-    let document = DeTable::parse(case).map_err(|error| {
-        let message = format!("not TOML: {}", error.message());
-        file.wrong(error.span().as_ref(), &message)
-    })?;
+    let document = file.document()?;
     let top = document.get_ref();
     let example = |f: &Open| {
         let argument = f.argument.components().unwrap_or(1);
-        toml_of(&sample(f.components, argument, false))
+        formula::in_quotes(&sample(f.components, argument, false))
     };
     let Some(given) = table(&file, top, TABLE)? else {
         let each = open
@@ -186,7 +183,7 @@ fn replaced(text: &str, open: &[Open], written: &[Vec<String>]) -> String {
     let mut all: Vec<(usize, String)> = open
         .iter()
         .zip(written)
-        .filter_map(|(f, each)| Some((after_word(text, f.at?)?, toml_of(each))))
+        .filter_map(|(f, each)| Some((after_word(text, f.at?)?, formula::in_quotes(each))))
         .collect();
     all.sort_by_key(|(at, _)| std::cmp::Reverse(*at));
     for (at, list) in all {
@@ -208,16 +205,7 @@ fn after_word(text: &str, (line, column): (usize, usize)) -> Option<usize> {
     None
 }
 
-/// One string, or a list of them.
-fn toml_of(each: &[String]) -> String {
-    let quoted: Vec<String> = each.iter().map(|e| format!("{e:?}")).collect();
-    match quoted.as_slice() {
-        [only] => only.clone(),
-        all => format!("[{}]", all.join(", ")),
-    }
-}
-
-/// A function to start from: waves around a domain, or a bowl.
+/// A function to start from: waves.
 fn sample(components: usize, argument: usize, domain: bool) -> Vec<String> {
     let place = ["x", "y", "z"];
     let wave = |i: usize| {
@@ -231,18 +219,13 @@ fn sample(components: usize, argument: usize, domain: bool) -> Vec<String> {
 }
 
 /// Whether a model has functions that its case gives.
-pub(super) fn are_given(source: &str) -> bool {
-    let model = pipeline::parse_source(source).ok();
-    let open = model.and_then(|model| formula::open(&model).ok());
-    open.is_some_and(|open| !open.is_empty())
+pub(super) fn are_given(model: &Model) -> bool {
+    formula::open(model).is_ok_and(|open| !open.is_empty())
 }
 
 /// The table with samples, for the case of a model that needs one.
-pub(super) fn sample_table(text: &mut String, source: &str, domain: bool) {
-    let Ok(model) = pipeline::parse_source(source) else {
-        return;
-    };
-    let open = formula::open(&model).unwrap_or_default();
+pub(super) fn sample_table(text: &mut String, model: &Model, domain: bool) {
+    let open = formula::open(model).unwrap_or_default();
     if open.is_empty() {
         return;
     }
@@ -256,7 +239,7 @@ pub(super) fn sample_table(text: &mut String, source: &str, domain: bool) {
             text,
             "{} = {}",
             f.name.text,
-            toml_of(&sample(f.components, argument, domain))
+            formula::in_quotes(&sample(f.components, argument, domain))
         );
     }
 }

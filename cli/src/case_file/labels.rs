@@ -91,12 +91,7 @@ pub(crate) fn choice(name: &str, text: &str, stated: &Stated) -> Result<Choice, 
     let Some(mut choice) = stated.default_choice() else {
         return Err(file.wrong(None, "the model's lattice cannot be written out"));
     };
-    let document = DeTable::parse(text).map_err(|error| {
-        file.wrong(
-            error.span().as_ref(),
-            &format!("not TOML: {}", error.message()),
-        )
-    })?;
+    let document = file.document()?;
     let top = document.get_ref();
     let Some(labels) = table(&file, top, "labels")? else {
         let keys: Vec<String> = lattice
@@ -236,12 +231,7 @@ pub(crate) fn written_out(
     let Some(copies) = stated.copies(&choice) else {
         return Err(file.wrong(None, "the model's lattice cannot be written out"));
     };
-    let document = DeTable::parse(text).map_err(|error| {
-        file.wrong(
-            error.span().as_ref(),
-            &format!("not TOML: {}", error.message()),
-        )
-    })?;
+    let document = file.document()?;
     let top = document.get_ref();
     let mut out = WrittenOut {
         text: String::new(),
@@ -257,6 +247,12 @@ pub(crate) fn written_out(
         "initial",
         "bounds",
     ];
+    if let Some((key, _)) = top.get_key_value(super::functions::TABLE)
+        && !super::functions::are_given(&stated.model)
+    {
+        let message = format!("unknown key `{}` at the top level", key.get_ref());
+        return Err(file.wrong(Some(&key.span()), &message));
+    }
     for (key, value) in top {
         if !TABLES.contains(&key.get_ref().as_ref()) {
             let line = format!("{} = {}", key_text(key.get_ref()), raw(&value.span()));

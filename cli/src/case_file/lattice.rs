@@ -55,7 +55,7 @@ pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named
         let _ = writeln!(text, "{} = {}     # {what}", l.index.text, choice.count(i));
     }
     ends(&mut text, stated, choice);
-    super::functions::sample_table(&mut text, card.source, space.is_some());
+    super::functions::sample_table(&mut text, &stated.model, space.is_some());
     if let Some(space) = &space {
         fluid::domain(&mut text, stated, space);
         fluid::tables(&mut text, card, stated, space);

@@ -6,6 +6,8 @@ use crate::gallery::Case;
 use crate::plain::shown;
 use std::collections::BTreeMap;
 use std::ops::Range;
+use toml::Spanned;
+use toml::de::DeTable;
 
 /// A case and the lines its values came from.
 #[derive(Clone, Debug)]
@@ -47,6 +49,17 @@ impl<'a> File<'a> {
             ends: ends(text),
             origin: Some(origin),
         }
+    }
+
+    /// What it holds.
+    ///
+    /// # Errors
+    /// Usage: it is no TOML, with the line.
+    pub fn document(&self) -> Result<Spanned<DeTable<'a>>, Failure> {
+        DeTable::parse(self.text).map_err(|error| {
+            let message = format!("not TOML: {}", error.message());
+            self.wrong(error.span().as_ref(), &message)
+        })
     }
 
     /// Line, from 1, where `span` begins.

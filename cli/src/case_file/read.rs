@@ -10,6 +10,7 @@ use crate::gallery::Case;
 use crate::plain::shown;
 use crate::suggestion::did_you_mean;
 use clebsch::card::{Card, Field};
+use clebsch_core::pipeline;
 use std::collections::{BTreeMap, HashSet};
 use std::ops::Range;
 use toml::Spanned;
@@ -51,17 +52,17 @@ pub(crate) fn read_written_out(
 }
 
 fn located(file: &File<'_>, card: &Card) -> Result<Located, Failure> {
-    let (name, text) = (file.name, file.text);
-    let document = DeTable::parse(text).map_err(|error| {
-        file.wrong(
-            error.span().as_ref(),
-            &format!("not TOML: {}", error.message()),
-        )
-    })?;
+    let name = file.name;
+    let document = file.document()?;
     let top = document.get_ref();
     let mut known = KEYS.to_vec();
-    if super::functions::are_given(card.source) {
-        known.push(super::functions::TABLE);
+    let functions = super::functions::TABLE;
+    // The model is read again for those cases alone.
+    let model = top
+        .contains_key(functions)
+        .then(|| pipeline::parse_source(card.source));
+    if matches!(&model, Some(Ok(model)) if super::functions::are_given(model)) {
+        known.push(functions);
     }
     known_keys(file, top, &known, "at the top level", None)?;
     let model = required(

@@ -2,10 +2,11 @@
 //! Takes a card and a case; gives the text, with comments on shape, frame and units.
 
 use crate::gallery::Case;
-use crate::model_file::{OF_HELD, is_held};
+use crate::model_file::{OF_HELD, has_holds};
 use crate::plain::shown;
 use crate::verdict::DEFAULT_BOUND;
 use clebsch::card::{Card, Conserved, Field, Kind};
+use clebsch_core::pipeline;
 use std::fmt::Write as _;
 
 /// The TOML text of `case`, of the model that is called `named` on the command line: its name, or a path.
@@ -24,7 +25,8 @@ pub fn write(card: &Card, case: &Case, named: &str) -> String {
         &mut text,
         "Units: any consistent system. The model fixes none; time is in the unit of h.",
     );
-    if is_held(card) {
+    let model = pipeline::parse_source(card.source).ok();
+    if model.as_ref().is_some_and(has_holds) {
         comment(&mut text, OF_HELD);
     }
     let mut line = |key: &str, value: String| {
@@ -39,7 +41,9 @@ pub fn write(card: &Card, case: &Case, named: &str) -> String {
         "steps",
         format!("{}     # number of steps, at least 1", case.steps),
     );
-    super::functions::sample_table(&mut text, card.source, false);
+    if let Some(model) = &model {
+        super::functions::sample_table(&mut text, model, false);
+    }
     table(&mut text, "parameters", card.parameters, &case.parameters);
     table(&mut text, "initial", card.initial, &case.initial);
     bounds(&mut text, card, case);
