@@ -11,6 +11,14 @@ use crate::value::{Frame, Value};
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
+/// The ratio of a circle to its diameter, by the name that the standard library gives it.
+fn is_pi(e: &syn::Expr) -> bool {
+    let syn::Expr::Path(path) = e else {
+        return false;
+    };
+    path.path.segments.last().is_some_and(|s| s.ident == "PI")
+}
+
 impl<T: Lowered> Lower<'_, '_, T> {
     /// A function of the runtime, if there is one.
     pub(super) fn native(
@@ -96,6 +104,10 @@ impl<T: Lowered> Lower<'_, '_, T> {
         let names: Vec<String> = path.segments.iter().map(|s| s.ident.to_string()).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         match names.as_slice() {
+            ["T", "from_f64"] if c.args.iter().any(is_pi) => {
+                let value = T::from_f64(std::f64::consts::PI);
+                return Ok(Code::Constant(Value::Real(value)));
+            }
             ["T", "from_f64"] => {
                 let [argument] = &self.all(c.args.iter())?[..] else {
                     return Err(refuse(c));

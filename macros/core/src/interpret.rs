@@ -233,6 +233,7 @@ pub fn evaluate(symbols: &Symbols, e: &Expr, values: &Assignment) -> Result<Matr
     let (rows, cols) = (values.dim(e.shape().rows)?, values.dim(e.shape().cols)?);
     Ok(match e.node() {
         Node::Number(q) => Matrix::scalar(q.value()),
+        Node::Constant(c) => Matrix::scalar(c.value()),
         Node::Letter(l) => values.get(symbols, *l)?,
         Node::Identity(_) => Matrix::identity(rows),
         Node::Zero(_) => Matrix::zeros(rows, cols),

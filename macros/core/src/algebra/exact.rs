@@ -254,6 +254,7 @@ impl<'a> Point<'a> {
         }
         Some(match e.node() {
             Node::Number(q) => Matrix::number(of_rational(*q)?),
+            Node::Constant(c) => Matrix::number(mix(c.bits())),
             Node::Letter(l) => self.letter(*l)?,
             Node::Identity(_) => Matrix::identity(rows),
             Node::Zero(_) => Matrix::from_fn(rows, cols, |_, _| 0),

@@ -20,6 +20,7 @@ impl Algebra<'_> {
         }
         match e.node() {
             Node::Number(q) => Poly::constant(shape, *q),
+            Node::Constant(c) => self.scalar_atom(Atom::Constant(*c)),
             Node::Zero(_) => Poly::zero(shape),
             Node::Identity(_) => Poly::constant(shape, Rational::ONE),
             Node::Letter(at) if shape.is_scalar() => self.scalar_atom(Atom::Letter(*at)),
@@ -314,7 +315,7 @@ impl Algebra<'_> {
         match atom {
             Atom::Letter(at) => self.symbols.get(at.symbol).role == Role::Step,
             Atom::Call(function, _) => matches!(function, Function::Exp | Function::Cosh),
-            Atom::Dimension(_) => true,
+            Atom::Dimension(_) | Atom::Constant(_) => true,
             Atom::Trace(_)
             | Atom::Bracket(_)
             | Atom::Det(_)

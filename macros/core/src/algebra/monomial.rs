@@ -3,11 +3,13 @@
 
 use super::factor::{Source, Word};
 use super::rational::Rational;
-use crate::expr::{Function, Letter};
+use crate::expr::{Constant, Function, Letter};
 
 /// A number that the normal form does not open further.
 #[derive(Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub enum Atom {
+    /// A number that exact arithmetic does not follow.
+    Constant(Constant),
     /// A scalar letter.
     Letter(Letter),
     /// The size of a named dimension.

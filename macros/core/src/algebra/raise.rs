@@ -196,6 +196,7 @@ impl Algebra<'_> {
         let number = |i: u32| self.numbers.borrow()[i as usize].meaning.clone();
         match atom {
             Atom::Letter(at) => expr::letter(self.symbols, at.symbol, at.shift),
+            Atom::Constant(c) => expr::constant(*c),
             Atom::Dimension(i) => expr::trace(expr::identity(Dim::Named(*i))),
             Atom::Trace(word) => expr::trace(self.raise_word(word)),
             Atom::Bracket(word) => {

@@ -30,6 +30,7 @@ pub fn terms(e: &Expression) -> Vec<&Expression> {
         Kind::Sum(list) => list.iter().flat_map(|(_, t)| terms(t)).collect(),
         Kind::Neg(a) | Kind::Quotient(a, _) => terms(a),
         Kind::Number(_)
+        | Kind::Constant(_)
         | Kind::Name(_)
         | Kind::Product(_)
         | Kind::Transpose(_)
@@ -155,7 +156,7 @@ impl<'a> Elaborator<'a> {
             Kind::Number(_) | Kind::Power(..) if !matches!(&e.kind, Kind::Power(_, q) if *q == Rational::MINUS_ONE) => {
                 Some(Shape::SCALAR)
             }
-            Kind::Number(_) => Some(Shape::SCALAR),
+            Kind::Number(_) | Kind::Constant(_) => Some(Shape::SCALAR),
             Kind::Power(a, _) => self.hint(a),
             Kind::Name(n) if n == "Id" => None,
             Kind::Name(n) if UNITS.contains(&n.as_str()) => None,
@@ -223,6 +224,7 @@ impl<'a> Elaborator<'a> {
         match &e.kind {
             Kind::Number(q) if q.is_zero() => Ok(expr::zero(expected.unwrap_or(Shape::SCALAR))),
             Kind::Number(q) => Ok(expr::number(*q)),
+            Kind::Constant(c) => Ok(expr::constant(*c)),
             Kind::Name(n) => self.name(n, e.place, expected),
             Kind::Neg(a) => Ok(expr::neg(self.elaborate(a, expected)?)),
             Kind::Sum(terms) => self.sum(terms, expected),

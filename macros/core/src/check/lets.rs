@@ -52,7 +52,7 @@ fn lets(model: &Model) -> Vec<Let<'_>> {
 fn names(e: &Expression) -> Vec<&str> {
     match &e.kind {
         Kind::Name(n) => vec![n],
-        Kind::Number(_) => Vec::new(),
+        Kind::Number(_) | Kind::Constant(_) => Vec::new(),
         Kind::Sum(terms) => terms.iter().flat_map(|(_, t)| names(t)).collect(),
         Kind::Product(list) | Kind::Call(_, list) => list.iter().flat_map(names).collect(),
         Kind::Quotient(a, b) => [names(a), names(b)].concat(),

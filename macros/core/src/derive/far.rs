@@ -85,6 +85,7 @@ impl Far<'_> {
         };
         match e.node() {
             Node::Number(_)
+            | Node::Constant(_)
             | Node::Identity(_)
             | Node::Zero(_)
             | Node::Unit(..)

@@ -78,6 +78,7 @@ impl Rounding<'_> {
         };
         match e.node() {
             Node::Number(_)
+            | Node::Constant(_)
             | Node::Identity(_)
             | Node::Zero(_)
             | Node::Unit(..)

@@ -156,6 +156,7 @@ fn is_square(e: &Expr) -> bool {
             None => is_square(a),
         },
         Node::Number(q) => !q.is_negative() && !q.is_zero(),
+        Node::Constant(_) => true,
         Node::Sum(list) | Node::Product(list) => list.iter().all(is_square),
         Node::Quotient(a, b) => is_square(a) && is_square(b),
         _ => false,

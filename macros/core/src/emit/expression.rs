@@ -5,7 +5,7 @@ use super::sizes::size;
 use crate::algebra::Rational;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
-use crate::expr::{self, Expr, Function, Letter, Map, Node, Part};
+use crate::expr::{self, Constant, Expr, Function, Letter, Map, Node, Part};
 use crate::schedule::{self, Program};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -80,6 +80,15 @@ pub fn rational(q: Rational) -> TokenStream {
     quote!(T::from_f64(#value))
 }
 
+/// A number that is kept as a double.
+fn constant(c: Constant) -> TokenStream {
+    if c == Constant::PI {
+        return quote!(T::from_f64(::core::f64::consts::PI));
+    }
+    let value = Literal::f64_unsuffixed(c.value());
+    quote!(T::from_f64(#value))
+}
+
 /// Emits expressions over one set of bindings.
 pub struct Writer<'a> {
     /// The symbols.
@@ -100,6 +109,7 @@ impl Writer<'_> {
             Node::Neg(_) | Node::Product(_) | Node::Quotient(..) => false,
             Node::Power(_, q) => *q != Rational::integer(2),
             Node::Number(_)
+            | Node::Constant(_)
             | Node::Letter(_)
             | Node::Identity(_)
             | Node::Zero(_)
@@ -129,6 +139,7 @@ impl Writer<'_> {
         let (rows, cols) = dims(self.symbols, e.shape());
         match e.node() {
             Node::Number(q) => rational(*q),
+            Node::Constant(c) => constant(*c),
             Node::Letter(l) => {
                 let local = self.bindings.local(self.symbols, *l);
                 quote!(#local)

@@ -7,7 +7,7 @@ use super::functional;
 use super::presence::Marks;
 use super::shape::{Dim, Shape, Structure};
 use super::symbol::{SymbolId, Symbols};
-use super::{Expr, Function, Inner, Letter, Map, Node, Part, Shift};
+use super::{Constant, Expr, Function, Inner, Letter, Map, Node, Part, Shift};
 use crate::algebra::Rational;
 use crate::work;
 use core::hash::{Hash, Hasher};
@@ -286,6 +286,11 @@ pub fn mul(a: Expr, b: Expr) -> Expr {
     product([a, b])
 }
 
+/// A number that exact arithmetic does not follow.
+pub fn constant(c: Constant) -> Expr {
+    make(Node::Constant(c), Shape::SCALAR)
+}
+
 /// `q a` for an exact number.
 pub fn scale(q: Rational, a: Expr) -> Expr {
     product([number(q), a])
@@ -384,6 +389,7 @@ pub fn transpose(symbols: &Symbols, a: Expr) -> Expr {
             known
         }
         Node::Number(_)
+        | Node::Constant(_)
         | Node::Unit(..)
         | Node::Inclusion(..)
         | Node::Power(..)

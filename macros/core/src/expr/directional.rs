@@ -44,6 +44,7 @@ impl Walk<'_> {
         let shape = e.shape();
         match e.node() {
             Node::Number(_)
+            | Node::Constant(_)
             | Node::Identity(_)
             | Node::Zero(_)
             | Node::Unit(..)

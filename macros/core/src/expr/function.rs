@@ -107,6 +107,9 @@ impl Function {
     /// Its value at an argument that is known exactly, where that is a rational number for every
     /// such argument or at 0.
     pub(super) fn at(self, a: &Expr) -> Option<Expr> {
+        if let (Function::Abs, Node::Constant(_)) = (self, a.node()) {
+            return Some(a.clone());
+        }
         let Node::Number(q) = a.node() else {
             return None;
         };

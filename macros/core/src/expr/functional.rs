@@ -219,7 +219,7 @@ fn apart(symbols: &Symbols, mut a: Applied) -> (Expr, Applied) {
 fn taken_out(reach: Reach, e: Expr) -> (Expr, Expr) {
     let number = |x: &Expr| match reach {
         Reach::Point => x.shape().is_scalar(),
-        Reach::Sites => matches!(x.node(), Node::Number(_)),
+        Reach::Sites => matches!(x.node(), Node::Number(_) | Node::Constant(_)),
     };
     if number(&e) {
         return (e, integer(1));

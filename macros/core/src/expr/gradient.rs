@@ -23,6 +23,7 @@ fn pull_back(symbols: &Symbols, e: &Expr, seed: Expr, wrt: Letter, out: &mut Vec
     let mut go = |x: &Expr, s: Expr| pull_back(symbols, x, s, wrt, out);
     match e.node() {
         Node::Number(_)
+        | Node::Constant(_)
         | Node::Identity(_)
         | Node::Zero(_)
         | Node::Unit(..)

@@ -75,7 +75,7 @@ impl Terms<'_> {
         };
         match e.node() {
             Node::Number(q) if q.is_negative() => exact(number(q.negated())),
-            Node::Number(_) => exact(e.clone()),
+            Node::Number(_) | Node::Constant(_) => exact(e.clone()),
             Node::Zero(_) => exact(integer(0)),
             Node::Identity(_) | Node::Unit(..) | Node::Inclusion(..) => exact(integer(1)),
             Node::Sum(list) => {

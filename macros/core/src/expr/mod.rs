@@ -3,6 +3,7 @@
 
 mod build;
 mod collect;
+mod constant;
 mod diagonal;
 mod directional;
 mod factored;
@@ -33,6 +34,7 @@ use symbol::SymbolId;
 
 pub use build::*;
 pub use collect::{collect, positive_first};
+pub use constant::Constant;
 pub use diagonal::{diagonal, diagonal_of};
 pub use directional::directional;
 pub use factored::{axial_of_outer, factored};
@@ -130,6 +132,8 @@ pub enum Map {
 pub enum Node {
     /// An exact number.
     Number(Rational),
+    /// A number that exact arithmetic does not follow.
+    Constant(Constant),
     /// A symbol at an offset.
     Letter(Letter),
     /// The identity matrix.
@@ -236,6 +240,7 @@ impl Node {
     pub fn each_child<'a>(&'a self, visit: &mut dyn FnMut(&'a Expr)) {
         match self {
             Node::Number(_)
+            | Node::Constant(_)
             | Node::Letter(_)
             | Node::Identity(_)
             | Node::Zero(_)

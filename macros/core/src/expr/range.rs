@@ -243,6 +243,7 @@ fn bounds(e: &Expr) -> Range {
     match e.node() {
         Node::Zero(_) => Range::between(0.0, 0.0),
         Node::Number(q) => Range::between(q.value(), q.value()).outward(),
+        Node::Constant(c) => Range::between(c.value(), c.value()).outward(),
         Node::Neg(a) => bounds(a).opposite(),
         Node::Sum(list) => {
             let mut parts = list.iter().map(bounds);

@@ -109,6 +109,7 @@ pub fn with_children(symbols: &Symbols, e: &Expr, children: Vec<Expr>) -> Expr {
 pub fn rebuild(symbols: &Symbols, e: &Expr, go: &mut dyn FnMut(&Expr) -> Expr) -> Expr {
     match e.node() {
         Node::Number(_)
+        | Node::Constant(_)
         | Node::Letter(_)
         | Node::Identity(_)
         | Node::Zero(_)

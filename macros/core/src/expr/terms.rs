@@ -80,6 +80,7 @@ fn is_linear(e: &Expr, child: usize) -> bool {
         // Derivatives are linear in their directions and their seed.
         Node::Given(a) | Node::PullBack(a, ..) => child >= a.arguments.len(),
         Node::Number(_)
+        | Node::Constant(_)
         | Node::Letter(_)
         | Node::Identity(_)
         | Node::Zero(_)

@@ -459,34 +459,11 @@ impl Lattice {
 
     /// Parameters of end conditions, indices and numbers of sites have names of their own.
     fn check_names(&mut self, model: &Model, errors: &mut Errors) {
-        let declared = |s: &Statement| -> Vec<Name> {
-            match s {
-                Statement::Param { names, .. } | Statement::Advected { names, .. } => names.clone(),
-                Statement::Field {
-                    names,
-                    offset,
-                    domain,
-                    ..
-                } => {
-                    let lengths = match domain {
-                        Some(Extent::Torus(lengths)) => Some(lengths),
-                        Some(Extent::Box(_)) | None => None,
-                    };
-                    names.iter().chain(offset).chain(lengths).cloned().collect()
-                }
-                Statement::Group { name, velocity, .. } => vec![name.clone(), velocity.clone()],
-                Statement::Let { name, .. }
-                | Statement::Dim { name, .. }
-                | Statement::Hold { name, .. }
-                | Statement::Given { name, .. }
-                | Statement::Mesh { name, .. } => vec![name.clone()],
-                Statement::Label {
-                    step: Some(step), ..
-                } => vec![step.clone()],
-                _ => Vec::new(),
-            }
-        };
-        let known: Vec<Name> = model.statements.iter().flat_map(declared).collect();
+        let known: Vec<&Name> = model
+            .statements
+            .iter()
+            .flat_map(Statement::declared)
+            .collect();
         self.declared = known.iter().map(|n| n.text.clone()).collect();
         let ends = self.ends.iter().flatten();
         let own = ends.flat_map(|a| &a.params).flat_map(|(names, _)| names);

@@ -55,7 +55,7 @@ impl Put<'_> {
             each.collect::<Result<Vec<Expression>, _>>()
         };
         let kind = match &e.kind {
-            Kind::Number(q) => Kind::Number(*q),
+            Kind::Number(_) | Kind::Constant(_) => e.kind.clone(),
             Kind::Name(n) => return self.name(n, e, by),
             Kind::Sum(terms) => {
                 let each = terms.iter().map(|(minus, t)| Ok((*minus, self.at(t, by)?)));

@@ -58,7 +58,7 @@ pub(super) fn reach(lattice: &Lattice, e: &Expression) -> Result<Reach, Diagnost
 
 fn walk(lattice: &Lattice, e: &Expression, by: isize, found: &mut Reach) -> Result<(), Diagnostic> {
     match &e.kind {
-        Kind::Number(_) => Ok(()),
+        Kind::Number(_) | Kind::Constant(_) => Ok(()),
         Kind::Name(n) => match lattice.find(n) {
             None => named(lattice, n, e.place),
             Some(q) => {

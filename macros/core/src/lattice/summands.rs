@@ -74,7 +74,7 @@ fn negated(e: Expression) -> Expression {
 /// Whether an expression is a number, as far as its form says.
 fn is_number(lattice: &Lattice, e: &Expression) -> bool {
     match &e.kind {
-        Kind::Number(_) | Kind::Component(..) => true,
+        Kind::Number(_) | Kind::Constant(_) | Kind::Component(..) => true,
         Kind::Name(n) => lattice.numbers.contains(n),
         Kind::Sum(terms) => terms.iter().all(|(_, t)| is_number(lattice, t)),
         Kind::Product(list) => list.iter().all(|f| is_number(lattice, f)),

@@ -40,7 +40,8 @@ impl SiteData {
 fn value(e: &Expression, of: &dyn Fn(&str) -> Option<f64>) -> Result<f64, String> {
     Ok(match &e.kind {
         Kind::Number(q) => q.value(),
-        Kind::Name(n) if n == "pi" || n == "π" => std::f64::consts::PI,
+        Kind::Constant(c) => c.value(),
+        Kind::Name(n) if crate::syntax::is_circle(n) => std::f64::consts::PI,
         Kind::Name(n) => of(n).ok_or_else(|| format!("`{n}` has no value here"))?,
         Kind::Sum(terms) => {
             let mut total = 0.0;

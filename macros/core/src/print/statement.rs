@@ -67,6 +67,7 @@ impl Writer<'_> {
                 };
                 Written::new(text, tightness)
             }
+            Node::Constant(c) => operand(c.to_string()),
             Node::Letter(at) => {
                 let mut text = self.symbols.get(at.symbol).name.clone();
                 text = shifted(text, at.shift.time, "");

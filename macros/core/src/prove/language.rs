@@ -3,8 +3,8 @@
 //! terms and their shapes; every term of one class of equal terms has the same shape.
 
 use crate::algebra::Rational;
-use crate::expr::Letter;
 use crate::expr::shape::{Dim, Shape};
+use crate::expr::{Constant, Letter};
 use core::fmt;
 use core::str::FromStr;
 use egg::{Analysis, DidMerge, EGraph, Id, Language, define_language};
@@ -67,6 +67,8 @@ impl FromStr for Number {
 pub enum Leaf {
     /// A symbol at an offset, with its shape.
     Letter(Letter, Shape),
+    /// A number that exact arithmetic does not follow.
+    Constant(Constant),
     /// A dimension: operand of an identity or a zero matrix.
     Size(Dim),
     /// The unit vector along an axis counted from 0.
@@ -81,6 +83,7 @@ impl fmt::Display for Leaf {
                 "letter{}@{},{},{}",
                 at.symbol.0, at.shift.time, at.shift.label[0], at.shift.label[1]
             ),
+            Leaf::Constant(c) => write!(f, "constant-{c}"),
             Leaf::Size(dim) => write!(f, "size-{dim:?}"),
             Leaf::Unit(dim, axis) => write!(f, "unit-{dim:?}-{axis}"),
         }
@@ -106,6 +109,7 @@ pub fn shape(node: &Term, operands: &[Shape]) -> Option<Shape> {
         (Term::Number(_), []) => Some(Shape::SCALAR),
         (Term::Leaf(leaf), []) => Some(match *leaf {
             Leaf::Letter(_, shape) => shape,
+            Leaf::Constant(_) => Shape::SCALAR,
             Leaf::Size(dim) => Shape::square(dim),
             Leaf::Unit(dim, _) => Shape::vector(dim),
         }),

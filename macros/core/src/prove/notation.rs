@@ -31,6 +31,7 @@ pub fn whole(symbols: &Symbols, term: &RecExpr<Term>) -> String {
 pub fn leaf(symbols: &Symbols, leaf: Leaf) -> String {
     match leaf {
         Leaf::Letter(at, _) => letter(symbols, at),
+        Leaf::Constant(c) => c.to_string(),
         Leaf::Size(dim) => symbols.dim_text(dim),
         Leaf::Unit(_, axis) => format!("e{}", u32::from(axis) + 1),
     }

@@ -24,6 +24,7 @@ fn expanded(e: &Expr) -> usize {
         Node::Power(a, q) if *q == Rational::integer(2) => expanded(a).saturating_mul(expanded(a)),
         Node::Power(..)
         | Node::Number(_)
+        | Node::Constant(_)
         | Node::Letter(_)
         | Node::Identity(_)
         | Node::Zero(_)

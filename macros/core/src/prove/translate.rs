@@ -80,6 +80,7 @@ impl Builder {
     fn expression(&mut self, e: &Expr) -> Option<Id> {
         match e.node() {
             Node::Number(q) => self.number(*q),
+            Node::Constant(c) => self.add(Term::Leaf(Leaf::Constant(*c))),
             Node::Letter(at) => self.add(Term::Leaf(Leaf::Letter(*at, e.shape()))),
             Node::Identity(n) => {
                 let n = self.size(*n)?;

@@ -102,6 +102,7 @@ impl<'a> Known<'a> {
     fn named(&mut self, e: &Expr) -> Expr {
         let plain = match e.node() {
             Node::Number(_)
+            | Node::Constant(_)
             | Node::Letter(_)
             | Node::Identity(_)
             | Node::Zero(_)

@@ -58,6 +58,7 @@ fn count(symbols: &Symbols, e: &Expr, uses: &mut HashMap<Expr, usize>) {
 fn is_work(e: &Expr) -> bool {
     match e.node() {
         Node::Number(_)
+        | Node::Constant(_)
         | Node::Letter(_)
         | Node::Identity(_)
         | Node::Zero(_)

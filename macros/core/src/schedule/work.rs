@@ -41,6 +41,7 @@ fn of(e: &Expr) -> u64 {
             entries(a.shape()) * length(a.shape().rows)
         }
         Node::Number(_)
+        | Node::Constant(_)
         | Node::Letter(_)
         | Node::Identity(_)
         | Node::Zero(_)

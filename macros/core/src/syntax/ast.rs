@@ -3,6 +3,7 @@
 
 use crate::algebra::Rational;
 use crate::diagnostic::Place;
+use crate::expr::Constant;
 
 /// A name and where it stands.
 #[derive(Clone, Debug)]
@@ -36,6 +37,8 @@ pub struct Expression {
 pub enum Kind {
     /// A number.
     Number(Rational),
+    /// A number that exact arithmetic does not follow.
+    Constant(Constant),
     /// A name.
     Name(String),
     /// A sum of signed terms: `true` marks a term that is subtracted.

@@ -8,6 +8,7 @@ use super::ast::{Expression, Kind};
 use super::token::{Cursor, Token};
 use crate::algebra::Rational;
 use crate::diagnostic::Diagnostic;
+use crate::expr::Constant;
 
 /// Words that end an expression because a statement goes on with them.
 const FOLLOWING: [&str; 4] = ["at", "on", "periodic", "in"];
@@ -237,9 +238,22 @@ fn signed_exponent(c: &mut Cursor) -> Result<Rational, Diagnostic> {
 fn too_large(c: &Cursor) -> Diagnostic {
     Diagnostic::new(
         c.place(),
-        "this number is too large or has too many digits for exact arithmetic",
+        "this exponent is too large or has too many digits for exact arithmetic",
     )
-    .help("numbers are kept as exact fractions of at most about 30 digits; make it a parameter")
+    .help("write the power by `exp` and `log`")
+}
+
+/// Largest numerator and denominator of a number that is exact in products and powers with others: those have 37 digits.
+const EXACT: i128 = 1_000_000;
+
+/// What a decimal literal stands for; nothing where it is infinite.
+fn number(text: &str) -> Option<Kind> {
+    let exact = rational(text);
+    let is_small = |q: &Rational| q.numerator() <= EXACT && q.denominator() <= EXACT;
+    match exact.filter(is_small) {
+        Some(q) => Some(Kind::Number(q)),
+        None => Constant::parse(&text.replace('_', "")).map(Kind::Constant),
+    }
 }
 
 /// The exact value of a decimal literal.
@@ -266,12 +280,12 @@ fn operand(c: &mut Cursor) -> Parsed {
     let start = c.place();
     match c.peek().cloned() {
         Some(Token::Number(text)) => {
-            let value = rational(&text).ok_or_else(|| too_large(c))?;
+            let kind = number(&text).ok_or_else(|| {
+                let message = "a number is between 5e-324 and 1.8e308, as double precision is";
+                Diagnostic::new(c.place(), message).help("take other units")
+            })?;
             c.advance();
-            Ok(Expression {
-                kind: Kind::Number(value),
-                place: start,
-            })
+            Ok(Expression { kind, place: start })
         }
         Some(Token::Glued(number, name)) => Err(ambiguous::glued(c, &number, &name)),
         Some(Token::Open('(')) => {

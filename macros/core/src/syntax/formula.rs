@@ -3,7 +3,6 @@
 
 use super::ast::{Expression, Kind, Kindred, Model, Name, Statement};
 use super::token::{Cursor, Token};
-use crate::algebra::Rational;
 use crate::diagnostic::{Diagnostic, Place};
 
 const ONLY: &str =
@@ -12,10 +11,6 @@ const OTHERWISE: &str = "give functions of matrices or of several arguments by a
 
 /// The components of a vector by letters, as a paper calls the place.
 const LETTERS: [&str; 3] = ["x", "y", "z"];
-
-/// The ratio of a circle to its diameter: the shortest fraction whose quotient is that of a double. Exact arithmetic holds its
-/// fourth power.
-pub const PI: (i128, i128) = (245_850_922, 78_256_779);
 
 /// After `=`: one expression in quotes, or a list of them for the components of a vector; nothing where a path follows.
 pub(super) fn components(c: &mut Cursor) -> Result<Vec<(String, Expression)>, Diagnostic> {
@@ -55,23 +50,15 @@ fn quoted(c: &mut Cursor) -> Result<(String, Expression), Diagnostic> {
     }
 }
 
-/// An expression in quotes; `pi` is the number.
+/// An expression in quotes.
 ///
 /// # Errors
 /// What is wrong of it first.
 fn read(text: &str) -> Result<Expression, String> {
-    let parsed = super::expression(text).map_err(|errors| {
+    super::expression(text).map_err(|errors| {
         let said = errors.to_string();
         said.lines().next().unwrap_or_default().to_owned()
-    })?;
-    let number = Rational::new(PI.0, PI.1);
-    Ok(parsed.replaced(&|e| match (&e.kind, number) {
-        (Kind::Name(n), Some(q)) if n == "pi" || n == "π" => Some(Expression {
-            kind: Kind::Number(q),
-            place: e.place,
-        }),
-        _ => None,
-    }))
+    })
 }
 
 /// Puts all of an expression at one place.
@@ -189,7 +176,9 @@ pub fn open(model: &Model) -> Result<Vec<Open>, Diagnostic> {
 pub fn check(text: &str, argument: &Kindred, known: &dyn Fn(&str) -> bool) -> Result<(), String> {
     let parsed = read(text)?;
     let names = names(argument);
-    let unknown = |n: &str| !names.iter().flatten().any(|own| own == n) && !known(n);
+    let unknown = |n: &str| {
+        !names.iter().flatten().any(|own| own == n) && !super::circle::is_meant(n) && !known(n)
+    };
     match parsed.name_that(&unknown) {
         None => Ok(()),
         Some(n) => {

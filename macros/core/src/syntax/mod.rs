@@ -4,6 +4,7 @@
 pub mod ast;
 mod called;
 mod characters;
+mod circle;
 mod delimiters;
 mod expression;
 pub mod formula;
@@ -14,6 +15,8 @@ mod statement;
 mod text;
 mod token;
 mod typeset;
+
+pub(crate) use circle::is_meant as is_circle;
 
 use crate::diagnostic::{Diagnostic, Errors, Place};
 use ast::Model;

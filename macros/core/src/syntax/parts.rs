@@ -1,12 +1,12 @@
 //! What an expression is made of: names in it, its size, and the same expression with parts of it replaced.
 
-use super::ast::{Expression, Kind, Statement};
+use super::ast::{Expression, Extent, Kind, Name, Statement};
 
 impl Expression {
     /// What it is made of directly, in order.
     fn parts(&self) -> Vec<&Expression> {
         match &self.kind {
-            Kind::Number(_) | Kind::Name(_) => Vec::new(),
+            Kind::Number(_) | Kind::Constant(_) | Kind::Name(_) => Vec::new(),
             Kind::Sum(terms) => terms.iter().map(|(_, t)| t).collect(),
             Kind::Product(list) | Kind::Call(_, list) => list.iter().collect(),
             Kind::Quotient(a, b) => vec![a, b],
@@ -19,7 +19,7 @@ impl Expression {
     /// The same, to be changed.
     pub(super) fn parts_mut(&mut self) -> Vec<&mut Expression> {
         match &mut self.kind {
-            Kind::Number(_) | Kind::Name(_) => Vec::new(),
+            Kind::Number(_) | Kind::Constant(_) | Kind::Name(_) => Vec::new(),
             Kind::Sum(terms) => terms.iter_mut().map(|(_, t)| t).collect(),
             Kind::Product(list) | Kind::Call(_, list) => list.iter_mut().collect(),
             Kind::Quotient(a, b) => vec![a, b],
@@ -56,6 +56,37 @@ impl Expression {
 }
 
 impl Statement {
+    /// The names that it declares, those of ends and of counts of sites not among them.
+    pub(crate) fn declared(&self) -> Vec<&Name> {
+        match self {
+            Statement::Param { names, .. } | Statement::Advected { names, .. } => {
+                names.iter().collect()
+            }
+            Statement::Field {
+                names,
+                offset,
+                domain,
+                ..
+            } => {
+                let lengths = match domain {
+                    Some(Extent::Torus(lengths)) => Some(lengths),
+                    Some(Extent::Box(_)) | None => None,
+                };
+                names.iter().chain(offset).chain(lengths).collect()
+            }
+            Statement::Group { name, velocity, .. } => vec![name, velocity],
+            Statement::Let { name, .. }
+            | Statement::Dim { name, .. }
+            | Statement::Hold { name, .. }
+            | Statement::Given { name, .. }
+            | Statement::Mesh { name, .. } => vec![name],
+            Statement::Label {
+                step: Some(step), ..
+            } => vec![step],
+            _ => Vec::new(),
+        }
+    }
+
     /// Every expression in it, to be changed.
     pub(super) fn expressions_mut(&mut self) -> Vec<&mut Expression> {
         match self {

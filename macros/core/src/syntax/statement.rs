@@ -3,6 +3,7 @@
 
 use super::ast::{Comparison, Expression, Kindred, Model, Name, NodeRule, Size, Statement};
 use super::called;
+use super::circle;
 use super::expression::expression;
 use super::formula;
 use super::label;
@@ -52,13 +53,14 @@ pub fn model(c: &mut Cursor) -> Result<Model, Errors> {
         );
     }
     errors.propagate()?;
-    called::written_out(Model {
+    let stated = Model {
         docs,
         public,
         name,
         statements,
         remarks,
-    })
+    };
+    called::written_out(stated).map(circle::named)
 }
 
 /// Documentation lines; other attributes are refused.

@@ -56,10 +56,19 @@ fn a_call_is_the_expression_at_its_argument() {
     same(
         "given f(Real): Real = \"cos(2*pi*x)^2*sin(pi*x)\";",
         "f(u)",
-        "cos(2*(245850922/78256779)*u)^2*sin((245850922/78256779)*u)",
+        "cos(2*pi*u)^2*sin(pi*u)",
     );
     // As a case gave it.
     same("given f(Real): Real = case \"A*x\";", "f(u)", "A*u");
+}
+
+#[test]
+fn constants_of_many_digits_are_letters() {
+    let k = "given f(Real): Real = \"1.380649e-23*x^2 + 6.62607015e-34*x^4\";";
+    same(k, "f(u)*f(u)", "(1.380649e-23*u^2 + 6.62607015e-34*u^4)^2");
+    same(k, "f(u)", "u^2*(1.380649e-23 + 6.62607015e-34*u^2)");
+    same("given f(Real): Real = \"sin(pi^3*x)\";", "f(u)", "sin(π*π*π*u)");
+    same("", "299792458*u - 299792458*u + pi*u/pi", "u");
 }
 
 #[test]

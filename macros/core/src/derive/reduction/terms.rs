@@ -212,7 +212,7 @@ impl<'a> Reducer<'a> {
             Atom::OpaqueDet(i) => expr::det(self.opaque_matrix(*i)?),
             Atom::Base(i) | Atom::Given(i) => self.opaque_number(*i)?,
             Atom::Call(function, i) => expr::call(*function, self.opaque_number(*i)?),
-            Atom::Letter(_) | Atom::Dimension(_) | Atom::Det(_) => {
+            Atom::Letter(_) | Atom::Constant(_) | Atom::Dimension(_) | Atom::Det(_) => {
                 let term = Term {
                     monomial: vec![(atom.clone(), Rational::ONE)],
                     word: Vec::new(),

@@ -58,6 +58,7 @@ impl Composer<'_> {
     fn unsigned(&self, e: &Expr) -> Laid {
         match e.node() {
             Node::Number(q) => self.number(*q),
+            Node::Constant(c) => self.constant(*c),
             Node::Letter(at) => {
                 let letter = self.letter(*at);
                 // Several letters side by side are bracketed under a superscript.
@@ -206,7 +207,11 @@ impl Composer<'_> {
         }
         let beside = parts.into_iter().enumerate().map(|(i, part)| {
             // Digits behind another factor would read as part of it.
-            if i > 0 && matches!(part.layout, Layout::Number(_)) {
+            let digits = match &part.layout {
+                Layout::Script { base, .. } => matches!(**base, Layout::Number(_)),
+                layout => matches!(layout, Layout::Number(_)),
+            };
+            if i > 0 && digits {
                 Laid::new(part.layout, Level::Sum).factor(false)
             } else {
                 part.factor(i == last)

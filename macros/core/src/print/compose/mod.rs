@@ -12,8 +12,8 @@ use super::level::{Laid, Level};
 use super::width::{Size, width};
 use super::{name, tex};
 use crate::algebra::Rational;
-use crate::expr::Letter;
 use crate::expr::symbol::{Role, Symbols};
+use crate::expr::{Constant, Letter};
 
 /// Width, in tenths of a point, from which a hat is not drawn over its argument any more.
 const WIDEST_HAT: usize = 540;
@@ -84,6 +84,29 @@ impl Composer<'_> {
                 Laid::new(Layout::Row(row), Level::Slash)
             }
         }
+    }
+
+    /// A number that exact arithmetic does not follow: π, or its digits times a power of ten.
+    fn constant(&self, c: Constant) -> Laid {
+        let number = |text: &str| Layout::Number(text.to_owned());
+        if c == Constant::PI {
+            return Laid::atom(Layout::Identifier("π".to_owned()));
+        }
+        let (digits, power) = c.digits();
+        if (-4..=8).contains(&power) {
+            return Laid::atom(number(&c.value().to_string()));
+        }
+        let mut exponent = Vec::new();
+        if power < 0 {
+            exponent.push(Layout::Sign(Sign::Tight('-')));
+        }
+        exponent.push(number(&power.unsigned_abs().to_string()));
+        let ten = number("10").superscript(Layout::row(exponent));
+        let row = match digits.as_str() {
+            "1" => vec![ten],
+            _ => vec![number(&digits), Layout::Sign(Sign::Cross), ten],
+        };
+        Laid::new(Layout::row(row), Level::Infix)
     }
 
     /// A sum of signed terms; `true` marks one that is subtracted.
@@ -284,7 +307,7 @@ fn subscripted(base: Layout, subs: Vec<Layout>) -> Layout {
     }
 }
 
-/// A fraction that was written as a decimal number of many digits, or as a multiple of pi, as such a number.
+/// A fraction that was written as a decimal number of many digits, as such a number.
 fn decimal(num: i128, den: i128) -> Option<String> {
     const LARGEST: i128 = 1_000_000;
     let mut rest = den;
@@ -295,9 +318,7 @@ fn decimal(num: i128, den: i128) -> Option<String> {
     }
     #[allow(clippy::cast_precision_loss)]
     let value = num as f64 / den as f64;
-    let of_pi = den % crate::syntax::formula::PI.1 == 0;
-    let long = den > LARGEST && (rest == 1 || of_pi);
-    (long && (1e-5..1e16).contains(&value)).then(|| value.to_string())
+    (den > LARGEST && rest == 1 && (1e-5..1e16).contains(&value)).then(|| value.to_string())
 }
 
 /// The character of a common fraction.

@@ -2,6 +2,7 @@
 //! node occurs.
 
 use crate::algebra::Rational;
+use crate::expr::Constant;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{
@@ -106,6 +107,11 @@ impl Sample {
             expr::number(q(-7, 3)),
             expr::number(Rational::HALF),
             expr::integer(0),
+            expr::product([expr::integer(2), expr::constant(Constant::PI), v("c")]),
+            expr::product(
+                ["1.380649e-23", "0.123456789"]
+                    .map(|x| expr::constant(Constant::parse(x).unwrap())),
+            ),
             expr::zero(Shape::vector(THREE)),
             expr::unit(THREE, 2),
             self.heavy_top(),
@@ -323,17 +329,18 @@ fn kind(node: &Node) -> usize {
         Node::Map(..) => 22,
         Node::Given(_) => 23,
         Node::PullBack(..) => 24,
+        Node::Constant(_) => 25,
     }
 }
 
 #[test]
 fn the_sample_holds_every_kind_of_node() {
-    fn walk(e: &Expr, seen: &mut [bool; 25]) {
+    fn walk(e: &Expr, seen: &mut [bool; 26]) {
         seen[kind(e.node())] = true;
         e.children().into_iter().for_each(|c| walk(c, seen));
     }
-    let mut seen = [false; 25];
+    let mut seen = [false; 26];
     let sample = Sample::new();
     sample.expressions().iter().for_each(|e| walk(e, &mut seen));
-    assert_eq!(seen, [true; 25]);
+    assert_eq!(seen, [true; 26]);
 }
