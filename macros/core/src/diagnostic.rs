@@ -144,6 +144,12 @@ impl Errors {
         }
     }
 
+    /// The mistake that was found first.
+    pub fn first(self) -> Diagnostic {
+        let nothing = || Diagnostic::new(Place::token(Span::call_site()), "nothing is wrong");
+        self.list.into_iter().next().unwrap_or_else(nothing)
+    }
+
     /// Adds a mistake, if there is one.
     pub fn extend(&mut self, diagnostic: Option<Diagnostic>) {
         diagnostic.into_iter().for_each(|d| self.push(d));

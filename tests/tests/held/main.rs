@@ -8,7 +8,7 @@ use clebsch::card::Settings;
 use clebsch::functions::carlson_rf;
 use clebsch::integrate::Stepper;
 use clebsch::nalgebra::{Matrix3, Vector2, Vector3};
-use clebsch::{Additive, FieldMomentum, Problem, Rotation, StartError};
+use clebsch::{Additive, BodyMomentum, FieldMomentum, Problem, Rotation, StartError};
 use clebsch_oracle::oracle::dual::{Dual, Number};
 use clebsch_oracle::oracle::points::Source;
 use std::array::from_fn;
@@ -33,6 +33,22 @@ clebsch::model! {
         field x: Vec<3>;
         hold λ: dot(x, x) = L^2;
         lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) - h*m*g*x[3];
+    }
+}
+
+clebsch::model! {
+    /// Two masses on spheres and a body, which know nothing of one another: three blocks, two of them held.
+    model Apart {
+        param m, M, L, l, g: Real;
+        param J: Sym<3>;
+        field x, y: Vec<3>;
+        group Λ: SO<3> velocity Ω;
+        constraint next(Λ) = Λ*Ω;
+        hold a: dot(x, x) = L^2;
+        hold b: dot(y, y) = l^2;
+        let u = next(x) - x;
+        let v = next(y) - y;
+        lagrangian = (m*dot(u, u) + M*dot(v, v))/(2*h) - h*g*(m*x[3] + M*y[3]) - tr(J*Ω)/h;
     }
 }
 
@@ -367,6 +383,57 @@ fn a_pendulum_keeps_its_length_and_shows_its_tension() {
     for pair in errors.windows(2) {
         let order = (pair[0] / pair[1]).log2();
         assert!((order - 2.0).abs() < 0.1, "{errors:?}");
+    }
+}
+
+/// Blocks with constraints of their own: each moves as in a model of its own, to the last bit.
+#[test]
+fn bodies_held_apart_move_as_each_alone() {
+    let (h, g) = (0.01, 9.81);
+    let ([m, big], [long, short]) = ([1.3, 2e4], [0.5, 0.25]);
+    let parameters = ApartParameters {
+        m,
+        M: big,
+        L: long,
+        l: short,
+        g,
+        J: Matrix3::from_diagonal(&Vector3::new(0.3, 0.2, 0.4)),
+    };
+    let starts = [
+        (Vector3::new(0.3, 0.0, -0.4), Vector3::new(0.0, 0.6, 0.0)),
+        (Vector3::new(0.0, 0.15, 0.2), Vector3::new(9e3, 0.0, 0.0)),
+    ];
+    let model = Apart::new(parameters).expect("parameters");
+    let initial = ApartInitial {
+        x: Additive::new(starts[0].0),
+        momentum_x: FieldMomentum(starts[0].1),
+        y: Additive::new(starts[1].0),
+        momentum_y: FieldMomentum(starts[1].1),
+        Λ: Rotation::identity(),
+        body_momentum_Λ: BodyMomentum(Vector3::new(0.4, -0.1, 0.2)),
+    };
+    let (mut state, mut work) = model.start(initial, h).expect("starts");
+    let mut alone: Vec<_> = [(m, long), (big, short)]
+        .into_iter()
+        .zip(starts)
+        .map(|((m, long), (x, p))| {
+            let model = Spherical::new(SphericalParameters { m, L: long, g }).expect("parameters");
+            let initial = SphericalInitial {
+                x: Additive::new(x),
+                momentum: FieldMomentum(p),
+            };
+            let (state, work) = model.start(initial, h).expect("starts");
+            (model, state, work)
+        })
+        .collect();
+    for _ in 0..500 {
+        model.step(&mut state, &mut work).expect("steps");
+        for (model, state, work) in &mut alone {
+            model.step(state, work).expect("steps");
+        }
+        let [x, y] = [state.x().matrix(), state.y().matrix()];
+        assert_eq!([x, y], [0, 1].map(|i| alone[i].1.x().matrix()));
+        assert_eq!([state.a(), state.b()], [0, 1].map(|i| alone[i].1.λ()));
     }
 }
 

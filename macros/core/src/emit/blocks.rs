@@ -61,11 +61,12 @@ fn alike(d: &Derivation, b: &Block) -> Vec<usize> {
 
 /// The configuration and the form of a block whose balance is linear.
 fn linear<'a>(d: &'a Derivation, b: &'a Block) -> Option<(usize, &'a Explicit)> {
-    let [i] = b.members.as_slice() else {
-        return None;
-    };
-    match &d.solve.riccati[*i] {
-        Riccati::Linear(form) => Some((*i, form)),
+    // Of what is held the balance is linear too, and has a multiplier in it.
+    match (&b.method, b.members.as_slice()) {
+        (Method::Linear, [i]) => match &d.solve.riccati[*i] {
+            Riccati::Linear(form) => Some((*i, form)),
+            _ => None,
+        },
         _ => None,
     }
 }

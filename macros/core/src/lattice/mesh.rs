@@ -138,6 +138,30 @@ impl Lattice {
             }
         }
         self.domains(model, &parameters, errors);
+        self.unused(model, errors);
+    }
+
+    /// Every functional stands in a term, or another one is made of it.
+    fn unused(&self, model: &Model, errors: &mut Errors) {
+        let stands = |name: &str, statement: &Statement| match statement {
+            Statement::Let { value, .. } | Statement::Lagrangian(value) => {
+                value.name_that(&|n| n == name).is_some()
+            }
+            Statement::Mesh { arguments, .. } => arguments.iter().any(|a| a.text == name),
+            _ => false,
+        };
+        for statement in &model.statements {
+            let Statement::Mesh { name, .. } = statement else {
+                continue;
+            };
+            if !model.statements.iter().any(|s| stands(&name.text, s)) {
+                let message = format!("`{}` stands in no term of the Lagrangian", name.text);
+                errors.push(
+                    Diagnostic::new(name.place, message)
+                        .help("add the term that it is meant for, or leave the functional out"),
+                );
+            }
+        }
     }
 
     /// One field has a domain, at a set of sites; nothing holds a functional but the Lagrangian.

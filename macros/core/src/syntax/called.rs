@@ -2,22 +2,22 @@
 //! expression at its argument, so that the engine differentiates it.
 
 use super::ast::{Expression, Kind, Kindred, Model, Name, Statement};
-use super::formula::{names, signature};
+use super::formula::{foreign, names, signature};
 use crate::diagnostic::{Diagnostic, Errors};
 use crate::lattice::LARGEST;
 use std::cell::Cell;
 
 /// A function with its components.
-struct Formula<'a> {
-    name: &'a Name,
-    argument: &'a Kindred,
-    components: &'a [Expression],
+struct Formula {
+    name: Name,
+    argument: Kindred,
+    components: Vec<Expression>,
 }
 
-impl Formula<'_> {
+impl Formula {
     /// Its value where it is called.
     fn called(&self, argument: &Expression) -> Expression {
-        let names = names(self.argument);
+        let names = names(&self.argument);
         let place = argument.place;
         let component = |i: usize| match self.argument.name.text == "Real" {
             true => argument.clone(),
@@ -35,7 +35,7 @@ impl Formula<'_> {
                 _ => None,
             })
         };
-        match self.components {
+        match self.components.as_slice() {
             [only] => put(only),
             all => Expression {
                 kind: Kind::Sum(
@@ -59,10 +59,37 @@ impl Formula<'_> {
 
 /// The model with calls of such functions replaced by what they are.
 pub(super) fn written_out(mut model: Model) -> Result<Model, Errors> {
-    let statements = model.statements.clone();
+    let stated = formulas(&model)?;
+    if stated.is_empty() {
+        return Ok(model);
+    }
+    let room = Cell::new(Some(LARGEST));
+    let formulas = by_others(stated, &room)?;
     let mut errors = Errors::new();
-    let mut formulas = Vec::new();
-    for statement in &statements {
+    for statement in &mut model.statements {
+        for e in statement.expressions_mut() {
+            misused(e, &formulas, &mut errors);
+            *e = put_in(e, &formulas, &room);
+        }
+    }
+    errors.propagate()?;
+    match room.get() {
+        Some(_) => Ok(model),
+        None => Err(Diagnostic::new(
+            model.name.place,
+            "what functions stand for is too large where they are called",
+        )
+        .help("a function is counted wherever it is called, and its argument wherever that stands in it")
+        .into()),
+    }
+}
+
+/// The functions that the model writes out, made of their arguments and of what is constant.
+fn formulas(model: &Model) -> Result<Vec<Formula>, Errors> {
+    let mut errors = Errors::new();
+    let mut found = Vec::new();
+    let constants = constants(model);
+    for statement in &model.statements {
         let Statement::Given {
             name,
             arguments,
@@ -93,35 +120,101 @@ pub(super) fn written_out(mut model: Model) -> Result<Model, Errors> {
                     .help("write a list, an expression in quotes for each component"),
             );
         }
-        formulas.push(Formula {
-            name,
-            argument,
-            components,
+        let known = |n: &str| constants.contains(&n);
+        for e in components {
+            let wrong = foreign(e, argument, &known);
+            errors.extend(wrong.map(|said| Diagnostic::new(e.place, said)));
+        }
+        found.push(Formula {
+            name: name.clone(),
+            argument: argument.clone(),
+            components: components.clone(),
         });
     }
-    errors.propagate()?;
-    if formulas.is_empty() {
-        return Ok(model);
-    }
-    let room = Cell::new(Some(LARGEST));
-    for statement in &mut model.statements {
-        for e in statement.expressions_mut() {
-            *e = put_in(e, &formulas, &room);
+    errors.propagate().map(|()| found)
+}
+
+/// What a function may be made of beside its argument: parameters, definitions, the step and the spacing, unit vectors.
+fn constants(model: &Model) -> Vec<&str> {
+    let mut all = vec!["Id", "E1", "E2", "E3", "h"];
+    for statement in &model.statements {
+        match statement {
+            Statement::Param { names, .. } => all.extend(names.iter().map(|n| n.text.as_str())),
+            Statement::Let { name, .. } => all.push(&name.text),
+            Statement::Time { step, .. } => all.push(&step.text),
+            Statement::Label {
+                step: Some(step), ..
+            } => all.push(&step.text),
+            Statement::Field {
+                offset: Some(offset),
+                ..
+            } => all.push(&offset.text),
+            Statement::End { alternatives, .. } => {
+                let own = alternatives.iter().flat_map(|a| &a.params);
+                all.extend(own.flat_map(|(names, _)| names).map(|n| n.text.as_str()));
+            }
+            _ => {}
         }
     }
-    match room.get() {
-        Some(_) => Ok(model),
-        None => Err(Diagnostic::new(
-            model.name.place,
-            "what functions stand for is too large where they are called",
-        )
-        .help("a function is counted wherever it is called, and its argument wherever that stands in it")
-        .into()),
+    all
+}
+
+/// Functions with those that stand in them written out, each after what it is made of.
+fn by_others(mut open: Vec<Formula>, room: &Cell<Option<usize>>) -> Result<Vec<Formula>, Errors> {
+    let mut done: Vec<Formula> = Vec::new();
+    let mut errors = Errors::new();
+    while !open.is_empty() {
+        let names: Vec<String> = open.iter().map(|f| f.name.text.clone()).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let waits = |f: &Formula| f.components.iter().any(|e| e.call_of(&names).is_some());
+        let (waiting, ready): (Vec<Formula>, Vec<Formula>) = open.into_iter().partition(waits);
+        if ready.is_empty() {
+            for f in &waiting {
+                let message = format!("`{}` is made of itself", f.name.text);
+                errors.push(
+                    Diagnostic::new(f.name.place, message)
+                        .help("a function that is written out calls others only, in no circle"),
+                );
+            }
+            return Err(errors);
+        }
+        for mut f in ready {
+            for e in &mut f.components {
+                misused(e, &done, &mut errors);
+                *e = put_in(e, &done, room);
+            }
+            done.push(f);
+        }
+        open = waiting;
     }
+    errors.propagate().map(|()| done)
+}
+
+/// Tells of functions without an argument, or with several.
+fn misused(e: &Expression, formulas: &[Formula], errors: &mut Errors) {
+    let of = |name: &str| formulas.iter().find(|f| f.name.text == name);
+    e.each(&mut |e| match &e.kind {
+        Kind::Name(n) => {
+            let wrong = of(n).map(|f| {
+                let message = format!("`{n}` is a function, which stands with its argument");
+                let places = Diagnostic::new(e.place, message).help(format!("write `{n}(...)`"));
+                places.also(f.name.place, "it is declared here")
+            });
+            errors.extend(wrong);
+        }
+        Kind::Call(name, list) if list.len() != 1 => {
+            let wrong = of(&name.text).map(|f| {
+                let message = format!("`{}` takes one argument, not {}", name.text, list.len());
+                Diagnostic::new(name.place, message).also(f.name.place, "it is declared here")
+            });
+            errors.extend(wrong);
+        }
+        _ => {}
+    });
 }
 
 /// Calls replaced, those within arguments first, while there is room for so many quantities, numbers and operations.
-fn put_in(e: &Expression, formulas: &[Formula<'_>], room: &Cell<Option<usize>>) -> Expression {
+fn put_in(e: &Expression, formulas: &[Formula], room: &Cell<Option<usize>>) -> Expression {
     e.replaced(&|e| {
         let Kind::Call(name, arguments) = &e.kind else {
             return None;

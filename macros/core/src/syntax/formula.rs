@@ -38,26 +38,24 @@ fn quoted(c: &mut Cursor) -> Result<(String, Expression), Diagnostic> {
     };
     let text = super::statement::unquoted(text);
     c.advance();
-    match read(&text) {
-        Ok(mut e) => {
-            put_at(&mut e, place);
-            Ok((text, e))
-        }
-        Err(said) => Err(Diagnostic::new(
-            place,
-            format!("in this expression: {said}"),
-        )),
-    }
+    let mut parsed = read(&text).map_err(|wrong| Diagnostic { place, ..wrong })?;
+    put_at(&mut parsed, place);
+    Ok((text, parsed))
 }
 
 /// An expression in quotes.
 ///
 /// # Errors
-/// What is wrong of it first.
-fn read(text: &str) -> Result<Expression, String> {
+/// What is wrong of it first, and at which of its characters.
+fn read(text: &str) -> Result<Expression, Diagnostic> {
     super::expression(text).map_err(|errors| {
-        let said = errors.to_string();
-        said.lines().next().unwrap_or_default().to_owned()
+        let mut first = errors.first();
+        let at = match first.place.line_and_column() {
+            Some((1, column)) if column > 1 => format!(", at character {column}"),
+            _ => String::new(),
+        };
+        first.message = format!("in this expression{at}: {}", first.message);
+        first
     })
 }
 
@@ -174,24 +172,36 @@ pub fn open(model: &Model) -> Result<Vec<Open>, Diagnostic> {
 /// # Errors
 /// What cannot be read, or the first name that is not known.
 pub fn check(text: &str, argument: &Kindred, known: &dyn Fn(&str) -> bool) -> Result<(), String> {
-    let parsed = read(text)?;
+    let parsed = read(text).map_err(|wrong| wrong.text())?;
+    match foreign(&parsed, argument, known) {
+        None => Ok(()),
+        Some(wrong) => Err(wrong),
+    }
+}
+
+/// What an expression holds that is neither the argument nor among the names that are `known`.
+pub(super) fn foreign(
+    e: &Expression,
+    argument: &Kindred,
+    known: &dyn Fn(&str) -> bool,
+) -> Option<String> {
+    if let Some(shift) = e.call_of(&["next", "prev"]) {
+        return Some(format!(
+            "a function sees no other node than its argument: put `{shift}(...)` where it is called"
+        ));
+    }
     let names = names(argument);
     let unknown = |n: &str| {
-        !names.iter().flatten().any(|own| own == n) && !super::circle::is_meant(n) && !known(n)
+        let of_language = super::FUNCTIONS.contains(&n) || super::circle::is_meant(n);
+        !names.iter().flatten().any(|own| own == n) && !of_language && !known(n)
     };
-    match parsed.name_that(&unknown) {
-        None => Ok(()),
-        Some(n) => {
-            let own: Vec<&str> = names
-                .iter()
-                .filter_map(|n| n.first().map(String::as_str))
-                .collect();
-            Err(format!(
-                "`{n}` is not known here: the argument is {}, and parameters of the model and `pi` may stand beside",
-                own.join(", ")
-            ))
-        }
-    }
+    let n = e.name_that(&unknown)?;
+    let own = names.iter().filter_map(|n| n.first().map(String::as_str));
+    let own: Vec<&str> = own.collect();
+    Some(format!(
+        "`{n}` is not known here: the argument is {}, and parameters of the model and `pi` may stand beside",
+        own.join(", ")
+    ))
 }
 
 /// What each component of the argument may be called.

@@ -37,6 +37,22 @@ impl Expression {
         }
     }
 
+    /// The first function of these that is called.
+    pub(crate) fn call_of(&self, of: &[&str]) -> Option<&str> {
+        match &self.kind {
+            Kind::Call(name, _) if of.contains(&name.text.as_str()) => Some(&name.text),
+            _ => self.parts().into_iter().find_map(|part| part.call_of(of)),
+        }
+    }
+
+    /// Visits it and everything in it.
+    pub(crate) fn each(&self, visit: &mut dyn FnMut(&Expression)) {
+        visit(self);
+        for part in self.parts() {
+            part.each(visit);
+        }
+    }
+
     /// How many quantities, numbers and operations it has.
     pub(crate) fn size(&self) -> usize {
         1 + self.parts().into_iter().map(Self::size).sum::<usize>()

@@ -58,6 +58,12 @@ fn a_call_is_the_expression_at_its_argument() {
         "f(u)",
         "cos(2*pi*u)^2*sin(pi*u)",
     );
+    // Made of others, in any order.
+    same(
+        "given f(Real): Real = \"w(x)^2 + w(2*x)\"; given w(Real): Real = \"A*x\";",
+        "f(u)",
+        "A^2*u^2 + 2*A*u",
+    );
     // As a case gave it.
     same("given f(Real): Real = case \"A*x\";", "f(u)", "A*u");
 }
@@ -67,7 +73,11 @@ fn constants_of_many_digits_are_letters() {
     let k = "given f(Real): Real = \"1.380649e-23*x^2 + 6.62607015e-34*x^4\";";
     same(k, "f(u)*f(u)", "(1.380649e-23*u^2 + 6.62607015e-34*u^4)^2");
     same(k, "f(u)", "u^2*(1.380649e-23 + 6.62607015e-34*u^2)");
-    same("given f(Real): Real = \"sin(pi^3*x)\";", "f(u)", "sin(π*π*π*u)");
+    same(
+        "given f(Real): Real = \"sin(pi^3*x)\";",
+        "f(u)",
+        "sin(π*π*π*u)",
+    );
     same("", "299792458*u - 299792458*u + pi*u/pi", "u");
 }
 
@@ -122,7 +132,7 @@ fn what_is_no_such_function_is_refused() {
         (
             "given b(Vec<2>): Real = \"q*x\";",
             "b(X)",
-            "`q` is not declared",
+            "`q` is not known here: the argument is x, y",
         ),
         (
             "given b(Vec<2>): Real = [\"x\", \"y\"];",
@@ -144,7 +154,36 @@ fn what_is_no_such_function_is_refused() {
             "b(u)",
             "`b` is declared twice",
         ),
-        ("given b(Real): Real = \"x\";", "b(u, u)", "`b`"),
+        (
+            "given b(Real): Real = \"x\";",
+            "b(u, u)",
+            "`b` takes one argument, not 2",
+        ),
+        (
+            "given b(Real): Real = \"x\";",
+            "2*b",
+            "`b` is a function, which stands with its argument",
+        ),
+        (
+            "given b(Real): Real = \"u*x\";",
+            "b(u)",
+            "`u` is not known here",
+        ),
+        (
+            "given b(Real): Real = \"next(x)\";",
+            "b(u)",
+            "sees no other node",
+        ),
+        (
+            "given b(Real): Real = \"c(x)\"; given c(Real): Real = \"b(x)\";",
+            "b(u)",
+            "`b` is made of itself",
+        ),
+        (
+            "given b(Real): Real = \"x + x**2\";",
+            "b(u)",
+            "a power is written `a^2`",
+        ),
         (
             "given b(Vec<2>): Real = 3;",
             "b(X)",

@@ -281,6 +281,11 @@ fn mistakes_in_functionals_are_told() {
         ),
         ("", "- h*k*m", "no functional is made of `X`"),
         (
+            "mesh A: Real at a = voronoi_area(X); mesh B: Real at a = second_moment(X);",
+            "- h*k/A",
+            "`B` stands in no term",
+        ),
+        (
             "label i in 0..K; field q: Real at nodes; mesh A: Real at a = voronoi_area(X);",
             "- h*k/A + k*(next(q) - q)^2/h",
             "this model has a line",

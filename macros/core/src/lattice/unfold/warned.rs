@@ -33,7 +33,8 @@ impl Unfolded {
     /// finds. Of a line that is held or short, what is unused or constant there may be neither on others.
     pub fn told(&self, choice: &Choice, found: &[Warning]) -> Vec<Warning> {
         let shortest = 2 * self.width() + 2;
-        let short = choice.counts.iter().all(|n| *n < shortest);
+        // Without neighbours one site tells of all.
+        let short = self.width() > 0 && choice.counts.iter().all(|n| *n < shortest);
         let partial = short || !self.given.is_empty();
         let mut out: Vec<Warning> = Vec::new();
         for w in self.warnings.iter().chain(found) {
