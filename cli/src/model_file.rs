@@ -121,7 +121,7 @@ fn sample_on_lattice(text: &str, stated: &Stated, card: &Card) -> Result<Case, F
 
 /// Values that are admissible for most models, and of no further meaning.
 fn sample(card: &Card, file: &str) -> Case {
-    let turned = card.initial.iter().any(|f| f.kind == Kind::Rotation);
+    let turned = turns(card);
     let held = is_held(card);
     let values = |fields: &[Field]| {
         let sample = |f: &Field| match held && is_momentum(f) {
@@ -165,9 +165,14 @@ pub(crate) fn is_momentum(field: &Field) -> bool {
     )
 }
 
+/// Whether bodies turn: momenta of square shape are skew.
+pub(crate) fn turns(card: &Card) -> bool {
+    card.initial.iter().any(|f| f.kind == Kind::Rotation)
+}
+
 /// An entry of the sample value of a field without labels' expressions.
-pub(crate) fn sample_entry(field: &Field, i: usize, j: usize) -> f64 {
-    let all = of_field(field, false);
+pub(crate) fn sample_entry(field: &Field, turned: bool, i: usize, j: usize) -> f64 {
+    let all = of_field(field, turned);
     all.get(i * field.cols + j).copied().unwrap_or(0.0)
 }
 

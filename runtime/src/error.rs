@@ -171,6 +171,13 @@ impl fmt::Display for Problem {
                 place(*column, *row)
             ),
             Self::NotSkew {
+                row, column, upper, ..
+            } if row == column => write!(
+                f,
+                "not skew: entry {} is {upper}, not 0",
+                place(*row, *column)
+            ),
+            Self::NotSkew {
                 row,
                 column,
                 upper,

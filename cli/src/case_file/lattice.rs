@@ -4,7 +4,7 @@
 use super::labels::{Base, Stated, base};
 use super::sample as fluid;
 use super::space::Space;
-use crate::model_file::{OF_HELD, has_holds, is_momentum, sample_entry};
+use crate::model_file::{OF_HELD, has_holds, is_momentum, sample_entry, turns};
 use crate::plain::shown;
 use clebsch::card::{Card, Field, Kind};
 use clebsch_core::expr::symbol::ascii;
@@ -75,11 +75,8 @@ pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named
                 continue;
             }
             told.push(key.to_owned());
-            let _ = writeln!(
-                text,
-                "{key} = {}",
-                sample(stated, field, base.as_ref(), table)
-            );
+            let value = sample(stated, field, base.as_ref(), table, turns(card));
+            let _ = writeln!(text, "{key} = {value}");
         }
     }
     text
@@ -117,8 +114,14 @@ fn ends(text: &mut String, stated: &Stated, choice: &Choice) {
     );
 }
 
-/// A sample value, as TOML.
-fn sample(stated: &Stated, field: &Field, base: Option<&Base>, table: &str) -> String {
+/// A sample value, as TOML; `turned` where momenta of square shape are skew.
+fn sample(
+    stated: &Stated,
+    field: &Field,
+    base: Option<&Base>,
+    table: &str,
+    turned: bool,
+) -> String {
     let (rows, cols) = (field.rows, field.cols);
     let lattice = &stated.lattice;
     let labels = &lattice.labels;
@@ -158,7 +161,7 @@ fn sample(stated: &Stated, field: &Field, base: Option<&Base>, table: &str) -> S
     let at_rest = has_holds(&stated.model) && is_momentum(field);
     let number = |i: usize, j: usize| match at_rest {
         true => 0.0,
-        false => sample_entry(field, i, j),
+        false => sample_entry(field, turned, i, j),
     };
     if rows * cols == 1 {
         return format!("{:?}", number(0, 0));

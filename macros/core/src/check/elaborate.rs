@@ -125,8 +125,10 @@ impl<'a> Elaborator<'a> {
     }
 
     fn default_size(&self) -> Dim {
-        let groups = &self.names.configurations;
-        groups.first().map_or(Dim::Fixed(3), |g| g.group.size())
+        let mut sizes = self.names.configurations.iter().map(|g| g.group.size());
+        // Numbers have no unit vectors.
+        let first = sizes.find(|size| *size != Dim::Fixed(1));
+        first.unwrap_or(Dim::Fixed(3))
     }
 
     /// What is made of unit vectors alone: a column or a row, of a size that the context says.

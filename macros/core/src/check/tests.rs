@@ -4,6 +4,7 @@
 mod fields;
 mod formulas;
 mod holds;
+mod mistakes;
 mod motions;
 
 use super::check;

@@ -3,7 +3,7 @@
 
 use super::delimiters::place;
 use super::text;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Place};
 
 /// What a character is in a paper, and how the language writes it.
 fn written(c: char) -> Option<&'static str> {
@@ -30,6 +30,13 @@ fn written(c: char) -> Option<&'static str> {
         }
         _ => return None,
     })
+}
+
+/// A sign of products or of the transpose within a name, which Rust takes for one of its letters.
+pub(super) fn within(name: &str, place: Place) -> Option<Diagnostic> {
+    let c = name.chars().find(|c| matches!(c, '·' | 'ᵀ'))?;
+    let d = Diagnostic::new(place, format!("`{c}` is no character of the language"));
+    Some(d.help(written(c)?))
 }
 
 /// The first character outside of remarks and texts that no token has.

@@ -163,7 +163,16 @@ fn postfix(c: &mut Cursor) -> Parsed {
             .unexpected("an operator")
             .help("write `^T` for a transpose and `next(x)` for the next time level"));
     }
-    Ok(e)
+    let remedy = match c.peek() {
+        Some(Token::Open('{')) => {
+            "indices are not written out: at the next node in time `next(q)`, at the next site along a label `i` `next(q, i)`"
+        }
+        Some(Token::Punct('%', _)) => {
+            "remarks begin with `//`; there is no remainder of a division"
+        }
+        _ => return Ok(e),
+    };
+    Err(c.unexpected("an operator").help(remedy))
 }
 
 /// After `[`: one index or two, counted from 1.
@@ -173,7 +182,7 @@ fn indices(c: &mut Cursor) -> Result<Vec<u64>, Diagnostic> {
     loop {
         let of_label = matches!(c.peek(), Some(Token::Name(_)));
         list.push(c.whole_number().map_err(|e| match of_label {
-            true => e.help(remedy).help("a neighbour along a label `i` is `next(q, i)` or `prev(q, i)`, at the site itself `q`"),
+            true => e.help(remedy).help("a neighbour along a label `i` is `next(q, i)` or `prev(q, i)`, at the site itself `q`; the next node in time is `next(q)`"),
             false => e.help(remedy),
         })?);
         if !c.take_punct(',') {

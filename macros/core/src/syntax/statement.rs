@@ -191,6 +191,9 @@ fn meant(c: &Cursor, word: &str) -> String {
         (_, Some(Token::Punct('=', _))) if word == "L" || word == "l" || word == "ℓ" => {
             "the discrete Lagrangian of a step is stated by `lagrangian = ...;`".to_owned()
         }
+        (_, Some(Token::Punct('=', _))) if word == "H" || word.eq_ignore_ascii_case("hamiltonian") => {
+            "a model is stated by the discrete Lagrangian of a step, `lagrangian = ...;`".to_owned()
+        }
         (Some(near), _) => format!("did you mean `{near}`?"),
         (None, Some(Token::Punct('=', _))) => {
             format!("an expression is given a name by `let {word} = ...;`")

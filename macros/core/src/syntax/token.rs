@@ -160,6 +160,9 @@ impl Cursor {
                 TokenTree::Ident(name) => {
                     let text = name.to_string();
                     let text = text.strip_prefix("r#").unwrap_or(&text).to_owned();
+                    if let Some(wrong) = super::characters::within(&text, Place::token(span)) {
+                        return Err(wrong.into());
+                    }
                     bytes += text.len();
                     tokens.push((Token::Name(text), span));
                 }
@@ -309,7 +312,14 @@ impl Cursor {
             return Ok(());
         }
         if c != ';' {
-            return Err(self.unexpected(&format!("`{c}`")));
+            let error = self.unexpected(&format!("`{c}`"));
+            return Err(match (c, self.peek()) {
+                (':', Some(Token::Punct('=', _))) => error.help(
+                    "say what it is, for example `param m: Real;`; values stand in the case, not in the model",
+                ),
+                ('=', Some(Token::Punct(':', _))) => error.help("write `=` before an expression"),
+                _ => error,
+            });
         }
         let ends = matches!(self.peek(), Some(Token::Close('}')) | None);
         let mut error = self.unexpected("`;`");
@@ -322,6 +332,9 @@ impl Cursor {
         Err(error.help(match self.peek() {
             Some(Token::Punct('.', _)) => COMPONENT,
             Some(Token::Open('(')) => SIZES,
+            Some(Token::Punct('^', _)) => {
+                "a vector of three components is `Vec<3>`, a matrix `Mat<3>`"
+            }
             Some(Token::Punct('=', _)) => "values stand in the case, not in the model",
             Some(Token::Punct('#', _)) => "remarks begin with `//`",
             _ => "every statement ends with `;`",

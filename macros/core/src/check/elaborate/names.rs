@@ -28,7 +28,7 @@ const OTHERWISE: [(&str, &str); 13] = [
 ];
 
 /// What the time step is called elsewhere.
-const STEPS: [&str; 6] = ["dt", "Dt", "Δt", "delta_t", "deltat", "tau"];
+const STEPS: [&str; 7] = ["h", "dt", "Dt", "Δt", "delta_t", "deltat", "tau"];
 
 /// What time is called.
 const TIMES: [&str; 2] = ["t", "time"];
@@ -37,6 +37,36 @@ const TIMES: [&str; 2] = ["t", "time"];
 pub(super) fn otherwise(name: &str) -> Option<&'static str> {
     let found = OTHERWISE.iter().find(|(other, _)| *other == name);
     found.map(|(_, written)| *written)
+}
+
+/// The quantity whose value at the next node a name is: `q_next`, `q_new`, `next_q`.
+fn next_of<'n>(name: &'n str, symbols: &Symbols) -> Option<&'n str> {
+    let stems = [
+        name.strip_suffix("_next"),
+        name.strip_suffix("_new"),
+        name.strip_suffix("next"),
+        name.strip_prefix("next_"),
+    ];
+    let moves = |stem: &&str| {
+        let role = symbols.find(stem).map(|id| symbols.get(id).role);
+        matches!(role, Some(Role::Element | Role::Advected))
+    };
+    stems.into_iter().flatten().find(moves)
+}
+
+/// The component that a name is meant for: `x_3`, `x3`, `x_z`.
+fn component_of(name: &str, symbols: &Symbols) -> Option<String> {
+    let (at, last) = name.char_indices().next_back()?;
+    let stem = name.get(..at)?;
+    let stem = stem.strip_suffix('_').unwrap_or(stem);
+    let vector = symbols.get(symbols.find(stem)?).shape;
+    let number = match last {
+        'x' => 1,
+        'y' => 2,
+        'z' => 3,
+        digit => digit.to_digit(10)?,
+    };
+    (vector.is_vector() && number > 0).then(|| format!("{stem}[{number}]"))
 }
 
 /// The quantity whose rate a name is: `dX`, `X_dot`, `Xdot`.
@@ -135,6 +165,10 @@ impl Elaborator<'_> {
             d = d.help(format!(
                 "a Lagrangian of one step has differences for rates: `(next({moving}) - {moving})/h`"
             ));
+        } else if let Some(moving) = next_of(n, &self.names.symbols) {
+            d = d.help(format!("the value at the next node is `next({moving})`"));
+        } else if let Some(component) = component_of(n, &self.names.symbols) {
+            d = d.help(format!("a component is written `{component}`"));
         } else if FUNCTIONS.contains(&n) {
             d = Diagnostic::new(place, format!("`{n}` is a function of the language"))
                 .help(format!("write `{n}(...)`"));
