@@ -26,6 +26,7 @@ mod plan;
 pub mod plots;
 mod record;
 mod run;
+mod sample;
 mod suggestion;
 mod sweep;
 mod verdict;

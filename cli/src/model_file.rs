@@ -7,6 +7,7 @@ use crate::failure::Failure;
 use crate::gallery::{Case, Entry, Gallery};
 use crate::plain::shown;
 use crate::plan;
+use crate::sample::onto_constraints;
 use crate::suggestion::did_you_mean;
 use clebsch::card::{Card, Field, Kind};
 use clebsch_core::lattice::Choice;
@@ -130,7 +131,7 @@ fn sample(card: &Card, file: &str) -> Case {
         };
         fields.iter().map(sample).collect()
     };
-    Case {
+    let mut case = Case {
         name: "sample".to_owned(),
         doc: format!(
             "sample values, to start a case of your own from: clebsch case {file} > my.toml"
@@ -140,7 +141,13 @@ fn sample(card: &Card, file: &str) -> Case {
         parameters: values(card.parameters),
         initial: values(card.initial),
         bounds: Vec::new(),
+    };
+    if let Ok(model) = pipeline::parse_source(card.source)
+        && held
+    {
+        onto_constraints(&model, card, &mut case);
     }
+    case
 }
 
 /// The same of a card.

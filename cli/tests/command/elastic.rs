@@ -36,6 +36,28 @@ fn every_model_is_derived_and_runs_its_case() {
     }
 }
 
+/// A case of sample values obeys what is held: it runs as it is printed. Where only bodies that turn are held they are left
+/// as they are.
+#[test]
+fn samples_of_held_models_lie_on_their_constraints() {
+    let folder = Folder::new("held-samples");
+    let (model, case) = (folder.path("model.clebsch"), folder.path("case.toml"));
+    let linked = "model Linked { param m, l, g: Real; field x, y: Vec<3>; \
+        hold a: dot(x, x) = l^2; hold b: dot(y - x, y - x) = l^2; \
+        lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) + m*dot(next(y) - y, next(y) - y)/(2*h) - h*m*g*(x[3] + y[3]); }";
+    let turned = "model Turned { param J: Sym<3>; group A: SO<3> velocity W; constraint next(A) = A*W; \
+        hold n: dot(A*E3, E2) = 0; lagrangian = -tr(J*W)/h; }";
+    let pendulum = std::fs::read_to_string(shipped("spherical-pendulum.clebsch")).expect("reads");
+    for text in [linked, turned, &pendulum] {
+        std::fs::write(&model, text).expect("writes");
+        let sample = clebsch(&["case", &model]);
+        assert_eq!(sample.code, 0, "{text}: {}", sample.err);
+        std::fs::write(&case, &sample.out).expect("writes");
+        let done = clebsch(&["run", &model, "--case", &case, "--steps", "10"]);
+        assert_eq!(done.code, 0, "{text}: {}{}", done.out, done.err);
+    }
+}
+
 /// Columns of a table by their names, row by row.
 fn columns(csv: &str, wanted: &[&str]) -> Vec<Vec<f64>> {
     let mut lines = csv.lines();
