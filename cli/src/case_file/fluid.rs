@@ -8,6 +8,7 @@ use super::space::Space;
 use super::start::places;
 use super::value::number;
 use crate::failure::Failure;
+use clebsch::line::LineError;
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::value::SiteData;
 use clebsch_core::lattice::{Choice, Kind, Quantity};
@@ -354,7 +355,10 @@ impl Reader<'_> {
         let mut numbers = numbers.map_err(|why| self.wrong(&named, value, &why))?;
         if v.is_some() {
             let own = self.of_velocities(q, &numbers, source);
-            numbers = own.map_err(|why| self.wrong(&named, value, &why))?;
+            numbers = own.map_err(|why| match why {
+                Untold::Parameter(why) => self.wrong("parameters", None, &why),
+                Untold::Velocity(why) => self.wrong(&named, value, &why),
+            })?;
             self.fluid.used.insert(velocity);
         }
         self.keep(&momentum, numbers, size(q), value);
@@ -367,8 +371,8 @@ impl Reader<'_> {
         q: &Quantity,
         velocities: &[f64],
         source: &str,
-    ) -> Result<Vec<f64>, String> {
-        let model = LineModel::read(source).map_err(|e| e.to_string())?;
+    ) -> Result<Vec<f64>, Untold> {
+        let model = LineModel::read(source).map_err(|e| Untold::Velocity(e.to_string()))?;
         let given = |name: &str| {
             let key = ascii(name);
             let column = self.fluid.columns.get(&key).map(|c| c.numbers.clone());
@@ -382,17 +386,27 @@ impl Reader<'_> {
         let found = model.momenta(self.choice, &given, &q.name.text, velocities);
         let found = found.map_err(|e| match e {
             Unstarted::Missing(name) => {
-                format!(
-                    "missing key `parameters.{}`, or no finite number there: the momenta of velocities take it",
-                    ascii(&name)
-                )
+                let key = ascii(&name);
+                Untold::Parameter(format!(
+                    "missing key `parameters.{key}`, or no finite number there: the momenta of velocities take it"
+                ))
             }
-            other => other.to_string(),
+            Unstarted::Line(LineError::Parameter(e)) => Untold::Parameter(e.to_string()),
+            other => Untold::Velocity(other.to_string()),
         })?;
         found.ok_or_else(|| {
-            "the model does not tell the momenta of velocities: give momenta".to_owned()
+            let message = "the model does not tell the momenta of velocities: give momenta";
+            Untold::Velocity(message.to_owned())
         })
     }
+}
+
+/// Why velocities have no momenta.
+enum Untold {
+    /// A parameter is missing or not admissible.
+    Parameter(String),
+    /// The velocities are not, or the model does not say.
+    Velocity(String),
 }
 
 /// How many numbers a quantity has at a site.

@@ -26,6 +26,16 @@ pub(super) fn places(table: &DeTable<'_>, space: &Space, count: usize) -> Result
     let kinds = "\"brick\", \"square\", \"hex\" or \"random\"";
     let kind = table.get("lattice").and_then(|v| v.get_ref().as_str());
     let kind = kind.ok_or_else(|| format!("expected {{ lattice = {kinds} }}"))?;
+    for (key, of) in [
+        ("sweeps", ["random"].as_slice()),
+        ("columns", &["brick", "square", "hex"]),
+    ] {
+        if table.contains_key(key) && !of.contains(&kind) && kinds.contains(kind) {
+            return Err(format!(
+                "{key}: lattice = \"{kind}\" has none; leave the key out"
+            ));
+        }
+    }
     let size = match table.get("jitter") {
         None => 0.0,
         Some(v) => number(v.get_ref()).map_err(|why| format!("jitter: {why}"))?,

@@ -145,6 +145,7 @@ fn a_wrong_case_is_told_by_key_and_site() {
             ),
             ("[domain]", "[space]", "missing table [domain]"),
             ("alpha = 0.1", "", "missing key `parameters.alpha`"),
+            ("alpha = 0.1", "alpha = -0.1", "parameters: `alpha`"),
             ("velocity_X = [0.0, 0.0]", "", "initial.momentum_X: missing"),
             (
                 "lattice = \"brick\"",
@@ -170,6 +171,11 @@ fn a_wrong_case_is_told_by_key_and_site() {
                 "X = { lattice = \"brick\", jitter = 0.1, seed = 1 }",
                 "X = [\"0.5\", \"0.5\"]",
                 "at one place",
+            ),
+            (
+                "jitter = 0.1",
+                "sweeps = 3",
+                "sweeps: lattice = \"brick\" has none",
             ),
             (
                 "X = { lattice = \"brick\", jitter = 0.1, seed = 1 }",
