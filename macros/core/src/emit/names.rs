@@ -386,13 +386,21 @@ fn separated(name: &str, separator: char) -> String {
         let starts = c.is_uppercase()
             && i > 0
             && (!chars[i - 1].is_uppercase() || chars.get(i + 1).is_some_and(|n| n.is_lowercase()))
-            && chars[i - 1] != '_';
-        if starts {
+            && chars[i - 1] != '_'
+            && !is_dimensions(&chars, i - 1);
+        if starts || is_dimensions(&chars, i) {
             out.push(separator);
         }
         out.extend(c.to_lowercase());
     }
     out
+}
+
+/// Whether a number of dimensions stands there, the `2D` of `ShallowWater2D`, which is a word.
+fn is_dimensions(chars: &[char], i: usize) -> bool {
+    let after_word = i > 0 && chars[i - 1].is_lowercase();
+    let ends = chars.get(i + 2).is_none_or(|c| c.is_uppercase());
+    after_word && chars[i].is_ascii_digit() && chars.get(i + 1) == Some(&'D') && ends
 }
 
 #[cfg(test)]
@@ -405,5 +413,8 @@ mod tests {
         assert_eq!(kebab("HeavyTop"), "heavy-top");
         assert_eq!(kebab("BodyN"), "body-n");
         assert_eq!(snake("SO3Body"), "so3_body");
+        assert_eq!(kebab("ShallowWater2D"), "shallow-water-2d");
+        assert_eq!(kebab("ParticleMesh2DTall"), "particle-mesh-2d-tall");
+        assert_eq!(kebab("Top2Deep"), "top2-deep");
     }
 }
