@@ -21,7 +21,7 @@ pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named
     };
     let mut text = format!(
         "# A case of the model {}; run it with\n#   clebsch run {named} --case THIS-FILE.toml\n\
-         # Units: any consistent system. The model fixes none; time is in the unit of h.\n\
+         # Units: any consistent system. The model fixes none.\n\
          # Site data: a number for all sites, a text with an expression in the label, in its number and in the\n\
          # numbers below, or a list with an element for each site.\n{held}\
          model = \"{}\"\nname = \"sample\"\ndoc = \"sample values, to start a case of your own from\"\n\

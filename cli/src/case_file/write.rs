@@ -23,7 +23,7 @@ pub fn write(card: &Card, case: &Case, named: &str) -> String {
     );
     comment(
         &mut text,
-        "Units: any consistent system. The model fixes none; time is in the unit of h.",
+        "Units: any consistent system. The model fixes none.",
     );
     let model = pipeline::parse_source(card.source).ok();
     if model.as_ref().is_some_and(has_holds) {

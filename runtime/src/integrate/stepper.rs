@@ -70,5 +70,5 @@ pub trait Stepper {
 }
 
 /// A model whose step is its own inverse under `h -> -h`, which the derivation has shown for the
-/// action of one step. Only such steps gain order by [`Composition`](super::Composition).
+/// discrete Lagrangian. Only such steps gain order by [`Composition`](super::Composition).
 pub trait Reversible: Stepper {}
