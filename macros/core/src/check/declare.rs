@@ -1,6 +1,7 @@
 //! Declarations: symbols with their shapes, the configurations and advected quantities that
 //! constraints must serve, and the bookkeeping of which constraint was stated.
 
+use super::entries::Entries;
 use super::messages;
 use super::shapes;
 use super::spec::{Dimension, Group};
@@ -57,8 +58,8 @@ pub struct Declared {
     pub parameter_places: Vec<Place>,
     pub configurations: Vec<DeclaredGroup>,
     pub advected: Vec<DeclaredAdvected>,
-    /// Fields that stand for the diagonal matrix of what they keep.
-    pub diagonal: Vec<SymbolId>,
+    /// Fields that stand for a matrix made of what they keep.
+    pub structured: Vec<(SymbolId, Entries)>,
     taken: Vec<Taken>,
     /// What is typeset, as a reader sees it: the name that says so, and where.
     typeset: Vec<(String, Name)>,
@@ -174,7 +175,7 @@ pub fn declare(model: &Model, errors: &mut Errors) -> Declared {
         parameter_places: Vec::new(),
         configurations: Vec::new(),
         advected: Vec::new(),
-        diagonal: Vec::new(),
+        structured: Vec::new(),
         taken: Vec::new(),
         typeset: Vec::new(),
     };
@@ -189,6 +190,12 @@ pub fn declare(model: &Model, errors: &mut Errors) -> Declared {
 }
 
 impl Declared {
+    /// How what the name of a quantity stands for is made of it.
+    pub fn entries(&self, id: SymbolId) -> Entries {
+        let found = self.structured.iter().find(|(own, _)| *own == id);
+        found.map_or(Entries::Own, |(_, entries)| *entries)
+    }
+
     /// Names the increments of fields, and states how these go on: `next(X) = X + ΔX`.
     fn increments(&mut self) {
         let symbols = &mut self.symbols;
@@ -265,7 +272,7 @@ impl Declared {
                 });
             }
             Statement::Field { names, shape, .. } => {
-                let Some((shape, diagonal)) = shapes::field(&self.symbols, shape, errors) else {
+                let Some((shape, entries)) = shapes::field(&self.symbols, shape, errors) else {
                     names.iter().for_each(|n| self.take(&n.text, n.place));
                     return;
                 };
@@ -277,8 +284,8 @@ impl Declared {
                         self.symbols
                             .add(&name.text, shape, Structure::General, Role::Element);
                     self.symbols.describe(element, name.latex(), docs);
-                    if diagonal {
-                        self.diagonal.push(element);
+                    if entries != Entries::Own {
+                        self.structured.push((element, entries));
                     }
                     self.configurations.push(DeclaredGroup {
                         element,

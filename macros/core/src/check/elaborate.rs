@@ -168,10 +168,7 @@ impl<'a> Elaborator<'a> {
                 }
                 if let Some(id) = self.names.symbols.find(n) {
                     let shape = self.names.symbols.get(id).shape;
-                    return Some(match self.names.diagonal.contains(&id) {
-                        true => Shape::square(shape.rows),
-                        false => shape,
-                    });
+                    return Some(self.names.entries(id).shape(shape));
                 }
                 None
             }

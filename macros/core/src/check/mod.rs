@@ -4,6 +4,7 @@
 
 mod declare;
 mod elaborate;
+mod entries;
 mod functional;
 mod hold;
 mod lets;

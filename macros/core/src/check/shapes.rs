@@ -1,6 +1,7 @@
 //! Shapes and groups by name, and the side on which a velocity acts.
 
 use super::declare::DeclaredGroup;
+use super::entries::Entries;
 use super::spec::{Group, Side};
 use crate::diagnostic::{Diagnostic, Errors, closest};
 use crate::expr::shape::{Dim, Shape, Structure};
@@ -160,14 +161,23 @@ pub fn advected_shape(
     shape(symbols, k, errors)
 }
 
-/// The shape of a field, and whether it is a diagonal matrix: kept and varied as the vector of its diagonal.
-pub fn field(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<(Shape, bool)> {
+/// The shape that a field is kept and varied in, and how its matrix is made of that.
+pub fn field(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<(Shape, Entries)> {
     let (found, structure) = shape(symbols, k, errors)?;
-    if structure == Structure::General {
-        return Some((found, false));
-    }
-    if structure == Structure::Diagonal {
-        return Some((Shape::vector(found.rows), true));
+    let column = |n: u32| match n {
+        1 => Shape::SCALAR,
+        n => Shape::vector(Dim::Fixed(n)),
+    };
+    match (structure, found.rows) {
+        (Structure::General, _) => return Some((found, Entries::Own)),
+        (Structure::Diagonal, rows) => return Some((Shape::vector(rows), Entries::Diagonal)),
+        (Structure::Symmetric, Dim::Fixed(n)) => {
+            return Some((column(n * (n + 1) / 2), Entries::Symmetric(n)));
+        }
+        (Structure::Skew, Dim::Fixed(n)) => {
+            return Some((column(n * (n - 1) / 2), Entries::Skew(n)));
+        }
+        _ => {}
     }
     let own = written(k);
     let (message, help) = match is_group(&k.name.text) {
@@ -179,7 +189,7 @@ pub fn field(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<(Sha
             format!(
                 "a field varies in every entry by itself, and those of `{own}` are bound to one another"
             ),
-            "fields are Real, Vec<n>, Diag<n>, Mat<n> or Mat<n, m>".to_owned(),
+            "fields are Real, Vec<n>, Diag<n>, Mat<n> or Mat<n, m>, and Sym<n> and Skew<n> of a number n".to_owned(),
         ),
     };
     errors.push(Diagnostic::new(k.place, message).help(help));

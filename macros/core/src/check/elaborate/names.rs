@@ -113,10 +113,7 @@ impl Elaborator<'_> {
         }
         if let Some(id) = self.names.symbols.find(n) {
             let own = expr::here(&self.names.symbols, id);
-            return Ok(match self.names.diagonal.contains(&id) {
-                true => expr::diagonal(own),
-                false => own,
-            });
+            return Ok(self.names.entries(id).matrix(&self.names.symbols, own));
         }
         if n == "Id" {
             let size = match expected {

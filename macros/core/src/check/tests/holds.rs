@@ -121,3 +121,43 @@ fn fields_of_diagonal_matrices_are_their_diagonals() {
     );
     derive_source(&source).unwrap_or_else(|e| panic!("{source}\n{e}"));
 }
+
+#[test]
+fn fields_of_symmetric_and_skew_matrices_are_their_entries() {
+    let of = |shape: &str, lagrangian: &str| {
+        let text =
+            format!("model M {{ param k: Real; field S: {shape}; lagrangian = {lagrangian}; }}");
+        derive_source(&text).unwrap_or_else(|e| panic!("{text}\n{e}"))
+    };
+    let same = |[shape, stated]: [&str; 2], [kept, by_hand]: [&str; 2]| {
+        let (a, b) = (of(shape, stated), of(kept, by_hand));
+        let algebra = crate::algebra::Algebra::new(&a.letters.symbols);
+        assert!(
+            algebra.equal(&a.spec.lagrangian, &b.spec.lagrangian),
+            "{shape}"
+        );
+    };
+    same(
+        [
+            "Sym<2>",
+            "tr((next(S) - S)^2)/(2*h) - h*k*det(S) - h*S[2, 1]^4",
+        ],
+        [
+            "Vec<3>",
+            "((next(S)[1] - S[1])^2 + 2*(next(S)[2] - S[2])^2 + (next(S)[3] - S[3])^2)/(2*h) \
+             - h*k*(S[1]*S[3] - S[2]^2) - h*S[2]^4",
+        ],
+    );
+    same(
+        ["Skew<3>", "-tr((next(S) - S)^2)/(4*h) - h*k*S[3, 2]"],
+        ["Vec<3>", "dot(next(S) - S, next(S) - S)/(2*h) - h*k*S[1]"],
+    );
+    same(
+        ["Skew<2>", "-tr((next(S) - S)^2)/(4*h) - h*k*S[2, 1]^2"],
+        ["Real", "(next(S) - S)^2/(2*h) - h*k*S^2"],
+    );
+    // Its statement, as it is kept, derives the same.
+    let d = of("Sym<3>", "tr((next(S) - S)^2)/(2*h) - h*k*tr(S)^2");
+    let source = crate::document::source(&d);
+    derive_source(&source).unwrap_or_else(|e| panic!("{source}\n{e}"));
+}

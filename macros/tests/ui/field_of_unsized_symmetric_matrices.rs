@@ -1,10 +1,11 @@
-//! Of matrices all entries vary.
+//! Independent entries are counted: their number must be known.
 use clebsch::model;
 
 model! {
     model M {
+        dim n in 2..=4;
         param k: Real;
-        field S: Sym<3>;
+        field S: Sym<n>;
         lagrangian = tr((next(S) - S)*(next(S) - S))/(2*h);
     }
 }
