@@ -87,6 +87,14 @@ fn run() -> Command {
         .requires("out"),
     )
     .arg(
+        flag(
+            "vtk",
+            "Write files for ParaView into DIR/vtk: lines, cells, particles, grids and bodies at every sample, at \
+             most about 1000 unless --every says how many",
+        )
+        .requires("out"),
+    )
+    .arg(
         checkpoint
             .requires("out")
             .default_value("60")

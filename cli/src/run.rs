@@ -51,6 +51,10 @@ pub fn run(
     let target = matches.get_one::<PathBuf>("out");
     let as_json = matches.get_flag("json");
     let identity = Identity::of(card, &plan);
+    let drawn = match matches.get_flag("vtk") {
+        true => output::vtk::drawn(card, &plan)?,
+        false => Vec::new(),
+    };
     let (mut staging, checkpoint) = match target {
         None => (None, None),
         Some(target) => {
@@ -60,7 +64,9 @@ pub fn run(
                 false => Found::Nothing,
             };
             match found {
-                Found::Results => return already(card, &plan, target, as_json, streams),
+                Found::Results => {
+                    return already(card, &plan, target, (as_json, !drawn.is_empty()), streams);
+                }
                 Found::Middle(both) => (Some(both.0), Some(both.1)),
                 Found::Nothing => {
                     let force = matches.get_flag("force");
@@ -148,9 +154,9 @@ pub fn run(
         stopped,
     };
     let stream = kept.map(|kept| kept.stream);
-    let (mut files, mut place) = (Vec::new(), None);
+    let (mut files, mut place) = (Vec::<String>::new(), None);
     if let (Some(staging), Some(stream), Some(target)) = (staging, stream, target) {
-        let write = |files: &mut Vec<&'static str>| {
+        let write = |files: &mut Vec<String>| {
             let rows = stream.into_rows();
             let rows = rows.map_err(|error| cannot(&staging, &error))?;
             // Who has interrupted a run waits for its end, not for its beginning.
@@ -158,7 +164,7 @@ pub fn run(
                 End::Interrupted(_) => None,
                 _ => opening(card, &plan, summary.steps)?,
             };
-            *files = output::write(&staging, &run, &rows, opening)?;
+            *files = output::write(&staging, &run, &rows, opening, drawn)?;
             match (&end, &run.stopped) {
                 (End::Interrupted(_), _) => staging.commit_stopped(),
                 (_, None) => staging.commit().map(|()| {
@@ -271,7 +277,7 @@ fn already(
     card: &Card,
     plan: &Plan,
     target: &Path,
-    as_json: bool,
+    (as_json, vtk): (bool, bool),
     streams: &mut Streams<'_>,
 ) -> Result<u8, Failure> {
     let wrong = |words: &str| Failure::Usage(format!("--resume: {}: {words}", shown(target)));
@@ -292,6 +298,18 @@ fn already(
         if there["arguments"][key] != plan.arguments[key] {
             return Err(wrong(&format!("it holds another run: its {key} differs")));
         }
+    }
+    let there_files = there["results"]["files"].as_array();
+    let has_vtk = there_files.is_some_and(|all| {
+        all.iter().any(|f| {
+            f.as_str()
+                .is_some_and(|f| f.starts_with(output::vtk::FOLDER))
+        })
+    });
+    if vtk && !has_vtk {
+        return Err(wrong(
+            "the run there is complete and was written without --vtk; give --force instead to run it again",
+        ));
     }
     if there["results"]["complete"] != json!(true) {
         let why = there["results"]["stopped"]["why"].as_str().unwrap_or("?");

@@ -1,14 +1,17 @@
-//! What a run leaves behind: trajectory.csv, trajectory.npz, run.json and plots in one new folder.
+//! What a run leaves behind: trajectory.csv, trajectory.npz, run.json and plots in one new folder, on demand files for
+//! ParaView in one within.
 //! Takes a run, finished or stopped in the middle; gives the names of the files. Nothing in them depends on the time of day.
 
 pub(crate) mod arrays;
 mod interrupted;
+pub(crate) mod points;
 pub(crate) mod run_json;
 pub(crate) mod samples;
 pub(crate) mod sites;
 mod staging;
 mod standing;
 mod thinned;
+pub(crate) mod vtk;
 
 pub(crate) use interrupted::Listening;
 pub use staging::{Found, Staging};
@@ -55,7 +58,7 @@ pub struct Finished<'a> {
 }
 
 /// Every file name a run can write, so that a folder with anything else is never replaced.
-pub const FILES: [&str; 14] = [
+pub const FILES: [&str; 15] = [
     "trajectory.csv",
     "trajectory.npz",
     "run.json",
@@ -67,6 +70,7 @@ pub const FILES: [&str; 14] = [
     "angles.svg",
     "particles.svg",
     "run.html",
+    vtk::FOLDER,
     // While it runs, and where it can be gone on with.
     samples::NAME,
     checkpoint::NAME,
@@ -82,7 +86,8 @@ pub fn write(
     run: &Finished<'_>,
     rows: &Rows,
     opening: Option<Record>,
-) -> Result<Vec<&'static str>, Failure> {
+    in_space: Vec<vtk::Drawn>,
+) -> Result<Vec<String>, Failure> {
     let [
         csv,
         archive,
@@ -106,7 +111,7 @@ pub fn write(
     })?;
     let samples = &Samples { record, opening };
     let record = &samples.record;
-    let mut files = vec![csv, archive, json];
+    let mut files = vec![csv.to_owned(), archive.to_owned(), json.to_owned()];
     let mut pictures = Vec::new();
     let drawn = [
         (momentum, plots::momentum(run, samples)),
@@ -121,13 +126,16 @@ pub fn write(
         let plot = plot.map_err(|error| Failure::Failed(format!("cannot draw {name}: {error}")))?;
         if let Some(svg) = plot {
             staging.write(name, |file| file.write_all(svg.as_bytes()))?;
-            files.push(name);
+            files.push(name.to_owned());
             pictures.push((name, svg));
         }
     }
     let page = page::page(run, samples, &pictures);
     staging.write(html, |file| file.write_all(page.as_bytes()))?;
-    files.push(html);
+    files.push(html.to_owned());
+    if !in_space.is_empty() {
+        files.extend(vtk::write(staging, run.plan, rows, in_space)?);
+    }
     let text = format!("{:#}\n", run_json::run_json(run, &files));
     staging.write(json, |file| file.write_all(text.as_bytes()))?;
     Ok(files)

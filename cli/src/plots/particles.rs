@@ -10,6 +10,8 @@ use crate::case_file::labels::Stated;
 use crate::case_file::space::Space;
 use crate::output::Finished;
 use crate::output::sites::{AtSites, at_sites};
+use crate::plan::Plan;
+use clebsch::card::Card;
 use clebsch::record::Record;
 use clebsch_core::expr::symbol::ascii;
 use plotters::prelude::{Circle, Color, IntoDrawingArea, RGBColor, Rectangle, SVGBackend, WHITE};
@@ -44,7 +46,7 @@ struct Snapshot {
 
 /// The picture; nothing for models that are no fluids.
 pub(crate) fn particles(run: &Finished<'_>, record: &Record) -> Plot {
-    let Some((space, stated)) = space(run) else {
+    let Some((space, stated)) = space(run.card, run.plan) else {
         return Ok(None);
     };
     let all = at_sites(run.card);
@@ -72,13 +74,13 @@ pub(crate) fn particles(run: &Finished<'_>, record: &Record) -> Plot {
 }
 
 /// Where the particles of a run live.
-pub(crate) fn space(run: &Finished<'_>) -> Option<(Space, Stated)> {
-    let stated = Stated::read(run.card.source)?;
+pub(crate) fn space(card: &Card, plan: &Plan) -> Option<(Space, Stated)> {
+    let stated = Stated::read(card.source)?;
     let sample = Space::sample(&stated)?;
     let d = sample.lengths.len();
     let of = |key: &str| {
-        let at = run.card.parameters.iter().position(|f| f.ascii == key)?;
-        run.plan.case.parameters.get(at).cloned()
+        let at = card.parameters.iter().position(|f| f.ascii == key)?;
+        plan.case.parameters.get(at).cloned()
     };
     let torus = Space::torus(&stated).map(ascii);
     let own = of(torus.as_deref().unwrap_or("domain"))?;

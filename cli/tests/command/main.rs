@@ -25,3 +25,4 @@ mod staging;
 mod stopped;
 mod sweeps;
 mod terminal;
+mod vtk;
