@@ -220,7 +220,8 @@ fn of_a_case(command: Command) -> Command {
         .arg(option(
             "case",
             "NAME|FILE.toml",
-            "Case of the model, or a file ending in .toml; the model's first case by default",
+            "Case of the model, or a file ending in .toml; the model's first case by default. Of a model in a \
+             file M.clebsch a name stands for M/NAME.toml",
         ))
         .arg(
             option(

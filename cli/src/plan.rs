@@ -41,12 +41,12 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Reads the case and applies the options.
+    /// Reads the case, a name or a file, and applies the options.
     ///
     /// # Errors
     /// Usage: an unknown case, an unreadable or wrong file.
-    pub fn new(entry: &Entry, matches: &ArgMatches) -> Result<Self, Failure> {
-        let asked = matches.get_one::<String>("case").map(String::as_str);
+    pub fn new(entry: &Entry, case: Option<&str>, matches: &ArgMatches) -> Result<Self, Failure> {
+        let (asked, typed) = (case, matches.get_one::<String>("case"));
         let steps = matches.get_one::<u64>("steps").copied();
         let h = matches.get_one::<f64>("h").copied();
         let every = matches.try_get_one::<u64>("every").ok().flatten().copied();
@@ -84,7 +84,7 @@ impl Plan {
             order,
             arguments: json!({
                 "model": matches.get_one::<String>("model").map_or(entry.card.kebab, String::as_str),
-                "case": asked,
+                "case": typed,
                 "steps": steps,
                 "h": h,
                 "order": order,

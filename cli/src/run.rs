@@ -3,6 +3,7 @@
 
 use crate::Streams;
 use crate::asked;
+use crate::beside;
 use crate::checkpoint::{Checkpoint, Identity};
 use crate::failure::{BOUND_LEFT, BY_SIGNAL, DONE, FAILED, Failure};
 use crate::follow::{End, Kept, Run};
@@ -45,8 +46,10 @@ pub fn run(
         .get_one::<String>("model")
         .map_or("", String::as_str);
     let case = matches.get_one::<String>("case").map(String::as_str);
+    let case = beside::case(gallery, model, case)?;
+    let case = case.as_deref();
     let entry = asked::model(gallery, model, case, &mut streams.err)?;
-    let plan = Plan::new(&entry, matches)?;
+    let plan = Plan::new(&entry, case, matches)?;
     let card = &entry.card_of(&plan.case);
     let target = matches.get_one::<PathBuf>("out");
     let as_json = matches.get_flag("json");

@@ -58,7 +58,7 @@ pub struct Finished<'a> {
 }
 
 /// Every file name a run can write, so that a folder with anything else is never replaced.
-pub const FILES: [&str; 15] = [
+pub const FILES: [&str; 16] = [
     "trajectory.csv",
     "trajectory.npz",
     "run.json",
@@ -69,6 +69,7 @@ pub const FILES: [&str; 15] = [
     "attitude.svg",
     "angles.svg",
     "particles.svg",
+    "vorticity.svg",
     "run.html",
     vtk::FOLDER,
     // While it runs, and where it can be gone on with.
@@ -99,6 +100,7 @@ pub fn write(
         attitude,
         angles,
         particles,
+        vorticity,
         html,
         ..,
     ] = FILES;
@@ -121,6 +123,7 @@ pub fn write(
         (attitude, plots::attitude(run, samples)),
         (angles, plots::angles(run, samples)),
         (particles, plots::particles(run, record)),
+        (vorticity, plots::vorticity(run, record)),
     ];
     for (name, plot) in drawn {
         let plot = plot.map_err(|error| Failure::Failed(format!("cannot draw {name}: {error}")))?;

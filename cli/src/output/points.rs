@@ -2,24 +2,24 @@
 //! vectors. Takes a card; gives the names of the latter.
 
 use clebsch::card::{Card, Field, Kind};
-use clebsch_core::expr::symbol::ascii;
-use clebsch_core::pipeline;
-use clebsch_core::syntax::ast::Statement;
 use std::collections::HashSet;
 
 /// The fields of a model that are diagonals.
-pub(crate) struct Diagonals(HashSet<String>);
+pub(crate) struct Diagonals(HashSet<&'static str>);
 
 impl Diagonals {
     /// As the model is stated.
     pub(crate) fn of(card: &Card) -> Self {
-        let model = pipeline::parse_source(card.source).ok();
-        let statements = model.iter().flat_map(|m| &m.statements);
-        let names = statements.filter_map(|s| match s {
-            Statement::Field { names, shape, .. } if shape.name.text == "Diag" => Some(names),
-            _ => None,
-        });
-        Self(names.flatten().map(|n| ascii(&n.text)).collect())
+        // The source of a card states them as vectors, and them themselves as `diag(D)`.
+        let text: String = card.source.split_whitespace().collect();
+        let stated = |name: &str| text.contains(&format!("diag({name})"));
+        let fields = card.observables.iter().filter(|f| stated(f.name));
+        Self(fields.map(|f| f.ascii).collect())
+    }
+
+    /// Whether it is one of them.
+    pub(crate) fn have(&self, field: &Field) -> bool {
+        self.0.contains(field.ascii)
     }
 
     /// Whether it is a point, behind which this is shown.
@@ -27,6 +27,6 @@ impl Diagonals {
         behind == Some(Kind::FieldMomentum)
             && field.cols == 1
             && [2, 3].contains(&field.rows)
-            && !self.0.contains(field.ascii)
+            && !self.have(field)
     }
 }

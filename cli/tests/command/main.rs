@@ -3,6 +3,7 @@
 
 mod book;
 mod case_files;
+mod cases;
 mod common;
 mod comparisons;
 mod elastic;

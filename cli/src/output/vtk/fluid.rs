@@ -4,6 +4,7 @@
 use super::columns::{Columns, in_space};
 use super::kinematics::{Kinematics, Motion};
 use super::{Data, Part};
+use crate::case_file::labels::Stated;
 use crate::case_file::space::Space;
 use crate::output::sites::{AtSites, at_sites};
 use crate::plan::Plan;
@@ -32,7 +33,8 @@ struct Particles {
 
 struct Dots(Rc<Particles>);
 
-struct Cells {
+/// The cells of particles on a torus of two dimensions.
+pub(crate) struct Cells {
     particles: Rc<Particles>,
     mesh: Voronoi<f64>,
 }
@@ -46,29 +48,28 @@ struct Grid {
     columns: Vec<Columns>,
 }
 
-/// The parts of a fluid; none of other models.
-pub(super) fn parts(card: &Card, plan: &Plan) -> Vec<(String, Box<dyn Part>)> {
-    let mut out: Vec<(String, Box<dyn Part>)> = Vec::new();
-    let Some((space, stated)) = space(card, plan) else {
-        return out;
-    };
-    let all = at_sites(card);
-    let Some(own) = stated.lattice.places() else {
-        return out;
-    };
+/// The cells of a fluid, if it has any.
+pub(crate) fn cells(card: &Card, plan: &Plan) -> Option<Cells> {
+    let (space, stated) = space(card, plan)?;
+    let on_torus = Space::torus(&stated).is_some();
+    let particles = particles((card, plan), &at_sites(card), space, &stated)?;
+    Cells::of(&Rc::new(particles), on_torus)
+}
+
+/// The particles of a fluid with what stands at them.
+fn particles(
+    (card, plan): (&Card, &Plan),
+    all: &[AtSites<'_>],
+    space: Space,
+    stated: &Stated,
+) -> Option<Particles> {
+    let own = stated.lattice.places()?;
     let find = |key: &str| all.iter().find(|q| q.key == key);
     let key = ascii(&own.name.text);
-    let Some(places) = find(&key) else { return out };
+    let places = find(&key)?;
     let momenta = find(&format!("momentum_{key}"));
     let size = space.lengths.len();
     let kinematics = Kinematics::of((card, plan), &own.name.text, size, &space.lengths);
-    let columns = |q: &AtSites<'_>| -> Vec<Range<usize>> {
-        q.members.iter().map(|(_, c)| c.clone()).collect()
-    };
-    let at = |q: &AtSites<'_>| {
-        let at = columns(q).into_iter().map(Some).collect();
-        Columns::of(&q.key, q.field, at)
-    };
     let here = all
         .iter()
         .filter(|q| q.index == places.index && q.key != key);
@@ -79,28 +80,45 @@ pub(super) fn parts(card: &Card, plan: &Plan) -> Vec<(String, Box<dyn Part>)> {
         let values = kinematics.as_ref()?.parameter(&name)?;
         (values.len() == places.members.len()).then(|| Values::numbers(&name, values.clone()))
     });
-    let particles = Rc::new(Particles {
+    let own = Particles {
         places: columns(places),
         momenta: momenta.map_or_else(Vec::new, columns),
         columns: here.map(at).collect(),
         constant: constant.collect(),
         kinematics,
         space,
-    });
-    let space = &particles.space;
-    if let (Some(_), [width, height]) = (Space::torus(&stated), &space.lengths[..]) {
-        let domain = Domain::torus([*width, *height]);
-        if let Ok(mesh) = Voronoi::new(&domain, particles.places.len()) {
-            let cells = Cells {
-                particles: Rc::clone(&particles),
-                mesh,
-            };
-            out.push(("cells".to_owned(), Box::new(cells)));
-        }
+    };
+    Some(own)
+}
+
+/// Where a quantity stands in a row, at each of its sites.
+fn columns(q: &AtSites<'_>) -> Vec<Range<usize>> {
+    q.members.iter().map(|(_, c)| c.clone()).collect()
+}
+
+fn at(q: &AtSites<'_>) -> Columns {
+    let at = columns(q).into_iter().map(Some).collect();
+    Columns::of(&q.key, q.field, at)
+}
+
+/// The parts of a fluid; none of other models.
+pub(super) fn parts(card: &Card, plan: &Plan) -> Vec<(String, Box<dyn Part>)> {
+    let mut out: Vec<(String, Box<dyn Part>)> = Vec::new();
+    let Some((space, stated)) = space(card, plan) else {
+        return out;
+    };
+    let all = at_sites(card);
+    let Some(particles) = particles((card, plan), &all, space, &stated) else {
+        return out;
+    };
+    let particles = Rc::new(particles);
+    if let Some(cells) = Cells::of(&particles, Space::torus(&stated).is_some()) {
+        out.push(("cells".to_owned(), Box::new(cells)));
     }
+    let space = &particles.space;
     let on_grid = all
         .iter()
-        .filter(|q| !q.on_line && q.index != places.index)
+        .filter(|q| !q.on_line && Some(&q.index) == grid_index(&stated).as_ref())
         .map(at);
     if let Some(grid) = grid(space, on_grid.collect()) {
         out.push(("grid".to_owned(), Box::new(grid)));
@@ -211,8 +229,32 @@ impl Part for Dots {
     }
 }
 
+/// The letter of the index of a grid.
+fn grid_index(stated: &Stated) -> Option<String> {
+    Some(stated.lattice.grid()?.index.text.clone())
+}
+
 impl Part for Cells {
     fn data(&mut self, row: &[f64]) -> Data {
+        Data::Poly(self.polygons(row))
+    }
+}
+
+impl Cells {
+    fn of(particles: &Rc<Particles>, on_torus: bool) -> Option<Self> {
+        let [width, height] = *particles.space.lengths.as_slice() else {
+            return None;
+        };
+        let domain = Domain::torus([width, height]);
+        let mesh = Voronoi::new(&domain, particles.places.len()).ok()?;
+        on_torus.then(|| Cells {
+            particles: Rc::clone(particles),
+            mesh,
+        })
+    }
+
+    /// The cells of a sample, with what stands at their particles; none where particles coincide.
+    pub(crate) fn polygons(&mut self, row: &[f64]) -> PolyData {
         let own = &self.particles;
         let places: Vec<SVector<f64, 2>> = own
             .places
@@ -223,11 +265,10 @@ impl Part for Cells {
             })
             .collect();
         let mut data = PolyData::default();
-        // Particles that coincide have no cells: nothing is drawn then.
         let count = places.len();
         let mut areas = vec![0.0; count];
         if self.mesh.update(&places).is_err() || self.mesh.areas(&mut areas).is_err() {
-            return Data::Poly(data);
+            return data;
         }
         self.mesh.polygons(|site, corners| {
             let centre = places.get(site).map(|x| own.within(x.as_slice()));
@@ -279,7 +320,7 @@ impl Part for Cells {
         }
         add(&mut values, Values::numbers("area", areas));
         data.cell_data = values;
-        Data::Poly(data)
+        data
     }
 }
 

@@ -3,7 +3,7 @@
 
 mod bodies;
 mod columns;
-mod fluid;
+pub(crate) mod fluid;
 mod kinematics;
 mod sites;
 
