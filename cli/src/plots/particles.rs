@@ -95,7 +95,7 @@ pub(crate) fn vorticity(run: &Finished<'_>, record: &Record) -> Plot {
             let (low, high) = most_of(all.collect());
             let each = shots.iter_mut().flat_map(|s| &mut s.cells);
             each.for_each(|(_, v)| *v = v.clamp(low, high));
-            let what = "vorticity (colours end where one cell in a hundred lies beyond)";
+            let what = "vorticity (colours of 99 cells in 100)";
             titled(run, record, what, (&space, &shots, side))
         }
     }
