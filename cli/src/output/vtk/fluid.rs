@@ -1,7 +1,9 @@
 //! Fluids: particles, the cells of their Voronoi mesh on a torus, the nodes of a grid. Takes a card and a plan; gives a
 //! part for each.
 
+use super::cells::Cells;
 use super::columns::{Columns, in_space};
+use super::grid::grid;
 use super::kinematics::{Kinematics, Motion};
 use super::{Data, Part};
 use crate::case_file::labels::Stated;
@@ -10,19 +12,17 @@ use crate::output::sites::{AtSites, at_sites};
 use crate::plan::Plan;
 use crate::plots::particles::space;
 use clebsch::card::Card;
-use clebsch::mesh::{Domain, Voronoi};
-use clebsch::nalgebra::SVector;
-use clebsch::record::vtk::{ImageData, PolyData, Values};
+use clebsch::record::vtk::{PolyData, Values};
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::Kind;
 use std::ops::Range;
 use std::rc::Rc;
 
 /// Particles in their domain.
-struct Particles {
-    space: Space,
+pub(super) struct Particles {
+    pub(super) space: Space,
     /// The columns of the place of each, and of its momentum.
-    places: Vec<Range<usize>>,
+    pub(super) places: Vec<Range<usize>>,
     momenta: Vec<Range<usize>>,
     kinematics: Option<Kinematics>,
     /// Quantities at particles.
@@ -32,21 +32,6 @@ struct Particles {
 }
 
 struct Dots(Rc<Particles>);
-
-/// The cells of particles on a torus of two dimensions.
-pub(crate) struct Cells {
-    particles: Rc<Particles>,
-    mesh: Voronoi<f64>,
-}
-
-struct Grid {
-    origin: [f64; 3],
-    spacing: [f64; 3],
-    nodes: [usize; 3],
-    /// Which node of the model stands at each of the image.
-    order: Vec<usize>,
-    columns: Vec<Columns>,
-}
 
 /// The cells of a fluid, if it has any.
 pub(crate) fn cells(card: &Card, plan: &Plan) -> Option<Cells> {
@@ -127,49 +112,6 @@ pub(super) fn parts(card: &Card, plan: &Plan) -> Vec<(String, Box<dyn Part>)> {
     out
 }
 
-/// The grid of a domain with what stands at its nodes.
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    clippy::cast_precision_loss
-)]
-fn grid(space: &Space, columns: Vec<Columns>) -> Option<Grid> {
-    let cells = space.cells.as_ref()?;
-    let (places, _) = space.nodes().ok()?;
-    let mut spacing = [1.0; 3];
-    let mut nodes = [1; 3];
-    for (d, (length, n)) in space.lengths.iter().zip(cells).enumerate() {
-        *spacing.get_mut(d)? = length / *n as f64;
-        // Of a periodic direction the first node once more, at the seam.
-        *nodes.get_mut(d)? = n + 1;
-    }
-    let mut order = vec![None; nodes.iter().product()];
-    for (number, place) in places.iter().enumerate() {
-        let each = place.iter().zip(&spacing).zip(&space.walls).zip(&nodes);
-        let each = each.map(|(((x, by), wall), n)| {
-            let at = (x / by).round() as usize;
-            match !wall && at == 0 {
-                true => vec![0, n - 1],
-                false => vec![at],
-            }
-        });
-        let mut each = each.collect::<Vec<_>>().into_iter();
-        let (first, second) = (each.next()?, each.next().unwrap_or_else(|| vec![0]));
-        for j in &second {
-            for i in &first {
-                *order.get_mut(j * nodes[0] + i)? = Some(number);
-            }
-        }
-    }
-    Some(Grid {
-        origin: [0.0; 3],
-        spacing,
-        nodes,
-        order: order.into_iter().collect::<Option<_>>()?,
-        columns,
-    })
-}
-
 impl Particles {
     /// Numbers of all particles, one after the other.
     fn numbers(columns: &[Range<usize>], row: &[f64]) -> Vec<f64> {
@@ -180,20 +122,20 @@ impl Particles {
     }
 
     /// Where a particle is, within the domain.
-    fn within(&self, place: &[f64]) -> Vec<f64> {
+    pub(super) fn within(&self, place: &[f64]) -> Vec<f64> {
         let each = place.iter().zip(&self.space.lengths).zip(&self.space.walls);
         each.map(|((x, length), wall)| if *wall { *x } else { x.rem_euclid(*length) })
             .collect()
     }
 
-    fn motion(&self, row: &[f64]) -> Option<Motion> {
+    pub(super) fn motion(&self, row: &[f64]) -> Option<Motion> {
         let places = Self::numbers(&self.places, row);
         let momenta = Self::numbers(&self.momenta, row);
         self.kinematics.as_ref()?.motion(&places, &momenta)
     }
 
     /// What stands at particles, with their velocities.
-    fn values(&self, row: &[f64], motion: Option<&Motion>) -> Vec<Values> {
+    pub(super) fn values(&self, row: &[f64], motion: Option<&Motion>) -> Vec<Values> {
         let mut out: Vec<Values> = self.columns.iter().flat_map(|c| c.values(row)).collect();
         out.extend(self.constant.iter().cloned());
         if let Some(motion) = motion {
@@ -209,7 +151,7 @@ impl Particles {
 }
 
 /// Adds values, unless the model has some by the same name.
-fn add(out: &mut Vec<Values>, values: Values) {
+pub(super) fn add(out: &mut Vec<Values>, values: Values) {
     if out.iter().all(|own| own.name != values.name) {
         out.push(values);
     }
@@ -232,119 +174,4 @@ impl Part for Dots {
 /// The letter of the index of a grid.
 fn grid_index(stated: &Stated) -> Option<String> {
     Some(stated.lattice.grid()?.index.text.clone())
-}
-
-impl Part for Cells {
-    fn data(&mut self, row: &[f64]) -> Data {
-        Data::Poly(self.polygons(row))
-    }
-}
-
-impl Cells {
-    fn of(particles: &Rc<Particles>, on_torus: bool) -> Option<Self> {
-        let [width, height] = *particles.space.lengths.as_slice() else {
-            return None;
-        };
-        let domain = Domain::torus([width, height]);
-        let mesh = Voronoi::new(&domain, particles.places.len()).ok()?;
-        on_torus.then(|| Cells {
-            particles: Rc::clone(particles),
-            mesh,
-        })
-    }
-
-    /// The cells of a sample, with what stands at their particles; none where particles coincide.
-    pub(crate) fn polygons(&mut self, row: &[f64]) -> PolyData {
-        let own = &self.particles;
-        let places: Vec<SVector<f64, 2>> = own
-            .places
-            .iter()
-            .filter_map(|c| match row.get(c.clone())? {
-                [x, y] => Some(SVector::<f64, 2>::new(*x, *y)),
-                _ => None,
-            })
-            .collect();
-        let mut data = PolyData::default();
-        let count = places.len();
-        let mut areas = vec![0.0; count];
-        if self.mesh.update(&places).is_err() || self.mesh.areas(&mut areas).is_err() {
-            return data;
-        }
-        self.mesh.polygons(|site, corners| {
-            let centre = places.get(site).map(|x| own.within(x.as_slice()));
-            let [x, y] = centre.as_deref().map_or([0.0; 2], |c| match *c {
-                [x, y] => [x, y],
-                _ => [0.0; 2],
-            });
-            let first = data.points.len() as u64;
-            data.polygons
-                .push((first..first + corners.len() as u64).collect());
-            data.points
-                .extend(corners.iter().map(|c| [x + c[0], y + c[1], 0.0]));
-        });
-        let motion = own.motion(row);
-        let mut values = own.values(row, motion.as_ref());
-        let depth = motion
-            .as_ref()
-            .and_then(|m| m.masses.as_ref())
-            .map(|masses| {
-                let each = masses.iter().zip(&areas);
-                each.map(|(m, a)| m / a).collect::<Vec<f64>>()
-            });
-        if let Some(motion) = &motion {
-            let velocities: Vec<SVector<f64, 2>> = motion
-                .velocities
-                .as_chunks::<2>()
-                .0
-                .iter()
-                .map(|[u, v]| SVector::<f64, 2>::new(*u, *v))
-                .collect();
-            let mut vorticity = vec![0.0; count];
-            if self.mesh.curl(&velocities, &mut vorticity).is_ok() {
-                let both = motion.rotations.as_ref().zip(depth.as_ref());
-                let potential = both.map(|(f, h)| {
-                    let each = vorticity.iter().zip(f).zip(h);
-                    each.map(|((zeta, f), h)| (zeta + f) / h).collect()
-                });
-                add(&mut values, Values::numbers("vorticity", vorticity));
-                if let Some(potential) = potential {
-                    add(
-                        &mut values,
-                        Values::numbers("potential_vorticity", potential),
-                    );
-                }
-            }
-        }
-        if let Some(depth) = depth {
-            add(&mut values, Values::numbers("depth", depth));
-        }
-        add(&mut values, Values::numbers("area", areas));
-        data.cell_data = values;
-        data
-    }
-}
-
-impl Part for Grid {
-    fn ending(&self) -> &'static str {
-        "vti"
-    }
-
-    fn data(&mut self, row: &[f64]) -> Data {
-        let reordered = |values: Values| {
-            let n = values.components;
-            let at = |node: &usize| values.numbers.get(node * n..(node + 1) * n);
-            let numbers = self.order.iter().filter_map(at).flatten().copied();
-            Values {
-                numbers: numbers.collect(),
-                ..values
-            }
-        };
-        let values = self.columns.iter().flat_map(|c| c.values(row));
-        Data::Image(ImageData {
-            origin: self.origin,
-            spacing: self.spacing,
-            nodes: self.nodes,
-            point_data: values.map(reordered).collect(),
-        })
-    }
 }

@@ -2,8 +2,10 @@
 //! collection of them over time. Takes a card and a plan, then the rows of the run; gives the names of the collections.
 
 mod bodies;
+mod cells;
 mod columns;
 pub(crate) mod fluid;
+mod grid;
 mod kinematics;
 mod sites;
 
