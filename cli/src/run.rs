@@ -28,6 +28,9 @@ use std::path::{Path, PathBuf};
 /// Steps whose every node is kept for the plots: all the swings there is room for, of 150 steps each.
 const OPENING: u64 = 10_000;
 
+/// Most numbers that are kept of them, a quarter of a gigabyte: of a fluid fewer steps.
+const OPENING_NUMBERS: u64 = 1 << 25;
+
 /// Where the texts of a summary begin, behind their names.
 const SUMMARY: usize = 21;
 
@@ -382,7 +385,8 @@ fn opening(card: &Card, plan: &Plan, made: u64) -> Result<Option<Record>, Failur
     if plan.every == 1 {
         return Ok(None);
     }
-    let steps = made.min(OPENING);
+    let width = samples::width(card) as u64;
+    let steps = made.min(OPENING).min(OPENING_NUMBERS / width.max(1));
     let mut recorder = Recorder::new(card, steps, true, false);
     let mut trajectory = plan.open(card)?;
     integrate::run(trajectory.as_mut(), steps, 1, &mut recorder)
