@@ -1,7 +1,7 @@
 //! Named cases beside the files of models: found by their names, printed, suggested; all that are shipped run, and two of
 //! them give the numbers of other implementations and of closed forms.
 
-use crate::common::{Folder, clebsch};
+use crate::common::{Folder, program as clebsch};
 use std::fs;
 use std::path::{Path, PathBuf};
 

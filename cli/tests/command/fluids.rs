@@ -1,7 +1,7 @@
 //! Fluids on the command line: derived, run from cases with domains, lattices and expressions of the place, wrong
 //! cases told by key and site.
 
-use crate::common::{Folder, clebsch};
+use crate::common::{Folder, clebsch, program};
 
 /// The model files that the project ships, each with its case.
 const SHIPPED: [&str; 4] = [
@@ -196,7 +196,7 @@ fn masses_are_depths_times_the_areas_of_cells() {
     let with = |share: &str| text.replace("{ depth = \"1\" }", share);
     let own = folder.write("cells.toml", &with("{ depth = \"2\", share = \"cells\" }"));
     let out = folder.path("out");
-    let done = clebsch(&["run", &model, "--case", &own, "--steps", "1", "--out", &out]);
+    let done = program(&["run", &model, "--case", &own, "--steps", "1", "--out", &out]);
     assert_eq!(done.code, 0, "{}{}", done.out, done.err);
     let json = std::fs::read_to_string(format!("{out}/run.json")).expect("is written");
     let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
@@ -211,7 +211,7 @@ fn masses_are_depths_times_the_areas_of_cells() {
     assert!((masses.iter().sum::<f64>() - 2.0).abs() < 1e-13);
     assert!(masses.iter().any(|m| (m - 0.005).abs() > 1e-4));
     let wrong = folder.write("wrong.toml", &with("{ depth = \"2\", share = \"boxes\" }"));
-    let done = clebsch(&["run", &model, "--case", &wrong, "--steps", "1"]);
+    let done = program(&["run", &model, "--case", &wrong, "--steps", "1"]);
     assert_eq!(done.code, 2, "{}", done.out);
     assert!(
         done.err.contains("share: expected \"equal\" or \"cells\""),
@@ -225,7 +225,7 @@ fn masses_are_depths_times_the_areas_of_cells() {
         "-200*(x - 0.5)^2)\", share = \"cells\" }",
     );
     let wrong = folder.write("grid.toml", &case);
-    let done = clebsch(&["run", &grid, "--case", &wrong, "--steps", "1"]);
+    let done = program(&["run", &grid, "--case", &wrong, "--steps", "1"]);
     assert_eq!(done.code, 2, "{}", done.out);
     assert!(
         done.err.contains("share: Voronoi cells are those"),

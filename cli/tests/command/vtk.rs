@@ -1,7 +1,7 @@
 //! Files for ParaView: every array is there, decoded from base64, with as many numbers as its points or cells; they are
 //! the numbers of the trajectory; they go where other results go, and are removed with them.
 
-use crate::common::{Folder, clebsch};
+use crate::common::{Done, Folder, clebsch, program};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -67,15 +67,24 @@ impl Read {
     }
 }
 
-/// Runs a model with its case into `out`; gives the files of a collection, which are all there.
+/// Files of models are run by processes of their own.
+fn of(model: &str, arguments: &[&str]) -> Done {
+    match model.ends_with(".clebsch") {
+        true => program(arguments),
+        false => clebsch(arguments),
+    }
+}
+
+/// Runs a model with its case into `out`.
 fn run(model: &str, case: Option<&str>, more: &[&str], out: &str) {
     let mut arguments = vec!["run", model, "--vtk", "--out", out];
     arguments.extend(case.iter().flat_map(|case| ["--case", *case]));
     arguments.extend(more);
-    let done = clebsch(&arguments);
+    let done = of(model, &arguments);
     assert_eq!(done.code, 0, "{model}: {}{}", done.out, done.err);
 }
 
+/// The times and files of a collection, which are all there.
 fn members(out: &str, name: &str) -> Vec<(f64, String)> {
     let text = fs::read_to_string(format!("{out}/vtk/{name}.pvd")).expect("a collection");
     let lines = text.lines().filter(|line| line.starts_with("<DataSet"));
@@ -333,7 +342,7 @@ fn what_is_not_seen_is_refused_before_it_runs() {
         "number.clebsch",
         "model Number { param m, c: Real; field q: Real; lagrangian = m*(next(q) - q)^2/(2*h) - h*c*q^2/2; }",
     );
-    let done = clebsch(&["run", &model, "--vtk", "--out", &folder.path("out")]);
+    let done = program(&["run", &model, "--vtk", "--out", &folder.path("out")]);
     assert_eq!(done.code, 2, "{}", done.err);
     assert!(done.err.contains("nothing that is seen"), "{}", done.err);
     assert!(!Path::new(&folder.path("out")).exists());
